@@ -1,0 +1,30 @@
+# Language level, warnings and target processor, the same for every target of the project.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+# One library per folder: `motorcade_library(core a.cpp b.cpp)` makes motorcade_core and motorcade::core.
+function(motorcade_library folder)
+  add_library(motorcade_${folder} STATIC ${ARGN})
+  add_library(motorcade::${folder} ALIAS motorcade_${folder})
+  set_target_properties(motorcade_${folder} PROPERTIES EXPORT_NAME ${folder})
+  target_include_directories(motorcade_${folder} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/motorcade>)
+  motorcade_options(motorcade_${folder})
+endfunction()
+
+function(motorcade_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wold-style-cast -Werror)
+  if(NOT MOTORCADE_PORTABLE)
+    # Public: Eigen's alignment and inlined kernels must agree between the library and its users.
+    target_compile_options(${target} PUBLIC -march=x86-64-v3)
+  endif()
+endfunction()

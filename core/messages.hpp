@@ -1,0 +1,121 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/ids.hpp"
+#include "core/image.hpp"
+#include "core/se3.hpp"
+#include "core/timestamp.hpp"
+
+/// The messages that pass between folders. Each is filled once by its stage and then only read.
+namespace motorcade {
+
+using SteadyTime = std::chrono::steady_clock::time_point;
+
+/// What became of an input pair.
+enum class FrameStatus {
+  kGood,
+  kLost,      // processed, but too few matches for an ego-motion: the pose is predicted
+  kRejected,  // unreadable or of the wrong size: the pose is predicted
+  kDropped,   // never processed, by the live policy: the pose is predicted
+};
+
+/// A rectified stereo pair as it enters the pipeline.
+struct StereoFrame {
+  FrameId frame;
+  Timestamp stamp;
+  SteadyTime due;       // when the pair was due; latency counts from here
+  Image left, right;    // empty when rejected
+  std::string problem;  // why the pair is rejected, empty when it is good
+  bool rejected() const { return !problem.empty(); }
+};
+using StereoFramePtr = std::shared_ptr<const StereoFrame>;
+
+/// Box in the left image, inclusive bounds [px].
+struct Box {
+  double left_px = 0, top_px = 0, right_px = 0, bottom_px = 0;
+};
+
+enum class ObjectState { kMoving, kStopped, kPredicted };
+
+/// One frame's measurements of one object, relative to the camera of that frame.
+struct ObjectObservation {
+  TrackId track;
+  FrameId frame;
+  ObjectState state = ObjectState::kMoving;
+  int points = 0;
+  Box box;
+  /// The object's pose seen from the camera (encounter), right perturbation; prediction only when state is kPredicted.
+  SE3 T_cam_body;
+  Matrix6d encounter_covariance = Matrix6d::Identity();
+  /// Motion since the object's previous observation, z_{i-1}^-1 * z_i, from points that the encounter did not use.
+  struct Motion {
+    FrameId since;
+    SE3 T_before_now;
+    Matrix6d covariance;
+  };
+  std::optional<Motion> motion;
+  /// Velocity of the body's origin relative to the world, in the camera's axes [m/s], as the front-end sees it.
+  Eigen::Vector3d velocity_cam_mps = Eigen::Vector3d::Zero();
+};
+
+/// What the front-end measured in one frame: all that the back-end needs.
+struct FrameMeasurements {
+  FrameId frame;
+  Timestamp stamp;
+  FrameStatus status = FrameStatus::kGood;
+  /// Ego-motion T_cam(previous)_cam(now); predicted, with a wide covariance, unless the status is kGood. Identity in the first frame.
+  SE3 T_previous_now;
+  Matrix6d odometry_covariance = Matrix6d::Identity();
+  /// Objects of this frame. An object that was confirmed now brings its earlier observations along, oldest first, before its own of this frame.
+  std::vector<ObjectObservation> objects;
+  /// Tracks that ended: nothing will be observed of them any more.
+  std::vector<TrackId> ended;
+};
+using FrameMeasurementsPtr = std::shared_ptr<const FrameMeasurements>;
+
+/// An object's estimate in one frame.
+struct ObjectEstimate {
+  TrackId track;
+  ObjectState state = ObjectState::kMoving;
+  SE3 T_world_body;
+  Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();
+  double speed_sigma_mps = 0;
+  int points = 0;
+  Box box;
+  std::optional<Matrix6d> covariance;  // of T_cam_body of the same frame
+};
+
+/// The camera and the objects in one frame: *online* when it is published with the newest frame, *final* when it leaves the window.
+struct FrameEstimate {
+  FrameId frame;
+  Timestamp stamp;
+  FrameStatus status = FrameStatus::kGood;
+  SE3 T_world_cam;
+  std::optional<Matrix6d> camera_covariance;  // of T_cam(10 frames earlier)_cam(now)
+  std::vector<ObjectEstimate> objects;        // ordered by track
+};
+
+/// What the back-end's update cost and did, for reports and tests.
+struct SolverCounters {
+  std::int64_t updates = 0, relinearizations = 0, reorderings = 0, batch_solves = 0;
+  std::int64_t variables = 0, factors = 0, retired_variables = 0;
+  double chi2 = 0;
+};
+
+/// The back-end's answer to one frame.
+struct Estimates {
+  FrameEstimate online;
+  std::vector<FrameEstimate> finals;  // frames that left the window with this update, oldest first
+  SolverCounters counters;
+};
+using EstimatesPtr = std::shared_ptr<const Estimates>;
+
+}  // namespace motorcade
