@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <string_view>
+
+#include "core/messages.hpp"
+
+/// When each stage worked on a frame, for latency reports and traces.
+namespace motorcade {
+
+/// The pipeline's stages, in the order of the data.
+enum class Stage { kPrepare, kStereo, kFlow, kMotion, kTracking, kOptimisation };
+inline constexpr std::size_t kStageCount = 6;
+inline constexpr std::array<std::string_view, kStageCount> kStageNames{"prepare", "stereo",   "flow",
+                                                                       "motion",  "tracking", "optimisation"};
+
+inline double millisecondsBetween(SteadyTime from, SteadyTime to) { return std::chrono::duration<double, std::milli>(to - from).count(); }
+
+/// One stage's work on one frame; empty (start == end) where the stage did not run.
+struct StageSpan {
+  SteadyTime start, end;
+  int worker = -1;  // slot of the arena that did the work
+  double duration_ms() const { return millisecondsBetween(start, end); }
+};
+
+/// One frame's way through the pipeline.
+struct FrameTiming {
+  FrameId frame;
+  Timestamp stamp;
+  FrameStatus status = FrameStatus::kGood;
+  SteadyTime due;        // latency counts from here
+  SteadyTime admitted;   // taken from the ring and put into the flow graph
+  SteadyTime published;  // result ready for the reader
+  double decode_ms = 0;  // done ahead, so not part of the latency; filled by who decodes
+  std::array<StageSpan, kStageCount> stages;
+
+  const StageSpan& of(Stage stage) const { return stages[static_cast<std::size_t>(stage)]; }
+  double latency_ms() const { return millisecondsBetween(due, published); }
+};
+
+}  // namespace motorcade
