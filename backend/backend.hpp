@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "core/messages.hpp"
+
+namespace motorcade {
+
+/// Measurements to trajectories. Call in frame order: a back-end remembers all frames of its window.
+class Backend {
+ public:
+  Backend() = default;
+  Backend(const Backend&) = delete;
+  Backend& operator=(const Backend&) = delete;
+  virtual ~Backend() = default;
+
+  /// The newest frame's estimate, and those that left the window. Numerical trouble shows in the result; nothing is thrown.
+  virtual EstimatesPtr operator()(const FrameMeasurementsPtr& measurements) = 0;
+
+  /// Final estimates of the frames still in the window, oldest first. No further frame may follow.
+  virtual std::vector<FrameEstimate> finish() = 0;
+};
+
+}  // namespace motorcade

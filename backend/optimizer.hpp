@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+
+#include "backend/backend.hpp"
+#include "core/robust_loss.hpp"
+
+namespace motorcade {
+
+/// The smoother: one pose graph for the camera and one per object, joined by anchors (Kim et al. 2010), solved incrementally.
+/// An object that the system cannot determine is dropped, and the camera goes on.
+class Optimizer final : public Backend {
+ public:
+  enum class RelinearizationPolicy {
+    kEveryN,  // reorder and relinearise everything every `relinearize_every_updates` (the paper)
+    kFluid,   // relinearise what moved past the thresholds, in each update
+  };
+  struct Params {
+    int window_frames = 1000;  // a frame is final when it leaves the window; 0 keeps everything
+
+    /// Kinds of factors. Camera odometry is always on.
+    bool use_motion = true, use_smoothness = true, use_camera_encounter = true, use_object_encounter = true;
+
+    /// Losses act on whitened residual norms of six dimensions.
+    RobustLoss encounter_loss = RobustLoss::kHuber, motion_loss = RobustLoss::kHuber;
+    double encounter_loss_scale = 4.5, motion_loss_scale = 4.5;
+    /// Factors on the variances of the front-end's covariances: 1 takes them as they are.
+    double odometry_variance_scale = 1.0, encounter_variance_scale = 1.0, motion_variance_scale = 1.0;
+
+    /// Gauge of the camera's and of each object's graph, and the weak prior of an anchor.
+    double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
+    double object_origin_sigma_m = 1e-3, object_origin_sigma_rad = 1e-4;
+    double anchor_sigma_m = 100.0, anchor_sigma_rad = 3.0;
+
+    /// Smooth motion: white noise on acceleration, as the standard deviation of the velocity's change after one second.
+    double acceleration_along_mps2 = 2.0, acceleration_sideways_mps2 = 0.5, acceleration_vertical_mps2 = 0.3;
+    double acceleration_yaw_radps2 = 0.3, acceleration_tilt_radps2 = 0.1;
+
+    /// Share of two camera encounters' information that goes to the encounter of the two objects, and which pairs get one.
+    double object_encounter_share = 0.2, object_encounter_distance_m = 15.0;
+    int object_encounter_partners = 1;
+
+    RelinearizationPolicy policy = RelinearizationPolicy::kFluid;
+    int relinearize_every_updates = 50;
+    double relinearize_m = 0.05, relinearize_rad = 0.005;  // fluid
+    double substitution_threshold = 1e-5;  // m or rad: back-substitution stops where nothing moves by more; 0 is exact
+    int final_iterations = 10;             // at most, in finish()
+
+    int camera_covariance_frames = 10;  // the camera's covariance is relative to that many frames earlier
+    int covariance_lag_frames = 5;      // final covariances are taken that many frames later; what comes after adds little
+    bool compute_covariances = true;
+  };
+
+  explicit Optimizer(const Params& params);
+  ~Optimizer() override;
+
+  EstimatesPtr operator()(const FrameMeasurementsPtr& measurements) override;
+  std::vector<FrameEstimate> finish() override;
+
+ private:
+  class Smoother;
+  std::unique_ptr<Smoother> smoother_;
+};
+
+}  // namespace motorcade
