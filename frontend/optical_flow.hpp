@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+
+#include "core/stereo_camera.hpp"
+#include "frontend/messages.hpp"
+#include "frontend/patch_alignment.hpp"
+
+namespace motorcade {
+
+/// Follows scene points through the left images. Each point is aligned from frame to frame, coarse to fine and both ways, then against its
+/// keyframe's patch (birth or last re-anchoring), which stops the random walk. New tracks start at corners where tracks are few.
+/// Features with descriptors (SIFT) are followed by those instead.
+/// Call in frame order. A rejected frame gives no tracks; those of the last good frame are then dropped, as they are when the image size
+/// changes.
+class OpticalFlowTracker {
+ public:
+  struct Params {
+    int max_tracks = 1200;
+    int cell_px = 48;
+    double min_distance_px = 5;  // between tracks
+    double max_round_trip_px = 0.5;
+    double max_flow_px = 250;
+    int border_px = 6;
+    int keyframe_frames = 6;        // a track is anchored again after this many
+    double keyframe_min_ncc = 0.9;  // or when it no longer looks like its keyframe
+    PatchParams patch;
+    double sift_max_flow_px = 150;
+    double sift_max_ratio = 0.85;
+    double sift_sigma_px = 0.3;
+  };
+  OpticalFlowTracker(const Params& params, const StereoCamera& camera);
+  OpticalFlowTracker(OpticalFlowTracker&&) noexcept;
+  OpticalFlowTracker& operator=(OpticalFlowTracker&&) noexcept;
+  ~OpticalFlowTracker();
+
+  OpticalFlowPtr operator()(const FeaturesPtr& features);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace motorcade
