@@ -31,9 +31,10 @@ enum class FrameStatus {
 struct StereoFrame {
   FrameId frame;
   Timestamp stamp;
-  SteadyTime due;       // when the pair was due; latency counts from here
-  Image left, right;    // empty when rejected
-  std::string problem;  // why the pair is rejected, empty when it is good
+  SteadyTime due;        // when the pair was due; latency counts from here
+  Image left, right;     // empty when rejected
+  std::string problem;   // why the pair is rejected, empty when it is good
+  double decode_ms = 0;  // time spent on reading the images, before the pair was due
   bool rejected() const { return !problem.empty(); }
 };
 using StereoFramePtr = std::shared_ptr<const StereoFrame>;
