@@ -1,0 +1,110 @@
+#include "core/assignment.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace motorcade {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The Hungarian method by shortest augmenting paths (Jonker and Volgenant, Computing 38, 1987): rows enter one at a time,
+/// each by the cheapest path of reassignments; the dual prices keep all reduced costs non-negative.
+class AugmentingPaths {
+ public:
+  AugmentingPaths(const Eigen::MatrixXd& cost, double forbidden)
+      : cost_(cost),
+        forbidden_(forbidden),
+        columns_(static_cast<int>(cost.cols() + cost.rows())),
+        row_price_(static_cast<std::size_t>(cost.rows()), 0.0),
+        column_price_(static_cast<std::size_t>(columns_), 0.0),
+        row_of_(static_cast<std::size_t>(columns_), -1) {}
+
+  std::vector<int> solve() {
+    for (int row = 0; row < cost_.rows(); ++row) enter(row);
+    std::vector<int> column_of(static_cast<std::size_t>(cost_.rows()), -1);
+    for (int column = 0; column < cost_.cols(); ++column) {
+      const int row = row_of_[static_cast<std::size_t>(column)];
+      if (row >= 0) column_of[static_cast<std::size_t>(row)] = column;
+    }
+    return column_of;
+  }
+
+ private:
+  /// Beyond the real columns every row has one of its own, where it stays alone.
+  double costOf(int row, int column) const {
+    if (column >= cost_.cols()) return column - cost_.cols() == row ? forbidden_ : kInfinity;
+    const double value = cost_(row, column);
+    return value < forbidden_ ? value : kInfinity;
+  }
+
+  void enter(int new_row) {
+    const auto count = static_cast<std::size_t>(columns_);
+    std::vector<double> distance(count, kInfinity);
+    std::vector<int> came_from(count, -1);  // the column before on the path; -1 is the new row itself
+    std::vector<bool> settled(count, false);
+    int row = new_row, column = -1;
+    double reached = 0;
+    do {
+      relax(row, column, reached, settled, distance, came_from);
+      column = nearest(distance, settled);
+      assert(column >= 0);  // the row's own column is always within reach
+      settled[static_cast<std::size_t>(column)] = true;
+      reached = distance[static_cast<std::size_t>(column)];
+      row = row_of_[static_cast<std::size_t>(column)];
+    } while (row >= 0);
+    updatePrices(new_row, reached, settled, distance);
+    for (; column >= 0; column = came_from[static_cast<std::size_t>(column)]) {
+      const int before = came_from[static_cast<std::size_t>(column)];
+      row_of_[static_cast<std::size_t>(column)] = before < 0 ? new_row : row_of_[static_cast<std::size_t>(before)];
+    }
+  }
+
+  void relax(int row, int column, double reached, const std::vector<bool>& settled, std::vector<double>& distance,
+             std::vector<int>& came_from) const {
+    for (int next = 0; next < columns_; ++next) {
+      const auto j = static_cast<std::size_t>(next);
+      if (settled[j]) continue;
+      const double through = reached + costOf(row, next) - row_price_[static_cast<std::size_t>(row)] - column_price_[j];
+      if (through < distance[j]) {
+        distance[j] = through;
+        came_from[j] = column;
+      }
+    }
+  }
+
+  int nearest(const std::vector<double>& distance, const std::vector<bool>& settled) const {
+    int best = -1;
+    for (int column = 0; column < columns_; ++column) {
+      const auto j = static_cast<std::size_t>(column);
+      if (!settled[j] && distance[j] < kInfinity && (best < 0 || distance[j] < distance[static_cast<std::size_t>(best)])) best = column;
+    }
+    return best;
+  }
+
+  void updatePrices(int new_row, double reached, const std::vector<bool>& settled, const std::vector<double>& distance) {
+    row_price_[static_cast<std::size_t>(new_row)] += reached;
+    for (std::size_t j = 0; j < settled.size(); ++j) {
+      if (!settled[j]) continue;
+      column_price_[j] -= reached - distance[j];
+      if (row_of_[j] >= 0) row_price_[static_cast<std::size_t>(row_of_[j])] += reached - distance[j];
+    }
+  }
+
+  const Eigen::MatrixXd& cost_;
+  double forbidden_;
+  int columns_;
+  std::vector<double> row_price_, column_price_;
+  std::vector<int> row_of_;
+};
+
+}  // namespace
+
+std::vector<int> assignMinCost(const Eigen::MatrixXd& cost, double forbidden) {
+  assert(std::isfinite(forbidden));
+  return AugmentingPaths(cost, forbidden).solve();
+}
+
+}  // namespace motorcade
