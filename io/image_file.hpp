@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/image.hpp"
+
+/// Images in files. Formats are told by content, sizes are checked in the header before anything is allocated.
+/// Reading throws InputError, writing OutputError, both naming the file.
+namespace motorcade {
+
+enum class ImageFormat { kUnknown, kPng, kJpeg, kPgm };
+
+struct ImageSize {
+  int width = 0, height = 0;
+  bool operator==(const ImageSize&) const = default;
+  std::string text() const { return std::to_string(width) + "x" + std::to_string(height); }
+};
+
+/// Colour image, three bytes per pixel, rows without gaps.
+struct RgbImage {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> pixels;
+  std::uint8_t* at(int x, int y) {
+    return &pixels[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3];
+  }
+  const std::uint8_t* at(int x, int y) const {
+    return &pixels[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3];
+  }
+};
+
+/// 16-bit gray image, rows without gaps: KITTI's disparity maps, instance masks.
+struct Gray16Image {
+  int width = 0, height = 0;
+  std::vector<std::uint16_t> pixels;
+};
+
+/// True when the file's name says image (png, jpg, jpeg, pgm).
+bool hasImageName(const std::filesystem::path& file);
+/// Told from the first bytes; unknown also when the file cannot be read.
+ImageFormat imageFormat(const std::filesystem::path& file);
+/// From the header alone. Refuses sizes below 16 or above 16384 in either direction.
+ImageSize readImageSize(const std::filesystem::path& file);
+
+/// Any PNG, JPEG or PGM as 8-bit gray; colour is weighted as in BT.601, 16 bits lose the lower byte.
+Image readImage(const std::filesystem::path& file, ImagePool& pool);
+/// A gray PNG of 16 bits; one of 8 bits is widened without scaling.
+Gray16Image readPng16(const std::filesystem::path& file);
+
+/// `fast` trades a larger file for time.
+enum class PngEffort { kFast, kSmall };
+void writePng(const std::filesystem::path& file, const Image& image, PngEffort effort = PngEffort::kFast);
+void writePng16(const std::filesystem::path& file, const Gray16Image& image, PngEffort effort = PngEffort::kFast);
+void writePngRgb(const std::filesystem::path& file, const RgbImage& image, PngEffort effort = PngEffort::kSmall);
+
+}  // namespace motorcade

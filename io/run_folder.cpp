@@ -1,0 +1,316 @@
+#include "io/run_folder.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "io/errors.hpp"
+#include "io/number_text.hpp"
+#include "io/text_file.hpp"
+#include "io/trajectory.hpp"
+
+namespace motorcade {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kObjectsHeader =
+    "frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,right,bottom";
+constexpr std::string_view kCovariancesHeaderStart = "frame,track_id";
+constexpr std::array kStatuses = {FrameStatus::kGood, FrameStatus::kLost, FrameStatus::kRejected, FrameStatus::kDropped};
+constexpr std::array kStates = {ObjectState::kMoving, ObjectState::kStopped, ObjectState::kPredicted};
+
+fs::path preparedFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder)) {
+    throw OutputError(folder.string() + ": cannot be made a folder: " + (error ? error.message() : "a file of this name is there"));
+  }
+  fs::remove(folder / "summary.json", error);
+  if (error) throw OutputError((folder / "summary.json").string() + ": an earlier summary cannot be removed: " + error.message());
+  return folder;
+}
+
+std::string objectLine(FrameId frame, const ObjectEstimate& object) {
+  std::string line;
+  line.reserve(320);
+  appendInteger(line, frame.value);
+  line += ',';
+  appendInteger(line, object.track.value);
+  line += ',';
+  line += stateName(object.state);
+  const auto add = [&](double value, int decimals) {
+    line += ',';
+    appendFixed(line, value, decimals);
+  };
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) add(object.T_world_body.rotation()(row, column), 9);
+    add(object.T_world_body.translation()[row], 6);
+  }
+  for (int axis = 0; axis < 3; ++axis) add(object.velocity_world_mps[axis], 4);
+  add(object.speed_sigma_mps, 4);
+  line += ',';
+  appendInteger(line, object.points);
+  for (const double edge_px : {object.box.left_px, object.box.top_px, object.box.right_px, object.box.bottom_px}) add(edge_px, 2);
+  return line;
+}
+
+std::string covarianceLine(FrameId frame, TrackId track, const Matrix6d& covariance) {
+  std::string line;
+  line.reserve(400);
+  appendInteger(line, frame.value);
+  line += ',';
+  appendInteger(line, track.valid() ? track.value : -1);
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) {
+      line += ',';
+      appendScientific(line, covariance(row, column), 6);
+    }
+  }
+  return line;
+}
+
+std::string covariancesHeader() {
+  std::string header(kCovariancesHeaderStart);
+  for (int row = 0; row < 6; ++row)
+    for (int column = row; column < 6; ++column) header.append(",c").append(std::to_string(row)).append(std::to_string(column));
+  return header;
+}
+
+std::string framesHeader() {
+  std::string header("frame,status,stamp_ns,latency_ms,decode_ms");
+  for (const auto& stage : kStageNames) header.append(",").append(stage).append("_ms");
+  return header;
+}
+
+std::string frameLine(const FrameTiming& timing) {
+  std::string line;
+  appendInteger(line, timing.frame.value);
+  line += ',';
+  line += statusName(timing.status);
+  line += ',';
+  appendInteger(line, timing.stamp.ns);
+  const auto add = [&](double value_ms) {
+    line += ',';
+    appendFixed(line, value_ms, 3);
+  };
+  add(timing.latency_ms());
+  add(timing.decode_ms);
+  for (const auto& span : timing.stages) add(span.duration_ms());
+  return line;
+}
+
+std::string stageEvent(std::string_view name, FrameId frame, const StageSpan& span, SteadyTime origin) {
+  std::string line;
+  line.append(R"({"name":")").append(name).append(R"(","ph":"X","pid":1,"tid":)");
+  appendInteger(line, span.worker);
+  line.append(R"(,"ts":)");
+  appendFixed(line, 1e3 * millisecondsBetween(origin, span.start), 3);
+  line.append(R"(,"dur":)");
+  appendFixed(line, 1e3 * span.duration_ms(), 3);
+  line.append(R"(,"args":{"frame":)");
+  appendInteger(line, frame.value);
+  return line.append("}},");
+}
+
+std::string asyncEvent(char phase, FrameId frame, SteadyTime at, SteadyTime origin) {
+  std::string line;
+  line.append(R"({"name":"frame","cat":"frame","ph":")").append(1, phase).append(R"(","pid":1,"tid":0,"id":)");
+  appendInteger(line, frame.value);
+  line.append(R"(,"ts":)");
+  appendFixed(line, 1e3 * millisecondsBetween(origin, at), 3);
+  return line.append("},");
+}
+
+// ---- reading ----
+
+/// The lines after the header; checks how it begins. A file that a killed run left empty has none.
+std::vector<TextLine> readTable(const fs::path& file, std::string_view header_start) {
+  auto lines = readLines(file, LastLine::kDropIfCut);
+  if (lines.empty()) return lines;
+  if (!lines.front().text.starts_with(header_start)) {
+    throw InputError(file.string() + ", line " + std::to_string(lines.front().number) + ": the header must begin with " +
+                     std::string(header_start));
+  }
+  lines.erase(lines.begin());
+  return lines;
+}
+
+template <class Value, std::size_t N>
+Value byName(FieldReader& fields, std::string_view what, const std::array<Value, N>& values, std::string_view (*name)(Value)) {
+  const std::string_view word = fields.word(what);
+  const auto found = std::ranges::find(values, word, name);
+  if (found == values.end()) fields.fail("'" + std::string(word) + "' is no " + std::string(what));
+  return *found;
+}
+
+std::vector<RunFolder::ObjectRow> readObjects(const fs::path& file) {
+  std::vector<RunFolder::ObjectRow> rows;
+  if (!fs::exists(file)) return rows;
+  for (const auto& line : readTable(file, kObjectsHeader)) {
+    FieldReader fields(file, line, ',');
+    RunFolder::ObjectRow row;
+    row.frame.value = fields.integer("frame");
+    ObjectEstimate& object = row.object;
+    object.track.value = fields.integer("track_id");
+    object.state = byName(fields, "state", kStates, stateName);
+    object.T_world_body = fields.pose("T_world_body");
+    for (int axis = 0; axis < 3; ++axis) object.velocity_world_mps[axis] = fields.number("velocity");
+    object.speed_sigma_mps = fields.number("speed_sigma_mps");
+    object.points = static_cast<int>(fields.integer("points"));
+    for (double* edge_px : {&object.box.left_px, &object.box.top_px, &object.box.right_px, &object.box.bottom_px})
+      *edge_px = fields.number("box");
+    fields.expectEnd();
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::vector<RunFolder::CovarianceRow> readCovariances(const fs::path& file) {
+  std::vector<RunFolder::CovarianceRow> rows;
+  if (!fs::exists(file)) return rows;
+  for (const auto& line : readTable(file, kCovariancesHeaderStart)) {
+    FieldReader fields(file, line, ',');
+    RunFolder::CovarianceRow covariance;
+    covariance.frame.value = fields.integer("frame");
+    covariance.track.value = fields.integer("track_id");
+    for (int row = 0; row < 6; ++row) {
+      for (int column = row; column < 6; ++column) {
+        covariance.covariance(row, column) = covariance.covariance(column, row) = fields.number("covariance");
+      }
+    }
+    fields.expectEnd();
+    rows.push_back(covariance);
+  }
+  return rows;
+}
+
+std::vector<RunFolder::FrameRow> readFrames(const fs::path& file) {
+  std::vector<RunFolder::FrameRow> rows;
+  if (!fs::exists(file)) return rows;
+  for (const auto& line : readTable(file, "frame,status,stamp_ns,latency_ms")) {
+    FieldReader fields(file, line, ',');
+    RunFolder::FrameRow row;
+    row.frame.value = fields.integer("frame");
+    row.status = byName(fields, "status", kStatuses, statusName);
+    row.stamp.ns = fields.integer("stamp_ns");
+    row.latency_ms = fields.number("latency_ms");
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+std::vector<SE3> readCamera(const fs::path& file) {
+  std::vector<SE3> poses;
+  if (!fs::exists(file)) return poses;
+  for (const auto& line : readLines(file, LastLine::kDropIfCut)) {
+    FieldReader fields(file, line);
+    poses.push_back(fields.pose("a pose"));
+    fields.expectEnd();
+  }
+  return poses;
+}
+
+}  // namespace
+
+std::string_view statusName(FrameStatus status) {
+  switch (status) {
+    case FrameStatus::kGood:
+      return "good";
+    case FrameStatus::kLost:
+      return "lost";
+    case FrameStatus::kRejected:
+      return "rejected";
+    case FrameStatus::kDropped:
+      return "dropped";
+  }
+  return "good";
+}
+
+std::string_view stateName(ObjectState state) {
+  switch (state) {
+    case ObjectState::kMoving:
+      return "moving";
+    case ObjectState::kStopped:
+      return "stopped";
+    case ObjectState::kPredicted:
+      return "predicted";
+  }
+  return "moving";
+}
+
+RunFolderWriter::Files::Files(const fs::path& folder, const std::string& kind)
+    : kitti(folder / ("camera_" + kind + ".txt")),
+      tum(folder / ("camera_" + kind + ".tum")),
+      objects(folder / ("objects_" + kind + ".csv")) {
+  objects.writeLine(kObjectsHeader);
+}
+
+void RunFolderWriter::Files::write(const FrameEstimate& estimate) {
+  for (const auto& object : estimate.objects) objects.writeLine(objectLine(estimate.frame, object));
+  if (estimate.status != FrameStatus::kRejected) tum.writeLine(tumLine(estimate.stamp, estimate.T_world_cam));
+  kitti.writeLine(kittiLine(estimate.T_world_cam));  // last: a frame with a pose has all its objects
+}
+
+RunFolderWriter::RunFolderWriter(const fs::path& folder)
+    : folder_(preparedFolder(folder)),
+      online_(folder_, "online"),
+      final_(folder_, "final"),
+      covariances_(folder_ / "covariances.csv"),
+      frames_(folder_ / "frames.csv"),
+      trace_(folder_ / "trace.json") {
+  frames_.writeLine(framesHeader());
+  covariances_.writeLine(covariancesHeader());
+  trace_.writeLine("[");
+}
+
+void RunFolderWriter::writeConfig(std::string_view toml) { writeAtOnce(folder_ / "effective_config.toml", toml); }
+
+void RunFolderWriter::writeOnline(const FrameEstimate& estimate) {
+  if (estimate.camera_covariance) covariances_.writeLine(covarianceLine(estimate.frame, {}, *estimate.camera_covariance));
+  for (const auto& object : estimate.objects) {
+    if (object.covariance) covariances_.writeLine(covarianceLine(estimate.frame, object.track, *object.covariance));
+  }
+  online_.write(estimate);
+}
+
+void RunFolderWriter::writeFinal(const FrameEstimate& estimate) { final_.write(estimate); }
+
+void RunFolderWriter::writeTiming(const FrameTiming& timing) {
+  frames_.writeLine(frameLine(timing));
+  if (!origin_) origin_ = timing.due;
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    const StageSpan& span = timing.stages[i];
+    if (span.start != span.end) trace_.writeLine(stageEvent(kStageNames[i], timing.frame, span, *origin_));
+  }
+  // The whole way of a frame overlaps with that of the next, which only the asynchronous kind of event can show.
+  trace_.writeLine(asyncEvent('b', timing.frame, timing.due, *origin_));
+  trace_.writeLine(asyncEvent('e', timing.frame, timing.published, *origin_));
+}
+
+void RunFolderWriter::finish(std::string_view summary_json) {
+  // A metadata event closes the array without a comma, so that strict JSON readers accept a complete trace.
+  trace_.writeLine(R"({"name":"process_name","ph":"M","pid":1,"tid":0,"args":{"name":"motorcade"}})");
+  trace_.writeLine("]");
+  for (LineFile* file :
+       {&online_.kitti, &online_.tum, &online_.objects, &final_.kitti, &final_.tum, &final_.objects, &covariances_, &frames_, &trace_}) {
+    file->close();
+  }
+  writeAtOnce(folder_ / "summary.json", summary_json);
+}
+
+RunFolder readRunFolder(const fs::path& folder) {
+  if (!fs::is_directory(folder)) throw InputError(folder.string() + ": is no run folder");
+  RunFolder run{.folder = folder};
+  if (!fs::exists(folder / "camera_online.txt") && !fs::exists(folder / "camera_final.txt")) {
+    throw InputError(folder.string() + ": is no run folder: neither camera_online.txt nor camera_final.txt is there");
+  }
+  run.frames = readFrames(folder / "frames.csv");
+  if (!run.frames.empty()) run.first_frame = run.frames.front().frame.value;
+  run.online = {readCamera(folder / "camera_online.txt"), readObjects(folder / "objects_online.csv")};
+  run.final = {readCamera(folder / "camera_final.txt"), readObjects(folder / "objects_final.csv")};
+  run.covariances = readCovariances(folder / "covariances.csv");
+  if (fs::exists(folder / "summary.json")) run.summary_json = readWhole(folder / "summary.json");
+  return run;
+}
+
+}  // namespace motorcade

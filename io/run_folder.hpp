@@ -1,0 +1,83 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/frame_timing.hpp"
+#include "core/messages.hpp"
+#include "io/line_file.hpp"
+
+namespace motorcade {
+
+/// Writes a run folder (DESIGN section 5). Frames come in order, each exactly once as online and once as final; a line
+/// per write keeps the folder readable at any moment. Not thread safe. Every failure is an OutputError naming the file.
+class RunFolderWriter {
+ public:
+  /// Makes the folder if need be and empties its files; a summary of an earlier run is removed first.
+  explicit RunFolderWriter(const std::filesystem::path& folder);
+
+  void writeConfig(std::string_view toml);
+  /// `camera_online.*`, `objects_online.csv`, and `covariances.csv` where the estimate has covariances.
+  void writeOnline(const FrameEstimate& estimate);
+  /// `camera_final.*`, `objects_final.csv`.
+  void writeFinal(const FrameEstimate& estimate);
+  /// `frames.csv` and `trace.json`.
+  void writeTiming(const FrameTiming& timing);
+  /// Closes all files, then writes `summary.json`: its presence says that the run is complete.
+  void finish(std::string_view summary_json);
+
+ private:
+  struct Files {
+    explicit Files(const std::filesystem::path& folder, const std::string& kind);
+    LineFile kitti, tum, objects;
+    void write(const FrameEstimate& estimate);
+  };
+  std::filesystem::path folder_;
+  Files online_, final_;
+  LineFile covariances_, frames_, trace_;
+  std::optional<SteadyTime> origin_;  // of the trace's clock: when the first frame was due
+};
+
+std::string_view statusName(FrameStatus status);
+std::string_view stateName(ObjectState state);
+
+/// A run folder as read back; a run that was killed has fewer rows and no summary.
+struct RunFolder {
+  struct ObjectRow {
+    FrameId frame;
+    ObjectEstimate object;  // without covariance
+  };
+  struct CovarianceRow {
+    FrameId frame;
+    TrackId track;  // not valid for the camera
+    Matrix6d covariance;
+  };
+  struct FrameRow {
+    FrameId frame;
+    FrameStatus status = FrameStatus::kGood;
+    Timestamp stamp;
+    double latency_ms = 0;
+  };
+  /// Poses and objects of one kind, online or final. Line i of the camera file belongs to frame first_frame + i.
+  struct Tracks {
+    std::vector<SE3> camera;
+    std::vector<ObjectRow> objects;
+  };
+
+  std::filesystem::path folder{};
+  std::int64_t first_frame = 0;  // of the sequence; not zero when the run began later
+  std::vector<FrameRow> frames{};
+  Tracks online{}, final{};
+  std::vector<CovarianceRow> covariances{};
+  std::string summary_json{};  // empty when the run did not complete
+
+  bool complete() const { return !summary_json.empty(); }
+};
+
+/// Reads a run folder; throws InputError naming file and line. A line that was cut off when the run was killed is left out.
+RunFolder readRunFolder(const std::filesystem::path& folder);
+
+}  // namespace motorcade

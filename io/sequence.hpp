@@ -1,0 +1,61 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/stereo_camera.hpp"
+#include "core/timestamp.hpp"
+#include "io/calibration.hpp"
+
+namespace motorcade {
+
+struct FramePaths {
+  std::filesystem::path left, right;
+};
+
+/// A half-open range of frames, cut to a sequence's length by `within`.
+struct FrameRange {
+  std::size_t begin = 0, end = static_cast<std::size_t>(-1);
+
+  FrameRange within(std::size_t count) const { return {begin < count ? begin : count, end < count ? end : count}; }
+  std::size_t size() const { return end > begin ? end - begin : 0; }
+};
+
+/// Reads `A:B`, `A:` or `:B`; throws UsageError.
+FrameRange parseFrameRange(std::string_view text);
+
+/// A recorded drive: where its images are, when they were taken, with what camera, and what is known of the truth.
+struct Sequence {
+  /// Files with ground truth; an empty path where there is none.
+  struct Truth {
+    std::filesystem::path poses{};             // KITTI pose lines of the left gray camera
+    std::filesystem::path labels{};            // KITTI label_02
+    std::filesystem::path object_poses{};      // as in rendered sequences
+    std::filesystem::path oxts{};              // a file with a line per packet, or a folder with a file per packet
+    std::filesystem::path oxts_timestamps{};   // capture time of each packet
+    std::filesystem::path image_timestamps{};  // capture time of each image, on the same clock
+  };
+
+  std::filesystem::path folder{};
+  std::string layout{};  // plain, odometry, tracking or raw
+  CameraPair pair = CameraPair::kGray;
+  Calibration calibration{};
+  StereoCamera camera{};  // with the size of the images
+  std::vector<FramePaths> frames{};
+  std::vector<Timestamp> stamps{};  // one per frame, strictly increasing
+  bool stamps_measured = false;     // read from a file, not made from the frame rate
+  Truth truth{};
+};
+
+/// Finds out what lies in a folder:
+///   plain     image_0 + image_1, image_00 + image_01, image_2 + image_3, image_02 + image_03 or left + right; calib.txt
+///   odometry  a plain folder sequences/NN whose poses are in poses/NN.txt
+///   tracking  .../training/image_02/0003, or .../training/0003 for short; calib/0003.txt, oxts/0003.txt, label_02/0003.txt
+///   raw       DATE/DATE_drive_NNNN_sync with image_00/data; DATE/calib_cam_to_cam.txt
+/// Where gray and colour images are both there, the gray ones are taken. Without a file of times, frames come at `fps_hz`.
+/// Throws InputError naming the file and what to do about it. Single images are not read: a damaged one becomes a rejected frame later.
+Sequence openSequence(const std::filesystem::path& folder, double fps_hz = 10);
+
+}  // namespace motorcade

@@ -1,0 +1,44 @@
+#include "io/sequence_decoder.hpp"
+
+#include <exception>
+#include <utility>
+
+#include "io/errors.hpp"
+#include "io/image_file.hpp"
+
+namespace motorcade {
+
+SequenceDecoder::SequenceDecoder(Sequence sequence, FrameRange range, const Params& params)
+    : sequence_(std::move(sequence)), range_(range.within(sequence_.frames.size())), ring_(params.ahead) {
+  thread_ = std::jthread([this] {
+    for (std::size_t index = range_.begin; index < range_.end; ++index) {
+      if (ring_.closed() || !ring_.push(decode(index))) return;
+    }
+    ring_.close();
+  });
+}
+
+SequenceDecoder::~SequenceDecoder() { ring_.close(); }
+
+StereoFrame SequenceDecoder::decode(std::size_t index) {
+  StereoFrame frame;
+  frame.frame.value = static_cast<std::int64_t>(index);
+  frame.stamp = sequence_.stamps[index];
+  const ImageSize expected{sequence_.camera.width_px, sequence_.camera.height_px};
+  const auto read = [&](const std::filesystem::path& file) {
+    Image image = readImage(file, pool_);
+    const ImageSize size{image.width(), image.height()};
+    if (size != expected) throw InputError(file.string() + ": has " + size.text() + " pixels, the sequence has " + expected.text());
+    return image;
+  };
+  try {
+    frame.left = read(sequence_.frames[index].left);
+    frame.right = read(sequence_.frames[index].right);
+  } catch (const std::exception& error) {  // nothing may leave the thread: also a lack of memory only costs the frame
+    frame.left = frame.right = Image();
+    frame.problem = error.what();
+  }
+  return frame;
+}
+
+}  // namespace motorcade

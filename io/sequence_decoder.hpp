@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <thread>
+
+#include "core/image.hpp"
+#include "core/messages.hpp"
+#include "core/spsc_ring.hpp"
+#include "io/sequence.hpp"
+
+namespace motorcade {
+
+/// Decodes a sequence's images on a thread of its own, a bounded number of pairs ahead of whoever takes them.
+/// Takes frames from one thread only. A pair that cannot be read, or has the wrong size, comes out with its `problem` told and no images.
+class SequenceDecoder {
+ public:
+  struct Params {
+    std::size_t ahead = 8;  // pairs, rounded up to a power of two
+  };
+  SequenceDecoder(Sequence sequence, FrameRange range, const Params& params);
+  SequenceDecoder(Sequence sequence, FrameRange range) : SequenceDecoder(std::move(sequence), range, Params{}) {}
+  /// Stops decoding, whether or not all frames were taken.
+  ~SequenceDecoder();
+  SequenceDecoder(const SequenceDecoder&) = delete;
+  SequenceDecoder& operator=(const SequenceDecoder&) = delete;
+
+  /// The next pair, numbered by its place in the sequence, without a due time; waits for it. Empty after the last or after `stop`.
+  std::optional<StereoFrame> next() { return ring_.pop(); }
+  /// Ends decoding early, from any thread; pairs already decoded still come out.
+  void stop() { ring_.close(); }
+
+  std::size_t frameCount() const { return range_.size(); }
+  /// Most pairs ever waiting. Final once `next` has returned nothing.
+  std::size_t highWater() const { return ring_.highWater(); }
+  std::size_t capacity() const { return ring_.capacity(); }
+
+ private:
+  StereoFrame decode(std::size_t index);
+
+  Sequence sequence_;
+  FrameRange range_;
+  ImagePool pool_;
+  SpscRing<StereoFrame> ring_;
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+}  // namespace motorcade

@@ -1,0 +1,109 @@
+#include "io/text_file.hpp"
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "io/errors.hpp"
+
+namespace motorcade {
+
+std::string readWhole(const std::filesystem::path& file, std::size_t limit_bytes) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) throw InputError(file.string() + ": is a folder, a file is needed");
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file.string() + ": cannot be opened: " + std::strerror(errno));
+  const auto size = std::filesystem::file_size(file, error);
+  if (!error && size > limit_bytes) {
+    throw InputError(file.string() + ": is too large (" + std::to_string(size) + " bytes, at most " + std::to_string(limit_bytes) + ")");
+  }
+  std::string content(error ? 0 : size, '\0');
+  in.read(content.data(), static_cast<std::streamsize>(content.size()));
+  if (in.bad()) throw InputError(file.string() + ": cannot be read");
+  content.resize(static_cast<std::size_t>(in.gcount()));
+  return content;
+}
+
+std::vector<TextLine> readLines(const std::filesystem::path& file, LastLine last_line) {
+  const std::string content = readWhole(file);
+  std::string_view rest = content;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  std::vector<TextLine> lines;
+  for (int number = 1; !rest.empty(); ++number) {
+    const auto end = rest.find('\n');
+    if (end == std::string_view::npos && last_line == LastLine::kDropIfCut) break;
+    std::string_view text = rest.substr(0, end);
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    if (text.ends_with('\r')) text.remove_suffix(1);
+    if (text.find_first_not_of(" \t") != std::string_view::npos) lines.push_back({number, std::string(text)});
+  }
+  return lines;
+}
+
+FieldReader::FieldReader(const std::filesystem::path& file, const TextLine& line, char separator)
+    : file_(file), line_number_(line.number), rest_(line.text), separator_(separator) {
+  skipBlanks();
+  if (separator_ == ' ') owes_field_ = false;
+}
+
+void FieldReader::skipBlanks() {
+  if (separator_ != ' ') return;
+  const auto start = rest_.find_first_not_of(" \t");
+  rest_.remove_prefix(start == std::string_view::npos ? rest_.size() : start);
+}
+
+std::string_view FieldReader::word(std::string_view what) {
+  if (atEnd()) fail("ends before " + std::string(what));
+  const auto end = separator_ == ' ' ? rest_.find_first_of(" \t") : rest_.find(separator_);
+  const std::string_view field = rest_.substr(0, end);
+  owes_field_ = separator_ != ' ' && end != std::string_view::npos;
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  skipBlanks();
+  return field;
+}
+
+double FieldReader::number(std::string_view what) {
+  std::string_view field = word(what);
+  const std::string_view shown = field;
+  if (field.starts_with('+')) field.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc() || end != field.data() + field.size())
+    fail("'" + std::string(shown) + "' is not a number (" + std::string(what) + ")");
+  if (!std::isfinite(value)) fail("'" + std::string(shown) + "' is not finite (" + std::string(what) + ")");
+  return value;
+}
+
+std::int64_t FieldReader::integer(std::string_view what) {
+  const std::string_view field = word(what);
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc() || end != field.data() + field.size()) {
+    fail("'" + std::string(field) + "' is not a whole number (" + std::string(what) + ")");
+  }
+  return value;
+}
+
+SE3 FieldReader::pose(std::string_view what) {
+  Eigen::Matrix<double, 3, 4> m;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) m(row, column) = number(what);
+  const Eigen::Matrix3d rotation = m.leftCols<3>();
+  constexpr double kMaxDeviation = 1e-3;  // files with few digits are accepted, matrices that are no rotation are not
+  if ((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kMaxDeviation || rotation.determinant() < 0) {
+    fail(std::string(what) + " holds no rotation matrix");
+  }
+  return SE3(rotation, m.col(3)).normalized();
+}
+
+void FieldReader::expectEnd() const {
+  if (!atEnd()) fail("has more fields than expected: '" + std::string(rest_) + "'");
+}
+
+void FieldReader::fail(const std::string& message) const {
+  throw InputError(file_.string() + ", line " + std::to_string(line_number_) + ": " + message);
+}
+
+}  // namespace motorcade

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/se3.hpp"
+
+namespace motorcade {
+
+/// A line of a text file, without its end, and its number counted from one.
+struct TextLine {
+  int number = 0;
+  std::string text;
+};
+
+/// What to do with a last line that has no line end: a program that was killed may have left half a line.
+enum class LastLine { kKeep, kDropIfCut };
+
+/// The lines of a file that are not blank. Accepts both line ends and a byte order mark; throws InputError when the file cannot be read.
+std::vector<TextLine> readLines(const std::filesystem::path& file, LastLine last_line = LastLine::kKeep);
+
+/// The whole file; throws InputError when it cannot be read or is larger than `limit_bytes`.
+std::string readWhole(const std::filesystem::path& file, std::size_t limit_bytes = std::size_t{1} << 30);
+
+/// Takes the fields of one line from left to right. Every failure is an InputError that names file and line.
+class FieldReader {
+ public:
+  /// A space separates by any run of blanks, any other character singly.
+  FieldReader(const std::filesystem::path& file, const TextLine& line, char separator = ' ');
+
+  std::string_view word(std::string_view what);
+  double number(std::string_view what);
+  std::int64_t integer(std::string_view what);
+  /// Twelve numbers, row by row: R | t. The rotation must be one, and is put back onto SO(3) from its printed digits.
+  SE3 pose(std::string_view what);
+  bool atEnd() const { return rest_.empty() && !owes_field_; }
+  /// Fails when fields are left.
+  void expectEnd() const;
+  [[noreturn]] void fail(const std::string& message) const;
+
+ private:
+  void skipBlanks();
+
+  const std::filesystem::path& file_;
+  int line_number_;
+  std::string_view rest_;
+  char separator_;
+  bool owes_field_ = true;  // a separator was read: a field, if only an empty one, must follow
+};
+
+}  // namespace motorcade

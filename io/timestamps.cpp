@@ -1,0 +1,70 @@
+#include "io/timestamps.hpp"
+
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "io/text_file.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+bool isDigits(std::string_view text) { return text.find_first_not_of("0123456789") == std::string_view::npos; }
+
+/// `12` or `12.000000345`, exactly.
+std::optional<std::int64_t> plainSeconds_ns(std::string_view text) {
+  const auto point = text.find('.');
+  const std::string_view whole = text.substr(0, point);
+  std::string fraction(point == std::string_view::npos ? "" : text.substr(point + 1));
+  if (whole.empty() || whole.size() > 10 || !isDigits(whole) || !isDigits(fraction)) return std::nullopt;
+  fraction.resize(9, '0');
+  std::int64_t seconds = 0, nanoseconds = 0;
+  std::from_chars(whole.data(), whole.data() + whole.size(), seconds);
+  std::from_chars(fraction.data(), fraction.data() + fraction.size(), nanoseconds);
+  return seconds >= 9'000'000'000 ? std::nullopt : std::optional(seconds * kSecond_ns + nanoseconds);
+}
+
+std::optional<std::int64_t> dateTime_ns(const std::string& text) {
+  int year = 0, month = 0, day = 0, hour = 0, minute = 0, used = 0;
+  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%*1[ T]%2d:%2d:%n", &year, &month, &day, &hour, &minute, &used) != 5 || used == 0)
+    return std::nullopt;
+  const auto seconds_ns = plainSeconds_ns(std::string_view(text).substr(static_cast<std::size_t>(used)));
+  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  if (!seconds_ns || !date.ok() || hour > 23 || minute > 59) return std::nullopt;
+  const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
+  return ((days * 24 + hour) * 60 + minute) * 60 * kSecond_ns + *seconds_ns;
+}
+
+}  // namespace
+
+std::vector<Timestamp> readTimestamps(const std::filesystem::path& file) {
+  std::vector<Timestamp> stamps;
+  for (const auto& line : readLines(file)) {
+    FieldReader fields(file, line);
+    std::string text = line.text.substr(line.text.find_first_not_of(" \t"));
+    text.resize(text.find_last_not_of(" \t") + 1);
+    Timestamp stamp;
+    if (const auto date_ns = dateTime_ns(text)) {
+      stamp.ns = *date_ns;
+    } else if (const auto plain_ns = plainSeconds_ns(text)) {
+      stamp.ns = *plain_ns;
+    } else {
+      const double time_s = fields.number("a time in seconds");
+      fields.expectEnd();
+      constexpr double kMaxTime_s = 9e9;  // what fits into 63 bits of nanoseconds
+      if (std::abs(time_s) > kMaxTime_s) fields.fail("the time is out of range; seconds are expected");
+      stamp.ns = std::llround(time_s * 1e9);
+    }
+    if (!stamps.empty() && stamp <= stamps.back()) fields.fail("the time is not later than the one before");
+    stamps.push_back(stamp);
+  }
+  return stamps;
+}
+
+}  // namespace motorcade

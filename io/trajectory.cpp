@@ -1,0 +1,55 @@
+#include "io/trajectory.hpp"
+
+#include <Eigen/Geometry>
+
+#include "io/line_file.hpp"
+#include "io/number_text.hpp"
+#include "io/text_file.hpp"
+
+namespace motorcade {
+
+std::string kittiLine(const SE3& T_world_cam) {
+  std::string line;
+  line.reserve(220);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      if (!line.empty()) line += ' ';
+      appendScientific(line, column < 3 ? T_world_cam.rotation()(row, column) : T_world_cam.translation()[row], 9);
+    }
+  }
+  return line;
+}
+
+std::string tumLine(Timestamp stamp, const SE3& T_world_cam) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  std::string line = stamp.ns < 0 ? "-" : "";
+  const std::int64_t magnitude_ns = stamp.ns < 0 ? -stamp.ns : stamp.ns;
+  const std::string fraction = std::to_string(magnitude_ns % kSecond_ns);
+  line += std::to_string(magnitude_ns / kSecond_ns) + '.' + std::string(9 - fraction.size(), '0') + fraction;
+  Eigen::Quaterniond q(T_world_cam.rotation());
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  for (const double value :
+       {T_world_cam.translation().x(), T_world_cam.translation().y(), T_world_cam.translation().z(), q.x(), q.y(), q.z(), q.w()}) {
+    line += ' ';
+    appendFixed(line, value, 9);
+  }
+  return line;
+}
+
+std::vector<SE3> readKittiPoses(const std::filesystem::path& file) {
+  std::vector<SE3> poses;
+  for (const auto& line : readLines(file)) {
+    FieldReader fields(file, line);
+    poses.push_back(fields.pose("a pose"));
+    fields.expectEnd();
+  }
+  return poses;
+}
+
+void writeKittiPoses(const std::filesystem::path& file, const std::vector<SE3>& poses) {
+  LineFile out(file);
+  for (const auto& pose : poses) out.writeLine(kittiLine(pose));
+  out.close();
+}
+
+}  // namespace motorcade
