@@ -13,8 +13,7 @@ namespace motorcade {
 /// The pipeline's stages, in the order of the data.
 enum class Stage { kPrepare, kStereo, kFlow, kMotion, kTracking, kOptimisation };
 inline constexpr std::size_t kStageCount = 6;
-inline constexpr std::array<std::string_view, kStageCount> kStageNames{"prepare", "stereo",   "flow",
-                                                                       "motion",  "tracking", "optimisation"};
+inline constexpr std::array<std::string_view, kStageCount> kStageNames{"prepare", "stereo", "flow", "motion", "tracking", "optimisation"};
 
 inline double millisecondsBetween(SteadyTime from, SteadyTime to) { return std::chrono::duration<double, std::milli>(to - from).count(); }
 

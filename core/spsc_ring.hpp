@@ -35,11 +35,14 @@ class SpscRing {
   }
 
   /// Producer: waits for room; false when the ring was closed instead.
-  bool push(T value) {
+  bool push(T value) { return waitForRoom() && tryPush(value); }
+
+  /// Producer: waits until the next `tryPush` will succeed; false when the ring was closed instead.
+  bool waitForRoom() const {
     for (;;) {
       const auto seen = popped_.load(std::memory_order_acquire);
-      if (tryPush(value)) return true;
       if (closed()) return false;
+      if (tail_.load(std::memory_order_relaxed) - head_.load(std::memory_order_acquire) < slots_.size()) return true;
       popped_.wait(seen, std::memory_order_acquire);
     }
   }

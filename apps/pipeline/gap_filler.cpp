@@ -1,0 +1,62 @@
+#include "apps/pipeline/gap_filler.hpp"
+
+#include <utility>
+
+namespace motorcade {
+
+void GapFiller::Trail::add(const Moment& moment) { before = std::exchange(last, moment); }
+
+/// Constant velocity through the last two moments, before or after the last one.
+SE3 GapFiller::Trail::at(Timestamp stamp) const {
+  if (!last) return SE3();
+  if (!before || last->stamp <= before->stamp) return last->T_world_cam;
+  const SE3 motion = before->T_world_cam.inverse() * last->T_world_cam;
+  const double factor = secondsBetween(last->stamp, stamp) / secondsBetween(before->stamp, last->stamp);
+  return (last->T_world_cam * scaledMotion(motion, factor)).normalized();
+}
+
+SE3 GapFiller::predict(Timestamp stamp) const { return online_.at(stamp); }
+
+std::vector<FrameEstimate> GapFiller::fill(const std::vector<FrameHeader>& frames, FrameStatus status) {
+  std::vector<FrameEstimate> estimates;
+  for (const FrameHeader& header : frames) {
+    FrameEstimate estimate;
+    estimate.frame = header.frame;
+    estimate.stamp = header.stamp;
+    estimate.status = status;
+    estimate.T_world_cam = predict(header.stamp);
+    missing_.push_back(estimate);
+    estimates.push_back(std::move(estimate));
+  }
+  return estimates;
+}
+
+void GapFiller::published(const FrameEstimate& online, bool seen_by_backend) {
+  online_.add({online.stamp, online.T_world_cam});
+  if (!seen_by_backend) missing_.push_back(online);
+}
+
+std::vector<FrameEstimate> GapFiller::completed(const std::vector<FrameEstimate>& finals) {
+  std::vector<FrameEstimate> all;
+  for (const FrameEstimate& estimate : finals) {
+    const Trail gap{.before = final_.last, .last = Moment{estimate.stamp, estimate.T_world_cam}};
+    for (; !missing_.empty() && missing_.front().frame < estimate.frame; missing_.pop_front()) {
+      all.push_back(missing_.front());
+      if (final_.last) all.back().T_world_cam = gap.at(all.back().stamp);
+    }
+    final_.add({estimate.stamp, estimate.T_world_cam});
+    all.push_back(estimate);
+  }
+  return all;
+}
+
+std::vector<FrameEstimate> GapFiller::rest() {
+  std::vector<FrameEstimate> all;
+  for (; !missing_.empty(); missing_.pop_front()) {
+    all.push_back(missing_.front());
+    if (final_.last) all.back().T_world_cam = final_.at(all.back().stamp);
+  }
+  return all;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "core/messages.hpp"
+
+namespace motorcade {
+
+/// An input frame of which only the header is known.
+struct FrameHeader {
+  FrameId frame;
+  Timestamp stamp;
+};
+
+/// Gives a pose to the frames that the back-end never saw, so that every input frame has its line in the results: predicted at
+/// constant velocity when published, interpolated between its neighbours in the final trajectory. Call it in frame order.
+class GapFiller {
+ public:
+  /// Estimates of frames that came after the last published one and were not processed.
+  std::vector<FrameEstimate> fill(const std::vector<FrameHeader>& frames, FrameStatus status);
+  /// Notes a published estimate; `seen_by_backend` is false when the frame's final estimate will not come from there.
+  void published(const FrameEstimate& online, bool seen_by_backend);
+  /// The pose predicted for a moment after the last published frame.
+  SE3 predict(Timestamp stamp) const;
+
+  /// Adds the frames that are missing among the back-end's next finals.
+  std::vector<FrameEstimate> completed(const std::vector<FrameEstimate>& finals);
+  /// Frames that are still missing after the last final.
+  std::vector<FrameEstimate> rest();
+
+ private:
+  struct Moment {
+    Timestamp stamp;
+    SE3 T_world_cam;
+  };
+  /// The last two moments of a trajectory.
+  struct Trail {
+    std::optional<Moment> before, last;
+    void add(const Moment& moment);
+    SE3 at(Timestamp stamp) const;
+  };
+
+  Trail online_, final_;
+  std::deque<FrameEstimate> missing_;  // not in the back-end, and not yet final
+};
+
+}  // namespace motorcade
