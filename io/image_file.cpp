@@ -314,7 +314,7 @@ void writeRows(const fs::path& file, ImageSize size, int bits, int colour, PngEf
     const std::string why = errno != 0 ? std::strerror(errno) : writer.context.message.data();
     writer.release();
     std::error_code ignored;
-    fs::remove(file, ignored);
+    if (fs::is_regular_file(file, ignored)) fs::remove(file, ignored);
     throw OutputError(file.string() + ": cannot be written: " + why);
   }
 }

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <fstream>
 
+#include <Eigen/LU>
+
 #include "io/errors.hpp"
 
 namespace motorcade {

@@ -1,0 +1,167 @@
+#include "io/image_file.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <jpeglib.h>
+
+#include "io/errors.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::messageOf;
+using testing::HasSubstr;
+
+Image noise(int width, int height, ImagePool& pool) {
+  std::mt19937 random(3);
+  Image image = pool.acquire(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) image.mutableRow(y)[x] = static_cast<std::uint8_t>(random());
+  return image;
+}
+
+void expectEqual(const Image& a, const Image& b) {
+  ASSERT_EQ(a.width(), b.width());
+  ASSERT_EQ(a.height(), b.height());
+  for (int y = 0; y < a.height(); ++y) ASSERT_TRUE(std::equal(a.row(y), a.row(y) + a.width(), b.row(y))) << "row " << y;
+}
+
+std::string jpegOf(const Image& image) {
+  jpeg_compress_struct jpeg{};
+  jpeg_error_mgr errors;
+  jpeg.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&jpeg);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&jpeg, &bytes, &size);
+  jpeg.image_width = static_cast<JDIMENSION>(image.width());
+  jpeg.image_height = static_cast<JDIMENSION>(image.height());
+  jpeg.input_components = 1;
+  jpeg.in_color_space = JCS_GRAYSCALE;
+  jpeg_set_defaults(&jpeg);
+  jpeg_set_quality(&jpeg, 100, TRUE);
+  jpeg_start_compress(&jpeg, TRUE);
+  for (int y = 0; y < image.height(); ++y) {
+    JSAMPROW row = const_cast<JSAMPROW>(image.row(y));
+    jpeg_write_scanlines(&jpeg, &row, 1);
+  }
+  jpeg_finish_compress(&jpeg);
+  std::string result(reinterpret_cast<char*>(bytes), size);
+  jpeg_destroy_compress(&jpeg);
+  std::free(bytes);
+  return result;
+}
+
+class ImageFile : public testing::Test {
+ protected:
+  test::TemporaryFolder folder_;
+  ImagePool pool_;
+};
+
+TEST_F(ImageFile, GrayPngComesBackBitForBit) {
+  const Image image = noise(53, 31, pool_);  // a width that is no multiple of the row's alignment
+  for (const auto effort : {PngEffort::kFast, PngEffort::kSmall}) {
+    writePng(folder_ / "a.png", image, effort);
+    expectEqual(readImage(folder_ / "a.png", pool_), image);
+  }
+}
+
+TEST_F(ImageFile, ColourPngBecomesGrayByItsLuma) {
+  RgbImage colour{20, 16, std::vector<std::uint8_t>(20 * 16 * 3)};
+  for (int x = 0; x < 20; ++x) {
+    for (int y = 0; y < 16; ++y) {
+      colour.at(x, y)[0] = static_cast<std::uint8_t>(10 * x);
+      colour.at(x, y)[1] = static_cast<std::uint8_t>(15 * y);
+      colour.at(x, y)[2] = 77;
+    }
+  }
+  writePngRgb(folder_ / "c.png", colour);
+  const Image gray = readImage(folder_ / "c.png", pool_);
+  for (int x = 0; x < 20; ++x)
+    for (int y = 0; y < 16; ++y) EXPECT_NEAR(gray.at(x, y), 0.299 * 10 * x + 0.587 * 15 * y + 0.114 * 77, 1.0);  // rounding of the weights
+}
+
+TEST_F(ImageFile, SixteenBitPngKeepsItsValuesAndItsUpperByteAsGray) {
+  Gray16Image image{17, 19, std::vector<std::uint16_t>(17 * 19)};
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<std::uint16_t>(i * 199);
+  writePng16(folder_ / "d.png", image);
+  EXPECT_EQ(readPng16(folder_ / "d.png").pixels, image.pixels);
+  EXPECT_EQ(readImage(folder_ / "d.png", pool_).at(5, 3), image.pixels[3 * 17 + 5] >> 8);
+}
+
+TEST_F(ImageFile, PgmIsReadInBinaryAndInAscii) {
+  const Image image = noise(18, 16, pool_);
+  std::string binary = "P5\n# a comment\n18 16\n255\n", ascii = "P2 18 16 255\n";
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 18; ++x) {
+      binary += static_cast<char>(image.at(x, y));
+      ascii += std::to_string(image.at(x, y));
+      ascii += ' ';
+    }
+  }
+  expectEqual(readImage(folder_.write("a.pgm", binary), pool_), image);
+  expectEqual(readImage(folder_.write("b.pgm", ascii), pool_), image);
+}
+
+TEST_F(ImageFile, FormatIsToldByContentNotByName) {
+  const Image image = noise(64, 32, pool_);
+  const auto file = folder_.write("really_jpeg.png", jpegOf(image));
+  EXPECT_EQ(imageFormat(file), ImageFormat::kJpeg);
+  const Image back = readImage(file, pool_);
+  EXPECT_EQ(readImageSize(file), (ImageSize{64, 32}));
+  for (int x = 0; x < 64; ++x) EXPECT_NEAR(back.at(x, 7), image.at(x, 7), 4);  // quality 100 still rounds
+}
+
+TEST_F(ImageFile, EveryCutOfAFileIsAnErrorThatNamesIt) {
+  const Image image = noise(40, 24, pool_);
+  writePng(folder_ / "whole.png", image);
+  std::string pgm = "P5 40 24 255\n";
+  for (int y = 0; y < 24; ++y) pgm.append(reinterpret_cast<const char*>(image.row(y)), 40);
+  for (const std::string& whole : {folder_.read("whole.png"), jpegOf(image), pgm}) {
+    for (std::size_t length = 0; length + 2 < whole.size(); length += 7) {
+      const auto file = folder_.write("cut.png", std::string_view(whole).substr(0, length));
+      EXPECT_THAT(messageOf<InputError>([&] { readImage(file, pool_); }), HasSubstr("cut.png")) << length;
+    }
+  }
+}
+
+TEST_F(ImageFile, BrokenBytesNeverCrash) {
+  const Image image = noise(40, 24, pool_);
+  writePng(folder_ / "whole.png", image);
+  std::mt19937 random(1);
+  for (const std::string& whole : {folder_.read("whole.png"), jpegOf(image)}) {
+    for (int trial = 0; trial < 300; ++trial) {
+      std::string broken = whole;
+      for (int i = 0; i < 3; ++i) broken[random() % broken.size()] = static_cast<char>(random());
+      const auto file = folder_.write("broken.png", broken);
+      try {
+        readImage(file, pool_);
+      } catch (const InputError&) {
+        continue;
+      }
+    }
+  }
+}
+
+TEST_F(ImageFile, AbsurdSizesAreRefusedFromTheHeader) {
+  writePng(folder_ / "a.png", noise(40, 24, pool_));
+  std::string png = folder_.read("a.png");
+  png.replace(16, 8, std::string("\x7f\xff\xff\xff\x7f\xff\xff\xff"));
+  EXPECT_THAT(messageOf<InputError>([&] { readImage(folder_.write("a.png", png), pool_); }), HasSubstr("2147483647x2147483647"));
+  EXPECT_THAT(messageOf<InputError>([&] { readImage(folder_.write("a.pgm", "P5 99999 99999 255\n"), pool_); }), HasSubstr("99999"));
+  EXPECT_EQ(pool_.buffersMade(), 1u) << "only the image that was written";
+}
+
+TEST_F(ImageFile, WritingWhereNothingCanBeWrittenIsAnOutputError) {
+  const Image image = noise(640, 480, pool_);
+  EXPECT_THAT(messageOf<OutputError>([&] { writePng(folder_ / "no/such/folder.png", image); }), HasSubstr("folder.png"));
+  if (!std::filesystem::exists("/dev/full")) return;
+  EXPECT_THROW(writePng("/dev/full", image), OutputError);
+}
+
+}  // namespace
+}  // namespace motorcade

@@ -1,0 +1,161 @@
+#include "io/run_folder.hpp"
+
+#include <gmock/gmock.h>
+
+#include "io/errors.hpp"
+#include "io/trajectory.hpp"
+#include "tests/io/temporary_folder.hpp"
+#include "tests/support/matchers.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::IsNear;
+using test::IsNearPose;
+using test::messageOf;
+using testing::AllOf;
+using testing::HasSubstr;
+
+FrameEstimate estimateOf(int i) {
+  FrameEstimate estimate;
+  estimate.frame = {i};
+  estimate.stamp = {1'317'042'651'174'740'992 + i * 100'000'000LL};
+  estimate.T_world_cam = SE3::exp((Vector6d() << 0.1 * i, 0.02, 1.2 * i, 0.001 * i, 0.01 * i, 0).finished());
+  ObjectEstimate object;
+  object.track = {4};
+  object.state = i == 2 ? ObjectState::kPredicted : ObjectState::kMoving;
+  object.T_world_body = SE3::exp((Vector6d() << 3, 1, 20 + i, 0, 1, 0).finished());
+  object.velocity_world_mps = {0.5, 0, 10};
+  object.speed_sigma_mps = 0.25;
+  object.points = 17;
+  object.box = {10, 20, 110.5, 90.25};
+  object.covariance = Matrix6d::Identity() * 0.01;
+  estimate.objects.push_back(object);
+  estimate.camera_covariance = Matrix6d::Identity() * 0.02;
+  return estimate;
+}
+
+FrameTiming timingOf(int i) {
+  FrameTiming timing;
+  timing.frame = {i};
+  timing.stamp = estimateOf(i).stamp;
+  timing.due = SteadyTime(std::chrono::milliseconds(1000 + 100 * i));
+  timing.published = timing.due + std::chrono::microseconds(30500);
+  timing.stages[0] = {timing.due, timing.due + std::chrono::milliseconds(3), 1};
+  return timing;
+}
+
+void writeRun(const std::filesystem::path& folder, int first, int count) {
+  RunFolderWriter writer(folder);
+  for (int i = first; i < first + count; ++i) {
+    writer.writeOnline(estimateOf(i));
+    writer.writeTiming(timingOf(i));
+    writer.writeFinal(estimateOf(i));
+  }
+  writer.finish("{\"complete\": true}\n");
+}
+
+TEST(RunFolder, ComesBackAsWritten) {
+  const test::TemporaryFolder folder;
+  writeRun(folder / "run", 5, 3);
+  const RunFolder run = readRunFolder(folder / "run");
+  EXPECT_TRUE(run.complete());
+  EXPECT_EQ(run.first_frame, 5);
+  ASSERT_EQ(run.final.camera.size(), 3u);
+  EXPECT_THAT(run.online.camera[2], IsNearPose(estimateOf(7).T_world_cam, 1e-8));  // nine decimals of numbers below ten
+  ASSERT_EQ(run.final.objects.size(), 3u);
+  const auto& row = run.final.objects[1];
+  EXPECT_EQ(row.frame.value, 6);
+  EXPECT_EQ(row.object.track.value, 4);
+  EXPECT_THAT(row.object.T_world_body, IsNearPose(estimateOf(6).objects[0].T_world_body, 2e-6));  // six decimals
+  EXPECT_EQ(row.object.points, 17);
+  EXPECT_DOUBLE_EQ(row.object.box.right_px, 110.5);
+  ASSERT_EQ(run.covariances.size(), 6u);
+  EXPECT_FALSE(run.covariances[0].track.valid());
+  EXPECT_THAT(run.covariances[1].covariance, IsNear(Matrix6d::Identity() * 0.01, 1e-12));
+  EXPECT_DOUBLE_EQ(run.frames[1].latency_ms, 30.5);
+}
+
+TEST(RunFolder, HasTheDocumentedHeadersAndStamps) {
+  const test::TemporaryFolder folder;
+  writeRun(folder / "run", 0, 1);
+  EXPECT_THAT(
+      folder.read("run/objects_final.csv"),
+      testing::StartsWith("frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,"
+                          "right,bottom\n0,4,moving,"));
+  EXPECT_THAT(folder.read("run/camera_online.tum"), testing::StartsWith("1317042651.174740992 0.000000000 "));
+  EXPECT_THAT(folder.read("run/camera_final.txt"), testing::StartsWith("1.000000000e+00 0.000000000e+00 "));
+  EXPECT_THAT(folder.read("run/trace.json"),
+              AllOf(testing::StartsWith("[\n{\"name\":\"prepare\""), HasSubstr("\"dur\":3000.000"), testing::EndsWith("]\n")));
+}
+
+TEST(RunFolder, RejectedStampsStayOutOfTheTumFiles) {
+  const test::TemporaryFolder folder;
+  RunFolderWriter writer(folder.path());
+  FrameEstimate rejected = estimateOf(0);
+  rejected.status = FrameStatus::kRejected;
+  writer.writeOnline(rejected);
+  EXPECT_EQ(folder.read("camera_online.tum"), "");
+  EXPECT_NE(folder.read("camera_online.txt"), "");
+}
+
+TEST(RunFolder, WhatAKilledRunLeftIsReadable) {
+  const test::TemporaryFolder folder;
+  writeRun(folder / "run", 0, 3);
+  std::filesystem::remove(folder / "run/summary.json");
+  std::filesystem::remove(folder / "run/objects_online.csv");
+  for (const char* name : {"run/camera_final.txt", "run/objects_final.csv", "run/frames.csv"}) {
+    const std::string whole = folder.read(name);
+    folder.write(name, std::string_view(whole).substr(0, whole.size() - 4));
+  }
+  const RunFolder run = readRunFolder(folder / "run");
+  EXPECT_FALSE(run.complete());
+  EXPECT_EQ(run.final.camera.size(), 2u);
+  EXPECT_EQ(run.final.objects.size(), 2u);
+  EXPECT_EQ(run.frames.size(), 2u);
+  EXPECT_EQ(run.online.camera.size(), 3u);
+  EXPECT_TRUE(run.online.objects.empty());
+}
+
+TEST(RunFolder, DamagedLinesAreNamed) {
+  const test::TemporaryFolder folder;
+  writeRun(folder / "run", 0, 2);
+  std::string csv = folder.read("run/objects_final.csv");
+  csv.replace(csv.find("moving"), 6, "flying");
+  folder.write("run/objects_final.csv", csv);
+  EXPECT_THAT(messageOf<InputError>([&] { readRunFolder(folder / "run"); }),
+              AllOf(HasSubstr("objects_final.csv, line 2"), HasSubstr("flying")));
+  EXPECT_THAT(messageOf<InputError>([&] { readRunFolder(folder.path()); }), HasSubstr("is no run folder"));
+}
+
+TEST(RunFolder, ANewRunRemovesTheOldSummaryFirst) {
+  const test::TemporaryFolder folder;
+  writeRun(folder / "run", 0, 2);
+  const RunFolderWriter second(folder / "run");
+  EXPECT_FALSE(readRunFolder(folder / "run").complete());
+}
+
+TEST(RunFolder, OutputsThatCannotBeWrittenAreNamed) {
+  const test::TemporaryFolder folder;
+  folder.write("file", "");
+  EXPECT_THAT(messageOf<OutputError>([&] { RunFolderWriter(folder / "file"); }), HasSubstr("file"));
+  std::filesystem::create_directories(folder / "run/camera_online.txt");
+  EXPECT_THAT(messageOf<OutputError>([&] { RunFolderWriter(folder / "run"); }), HasSubstr("camera_online.txt"));
+  if (!std::filesystem::exists("/dev/full")) return;
+  LineFile full("/dev/full");
+  EXPECT_THAT(messageOf<OutputError>([&] { full.writeLine("x"); }), AllOf(HasSubstr("/dev/full"), HasSubstr("space")));
+}
+
+TEST(Trajectory, KittiLinesComeBackAndBadOnesAreNamed) {
+  const test::TemporaryFolder folder;
+  const std::vector<SE3> poses{SE3(), estimateOf(3).T_world_cam};
+  writeKittiPoses(folder / "poses.txt", poses);
+  EXPECT_THAT(readKittiPoses(folder / "poses.txt").at(1), IsNearPose(poses[1], 1e-8));
+  folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1\n");
+  EXPECT_THAT(messageOf<InputError>([&] { readKittiPoses(folder / "poses.txt"); }), HasSubstr("line 2"));
+  folder.write("poses.txt", "2 0 0 0 0 1 0 0 0 0 1 0\n");
+  EXPECT_THAT(messageOf<InputError>([&] { readKittiPoses(folder / "poses.txt"); }), HasSubstr("rotation"));
+}
+
+}  // namespace
+}  // namespace motorcade
