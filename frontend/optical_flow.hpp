@@ -22,8 +22,10 @@ class OpticalFlowTracker {
     double max_round_trip_px = 0.5;
     double max_flow_px = 250;
     int border_px = 6;
-    int keyframe_frames = 6;        // a track is anchored again after this many
-    double keyframe_min_ncc = 0.9;  // or when it no longer looks like its keyframe
+    int keyframe_frames = 6;           // a track is anchored again after this many
+    double keyframe_min_ncc = 0.9;     // or when it no longer looks like its keyframe
+    double keyframe_max_drift_px = 1;  // between the frame-to-frame position and the keyframe's
+    int moving_level = 2;              // pyramid level at which a track with known velocity starts
     PatchParams patch;
     double sift_max_flow_px = 150;
     double sift_max_ratio = 0.85;

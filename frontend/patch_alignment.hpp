@@ -2,13 +2,17 @@
 
 #include <array>
 #include <optional>
+#include <span>
+
+#include <Eigen/Core>
 
 #include "frontend/messages.hpp"
 
 /// Alignment of small square patches to a fraction of a pixel, whatever their gain and bias: the kernel of flow and stereo.
+/// A patch may be up to half outside its image, whose border pixels are then repeated.
 namespace motorcade {
 
-inline constexpr int kMaxPatchWindow_px = 15;
+inline constexpr int kMaxPatchWindow_px = 13;
 
 struct PatchParams {
   int window_px = 11;         // side of the patch, odd
@@ -19,27 +23,33 @@ struct PatchParams {
   double sigma_floor_px = 0.1;
 };
 
-/// A patch with what its alignment needs: a(x) = (I(x) - mean) / |I - mean| over the window and the descent directions
-///   D(x) = grad I(x), made orthogonal to 1 and a,   so that a step is H^-1 sum(D J) / gain for raw intensities J of the other image.
+/// How a patch may deform beside its shift: a small change of scale in time, a slope of the disparity between the eyes.
+enum class PatchDeformation { kScale, kSlope };
+
+/// A patch with what its alignment needs: its appearance a = (I - mean) / |I - mean| and the derivatives D of I by the parameters
+/// (kScale: u, v, log scale; kSlope: u, u per row, u per column), made orthogonal to 1 and a. For the raw intensities J of another image
+/// the Gauss-Newton step is H^-1 sum(D J) / gain with H = sum(D D') + prior, whatever the gain and bias of J.
 struct PatchTemplate {
   static constexpr int kStride = 16;
   using Plane = std::array<float, kStride * kMaxPatchWindow_px>;
-  alignas(32) Plane appearance, descent_u, descent_v;
+  alignas(32) Plane appearance;
+  alignas(32) std::array<Plane, 3> descent;
   int window_px = 0;
-  float norm = 0;                      // |I - mean| of the template
-  float h_uu = 0, h_uv = 0, h_vv = 0;  // H = sum(D D')
+  float mean = 0, norm = 0;  // of I
+  Eigen::Vector3f prior;     // information of the deformations' prior around zero
+  Eigen::Matrix3f inverse_hessian;
 };
 
-/// Empty without texture in both directions, or when the window leaves the image by more than the clamped border covers.
-std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px);
+/// Empty without the texture that the shift needs, or when the point lies outside the image.
+std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px, PatchDeformation deformation);
 
 struct AlignedPatch {
   float u_px = 0, v_px = 0;
-  float ncc = 0;
-  float sigma_px = 0;  // standard deviation of each coordinate, from the residual and H; the larger axis, never below the floor
+  float ncc = 0;       // with the deformation taken into account
+  float sigma_px = 0;  // standard deviation of each coordinate, from residual and H; of the worse one, never below the floor
 };
 
-/// Finds the template in `image` near a guess by inverse-compositional Gauss-Newton (Baker, Matthews 2004).
+/// Finds a kScale template in `image` near a guess by inverse-compositional Gauss-Newton (Baker, Matthews 2004).
 /// Empty when it runs away, does not fit or leaves the image.
 std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& image, float u_guess_px, float v_guess_px,
                                        const PatchParams& params);
@@ -48,22 +58,33 @@ std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& 
 std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, float u_px, float v_px, const ImagePyramid& to, float u_guess_px,
                                        float v_guess_px, int first_level, const PatchParams& params);
 
-/// Normalised cross-correlation of the template with `image` at a position, -1 outside the image.
+/// Normalised cross-correlation of the template, not deformed, with `image` at a position; -1 outside the image.
 float correlation(const PatchTemplate& patch, const Image& image, float u_px, float v_px);
 
 struct DisparityParams {
   int window_px = 11;
   double search_radius_px = 3;  // whole-pixel search around the prediction; 0 goes straight to the refinement
-  int max_iterations = 5;
+  int max_iterations = 8;
   double min_ncc = 0.8;
   double sigma_floor_px = 0.1;
   double max_sigma_px = 1;
 };
 
-/// Disparity of the left pixel (u, v), which may lie between pixels: whole-pixel search around the prediction by the sum of absolute
-/// differences, then 1-D Gauss-Newton on the intensities of both patches (a parabola through the sums would pull to whole pixels).
-/// Empty when the window leaves an image, nothing is similar enough, or the predicted sigma is too large. About 1 us.
+/// Disparity of the left pixel (u, v), which may lie between pixels: whole-pixel search around the prediction by sums of absolute
+/// differences, then 1-D Gauss-Newton on the intensities of both patches (a parabola through the sums would pull to whole pixels), which
+/// follows the slope of the surface. Empty when the window leaves an image, nothing is similar enough, the disparity is not positive or its
+/// predicted sigma is too large.
 std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right, double u_px, double v_px, double predicted_disparity_px,
                                            const DisparityParams& params = {});
+
+struct WindowSize {
+  int columns = 11, rows = 7;  // odd
+};
+inline constexpr int kMaxWindowCosts = 512;
+
+/// Sums of absolute differences, means removed, between the window around (u, v) of `image` and those around (other_u + i, other_v) of
+/// `other`, i < costs.size() <= kMaxWindowCosts. All windows lie inside their images.
+void windowDifferences(const Image& image, int u, int v, const Image& other, int other_u, int other_v, WindowSize window,
+                       std::span<std::uint16_t> costs);
 
 }  // namespace motorcade

@@ -1,0 +1,361 @@
+#include "frontend/optical_flow.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "frontend/image_pyramid.hpp"
+#include "frontend/sift_features.hpp"
+
+namespace motorcade {
+namespace {
+
+using Params = OpticalFlowTracker::Params;
+
+struct Shift {
+  float du_px = 0, dv_px = 0;
+};
+
+/// The patch that a track is held to.
+struct Keyframe {
+  Image image;
+  float u_px = 0, v_px = 0;
+  int frames = 0;  // since then
+};
+
+struct Track {
+  FlowTrack seen;
+  Shift shift;         // since the frame before
+  bool moved = false;  // in this frame; otherwise `seen` is still of the frame before
+  Keyframe keyframe;
+  int descriptor = -1;  // with SIFT: its point in this frame
+};
+
+/// One place in the image for one track.
+class Occupancy {
+ public:
+  Occupancy(int width, int height, double distance_px)
+      : distance_px_(static_cast<float>(distance_px)),
+        columns_(cell(static_cast<float>(width)) + 3),
+        rows_(cell(static_cast<float>(height)) + 3) {
+    cells_.assign(static_cast<std::size_t>(columns_) * rows_, {-1e9F, -1e9F});
+  }
+  bool near(float u_px, float v_px) const {
+    const int x = cell(u_px) + 1, y = cell(v_px) + 1;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Shift& p = cells_[index(x + dx, y + dy)];
+        if (std::hypot(p.du_px - u_px, p.dv_px - v_px) < distance_px_) return true;
+      }
+    }
+    return false;
+  }
+  void take(float u_px, float v_px) { cells_[index(cell(u_px) + 1, cell(v_px) + 1)] = {u_px, v_px}; }
+
+ private:
+  int cell(float x_px) const { return static_cast<int>(x_px / distance_px_); }
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * columns_ + x; }
+  float distance_px_;
+  int columns_, rows_;
+  std::vector<Shift> cells_;  // the last position in each cell
+};
+
+/// Follows single points from one pyramid to the next.
+class PointFollower {
+ public:
+  PointFollower(const ImagePyramid& from, const ImagePyramid& to, const Params& params)
+      : from_(from), to_(to), params_(params), coarse_(params.patch) {
+    coarse_.min_ncc = 0.6;
+    coarse_.max_step_px = 0.1;
+  }
+  int coarsest() const { return static_cast<int>(from_.levels.size()) - 1; }
+
+  /// Position in the new image, the better of all guesses at `level` refined to full size; checked backwards.
+  std::optional<AlignedPatch> follow(const FlowTrack& point, std::span<const Shift> guesses, int level) const {
+    const auto start = bestGuess(point, guesses, level);
+    if (!start) return std::nullopt;
+    return refine(point, *start, level - 1);
+  }
+
+  /// The same from a search over the whole range of the coarsest level.
+  std::optional<AlignedPatch> search(const FlowTrack& point) const {
+    const int level = coarsest();
+    const auto found = searchCoarse(point, level);
+    if (!found) return std::nullopt;
+    return follow(point, {&*found, 1}, level);
+  }
+
+ private:
+  std::optional<Shift> bestGuess(const FlowTrack& point, std::span<const Shift> guesses, int level) const {
+    const auto i = static_cast<std::size_t>(level);
+    const float u = toLevel(point.u_px, level), v = toLevel(point.v_px, level), scale = static_cast<float>(1 << level);
+    const auto patch = makeTemplate(from_.levels[i], u, v, params_.patch.window_px, PatchDeformation::kScale);
+    if (!patch) return guesses.front();
+    std::optional<Shift> best;
+    float best_ncc = 0;
+    for (const Shift& guess : guesses) {
+      const auto aligned = alignPatch(*patch, to_.levels[i], u + guess.du_px / scale, v + guess.dv_px / scale, coarse_);
+      if (!aligned || aligned->ncc <= best_ncc) continue;
+      best_ncc = aligned->ncc;
+      best = Shift{(aligned->u_px - u) * scale, (aligned->v_px - v) * scale};
+    }
+    return best;
+  }
+
+  std::optional<AlignedPatch> refine(const FlowTrack& point, const Shift& start, int level) const {
+    const auto forward =
+        alignPatch(from_, point.u_px, point.v_px, to_, point.u_px + start.du_px, point.v_px + start.dv_px, level, params_.patch);
+    if (!forward) return std::nullopt;
+    const auto back = alignPatch(to_, forward->u_px, forward->v_px, from_, point.u_px, point.v_px, 0, params_.patch);
+    if (!back || std::hypot(back->u_px - point.u_px, back->v_px - point.v_px) > params_.max_round_trip_px) return std::nullopt;
+    return forward;
+  }
+
+  /// Whole-pixel search at a coarse level. Twice as far sideways as up and down: most motion of a driving car is.
+  std::optional<Shift> searchCoarse(const FlowTrack& point, int level) const {
+    constexpr WindowSize kWindow{7, 7};
+    constexpr int kHalf = 3;
+    const Image &from = from_.levels[static_cast<std::size_t>(level)], &to = to_.levels[static_cast<std::size_t>(level)];
+    const int u = std::clamp(static_cast<int>(std::lround(toLevel(point.u_px, level))), kHalf, from.width() - 1 - kHalf);
+    const int v = std::clamp(static_cast<int>(std::lround(toLevel(point.v_px, level))), kHalf, from.height() - 1 - kHalf);
+    const int reach = static_cast<int>(params_.max_flow_px) >> level;
+    const int first_u = std::max(u - reach, kHalf), last_u = std::min(u + reach, to.width() - 1 - kHalf);
+    const int first_v = std::max(v - reach / 2, kHalf), last_v = std::min(v + reach / 2, to.height() - 1 - kHalf);
+    std::array<std::uint16_t, kMaxWindowCosts> costs;
+    const int count = std::min(last_u - first_u + 1, kMaxWindowCosts);
+    int best_cost = std::numeric_limits<int>::max();
+    Shift best;
+    for (int row = first_v; row <= last_v; ++row) {
+      windowDifferences(from, u, v, to, first_u, row, kWindow, std::span(costs).first(static_cast<std::size_t>(count)));
+      const auto* lowest = std::min_element(costs.data(), costs.data() + count);
+      if (*lowest >= best_cost) continue;
+      best_cost = *lowest;
+      const int column = first_u + static_cast<int>(lowest - costs.data());
+      best = {static_cast<float>((column - u) << level), static_cast<float>((row - v) << level)};
+    }
+    if (best_cost == std::numeric_limits<int>::max()) return std::nullopt;
+    return best;
+  }
+
+  const ImagePyramid& from_;
+  const ImagePyramid& to_;
+  const Params& params_;
+  PatchParams coarse_;
+};
+
+/// Flow of the tracks nearest to a point among those that have moved; fewer when there are not so many.
+constexpr std::size_t kNeighbours = 3;
+struct Guesses {
+  std::array<Shift, kNeighbours + 2> shifts;
+  std::size_t count = 0;
+  void add(const Shift& shift) { shifts[count++] = shift; }
+  std::span<const Shift> all() const { return {shifts.data(), count}; }
+};
+
+void addNeighbours(const FlowTrack& point, const std::vector<const Track*>& moved, Guesses& guesses) {
+  std::array<std::pair<float, const Track*>, kNeighbours> nearest;
+  nearest.fill({std::numeric_limits<float>::max(), nullptr});
+  for (const Track* track : moved) {
+    const float du = track->seen.u_px - track->shift.du_px - point.u_px, dv = track->seen.v_px - track->shift.dv_px - point.v_px;
+    const float distance = du * du + dv * dv;
+    if (distance >= nearest.back().first) continue;
+    nearest.back() = {distance, track};
+    for (std::size_t i = kNeighbours - 1; i > 0 && nearest[i].first < nearest[i - 1].first; --i) std::swap(nearest[i], nearest[i - 1]);
+  }
+  for (const auto& [distance, track] : nearest)
+    if (track) guesses.add(track->shift);
+}
+
+bool sameSize(const Image& a, const Image& b) { return a.width() == b.width() && a.height() == b.height(); }
+
+}  // namespace
+
+struct OpticalFlowTracker::State {
+  Params params;
+  FeaturesPtr previous;  // empty at the start and after a rejected frame
+  std::vector<Track> tracks;
+  std::int64_t next_point = 0;
+
+  void follow(const Features& now);
+  void followMoving(const PointFollower& follower, const Image& now);
+  void followYoung(const PointFollower& follower, const Image& now);
+  void moveTo(Track& track, const AlignedPatch& found, const Image& now) const;
+  void removeLost(const Image& now);
+  void startTracks(const Features& now);
+  void startTrack(const Features& now, int corner);
+  void followDescriptors(const Features& now);
+};
+
+/// Takes over a frame-to-frame position, after alignment to the keyframe where that still looks alike.
+void OpticalFlowTracker::State::moveTo(Track& track, const AlignedPatch& found, const Image& now) const {
+  AlignedPatch position = found;
+  ++track.keyframe.frames;
+  bool anchored = false;
+  if (track.keyframe.frames > 1) {
+    PatchParams held = params.patch;
+    held.min_ncc = params.keyframe_min_ncc;
+    held.max_shift_px = params.keyframe_max_drift_px;
+    const auto patch =
+        makeTemplate(track.keyframe.image, track.keyframe.u_px, track.keyframe.v_px, held.window_px, PatchDeformation::kScale);
+    const auto aligned = patch ? alignPatch(*patch, now, found.u_px, found.v_px, held) : std::nullopt;
+    if (aligned) position = *aligned;
+    anchored = aligned.has_value();
+  } else {
+    anchored = found.ncc >= params.keyframe_min_ncc;
+  }
+  track.shift = {position.u_px - track.seen.u_px, position.v_px - track.seen.v_px};
+  track.seen = {track.seen.point, position.u_px, position.v_px, position.sigma_px, track.seen.age + 1, -1};
+  track.moved = true;
+  if (!anchored || track.keyframe.frames >= params.keyframe_frames) track.keyframe = {now, position.u_px, position.v_px, 0};
+}
+
+/// Tracks that moved before: their own velocity is the guess.
+void OpticalFlowTracker::State::followMoving(const PointFollower& follower, const Image& now) {
+  const int level = std::min(params.moving_level, follower.coarsest());
+  for (Track& track : tracks) {
+    if (track.seen.age < 2) continue;
+    const auto found = follower.follow(track.seen, {&track.shift, 1}, level);
+    if (found) moveTo(track, *found, now);
+  }
+}
+
+/// New tracks, and those that their own velocity misled: guesses come from the neighbours that moved, then from a search.
+void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const Image& now) {
+  std::vector<const Track*> moved;
+  moved.reserve(tracks.size());
+  for (const Track& track : tracks)
+    if (track.moved) moved.push_back(&track);
+  for (Track& track : tracks) {
+    if (track.moved) continue;
+    Guesses guesses;
+    addNeighbours(track.seen, moved, guesses);
+    guesses.add({});
+    auto found = follower.follow(track.seen, guesses.all(), follower.coarsest());
+    if (!found && track.seen.age < 2) found = follower.search(track.seen);
+    if (found) moveTo(track, *found, now);
+  }
+}
+
+/// Ends tracks that were not found, left the image or met an older track.
+void OpticalFlowTracker::State::removeLost(const Image& now) {
+  Occupancy occupancy(now.width(), now.height(), params.min_distance_px);
+  const auto border = static_cast<float>(params.border_px);
+  std::erase_if(tracks, [&](const Track& track) {
+    const FlowTrack& p = track.seen;
+    if (!track.moved || std::hypot(track.shift.du_px, track.shift.dv_px) > params.max_flow_px) return true;
+    const bool inside = p.u_px >= border && p.v_px >= border && p.u_px <= static_cast<float>(now.width() - 1) - border &&
+                        p.v_px <= static_cast<float>(now.height() - 1) - border;
+    if (!inside || occupancy.near(p.u_px, p.v_px)) return true;
+    occupancy.take(p.u_px, p.v_px);
+    return false;
+  });
+}
+
+void OpticalFlowTracker::State::follow(const Features& now) {
+  for (Track& track : tracks) track.moved = false;
+  const PointFollower follower(previous->left, now.left, params);
+  const Image& image = now.left.levels.front();
+  followMoving(follower, image);
+  followYoung(follower, image);
+  removeLost(image);
+}
+
+void OpticalFlowTracker::State::startTrack(const Features& now, int corner) {
+  const Corner& at = now.corners[static_cast<std::size_t>(corner)];
+  Track& track = tracks.emplace_back();
+  track.seen = {{next_point++}, at.u_px, at.v_px, static_cast<float>(params.patch.sigma_floor_px), 1, corner};
+  track.keyframe = {now.left.levels.front(), at.u_px, at.v_px, 0};
+}
+
+/// Starts tracks at the strongest free corners of the cells, those with the fewest tracks first.
+void OpticalFlowTracker::State::startTracks(const Features& now) {
+  const Image& image = now.left.levels.front();
+  const int columns = (image.width() + params.cell_px - 1) / params.cell_px, rows = (image.height() + params.cell_px - 1) / params.cell_px;
+  const auto cellOf = [&](float u_px, float v_px) {
+    return static_cast<std::size_t>(static_cast<int>(v_px) / params.cell_px * columns + static_cast<int>(u_px) / params.cell_px);
+  };
+  std::vector<int> population(static_cast<std::size_t>(columns) * rows, 0);
+  Occupancy occupancy(image.width(), image.height(), params.min_distance_px);
+  for (const Track& track : tracks) {
+    ++population[cellOf(track.seen.u_px, track.seen.v_px)];
+    occupancy.take(track.seen.u_px, track.seen.v_px);
+  }
+
+  std::vector<int> by_score(now.corners.size());
+  for (std::size_t i = 0; i < by_score.size(); ++i) by_score[i] = static_cast<int>(i);
+  std::ranges::stable_sort(by_score, std::greater{}, [&](int i) { return now.corners[static_cast<std::size_t>(i)].score; });
+  for (int limit = 1; !by_score.empty(); ++limit) {
+    std::erase_if(by_score, [&](int i) {
+      if (static_cast<int>(tracks.size()) >= params.max_tracks) return true;
+      const Corner& corner = now.corners[static_cast<std::size_t>(i)];
+      int& count = population[cellOf(corner.u_px, corner.v_px)];
+      if (count >= limit) return false;
+      if (occupancy.near(corner.u_px, corner.v_px)) return true;
+      occupancy.take(corner.u_px, corner.v_px);
+      ++count;
+      startTrack(now, i);
+      return true;
+    });
+  }
+}
+
+/// SIFT: tracks go on where descriptors match from frame to frame, and start at all other points.
+void OpticalFlowTracker::State::followDescriptors(const Features& now) {
+  std::vector<bool> taken(now.corners.size(), false);
+  if (previous && !tracks.empty()) {
+    const SiftSearchRegion region{-params.sift_max_flow_px, params.sift_max_flow_px, params.sift_max_flow_px};
+    const auto match_of = matchSift(previous->corners, previous->descriptors, now.corners, now.descriptors, region, params.sift_max_ratio);
+    std::erase_if(tracks, [&](const Track& track) { return match_of[static_cast<std::size_t>(track.descriptor)] < 0; });
+    for (Track& track : tracks) {
+      track.descriptor = match_of[static_cast<std::size_t>(track.descriptor)];
+      taken[static_cast<std::size_t>(track.descriptor)] = true;
+      const Corner& at = now.corners[static_cast<std::size_t>(track.descriptor)];
+      track.seen = {track.seen.point, at.u_px, at.v_px, static_cast<float>(params.sift_sigma_px), track.seen.age + 1, -1};
+    }
+  }
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (taken[i]) continue;
+    Track& track = tracks.emplace_back();
+    track.descriptor = static_cast<int>(i);
+    track.seen = {{next_point++},     now.corners[i].u_px, now.corners[i].v_px, static_cast<float>(params.sift_sigma_px), 1,
+                  static_cast<int>(i)};
+  }
+}
+
+OpticalFlowTracker::OpticalFlowTracker(const Params& params, const StereoCamera&) : state_(std::make_unique<State>()) {
+  if (params.patch.window_px % 2 == 0 || params.patch.window_px > kMaxPatchWindow_px)
+    throw std::invalid_argument("optical flow: patch.window_px must be odd and at most " + std::to_string(kMaxPatchWindow_px));
+  if (params.cell_px < 1 || params.min_distance_px <= 0)
+    throw std::invalid_argument("optical flow: cell_px and min_distance_px must be positive");
+  state_->params = params;
+}
+OpticalFlowTracker::OpticalFlowTracker(OpticalFlowTracker&&) noexcept = default;
+OpticalFlowTracker& OpticalFlowTracker::operator=(OpticalFlowTracker&&) noexcept = default;
+OpticalFlowTracker::~OpticalFlowTracker() = default;
+
+OpticalFlowPtr OpticalFlowTracker::operator()(const FeaturesPtr& features) {
+  State& state = *state_;
+  const bool rejected = features->frame->rejected();
+  if (rejected || (state.previous && !sameSize(state.previous->left.levels.front(), features->left.levels.front()))) {
+    state.tracks.clear();
+    state.previous.reset();
+  }
+  if (!rejected && !features->descriptors.empty()) {
+    state.followDescriptors(*features);
+  } else if (!rejected) {
+    if (state.previous) state.follow(*features);
+    state.startTracks(*features);
+  }
+  if (!rejected) state.previous = features;
+
+  OpticalFlow flow{.features = features, .tracks = {}};
+  flow.tracks.reserve(state.tracks.size());
+  for (const Track& track : state.tracks) flow.tracks.push_back(track.seen);
+  return std::make_shared<const OpticalFlow>(std::move(flow));
+}
+
+}  // namespace motorcade

@@ -1,0 +1,386 @@
+#include "frontend/patch_alignment.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include <Eigen/LU>
+
+#include "frontend/image_pyramid.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr int kStride = PatchTemplate::kStride;
+constexpr int kMaxShearShift_px = 4;  // of a patch's first and last row against its middle
+constexpr int kBlockRows = kMaxPatchWindow_px + 3;
+constexpr int kBlockStride = 48;
+static_assert(kMaxPatchWindow_px + 2 * kMaxShearShift_px + 4 + kStride + 1 <= kBlockStride);
+
+using Lanes = float __attribute__((vector_size(32)));
+using Bytes = std::uint8_t __attribute__((vector_size(8)));
+
+inline Lanes pixels(const std::uint8_t* p) {
+  Bytes bytes;
+  std::memcpy(&bytes, p, sizeof bytes);
+  return __builtin_convertvector(bytes, Lanes);
+}
+
+inline Lanes floats(const float* p) {
+  Lanes lanes;
+  std::memcpy(&lanes, p, sizeof lanes);
+  return lanes;
+}
+
+inline float total(const Lanes& x) { return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7])); }
+
+/// A rectangle of pixels with room to read beyond its right edge: in the image itself, or copied with the border repeated.
+class Block {
+ public:
+  Block(const Image& image, int x, int y, int columns, int rows) {
+    if (x >= 0 && y >= 0 && x + columns <= image.width() && y + rows <= image.height()) {
+      origin_ = image.row(y) + x;
+      stride_ = image.stride();
+      return;
+    }
+    assert(rows <= kBlockRows && columns <= kBlockStride);
+    for (int r = 0; r < rows; ++r) {
+      const std::uint8_t* row = image.row(std::clamp(y + r, 0, image.height() - 1));
+      for (int c = 0; c < kBlockStride; ++c) copy_[r * kBlockStride + c] = row[std::clamp(x + c, 0, image.width() - 1)];
+    }
+    origin_ = copy_.data();
+    stride_ = kBlockStride;
+  }
+  const std::uint8_t* row(int r) const { return origin_ + r * stride_; }
+
+ private:
+  const std::uint8_t* origin_;
+  std::ptrdiff_t stride_;
+  std::array<std::uint8_t, kBlockRows * kBlockStride + 32> copy_;  // not filled unless needed
+};
+
+bool inside(const Image& image, float u_px, float v_px) {
+  return u_px >= 0 && v_px >= 0 && u_px <= static_cast<float>(image.width() - 1) && v_px <= static_cast<float>(image.height() - 1);
+}
+
+/// Bilinear samples of a square around (u, v), `kStride` apart; what follows the last column is unspecified but finite.
+void sampleSquare(const Image& image, float u_px, float v_px, int side_px, float* out) {
+  const float left = u_px - static_cast<float>(side_px / 2), top = v_px - static_cast<float>(side_px / 2);
+  const int x = static_cast<int>(std::floor(left)), y = static_cast<int>(std::floor(top));
+  const float fx = left - static_cast<float>(x), fy = top - static_cast<float>(y);
+  const Block block(image, x, y, side_px + 1, side_px + 1);
+  for (int r = 0; r < side_px; ++r) {
+    const std::uint8_t *p = block.row(r), *q = block.row(r + 1);
+    for (int c = 0; c < kStride; c += 8) {
+      const Lanes upper = pixels(p + c) * (1 - fx) + pixels(p + c + 1) * fx;
+      const Lanes lower = pixels(q + c) * (1 - fx) + pixels(q + c + 1) * fx;
+      const Lanes value = upper * (1 - fy) + lower * fy;
+      std::memcpy(out + r * kStride + c, &value, sizeof value);
+    }
+  }
+}
+
+/// What alignment needs to know of the other image's patch J.
+struct Moments {
+  float appearance = 0;     // sum(a J)
+  Eigen::Vector3f descent;  // sum(D J)
+  float variation = 0;      // sum((J - mean)^2)
+};
+
+struct MomentLanes {
+  Lanes appearance{}, d0{}, d1{}, d2{}, sum{}, squares{};
+
+  void add(const PatchTemplate& patch, int offset, const Lanes& inside_window, const Lanes& j) {
+    appearance += floats(patch.appearance.data() + offset) * j;
+    d0 += floats(patch.descent[0].data() + offset) * j;
+    d1 += floats(patch.descent[1].data() + offset) * j;
+    d2 += floats(patch.descent[2].data() + offset) * j;
+    const Lanes inner = j * inside_window;
+    sum += inner;
+    squares += inner * j;
+  }
+
+  Moments moments(int pixels_in_window) const {
+    const float s = total(sum);
+    return {total(appearance), {total(d0), total(d1), total(d2)}, total(squares) - s * s / static_cast<float>(pixels_in_window)};
+  }
+};
+
+std::array<Lanes, 2> windowMask(int window_px) {
+  std::array<Lanes, 2> mask{};
+  for (int c = 0; c < window_px; ++c) mask[static_cast<std::size_t>(c / 8)][c % 8] = 1;
+  return mask;
+}
+
+/// Moments of the patch at (u, v), its rows shifted by `shear` px per row. Intensities are taken relative to the template's mean, which
+/// changes no moment but keeps digits.
+Moments momentsAt(const PatchTemplate& patch, const Image& image, float u_px, float v_px, float shear) {
+  const int window = patch.window_px, half = window / 2;
+  const float top = v_px - static_cast<float>(half), left = u_px - static_cast<float>(half);
+  const float reach = std::abs(shear) * static_cast<float>(half);
+  const int y = static_cast<int>(std::floor(top)), x = static_cast<int>(std::floor(left - reach));
+  const int end = static_cast<int>(std::floor(left + reach)) + window + 1;
+  const Block block(image, x, y, end - x, window + 1);
+  const float fy = top - static_cast<float>(y);
+  const auto mask = windowMask(window);
+  MomentLanes lanes;
+  for (int r = 0; r < window; ++r) {
+    const float row_left = left + shear * static_cast<float>(r - half) - static_cast<float>(x);
+    const int column = static_cast<int>(row_left);
+    const float fx = row_left - static_cast<float>(column);
+    const float w00 = (1 - fx) * (1 - fy), w01 = fx * (1 - fy), w10 = (1 - fx) * fy, w11 = fx * fy;
+    const std::uint8_t *p = block.row(r) + column, *q = block.row(r + 1) + column;
+    for (int c = 0; c < kStride; c += 8) {
+      const Lanes j = pixels(p + c) * w00 + pixels(p + c + 1) * w01 + pixels(q + c) * w10 + pixels(q + c + 1) * w11 - patch.mean;
+      lanes.add(patch, r * kStride + c, mask[static_cast<std::size_t>(c / 8)], j);
+    }
+  }
+  return lanes.moments(window * window);
+}
+
+using Square = std::array<float, kStride*(kMaxPatchWindow_px + 2)>;
+
+/// Fills appearance, mean and norm. `square` holds the window and a border of one pixel.
+void setAppearance(PatchTemplate& patch, const Square& square) {
+  const int window = patch.window_px;
+  float total = 0;
+  for (int r = 0; r < window; ++r)
+    for (int c = 0; c < window; ++c) total += square[(r + 1) * kStride + c + 1];
+  patch.mean = total / static_cast<float>(window * window);
+  float squares = 0;
+  for (int r = 0; r < window; ++r) {
+    for (int c = 0; c < window; ++c) {
+      const float value = square[(r + 1) * kStride + c + 1] - patch.mean;
+      patch.appearance[r * kStride + c] = value;
+      squares += value * value;
+    }
+  }
+  patch.norm = std::sqrt(squares);
+  const float scale = patch.norm > 0 ? 1 / patch.norm : 0;
+  for (float& value : patch.appearance) value *= scale;
+}
+
+/// Fills the derivatives by the parameters.
+void setDescent(PatchTemplate& patch, const Square& square, PatchDeformation deformation) {
+  const int window = patch.window_px, half = window / 2;
+  for (int r = 0; r < window; ++r) {
+    for (int c = 0; c < window; ++c) {
+      const float* s = square.data() + (r + 1) * kStride + c + 1;
+      const float du = 0.5F * (s[1] - s[-1]), dv = 0.5F * (s[kStride] - s[-kStride]);
+      const auto x = static_cast<float>(c - half), y = static_cast<float>(r - half);
+      const int i = r * kStride + c;
+      patch.descent[0][i] = du;
+      patch.descent[1][i] = deformation == PatchDeformation::kScale ? dv : du * y;
+      patch.descent[2][i] = deformation == PatchDeformation::kScale ? du * x + dv * y : du * x;
+    }
+  }
+}
+
+/// Takes the mean and the component along the appearance out of a derivative: a change of bias or gain is no motion.
+void orthogonalize(const PatchTemplate& patch, PatchTemplate::Plane& plane) {
+  float total = 0, along = 0;
+  for (int i = 0; i < patch.window_px * kStride; ++i) total += plane[i], along += plane[i] * patch.appearance[i];
+  const float mean = total / static_cast<float>(patch.window_px * patch.window_px);
+  for (int r = 0; r < patch.window_px; ++r) {
+    for (int c = 0; c < patch.window_px; ++c) {
+      const int i = r * kStride + c;
+      plane[i] -= mean + along * patch.appearance[i];
+    }
+  }
+}
+
+Eigen::Matrix3f gram(const PatchTemplate& patch) {
+  Eigen::Matrix3f result;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b <= a; ++b) {
+      Lanes lanes{};
+      for (int i = 0; i < patch.window_px * kStride; i += 8)
+        lanes += floats(patch.descent[a].data() + i) * floats(patch.descent[b].data() + i);
+      result(static_cast<int>(a), static_cast<int>(b)) = result(static_cast<int>(b), static_cast<int>(a)) = total(lanes);
+    }
+  }
+  return result;
+}
+
+/// Information of a deformation whose standard deviation is `sigma`, for the noise that 8-bit images have at least (3 gray levels).
+constexpr float priorInformation(float sigma) { return 9 / (sigma * sigma); }
+constexpr float kScaleSigma = 0.1F, kRowSlopeSigma = 0.3F, kColumnSlopeSigma = 0.15F;
+constexpr float kMinInformation = 60;  // of the shift: root mean square gradient of 0.7 gray levels per pixel over 11x11
+
+/// Share of the patch that template and deformation explain, as a correlation.
+float explainedCorrelation(const PatchTemplate& patch, const Moments& moments) {
+  if (moments.appearance <= 0 || moments.variation <= 0) return 0;
+  const float deformation = moments.descent.dot(patch.inverse_hessian * moments.descent);
+  return std::sqrt(std::min(1.0F, (moments.appearance * moments.appearance + deformation) / moments.variation));
+}
+
+/// Standard deviation of the shift along parameter i when the residual is white.
+float shiftSigma(const PatchTemplate& patch, const Moments& moments, float ncc, int parameter) {
+  const float gain = moments.appearance / patch.norm;
+  const int freedom = patch.window_px * patch.window_px - 5;
+  const float noise_variance = std::max(0.0F, moments.variation * (1 - ncc * ncc)) / static_cast<float>(freedom);
+  return std::sqrt(noise_variance * patch.inverse_hessian(parameter, parameter)) / gain;
+}
+
+}  // namespace
+
+std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px, PatchDeformation deformation) {
+  assert(window_px % 2 == 1 && window_px <= kMaxPatchWindow_px);
+  if (!inside(image, u_px, v_px)) return std::nullopt;
+  alignas(32) Square square;
+  sampleSquare(image, u_px, v_px, window_px + 2, square.data());
+  std::optional<PatchTemplate> patch(std::in_place);
+  patch->window_px = window_px;
+  patch->appearance.fill(0);
+  for (auto& plane : patch->descent) plane.fill(0);
+  setAppearance(*patch, square);
+  setDescent(*patch, square, deformation);
+  for (auto& plane : patch->descent) orthogonalize(*patch, plane);
+
+  Eigen::Matrix3f hessian = gram(*patch);
+  if (deformation == PatchDeformation::kScale) {
+    patch->prior = {0, 0, priorInformation(kScaleSigma)};
+    const Eigen::Matrix2f shift = hessian.topLeftCorner<2, 2>();
+    if (shift.determinant() < kMinInformation * shift.trace()) return std::nullopt;
+  } else {
+    patch->prior = {0, priorInformation(kRowSlopeSigma), priorInformation(kColumnSlopeSigma)};
+    if (hessian(0, 0) < kMinInformation) return std::nullopt;
+  }
+  hessian.diagonal() += patch->prior;
+  patch->inverse_hessian = hessian.inverse();
+  return patch;
+}
+
+std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& image, float u_guess_px, float v_guess_px,
+                                       const PatchParams& params) {
+  float u = u_guess_px, v = v_guess_px;
+  for (int iteration = 0; iteration < params.max_iterations; ++iteration) {
+    if (!inside(image, u, v)) return std::nullopt;
+    const Moments moments = momentsAt(patch, image, u, v, 0);
+    if (moments.appearance <= 0) return std::nullopt;
+    const Eigen::Vector3f step = patch.inverse_hessian * moments.descent * (patch.norm / moments.appearance);
+    const bool converged = step.head<2>().squaredNorm() < params.max_step_px * params.max_step_px;
+    if (converged || iteration + 1 == params.max_iterations) {
+      const float ncc = explainedCorrelation(patch, moments);
+      if (ncc < params.min_ncc) return std::nullopt;
+      const float sigma = std::max(shiftSigma(patch, moments, ncc, 0), shiftSigma(patch, moments, ncc, 1));
+      return AlignedPatch{u - step.x(), v - step.y(), ncc, std::hypot(sigma, static_cast<float>(params.sigma_floor_px))};
+    }
+    u -= step.x();
+    v -= step.y();
+    if (std::hypot(u - u_guess_px, v - v_guess_px) > params.max_shift_px) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, float u_px, float v_px, const ImagePyramid& to, float u_guess_px,
+                                       float v_guess_px, int first_level, const PatchParams& params) {
+  float u = u_guess_px, v = v_guess_px;
+  std::optional<AlignedPatch> aligned;
+  for (int level = first_level; level >= 0; --level) {
+    const auto i = static_cast<std::size_t>(level);
+    const auto patch = makeTemplate(from.levels[i], toLevel(u_px, level), toLevel(v_px, level), params.window_px, PatchDeformation::kScale);
+    if (patch) aligned = alignPatch(*patch, to.levels[i], toLevel(u, level), toLevel(v, level), params);
+    if (!patch || !aligned) {
+      if (level == 0) return std::nullopt;
+      continue;  // a coarse level without texture only gives no better guess
+    }
+    u = fromLevel(aligned->u_px, level);
+    v = fromLevel(aligned->v_px, level);
+  }
+  return aligned;
+}
+
+float correlation(const PatchTemplate& patch, const Image& image, float u_px, float v_px) {
+  if (!inside(image, u_px, v_px)) return -1;
+  const Moments moments = momentsAt(patch, image, u_px, v_px, 0);
+  return moments.variation > 0 ? moments.appearance / std::sqrt(moments.variation) : -1;
+}
+
+void windowDifferences(const Image& image, int u, int v, const Image& other, int other_u, int other_v, WindowSize window,
+                       std::span<std::uint16_t> costs) {
+  const int count = static_cast<int>(costs.size()), half_columns = window.columns / 2, half_rows = window.rows / 2;
+  assert(count <= kMaxWindowCosts);
+  std::array<std::int32_t, kMaxWindowCosts> sums;
+  std::array<std::int16_t, kMaxWindowCosts> offsets;
+  std::fill_n(sums.begin(), count, 0);
+  std::ranges::fill(costs, std::uint16_t{0});
+  int own_sum = 0;
+  for (int r = -half_rows; r <= half_rows; ++r) {
+    for (int c = -half_columns; c <= half_columns; ++c) {
+      own_sum += image.row(v + r)[u + c];
+      const std::uint8_t* p = other.row(other_v + r) + other_u + c;
+      for (int i = 0; i < count; ++i) sums[i] += p[i];
+    }
+  }
+  const int pixel_count = window.columns * window.rows;
+  for (int i = 0; i < count; ++i)
+    offsets[i] = static_cast<std::int16_t>(std::lrint(static_cast<float>(own_sum - sums[i]) / static_cast<float>(pixel_count)));
+  for (int r = -half_rows; r <= half_rows; ++r) {
+    for (int c = -half_columns; c <= half_columns; ++c) {
+      const auto own = static_cast<std::int16_t>(image.row(v + r)[u + c]);
+      const std::uint8_t* p = other.row(other_v + r) + other_u + c;
+      std::uint16_t* cost = costs.data();
+      for (int i = 0; i < count; ++i) {
+        const auto difference = static_cast<std::int16_t>(own - p[i] - offsets[i]);
+        cost[i] = static_cast<std::uint16_t>(cost[i] + std::abs(difference));
+      }
+    }
+  }
+}
+
+namespace {
+
+/// Whole-pixel disparity with the smallest difference within the radius of the prediction; the prediction when no window fits.
+double searchAround(const Image& left, const Image& right, double u_px, double v_px, double predicted_px, double radius_px) {
+  constexpr WindowSize kWindow;
+  const int u = static_cast<int>(std::lround(u_px)), v = static_cast<int>(std::lround(v_px)), half = kWindow.columns / 2;
+  const int radius = static_cast<int>(std::ceil(radius_px));
+  const int middle = static_cast<int>(std::lround(u_px - predicted_px));
+  const int first = std::max(middle - radius, half), last = std::min(middle + radius, right.width() - 1 - half);
+  const bool rows_fit = v >= kWindow.rows / 2 && v + kWindow.rows / 2 < left.height();
+  if (last <= first || !rows_fit || u < half || u + half >= left.width()) return predicted_px;
+  std::array<std::uint16_t, kMaxWindowCosts> costs;
+  const auto count = static_cast<std::size_t>(std::min(last - first + 1, kMaxWindowCosts));
+  windowDifferences(left, u, v, right, first, v, kWindow, std::span(costs).first(count));
+  const auto best = std::min_element(costs.begin(), costs.begin() + static_cast<std::ptrdiff_t>(count)) - costs.begin();
+  return u - (first + static_cast<double>(best));
+}
+
+}  // namespace
+
+std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right, double u_px, double v_px, double predicted_disparity_px,
+                                           const DisparityParams& params) {
+  const auto u = static_cast<float>(u_px), v = static_cast<float>(v_px);
+  const auto patch = makeTemplate(left, u, v, params.window_px, PatchDeformation::kSlope);
+  if (!patch) return std::nullopt;
+  double start_px = predicted_disparity_px;
+  if (params.search_radius_px > 0) start_px = searchAround(left, right, u_px, v_px, predicted_disparity_px, params.search_radius_px);
+
+  constexpr float kConverged_px = 0.02F, kMaxShift_px = 2;
+  const float max_slope = static_cast<float>(kMaxShearShift_px) / static_cast<float>(params.window_px / 2);
+  float u_right = u - static_cast<float>(start_px), slope = 0;
+  const float first_guess = u_right;
+  for (int iteration = 0; iteration < params.max_iterations; ++iteration) {
+    if (!inside(right, u_right, v)) return std::nullopt;
+    Moments moments = momentsAt(*patch, right, u_right, v, slope);
+    if (moments.appearance <= 0) return std::nullopt;
+    const float gain = moments.appearance / patch->norm;
+    const Eigen::Vector3f pull(0, gain * patch->prior[1] * slope, 0);
+    const Eigen::Vector3f step = patch->inverse_hessian * (moments.descent + pull) / gain;
+    u_right -= step[0];
+    slope = std::clamp(slope - step[1], -max_slope, max_slope);
+    if (std::abs(u_right - first_guess) > kMaxShift_px) return std::nullopt;
+    if (std::abs(step[0]) > kConverged_px && iteration + 1 < params.max_iterations) continue;
+
+    const float ncc = explainedCorrelation(*patch, moments);
+    const float sigma = std::hypot(shiftSigma(*patch, moments, ncc, 0), static_cast<float>(params.sigma_floor_px));
+    if (ncc < params.min_ncc || sigma > params.max_sigma_px || u - u_right <= 0) return std::nullopt;
+    return StereoMatch{u - u_right, sigma};
+  }
+  return std::nullopt;
+}
+
+}  // namespace motorcade
