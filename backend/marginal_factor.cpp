@@ -1,0 +1,73 @@
+#include "backend/marginal_factor.hpp"
+
+#include <algorithm>
+
+#include <Eigen/Eigenvalues>
+
+namespace motorcade {
+namespace {
+
+/// Pseudo-inverse of a symmetric positive semidefinite matrix.
+Eigen::MatrixXd pseudoInverse(const Eigen::MatrixXd& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
+  Eigen::VectorXd inverse = eigen.eigenvalues();
+  const double smallest = 1e-12 * std::max(inverse.maxCoeff(), 1e-300);
+  for (auto& value : inverse) value = value > smallest ? 1.0 / value : 0.0;
+  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+}  // namespace
+
+MarginalFactor::MarginalFactor(std::vector<VariableId> variables, std::vector<Value> values, Eigen::MatrixXd information)
+    : Factor(std::move(variables)), values_(std::move(values)), information_(std::move(information)) {
+  information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
+}
+
+void MarginalFactor::linearize(std::span<const Value* const> values, LinearTerm& term) const {
+  // e(delta) ~ e + J delta with J = Jr^-1(e) for poses, so [H g; g^T c] -> T^T [H g; g^T c] T with T = [J e; 0 1].
+  const Eigen::Index n = information_.rows() - 1;
+  Eigen::VectorXd e(n);
+  term.form = LinearTerm::Form::kInformation;
+  term.matrix = information_;
+  Eigen::Index at = 0;
+  for (std::size_t k = 0; k < values_.size(); ++k) {
+    const SmallVector move = local(values_[k], *values[k]);
+    e.segment(at, move.size()) = move;
+    at += move.size();
+  }
+  if (e.cwiseAbs().maxCoeff() == 0) return;
+  const Eigen::VectorXd shift = information_.topLeftCorner(n, n) * e;
+  term.matrix(n, n) += e.dot(shift) + 2 * e.dot(information_.col(n).head(n));
+  term.matrix.row(n).head(n) += shift.transpose();
+  at = 0;
+  for (const Value& value : values_) {
+    if (std::holds_alternative<SE3>(value)) {
+      const Matrix6d J = rightJacobianInverseSE3(e.segment<6>(at));
+      term.matrix.middleCols<6>(at) = (term.matrix.middleCols<6>(at) * J).eval();
+      term.matrix.middleRows<6>(at) = (J.transpose() * term.matrix.middleRows<6>(at)).eval();
+    }
+    at += dimension(value);
+  }
+}
+
+std::unique_ptr<MarginalFactor> MarginalFactor::without(std::span<const VariableId> gone) const {
+  std::vector<Eigen::Index> kept, removed;
+  std::vector<VariableId> variables_left;
+  std::vector<Value> values_left;
+  Eigen::Index at = 0;
+  for (std::size_t k = 0; k < values_.size(); ++k) {
+    const bool leaves = std::ranges::find(gone, variables()[k]) != gone.end();
+    for (int i = 0; i < dimension(values_[k]); ++i) (leaves ? removed : kept).push_back(at++);
+    if (leaves) continue;
+    variables_left.push_back(variables()[k]);
+    values_left.push_back(values_[k]);
+  }
+  if (variables_left.empty()) return nullptr;
+  kept.push_back(at);
+  const Eigen::MatrixXd coupling = information_(removed, kept);
+  Eigen::MatrixXd information = information_(kept, kept);
+  information -= coupling.transpose() * pseudoInverse(information_(removed, removed)) * coupling;
+  return std::make_unique<MarginalFactor>(std::move(variables_left), std::move(values_left), std::move(information));
+}
+
+}  // namespace motorcade
