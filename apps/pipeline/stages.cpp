@@ -1,0 +1,26 @@
+#include "apps/pipeline/stages.hpp"
+
+#include <memory>
+
+#include "apps/pipeline/configuration.hpp"
+
+namespace motorcade {
+
+/// The stages live behind shared pointers, because a std::function copies what it holds.
+Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
+  const auto prepare = std::make_shared<FeaturePreparation>(config.preparation);
+  const auto stereo = std::make_shared<StereoMatcher>(config.stereo, camera);
+  const auto flow = std::make_shared<OpticalFlowTracker>(config.optical_flow, camera);
+  const auto motion = std::make_shared<SceneMotionEstimator>(config.scene_motion, camera);
+  const auto tracking = std::make_shared<ObjectTracker>(config.tracking, camera);
+  const std::shared_ptr<Backend> backend = makeBackend(config.backend);
+  return {.prepare = [prepare](const StereoFramePtr& frame) { return (*prepare)(frame); },
+          .stereo = [stereo](const FeaturesPtr& features) { return (*stereo)(features); },
+          .flow = [flow](const FeaturesPtr& features) { return (*flow)(features); },
+          .motion = [motion](const StereoMatchesPtr& matches, const OpticalFlowPtr& tracks) { return (*motion)(matches, tracks); },
+          .tracking = [tracking](const SceneMotionPtr& scene) { return (*tracking)(scene); },
+          .optimisation = [backend](const FrameMeasurementsPtr& measurements) { return (*backend)(measurements); },
+          .finish = [backend] { return backend->finish(); }};
+}
+
+}  // namespace motorcade

@@ -1,0 +1,111 @@
+#include "apps/pipeline/configuration.hpp"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/pipeline/parameter_table.hpp"
+#include "io/errors.hpp"
+
+namespace motorcade {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string complaintAbout(const std::string& toml) {
+  PipelineConfig config;
+  try {
+    applyToml(config, toml, "drive.toml");
+  } catch (const UsageError& error) {
+    EXPECT_EQ(error.exitCode(), 2);
+    return error.what();
+  }
+  return "no complaint";
+}
+
+TEST(Configuration, SetsWhatTheFileNamesAndLeavesTheRest) {
+  PipelineConfig config;
+  applyToml(config, R"(
+    backend.kind = "filter"
+    [pipeline]
+    frames_in_flight = 6
+    [frontend]
+    detector = "sift"
+    [frontend.optical_flow]
+    max_flow_px = 99
+  )",
+            "drive.toml");
+  EXPECT_EQ(config.backend.kind, BackendKind::kFilter);
+  EXPECT_EQ(config.pipeline.frames_in_flight, 6);
+  EXPECT_EQ(config.preparation.detector, DetectorKind::kSift);
+  EXPECT_EQ(config.optical_flow.max_flow_px, 99.0);
+  EXPECT_EQ(config.pipeline.threads, PipelineParams{}.threads);
+}
+
+TEST(Configuration, AcceptsTheShortFormOfTheBackendsKind) {
+  PipelineConfig config;
+  applyToml(config, R"(backend = "filter")", "drive.toml");
+  EXPECT_EQ(config.backend.kind, BackendKind::kFilter);
+}
+
+TEST(Configuration, ReadsBackWhatItWrites) {
+  PipelineConfig config;
+  // Every parameter gets another value than its default, within its range.
+  for (const Parameter& parameter : parameterTable(config)) {
+    if (const auto* number = std::get_if<int*>(&parameter.value)) **number += **number < parameter.most ? 1 : -1;
+    if (const auto* number = std::get_if<double*>(&parameter.value)) **number *= 0.9071;
+    if (const auto* flag = std::get_if<bool*>(&parameter.value)) **flag = !**flag;
+    if (const auto* choice = std::get_if<Choice>(&parameter.value)) choice->set((choice->get() + 1) % choice->names.size());
+  }
+  const std::string text = toToml(config);
+  PipelineConfig read;
+  ASSERT_NE(toToml(read), text);
+  applyToml(read, text, "effective_config.toml");
+  EXPECT_EQ(toToml(read), text);
+}
+
+TEST(Configuration, BindsEachKeyOnceWithItsDefaultInRange) {
+  PipelineConfig config;
+  EXPECT_NO_THROW(applyToml(config, toToml(config), "defaults"));  // TOML itself refuses a key or section that comes twice
+}
+
+TEST(Configuration, NamesFileLineAndNearestKeyOfAnUnknownOne) {
+  EXPECT_THAT(complaintAbout("[frontend.optical_flow]\nmax_track = 5\n"),
+              AllOf(HasSubstr("drive.toml, line 2"), HasSubstr("'frontend.optical_flow.max_track'"),
+                    HasSubstr("did you mean 'frontend.optical_flow.max_tracks'?")));
+  EXPECT_THAT(complaintAbout("max_tracks = 5"), HasSubstr("did you mean 'frontend.optical_flow.max_tracks'?"));
+}
+
+TEST(Configuration, NamesTheRangeOfABadValue) {
+  EXPECT_THAT(complaintAbout("pipeline.frames_in_flight = 0"),
+              AllOf(HasSubstr("drive.toml, line 1"), HasSubstr("'pipeline.frames_in_flight' is 0"), HasSubstr("1 to 64")));
+  EXPECT_THAT(complaintAbout("pipeline.threads = 1.5"), HasSubstr("a whole number, 1 to 64"));
+  EXPECT_THAT(complaintAbout("frontend.detector = \"orb\""), HasSubstr("\"corners\" or \"sift\""));
+  EXPECT_THAT(complaintAbout("frontend.optical_flow.max_flow_px = nan"), HasSubstr("above 0"));
+  EXPECT_THAT(complaintAbout("backend.factors.use_motion = 1"), HasSubstr("true or false"));
+}
+
+TEST(Configuration, NamesTheLineThatIsNoToml) { EXPECT_THAT(complaintAbout("[pipeline]\nthreads = = 2"), HasSubstr("drive.toml, line 2")); }
+
+TEST(Configuration, TakesSingleAssignments) {
+  PipelineConfig config;
+  applyAssignment(config, "pipeline.threads=1");
+  applyAssignment(config, "frontend.detector=sift");
+  applyAssignment(config, "backend=\"filter\"");
+  EXPECT_EQ(config.pipeline.threads, 1);
+  EXPECT_EQ(config.preparation.detector, DetectorKind::kSift);
+  EXPECT_EQ(config.backend.kind, BackendKind::kFilter);
+  EXPECT_THROW(applyAssignment(config, "pipeline.threads"), UsageError);
+  EXPECT_THROW(applyAssignment(config, "pipeline.thread=1"), UsageError);
+  EXPECT_THROW(applyAssignment(config, "pipeline.threads=[1]"), UsageError);
+}
+
+TEST(Configuration, ComplainsAboutAFileThatIsNotThere) {
+  PipelineConfig config;
+  EXPECT_THROW(applyFile(config, "no/such/file.toml"), UsageError);
+}
+
+}  // namespace
+}  // namespace motorcade
