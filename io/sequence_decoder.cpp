@@ -1,5 +1,6 @@
 #include "io/sequence_decoder.hpp"
 
+#include <chrono>
 #include <exception>
 #include <utility>
 
@@ -38,6 +39,7 @@ StereoFrame SequenceDecoder::decode(std::size_t index) {
     frame.left = frame.right = Image();
     frame.problem = error.what();
   }
+  frame.decode_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return frame;
 }
 
