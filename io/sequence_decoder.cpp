@@ -22,6 +22,7 @@ SequenceDecoder::SequenceDecoder(Sequence sequence, FrameRange range, const Para
 SequenceDecoder::~SequenceDecoder() { ring_.close(); }
 
 StereoFrame SequenceDecoder::decode(std::size_t index) {
+  const auto start = std::chrono::steady_clock::now();
   StereoFrame frame;
   frame.frame.value = static_cast<std::int64_t>(index);
   frame.stamp = sequence_.stamps[index];
