@@ -1,0 +1,164 @@
+#include "frontend/object_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace motorcade {
+namespace {
+
+/// Points are dealt to the encounter and to the motion by their id, so that a point keeps its side for life:
+/// the two factors then share no measurement and may be counted as independent.
+bool measuresEncounter(PointId point) { return point.value % 2 == 0; }
+
+Box imageBox(const std::vector<const ScenePoint*>& points) {
+  Box box{1e9, 1e9, -1e9, -1e9};
+  for (const auto* p : points) {
+    box.left_px = std::min(box.left_px, p->uvd_px.x());
+    box.right_px = std::max(box.right_px, p->uvd_px.x());
+    box.top_px = std::min(box.top_px, p->uvd_px.y());
+    box.bottom_px = std::max(box.bottom_px, p->uvd_px.y());
+  }
+  return box;
+}
+
+}  // namespace
+
+const ScenePoint* findPoint(const SceneMotion& scene, PointId point) {
+  const auto at =
+      std::lower_bound(scene.points.begin(), scene.points.end(), point, [](const ScenePoint& p, PointId id) { return p.point < id; });
+  return at != scene.points.end() && at->point == point ? &*at : nullptr;
+}
+
+std::vector<ObjectMotionEstimator::Sighting> ObjectMotionEstimator::sightings(const TrackedObject& object, const SceneMotion& scene) const {
+  std::vector<Sighting> seen;
+  for (std::size_t i = 0; i < object.points.size(); ++i)
+    if (const auto* now = findPoint(scene, object.points[i].point)) seen.push_back({i, now});
+  return seen;
+}
+
+PoseObservation ObjectMotionEstimator::observe(const BodyPoint& point, const ScenePoint& now) const {
+  return {point.p_body, point.covariance, now.uvd_px, now.sigma_px};
+}
+
+PosePrior ObjectMotionEstimator::weakPrior(const SE3& T_cam_body) const {
+  Vector6d sigma;
+  sigma << Eigen::Vector3d::Constant(params_.weak_position_m), params_.weak_tilt_rad, params_.weak_tilt_rad, params_.weak_yaw_rad;
+  return {T_cam_body, sigma.cwiseAbs2().cwiseInverse().asDiagonal()};
+}
+
+std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& object, const SceneMotion& scene,
+                                                               const SceneMotion* previous_scene, const SE3& T_world_cam) const {
+  const auto seen = sightings(object, scene);
+  if (static_cast<int>(seen.size()) < params_.min_points) return std::nullopt;
+  std::vector<PoseObservation> observations;
+  for (const auto& s : seen) observations.push_back(observe(object.points[s.body_point], *s.now));
+  const PosePrior prior{T_world_cam.inverse() * object.kinematics.pose(), object.kinematics.poseCovariance().inverse()};
+  const auto fit = fitPose(camera_, observations, prior.mean, params_.fit, &prior);
+  if (!fit) return std::nullopt;
+
+  std::vector<Sighting> inliers;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (fit->chi2[i] < params_.inlier_chi2) inliers.push_back(seen[i]);
+  if (static_cast<int>(inliers.size()) < params_.min_points) {
+    dropMisfits(object, seen, fit->chi2);
+    return std::nullopt;
+  }
+  object.T_cam_body = fit->T_cam_a;
+  object.kinematics.acceptPose((T_world_cam * fit->T_cam_a).normalized(), fit->covariance);
+
+  ObjectObservation observation;
+  observation.points = static_cast<int>(inliers.size());
+  std::vector<const ScenePoint*> visible;
+  for (const auto& s : inliers) visible.push_back(s.now);
+  observation.box = imageBox(visible);
+  measureEncounter(object, inliers, observation);
+  if (previous_scene) measureMotion(object, inliers, scene, *previous_scene, observation);
+  refinePoints(object, inliers);
+  dropMisfits(object, seen, fit->chi2);
+  return observation;
+}
+
+void ObjectMotionEstimator::dropMisfits(TrackedObject& object, const std::vector<Sighting>& seen, const std::vector<double>& chi2) const {
+  std::vector<BodyPoint> kept;  // a point that was not seen is gone: its id never comes back
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    BodyPoint p = object.points[seen[i].body_point];
+    p.misfits = chi2[i] < params_.inlier_chi2 ? 0 : p.misfits + 1;
+    if (p.misfits < params_.max_misfits) kept.push_back(p);
+  }
+  object.points = std::move(kept);
+}
+
+void ObjectMotionEstimator::measureEncounter(const TrackedObject& object, const std::vector<Sighting>& inliers,
+                                             ObjectObservation& observation) const {
+  const bool split = static_cast<int>(inliers.size()) >= params_.split_points;
+  std::vector<PoseObservation> observations;
+  for (const auto& s : inliers)
+    if (!split || measuresEncounter(s.now->point)) observations.push_back(observe(object.points[s.body_point], *s.now));
+  const PosePrior weak = weakPrior(object.T_cam_body);
+  const auto fit = fitPose(camera_, observations, object.T_cam_body, params_.fit, &weak);
+  observation.T_cam_body = fit ? fit->T_cam_a : object.T_cam_body;
+  observation.encounter_covariance = fit ? fit->covariance : Matrix6d(weak.information.inverse());
+}
+
+/// The motion since the frame before, from points that the encounter did not use. With b the body as it stood then and X = T_cam_b
+/// its pose as these points' motion carries it into the camera of now: z_{i-1}^-1 z_i = T_cam_body(before)^-1 * T_previous_now * X.
+void ObjectMotionEstimator::measureMotion(const TrackedObject& object, const std::vector<Sighting>& inliers, const SceneMotion& scene,
+                                          const SceneMotion& previous_scene, ObjectObservation& observation) const {
+  if (!object.seen_before.valid() || object.seen_before != previous_scene.frame) return;
+  const SE3 T_body_cam_before = object.T_cam_body_before.inverse();
+  std::vector<PoseObservation> observations;
+  for (const auto& s : inliers) {
+    const auto* before = measuresEncounter(s.now->point) ? nullptr : findPoint(previous_scene, s.now->point);
+    if (!before) continue;
+    const Eigen::Matrix3d J = T_body_cam_before.rotation() * camera_.triangulationJacobian(before->uvd_px);
+    observations.push_back({T_body_cam_before * camera_.triangulate(before->uvd_px),
+                            J * before->sigma_px.cwiseAbs2().asDiagonal() * J.transpose(), s.now->uvd_px, s.now->sigma_px});
+  }
+  if (static_cast<int>(inliers.size()) < params_.split_points || static_cast<int>(observations.size()) < params_.min_points) return;
+  const PosePrior weak = weakPrior(object.T_cam_body);
+  const auto fit = fitPose(camera_, observations, object.T_cam_body, params_.fit, &weak);
+  if (!fit) return;
+  observation.motion = ObjectObservation::Motion{previous_scene.frame, (T_body_cam_before * scene.T_previous_now * fit->T_cam_a).normalized(),
+                                                 fit->covariance};
+}
+
+/// One Kalman step per point, the pose taken as known.
+void ObjectMotionEstimator::refinePoints(TrackedObject& object, const std::vector<Sighting>& inliers) const {
+  for (const auto& s : inliers) {
+    BodyPoint& p = object.points[s.body_point];
+    const Eigen::Vector3d p_cam = object.T_cam_body * p.p_body;
+    const auto predicted = camera_.project(p_cam);
+    if (!predicted) continue;
+    const Eigen::Matrix3d J = camera_.projectionJacobian(p_cam) * object.T_cam_body.rotation();
+    Eigen::Matrix3d S = J * p.covariance * J.transpose();
+    S.diagonal() += s.now->sigma_px.cwiseAbs2();
+    const Eigen::Matrix3d K = p.covariance * J.transpose() * S.inverse();
+    p.p_body += K * (s.now->uvd_px - *predicted);
+    const Eigen::Matrix3d C = p.covariance - K * J * p.covariance;
+    p.covariance = 0.5 * (C + C.transpose());
+  }
+}
+
+ObjectObservation ObjectMotionEstimator::firstSight(const TrackedObject& object, const SceneMotion& scene) const {
+  const auto seen = sightings(object, scene);
+  std::vector<PoseObservation> observations;
+  std::vector<const ScenePoint*> visible;
+  for (const auto& s : seen) {
+    visible.push_back(s.now);
+    PoseObservation o = observe(object.points[s.body_point], *s.now);
+    o.covariance_a.setZero();  // the points were put into the body frame from these very sightings
+    observations.push_back(o);
+  }
+  ObjectObservation observation;
+  observation.points = static_cast<int>(seen.size());
+  observation.box = imageBox(visible);
+  observation.T_cam_body = object.T_cam_body;
+  const PosePrior weak = weakPrior(object.T_cam_body);
+  const auto fit = fitPose(camera_, observations, object.T_cam_body, params_.fit, &weak);
+  observation.encounter_covariance = fit ? fit->covariance : Matrix6d(weak.information.inverse());
+  return observation;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+
+#include "core/stereo_camera.hpp"
+#include "frontend/stereo_pose.hpp"
+#include "frontend/tracked_object.hpp"
+
+namespace motorcade {
+
+/// Measures one object in one frame from the points kept in its body frame.
+class ObjectMotionEstimator {
+ public:
+  struct Params {
+    int min_points = 3;               // that agree on a pose
+    double inlier_chi2 = 12.0;        // 3 degrees of freedom
+    int max_misfits = 2;              // then a point is no longer counted to the body
+    int split_points = 12;            // from here on, half of the points measure the encounter and half the motion
+    double weak_position_m = 2.0;     // prior that only closes directions which the points leave open
+    double weak_yaw_rad = 0.15, weak_tilt_rad = 0.03;
+    PoseFitParams fit;
+  };
+  ObjectMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
+
+  /// Pose from the body points seen in `scene`, with the predicted kinematics as prior; updates kinematics, points and misfits.
+  /// Empty (and the object unchanged but for misfits) when too few points agree. The result's frame, track and state are filled by the caller.
+  std::optional<ObjectObservation> follow(TrackedObject& object, const SceneMotion& scene, const SceneMotion* previous_scene,
+                                          const SE3& T_world_cam) const;
+
+  /// Encounter of an object that is born in this frame: its body frame is where its points say, up to their noise.
+  ObjectObservation firstSight(const TrackedObject& object, const SceneMotion& scene) const;
+
+ private:
+  struct Sighting {
+    std::size_t body_point;
+    const ScenePoint* now;
+  };
+  std::vector<Sighting> sightings(const TrackedObject& object, const SceneMotion& scene) const;
+  PoseObservation observe(const BodyPoint& point, const ScenePoint& now) const;
+  PosePrior weakPrior(const SE3& T_cam_body) const;
+  void dropMisfits(TrackedObject& object, const std::vector<Sighting>& seen, const std::vector<double>& chi2) const;
+  void measureEncounter(const TrackedObject& object, const std::vector<Sighting>& inliers, ObjectObservation& observation) const;
+  void measureMotion(const TrackedObject& object, const std::vector<Sighting>& inliers, const SceneMotion& scene,
+                     const SceneMotion& previous_scene, ObjectObservation& observation) const;
+  void refinePoints(TrackedObject& object, const std::vector<Sighting>& inliers) const;
+
+  Params params_;
+  StereoCamera camera_;
+};
+
+/// The point of a scene by id, or null.
+const ScenePoint* findPoint(const SceneMotion& scene, PointId point);
+
+}  // namespace motorcade

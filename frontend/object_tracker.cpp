@@ -1,0 +1,201 @@
+#include "frontend/object_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace motorcade {
+namespace {
+
+/// Body axes for a direction of travel: x ahead over the ground, z up, y to the left.
+Eigen::Matrix3d travelAxes(const Eigen::Vector3d& velocity, const Eigen::Vector3d& up) {
+  const Eigen::Vector3d ahead = (velocity - up * up.dot(velocity)).normalized();
+  Eigen::Matrix3d R;
+  R << ahead, up.cross(ahead), up;
+  return R;
+}
+
+Eigen::Vector3d upInWorld(const SceneMotion& scene, const SE3& T_world_cam) { return -(T_world_cam.rotation() * scene.ground.normal_cam); }
+
+}  // namespace
+
+ObjectTracker::ObjectTracker(const Params& params, const StereoCamera& camera)
+    : params_(params), camera_(camera), associate_(params.association), adopt_(params.adoption, camera), motion_(params.motion, camera) {}
+
+FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
+  auto measurements = std::make_shared<FrameMeasurements>();
+  measurements->frame = scene->frame;
+  measurements->stamp = scene->stamp;
+  measurements->status = scene->status;
+  measurements->T_previous_now = scene->T_previous_now;
+  measurements->odometry_covariance = scene->odometry_covariance;
+
+  advance(*scene);
+  for (auto& object : objects_) follow(object, *scene, *measurements);
+  associate(*scene);
+  mergeTwins();
+  bury(*measurements);
+  std::stable_sort(measurements->objects.begin(), measurements->objects.end(),
+                   [](const ObjectObservation& a, const ObjectObservation& b) { return a.track < b.track; });
+  previous_scene_ = scene;
+  return measurements;
+}
+
+void ObjectTracker::advance(const SceneMotion& scene) {
+  T_world_cam_ = (T_world_cam_ * scene.T_previous_now).normalized();
+  if (!previous_scene_) return;
+  const double dt_s = secondsBetween(previous_scene_->stamp, scene.stamp);
+  for (auto& object : objects_) {
+    object.kinematics.predict(dt_s, params_.kinematics);
+    object.T_cam_body_before = object.T_cam_body;
+    object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
+  }
+}
+
+void ObjectTracker::follow(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements) {
+  auto observation = motion_.follow(object, scene, previous_scene_.get(), T_world_cam_);
+  if (!observation) return coast(object, scene, measurements);
+  object.kinematics.fuseVehicleModel(upInWorld(scene, T_world_cam_), params_.kinematics);
+  object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
+  object.coasted = 0;
+  ++object.sightings;
+  updateState(object);
+  observation->frame = scene.frame;
+  observation->state = object.state;
+  record(object, std::move(*observation), measurements);
+  object.seen_before = scene.frame;
+}
+
+void ObjectTracker::record(TrackedObject& object, ObjectObservation observation, FrameMeasurements& measurements) {
+  observation.track = object.track;
+  observation.velocity_cam_mps = T_world_cam_.rotation().transpose() * object.kinematics.velocityWorld_mps();
+  if (object.confirmed) {
+    measurements.objects.push_back(std::move(observation));
+    return;
+  }
+  object.backlog.push_back(std::move(observation));
+  const double travelled_m = (object.kinematics.pose().translation() - object.birthplace_world).norm();
+  const double speed = object.kinematics.speed_mps();
+  const bool moves =
+      speed > params_.confirm_speed_mps && speed > params_.confirm_significance * object.kinematics.speedSigma_mps();
+  if (object.sightings >= params_.confirm_sightings && moves && travelled_m > params_.confirm_travel_m) confirm(object, measurements);
+}
+
+/// The direction of travel is known better now than at birth: the body's x axis is laid along it, once and for all.
+void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measurements) {
+  const Eigen::Matrix3d& R = object.kinematics.pose().rotation();
+  const Eigen::Matrix3d R_travel = travelAxes(object.kinematics.velocityWorld_mps(), R.col(2));
+  object.changeBodyFrame(SE3(R.transpose() * R_travel, Eigen::Vector3d::Zero()));
+  object.confirmed = true;
+  for (auto& o : object.backlog) {
+    o.track = object.track;
+    measurements.objects.push_back(std::move(o));
+  }
+  object.backlog.clear();
+}
+
+void ObjectTracker::coast(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements) {
+  ++object.coasted;
+  object.seen_before = FrameId{};
+  const int allowed = object.confirmed ? params_.max_coasted_frames : params_.max_tentative_misses;
+  if (object.coasted > allowed || leftView(object)) {
+    object.ended = true;
+    return;
+  }
+  if (!object.confirmed) return;
+  ObjectObservation predicted;
+  predicted.frame = scene.frame;
+  predicted.state = ObjectState::kPredicted;
+  predicted.T_cam_body = object.T_cam_body;
+  predicted.encounter_covariance = object.kinematics.poseCovariance();
+  if (const auto origin = camera_.project(object.T_cam_body.translation())) predicted.box = {origin->x(), origin->y(), origin->x(), origin->y()};
+  record(object, std::move(predicted), measurements);
+}
+
+bool ObjectTracker::leftView(const TrackedObject& object) const {
+  const auto uvd = camera_.project(object.T_cam_body.translation());
+  return !uvd || !camera_.inLeftImage(uvd->x(), uvd->y(), -params_.image_margin_px);
+}
+
+void ObjectTracker::updateState(TrackedObject& object) const {
+  const double speed = object.kinematics.speed_mps();
+  object.slow_frames = speed < params_.stop_speed_mps ? object.slow_frames + 1 : 0;
+  if (object.slow_frames >= params_.stop_frames) object.state = ObjectState::kStopped;
+  if (speed > params_.start_speed_mps) object.state = ObjectState::kMoving;
+}
+
+void ObjectTracker::associate(const SceneMotion& scene) {
+  const auto object_of = associate_(objects_, scene, T_world_cam_);
+  std::vector<bool> taken(scene.points.size(), false);
+  for (std::size_t i = 0; i < scene.points.size(); ++i)
+    taken[i] = std::any_of(objects_.begin(), objects_.end(), [&](const auto& o) { return o.find(scene.points[i].point) != nullptr; });
+
+  const std::size_t known = objects_.size();
+  for (std::size_t s = 0; s < scene.segments.size(); ++s)
+    if (object_of[s] >= 0)
+      adopt_(objects_[static_cast<std::size_t>(object_of[s])], scene, previous_scene_.get(), &scene.segments[s], T_world_cam_, taken);
+  for (std::size_t m = 0; m < known; ++m)
+    if (objects_[m].coasted == 0) adopt_(objects_[m], scene, previous_scene_.get(), nullptr, T_world_cam_, taken);
+  for (std::size_t s = 0; s < scene.segments.size(); ++s)
+    if (object_of[s] < 0 && scene.segments[s].label == PointLabel::kMoving) bear(scene, scene.segments[s], taken);
+}
+
+void ObjectTracker::bear(const SceneMotion& scene, const Segment& segment, std::vector<bool>& taken) {
+  std::vector<std::size_t> free;
+  for (const int i : segment.points)
+    if (!taken[static_cast<std::size_t>(i)]) free.push_back(static_cast<std::size_t>(i));
+  if (static_cast<int>(free.size()) < params_.motion.min_points) return;
+
+  TrackedObject object;
+  object.track = TrackId{next_track_++};
+  const Eigen::Matrix3d R_world_body = travelAxes(T_world_cam_.rotation() * segment.velocity_mps, upInWorld(scene, T_world_cam_));
+  object.birthplace_world = T_world_cam_ * segment.centroid_cam;
+  const SE3 T_world_body(R_world_body, object.birthplace_world);
+  object.T_cam_body = object.T_cam_body_before = T_world_cam_.inverse() * T_world_body;
+  for (const std::size_t i : free) {
+    object.points.push_back(adopt_.toBody(object, scene.points[i]));
+    taken[i] = true;
+  }
+  ObjectObservation first = motion_.firstSight(object, scene);
+  first.frame = scene.frame;
+
+  const Eigen::Matrix3d R_body_cam = R_world_body.transpose() * T_world_cam_.rotation();
+  const Eigen::Vector3d v_body = R_body_cam * segment.velocity_mps;
+  Vector6d twist;
+  twist << v_body, Eigen::Vector3d::Zero();
+  ObjectKinematics::Matrix12d P = ObjectKinematics::Matrix12d::Zero();
+  P.topLeftCorner<6, 6>() = first.encounter_covariance;
+  P.block<3, 3>(6, 6) = R_body_cam * segment.velocity_covariance * R_body_cam.transpose() + 0.25 * Eigen::Matrix3d::Identity();
+  P.bottomRightCorner<3, 3>().diagonal().setConstant(params_.birth_turn_rate_radps * params_.birth_turn_rate_radps);
+  object.kinematics = ObjectKinematics(T_world_body, twist, P);
+  object.sightings = 1;
+  object.seen_before = scene.frame;
+  first.velocity_cam_mps = segment.velocity_mps;
+  object.backlog.push_back(std::move(first));
+  objects_.push_back(std::move(object));
+}
+
+/// Of two objects on one vehicle the older stays; the younger's points find their way to it by adoption.
+void ObjectTracker::mergeTwins() {
+  for (std::size_t older = 0; older < objects_.size(); ++older) {
+    if (objects_[older].ended) continue;
+    const auto extent = objects_[older].extent(params_.merge_distance_m);
+    for (std::size_t younger = older + 1; younger < objects_.size(); ++younger) {
+      TrackedObject& twin = objects_[younger];
+      if (twin.ended) continue;
+      const Eigen::Vector3d origin = objects_[older].T_cam_body.inverse() * twin.T_cam_body.translation();
+      const Eigen::Vector3d dv = objects_[older].velocityAt_mps(origin) - twin.kinematics.velocityWorld_mps();
+      const double slack_m = std::sqrt(twin.kinematics.poseCovariance().topLeftCorner<3, 3>().trace());
+      if (extent.exteriorDistance(origin) < slack_m && dv.norm() < params_.merge_speed_mps) twin.ended = true;
+    }
+  }
+}
+
+void ObjectTracker::bury(FrameMeasurements& measurements) {
+  for (const auto& object : objects_)
+    if (object.ended && object.confirmed) measurements.ended.push_back(object.track);
+  std::erase_if(objects_, [](const auto& o) { return o.ended; });
+}
+
+}  // namespace motorcade

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "core/stereo_camera.hpp"
+#include "frontend/messages.hpp"
+#include "frontend/object_association.hpp"
+#include "frontend/object_motion.hpp"
+#include "frontend/point_adoption.hpp"
+#include "frontend/tracked_object.hpp"
+
+namespace motorcade {
+
+/// The stage `tracking`: follows the moving objects from frame to frame, in the world frame of the front-end's own odometry, and
+/// measures each (encounter, motion). Birth from moving segments, confirmation, coasting and death.
+/// Call in frame order: it remembers the objects.
+class ObjectTracker {
+ public:
+  struct Params {
+    int confirm_sightings = 3;           // frames with a measurement before an object is reported
+    double confirm_speed_mps = 1.0;      // and its speed, ...
+    double confirm_significance = 5.0;   // ... in standard deviations, ...
+    double confirm_travel_m = 0.5;       // ... and its way since birth
+    int max_tentative_misses = 1;
+    int max_coasted_frames = 5;          // rows in state `predicted`
+    double stop_speed_mps = 0.5, start_speed_mps = 1.0;
+    int stop_frames = 3;                 // in a row below the stop speed
+    double image_margin_px = 50;         // an unseen object this far outside the image has left
+    double merge_distance_m = 1.0;       // an object whose origin lies in another's extent, grown by this, is the same vehicle ...
+    double merge_speed_mps = 2.0;        // ... if their velocities differ by less
+    double birth_turn_rate_radps = 0.2;  // standard deviation
+    ObjectKinematics::Params kinematics;
+    ObjectAssociation::Params association;
+    PointAdoption::Params adoption;
+    ObjectMotionEstimator::Params motion;
+  };
+  ObjectTracker(const Params& params, const StereoCamera& camera);
+
+  FrameMeasurementsPtr operator()(const SceneMotionPtr& scene);
+
+ private:
+  void advance(const SceneMotion& scene);
+  void follow(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements);
+  void associate(const SceneMotion& scene);
+  void bear(const SceneMotion& scene, const Segment& segment, std::vector<bool>& taken);
+  void record(TrackedObject& object, ObjectObservation observation, FrameMeasurements& measurements);
+  void confirm(TrackedObject& object, FrameMeasurements& measurements);
+  void coast(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements);
+  void updateState(TrackedObject& object) const;
+  void mergeTwins();
+  void bury(FrameMeasurements& measurements);
+  bool leftView(const TrackedObject& object) const;
+
+  Params params_;
+  StereoCamera camera_;
+  ObjectAssociation associate_;
+  PointAdoption adopt_;
+  ObjectMotionEstimator motion_;
+
+  SE3 T_world_cam_;
+  SceneMotionPtr previous_scene_;
+  std::vector<TrackedObject> objects_;  // ordered by track
+  std::int64_t next_track_ = 0;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/stereo_camera.hpp"
+#include "frontend/ego_motion.hpp"
+#include "frontend/ground_plane.hpp"
+#include "frontend/messages.hpp"
+#include "frontend/motion_segmenter.hpp"
+#include "frontend/patch_alignment.hpp"
+#include "frontend/point_history.hpp"
+#include "frontend/scene_flow.hpp"
+
+namespace motorcade {
+
+/// The stage `motion`: from stereo matches and optical flow to the camera's motion and the moving parts of the scene.
+///   1. closes the circle of four images: the disparity of each followed point, predicted from the frame before and verified in R_t
+///   2. ego-motion from the static world   3. scene flow of every point over its track   4. ground plane   5. motion segmentation
+/// Call in frame order: it remembers the tracks and the camera's recent path.
+class SceneMotionEstimator {
+ public:
+  struct Params {
+    DisparityParams disparity;
+    double unpredicted_search = 0.15;  // extra search for disparity, as a fraction of it, while the camera's motion is unknown
+    double sigma_flow_px = 0.25;       // standard deviations are never below these
+    double sigma_disparity_px = 0.25;
+    int max_missed_frames = 2;         // a point may be without disparity so long before its track is dropped
+    double static_chi2_per_dof = 3.0;  // a track that fits a point at rest this well enters the ego-motion with its fitted position
+    double max_ground_noise_m = 0.3;   // a point's height above the road may be off by this much of its depth noise
+    double lost_sigma_m = 0.3, lost_sigma_rad = 0.02;  // of the predicted motion when the ego-motion is lost
+    EgoMotionEstimator::Params ego_motion;
+    SceneFlowEstimator::Params scene_flow;
+    GroundPlaneEstimator::Params ground_plane;
+    MotionSegmenter::Params segmenter;
+  };
+  SceneMotionEstimator(const Params& params, const StereoCamera& camera);
+
+  /// Both messages are of the same frame.
+  SceneMotionPtr operator()(const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow);
+
+ private:
+  /// A point of the current frame and, when it was followed here, its track so far.
+  struct Sighted {
+    FlowTrack flow;
+    const PointTrack* track;               // null for a newborn point
+    std::optional<StereoMatch> disparity;  // none: not found in the right image this time
+  };
+
+  std::vector<Sighted> closeCircle(const StereoMatches& stereo, const OpticalFlow& flow, const SE3& predicted_T_previous_now) const;
+  std::optional<StereoMatch> verifyInRightImage(const Features& features, const FlowTrack& flow, const PointTrack& track,
+                                                const SE3& predicted_T_now_previous) const;
+  PoseObservation observe(const Sighted& sighted) const;
+  /// Position of a track in the newest camera of the trail, with its covariance: the fitted one while it fits a point at rest, else the
+  /// triangulated one.
+  PoseObservation lastPosition(const PointTrack& track) const;
+  std::vector<bool> estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted, SceneMotion& motion) const;
+  void updateTracks(const std::vector<Sighted>& sighted);
+  PointTrack extendTrack(const Sighted& sighted) const;
+  void fillPoints(const std::vector<Sighted>& sighted, const std::vector<bool>& inliers, SceneMotion& motion) const;
+  void markGround(SceneMotion& motion, const std::vector<bool>& violates_geometry);
+  bool violatesGeometry(const PointTrack& track) const;
+  bool sightedNow(const PointTrack& track) const;
+  SE3 predictMotion(Timestamp stamp) const;
+
+  Params params_;
+  StereoCamera camera_;
+  EgoMotionEstimator ego_motion_;
+  SceneFlowEstimator scene_flow_;
+  GroundPlaneEstimator ground_plane_;
+  MotionSegmenter segmenter_;
+
+  std::vector<PointTrack> tracks_;  // ordered by point
+  CameraTrail trail_;
+  std::optional<SE3> last_motion_;  // T_previous_now of the last frame
+  double last_dt_s_ = 0;
+};
+
+}  // namespace motorcade

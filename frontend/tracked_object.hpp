@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "core/messages.hpp"
+#include "frontend/messages.hpp"
+#include "frontend/object_kinematics.hpp"
+
+namespace motorcade {
+
+/// A scene point on an object, in the object's own frame.
+struct BodyPoint {
+  PointId point;
+  Eigen::Vector3d p_body;
+  Eigen::Matrix3d covariance;
+  int misfits = 0;  // frames in a row in which it did not move with the body
+};
+
+/// A vehicle that the tracker follows. The body frame's origin is the centroid of the points at birth, fixed to the vehicle from then on.
+struct TrackedObject {
+  TrackId track;
+  ObjectKinematics kinematics;    // in the front-end's own odometry world
+  SE3 T_cam_body;                 // of the newest frame, and of the one before
+  SE3 T_cam_body_before;
+  FrameId seen_before;            // frame of T_cam_body_before's measurement; invalid while there is none
+  std::vector<BodyPoint> points;  // ordered by point
+  ObjectState state = ObjectState::kMoving;
+  bool confirmed = false;
+  int sightings = 0;
+  int coasted = 0;                // frames in a row without a measurement
+  int slow_frames = 0;
+  Eigen::Vector3d birthplace_world = Eigen::Vector3d::Zero();
+  std::vector<ObjectObservation> backlog;  // until it is confirmed
+  bool ended = false;
+
+  const BodyPoint* find(PointId point) const;
+  /// Box around the points in body axes, grown by `margin_m`.
+  Eigen::AlignedBox3d extent(double margin_m) const;
+  /// Velocity relative to the world of a place on the body, in world axes.
+  Eigen::Vector3d velocityAt_mps(const Eigen::Vector3d& p_body) const;
+  void changeBodyFrame(const SE3& T_body_new);
+};
+
+}  // namespace motorcade
