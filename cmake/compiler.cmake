@@ -22,7 +22,8 @@ endfunction()
 
 function(motorcade_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wold-style-cast -Werror)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wold-style-cast -Werror
+    -Wno-array-bounds)  # GCC 12 mistakes Eigen's vector loads from 3-vectors for overruns
   if(NOT MOTORCADE_PORTABLE)
     # Public: Eigen's alignment and inlined kernels must agree between the library and its users.
     target_compile_options(${target} PUBLIC -march=x86-64-v3)
