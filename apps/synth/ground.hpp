@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+
+#include "apps/synth/frame_scene.hpp"
+
+namespace motorcade::synth {
+
+/// Road, kerb and what lies beyond: asphalt at z = 0, everything off the roads one kerb higher.
+class Ground {
+ public:
+  static constexpr float kKerb_m = 0.12F;
+
+  explicit Ground(const FrameScene& frame);
+
+  struct Hit {
+    float t = 0;
+    Vec3 normal;
+    RoadPosition where;
+    Vec3 position_map;
+    bool kerb_face = false;
+  };
+  /// Where a ray from the camera meets the ground, before t_max.
+  std::optional<Hit> hit(const Vec3& origin, const Vec3& direction, float t_max) const;
+  /// Reflectance at a hit; `pixel` is the width of a pixel at t = 1.
+  float reflectance(const Hit& hit, const Vec3& direction, float pixel) const;
+
+ private:
+  struct View;
+  float asphalt(const Hit& hit, const View& view) const;
+  float paint(const Hit& hit, const View& view) const;
+  float beside(const Hit& hit, const View& view) const;
+
+  const Scene* scene_;
+  double camera_x_m_, camera_y_m_;
+  float camera_z_m_;
+};
+
+}  // namespace motorcade::synth

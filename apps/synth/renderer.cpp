@@ -1,0 +1,198 @@
+#include "apps/synth/renderer.hpp"
+
+#include <array>
+#include <atomic>
+#include <functional>
+#include <thread>
+
+#include "apps/synth/ground.hpp"
+#include "apps/synth/noise.hpp"
+#include "apps/synth/sky.hpp"
+#include "apps/synth/texture.hpp"
+
+namespace motorcade::synth {
+namespace {
+
+constexpr float kFar_m = 400;
+constexpr float kSun = 1.0F, kAmbient = 0.26F;
+
+/// Bands of rows, handed to the threads as they come.
+void parallelRows(int rows, int threads, const std::function<void(int)>& work) {
+  constexpr int kBand = 8;
+  std::atomic<int> next{0};
+  const auto loop = [&] {
+    for (int first = kBand * next++; first < rows; first = kBand * next++)
+      for (int y = first; y < std::min(rows, first + kBand); ++y) work(y);
+  };
+  std::vector<std::jthread> helpers;
+  for (int i = 1; i < threads; ++i) helpers.emplace_back(loop);
+  loop();
+}
+
+struct Sample {
+  float light = 0;   // linear
+  float depth_m = 0;  // 0: sky
+  std::uint32_t surface = 0;
+  std::int16_t object = -1;
+};
+
+constexpr std::uint32_t kSkySurface = 0xffffffffU, kRoadSurface = 0xfffffffeU, kKerbSurface = 0xfffffffdU, kBesideSurface = 0xfffffffcU;
+
+/// Casts rays of one eye into one frame.
+class RayCaster {
+ public:
+  RayCaster(const FrameScene& frame, const StereoCamera& camera, Eye eye) : frame_(frame), ground_(frame), camera_(camera) {
+    const auto& R = frame.T_map_cam().rotation();
+    const auto column = [&](int i) { return Vec3{static_cast<float>(R(0, i)), static_cast<float>(R(1, i)), static_cast<float>(R(2, i))}; };
+    right_ = column(0);
+    down_ = column(1);
+    ahead_ = column(2);
+    if (eye == Eye::kRight) origin_ = right_ * static_cast<float>(camera.baseline_m);
+    pixel_ = static_cast<float>(1 / camera.fx_px);
+  }
+
+  /// `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel.
+  Sample cast(float u_px, float v_px, float sharpness) const {
+    // Unit depth along the optical axis, so that the ray's parameter is the depth.
+    const Vec3 d = ahead_ + right_ * ((u_px - static_cast<float>(camera_.cx_px)) * pixel_) +
+                   down_ * ((v_px - static_cast<float>(camera_.cy_px)) / static_cast<float>(camera_.fy_px));
+    const float pixel = pixel_ / sharpness;
+    const auto ground = ground_.hit(origin_, d, kFar_m);
+    const auto hit = frame_.firstHit(origin_, d, ground ? ground->t : kFar_m);
+    if (hit) return {haze(shade(*hit, d, pixel), hit->t), hit->t, hit->surface, static_cast<std::int16_t>(hit->placed->id)};
+    if (ground) {
+      const std::uint32_t surface = ground->kerb_face ? kKerbSurface : ground->where.outside_m < 0 ? kRoadSurface : kBesideSurface;
+      return {haze(shade(*ground, d, pixel), ground->t), ground->t, surface, -1};
+    }
+    return {skyRadiance(normalized(d), pixel, frame_.scene().seed), 0, kSkySurface, -1};
+  }
+
+ private:
+  /// Light on a surface: sun unless something is in its way, and the sky.
+  float lit(const Vec3& position, const Vec3& normal) const {
+    const Vec3& sun = frame_.scene().sun;
+    const float cosine = dot(normal, sun);
+    const float sky = kAmbient * (0.62F + 0.38F * normal.z);
+    if (cosine <= 0 || frame_.occluded(position + normal * 2e-3F, sun, 60)) return sky;
+    return sky + kSun * cosine;
+  }
+
+  float shade(const RayHit& hit, const Vec3& d, float pixel) const {
+    const Placed& placed = *hit.placed;
+    const Vec3 normal = placed.rotation * hit.normal_body;
+    const Vec3 view = normalized(d);
+    const float slant = std::fmax(0.15F, std::abs(dot(normal, view)));
+    // Geometric mean of the footprint's two sides; steep views are supersampled anyway.
+    const SurfacePoint point{hit.part, placed.model.get(), hit.position_body, hit.normal_body, hit.t * pixel / std::sqrt(slant), placed.wheel_angle_rad};
+    const Reflectance r = reflectanceOf(point);
+    const Vec3 position = origin_ + d * hit.t;
+    float light = r.diffuse * lit(position, normal) + r.glow;
+    if (r.mirror > 0) {
+      const Vec3 bounced = view - normal * (2 * dot(view, normal));
+      const float fresnel = r.mirror + (1 - r.mirror) * 0.6F * std::pow(1 - slant, 5.0F);
+      light += fresnel * lerp(0.10F, 0.62F, saturate(bounced.z * 3 + 0.35F));
+    }
+    return light;
+  }
+
+  float shade(const Ground::Hit& hit, const Vec3& d, float pixel) const {
+    const Vec3 position = origin_ + d * hit.t;
+    float light = lit(position, hit.normal);
+    // Under a car little of the sky is seen.
+    if (light < 0.5F && hit.t < 60 && frame_.occluded(position + hit.normal * 2e-3F, {0, 0, 1}, 1.0F)) light *= 0.35F;
+    return ground_.reflectance(hit, d, pixel) * light;
+  }
+
+  static float haze(float light, float depth_m) { return lerp(light, 0.55F, 1 - std::exp(-depth_m / 900)); }
+
+  const FrameScene& frame_;
+  Ground ground_;
+  const StereoCamera& camera_;
+  Vec3 origin_, right_, down_, ahead_;
+  float pixel_ = 0;
+};
+
+/// Gray level of linear light: a camera's square-root-like response.
+float response(float light) { return 255 * std::sqrt(saturate(light * 0.98F)); }
+
+/// Eight rays in a pixel, point symmetric so that no pixel leans to a side.
+constexpr std::array<std::array<float, 2>, 8> kSpread{{{-0.4375F, -0.0625F}, {-0.3125F, 0.4375F}, {-0.1875F, -0.3125F}, {-0.0625F, 0.1875F},
+                                                       {0.0625F, -0.1875F}, {0.1875F, 0.3125F}, {0.3125F, -0.4375F}, {0.4375F, 0.0625F}}};
+
+/// Sum of four uniform numbers: near enough to a Gaussian.
+float gaussian(std::uint32_t hash) {
+  const std::uint32_t other = mix(hash ^ 0x68bc21ebU);
+  const auto low = [](std::uint32_t h) { return static_cast<float>(h & 0xffffU) * 0x1p-16F; };
+  const float sum = low(hash) + low(hash >> 16) + low(other) + low(other >> 16);
+  return (sum - 2) * 1.7320508F;
+}
+
+struct Sensor {
+  float gain, offset, noise_levels;
+  std::uint32_t seed;
+
+  std::uint8_t read(float level, int x, int y) const {
+    const float sigma = noise_levels * std::sqrt(0.35F + 0.65F * level / 128);
+    const float value = gain * level + offset + sigma * gaussian(hashOf(x, y, seed));
+    return static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.0F, 255.0F));
+  }
+};
+
+Sensor sensorOf(const FrameScene& frame, Eye eye, const RenderOptions& options) {
+  const Scene& scene = frame.scene();
+  const bool right = eye == Eye::kRight;
+  const int moment = scene.lap_frames > 0 ? frame.frame() % scene.lap_frames : frame.frame();
+  const std::uint32_t seed = hashOf(moment, right ? 1 : 0, scene.seed + 31);
+  const bool different = right && !options.equal_gains;
+  return {different ? 1.02F : 1.0F, different ? -1.5F : 0.0F, options.noise_levels, seed};
+}
+
+/// True where a pixel differs from a neighbour in surface or clearly in light: one ray is not enough there.
+bool needsMore(const std::vector<Sample>& samples, int width, int height, int x, int y) {
+  constexpr float kContrast = 9;
+  const auto at = [&](int i, int j) -> const Sample& {
+    return samples[static_cast<std::size_t>(std::clamp(j, 0, height - 1)) * static_cast<std::size_t>(width) + static_cast<std::size_t>(std::clamp(i, 0, width - 1))];
+  };
+  const Sample& centre = at(x, y);
+  const float level = response(centre.light);
+  for (const auto [dx, dy] : {std::array{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+    const Sample& other = at(x + dx, y + dy);
+    if (other.surface != centre.surface || std::abs(response(other.light) - level) > kContrast) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Rendering render(const FrameScene& frame, const StereoCamera& camera, Eye eye, const RenderOptions& options) {
+  const int width = camera.width_px, height = camera.height_px;
+  const auto index = [width](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); };
+  const RayCaster caster(frame, camera, eye);
+  std::vector<Sample> samples(index(0, height));
+  parallelRows(height, options.threads, [&](int y) {
+    for (int x = 0; x < width; ++x) samples[index(x, y)] = caster.cast(static_cast<float>(x), static_cast<float>(y), 1);
+  });
+  Rendering out{ImagePool().acquire(width, height), std::vector<float>(samples.size()), std::vector<std::int16_t>(samples.size())};
+  const Sensor sensor = sensorOf(frame, eye, options);
+  parallelRows(height, options.threads, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const Sample& centre = samples[index(x, y)];
+      float light = saturate(centre.light);
+      if (needsMore(samples, width, height, x, y)) {
+        light = 0;
+        for (const auto& [du, dv] : kSpread) light += saturate(caster.cast(static_cast<float>(x) + du, static_cast<float>(y) + dv, 1.6F).light) / kSpread.size();
+      }
+      out.image.mutableRow(y)[x] = sensor.read(response(light), x, y);
+      out.depth_m[index(x, y)] = centre.depth_m;
+      out.object[index(x, y)] = centre.object;
+    }
+  });
+  return out;
+}
+
+StereoCamera kittiCamera(int width_px, int height_px) {
+  const double scale = width_px / 1242.0;
+  return {721.5377 * scale, 721.5377 * scale, (609.5593 + 0.5) * scale - 0.5, (172.854 + 0.5) * height_px / 375.0 - 0.5, 0.5371657, width_px, height_px};
+}
+
+}  // namespace motorcade::synth

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/synth/primitive.hpp"
+#include "apps/synth/road_network.hpp"
+#include "apps/synth/trajectory.hpp"
+#include "core/se3.hpp"
+
+namespace motorcade::synth {
+
+/// Something that stands in the scene for ever; parked cars carry an object id.
+struct Fixture {
+  std::shared_ptr<const Model> model;
+  SE3 T_map_body;
+  int id = -1;
+};
+
+/// A vehicle in traffic.
+struct Mover {
+  std::shared_ptr<const Model> model;
+  Trajectory trajectory;
+  int id = -1;
+};
+
+/// A world with its traffic, in the frame `map`: z up, road surface at z = 0.
+struct Scene {
+  std::string name;
+  std::uint32_t seed = 0;
+  int frames = 60;
+  double frame_s = 0.1;
+  int lap_frames = 0;  // the scene repeats after this many frames; 0: never
+  bool meadow = false;  // grass beyond the kerb instead of paving
+  Vec3 sun{0.45F, 0.35F, 0.82F};  // unit vector towards the sun
+  RoadNetwork roads;
+  std::vector<Fixture> fixtures;
+  std::vector<Mover> movers;
+  Ego ego;
+
+  /// Time of a frame; laps repeat exactly.
+  double time_s(int frame) const { return frame_s * (lap_frames > 0 ? frame % lap_frames : frame); }
+  int objectCount() const;
+};
+
+}  // namespace motorcade::synth

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/synth/noise.hpp"
+#include "apps/synth/scene.hpp"
+#include "apps/synth/vehicle_model.hpp"
+
+namespace motorcade::synth {
+
+/// How the sides of a road look.
+struct Dressing {
+  double from_m = 0, to_m = 0;  // stretch of the road
+  double clear_m = 4;           // width of the pavement before the first wall or hedge
+  bool buildings = true, trees = true;
+  bool rural = false;           // hedges, bushes and guard rails instead of houses
+  double parked_share = 0;      // of the places at the kerb, 7 m each
+};
+
+/// Puts a scene together. Ids are given in the order of the calls.
+class SceneBuilder {
+ public:
+  SceneBuilder(std::string name, std::uint32_t seed);
+
+  Scene scene;
+  Random random;
+
+  void setRoads(std::vector<Road> roads) { scene.roads = RoadNetwork(std::move(roads)); }
+  void setEgo(Trajectory trajectory) { scene.ego.trajectory = std::move(trajectory); }
+  void addMover(VehicleKind kind, Trajectory trajectory);
+  void addParked(VehicleKind kind, int road, double along_m, double left_m, bool backwards);
+  /// Houses, trees, poles, fences and parked cars along both sides of a road, clear of every other road.
+  void dress(int road, const Dressing& dressing);
+
+ private:
+  void place(Model model, int road, double along_m, double left_m, double turn_rad, double margin_m);
+  void placeWall(int road, const Dressing& dressing, double side);
+  void placePavement(int road, const Dressing& dressing, double side);
+  int next_id_ = 0;
+};
+
+/// A speed that wanders by up to `share` of `mean` with the seed.
+double vary(Random& random, double mean, double share);
+
+std::vector<std::string> sceneNames();
+/// Throws std::invalid_argument for an unknown name.
+Scene makeScene(const std::string& name, std::uint32_t seed);
+
+}  // namespace motorcade::synth

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstdint>
+
+#include "apps/synth/vec3.hpp"
+
+namespace motorcade::synth {
+
+/// Light from infinity along a unit vector: sky with clouds, and woods and hills on the horizon.
+float skyRadiance(const Vec3& direction, float pixel_rad, std::uint32_t seed);
+
+}  // namespace motorcade::synth
