@@ -1,0 +1,192 @@
+#include "io/ground_truth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "io/errors.hpp"
+#include "io/text_file.hpp"
+#include "io/timestamps.hpp"
+#include "io/trajectory.hpp"
+
+namespace motorcade {
+namespace {
+
+namespace fs = std::filesystem;
+
+OxtsPacket packetOf(const fs::path& file, const TextLine& line) {
+  FieldReader fields(file, line);
+  OxtsPacket packet;
+  packet.latitude_deg = fields.number("latitude");
+  packet.longitude_deg = fields.number("longitude");
+  packet.altitude_m = fields.number("altitude");
+  packet.roll_rad = fields.number("roll");
+  packet.pitch_rad = fields.number("pitch");
+  packet.yaw_rad = fields.number("yaw");
+  constexpr double kMaxMercator_deg = 89;
+  if (std::abs(packet.latitude_deg) > kMaxMercator_deg) fields.fail("the latitude is out of range");
+  return packet;
+}
+
+/// Poses of the inertial unit on a Mercator plane whose scale is true at the first packet
+/// (Geiger et al., Vision meets Robotics: the KITTI Dataset, 2013, section III).
+std::vector<SE3> mercatorPoses(const std::vector<OxtsPacket>& packets) {
+  constexpr double kEarthRadius_m = 6378137, kRadPerDeg = std::numbers::pi / 180;
+  std::vector<SE3> poses;
+  const double scale_m = kEarthRadius_m * (packets.empty() ? 1.0 : std::cos(packets.front().latitude_deg * kRadPerDeg));
+  for (const auto& p : packets) {
+    const Eigen::Vector3d place_m{scale_m * p.longitude_deg * kRadPerDeg,
+                                  scale_m * std::log(std::tan((90 + p.latitude_deg) * kRadPerDeg / 2)), p.altitude_m};
+    using Eigen::AngleAxisd, Eigen::Vector3d;
+    const Eigen::Quaterniond attitude =
+        AngleAxisd(p.yaw_rad, Vector3d::UnitZ()) * AngleAxisd(p.pitch_rad, Vector3d::UnitY()) * AngleAxisd(p.roll_rad, Vector3d::UnitX());
+    poses.push_back({attitude.toRotationMatrix(), place_m});
+  }
+  return poses;
+}
+
+/// The pose at a time between, or a little outside, the packets: place and attitude each at a constant rate.
+SE3 poseAt(Timestamp stamp, const std::vector<SE3>& poses, const std::vector<Timestamp>& stamps) {
+  const auto after = std::ranges::upper_bound(stamps, stamp) - stamps.begin();
+  const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after - 1, 0, std::ssize(stamps) - 2));
+  const double part = secondsBetween(stamps[i], stamp) / secondsBetween(stamps[i], stamps[i + 1]);
+  const auto &from = poses[i], &to = poses[i + 1];
+  return {from.rotation() * expSO3(part * logSO3(from.rotation().transpose() * to.rotation())),
+          from.translation() + part * (to.translation() - from.translation())};
+}
+
+std::vector<SE3> interpolated(const std::vector<SE3>& poses, const Sequence::Truth& truth) {
+  const auto packet_stamps = readTimestamps(truth.oxts_timestamps), image_stamps = readTimestamps(truth.image_timestamps);
+  if (packet_stamps.size() != poses.size()) {
+    throw InputError(truth.oxts_timestamps.string() + ": has " + std::to_string(packet_stamps.size()) + " times for " +
+                     std::to_string(poses.size()) + " packets");
+  }
+  std::vector<SE3> result;
+  for (const Timestamp stamp : image_stamps) result.push_back(poseAt(stamp, poses, packet_stamps));
+  return result;
+}
+
+/// T_world_cam = C B P_0^-1 P_k B^-1 C^-1, with B the left gray camera from the inertial unit and C the pair's left camera from it.
+std::optional<CameraTruth> truthFromOxts(const Sequence& sequence, OxtsTimes times) {
+  const auto T_cam0_imu = sequence.calibration.T_cam0_imu();
+  if (sequence.truth.oxts.empty() || !T_cam0_imu) return std::nullopt;
+  std::vector<SE3> poses = mercatorPoses(readOxts(sequence.truth.oxts));
+  const bool both_times = !sequence.truth.oxts_timestamps.empty() && !sequence.truth.image_timestamps.empty();
+  const bool interpolate = times == OxtsTimes::kInterpolated && both_times && poses.size() >= 2;
+  if (interpolate) poses = interpolated(poses, sequence.truth);
+  if (poses.size() < sequence.frames.size()) {
+    throw InputError(sequence.truth.oxts.string() + ": tells of " + std::to_string(poses.size()) + " frames, there are " +
+                     std::to_string(sequence.frames.size()) + " images");
+  }
+  CameraTruth truth{.T_world_cam = {},
+                    .source = sequence.truth.oxts.filename().string() + (interpolate ? " (interpolated)" : " (uninterpolated)")};
+  const SE3 T_cam_imu = sequence.calibration.T_left_cam0(sequence.pair) * *T_cam0_imu;
+  const SE3 T_world_mercator = T_cam_imu * poses.front().inverse();
+  const SE3 T_imu_cam = T_cam_imu.inverse();
+  for (std::size_t i = 0; i < sequence.frames.size(); ++i) truth.T_world_cam.push_back(T_world_mercator * poses[i] * T_imu_cam);
+  return truth;
+}
+
+CameraTruth truthFromPoses(const Sequence& sequence) {
+  CameraTruth truth{.T_world_cam = readKittiPoses(sequence.truth.poses), .source = sequence.truth.poses.filename().string()};
+  if (truth.T_world_cam.size() < sequence.frames.size()) {
+    throw InputError(sequence.truth.poses.string() + ": has " + std::to_string(truth.T_world_cam.size()) + " poses for " +
+                     std::to_string(sequence.frames.size()) + " images");
+  }
+  const SE3 T_left_cam0 = sequence.calibration.T_left_cam0(sequence.pair);
+  for (auto& pose : truth.T_world_cam) pose = T_left_cam0 * pose * T_left_cam0.inverse();
+  return truth;
+}
+
+SE3 boxPose(const Label& label) {
+  return {Eigen::AngleAxisd(label.rotation_y_rad, Eigen::Vector3d::UnitY()).toRotationMatrix(), label.location_m};
+}
+
+using PoseByFrameAndId = std::map<std::pair<std::int64_t, std::int64_t>, SE3>;
+
+/// Rendered sequences give poses of objects with x ahead, y left, z up, in the world of the left gray camera; a box frame has y down and z
+/// left.
+PoseByFrameAndId readObjectPoses(const fs::path& file) {
+  PoseByFrameAndId poses;
+  if (file.empty()) return poses;
+  Eigen::Matrix3d object_box;
+  object_box << 1, 0, 0, 0, 0, 1, 0, -1, 0;  // its columns are the axes of the box frame
+  for (const auto& line : readLines(file)) {
+    FieldReader fields(file, line);
+    const std::int64_t frame = fields.integer("frame"), id = fields.integer("id");
+    fields.integer("moving");
+    const SE3 T_world_object = fields.pose("T_world_object");
+    fields.expectEnd();
+    poses[{frame, id}] = T_world_object * SE3(object_box, Eigen::Vector3d::Zero());
+  }
+  return poses;
+}
+
+}  // namespace
+
+std::vector<OxtsPacket> readOxts(const fs::path& file_or_folder) {
+  std::vector<OxtsPacket> packets;
+  if (!fs::is_directory(file_or_folder)) {
+    for (const auto& line : readLines(file_or_folder)) packets.push_back(packetOf(file_or_folder, line));
+    return packets;
+  }
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(file_or_folder)) {
+    if (entry.path().extension() == ".txt") files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  for (const auto& file : files) {
+    const auto lines = readLines(file);
+    if (lines.empty()) throw InputError(file.string() + ": is empty, a packet is expected");
+    packets.push_back(packetOf(file, lines.front()));
+  }
+  return packets;
+}
+
+std::optional<CameraTruth> readCameraTruth(const Sequence& sequence, OxtsTimes times) {
+  if (times == OxtsTimes::kUninterpolated) {
+    if (auto truth = truthFromOxts(sequence, times)) return truth;
+  }
+  if (!sequence.truth.poses.empty()) return truthFromPoses(sequence);
+  return truthFromOxts(sequence, times);
+}
+
+std::optional<ObjectTruths> readObjectTruths(const Sequence& sequence, const CameraTruth& camera) {
+  if (sequence.truth.labels.empty()) return std::nullopt;
+  const auto exact = readObjectPoses(sequence.truth.object_poses);
+  ObjectTruths truths;
+  truths.source = sequence.truth.labels.filename().string();
+  if (!exact.empty()) truths.source.append(" with ").append(sequence.truth.object_poses.filename().string());
+  const SE3 T_left_cam0 = sequence.calibration.T_left_cam0(sequence.pair);
+  for (const auto& label : readLabels(sequence.truth.labels)) {
+    if (label.dontCare()) {
+      truths.ignored.push_back({label.frame, label.box});
+      continue;
+    }
+    const auto frame = static_cast<std::size_t>(label.frame.value);
+    if (frame >= camera.T_world_cam.size()) continue;
+    ObjectTruth truth;
+    truth.frame = label.frame;
+    truth.id = label.track;
+    truth.type = label.type;
+    truth.T_cam_object = T_left_cam0 * boxPose(label);
+    truth.T_world_object = camera.T_world_cam[frame] * truth.T_cam_object;
+    if (const auto found = exact.find({label.frame.value, label.track}); found != exact.end()) {
+      truth.T_world_object = T_left_cam0 * found->second;
+      truth.T_cam_object = camera.T_world_cam[frame].inverse() * truth.T_world_object;
+    }
+    truth.box = label.box;
+    truth.size_m = label.size_m;
+    truth.truncated = label.truncated;
+    truth.occluded = label.occluded;
+    truths.objects.push_back(std::move(truth));
+  }
+  std::ranges::sort(truths.objects, {}, [](const ObjectTruth& t) { return std::pair(t.frame, t.id); });
+  return truths;
+}
+
+}  // namespace motorcade
