@@ -8,8 +8,6 @@ namespace motorcade::synth {
 namespace {
 
 constexpr int kBins = 12;
-constexpr std::uint32_t kLeafItems = 2;
-constexpr std::uint32_t kDepthFirstLimit = 1U << 20;  // scenes stay far below: the stack of a traversal holds 64 nodes
 
 struct Split {
   int axis = 0;
@@ -61,34 +59,51 @@ std::optional<Split> bestSplit(const std::uint32_t* items, std::uint32_t count, 
 }  // namespace
 
 Bvh::Bvh(const std::vector<Bounds>& boxes) : items_(boxes.size()) {
-  if (boxes.empty() || boxes.size() > kDepthFirstLimit) return;
+  if (boxes.empty()) return;
   std::iota(items_.begin(), items_.end(), 0U);
-  nodes_.reserve(2 * boxes.size());
-  nodes_.emplace_back();
-  build(0, 0, static_cast<std::uint32_t>(boxes.size()), boxes);
+  nodes_.reserve(boxes.size());
+  build(0, static_cast<std::uint32_t>(boxes.size()), boxes);
 }
 
-void Bvh::build(std::uint32_t node, std::uint32_t first, std::uint32_t count, const std::vector<Bounds>& boxes) {
-  Bounds all;
-  for (std::uint32_t i = 0; i < count; ++i) all.include(boxes[items_[first + i]]);
-  nodes_[node].lo = all.lo;
-  nodes_[node].hi = all.hi;
-  const auto split = count > kLeafItems ? bestSplit(items_.data() + first, count, boxes) : std::nullopt;
-  if (!split) {
-    nodes_[node].first = first;
-    nodes_[node].count = count;
-    return;
-  }
+/// Reorders a range in two parts; the size of the first one.
+std::uint32_t Bvh::split(std::uint32_t first, std::uint32_t count, const std::vector<Bounds>& boxes) {
+  const auto best = bestSplit(items_.data() + first, count, boxes);
+  if (!best) return count / 2;
   const auto begin = items_.begin() + first;
-  const auto middle = std::stable_partition(begin, begin + count, [&](std::uint32_t i) { return centre(boxes[i], split->axis) < split->position; });
-  auto left = static_cast<std::uint32_t>(middle - begin);
-  if (left == 0 || left == count) left = count / 2;
-  const auto children = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.resize(nodes_.size() + 2);
-  nodes_[node].first = children;
-  nodes_[node].count = 0;
-  build(children, first, left, boxes);
-  build(children + 1, first + left, count - left, boxes);
+  const auto middle = std::stable_partition(begin, begin + count, [&](std::uint32_t i) { return centre(boxes[i], best->axis) < best->position; });
+  const auto left = static_cast<std::uint32_t>(middle - begin);
+  return left == 0 || left == count ? count / 2 : left;
+}
+
+std::uint32_t Bvh::build(std::uint32_t first, std::uint32_t count, const std::vector<Bounds>& boxes) {
+  struct Range {
+    std::uint32_t first, count;
+  };
+  std::vector<Range> children{{first, count}};
+  while (children.size() < 4) {
+    const auto largest = std::max_element(children.begin(), children.end(), [](const Range& a, const Range& b) { return a.count < b.count; });
+    if (largest->count < 2) break;
+    const std::uint32_t left = split(largest->first, largest->count, boxes);
+    const Range rest{largest->first + left, largest->count - left};
+    largest->count = left;
+    children.push_back(rest);
+  }
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  for (std::size_t i = 0; i < 4; ++i) {
+    Bounds all;
+    if (i < children.size())
+      for (std::uint32_t k = 0; k < children[i].count; ++k) all.include(boxes[items_[children[i].first + k]]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      nodes_[index].lo[axis][i] = all.lo[static_cast<int>(axis)];
+      nodes_[index].hi[axis][i] = all.hi[static_cast<int>(axis)];
+    }
+  }
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    const std::uint32_t child = children[i].count == 1 ? kLeaf | items_[children[i].first] : build(children[i].first, children[i].count, boxes);
+    nodes_[index].child[i] = child;
+  }
+  return index;
 }
 
 }  // namespace motorcade::synth

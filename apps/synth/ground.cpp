@@ -13,7 +13,7 @@ struct Ground::View {
 
   /// Mean of a noise over the footprint: samples spread along its long side, each filtered by what is left.
   float texture(float px, float py, float spacing, int octaves, float gain, std::uint32_t salt) const {
-    const int taps = std::clamp(static_cast<int>(length / (2 * width)), 1, 5);
+    const int taps = std::clamp(static_cast<int>(length / (2 * width)), 1, 3);
     float sum = 0;
     for (int i = 0; i < taps; ++i) {
       const float shift = length * ((static_cast<float>(i) + 0.5F) / static_cast<float>(taps) - 0.5F);
@@ -78,7 +78,7 @@ float Ground::asphalt(const Hit& hit, const View& view) const {
   const float lid = inside(std::hypot(lid_s, lid_d), -1, 0.34F, view.length);
   tone = lerp(tone, 0.10F + 0.16F * pulses(lid_s, 0.11F, 0.05F, view.along_road) * pulses(lid_d + 9, 0.11F, 0.06F, view.across_road), lid);
   const float wear = view.texture(x, y, 3.7F, 4, 0.7F, 10), grain = view.texture(x, y, 0.22F, 5, 0.86F, 20);
-  return tone * std::fmax(0.25F, 1 + 0.16F * wear + 0.24F * grain);
+  return tone * std::fmax(0.25F, 1 + 0.20F * wear + 0.34F * grain);
 }
 
 /// Coverage by lane paint.

@@ -4,7 +4,26 @@ namespace motorcade::synth {
 namespace {
 
 float fade(float t) { return t * t * (3 - 2 * t); }
-float signedUnit(std::uint32_t hash) { return static_cast<float>(hash >> 8) * 0x1p-23F - 1; }
+
+/// Four lanes at once, by the compiler's vector types.
+using Lanes = std::uint32_t __attribute__((vector_size(16)));
+using LanesInt = std::int32_t __attribute__((vector_size(16)));
+using LanesFloat = float __attribute__((vector_size(16)));
+
+/// Random numbers in [-1, 1) at (ix, iy), (ix + 1, iy), (ix, iy + 1), (ix + 1, iy + 1): hashOf of each.
+LanesFloat cornerValues(int ix, int iy, std::uint32_t seed) {
+  const std::uint32_t x0 = static_cast<std::uint32_t>(ix) * 0x9e3779b1U, y0 = static_cast<std::uint32_t>(iy) * 0x85ebca77U + seed * 0xc2b2ae3dU;
+  const Lanes x{x0, x0 + 0x9e3779b1U, x0, x0 + 0x9e3779b1U}, y{y0, y0, y0 + 0x85ebca77U, y0 + 0x85ebca77U};
+  Lanes h = x ^ y;
+  h ^= h >> 16;
+  h *= 0x7feb352dU;
+  h ^= h >> 15;
+  h *= 0x846ca68bU;
+  h ^= h >> 16;
+  return __builtin_convertvector(reinterpret_cast<LanesInt>(h >> 8), LanesFloat) * 0x1p-23F - 1.0F;
+}
+
+float blend(const LanesFloat& v, float tx, float ty) { return lerp(lerp(v[0], v[1], tx), lerp(v[2], v[3], tx), ty); }
 
 /// Integral of the pulse train from 0 to x.
 float pulseIntegral(float x, float period, float width) {
@@ -21,19 +40,15 @@ float pulses(float x, float period, float width, float footprint) {
 
 float noise2(float x, float y, std::uint32_t seed) {
   const float fx = std::floor(x), fy = std::floor(y);
-  const int ix = static_cast<int>(fx), iy = static_cast<int>(fy);
-  const float tx = fade(x - fx), ty = fade(y - fy);
-  const float a = lerp(signedUnit(hashOf(ix, iy, seed)), signedUnit(hashOf(ix + 1, iy, seed)), tx);
-  const float b = lerp(signedUnit(hashOf(ix, iy + 1, seed)), signedUnit(hashOf(ix + 1, iy + 1, seed)), tx);
-  return lerp(a, b, ty);
+  return blend(cornerValues(static_cast<int>(fx), static_cast<int>(fy), seed), fade(x - fx), fade(y - fy));
 }
 
 float noise3(float x, float y, float z, std::uint32_t seed) {
-  const float fz = std::floor(z);
-  const int iz = static_cast<int>(fz);
-  const float a = noise2(x, y, seed + static_cast<std::uint32_t>(iz) * 0x27d4eb2fU);
-  const float b = noise2(x, y, seed + static_cast<std::uint32_t>(iz + 1) * 0x27d4eb2fU);
-  return lerp(a, b, fade(z - fz));
+  const float fx = std::floor(x), fy = std::floor(y), fz = std::floor(z);
+  const int ix = static_cast<int>(fx), iy = static_cast<int>(fy);
+  const std::uint32_t below = seed + static_cast<std::uint32_t>(static_cast<int>(fz)) * 0x27d4eb2fU;
+  const LanesFloat a = cornerValues(ix, iy, below), b = cornerValues(ix, iy, below + 0x27d4eb2fU);
+  return blend(a + (b - a) * fade(z - fz), fade(x - fx), fade(y - fy));
 }
 
 float fractal2(float x, float y, float spacing, int octaves, float gain, float footprint, std::uint32_t seed) {

@@ -47,8 +47,12 @@ std::optional<SurfaceHit> intersectBlock(const Primitive& part, const Cut* cuts,
   return SurfaceHit{enter, normal};
 }
 
-/// A crown has holes between its leaves.
-bool leafAt(const Vec3& p, std::uint32_t seed) { return noise3(p.x * 3.1F, p.y * 3.1F, p.z * 3.1F, seed) > -0.14F; }
+/// A crown has holes between its twigs and leaves, more of them towards its rim.
+bool leafAt(const Vec3& p, const Vec3& unit_position, const Vec3& unit_direction, std::uint32_t seed) {
+  const float facing = std::abs(dot(unit_position, unit_direction)) / norm(unit_direction);
+  const float fine = noise3(p.x * 7.3F, p.y * 7.3F, p.z * 7.3F, seed + 1), coarse = noise3(p.x * 2.7F, p.y * 2.7F, p.z * 2.7F, seed);
+  return 0.8F * coarse + 0.8F * fine > 0.42F - 0.75F * facing;
+}
 
 std::optional<SurfaceHit> intersectEllipsoid(const Primitive& part, const Vec3& o, const Vec3& d, float t_min, float t_max) {
   const Vec3 centre = (part.lo + part.hi) * 0.5F, radii = (part.hi - part.lo) * 0.5F;
@@ -63,7 +67,7 @@ std::optional<SurfaceHit> intersectEllipsoid(const Primitive& part, const Vec3& 
   for (const float t : {-b / a - half, -b / a + half}) {
     if (t <= t_min || t >= t_max) continue;
     const Vec3 p = o + d * t;
-    if (part.material == Material::kLeaves && !leafAt(p, part.seed)) continue;
+    if (part.material == Material::kLeaves && !leafAt(p, so + sd * t, sd, part.seed)) continue;
     const Vec3 normal = normalized((p - centre) * scale * scale);
     return SurfaceHit{t, dot(normal, d) > 0 ? normal * -1 : normal};
   }

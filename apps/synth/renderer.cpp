@@ -14,7 +14,7 @@ namespace motorcade::synth {
 namespace {
 
 constexpr float kFar_m = 400;
-constexpr float kSun = 1.0F, kAmbient = 0.26F;
+constexpr float kSun = 1.25F, kAmbient = 0.22F;
 
 /// Bands of rows, handed to the threads as they come.
 void parallelRows(int rows, int threads, const std::function<void(int)>& work) {
@@ -115,9 +115,8 @@ class RayCaster {
 /// Gray level of linear light: a camera's square-root-like response.
 float response(float light) { return 255 * std::sqrt(saturate(light * 0.98F)); }
 
-/// Eight rays in a pixel, point symmetric so that no pixel leans to a side.
-constexpr std::array<std::array<float, 2>, 8> kSpread{{{-0.4375F, -0.0625F}, {-0.3125F, 0.4375F}, {-0.1875F, -0.3125F}, {-0.0625F, 0.1875F},
-                                                       {0.0625F, -0.1875F}, {0.1875F, 0.3125F}, {0.3125F, -0.4375F}, {0.4375F, 0.0625F}}};
+/// Rays in a pixel besides the one through its centre: point symmetric, so that no pixel leans to a side.
+constexpr std::array<std::array<float, 2>, 4> kSpread{{{-0.4F, -0.2F}, {-0.2F, 0.4F}, {0.2F, -0.4F}, {0.4F, 0.2F}}};
 
 /// Sum of four uniform numbers: near enough to a Gaussian.
 float gaussian(std::uint32_t hash) {
@@ -149,7 +148,7 @@ Sensor sensorOf(const FrameScene& frame, Eye eye, const RenderOptions& options) 
 
 /// True where a pixel differs from a neighbour in surface or clearly in light: one ray is not enough there.
 bool needsMore(const std::vector<Sample>& samples, int width, int height, int x, int y) {
-  constexpr float kContrast = 9;
+  constexpr float kContrast = 11;
   const auto at = [&](int i, int j) -> const Sample& {
     return samples[static_cast<std::size_t>(std::clamp(j, 0, height - 1)) * static_cast<std::size_t>(width) + static_cast<std::size_t>(std::clamp(i, 0, width - 1))];
   };
@@ -179,8 +178,8 @@ Rendering render(const FrameScene& frame, const StereoCamera& camera, Eye eye, c
       const Sample& centre = samples[index(x, y)];
       float light = saturate(centre.light);
       if (needsMore(samples, width, height, x, y)) {
-        light = 0;
-        for (const auto& [du, dv] : kSpread) light += saturate(caster.cast(static_cast<float>(x) + du, static_cast<float>(y) + dv, 1.6F).light) / kSpread.size();
+        for (const auto& [du, dv] : kSpread) light += saturate(caster.cast(static_cast<float>(x) + du, static_cast<float>(y) + dv, 1.6F).light);
+        light /= kSpread.size() + 1;
       }
       out.image.mutableRow(y)[x] = sensor.read(response(light), x, y);
       out.depth_m[index(x, y)] = centre.depth_m;

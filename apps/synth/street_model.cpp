@@ -30,11 +30,11 @@ Model makeTree(float height_m, std::uint32_t seed) {
   Random random(seed);
   const float radius = random.uniform(0.12F, 0.24F), crown = 0.42F * height_m;
   m.addCylinder(Material::kBark, 2, {-radius, -radius, 0}, {radius, radius, 0.75F * height_m}, 0.15F, seed);
-  const int blobs = 6;
+  const int blobs = 8;
   const float tone = random.uniform(0.09F, 0.20F);
   for (int i = 0; i < blobs; ++i) {
     const float angle = 2 * std::numbers::pi_v<float> * (static_cast<float>(i) + random.uniform(0, 0.6F)) / blobs;
-    const float out = i == 0 ? 0 : random.uniform(0.35F, 0.6F) * crown, size = crown * random.uniform(0.42F, 0.62F);
+    const float out = i == 0 ? 0 : random.uniform(0.35F, 0.7F) * crown, size = crown * random.uniform(0.36F, 0.58F);
     const Vec3 centre{out * std::cos(angle), out * std::sin(angle), height_m - crown * random.uniform(0.45F, 1.05F)};
     m.addEllipsoid(Material::kLeaves, centre, {size, size, 0.8F * size}, tone * random.uniform(0.8F, 1.3F), random.bits());
   }

@@ -68,8 +68,9 @@ Reflectance facade(const SurfacePoint& s) {
 /// Leaves as light and dark clumps at all sizes; the inside of a crown is darker.
 float leaves(const SurfacePoint& s) {
   const Vec3& p = s.position;
-  const float clumps = fractal3(p.x, p.y, p.z, 0.62F, 5, 0.78F, s.footprint_m, s.part->seed + 17);
-  return std::fmax(0.02F, s.part->tone * (1 + 0.75F * clumps));
+  const float clumps = fractal3(p.x, p.y, p.z, 0.42F, 4, 0.9F, s.footprint_m, s.part->seed + 17);
+  const float bright = saturate(0.5F + 0.85F * clumps);
+  return lerp(0.02F, 2.6F * s.part->tone, bright * bright);
 }
 
 Reflectance sign(const SurfacePoint& s) {
