@@ -1,0 +1,172 @@
+#include "apps/run/run_command.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include "apps/pipeline/configuration.hpp"
+#include "apps/pipeline/pipeline.hpp"
+#include "apps/run/feeder.hpp"
+#include "apps/run/progress.hpp"
+#include "apps/run/run_options.hpp"
+#include "apps/run/run_summary.hpp"
+#include "apps/run/stop_signals.hpp"
+#include "io/errors.hpp"
+#include "io/run_folder.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr int kExitUntracked = 5, kExitSignal = 128;
+
+void logToSpdlog(LogLevel level, const std::string& text) {
+  switch (level) {
+    case LogLevel::kInfo:
+      return spdlog::info(text);
+    case LogLevel::kWarning:
+      return spdlog::warn(text);
+    case LogLevel::kError:
+      return spdlog::error(text);
+  }
+}
+
+/// Mean rate of the selected frames.
+double captureRate_hz(const Sequence& sequence, const FrameRange& range, double fallback_hz) {
+  if (range.size() < 2) return fallback_hz;
+  return static_cast<double>(range.size() - 1) / secondsBetween(sequence.stamps[range.begin], sequence.stamps[range.end - 1]);
+}
+
+FrameRange selectedFrames(const RunOptions& options, const Sequence& sequence) {
+  const FrameRange range = (options.frames.empty() ? FrameRange{} : parseFrameRange(options.frames)).within(sequence.frames.size());
+  if (range.size() == 0)
+    throw UsageError("--frames " + options.frames + ": the sequence has " + std::to_string(sequence.frames.size()) +
+                     " frames, none of these");
+  return range;
+}
+
+void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) {
+  const StereoCamera& camera = sequence.camera;
+  spdlog::info("{}: {} layout, {} of {} frames, {} x {} px, baseline {:.4f} m", sequence.folder.string(), sequence.layout, range.size(),
+               sequence.frames.size(), camera.width_px, camera.height_px, camera.baseline_m);
+  if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
+}
+
+/// Takes the pipeline's results into the run folder.
+class Recorder {
+ public:
+  Recorder(RunFolderWriter& folder, std::size_t frames) : folder_(folder), progress_(frames) {}
+
+  void record(const PipelineResult& result) {
+    for (const FrameEstimate& dropped : result.dropped) {
+      FrameTiming timing;
+      timing.frame = dropped.frame;
+      timing.stamp = dropped.stamp;
+      timing.status = dropped.status;
+      timing.due = timing.published = result.timing.due;
+      folder_.writeTiming(timing);
+      folder_.writeOnline(dropped);
+    }
+    folder_.writeTiming(result.timing);
+    folder_.writeOnline(result.online);
+    recordFinals(result.finals);
+    if (result.online.status == FrameStatus::kGood) ++good_frames_;
+    done_ += 1 + result.dropped.size();
+    progress_.show(done_, result.timing.latency_ms());
+  }
+  void recordFinals(const std::vector<FrameEstimate>& finals) {
+    for (const FrameEstimate& estimate : finals) folder_.writeFinal(estimate);
+  }
+  std::int64_t goodFrames() const { return good_frames_; }
+
+ private:
+  RunFolderWriter& folder_;
+  Progress progress_;
+  std::size_t done_ = 0;
+  std::int64_t good_frames_ = 0;
+};
+
+/// Runs the frames through the pipeline and writes all results but the summary.
+void follow(const Sequence& sequence, const FrameRange& range, const PipelineConfig& config, RunFolderWriter& folder, RunSummary& summary) {
+  StopSignals signals;
+  SequenceDecoder decoder(sequence, range, {.ahead = std::bit_floor(static_cast<std::size_t>(config.pipeline.frames_in_flight))});
+  Pipeline pipeline(config.pipeline, makeStages(config, sequence.camera), logToSpdlog);
+  const auto start = std::chrono::steady_clock::now();
+  Recorder recorder(folder, range.size());
+  {
+    const auto pace = summary.rate_hz ? std::optional(*summary.rate_hz / summary.capture_rate_hz) : std::nullopt;
+    Feeder feeder(decoder, pipeline, pace);
+    const auto watch = signals.watch([&feeder] { feeder.stop(); });
+    try {
+      while (const auto result = pipeline.next()) recorder.record(*result);
+    } catch (...) {
+      pipeline.close();  // or the feeder would wait for room that nobody makes
+      throw;
+    }
+  }
+  const PipelineEnd end = pipeline.finish();
+  for (const PipelineResult& result : end.results) recorder.record(result);
+  recorder.recordFinals(end.finals);
+  summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  summary.pipeline = end.summary;
+  summary.good_frames = recorder.goodFrames();
+  summary.decoded = {"decode>input", static_cast<std::int64_t>(decoder.highWater()), static_cast<std::int64_t>(decoder.capacity())};
+  summary.signal = signals.received();
+}
+
+int run(const RunOptions& options) {
+  const PipelineConfig config = configurationOf(options);
+  const auto required_tracking = requiredTracking(options);
+  const auto rate_hz = replayRate_hz(options, config.pipeline.policy);
+  const Sequence sequence = openSequence(options.sequence, options.fps_hz);
+  const FrameRange range = selectedFrames(options, sequence);
+  announce(sequence, range, options.fps_hz);
+
+  RunFolderWriter folder(options.out);
+  folder.writeConfig(toToml(config));
+  RunSummary summary;
+  summary.params = config.pipeline;
+  summary.sequence = options.sequence.string();
+  summary.layout = sequence.layout;
+  summary.rate_hz = rate_hz;
+  summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
+  follow(sequence, range, config, folder, summary);
+  measureProcess(summary);
+  folder.finish(toJson(summary));
+  std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);
+
+  if (summary.signal != 0) return kExitSignal + summary.signal;
+  if (required_tracking && summary.trackedFraction() < *required_tracking) {
+    spdlog::error("{:.4f} of the frames are tracked, --require asks for {:.4f}", summary.trackedFraction(), *required_tracking);
+    return kExitUntracked;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void addRunCommand(CLI::App& app, std::function<int()>& action) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Follow the camera and the moving vehicles through a stereo sequence");
+  command->add_option("SEQUENCE", options->sequence, "Folder of a plain, KITTI tracking, odometry or raw sequence")->required();
+  command->add_option("--out", options->out, "Folder for the results")->required();
+  command->add_option("--rate", options->rate, "Pace of the replay in pairs per second, or max (the default)");
+  command->add_option("--fps", options->fps_hz, "Capture rate of a sequence without times [Hz]")
+      ->check(CLI::Range(0.001, 100'000.0))
+      ->capture_default_str();
+  command->add_flag("--live", options->live, "Behave like a camera that does not wait: the newest pair wins, others are dropped");
+  command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
+  command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
+  command->add_option("--config", options->config, "Parameters; see effective_config.toml of any run")->type_name("FILE.toml");
+  command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")->type_name("KEY=VALUE");
+  command->add_option("--require", options->require, "Exit with 5 when fewer frames are tracked")->type_name("tracked=FRACTION");
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace motorcade

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/pipeline/configuration.hpp"
+#include "io/sequence.hpp"
+
+namespace motorcade {
+
+/// The command line of `motorcade run`, as the user typed it.
+struct RunOptions {
+  std::filesystem::path sequence, out;
+  std::string rate;  // `max`, HZ, or empty for the default
+  double fps_hz = 10;
+  bool live = false;
+  std::optional<int> threads;
+  std::string frames;  // A:B
+  std::filesystem::path config;
+  std::vector<std::string> assignments;  // key=value
+  std::string require;                   // tracked=FRACTION
+};
+
+/// The configuration in force: defaults, then the file, then `--set`, then the options. Throws UsageError.
+PipelineConfig configurationOf(const RunOptions& options);
+
+/// Pairs per second at which the replay is to run; empty for as fast as it goes. Throws UsageError.
+std::optional<double> replayRate_hz(const RunOptions& options, InputPolicy policy);
+
+/// The least share of tracked frames that the user accepts; empty when nothing is required. Throws UsageError.
+std::optional<double> requiredTracking(const RunOptions& options);
+
+}  // namespace motorcade

@@ -1,0 +1,112 @@
+#include "apps/run/run_summary.hpp"
+
+#include <csignal>
+
+#include <Eigen/Core>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <oneapi/tbb/version.h>
+#include <sys/resource.h>
+
+namespace motorcade {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double seconds(const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); }
+
+double rounded(double value) { return std::round(value * 1e6) / 1e6; }
+
+Json toJson(const LatencyHistogram& histogram) {
+  return {{"count", histogram.count()},
+          {"mean", rounded(histogram.mean_ms())},
+          {"p50", rounded(histogram.percentile_ms(0.50))},
+          {"p95", rounded(histogram.percentile_ms(0.95))},
+          {"p99", rounded(histogram.percentile_ms(0.99))},
+          {"max", rounded(histogram.max_ms())}};
+}
+
+Json toJson(const SolverCounters& solver) {
+  return {{"updates", solver.updates},
+          {"relinearizations", solver.relinearizations},
+          {"reorderings", solver.reorderings},
+          {"batch_solves", solver.batch_solves},
+          {"variables", solver.variables},
+          {"factors", solver.factors},
+          {"retired_variables", solver.retired_variables},
+          {"chi2", solver.chi2}};
+}
+
+Json toJson(const QueueMark& queue) { return {{"name", queue.name}, {"high_water", queue.high_water}, {"bound", queue.bound}}; }
+
+Json versions() {
+  return {{"motorcade", MOTORCADE_VERSION},
+          {"compiler", __VERSION__},
+          {"build", MOTORCADE_BUILD},
+          {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+          {"onetbb", TBB_VERSION_STRING}};
+}
+
+}  // namespace
+
+double RunSummary::trackedFraction() const {
+  return pipeline.received > 0 ? static_cast<double>(good_frames) / static_cast<double>(pipeline.received) : 0;
+}
+
+double RunSummary::throughput_hz() const { return wall_s > 0 ? static_cast<double>(pipeline.processed + pipeline.rejected) / wall_s : 0; }
+
+void measureProcess(RunSummary& summary) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  summary.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  summary.peak_memory_bytes = std::int64_t{1024} * usage.ru_maxrss;
+}
+
+std::string toJson(const RunSummary& summary) {
+  const PipelineSummary& pipeline = summary.pipeline;
+  Json stages, queues = Json::array({toJson(summary.decoded)});
+  for (std::size_t stage = 0; stage < kStageCount; ++stage) stages[std::string(kStageNames[stage])] = toJson(pipeline.stages[stage]);
+  for (const QueueMark& queue : pipeline.queues) queues.push_back(toJson(queue));
+  Json json{{"complete", summary.signal == 0},
+            {"sequence", summary.sequence},
+            {"layout", summary.layout},
+            {"capture_rate_hz", rounded(summary.capture_rate_hz)},
+            {"rate", summary.rate_hz ? Json(*summary.rate_hz) : Json("max")},
+            {"policy", summary.params.policy == InputPolicy::kLive ? "live" : "replay"},
+            {"threads", summary.params.threads},
+            {"frames_in_flight", summary.params.frames_in_flight},
+            {"frames",
+             {{"received", pipeline.received},
+              {"processed", pipeline.processed},
+              {"dropped", pipeline.dropped},
+              {"rejected", pipeline.rejected},
+              {"lost", pipeline.lost},
+              {"tracked_fraction", rounded(summary.trackedFraction())}}},
+            {"latency_ms", toJson(pipeline.latency)},
+            {"latency_with_decoding_ms", toJson(pipeline.latency_with_decoding)},
+            {"stages_ms", stages},
+            {"wall_s", rounded(summary.wall_s)},
+            {"cpu_s", rounded(summary.cpu_s)},
+            {"throughput_hz", rounded(summary.throughput_hz())},
+            {"peak_memory_bytes", summary.peak_memory_bytes},
+            {"queues", queues},
+            {"solver", toJson(pipeline.solver)},
+            {"versions", versions()}};
+  if (summary.signal != 0) json["interrupted_by"] = summary.signal == SIGINT ? "SIGINT" : "SIGTERM";
+  return json.dump(2) + "\n";
+}
+
+std::string shortReport(const RunSummary& summary, const std::string& folder) {
+  const PipelineSummary& pipeline = summary.pipeline;
+  return fmt::format(
+      "frames      {} received, {} processed ({} lost), {} dropped, {} rejected\n"
+      "latency     p50 {:.1f} ms, p95 {:.1f} ms, p99 {:.1f} ms, max {:.1f} ms\n"
+      "throughput  {:.1f} frames/s, {:.1f} ms of CPU per frame, peak memory {:.0f} MB\n"
+      "results     {}\n",
+      pipeline.received, pipeline.processed, pipeline.lost, pipeline.dropped, pipeline.rejected, pipeline.latency.percentile_ms(0.5),
+      pipeline.latency.percentile_ms(0.95), pipeline.latency.percentile_ms(0.99), pipeline.latency.max_ms(), summary.throughput_hz(),
+      1e3 * summary.cpu_s / static_cast<double>(std::max<std::int64_t>(1, pipeline.received)),
+      1e-6 * static_cast<double>(summary.peak_memory_bytes), folder);
+}
+
+}  // namespace motorcade

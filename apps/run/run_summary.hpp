@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "apps/pipeline/pipeline.hpp"
+#include "io/sequence.hpp"
+
+namespace motorcade {
+
+/// All that `summary.json` tells about a run.
+struct RunSummary {
+  PipelineSummary pipeline;
+  PipelineParams params;
+  QueueMark decoded;  // pairs waiting for the feeder
+  std::string sequence, layout;
+  std::optional<double> rate_hz;  // of the replay; empty for as fast as it went
+  double capture_rate_hz = 0;
+  std::int64_t good_frames = 0;
+  double wall_s = 0, cpu_s = 0;
+  std::int64_t peak_memory_bytes = 0;
+  int signal = 0;  // that ended the run early
+
+  /// Share of the received frames that have a measured ego-motion.
+  double trackedFraction() const;
+  double throughput_hz() const;
+};
+
+/// Fills in what the operating system knows about this process.
+void measureProcess(RunSummary& summary);
+
+std::string toJson(const RunSummary& summary);
+/// A few lines for the user.
+std::string shortReport(const RunSummary& summary, const std::string& folder);
+
+}  // namespace motorcade

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <atomic>
+#include <csignal>
+#include <functional>
+#include <thread>
+
+namespace motorcade {
+
+/// Waits for SIGINT and SIGTERM on a thread of its own, so that a run can end in order; a second signal ends the program at once.
+/// Make it before the threads that are to be spared: they inherit that both signals are blocked.
+class StopSignals {
+ public:
+  StopSignals();
+  ~StopSignals();
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+  /// Calls `stop`, once, when a signal comes, from the thread that is returned; watching ends with that thread.
+  [[nodiscard]] std::jthread watch(std::function<void()> stop);
+  /// The signal that came, 0 when none did.
+  int received() const { return received_.load(); }
+
+ private:
+  sigset_t signals_, before_;
+  std::atomic<int> received_{0};
+};
+
+}  // namespace motorcade
