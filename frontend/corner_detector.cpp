@@ -11,24 +11,71 @@ namespace {
 constexpr int kHalfWindow_px = 3;  // second moments are summed over 7x7 pixels
 constexpr int kWindowPixels = (2 * kHalfWindow_px + 1) * (2 * kHalfWindow_px + 1);
 
+/// The last rows of something, by row number.
+template <class T>
+class RowRing {
+ public:
+  RowRing(int rows, int width) : rows_(rows), width_(width), values_(static_cast<std::size_t>(rows) * width) {}
+  T* row(int y) { return values_.data() + static_cast<std::size_t>(y % rows_) * width_; }
+  const T* row(int y) const { return values_.data() + static_cast<std::size_t>(y % rows_) * width_; }
+
+ private:
+  int rows_, width_;
+  std::vector<T> values_;
+};
+
+/// Gradients of the image smoothed by the binomial 3x3 filter, 32 times as large, row after row. Smoothing keeps the grain of dark
+/// images from passing for corners.
+class Gradients {
+ public:
+  explicit Gradients(const Image& image)
+      : image_(image), columns_(image.width()), smooth_(3, image.width()), dx_(kRows, image.width()), dy_(kRows, image.width()) {}
+
+  /// Makes row y; rows are made in order, and the last `kRows` are kept.
+  void advanceTo(int y) {
+    for (int next = smoothed_to_ < 0 ? y - 1 : smoothed_to_ + 1; next <= y + 1; ++next) smooth(next);
+    smoothed_to_ = y + 1;
+    const std::int16_t *above = smooth_.row(y - 1), *row = smooth_.row(y), *below = smooth_.row(y + 1);
+    std::int16_t *dx = dx_.row(y), *dy = dy_.row(y);
+    for (int x = 2; x < image_.width() - 2; ++x) {
+      dx[x] = static_cast<std::int16_t>(row[x + 1] - row[x - 1]);
+      dy[x] = static_cast<std::int16_t>(below[x] - above[x]);
+    }
+  }
+  const std::int16_t* dx(int y) const { return dx_.row(y); }
+  const std::int16_t* dy(int y) const { return dy_.row(y); }
+  static constexpr double kScale = 32;
+
+ private:
+  static constexpr int kRows = 2 * kHalfWindow_px + 1;
+
+  void smooth(int y) {
+    const std::uint8_t *above = image_.row(y - 1), *row = image_.row(y), *below = image_.row(y + 1);
+    std::int16_t *column = columns_.data(), *out = smooth_.row(y);
+    for (int x = 0; x < image_.width(); ++x) column[x] = static_cast<std::int16_t>(above[x] + 2 * row[x] + below[x]);
+    for (int x = 1; x < image_.width() - 1; ++x) out[x] = static_cast<std::int16_t>(column[x - 1] + 2 * column[x] + column[x + 1]);
+  }
+
+  const Image& image_;
+  std::vector<std::int16_t> columns_;
+  RowRing<std::int16_t> smooth_, dx_, dy_;
+  int smoothed_to_ = -1;
+};
+
 /// Column sums of the products of gradients over the window's rows, which slide down the image.
 struct ColumnMoments {
   std::vector<int> xx, xy, yy;
   explicit ColumnMoments(int width) : xx(width), xy(width), yy(width) {}
 
-  /// Adds (sign +1) or takes away (sign -1) the products of row y. Central differences, so twice the gradient.
-  void accumulate(const Image& image, int y, int sign) {
-    const std::uint8_t* row = image.row(y);
-    const std::uint8_t* above = image.row(y - 1);
-    const std::uint8_t* below = image.row(y + 1);
-    int* sum_xx = xx.data();
-    int* sum_xy = xy.data();
-    int* sum_yy = yy.data();
-    for (int x = 1; x < image.width() - 1; ++x) {
-      const int dx = row[x + 1] - row[x - 1], dy = below[x] - above[x];
-      sum_xx[x] += sign * dx * dx;
-      sum_xy[x] += sign * dx * dy;
-      sum_yy[x] += sign * dy * dy;
+  /// Adds (sign +1) or takes away (sign -1) the products of row y.
+  void accumulate(const Gradients& gradients, int y, int sign) {
+    const std::int16_t *dx = gradients.dx(y), *dy = gradients.dy(y);
+    int *sum_xx = xx.data(), *sum_xy = xy.data(), *sum_yy = yy.data();
+    for (int x = 0; x < static_cast<int>(xx.size()); ++x) {
+      const int gx = dx[x], gy = dy[x];
+      sum_xx[x] += sign * (gx * gx);
+      sum_xy[x] += sign * (gx * gy);
+      sum_yy[x] += sign * (gy * gy);
     }
   }
 };
@@ -49,20 +96,8 @@ void smallerEigenvalues(const ColumnMoments& moments, int first, int last, float
   }
 }
 
-/// The last rows of the response, by row number.
-class RowRing {
- public:
-  RowRing(int rows, int width) : rows_(rows), width_(width), values_(static_cast<std::size_t>(rows) * width) {}
-  float* row(int y) { return values_.data() + static_cast<std::size_t>(y % rows_) * width_; }
-  const float* row(int y) const { return values_.data() + static_cast<std::size_t>(y % rows_) * width_; }
-
- private:
-  int rows_, width_;
-  std::vector<float> values_;
-};
-
 /// True for the first of equal maxima in reading order.
-bool isMaximumWithin(const RowRing& response, int x, int y, int radius) {
+bool isMaximumWithin(const RowRing<float>& response, int x, int y, int radius) {
   const float value = response.row(y)[x];
   for (int dy = -radius; dy <= radius; ++dy) {
     const float* row = response.row(y + dy) + x;
@@ -75,7 +110,7 @@ bool isMaximumWithin(const RowRing& response, int x, int y, int radius) {
 }
 
 /// Marks pixels of row y above the threshold that no direct neighbour exceeds: a cheap filter, in vector code.
-void markPeaks(const RowRing& response, int y, int first, int last, float threshold, std::uint8_t* marks) {
+void markPeaks(const RowRing<float>& response, int y, int first, int last, float threshold, std::uint8_t* marks) {
   const float *above = response.row(y - 1), *row = response.row(y), *below = response.row(y + 1);
   for (int x = first; x < last; ++x) {
     const float beside = std::max(row[x - 1], row[x + 1]);
@@ -84,6 +119,21 @@ void markPeaks(const RowRing& response, int y, int first, int last, float thresh
     const float around = std::max(beside, std::max(upper, lower));
     marks[x] = static_cast<std::uint8_t>(row[x] >= std::max(around, threshold));
   }
+}
+
+/// Standard deviation of white noise that explains the roughest part of a neighbourhood, which straight edges do not touch
+/// (the mask of Immerkaer, Fast Noise Variance Estimation, 1996).
+float grainAround(const Image& image, int x, int y) {
+  int squares = 0;
+  for (int r = y - kHalfWindow_px; r <= y + kHalfWindow_px; ++r) {
+    const std::uint8_t *above = image.row(r - 1), *row = image.row(r), *below = image.row(r + 1);
+    for (int c = x - kHalfWindow_px; c <= x + kHalfWindow_px; ++c) {
+      const int rough =
+          above[c - 1] + above[c + 1] + below[c - 1] + below[c + 1] - 2 * (above[c] + row[c - 1] + row[c + 1] + below[c]) + 4 * row[c];
+      squares += rough * rough;
+    }
+  }
+  return std::sqrt(static_cast<float>(squares) / (36.0F * kWindowPixels));
 }
 
 struct Candidate {
@@ -99,28 +149,32 @@ bool strongerInCell(const Candidate& a, const Candidate& b) {
 /// Local maxima of the whole image, in reading order.
 std::vector<Candidate> findCandidates(const Image& image, const CornerDetector::Params& params) {
   const int width = image.width(), height = image.height(), radius = params.min_distance_px;
-  const int border = std::max(params.border_px, kHalfWindow_px + 1 + radius);
+  const int border = std::max(params.border_px, kHalfWindow_px + 2 + radius);
   std::vector<Candidate> candidates;
   if (width <= 2 * border || height <= 2 * border) return candidates;
 
-  const double moment_scale = 4.0 * kWindowPixels;  // central differences are twice the gradient
-  const auto threshold = static_cast<float>(params.min_score * params.min_score * moment_scale);
+  constexpr double kMomentScale = Gradients::kScale * Gradients::kScale * kWindowPixels;
+  const auto threshold = static_cast<float>(params.min_score * params.min_score * kMomentScale);
   const int columns = (width + params.cell_px - 1) / params.cell_px;
+  Gradients gradients(image);
   ColumnMoments moments(width);
-  RowRing response(2 * radius + 1, width);
+  RowRing<float> response(2 * radius + 1, width);
   std::vector<std::uint8_t> marks(width);
   const int first_row = border - radius, end_row = height - border + radius;
-  for (int y = first_row - kHalfWindow_px; y < first_row + kHalfWindow_px; ++y) moments.accumulate(image, y, +1);
+  for (int y = first_row - kHalfWindow_px; y < first_row + kHalfWindow_px; ++y)
+    gradients.advanceTo(y), moments.accumulate(gradients, y, +1);
   for (int y = first_row; y < end_row; ++y) {
-    moments.accumulate(image, y + kHalfWindow_px, +1);
+    gradients.advanceTo(y + kHalfWindow_px);
+    moments.accumulate(gradients, y + kHalfWindow_px, +1);
     smallerEigenvalues(moments, border - radius, width - border + radius, response.row(y));
-    moments.accumulate(image, y - kHalfWindow_px, -1);
+    moments.accumulate(gradients, y - kHalfWindow_px, -1);
     const int centre = y - radius;
     if (centre < border) continue;
     markPeaks(response, centre, border, width - border, threshold, marks.data());
     for (int x = border; x < width - border; ++x) {
       if (!marks[x] || !isMaximumWithin(response, x, centre, radius)) continue;
-      const auto score = static_cast<float>(std::sqrt(response.row(centre)[x] / moment_scale));
+      const auto score = static_cast<float>(std::sqrt(response.row(centre)[x] / kMomentScale));
+      if (score < params.min_score_over_grain * grainAround(image, x, centre)) continue;
       candidates.push_back(
           {centre / params.cell_px * columns + x / params.cell_px, {static_cast<float>(x), static_cast<float>(centre), score}});
     }

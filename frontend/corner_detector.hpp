@@ -15,7 +15,8 @@ class CornerDetector {
     int max_corners = 1500;
     int cell_px = 24;
     int max_per_cell = 6;
-    double min_score = 6;  // gray levels per pixel: root of the smaller eigenvalue's mean over the window
+    double min_score = 1.5;  // gray levels per pixel: root of the smaller eigenvalue's mean over the window, in the smoothed image
+    double min_score_over_grain = 0.5;  // grain: standard deviation of the pixel noise that the neighbourhood would need to look as rough
     int border_px = 8;
     int min_distance_px = 4;  // no better corner within this many columns and rows
   };

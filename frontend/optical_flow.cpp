@@ -81,14 +81,6 @@ class PointFollower {
     return refine(point, *start, level - 1);
   }
 
-  /// The same from a search over the whole range of the coarsest level.
-  std::optional<AlignedPatch> search(const FlowTrack& point) const {
-    const int level = coarsest();
-    const auto found = searchCoarse(point, level);
-    if (!found) return std::nullopt;
-    return follow(point, {&*found, 1}, level);
-  }
-
  private:
   std::optional<Shift> bestGuess(const FlowTrack& point, std::span<const Shift> guesses, int level) const {
     const auto i = static_cast<std::size_t>(level);
@@ -115,59 +107,115 @@ class PointFollower {
     return forward;
   }
 
-  /// Whole-pixel search at a coarse level. Twice as far sideways as up and down: most motion of a driving car is.
-  std::optional<Shift> searchCoarse(const FlowTrack& point, int level) const {
-    constexpr WindowSize kWindow{7, 7};
-    constexpr int kHalf = 3;
-    const Image &from = from_.levels[static_cast<std::size_t>(level)], &to = to_.levels[static_cast<std::size_t>(level)];
-    const int u = std::clamp(static_cast<int>(std::lround(toLevel(point.u_px, level))), kHalf, from.width() - 1 - kHalf);
-    const int v = std::clamp(static_cast<int>(std::lround(toLevel(point.v_px, level))), kHalf, from.height() - 1 - kHalf);
-    const int reach = static_cast<int>(params_.max_flow_px) >> level;
-    const int first_u = std::max(u - reach, kHalf), last_u = std::min(u + reach, to.width() - 1 - kHalf);
-    const int first_v = std::max(v - reach / 2, kHalf), last_v = std::min(v + reach / 2, to.height() - 1 - kHalf);
-    std::array<std::uint16_t, kMaxWindowCosts> costs;
-    const int count = std::min(last_u - first_u + 1, kMaxWindowCosts);
-    int best_cost = std::numeric_limits<int>::max();
-    Shift best;
-    for (int row = first_v; row <= last_v; ++row) {
-      windowDifferences(from, u, v, to, first_u, row, kWindow, std::span(costs).first(static_cast<std::size_t>(count)));
-      const auto* lowest = std::min_element(costs.data(), costs.data() + count);
-      if (*lowest >= best_cost) continue;
-      best_cost = *lowest;
-      const int column = first_u + static_cast<int>(lowest - costs.data());
-      best = {static_cast<float>((column - u) << level), static_cast<float>((row - v) << level)};
-    }
-    if (best_cost == std::numeric_limits<int>::max()) return std::nullopt;
-    return best;
-  }
-
   const ImagePyramid& from_;
   const ImagePyramid& to_;
   const Params& params_;
   PatchParams coarse_;
 };
 
-/// Flow of the tracks nearest to a point among those that have moved; fewer when there are not so many.
-constexpr std::size_t kNeighbours = 3;
+/// Bounds on a shift.
+struct ShiftBounds {
+  float min_du_px, max_du_px, min_dv_px, max_dv_px;
+  bool hold(float du_px, float dv_px) const { return du_px >= min_du_px && du_px <= max_du_px && dv_px >= min_dv_px && dv_px <= max_dv_px; }
+};
+
+/// Shifts worth trying for one point.
 struct Guesses {
-  std::array<Shift, kNeighbours + 2> shifts;
+  std::array<Shift, 4> shifts;
   std::size_t count = 0;
   void add(const Shift& shift) { shifts[count++] = shift; }
   std::span<const Shift> all() const { return {shifts.data(), count}; }
 };
 
-void addNeighbours(const FlowTrack& point, const std::vector<const Track*>& moved, Guesses& guesses) {
-  std::array<std::pair<float, const Track*>, kNeighbours> nearest;
+/// How a point looks, for a quick comparison: 8x8 pixels of each of two levels, their means removed.
+class Signature {
+ public:
+  Signature(const ImagePyramid& pyramid, float u_px, float v_px) {
+    for (int level = 0; level < 2; ++level) {
+      const Image& image = pyramid.levels[std::min(static_cast<std::size_t>(level), pyramid.levels.size() - 1)];
+      const int x = std::clamp(static_cast<int>(std::lround(toLevel(u_px, level))) - kSide / 2, 0, image.width() - kSide);
+      const int y = std::clamp(static_cast<int>(std::lround(toLevel(v_px, level))) - kSide / 2, 0, image.height() - kSide);
+      fill(image, x, y, values_.data() + level * kSide * kSide);
+    }
+  }
+  int distance(const Signature& other) const {
+    int sum = 0;
+    for (std::size_t i = 0; i < values_.size(); ++i) sum += std::abs(values_[i] - other.values_[i]);
+    return sum;
+  }
+
+ private:
+  static constexpr int kSide = 8;
+  static void fill(const Image& image, int x, int y, std::uint8_t* out) {
+    int sum = 0;
+    for (int r = 0; r < kSide; ++r)
+      for (int c = 0; c < kSide; ++c) sum += image.row(y + r)[x + c];
+    const int shift = 128 - sum / (kSide * kSide);
+    for (int r = 0; r < kSide; ++r)
+      for (int c = 0; c < kSide; ++c) out[r * kSide + c] = static_cast<std::uint8_t>(std::clamp(image.row(y + r)[x + c] + shift, 0, 255));
+  }
+  std::array<std::uint8_t, 2 * kSide * kSide> values_;
+};
+
+/// The corners of a frame, to look up where a point of the frame before may have gone.
+class CornerLookup {
+ public:
+  explicit CornerLookup(const Features& features) {
+    by_row_.reserve(features.corners.size());
+    for (const Corner& corner : features.corners)
+      by_row_.push_back({corner.u_px, corner.v_px, Signature(features.left, corner.u_px, corner.v_px)});
+    std::ranges::stable_sort(by_row_, {}, &Entry::v_px);
+  }
+  /// Adds the shifts to the two corners within the bounds that look most like the point.
+  void addSimilar(const ImagePyramid& from, const FlowTrack& point, const ShiftBounds& bounds, Guesses& guesses) const {
+    const Signature signature(from, point.u_px, point.v_px);
+    constexpr int kFar = std::numeric_limits<int>::max();
+    std::array<std::pair<int, Shift>, 2> best{{{kFar, {}}, {kFar, {}}}};
+    for (auto entry = std::ranges::lower_bound(by_row_, point.v_px + bounds.min_dv_px, {}, &Entry::v_px); entry != by_row_.end(); ++entry) {
+      const float du = entry->u_px - point.u_px, dv = entry->v_px - point.v_px;
+      if (dv > bounds.max_dv_px) break;
+      if (!bounds.hold(du, dv)) continue;
+      const int distance = signature.distance(entry->signature);
+      if (distance >= best[1].first) continue;
+      best[1] = {distance, {du, dv}};
+      if (distance < best[0].first) std::swap(best[0], best[1]);
+    }
+    for (const auto& [distance, shift] : best)
+      if (distance < kFar) guesses.add(shift);
+  }
+
+ private:
+  struct Entry {
+    float u_px, v_px;
+    Signature signature;
+  };
+  std::vector<Entry> by_row_;
+};
+
+float middle(float a, float b, float c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
+
+/// Median of the shifts of the three tracks nearest to a point, among those that have moved.
+std::optional<Shift> shiftOfNeighbours(const FlowTrack& point, const std::vector<const Track*>& moved) {
+  std::array<std::pair<float, const Track*>, 3> nearest;
   nearest.fill({std::numeric_limits<float>::max(), nullptr});
   for (const Track* track : moved) {
     const float du = track->seen.u_px - track->shift.du_px - point.u_px, dv = track->seen.v_px - track->shift.dv_px - point.v_px;
     const float distance = du * du + dv * dv;
     if (distance >= nearest.back().first) continue;
     nearest.back() = {distance, track};
-    for (std::size_t i = kNeighbours - 1; i > 0 && nearest[i].first < nearest[i - 1].first; --i) std::swap(nearest[i], nearest[i - 1]);
+    for (std::size_t i = nearest.size() - 1; i > 0 && nearest[i].first < nearest[i - 1].first; --i) std::swap(nearest[i], nearest[i - 1]);
   }
-  for (const auto& [distance, track] : nearest)
-    if (track) guesses.add(track->shift);
+  if (!nearest.back().second) return std::nullopt;
+  const Shift &a = nearest[0].second->shift, &b = nearest[1].second->shift, &c = nearest[2].second->shift;
+  return Shift{middle(a.du_px, b.du_px, c.du_px), middle(a.dv_px, b.dv_px, c.dv_px)};
+}
+
+/// From rest to somewhat more than the neighbours' shift; anywhere when there are no neighbours.
+ShiftBounds boundsAround(const std::optional<Shift>& neighbours, const Params& params) {
+  const auto reach = static_cast<float>(params.max_flow_px);
+  if (!neighbours) return {-reach, reach, -reach / 2, reach / 2};
+  const float du = 1.3F * neighbours->du_px, dv = 1.3F * neighbours->dv_px, margin = static_cast<float>(params.young_margin_px);
+  return {std::min(du, 0.0F) - margin, std::max(du, 0.0F) + margin, std::min(dv, 0.0F) - margin, std::max(dv, 0.0F) + margin};
 }
 
 bool sameSize(const Image& a, const Image& b) { return a.width() == b.width() && a.height() == b.height(); }
@@ -182,7 +230,7 @@ struct OpticalFlowTracker::State {
 
   void follow(const Features& now);
   void followMoving(const PointFollower& follower, const Image& now);
-  void followYoung(const PointFollower& follower, const Image& now);
+  void followYoung(const PointFollower& follower, const Features& now);
   void moveTo(Track& track, const AlignedPatch& found, const Image& now) const;
   void removeLost(const Image& now);
   void startTracks(const Features& now);
@@ -223,20 +271,21 @@ void OpticalFlowTracker::State::followMoving(const PointFollower& follower, cons
   }
 }
 
-/// New tracks, and those that their own velocity misled: guesses come from the neighbours that moved, then from a search.
-void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const Image& now) {
+/// New tracks, and those that their own velocity misled: guesses come from neighbours that moved and from corners that look alike.
+void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const Features& now) {
   std::vector<const Track*> moved;
   moved.reserve(tracks.size());
   for (const Track& track : tracks)
     if (track.moved) moved.push_back(&track);
+  const CornerLookup corners(now);
   for (Track& track : tracks) {
     if (track.moved) continue;
+    const auto neighbours = shiftOfNeighbours(track.seen, moved);
     Guesses guesses;
-    addNeighbours(track.seen, moved, guesses);
-    guesses.add({});
-    auto found = follower.follow(track.seen, guesses.all(), follower.coarsest());
-    if (!found && track.seen.age < 2) found = follower.search(track.seen);
-    if (found) moveTo(track, *found, now);
+    guesses.add(neighbours.value_or(Shift{}));
+    corners.addSimilar(previous->left, track.seen, boundsAround(neighbours, params), guesses);
+    const auto found = follower.follow(track.seen, guesses.all(), std::min(params.young_level, follower.coarsest()));
+    if (found) moveTo(track, *found, now.left.levels.front());
   }
 }
 
@@ -260,7 +309,7 @@ void OpticalFlowTracker::State::follow(const Features& now) {
   const PointFollower follower(previous->left, now.left, params);
   const Image& image = now.left.levels.front();
   followMoving(follower, image);
-  followYoung(follower, image);
+  followYoung(follower, now);
   removeLost(image);
 }
 

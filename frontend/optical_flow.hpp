@@ -26,6 +26,8 @@ class OpticalFlowTracker {
     double keyframe_min_ncc = 0.9;     // or when it no longer looks like its keyframe
     double keyframe_max_drift_px = 1;  // between the frame-to-frame position and the keyframe's
     int moving_level = 2;              // pyramid level at which a track with known velocity starts
+    int young_level = 1;               // and one without
+    double young_margin_px = 20;       // how far a new track may move otherwise than its neighbours
     PatchParams patch;
     double sift_max_flow_px = 150;
     double sift_max_ratio = 0.85;

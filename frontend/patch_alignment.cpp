@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
 
 #include <Eigen/LU>
 
@@ -19,14 +22,28 @@ constexpr int kBlockRows = kMaxPatchWindow_px + 3;
 constexpr int kBlockStride = 48;
 static_assert(kMaxPatchWindow_px + 2 * kMaxShearShift_px + 4 + kStride + 1 <= kBlockStride);
 
+// Vectors of the compilers' own kind; GCC 12 turns their widening of bytes into scalar code, hence the two intrinsics.
 using Lanes = float __attribute__((vector_size(32)));
-using Bytes = std::uint8_t __attribute__((vector_size(8)));
+using Words = std::int16_t __attribute__((vector_size(32)));
+constexpr int kWordLanes = 16;
 
+#ifdef __AVX2__
 inline Lanes pixels(const std::uint8_t* p) {
-  Bytes bytes;
-  std::memcpy(&bytes, p, sizeof bytes);
-  return __builtin_convertvector(bytes, Lanes);
+  return Lanes(_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)))));
 }
+inline Words wordPixels(const std::uint8_t* p) { return Words(_mm256_cvtepu8_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)))); }
+#else
+inline Lanes pixels(const std::uint8_t* p) {
+  Lanes lanes;
+  for (int i = 0; i < 8; ++i) lanes[i] = p[i];
+  return lanes;
+}
+inline Words wordPixels(const std::uint8_t* p) {
+  Words words;
+  for (int i = 0; i < kWordLanes; ++i) words[i] = p[i];
+  return words;
+}
+#endif
 
 inline Lanes floats(const float* p) {
   Lanes lanes;
@@ -142,53 +159,61 @@ Moments momentsAt(const PatchTemplate& patch, const Image& image, float u_px, fl
 
 using Square = std::array<float, kStride*(kMaxPatchWindow_px + 2)>;
 
-/// Fills appearance, mean and norm. `square` holds the window and a border of one pixel.
+void store(PatchTemplate::Plane& plane, int offset, const Lanes& lanes) { std::memcpy(plane.data() + offset, &lanes, sizeof lanes); }
+
+/// Calls f(offset in a plane, the same pixel in a square with a border of one, mask, row and column from the middle) for eight pixels at a
+/// time.
+template <class Function>
+void forEachLanes(int window_px, const Function& f) {
+  const auto mask = windowMask(window_px);
+  const Lanes ramp{0, 1, 2, 3, 4, 5, 6, 7};
+  const int half = window_px / 2;
+  for (int r = 0; r < window_px; ++r)
+    for (int c = 0; c < kStride; c += 8)
+      f(r * kStride + c, (r + 1) * kStride + c + 1, mask[static_cast<std::size_t>(c / 8)], static_cast<float>(r - half),
+        ramp + static_cast<float>(c - half));
+}
+
+/// Fills appearance, mean and norm.
 void setAppearance(PatchTemplate& patch, const Square& square) {
-  const int window = patch.window_px;
-  float total = 0;
-  for (int r = 0; r < window; ++r)
-    for (int c = 0; c < window; ++c) total += square[(r + 1) * kStride + c + 1];
-  patch.mean = total / static_cast<float>(window * window);
-  float squares = 0;
-  for (int r = 0; r < window; ++r) {
-    for (int c = 0; c < window; ++c) {
-      const float value = square[(r + 1) * kStride + c + 1] - patch.mean;
-      patch.appearance[r * kStride + c] = value;
-      squares += value * value;
-    }
-  }
-  patch.norm = std::sqrt(squares);
+  Lanes sums{}, squares{};
+  forEachLanes(patch.window_px, [&](int, int s, const Lanes& mask, float, const Lanes&) { sums += floats(square.data() + s) * mask; });
+  patch.mean = total(sums) / static_cast<float>(patch.window_px * patch.window_px);
+  forEachLanes(patch.window_px, [&](int i, int s, const Lanes& mask, float, const Lanes&) {
+    const Lanes value = (floats(square.data() + s) - patch.mean) * mask;
+    squares += value * value;
+    store(patch.appearance, i, value);
+  });
+  patch.norm = std::sqrt(total(squares));
   const float scale = patch.norm > 0 ? 1 / patch.norm : 0;
-  for (float& value : patch.appearance) value *= scale;
+  for (int i = 0; i < patch.window_px * kStride; i += 8) store(patch.appearance, i, floats(patch.appearance.data() + i) * scale);
 }
 
 /// Fills the derivatives by the parameters.
 void setDescent(PatchTemplate& patch, const Square& square, PatchDeformation deformation) {
-  const int window = patch.window_px, half = window / 2;
-  for (int r = 0; r < window; ++r) {
-    for (int c = 0; c < window; ++c) {
-      const float* s = square.data() + (r + 1) * kStride + c + 1;
-      const float du = 0.5F * (s[1] - s[-1]), dv = 0.5F * (s[kStride] - s[-kStride]);
-      const auto x = static_cast<float>(c - half), y = static_cast<float>(r - half);
-      const int i = r * kStride + c;
-      patch.descent[0][i] = du;
-      patch.descent[1][i] = deformation == PatchDeformation::kScale ? dv : du * y;
-      patch.descent[2][i] = deformation == PatchDeformation::kScale ? du * x + dv * y : du * x;
-    }
-  }
+  const bool scale = deformation == PatchDeformation::kScale;
+  forEachLanes(patch.window_px, [&](int i, int offset, const Lanes& mask, float y, const Lanes& x) {
+    const float* s = square.data() + offset;
+    const Lanes du = (floats(s + 1) - floats(s - 1)) * (0.5F * mask);
+    const Lanes dv = (floats(s + kStride) - floats(s - kStride)) * (0.5F * mask);
+    store(patch.descent[0], i, du);
+    store(patch.descent[1], i, scale ? dv : du * y);
+    store(patch.descent[2], i, scale ? du * x + dv * y : du * x);
+  });
 }
 
 /// Takes the mean and the component along the appearance out of a derivative: a change of bias or gain is no motion.
 void orthogonalize(const PatchTemplate& patch, PatchTemplate::Plane& plane) {
-  float total = 0, along = 0;
-  for (int i = 0; i < patch.window_px * kStride; ++i) total += plane[i], along += plane[i] * patch.appearance[i];
-  const float mean = total / static_cast<float>(patch.window_px * patch.window_px);
-  for (int r = 0; r < patch.window_px; ++r) {
-    for (int c = 0; c < patch.window_px; ++c) {
-      const int i = r * kStride + c;
-      plane[i] -= mean + along * patch.appearance[i];
-    }
+  Lanes sums{}, alongs{};
+  for (int i = 0; i < patch.window_px * kStride; i += 8) {
+    const Lanes d = floats(plane.data() + i);
+    sums += d;
+    alongs += d * floats(patch.appearance.data() + i);
   }
+  const float mean = total(sums) / static_cast<float>(patch.window_px * patch.window_px), along = total(alongs);
+  forEachLanes(patch.window_px, [&](int i, int, const Lanes& mask, float, const Lanes&) {
+    store(plane, i, floats(plane.data() + i) - mask * mean - along * floats(patch.appearance.data() + i));
+  });
 }
 
 Eigen::Matrix3f gram(const PatchTemplate& patch) {
@@ -228,28 +253,29 @@ float shiftSigma(const PatchTemplate& patch, const Moments& moments, float ncc, 
 
 std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px, PatchDeformation deformation) {
   assert(window_px % 2 == 1 && window_px <= kMaxPatchWindow_px);
-  if (!inside(image, u_px, v_px)) return std::nullopt;
-  alignas(32) Square square;
+  std::optional<PatchTemplate> patch;  // the only object returned, so that it is never copied
+  if (!inside(image, u_px, v_px)) return patch;
+  alignas(32) Square square{};
   sampleSquare(image, u_px, v_px, window_px + 2, square.data());
-  std::optional<PatchTemplate> patch(std::in_place);
+  patch.emplace();
   patch->window_px = window_px;
-  patch->appearance.fill(0);
-  for (auto& plane : patch->descent) plane.fill(0);
   setAppearance(*patch, square);
   setDescent(*patch, square, deformation);
   for (auto& plane : patch->descent) orthogonalize(*patch, plane);
 
   Eigen::Matrix3f hessian = gram(*patch);
+  bool textured = false;
   if (deformation == PatchDeformation::kScale) {
     patch->prior = {0, 0, priorInformation(kScaleSigma)};
     const Eigen::Matrix2f shift = hessian.topLeftCorner<2, 2>();
-    if (shift.determinant() < kMinInformation * shift.trace()) return std::nullopt;
+    textured = shift.determinant() > kMinInformation * shift.trace();
   } else {
     patch->prior = {0, priorInformation(kRowSlopeSigma), priorInformation(kColumnSlopeSigma)};
-    if (hessian(0, 0) < kMinInformation) return std::nullopt;
+    textured = hessian(0, 0) > kMinInformation;
   }
   hessian.diagonal() += patch->prior;
   patch->inverse_hessian = hessian.inverse();
+  if (!textured) patch.reset();
   return patch;
 }
 
@@ -301,33 +327,27 @@ float correlation(const PatchTemplate& patch, const Image& image, float u_px, fl
 
 void windowDifferences(const Image& image, int u, int v, const Image& other, int other_u, int other_v, WindowSize window,
                        std::span<std::uint16_t> costs) {
-  const int count = static_cast<int>(costs.size()), half_columns = window.columns / 2, half_rows = window.rows / 2;
-  assert(count <= kMaxWindowCosts);
-  std::array<std::int32_t, kMaxWindowCosts> sums;
-  std::array<std::int16_t, kMaxWindowCosts> offsets;
-  std::fill_n(sums.begin(), count, 0);
-  std::ranges::fill(costs, std::uint16_t{0});
-  int own_sum = 0;
-  for (int r = -half_rows; r <= half_rows; ++r) {
-    for (int c = -half_columns; c <= half_columns; ++c) {
-      own_sum += image.row(v + r)[u + c];
-      const std::uint8_t* p = other.row(other_v + r) + other_u + c;
-      for (int i = 0; i < count; ++i) sums[i] += p[i];
-    }
-  }
-  const int pixel_count = window.columns * window.rows;
-  for (int i = 0; i < count; ++i)
-    offsets[i] = static_cast<std::int16_t>(std::lrint(static_cast<float>(own_sum - sums[i]) / static_cast<float>(pixel_count)));
-  for (int r = -half_rows; r <= half_rows; ++r) {
-    for (int c = -half_columns; c <= half_columns; ++c) {
-      const auto own = static_cast<std::int16_t>(image.row(v + r)[u + c]);
-      const std::uint8_t* p = other.row(other_v + r) + other_u + c;
-      std::uint16_t* cost = costs.data();
-      for (int i = 0; i < count; ++i) {
-        const auto difference = static_cast<std::int16_t>(own - p[i] - offsets[i]);
-        cost[i] = static_cast<std::uint16_t>(cost[i] + std::abs(difference));
+  assert(window.columns * window.rows <= kMaxWindowPixels);
+  const int half_columns = window.columns / 2, half_rows = window.rows / 2, count = static_cast<int>(costs.size());
+  const float per_pixel = 1 / static_cast<float>(window.columns * window.rows);
+  const std::uint8_t* own = image.row(v - half_rows) + u - half_columns;
+  for (int first = 0; first < count; first += kWordLanes) {
+    // Reads up to 15 bytes past the row's last window: the next row, or the room that each image has after its last.
+    const std::uint8_t* theirs = other.row(other_v - half_rows) + other_u - half_columns + first;
+    Words brighter{};  // sum of their pixels minus ours
+    for (int r = 0; r < window.rows; ++r)
+      for (int c = 0; c < window.columns; ++c)
+        brighter += wordPixels(theirs + r * other.stride() + c) - static_cast<std::int16_t>(own[r * image.stride() + c]);
+    Words offset;
+    for (int i = 0; i < kWordLanes; ++i) offset[i] = static_cast<std::int16_t>(static_cast<float>(brighter[i]) * per_pixel);
+    Words cost{};
+    for (int r = 0; r < window.rows; ++r) {
+      for (int c = 0; c < window.columns; ++c) {
+        const Words d = wordPixels(theirs + r * other.stride() + c) - offset - static_cast<std::int16_t>(own[r * image.stride() + c]);
+        cost += d < 0 ? -d : d;
       }
     }
+    std::memcpy(costs.data() + first, &cost, static_cast<std::size_t>(std::min(kWordLanes, count - first)) * sizeof(std::uint16_t));
   }
 }
 

@@ -30,6 +30,7 @@ enum class PatchDeformation { kScale, kSlope };
 /// (kScale: u, v, log scale; kSlope: u, u per row, u per column), made orthogonal to 1 and a. For the raw intensities J of another image
 /// the Gauss-Newton step is H^-1 sum(D J) / gain with H = sum(D D') + prior, whatever the gain and bias of J.
 struct PatchTemplate {
+  PatchTemplate() {}  // leaves the planes as they are: they are filled at once
   static constexpr int kStride = 16;
   using Plane = std::array<float, kStride * kMaxPatchWindow_px>;
   alignas(32) Plane appearance;
@@ -81,6 +82,7 @@ struct WindowSize {
   int columns = 11, rows = 7;  // odd
 };
 inline constexpr int kMaxWindowCosts = 512;
+inline constexpr int kMaxWindowPixels = 128;  // sums of differences then fit 15 bits and a sign
 
 /// Sums of absolute differences, means removed, between the window around (u, v) of `image` and those around (other_u + i, other_v) of
 /// `other`, i < costs.size() <= kMaxWindowCosts. All windows lie inside their images.
