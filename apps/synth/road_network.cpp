@@ -85,7 +85,7 @@ RoadPosition RoadNetwork::locate(double x_m, double y_m) const {
     const double step = road.path->length_m() / static_cast<double>(road.path->samples().size() - 1);
     const auto& along = along_[static_cast<std::size_t>(candidate.road)];
     const Foot foot = footOnPath(*road.path, step, candidate.sample, p, along);
-    const double past = road.path->closed() ? 0 : std::max({0.0, -foot.s_m, foot.s_m - road.path->length_m()});
+    const double past = road.path->closed() ? -1e9 : std::max(-foot.s_m, foot.s_m - road.path->length_m());  // beyond an end
     const auto outside = static_cast<float>(std::max(std::abs(foot.left_m) - road.half_width_m, past));
     if (outside >= best.outside_m) {
       best.next_outside_m = std::min(best.next_outside_m, outside);

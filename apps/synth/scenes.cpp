@@ -66,17 +66,17 @@ void buildHighway(SceneBuilder& b) {
     double ahead_m, lane, speed_change, late_change;
     VehicleKind kind;
   };
-  const std::array<Car, 13> cars{{{14, 0, 0.3, -0.4, VehicleKind::kCar},    {27, 1, 0.6, -0.3, VehicleKind::kCar},
-                                  {20, -1, -0.9, 0.2, VehicleKind::kVan},   {34, 0, 0.5, 0.3, VehicleKind::kCar},
-                                  {42, -1, -1.2, -0.6, VehicleKind::kTruck}, {9, 1, 1.0, 0.2, VehicleKind::kCar},
-                                  {-14, 1, 2.6, 2.0, VehicleKind::kCar},    {-30, 1, 3.2, 2.6, VehicleKind::kCar},
-                                  {-9, -1, 1.6, 0.8, VehicleKind::kCar},    {-48, 1, 4.0, 3.0, VehicleKind::kCar},
-                                  {58, 1, -0.6, -1.5, VehicleKind::kCar},   {72, -1, -2.8, -2.5, VehicleKind::kTruck},
-                                  {50, 0, 0.2, 1.0, VehicleKind::kCar}}};
+  const std::array<Car, 13> cars{{{17, 0, 0.5, 0.2, VehicleKind::kCar},     {24, 1, 2.4, 2.8, VehicleKind::kCar},
+                                  {20, -1, -0.7, -0.3, VehicleKind::kVan},  {38, 0, 2.2, 2.6, VehicleKind::kCar},
+                                  {42, -1, -1.1, -0.7, VehicleKind::kTruck}, {8, 1, 2.0, 2.4, VehicleKind::kCar},
+                                  {-14, 1, 2.6, 2.2, VehicleKind::kCar},    {-30, 1, 2.8, 2.4, VehicleKind::kCar},
+                                  {7, -1, -0.9, -0.5, VehicleKind::kCar},   {-48, 1, 3.0, 2.8, VehicleKind::kCar},
+                                  {58, 1, 3.2, 2.8, VehicleKind::kCar},     {72, -1, -1.4, -1.0, VehicleKind::kTruck},
+                                  {52, 0, 1.8, 2.2, VehicleKind::kCar}}};
   for (const auto& car : cars) {
     const double jitter = b.random.uniform(-1, 1);
     Profile left(car.lane * kLane_m);
-    if (car.ahead_m == 34) left = Profile({{150, 0}, {230, kLane_m}});  // changes lane
+    if (car.ahead_m == 38) left = Profile({{150, 0}, {230, kLane_m}});  // changes lane
     b.addMover(car.kind, drive(path, start + car.ahead_m + jitter, Profile({{0, v + car.speed_change}, {12, v + car.late_change}, {21, v + car.speed_change}}), left));
   }
   b.dress(0, {.from_m = 0, .to_m = 900, .clear_m = 5, .rural = true});

@@ -58,9 +58,9 @@ Reflectance paint(const SurfacePoint& s) {
     dark = std::fmax(dark, 0.7F * line(std::abs(p.y), 0.68F, 0.012F, f));
     dark = std::fmax(dark, 0.7F * line(std::abs(p.x), 0.27F * length, 0.014F, f));
   }
-  const float sheen = fractal3(p.x, p.y, p.z * 1.7F, 0.55F, 4, 0.6F, f, s.part->seed);
+  const float sheen = fractal3(p.x, p.y, p.z * 1.7F, 0.42F, 5, 0.72F, f, s.part->seed);
   const float grime = saturate((0.5F - p.z) * 2) * (0.35F + 0.5F * fractal3(p.x, p.y, p.z, 0.12F, 3, 0.7F, f, s.part->seed + 9));
-  tone = lerp(tone * (1 + 0.22F * sheen) + 0.035F * std::fmax(0.0F, sheen), 0.16F, saturate(grime));
+  tone = lerp(tone * (1 + 0.42F * sheen) + 0.06F * std::fmax(0.0F, sheen), 0.16F, saturate(grime));
   return {tone * (1 - dark), 0.10F * (1 - dark), 0};
 }
 
@@ -91,7 +91,7 @@ Reflectance cabin(const SurfacePoint& s) {
     inner = lerp(inner, 0.012F, inside(std::fmod(p.x + 10.0F, 0.95F), 0.25F, 0.52F, f) * inside(v, 0.15F, 0.7F, fv));
   }
   const float frame = inside(v, 0.09F, 0.89F, fv) * (1 - glass);  // black rubber round the panes
-  return {lerp(lerp(metal.diffuse, 0.04F, 0.55F * frame), inner, glass), lerp(metal.mirror, 0.17F, glass), 0};
+  return {lerp(lerp(metal.diffuse, 0.04F, 0.55F * frame), inner, glass), lerp(metal.mirror, 0.09F, glass), 0};
 }
 
 Reflectance wheel(const SurfacePoint& s) {

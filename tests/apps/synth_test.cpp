@@ -1,0 +1,238 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+
+#include "apps/synth/ground_truth.hpp"
+#include "apps/synth/renderer.hpp"
+#include "apps/synth/scene_builder.hpp"
+#include "apps/synth/sequence_writer.hpp"
+#include "io/image_file.hpp"
+#include "tests/support/matchers.hpp"
+
+namespace motorcade::synth {
+namespace {
+
+const StereoCamera kCamera = kittiCamera(414, 125);
+const RenderOptions kNoNoise{.threads = 2, .noise_levels = 0, .equal_gains = true};
+
+std::size_t indexOf(int x, int y) { return static_cast<std::size_t>(y * kCamera.width_px + x); }
+
+Eigen::Vector3d behindPixel(const Rendering& left, int x, int y) {
+  return kCamera.triangulate({static_cast<double>(x), static_cast<double>(y), kCamera.fx_px * kCamera.baseline_m / static_cast<double>(left.depth_m[indexOf(x, y)])});
+}
+
+std::vector<std::uint8_t> pixels(const Image& image) {
+  std::vector<std::uint8_t> all;
+  for (int y = 0; y < image.height(); ++y) all.insert(all.end(), image.row(y), image.row(y) + image.width());
+  return all;
+}
+
+/// Footprints overlap when a point on the outline or middle line of one lies in the other.
+bool overlap(const Placed& a, const Placed& b, double clearance_m) {
+  const SE3 T_a_b = a.T_map_body.inverse() * b.T_map_body;
+  for (double x = -0.5; x <= 0.5; x += 0.1)
+    for (const double y : {-0.5, 0.0, 0.5}) {
+      const Eigen::Vector3d p = T_a_b * Eigen::Vector3d(x * b.model->length_m, y * b.model->width_m, 0);
+      if (std::abs(p.x()) < 0.5 * a.model->length_m + clearance_m && std::abs(p.y()) < 0.5 * a.model->width_m + clearance_m) return true;
+    }
+  return false;
+}
+
+std::string content(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(SynthRenderer, DepthsLieOnTheRoadAndInsideTheVehicles) {
+  const Scene scene = makeScene("static", 3);
+  const FrameScene frame(scene, 5, true);
+  const Rendering left = render(frame, kCamera, Eye::kLeft, kNoNoise);
+  int road = 0, vehicle = 0;
+  for (int y = 0; y < kCamera.height_px; ++y)
+    for (int x = 0; x < kCamera.width_px; ++x) {
+      if (left.depth_m[indexOf(x, y)] <= 0) continue;
+      const Eigen::Vector3d p_map = frame.T_map_cam() * behindPixel(left, x, y);
+      ASSERT_GT(p_map.z(), -1e-3);  // single precision at 100 m
+      const int id = left.object[indexOf(x, y)];
+      road += id < 0 && std::abs(p_map.z()) < 1e-3 ? 1 : 0;
+      if (id < 0) continue;
+      const auto placed = std::find_if(frame.placed().begin(), frame.placed().end(), [&](const Placed& p) { return p.id == id; });
+      const Eigen::Vector3d p_body = placed->T_map_body.inverse() * p_map;
+      EXPECT_LE(std::abs(p_body.x()), 0.5 * placed->model->length_m + 0.01);
+      EXPECT_LE(std::abs(p_body.y()), 0.5 * placed->model->width_m + 0.01);
+      EXPECT_LE(p_body.z(), placed->model->height_m + 0.01);
+      ++vehicle;
+    }
+  EXPECT_GT(road, kCamera.width_px * kCamera.height_px / 6);
+  EXPECT_GT(vehicle, 200);
+}
+
+TEST(SynthRenderer, TheRightEyeShowsTheLeftPictureShiftedByTheDisparity) {
+  const Scene scene = makeScene("overtake", 2);
+  const FrameScene frame(scene, 14, true);
+  const Rendering left = render(frame, kCamera, Eye::kLeft, kNoNoise), right = render(frame, kCamera, Eye::kRight, kNoNoise);
+  std::vector<double> differences;
+  double shift = 0, weight = 0;
+  for (int y = 1; y < kCamera.height_px - 1; ++y)
+    for (int x = 1; x < kCamera.width_px - 1; ++x) {
+      const double depth = left.depth_m[indexOf(x, y)];
+      if (depth <= 0) continue;
+      const double u = x - kCamera.fx_px * kCamera.baseline_m / depth;
+      const int u0 = static_cast<int>(std::floor(u));
+      if (u0 < 1 || u0 + 2 >= kCamera.width_px) continue;
+      // Where the other eye sees the same surface.
+      const bool same = std::abs(right.depth_m[indexOf(u0, y)] - depth) < 0.02 * depth && std::abs(right.depth_m[indexOf(u0 + 1, y)] - depth) < 0.02 * depth;
+      if (!same) continue;
+      const double t = u - u0, sample = (1 - t) * right.image.at(u0, y) + t * right.image.at(u0 + 1, y);
+      const double slope = 0.25 * (right.image.at(u0 + 2, y) - right.image.at(u0 - 1, y) + right.image.at(u0 + 1, y) - right.image.at(u0, y));
+      differences.push_back(std::abs(sample - left.image.at(x, y)));
+      if (differences.back() < 20) {
+        shift += slope * (sample - left.image.at(x, y));
+        weight += slope * slope;
+      }
+    }
+  ASSERT_GT(differences.size(), 10000U);
+  std::nth_element(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2), differences.end());
+  EXPECT_LT(differences[differences.size() / 2], 2.5);  // linear interpolation of a sharp picture; the gray levels span 255
+  EXPECT_LT(std::abs(shift / weight), 0.02);            // px: no bias of the whole
+}
+
+TEST(SynthRenderer, NoiseDiffersBetweenTheEyesAndHasTheSizeAskedFor) {
+  const Scene scene = makeScene("static", 1);
+  const FrameScene frame(scene, 0, true);
+  RenderOptions noisy = kNoNoise;
+  noisy.noise_levels = 1.5F;
+  std::vector<double> left, right;
+  for (const Eye eye : {Eye::kLeft, Eye::kRight}) {
+    const auto clean = pixels(render(frame, kCamera, eye, kNoNoise).image), with = pixels(render(frame, kCamera, eye, noisy).image);
+    for (std::size_t i = 0; i < clean.size(); ++i)
+      if (clean[i] > 100 && clean[i] < 150) (eye == Eye::kLeft ? left : right).push_back(static_cast<double>(with[i]) - clean[i]);
+  }
+  const double power = std::inner_product(left.begin(), left.end(), left.begin(), 0.0) / static_cast<double>(left.size());
+  EXPECT_NEAR(std::sqrt(power), 1.5, 0.2);  // signal dependent, and rounded twice
+  EXPECT_FALSE(std::equal(left.begin(), left.begin() + 100, right.begin()));
+}
+
+TEST(SynthGroundTruth, LabelsAgreeWithPosesAndMasks) {
+  for (const char* name : {"overtake", "urban", "convoy"}) {
+    const Scene scene = makeScene(name, 4);
+    const FrameScene frame(scene, 20, true);
+    const Rendering left = render(frame, kCamera, Eye::kLeft, kNoNoise);
+    const auto labels = labelsOf(frame, kCamera, left);
+    ASSERT_GE(labels.size(), 2U);
+    for (const auto& label : labels) {
+      if (label.truncated == 0) {
+        const Eigen::Vector3d middle = label.location_cam - Eigen::Vector3d(0, 0.5 * label.height_m, 0);
+        const auto uvd = kCamera.project(middle);
+        ASSERT_TRUE(uvd);
+        EXPECT_GT(uvd->x(), label.left_px);
+        EXPECT_LT(uvd->x(), label.right_px);
+        EXPECT_GT(uvd->y(), label.top_px);
+        EXPECT_LT(uvd->y(), label.bottom_px);
+      }
+      for (int y = 0; y < kCamera.height_px; ++y)
+        for (int x = 0; x < kCamera.width_px; ++x) {
+          if (left.object[indexOf(x, y)] != label.id) continue;
+          ASSERT_GE(x, label.left_px - 0.01) << name << " " << label.id;
+          ASSERT_LE(x, label.right_px + 0.01) << name << " " << label.id;
+          ASSERT_GE(y, label.top_px - 0.01) << name << " " << label.id;
+          ASSERT_LE(y, label.bottom_px + 0.01) << name << " " << label.id;
+        }
+    }
+  }
+}
+
+TEST(SynthSequence, IsTheSameForASeedAndAnyThreadCountAndStartsAtTheIdentity) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "synth_sequence";
+  const Scene scene = makeScene("overtake", 5);
+  WriteOptions options;
+  options.frames = 2;
+  options.camera = kittiCamera(248, 75);
+  options.render.threads = 1;
+  writeSequence(scene, folder / "one", options);
+  options.render.threads = 3;
+  writeSequence(makeScene("overtake", 5), folder / "three", options);
+  for (const char* file : {"image_0/000001.png", "image_1/000001.png", "disp/000001.png", "instance/000001.png", "poses.txt", "label_02.txt", "object_poses.txt",
+                           "calib.txt", "times.txt"})
+    EXPECT_EQ(content(folder / "one" / file), content(folder / "three" / file)) << file;
+  writeSequence(makeScene("overtake", 6), folder / "other", options);
+  EXPECT_NE(content(folder / "one/image_0/000001.png"), content(folder / "other/image_0/000001.png"));
+  EXPECT_EQ(content(folder / "one/poses.txt").substr(0, 11), "1.000000000");
+  const auto disparity = readPng16(folder / "one/disp/000001.png");
+  EXPECT_GT(disparity.pixels[static_cast<std::size_t>(70 * 248 + 124)], 0);
+}
+
+TEST(SynthSequence, MoversCanBeLeftOut) {
+  const Scene scene = makeScene("convoy", 1);
+  const FrameScene with(scene, 3, true), without(scene, 3, false);
+  EXPECT_EQ(with.placed().size() - without.placed().size(), scene.movers.size());
+}
+
+TEST(SynthScenes, VehiclesNeverTouch) {
+  const auto ego_model = std::make_shared<Model>();
+  ego_model->length_m = 4.2F;
+  ego_model->width_m = 1.8F;
+  for (const auto& name : sceneNames())
+    for (const std::uint32_t seed : {1U, 2U, 3U}) {
+      const Scene scene = makeScene(name, seed);
+      for (int k = 0; k < scene.frames; k += 4) {
+        const FrameScene frame(scene, k, true);
+        std::vector<Placed> vehicles;
+        for (const auto& placed : frame.placed())
+          if (placed.id >= 0) vehicles.push_back(placed);
+        Placed ego;
+        ego.model = ego_model;
+        ego.T_map_body = scene.ego.trajectory.T_map_body(scene.time_s(k));
+        vehicles.push_back(ego);
+        for (std::size_t i = 0; i < vehicles.size(); ++i)
+          for (std::size_t j = 0; j < vehicles.size(); ++j)
+            ASSERT_FALSE(i != j && overlap(vehicles[i], vehicles[j], 0.1)) << name << " seed " << seed << " frame " << k << ": " << vehicles[i].id << " and " << vehicles[j].id;
+      }
+    }
+}
+
+TEST(SynthScenes, EverythingMovesSmoothly) {
+  constexpr double kMaxAcceleration = 6, kMaxJerk = 25;  // m/s^2, m/s^3: hard driving, but no jumps
+  for (const auto& name : sceneNames()) {
+    const Scene scene = makeScene(name, 1);
+    std::vector<Trajectory> trajectories{scene.ego.trajectory};
+    for (const auto& mover : scene.movers) trajectories.push_back(mover.trajectory);
+    for (const auto& trajectory : trajectories) {
+      const auto acceleration = [&](double t) -> Eigen::Vector3d {
+        constexpr double h = 0.05;
+        const auto p = [&](double at) { return trajectory.T_map_body(at).translation(); };
+        return (p(t + h) - 2 * p(t) + p(t - h)) / (h * h);
+      };
+      for (double t = 0.1; t < scene.frames * scene.frame_s; t += 0.1) {
+        EXPECT_LT(acceleration(t).norm(), kMaxAcceleration) << name << " at " << t;
+        EXPECT_LT((acceleration(t + 0.05) - acceleration(t)).norm() / 0.05, kMaxJerk) << name << " at " << t;
+      }
+    }
+  }
+}
+
+TEST(SynthScenes, TheCircuitHasNoSeam) {
+  const Scene scene = makeScene("circuit", 2);
+  ASSERT_GT(scene.lap_frames, 0);
+  const StereoCamera camera = kittiCamera(124, 40);
+  const FrameScene first(scene, 0, true), again(scene, scene.lap_frames, true);
+  EXPECT_EQ(pixels(render(first, camera, Eye::kLeft, {}).image), pixels(render(again, camera, Eye::kLeft, {}).image));
+  // From the last frame to the first one is a step like those around it, for the camera and for all vehicles.
+  const auto step = [&](int from, std::size_t i) {
+    const FrameScene a(scene, from, true), b(scene, from + 1, true);
+    if (i == 0) return (a.T_map_cam().translation() - b.T_map_cam().translation()).norm();
+    const std::size_t mover = a.placed().size() - i, moved = b.placed().size() - i;
+    return (a.placed()[mover].T_map_body.translation() - b.placed()[moved].T_map_body.translation()).norm();
+  };
+  for (std::size_t i = 0; i <= scene.movers.size(); ++i) {
+    const double before = step(scene.lap_frames - 2, i), across = step(scene.lap_frames - 1, i), after = step(0, i);
+    EXPECT_NEAR(across, 0.5 * (before + after), 0.01) << i;  // m
+  }
+}
+
+}  // namespace
+}  // namespace motorcade::synth
