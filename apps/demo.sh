@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Shows what Motorcade does: renders a drive in which two cars overtake the camera car, follows it at camera rate and measures
+# the outcome against the exact truth.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+results=results/demo
+motorcade=build/release/apps/motorcade
+
+apps/setup.sh
+echo "== Building"
+cmake --preset release --log-level=WARNING
+cmake --build --preset release --target motorcade
+
+echo "== Rendering the scene 'overtake'"
+[[ -e $results/sequence/rendered ]] || { "$motorcade" synth "$results/sequence" --scene overtake && touch "$results/sequence/rendered"; }
+
+echo "== Following it at 10 pairs per second"
+"$motorcade" run "$results/sequence" --out "$results/run" --rate 10
+
+echo "== Accuracy against the exact truth"
+"$motorcade" evaluate "$results/run" --sequence "$results/sequence" --json "$results/evaluation.json"
+
+echo "== Results"
+echo "images and truth   $PWD/$results/sequence"
+echo "trajectories       $PWD/$results/run"
+echo "accuracy           $PWD/$results/evaluation.json"
+echo "latency            $PWD/$results/run/summary.json"
