@@ -1,0 +1,159 @@
+#include "apps/evaluate/evaluation.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "io/errors.hpp"
+#include "io/line_file.hpp"
+#include "io/number_text.hpp"
+#include "io/trajectory.hpp"
+
+namespace motorcade {
+namespace {
+
+std::optional<TrajectoryErrors> cameraErrors(const std::vector<ComparedFrame>& frames) {
+  std::vector<SE3> estimate, truth;
+  for (const auto& frame : frames) {
+    estimate.push_back(frame.T_world_cam);
+    truth.push_back(frame.T_world_cam_true);
+  }
+  return trajectoryErrors(estimate, truth);
+}
+
+KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
+  return {.frames = frames.size(),
+          .camera = cameraErrors(frames),
+          .objects = objectErrors(frames),
+          .motion = motionErrors(frames),
+          .detection = detectionErrors(frames)};
+}
+
+CameraTruth neededTruth(const Sequence& sequence, bool uninterpolated) {
+  auto truth = readCameraTruth(sequence, uninterpolated ? OxtsTimes::kUninterpolated : OxtsTimes::kInterpolated);
+  if (!truth) throw InputError(sequence.folder.string() + ": has no ground truth; poses.txt or oxts with their calibration are needed");
+  return *std::move(truth);
+}
+
+/// The baseline's poses of the frames that the run has; the file may cover the sequence or just the run.
+std::vector<SE3> baselinePoses(const std::filesystem::path& file, std::int64_t first_frame, std::size_t frames_run,
+                               std::size_t sequence_frames) {
+  std::vector<SE3> poses = readKittiPoses(file);
+  if (poses.size() == sequence_frames) {
+    poses.erase(poses.begin(), poses.begin() + std::min<std::ptrdiff_t>(first_frame, std::ssize(poses)));
+  } else if (poses.size() != frames_run) {
+    throw InputError(file.string() + ": has " + std::to_string(poses.size()) + " poses; the sequence has " +
+                     std::to_string(sequence_frames) + " frames and the run " + std::to_string(frames_run));
+  }
+  poses.resize(std::min(poses.size(), frames_run));
+  return poses;
+}
+
+void compareCameras(Evaluation& evaluation, const KindEvaluation& baseline) {
+  if (!evaluation.final.camera || !baseline.camera) return;
+  evaluation.against_baseline.push_back({"camera", evaluation.final.camera->ate_m.rmse, baseline.camera->ate_m.rmse});
+}
+
+void compareObjects(Evaluation& evaluation, const KindEvaluation& baseline) {
+  std::map<std::int64_t, const ObjectErrors*> theirs;
+  for (const auto& object : baseline.objects) theirs[object.label] = &object;
+  for (const auto& ours : evaluation.final.objects) {
+    const auto found = theirs.find(ours.label);
+    if (found == theirs.end() || !ours.trajectory || !found->second->trajectory) continue;
+    evaluation.against_baseline.push_back(
+        {"object " + std::to_string(ours.label), ours.trajectory->ate_m.rmse, found->second->trajectory->ate_m.rmse});
+  }
+}
+
+void countFrames(Evaluation& evaluation, const RunFolder& run) {
+  evaluation.complete = run.complete();
+  evaluation.first_frame = run.first_frame;
+  evaluation.frames_run = std::max(run.online.camera.size(), run.final.camera.size());
+  for (const auto& frame : run.frames) {
+    evaluation.lost += frame.status == FrameStatus::kLost;
+    evaluation.rejected += frame.status == FrameStatus::kRejected;
+    evaluation.dropped += frame.status == FrameStatus::kDropped;
+    if (frame.status == FrameStatus::kGood || frame.status == FrameStatus::kLost) evaluation.latency_ms.push_back(frame.latency_ms);
+  }
+  std::ranges::sort(evaluation.latency_ms);
+}
+
+std::string truthRow(const TrueObject& object) {
+  std::string row;
+  appendInteger(row, object.truth.frame.value);
+  row += ',';
+  appendInteger(row, object.truth.id);
+  row.append(",").append(object.truth.type).append(object.moving ? ",1" : ",0");
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      row += ',';
+      appendFixed(row, j < 3 ? object.truth.T_world_object.rotation()(i, j) : object.truth.T_world_object.translation()[i], 9);
+    }
+  }
+  return row;
+}
+
+}  // namespace
+
+KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequence, OxtsTimes times) {
+  const CameraTruth camera = neededTruth(sequence, times == OxtsTimes::kUninterpolated);
+  return evaluateFrames(compareFrames({poses, {}}, 0, camera, nullptr, sequence.stamps));
+}
+
+Evaluation evaluateRun(const EvaluateOptions& options) {
+  const Sequence sequence = openSequence(options.sequence, options.fps_hz);
+  const RunFolder run = readRunFolder(options.run);
+  const CameraTruth camera = neededTruth(sequence, options.uninterpolated);
+  const auto truths = readObjectTruths(sequence, camera);
+  const auto compare = [&](const RunFolder::Tracks& tracks, std::int64_t first_frame) {
+    return compareFrames(tracks, first_frame, camera, truths ? &*truths : nullptr, sequence.stamps);
+  };
+  Evaluation evaluation;
+  evaluation.run = options.run;
+  evaluation.sequence = options.sequence;
+  evaluation.camera_source = camera.source;
+  if (truths) evaluation.object_source = truths->source;
+  countFrames(evaluation, run);
+  const auto online = compare(run.online, run.first_frame), final = compare(run.final, run.first_frame);
+  evaluation.online = evaluateFrames(online);
+  evaluation.final = evaluateFrames(final);
+  evaluation.camera_covariance = cameraCovarianceErrors(online, run.covariances);
+  evaluation.object_covariance = objectCovarianceErrors(online, run.covariances);
+  if (!options.baseline.empty()) {
+    const auto poses = baselinePoses(options.baseline, run.first_frame, run.final.camera.size(), sequence.frames.size());
+    compareCameras(evaluation, evaluateFrames(compare({poses, {}}, run.first_frame)));
+  }
+  if (!options.baseline_run.empty()) {
+    const RunFolder other = readRunFolder(options.baseline_run);
+    const KindEvaluation theirs = evaluateFrames(compare(other.final, other.first_frame));
+    if (options.baseline.empty()) compareCameras(evaluation, theirs);
+    compareObjects(evaluation, theirs);
+  }
+  if (!options.export_truth.empty()) exportTruth(options.export_truth, sequence, camera, truths);
+  return evaluation;
+}
+
+void exportTruth(const std::filesystem::path& folder, const Sequence& sequence, const CameraTruth& camera,
+                 const std::optional<ObjectTruths>& truths) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw OutputError(folder.string() + ": cannot be made a folder: " + error.message());
+  writeKittiPoses(folder / "camera_truth.txt", camera.T_world_cam);
+  if (!truths) return;
+  LineFile table(folder / "objects_truth.csv");
+  table.writeLine("frame,id,type,moving,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz");
+  std::map<std::int64_t, std::vector<std::string>> tum;
+  for (const auto& [frame, objects] : describeObjects(*truths, sequence.stamps)) {
+    for (const auto& object : objects) {
+      table.writeLine(truthRow(object));
+      tum[object.truth.id].push_back(tumLine(sequence.stamps[static_cast<std::size_t>(frame.value)], object.truth.T_world_object));
+    }
+  }
+  table.close();
+  for (const auto& [id, lines] : tum) {
+    LineFile out(folder / ("object_" + std::to_string(id) + ".tum"));
+    for (const auto& line : lines) out.writeLine(line);
+    out.close();
+  }
+}
+
+}  // namespace motorcade

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/evaluate/covariance_measures.hpp"
+#include "apps/evaluate/object_measures.hpp"
+#include "apps/evaluate/trajectory_error.hpp"
+#include "io/run_folder.hpp"
+#include "io/sequence.hpp"
+
+namespace motorcade {
+
+struct EvaluateOptions {
+  std::filesystem::path run, sequence;
+  double fps_hz = 10;
+  bool uninterpolated = false;         // oxts packet k for image k
+  std::filesystem::path baseline;      // camera poses to compare with; empty for none
+  std::filesystem::path baseline_run;  // run folder to compare objects with; empty for none
+  std::filesystem::path export_truth;  // folder for the true trajectories; empty for none
+  std::filesystem::path json;          // empty for none
+};
+
+/// All measures of one kind of estimate, final or online.
+struct KindEvaluation {
+  std::size_t frames = 0;
+  std::optional<TrajectoryErrors> camera;
+  std::vector<ObjectErrors> objects;
+  MotionErrors motion;
+  DetectionErrors detection;
+};
+
+/// (ATE_baseline - ATE_ours) / ATE_baseline of final estimates, SE(3) aligned RMSE.
+struct RelativeError {
+  std::string what;  // camera, or object and its label
+  double ours_m = 0, baseline_m = 0;
+  double relative() const { return baseline_m > 0 ? (baseline_m - ours_m) / baseline_m : 0; }
+};
+
+struct Evaluation {
+  std::filesystem::path run, sequence;
+  bool complete = false;
+  std::int64_t first_frame = 0;
+  std::size_t frames_run = 0;  // with an online pose
+  int lost = 0, rejected = 0, dropped = 0;
+  std::string camera_source, object_source;  // the latter empty without labels
+  KindEvaluation final, online;
+  CovarianceErrors camera_covariance, object_covariance;
+  std::vector<RelativeError> against_baseline;
+  std::vector<double> latency_ms;  // sorted
+};
+
+/// Measures a run against the truth of its sequence. Throws InputError where one of them cannot be read or there is no truth.
+Evaluation evaluateRun(const EvaluateOptions& options);
+
+/// The same for camera poses alone, frame i of the sequence in line i.
+KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequence, OxtsTimes times = OxtsTimes::kInterpolated);
+
+/// Writes `camera_truth.txt`, `objects_truth.csv` and an `object_ID.tum` for every labelled object.
+void exportTruth(const std::filesystem::path& folder, const Sequence& sequence, const CameraTruth& camera,
+                 const std::optional<ObjectTruths>& truths);
+
+}  // namespace motorcade

@@ -1,0 +1,137 @@
+#include "apps/evaluate/object_matching.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/assignment.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr double kMaxTruncated = 0.5, kMinHeight_px = 25, kMovingSpeed_mps = 1, kMovingDistance_m = 1.5;
+constexpr int kMaxOccluded = 1;
+constexpr std::int64_t kSpeedFrames = 3;
+
+bool isCounted(const ObjectTruth& truth) {
+  const bool on_foot = truth.type == "Pedestrian" || truth.type == "Person" || truth.type == "Person_sitting";
+  return !on_foot && truth.occluded <= kMaxOccluded && truth.truncated <= kMaxTruncated &&
+         truth.box.bottom_px - truth.box.top_px >= kMinHeight_px;
+}
+
+/// Fills in the motion of one label's track, its frames in order.
+void describeTrack(const std::vector<TrueObject*>& track, const std::vector<Timestamp>& stamps) {
+  const auto place = [&](std::size_t i) { return track[i]->truth.T_world_object.translation(); };
+  const auto stamp = [&](std::size_t i) { return stamps[static_cast<std::size_t>(track[i]->truth.frame.value)]; };
+  const double way_m = (place(track.size() - 1) - place(0)).norm(), time_s = secondsBetween(stamp(0), stamp(track.size() - 1));
+  const bool travels = way_m > kMovingDistance_m && way_m > kMovingSpeed_mps * time_s;
+  int visible = 0;
+  bool ever_moves = false;
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    std::size_t from = i, to = i;
+    while (from > 0 && track[i]->truth.frame.value - track[from - 1]->truth.frame.value <= kSpeedFrames) --from;
+    while (to + 1 < track.size() && track[to + 1]->truth.frame.value - track[i]->truth.frame.value <= kSpeedFrames) ++to;
+    TrueObject& object = *track[i];
+    const double span_s = secondsBetween(stamp(from), stamp(to));
+    object.speed_mps = span_s > 0 ? (place(to) - place(from)).norm() / span_s : 0;
+    object.moving = travels && object.speed_mps > kMovingSpeed_mps;
+    object.counted = isCounted(object.truth);
+    object.visible_before = visible;
+    if (object.counted) ++visible;
+    ever_moves |= object.moving;
+  }
+  for (TrueObject* object : track) object->ever_moves = ever_moves;
+}
+
+double gateOf_m(const ObjectTruth& truth) {
+  constexpr double kLeast_m = 3, kPerDepth = 0.08;
+  return std::max(kLeast_m, truth.size_m.z() / 2 + kPerDepth * truth.T_cam_object.translation().z());
+}
+
+double overlapArea(const Box& a, const Box& b) {
+  const double width = std::min(a.right_px, b.right_px) - std::max(a.left_px, b.left_px);
+  const double height = std::min(a.bottom_px, b.bottom_px) - std::max(a.top_px, b.top_px);
+  return std::max(0.0, width) * std::max(0.0, height);
+}
+
+bool mostlyInside(const Box& box, const Box& area) {
+  return overlapArea(box, area) >= 0.5 * (box.right_px - box.left_px) * (box.bottom_px - box.top_px) && overlapArea(box, area) > 0;
+}
+
+void matchRows(ComparedFrame& frame) {
+  constexpr double kForbidden_m = 1e6;  // far above any gate: pairs come before short distances
+  Eigen::MatrixXd cost_m(static_cast<Eigen::Index>(frame.rows.size()), static_cast<Eigen::Index>(frame.objects.size()));
+  for (std::size_t i = 0; i < frame.rows.size(); ++i) {
+    const Eigen::Vector3d seen = frame.T_world_cam.inverse() * frame.rows[i].row.object.T_world_body.translation();
+    for (std::size_t j = 0; j < frame.objects.size(); ++j) {
+      const Eigen::Vector3d offset = seen - frame.objects[j].truth.T_cam_object.translation();
+      const double distance_m = std::hypot(offset.x(), offset.z());
+      cost_m(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+          distance_m <= gateOf_m(frame.objects[j].truth) ? distance_m : 2 * kForbidden_m;
+    }
+  }
+  const auto columns = assignMinCost(cost_m, kForbidden_m);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    MatchedRow& row = frame.rows[i];
+    row.object = columns[i];
+    if (row.object < 0) continue;
+    row.distance_m = cost_m(static_cast<Eigen::Index>(i), row.object);
+    row.gate_m = gateOf_m(frame.objects[static_cast<std::size_t>(row.object)].truth);
+  }
+}
+
+}  // namespace
+
+double TrueObject::range_m() const { return std::hypot(truth.T_cam_object.translation().x(), truth.T_cam_object.translation().z()); }
+
+std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths, const std::vector<Timestamp>& stamps) {
+  std::map<FrameId, std::vector<TrueObject>> frames;
+  for (const auto& truth : truths.objects) {
+    TrueObject object;
+    object.truth = truth;
+    frames[truth.frame].push_back(std::move(object));
+  }
+  std::map<std::int64_t, std::vector<TrueObject*>> tracks;
+  for (auto& [frame, objects] : frames)
+    for (auto& object : objects) tracks[object.truth.id].push_back(&object);
+  for (const auto& [id, track] : tracks) describeTrack(track, stamps);
+  return frames;
+}
+
+std::vector<ComparedFrame> compareFrames(const RunFolder::Tracks& tracks, std::int64_t first_frame, const CameraTruth& camera,
+                                         const ObjectTruths* truths, const std::vector<Timestamp>& stamps) {
+  std::map<FrameId, std::vector<TrueObject>> objects;
+  if (truths) objects = describeObjects(*truths, stamps);
+  std::vector<ComparedFrame> frames;
+  const auto count =
+      static_cast<std::size_t>(std::clamp<std::int64_t>(std::ssize(camera.T_world_cam) - first_frame, 0, std::ssize(tracks.camera)));
+  if (count == 0) return frames;
+  const SE3 T_run_world = camera.T_world_cam[static_cast<std::size_t>(first_frame)].inverse();
+  for (std::size_t i = 0; i < count; ++i) {
+    ComparedFrame frame;
+    frame.frame.value = first_frame + static_cast<std::int64_t>(i);
+    frame.T_world_cam = tracks.camera[i];
+    frame.T_world_cam_true = T_run_world * camera.T_world_cam[static_cast<std::size_t>(frame.frame.value)];
+    frame.objects = objects[frame.frame];
+    for (auto& object : frame.objects) object.truth.T_world_object = T_run_world * object.truth.T_world_object;
+    frames.push_back(std::move(frame));
+  }
+  for (const auto& row : tracks.objects) {
+    const std::int64_t index = row.frame.value - first_frame;
+    if (index < 0 || index >= std::ssize(frames)) continue;
+    MatchedRow matched;
+    matched.row = row;
+    frames[static_cast<std::size_t>(index)].rows.push_back(std::move(matched));
+  }
+  for (auto& frame : frames) matchRows(frame);
+  if (!truths) return frames;
+  for (const auto& ignored : truths->ignored) {
+    const std::int64_t index = ignored.frame.value - first_frame;
+    if (index < 0 || index >= std::ssize(frames)) continue;
+    for (auto& row : frames[static_cast<std::size_t>(index)].rows) {
+      if (row.object < 0 && mostlyInside(row.row.object.box, ignored.box)) row.in_ignored_area = true;
+    }
+  }
+  return frames;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "io/ground_truth.hpp"
+#include "io/run_folder.hpp"
+
+/// Brings a run's object rows and the labels together, frame by frame (DESIGN section 6).
+namespace motorcade {
+
+/// What the measures need to know of a label in one frame.
+struct TrueObject {
+  ObjectTruth truth;
+  bool counted = false;     // well enough in view to be asked for
+  bool moving = false;      // in this frame
+  bool ever_moves = false;  // in some frame
+  double speed_mps = 0;     // over +/-3 frames
+  int visible_before = 0;   // counted frames of this label before this one
+  double range_m() const;   // from the camera, on the ground
+};
+
+/// One row of the run and the label that it was matched to.
+struct MatchedRow {
+  RunFolder::ObjectRow row;
+  int object = -1;  // index into the frame's true objects, or none
+  double distance_m = 0, gate_m = 1;
+  bool in_ignored_area = false;  // unmatched, mostly inside a DontCare box
+  bool reported() const { return row.object.state != ObjectState::kPredicted && row.object.points >= 3; }
+};
+
+/// A frame of the comparison. The camera poses are in the world of the run: its first frame.
+struct ComparedFrame {
+  FrameId frame;
+  SE3 T_world_cam, T_world_cam_true;
+  std::vector<TrueObject> objects;
+  std::vector<MatchedRow> rows;
+};
+
+/// Labels with their motion, from all frames of the sequence. `stamps` are the frames' times.
+std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths, const std::vector<Timestamp>& stamps);
+
+/// Every frame that has a camera pose in `tracks` and in `camera`, with its rows matched one to one to labels: as many
+/// as possible within the gate max(3 m, half the length + 0.08 z), then the least total distance on the ground as seen from the camera.
+/// Without labels the frames have no objects.
+std::vector<ComparedFrame> compareFrames(const RunFolder::Tracks& tracks, std::int64_t first_frame, const CameraTruth& camera,
+                                         const ObjectTruths* truths, const std::vector<Timestamp>& stamps);
+
+}  // namespace motorcade

@@ -1,0 +1,242 @@
+#include "apps/evaluate/object_measures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace motorcade {
+namespace {
+
+constexpr double kNear_m = 30, kFar_m = 50;
+
+bool asked(const TrueObject& object) { return object.counted && object.moving; }
+
+/// A match of a reported row with a label that is asked for.
+struct Pair {
+  const ComparedFrame* frame;
+  const TrueObject* object;
+  const MatchedRow* row;
+};
+
+std::vector<Pair> askedPairs(const std::vector<ComparedFrame>& frames) {
+  std::vector<Pair> pairs;
+  for (const auto& frame : frames) {
+    for (const auto& row : frame.rows) {
+      if (row.object < 0 || !row.reported()) continue;
+      const TrueObject& object = frame.objects[static_cast<std::size_t>(row.object)];
+      if (asked(object)) pairs.push_back({&frame, &object, &row});
+    }
+  }
+  return pairs;
+}
+
+/// E = L(k)^-1 H L(k-1) with H the estimated motion, carried from the estimated to the true camera (DESIGN section 6).
+SE3 motionError(const Pair& before, const Pair& now) {
+  const SE3 H_world = now.row->row.object.T_world_body * before.row->row.object.T_world_body.inverse();
+  const SE3 H_cam = before.frame->T_world_cam.inverse() * H_world * before.frame->T_world_cam;
+  const SE3 H = before.frame->T_world_cam_true * H_cam * before.frame->T_world_cam_true.inverse();
+  return now.object->truth.T_world_object.inverse() * H * before.object->truth.T_world_object;
+}
+
+/// The pairs of the track that followed a label longest, and how many there were.
+std::pair<std::vector<Pair>, int> longestTrack(const std::vector<Pair>& pairs) {
+  std::map<TrackId, std::vector<Pair>> tracks;
+  for (const auto& pair : pairs) tracks[pair.row->row.object.track].push_back(pair);
+  const auto longest = std::ranges::max_element(tracks, {}, [](const auto& track) { return track.second.size(); });
+  return longest == tracks.end() ? std::pair(std::vector<Pair>(), 0) : std::pair(longest->second, static_cast<int>(tracks.size()));
+}
+
+std::optional<TrajectoryErrors> bodyTrajectoryErrors(const std::vector<Pair>& pairs) {
+  std::vector<SE3> bodies, labels;
+  for (const auto& pair : pairs) {
+    bodies.push_back(pair.row->row.object.T_world_body);
+    labels.push_back(pair.object->truth.T_world_object);
+  }
+  auto errors = trajectoryErrors(bodies, labels);
+  if (!errors) return errors;
+  // Where the body's origin sits is free: hold the box's frame to it at the first match instead of moving the world.
+  const SE3 offset = bodies.front().inverse() * labels.front(), mean_offset = bodyOffset(bodies, labels);
+  std::vector<double> first_m, rotation_deg;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    first_m.push_back(((bodies[i] * offset).translation() - labels[i].translation()).norm());
+    rotation_deg.push_back(angleOf_deg(labels[i].rotation().transpose() * (bodies[i] * mean_offset).rotation()));
+  }
+  errors->end_percent = errors->length_m > 0 ? 100 * first_m.back() / errors->length_m : 0;
+  errors->ate_first_pose_m = statisticsOf(std::move(first_m));
+  errors->are_deg = statisticsOf(std::move(rotation_deg));
+  return errors;
+}
+
+void count(DetectionCounts& counts, bool found) {
+  ++counts.labels;
+  counts.found += found;
+}
+
+/// HOTA (Luiten et al., HOTA: a higher order metric for evaluating multi-object tracking, 2021), with the similarity
+/// 1 - distance / gate and the frame's one-to-one match at every threshold.
+struct HotaSums {
+  std::map<std::int64_t, int> label_frames;
+  std::map<TrackId, int> track_frames;
+  std::vector<std::pair<Pair, double>> pairs;  // with their similarity
+  int labels = 0, rows = 0;
+
+  std::pair<double, double> at(double threshold) const {
+    std::map<std::pair<std::int64_t, TrackId>, int> together;
+    for (const auto& [pair, similarity] : pairs)
+      if (similarity >= threshold) ++together[{pair.object->truth.id, pair.row->row.object.track}];
+    int matched = 0;
+    double association = 0;
+    for (const auto& [ids, n] : together) {
+      matched += n;
+      association += n * static_cast<double>(n) / (label_frames.at(ids.first) + track_frames.at(ids.second) - n);
+    }
+    if (matched == 0) return {0, 0};
+    return {static_cast<double>(matched) / (labels + rows - matched), association / matched};
+  }
+};
+
+void setHota(DetectionErrors& errors, const HotaSums& sums) {
+  constexpr int kThresholds = 19;
+  for (int i = 1; i <= kThresholds; ++i) {
+    const auto [det_a, ass_a] = sums.at(0.05 * i);
+    errors.det_a += det_a / kThresholds;
+    errors.ass_a += ass_a / kThresholds;
+    errors.hota += std::sqrt(det_a * ass_a) / kThresholds;
+  }
+}
+
+/// False rows of one frame: of any state, on no label or on one that never moves.
+void countRows(const ComparedFrame& frame, DetectionErrors& errors) {
+  for (const auto& row : frame.rows) {
+    ++errors.rows;
+    if (row.object >= 0 && frame.objects[static_cast<std::size_t>(row.object)].ever_moves) continue;
+    ++errors.false_rows;
+    errors.false_rows_unlabelled += row.object < 0;
+    errors.false_rows_in_ignored += row.in_ignored_area;
+  }
+}
+
+void countLabels(const ComparedFrame& frame, DetectionErrors& errors) {
+  std::set<int> found;
+  for (const auto& row : frame.rows)
+    if (row.reported()) found.insert(row.object);
+  for (std::size_t j = 0; j < frame.objects.size(); ++j) {
+    const TrueObject& object = frame.objects[j];
+    if (!asked(object) || object.range_m() > kFar_m) continue;
+    const bool is_found = found.contains(static_cast<int>(j)), near = object.range_m() <= kNear_m;
+    count(near ? errors.within_30m : errors.from_30_to_50m, is_found);
+    constexpr int kFirstFrames = 4;
+    if (object.visible_before >= kFirstFrames) count(near ? errors.within_30m_from_fifth : errors.from_30_to_50m_from_fifth, is_found);
+  }
+}
+
+void addToHota(const ComparedFrame& frame, HotaSums& sums) {
+  for (const auto& object : frame.objects) {
+    if (!asked(object) || object.range_m() > kFar_m) continue;
+    ++sums.labels;
+    ++sums.label_frames[object.truth.id];
+  }
+  for (const auto& row : frame.rows) {
+    const TrueObject* object = row.object < 0 ? nullptr : &frame.objects[static_cast<std::size_t>(row.object)];
+    const bool of_interest = object && asked(*object) && object->range_m() <= kFar_m;
+    if (object && object->ever_moves && !of_interest) continue;  // neither right nor wrong
+    ++sums.rows;
+    ++sums.track_frames[row.row.object.track];
+    if (of_interest) sums.pairs.push_back({Pair{&frame, object, &row}, 1 - row.distance_m / row.gate_m});
+  }
+}
+
+}  // namespace
+
+SE3 bodyOffset(const std::vector<SE3>& bodies, const std::vector<SE3>& labels) {
+  if (bodies.empty()) return {};
+  // The tangent-space mean, starting at the middle pair; three rounds are plenty for spreads of some degrees.
+  SE3 mean = bodies[bodies.size() / 2].inverse() * labels[bodies.size() / 2];
+  for (int round = 0; round < 3; ++round) {
+    Vector6d step = Vector6d::Zero();
+    for (std::size_t i = 0; i < bodies.size(); ++i) step += (mean.inverse() * bodies[i].inverse() * labels[i]).log();
+    mean = mean * SE3::exp(step / static_cast<double>(bodies.size()));
+  }
+  return mean;
+}
+
+MotionErrors motionErrors(const std::vector<ComparedFrame>& frames, std::optional<std::int64_t> label) {
+  std::map<std::pair<std::int64_t, TrackId>, Pair> last;
+  std::vector<double> me_m, me_deg, speed_mps;
+  int covered = 0;
+  MotionErrors errors;
+  for (const auto& pair : askedPairs(frames)) {
+    const auto id = pair.object->truth.id;
+    if (label && id != *label) continue;
+    const ObjectEstimate& estimate = pair.row->row.object;
+    const auto before = last.find({id, estimate.track});
+    if (before != last.end() && before->second.frame->frame.value + 1 == pair.frame->frame.value) {
+      const SE3 error = motionError(before->second, pair);
+      me_m.push_back(error.translation().norm());
+      me_deg.push_back(angleOf_deg(error.rotation()));
+    }
+    last.insert_or_assign({id, estimate.track}, pair);
+    speed_mps.push_back(estimate.velocity_world_mps.norm() - pair.object->speed_mps);
+    errors.speed_bias_mps += speed_mps.back();
+    covered += std::abs(speed_mps.back()) <= 1.96 * estimate.speed_sigma_mps;
+  }
+  const double n = std::max<double>(1, static_cast<double>(speed_mps.size()));
+  errors.speed_bias_mps /= n;
+  errors.speed_coverage = covered / n;
+  errors.me_m = statisticsOf(std::move(me_m));
+  errors.me_deg = statisticsOf(std::move(me_deg));
+  errors.speed_mps = statisticsOf(std::move(speed_mps));
+  return errors;
+}
+
+std::vector<ObjectErrors> objectErrors(const std::vector<ComparedFrame>& frames) {
+  std::map<std::int64_t, ObjectErrors> by_label;
+  for (const auto& frame : frames) {
+    for (const auto& object : frame.objects) {
+      if (!asked(object)) continue;
+      ObjectErrors& errors = by_label[object.truth.id];
+      errors.label = object.truth.id;
+      errors.type = object.truth.type;
+      ++errors.labelled_frames;
+    }
+  }
+  std::map<std::int64_t, std::vector<Pair>> pairs;
+  for (const auto& pair : askedPairs(frames)) pairs[pair.object->truth.id].push_back(pair);
+  std::vector<ObjectErrors> result;
+  for (auto& [label, errors] : by_label) {
+    const auto [track, count_of_tracks] = longestTrack(pairs[label]);
+    errors.followed_frames = static_cast<int>(pairs[label].size());
+    errors.tracks = count_of_tracks;
+    if (!track.empty()) errors.track = track.front().row->row.object.track;
+    errors.trajectory = bodyTrajectoryErrors(track);
+    errors.motion = motionErrors(frames, label);
+    result.push_back(std::move(errors));
+  }
+  return result;
+}
+
+DetectionErrors detectionErrors(const std::vector<ComparedFrame>& frames) {
+  DetectionErrors errors;
+  HotaSums hota;
+  for (const auto& frame : frames) {
+    countLabels(frame, errors);
+    countRows(frame, errors);
+    addToHota(frame, hota);
+  }
+  std::map<std::int64_t, TrackId> last_track;
+  for (const auto& pair : askedPairs(frames)) {
+    const TrackId track = pair.row->row.object.track;
+    const auto [last, is_new] = last_track.try_emplace(pair.object->truth.id, track);
+    if (!is_new && last->second != track) ++errors.id_switches;
+    last->second = track;
+  }
+  const int labels = errors.within_30m.labels + errors.from_30_to_50m.labels;
+  const int missed = labels - errors.within_30m.found - errors.from_30_to_50m.found;
+  errors.mota = labels > 0 ? 1 - static_cast<double>(missed + errors.false_rows + errors.id_switches) / labels : 0;
+  setHota(errors, hota);
+  return errors;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/se3.hpp"
+
+/// How far an estimated trajectory is from the true one. Both have one pose per frame, in the same order.
+namespace motorcade {
+
+struct Statistics {
+  double rmse = 0, mean = 0, median = 0, max = 0;
+  std::size_t count = 0;
+};
+/// Of errors with or without sign: rmse, mean and max are those of the magnitudes.
+Statistics statisticsOf(std::vector<double> errors);
+
+/// The rigid motion S that brings S * estimate closest to truth: least squares over the positions
+/// (Umeyama, Least-squares estimation of transformation parameters between two point patterns, 1991, without scale).
+SE3 alignPositions(const std::vector<SE3>& estimate, const std::vector<SE3>& truth);
+
+/// Errors of a trajectory (Sturm et al., A benchmark for the evaluation of RGB-D SLAM systems, 2012).
+struct TrajectoryErrors {
+  Statistics ate_m;             // absolute, after SE(3) alignment
+  Statistics ate_first_pose_m;  // absolute, aligned at the first pose
+  Statistics are_deg;           // absolute rotation, after SE(3) alignment
+  Statistics rpe_m, rpe_deg;    // relative, from each pose to the next
+  double end_percent = 0;       // of the path's length, aligned at the first pose
+  double length_m = 0;          // of the true path
+};
+/// Empty for fewer than two poses.
+std::optional<TrajectoryErrors> trajectoryErrors(const std::vector<SE3>& estimate, const std::vector<SE3>& truth);
+
+double angleOf_deg(const Eigen::Matrix3d& rotation);
+
+}  // namespace motorcade

@@ -1,0 +1,281 @@
+#include <cmath>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/evaluate/evaluate_command.hpp"
+#include "apps/evaluate/report.hpp"
+#include "io/errors.hpp"
+#include "io/image_file.hpp"
+#include "io/run_folder.hpp"
+#include "io/trajectory.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::messageOf;
+using testing::HasSubstr;
+
+const std::filesystem::path kData = MOTORCADE_SOURCE_DIR "/../shared/data";
+
+/// What others measured for VISO2-S with their own program; printed with three or four digits.
+struct Anchor {
+  const char* drive;
+  double ate_m, first_pose_m, end_percent, rpe_m, rpe_median_m, rpe_deg, rpe_median_deg;
+};
+
+class Anchors : public testing::TestWithParam<Anchor> {};
+
+TEST_P(Anchors, MeasuresOfVisoAgreeWithPublishedOnes) {
+  const Anchor& anchor = GetParam();
+  if (!std::filesystem::exists(kData / anchor.drive)) GTEST_SKIP() << "../shared/data/" << anchor.drive << " is not there";
+  const Sequence sequence = openSequence(kData / anchor.drive);
+  const auto poses = readKittiPoses(kData / "viso2" / (std::string(anchor.drive) + ".txt"));
+  const auto errors = evaluatePoses(poses, sequence).camera;
+  ASSERT_TRUE(errors);
+  constexpr double kRounding = 6e-4, kRoundingOfFour = 6e-5, kRoundingOfTwo = 6e-3;
+  EXPECT_NEAR(errors->ate_m.rmse, anchor.ate_m, kRounding);
+  EXPECT_NEAR(errors->ate_first_pose_m.rmse, anchor.first_pose_m, kRounding);
+  EXPECT_NEAR(errors->end_percent, anchor.end_percent, kRoundingOfTwo);
+  EXPECT_NEAR(errors->rpe_m.rmse, anchor.rpe_m, kRoundingOfFour);
+  EXPECT_NEAR(errors->rpe_m.median, anchor.rpe_median_m, kRoundingOfFour);
+  // The anchors take angles from the trace, which the few digits of some pose files blur; we take them from rotations put back onto SO(3).
+  EXPECT_NEAR(errors->rpe_deg.rmse, anchor.rpe_deg, 1e-4);
+  EXPECT_NEAR(errors->rpe_deg.median, anchor.rpe_median_deg, 2.5e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Viso2, Anchors,
+                         testing::Values(Anchor{"kitti_tracking_0003", 0.422, 1.695, 1.48, 0.0314, 0.0228, 0.0379, 0.0305},
+                                         Anchor{"kitti_odometry_04", 0.198, 0.517, 1.18, 0.0247, 0.0180, 0.0488, 0.0356},
+                                         Anchor{"kitti_odometry_06", 0.132, 0.407, 1.04, 0.0145, 0.0131, 0.0684, 0.0397},
+                                         Anchor{"rendered_street", 0.039, 0.069, 0.22, 0.0189, 0.0155, 0.0411, 0.0375}),
+                         [](const auto& instance) { return std::string(instance.param.drive); });
+
+TEST(UninterpolatedTruth, GivesTheLargerErrorsOfPublishedEvaluations) {
+  if (!std::filesystem::exists(kData / "kitti_tracking_0003")) GTEST_SKIP() << "../shared/data/kitti_tracking_0003 is not there";
+  const auto errors = evaluatePoses(readKittiPoses(kData / "viso2/kitti_tracking_0003.txt"), openSequence(kData / "kitti_tracking_0003"),
+                                    OxtsTimes::kUninterpolated)
+                          .camera;
+  EXPECT_NEAR(errors->ate_m.rmse, 0.424, 6e-4);
+  EXPECT_NEAR(errors->rpe_m.rmse, 0.0641, 6e-5);
+  EXPECT_NEAR(errors->rpe_deg.rmse, 0.0389, 6e-5);
+}
+
+TEST(TrajectoryErrors, AreZeroForATrajectoryMovedAsAWholeAndKnownForADriftingOne) {
+  std::vector<SE3> truth, moved, longer;
+  const SE3 somewhere = SE3::exp((Vector6d() << 3, -2, 1, 0.1, 2, 0.3).finished());
+  for (int i = 0; i < 20; ++i) {
+    truth.push_back(SE3::exp((Vector6d() << 0, 0, i, 0, 0.02 * i, 0).finished()));
+    moved.push_back(somewhere * truth.back());
+    longer.push_back({truth.back().rotation(), 1.1 * truth.back().translation()});
+  }
+  const auto none = trajectoryErrors(moved, truth);
+  EXPECT_NEAR(none->ate_m.rmse, 0, 1e-9);
+  EXPECT_NEAR(none->ate_first_pose_m.rmse, 0, 1e-9);
+  EXPECT_NEAR(none->are_deg.max, 0, 1e-6);
+  const auto drift = trajectoryErrors(longer, truth);
+  EXPECT_NEAR(drift->rpe_m.mean, 0.1, 0.01);  // a tenth of each step of about one metre
+  EXPECT_NEAR(drift->end_percent, 10, 0.2);   // of a path that bends a little
+  EXPECT_FALSE(trajectoryErrors({SE3()}, {SE3()}));
+}
+
+/// A drive made by hand: the camera goes 1 m per frame; label 7 goes 1.2 m ahead of it per frame, label 8 is parked.
+/// The rows' bodies sit elsewhere in the cars and have other axes than the labels.
+class EvaluateDrive : public testing::Test {
+ protected:
+  static constexpr int kFrames = 30;
+
+  EvaluateDrive() {
+    ImagePool pool;
+    Image image = pool.acquire(64, 32);
+    std::string poses, labels;
+    for (const char* eye : {"image_0", "image_1"}) std::filesystem::create_directories(folder_ / "drive" / eye);
+    for (int i = 0; i < kFrames; ++i) {
+      std::string name = std::to_string(100 + i) + ".png";
+      writePng(folder_ / "drive/image_0" / name, image);
+      writePng(folder_ / "drive/image_1" / name, image);
+      poses += kittiLine(camera(i)) + "\n";
+      char line[256];
+      for (const auto& [id, z] : {std::pair(7, 15 + 1.2 * i - i), std::pair(8, 60.0 - i)}) {
+        std::snprintf(line, sizeof(line), "%d %d Car 0 0 0 10 10 40 60 1.5 1.7 4.2 %.6f 1.6 %.6f -1.570796\n", i, id, id == 7 ? 2.0 : -4.0,
+                      z);
+        labels += line;
+      }
+    }
+    folder_.write("drive/calib.txt", "P0: 700 0 32 0 0 700 16 0 0 0 1 0\nP1: 700 0 32 -350 0 700 16 0 0 0 1 0\n");
+    folder_.write("drive/poses.txt", poses);
+    folder_.write("drive/label_02.txt", labels);
+    options_.run = folder_ / "run";
+    options_.sequence = folder_ / "drive";
+  }
+
+  static SE3 camera(int i) { return SE3(Eigen::Matrix3d::Identity(), {0, 0, static_cast<double>(i)}); }
+  static ObjectEstimate lead(int i, int track) {
+    Eigen::Matrix3d world_body;
+    world_body << 0, -1, 0, 0, 0, -1, 1, 0, 0;  // x ahead, z up
+    ObjectEstimate object;
+    object.track = {track};
+    object.T_world_body = SE3(world_body, {2.3, 1.0, 15 + 1.2 * i + 1.0});
+    object.velocity_world_mps = {0, 0, 12};
+    object.speed_sigma_mps = 0.1;
+    object.points = 20;
+    object.box = {10, 10, 40, 60};
+    object.covariance = Matrix6d::Identity() * 1e-4;
+    return object;
+  }
+  /// Writes a run over frames [first, end), after `change` had its way with each estimate.
+  template <class Change>
+  void writeRun(const std::filesystem::path& name, int first, int end, const Change& change) {
+    RunFolderWriter writer(folder_ / name);
+    for (int i = first; i < end; ++i) {
+      FrameEstimate estimate;
+      estimate.frame = {i};
+      estimate.stamp = {i * 100'000'000LL};
+      const SE3 T_first = camera(first).inverse();
+      estimate.T_world_cam = T_first * camera(i);
+      estimate.objects.push_back(lead(i, 3));
+      estimate.camera_covariance = Matrix6d::Identity() * 1e-4;
+      change(i, estimate);
+      for (auto& object : estimate.objects) object.T_world_body = T_first * object.T_world_body;
+      FrameTiming timing;
+      timing.frame = estimate.frame;
+      writer.writeOnline(estimate);
+      writer.writeTiming(timing);
+      writer.writeFinal(estimate);
+    }
+    writer.finish("{}");
+  }
+
+  test::TemporaryFolder folder_;
+  EvaluateOptions options_;
+};
+
+TEST_F(EvaluateDrive, APerfectRunHasNoErrors) {
+  writeRun("run", 0, kFrames, [](int, FrameEstimate&) {});
+  const Evaluation evaluation = evaluateRun(options_);
+  EXPECT_NEAR(evaluation.final.camera->ate_m.rmse, 0, 1e-6);
+  ASSERT_EQ(evaluation.final.objects.size(), 1u) << "the parked car is not asked for";
+  const ObjectErrors& object = evaluation.final.objects[0];
+  EXPECT_EQ(object.label, 7);
+  EXPECT_EQ(object.followed_frames, kFrames);
+  constexpr double kDigitsOfTheFiles = 1e-5;
+  EXPECT_NEAR(object.trajectory->ate_m.rmse, 0, kDigitsOfTheFiles);
+  EXPECT_NEAR(object.trajectory->ate_first_pose_m.rmse, 0, kDigitsOfTheFiles);
+  EXPECT_NEAR(object.motion.me_m.max, 0, kDigitsOfTheFiles);
+  EXPECT_NEAR(object.motion.speed_mps.max, 0, kDigitsOfTheFiles);
+  EXPECT_DOUBLE_EQ(evaluation.final.detection.within_30m.recall(), 1);
+  EXPECT_EQ(evaluation.final.detection.within_30m_from_fifth.labels, kFrames - 4);
+  EXPECT_DOUBLE_EQ(evaluation.final.detection.mota, 1);
+  EXPECT_EQ(evaluation.final.detection.false_rows, 0);
+  EXPECT_DOUBLE_EQ(evaluation.camera_covariance.coverage_95, 1);
+  EXPECT_DOUBLE_EQ(evaluation.object_covariance.coverage_95, 1);
+}
+
+TEST_F(EvaluateDrive, MissesSwitchesAndFalseRowsAreCounted) {
+  writeRun("run", 0, kFrames, [](int i, FrameEstimate& estimate) {
+    if (i < 6) estimate.objects.clear();
+    if (i >= 20) estimate.objects = {lead(i, 4)};
+    if (i == 10) estimate.objects[0].state = ObjectState::kPredicted;
+    if (i == 11) estimate.objects[0].points = 2;
+    if (i >= 25) {  // on the parked car, and on nothing
+      estimate.objects.push_back(lead(i, 5));
+      estimate.objects.back().T_world_body = SE3(Eigen::Matrix3d::Identity(), {-4, 1, 60});
+      estimate.objects.push_back(lead(i, 6));
+      estimate.objects.back().T_world_body = SE3(Eigen::Matrix3d::Identity(), {-30, 1, 60});
+    }
+  });
+  const DetectionErrors errors = evaluateRun(options_).final.detection;
+  EXPECT_EQ(errors.within_30m.found, kFrames - 8);
+  EXPECT_EQ(errors.false_rows, 10);
+  EXPECT_EQ(errors.false_rows_unlabelled, 5);
+  EXPECT_EQ(errors.id_switches, 1);
+  EXPECT_NEAR(errors.mota, 1 - (8 + 10 + 1) / 30.0, 1e-12);
+  EXPECT_LT(errors.hota, 0.9);
+  EXPECT_GT(errors.hota, 0.3);
+}
+
+TEST_F(EvaluateDrive, MotionErrorDoesNotDependOnTheCamerasDrift) {
+  writeRun("run", 0, kFrames, [](int i, FrameEstimate& estimate) {
+    const SE3 drift = SE3::exp((Vector6d() << 0.1 * i, 0, 0.3 * i, 0, 0.01 * i, 0).finished());
+    estimate.objects[0].T_world_body = drift * estimate.objects[0].T_world_body;
+    estimate.T_world_cam = drift * estimate.T_world_cam;
+  });
+  const Evaluation evaluation = evaluateRun(options_);
+  EXPECT_GT(evaluation.final.camera->ate_first_pose_m.rmse, 1);
+  // What remains is the drift from one frame to the next, as the object's motion is told in the earlier camera.
+  EXPECT_NEAR(evaluation.final.motion.me_m.mean, 0.55, 0.2);
+  EXPECT_EQ(evaluation.final.detection.within_30m.found, kFrames) << "matching is relative to the camera";
+}
+
+TEST_F(EvaluateDrive, PartOfASequenceIsMeasuredFromItsFirstFrame) {
+  writeRun("run", 8, 20, [](int, FrameEstimate&) {});
+  const Evaluation evaluation = evaluateRun(options_);
+  EXPECT_EQ(evaluation.first_frame, 8);
+  EXPECT_EQ(evaluation.final.frames, 12u);
+  EXPECT_NEAR(evaluation.final.camera->ate_first_pose_m.rmse, 0, 1e-6);
+  EXPECT_NEAR(evaluation.final.motion.me_m.max, 0, 1e-5);
+  EXPECT_DOUBLE_EQ(evaluation.final.detection.within_30m.recall(), 1);
+}
+
+TEST_F(EvaluateDrive, BaselinesGiveRelativeErrors) {
+  const auto bend = [](double size) {
+    return [size](int i, FrameEstimate& estimate) {
+      estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {size * std::sin(i * 0.5), 0, 0}) * estimate.T_world_cam;
+      estimate.objects[0].T_world_body =
+          SE3(Eigen::Matrix3d::Identity(), {size * std::sin(i * 0.5), 0, 0}) * estimate.objects[0].T_world_body;
+    };
+  };
+  writeRun("run", 0, kFrames, bend(0.1));
+  writeRun("filter", 0, kFrames, bend(0.2));
+  options_.baseline = folder_ / "filter/camera_final.txt";
+  options_.baseline_run = folder_ / "filter";
+  const Evaluation evaluation = evaluateRun(options_);
+  ASSERT_EQ(evaluation.against_baseline.size(), 2u);
+  for (const auto& r : evaluation.against_baseline) EXPECT_NEAR(r.relative(), 0.5, 0.01) << r.what;  // half the bend
+  EXPECT_EQ(evaluation.against_baseline[1].what, "object 7");
+  folder_.write("short.txt", kittiLine(SE3()) + "\n");
+  options_.baseline = folder_ / "short.txt";
+  EXPECT_THAT(messageOf<InputError>([&] { evaluateRun(options_); }), HasSubstr("short.txt"));
+}
+
+TEST_F(EvaluateDrive, KilledRunsAndRunsWithoutLabelsAreMeasured) {
+  writeRun("run", 0, kFrames, [](int, FrameEstimate&) {});
+  std::filesystem::remove(folder_ / "run/summary.json");
+  std::filesystem::remove(folder_ / "run/covariances.csv");
+  folder_.write("run/camera_final.txt", "");
+  folder_.write("run/objects_final.csv", "");
+  Evaluation evaluation = evaluateRun(options_);
+  EXPECT_FALSE(evaluation.complete);
+  EXPECT_EQ(evaluation.final.frames, 0u);
+  EXPECT_EQ(evaluation.online.frames, static_cast<std::size_t>(kFrames));
+  std::filesystem::remove(folder_ / "drive/label_02.txt");
+  evaluation = evaluateRun(options_);
+  EXPECT_THAT(tableOf(evaluation), testing::Not(HasSubstr("recall")));
+}
+
+TEST_F(EvaluateDrive, TableJsonAndTruthAreWritten) {
+  writeRun("run", 0, kFrames, [](int, FrameEstimate&) {});
+  options_.json = folder_ / "measures.json";
+  options_.export_truth = folder_ / "truth";
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(runEvaluate(options_), 0);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("RPE_r deg"));
+  const auto json = nlohmann::json::parse(folder_.read("measures.json"));
+  EXPECT_NEAR(json["final"]["camera"]["rpe_t_m"]["rmse"], 0, 1e-6);
+  EXPECT_EQ(json["final"]["objects"][0]["label"], 7);
+  EXPECT_EQ(json["final"]["detection"]["within_30m"]["recall"], 1.0);
+  EXPECT_THAT(folder_.read("truth/object_7.tum"), HasSubstr("0.100000000 2.000000000 1.600000000 16.200000000 "));
+  EXPECT_THAT(folder_.read("truth/objects_truth.csv"), HasSubstr("\n0,7,Car,1,"));
+  EXPECT_EQ(readKittiPoses(folder_ / "truth/camera_truth.txt").size(), static_cast<std::size_t>(kFrames));
+}
+
+TEST_F(EvaluateDrive, ASequenceWithoutTruthIsRefused) {
+  writeRun("run", 0, 3, [](int, FrameEstimate&) {});
+  std::filesystem::remove(folder_ / "drive/poses.txt");
+  EXPECT_THAT(messageOf<InputError>([&] { evaluateRun(options_); }), HasSubstr("no ground truth"));
+}
+
+}  // namespace
+}  // namespace motorcade
