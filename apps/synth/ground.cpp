@@ -78,7 +78,7 @@ float Ground::asphalt(const Hit& hit, const View& view) const {
   const float lid = inside(std::hypot(lid_s, lid_d), -1, 0.34F, view.length);
   tone = lerp(tone, 0.10F + 0.16F * pulses(lid_s, 0.11F, 0.05F, view.along_road) * pulses(lid_d + 9, 0.11F, 0.06F, view.across_road), lid);
   const float wear = view.texture(x, y, 3.7F, 4, 0.7F, 10), grain = view.texture(x, y, 0.22F, 5, 0.86F, 20);
-  return tone * std::fmax(0.25F, 1 + 0.20F * wear + 0.34F * grain);
+  return tone * std::fmax(0.25F, 1 + 0.20F * wear + 0.50F * grain);
 }
 
 /// Coverage by lane paint.
@@ -104,14 +104,14 @@ float Ground::beside(const Hit& hit, const View& view) const {
   }
   if (scene_->meadow || hit.where.outside_m > 3.6F) {
     const float tufts = view.texture(x, y, 2.5F, 8, 0.82F, 60);
-    return std::fmax(0.03F, 0.135F * (1 + 0.42F * tufts));
+    return std::fmax(0.03F, 0.135F * (1 + 0.55F * tufts));
   }
   const float size = 0.55F;
   const float column = std::floor(hit.where.along_m / size), row = std::floor(hit.where.outside_m / size);
   const float shade = unit(hashOf(static_cast<int>(column), static_cast<int>(row), view.seed + 70)) - 0.5F;
   const float joint = std::fmax(pulses(hit.where.along_m, size, 0.022F, view.along_road), pulses(hit.where.outside_m, size, 0.022F, view.across_road));
   const float dirt = view.texture(x, y, 1.8F, 6, 0.74F, 80);
-  return 0.27F * (1 + 0.5F * shade * visible(size, view.along_road) - 0.5F * joint) * (1 + 0.2F * dirt);
+  return 0.27F * (1 + 0.5F * shade * visible(size, view.along_road) - 0.5F * joint) * (1 + 0.32F * dirt);
 }
 
 float Ground::reflectance(const Hit& hit, const Vec3& direction, float pixel) const {

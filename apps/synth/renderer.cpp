@@ -14,7 +14,7 @@ namespace motorcade::synth {
 namespace {
 
 constexpr float kFar_m = 400;
-constexpr float kSun = 1.25F, kAmbient = 0.22F;
+constexpr float kSun = 1.15F, kAmbient = 0.30F;
 
 /// Bands of rows, handed to the threads as they come.
 void parallelRows(int rows, int threads, const std::function<void(int)>& work) {

@@ -90,7 +90,7 @@ void SceneBuilder::placePavement(int road, const Dressing& d, double side) {
     const auto point = scene.roads.roads()[static_cast<std::size_t>(road)].path->at(along);
     const Eigen::Vector2d p = point.position + left * point.left();
     const auto where = scene.roads.locate(p.x(), p.y());
-    if (where.next_outside_m < 7) continue;  // not in a junction
+    if (where.next_outside_m < 7 || std::abs(point.curvature_per_m) > 0.02) continue;  // not in a junction or a tight bend
     addParked(random.chance(0.15F) ? VehicleKind::kVan : VehicleKind::kCar, road, along, left, side > 0);
   }
 }

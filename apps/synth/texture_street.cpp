@@ -25,7 +25,7 @@ float masonry(const SurfacePoint& s, const WallPoint& w) {
   const float joint = std::fmax(pulses(w.v, course, 0.016F, f), pulses(w.u + shift, width, 0.016F, f));
   const float fine = visible(course, f);
   const float stains = fractal2(w.u, w.v * 0.5F, 2.6F, 7, 0.72F, f, s.part->seed + 1);
-  return s.part->tone * (1 + fine * ((brick ? 0.75F : 0.2F) * shade + (brick ? 0.5F : -0.3F) * joint) + 0.20F * stains);
+  return s.part->tone * (1 + fine * ((brick ? 0.75F : 0.2F) * shade + (brick ? 0.5F : -0.3F) * joint) + 0.30F * stains);
 }
 
 /// One window: frame, cross bar, curtains or dark room, sill.
