@@ -113,6 +113,7 @@ struct SceneMotion {
   SE3 T_previous_now;
   Matrix6d odometry_covariance = Matrix6d::Identity();
   int ego_inliers = 0;
+  double disparity_offset_px = 0;  // in use after this frame: true minus measured disparity
   GroundPlane ground;
   std::vector<ScenePoint> points;  // ordered by point id
   std::vector<Segment> segments;   // moving and unknown ones; the static rest is not listed

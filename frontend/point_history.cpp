@@ -4,6 +4,12 @@
 
 namespace motorcade {
 
+const PointSighting* PointTrack::find(std::int64_t step) const {
+  for (int i = count - 1; i >= 0; --i)
+    if (sightings[static_cast<std::size_t>(i)].step == step) return &sightings[static_cast<std::size_t>(i)];
+  return nullptr;
+}
+
 void PointTrack::add(const PointSighting& sighting) {
   if (count == kCapacity) shorten(kCapacity - 1);
   sightings[static_cast<std::size_t>(count++)] = sighting;

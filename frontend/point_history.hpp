@@ -34,6 +34,8 @@ struct PointTrack {
   PointLabel label = PointLabel::kUnknown;
 
   const PointSighting& newest() const { return sightings[static_cast<std::size_t>(count - 1)]; }
+  /// The sighting of a frame, or null.
+  const PointSighting* find(std::int64_t step) const;
   void add(const PointSighting& sighting);
   /// Forgets all but the newest `keep` sightings.
   void shorten(int keep);

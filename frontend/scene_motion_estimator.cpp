@@ -10,6 +10,7 @@ namespace motorcade {
 SceneMotionEstimator::SceneMotionEstimator(const Params& params, const StereoCamera& camera)
     : params_(params),
       camera_(camera),
+      disparity_offset_(params.disparity_offset, camera),
       ego_motion_(params.ego_motion, camera),
       scene_flow_(params.scene_flow, camera),
       ground_plane_(params.ground_plane),
@@ -49,7 +50,29 @@ SceneMotionPtr SceneMotionEstimator::operator()(const StereoMatchesPtr& stereo, 
   auto point = motion->points.begin();
   for (auto& track : tracks_)
     if (sightedNow(track)) track.label = (point++)->label;
+  calibrateDisparity();
+  motion->disparity_offset_px = disparity_offset_.offset_px();
   return motion;
+}
+
+/// Learns from points at rest that were seen at both ends of a window; the disparities remembered follow the offset in use.
+void SceneMotionEstimator::calibrateDisparity() {
+  const std::int64_t now = trail_.newest().step, then = now - params_.calibration_frames;
+  const auto* relation = trail_.find(then);
+  if (relation && now % params_.calibration_frames == 0) {
+    std::vector<StereoCorrespondence> points;
+    for (const auto& track : tracks_) {
+      if (!sightedNow(track) || !track.p_static_cam || track.label == PointLabel::kMoving) continue;
+      const auto* before = track.find(then);
+      if (!before) continue;
+      points.push_back({before->uvd_px.cast<double>(), before->sigma_px.cast<double>(), track.newest().uvd_px.cast<double>(),
+                        track.newest().sigma_px.cast<double>()});
+    }
+    disparity_offset_.learn(points, relation->T_then_now.inverse());
+  }
+  const auto change = static_cast<float>(disparity_offset_.advance());
+  for (auto& track : tracks_)
+    for (int i = 0; i < track.count; ++i) track.sightings[static_cast<std::size_t>(i)].uvd_px.z() += change;
 }
 
 std::vector<SceneMotionEstimator::Sighted> SceneMotionEstimator::closeCircle(const StereoMatches& stereo, const OpticalFlow& flow,
@@ -67,6 +90,7 @@ std::vector<SceneMotionEstimator::Sighted> SceneMotionEstimator::closeCircle(con
     } else if (f.corner >= 0) {
       s.disparity = stereo.of_corner[static_cast<std::size_t>(f.corner)];
     }
+    if (s.disparity) s.disparity->disparity_px += static_cast<float>(disparity_offset_.offset_px());
     if (s.disparity && !(s.disparity->disparity_px > 0)) s.disparity.reset();
     if (known || s.disparity) sighted.push_back(s);
   }
@@ -82,8 +106,8 @@ std::optional<StereoMatch> SceneMotionEstimator::verifyInRightImage(const Featur
   DisparityParams search = params_.disparity;
   search.search_radius_px += 0.5 * std::abs(at_rest_px - before_px);
   if (!last_motion_) search.search_radius_px += params_.unpredicted_search * before_px;
-  return refineDisparity(features.left.levels.front(), features.right.levels.front(), flow.u_px, flow.v_px, 0.5 * (at_rest_px + before_px),
-                         search);
+  return refineDisparity(features.left.levels.front(), features.right.levels.front(), flow.u_px, flow.v_px,
+                         0.5 * (at_rest_px + before_px) - disparity_offset_.offset_px(), search);
 }
 
 PoseObservation SceneMotionEstimator::lastPosition(const PointTrack& track) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/stereo_camera.hpp"
+#include "frontend/disparity_offset.hpp"
 #include "frontend/ego_motion.hpp"
 #include "frontend/ground_plane.hpp"
 #include "frontend/messages.hpp"
@@ -30,6 +31,8 @@ class SceneMotionEstimator {
     double static_chi2_per_dof = 3.0;  // a track that fits a point at rest this well enters the ego-motion with its fitted position
     double max_ground_noise_m = 0.3;   // a point's height above the road may be off by this much of its depth noise
     double lost_sigma_m = 0.3, lost_sigma_rad = 0.02;  // of the predicted motion when the ego-motion is lost
+    int calibration_frames = 5;        // length of the windows from which the disparity offset is learned
+    DisparityOffsetEstimator::Params disparity_offset;
     EgoMotionEstimator::Params ego_motion;
     SceneFlowEstimator::Params scene_flow;
     GroundPlaneEstimator::Params ground_plane;
@@ -60,12 +63,14 @@ class SceneMotionEstimator {
   PointTrack extendTrack(const Sighted& sighted) const;
   void fillPoints(const std::vector<Sighted>& sighted, const std::vector<bool>& inliers, SceneMotion& motion) const;
   void markGround(SceneMotion& motion, const std::vector<bool>& violates_geometry);
+  void calibrateDisparity();
   bool violatesGeometry(const PointTrack& track) const;
   bool sightedNow(const PointTrack& track) const;
   SE3 predictMotion(Timestamp stamp) const;
 
   Params params_;
   StereoCamera camera_;
+  DisparityOffsetEstimator disparity_offset_;
   EgoMotionEstimator ego_motion_;
   SceneFlowEstimator scene_flow_;
   GroundPlaneEstimator ground_plane_;
