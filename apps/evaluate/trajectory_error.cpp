@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 
 namespace motorcade {
 
@@ -40,16 +42,30 @@ SE3 alignPositions(const std::vector<SE3>& estimate, const std::vector<SE3>& tru
   return SE3(S.topLeftCorner<3, 3>(), S.topRightCorner<3, 1>()).normalized();
 }
 
+namespace {
+
+/// The rotation that brings the estimated attitudes closest to the true ones in the least-squares (chordal) sense.
+Eigen::Matrix3d alignRotations(const std::vector<SE3>& estimate, const std::vector<SE3>& truth) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < truth.size(); ++i) sum += truth[i].rotation() * estimate[i].rotation().transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double side = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * Eigen::Vector3d(1, 1, side).asDiagonal() * svd.matrixV().transpose();
+}
+
+}  // namespace
+
 std::optional<TrajectoryErrors> trajectoryErrors(const std::vector<SE3>& estimate, const std::vector<SE3>& truth) {
   assert(estimate.size() == truth.size());
   if (truth.size() < 2) return std::nullopt;
   const SE3 aligned = alignPositions(estimate, truth), at_first = truth.front() * estimate.front().inverse();
+  const Eigen::Matrix3d turned = alignRotations(estimate, truth);
   std::vector<double> ate_m, ate_first_m, are_deg, rpe_m, rpe_deg;
   TrajectoryErrors errors;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const SE3 best = aligned * estimate[i];
     ate_m.push_back((best.translation() - truth[i].translation()).norm());
-    are_deg.push_back(angleOf_deg(truth[i].rotation().transpose() * best.rotation()));
+    are_deg.push_back(angleOf_deg(truth[i].rotation().transpose() * turned * estimate[i].rotation()));
     ate_first_m.push_back((at_first * estimate[i].translation() - truth[i].translation()).norm());
     if (i == 0) continue;
     const SE3 true_step = truth[i - 1].inverse() * truth[i];
