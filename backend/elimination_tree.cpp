@@ -159,11 +159,10 @@ void EliminationTree::fill(Clique& clique, std::span<const Contribution* const> 
   for (const Contribution* c : contributions)
     if (c->child < 0) all.push_back(*c);
   for (const int child : clique.children) all.push_back({cliques_[index(child)].separator(), &cliques_[index(child)].remainder, child});
-  Eigen::MatrixXd front = assembleFront(clique.variables, all, graph, offset_);
+  Front front = assembleFront(clique.variables, all, graph, offset_, workspace_);
   clique.size = static_cast<int>(front.rows()) - 1;
-  clique.frontal_size = clique.frontals < static_cast<int>(clique.variables.size())
-                            ? offset_[index(clique.variables[index(clique.frontals)])]
-                            : clique.size;
+  clique.frontal_size =
+      clique.frontals < static_cast<int>(clique.variables.size()) ? offset_[index(clique.variables[index(clique.frontals)])] : clique.size;
   const auto singular = eliminateFront(front, clique.frontal_size);
   for (const int scalar : singular) {
     std::size_t v = 0;

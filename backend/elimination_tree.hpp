@@ -15,7 +15,7 @@ struct Clique {
   std::vector<int> children;
   std::vector<VariableId> variables;  // frontals, then the separator, each in elimination order
   int frontals = 0;
-  int frontal_size = 0, size = 0;     // scalars: of the frontals, of all variables
+  int frontal_size = 0, size = 0;  // scalars: of the frontals, of all variables
   /// (size + 1) x frontal_size: columns are the rows of [R S d], so R^T above, S^T, and d^T last.
   Eigen::MatrixXd L;
   /// Information [H g; g^T c] that elimination leaves on the separator; lower triangle.
@@ -38,7 +38,8 @@ struct SingularScalar {
   int component = 0;
 };
 
-/// R as a tree of cliques (the Bayes tree of Kaess et al. 2012): new information touches only the cliques from where it enters up to the root.
+/// R as a tree of cliques (the Bayes tree of Kaess et al. 2012): new information touches only the cliques from where it enters up to the
+/// root.
 class EliminationTree {
  public:
   const Clique& operator[](int clique) const { return cliques_[static_cast<std::size_t>(clique)]; }
@@ -85,6 +86,7 @@ class EliminationTree {
   std::vector<int> clique_of_;          // per variable
   std::vector<std::int64_t> sequence_;  // per variable, -1 before its first elimination
   std::vector<int> position_, offset_;  // scratch, per variable
+  std::vector<double> workspace_;       // of the front at hand
   std::int64_t next_sequence_ = 0;
 };
 

@@ -8,7 +8,9 @@ namespace {
 using Matrix6x18d = Eigen::Matrix<double, 6, 18>;
 
 /// Twist in the body's axes between two poses [m/s, rad/s].
-Vector6d twist(const SE3& T_world_before, const SE3& T_world_after, double dt_s) { return (T_world_before.inverse() * T_world_after).log() / dt_s; }
+Vector6d twist(const SE3& T_world_before, const SE3& T_world_after, double dt_s) {
+  return (T_world_before.inverse() * T_world_after).log() / dt_s;
+}
 
 }  // namespace
 

@@ -19,7 +19,7 @@ bool factorizeWhole(Eigen::Ref<Eigen::MatrixXd> H) {
 }
 
 /// Scalar by scalar over whole columns of the front; replaces pivots that vanish.
-std::vector<int> factorizeByScalar(Eigen::MatrixXd& front, int eliminated) {
+std::vector<int> factorizeByScalar(Front& front, int eliminated) {
   const Eigen::VectorXd diagonal = front.diagonal().head(eliminated);
   std::vector<int> singular;
   for (int k = 0; k < eliminated; ++k) {
@@ -38,7 +38,7 @@ std::vector<int> factorizeByScalar(Eigen::MatrixXd& front, int eliminated) {
   return singular;
 }
 
-void addTerm(Eigen::MatrixXd& front, const Contribution& contribution, const FactorGraph& graph, const std::vector<int>& offset) {
+void addTerm(Front& front, const Contribution& contribution, const FactorGraph& graph, const std::vector<int>& offset) {
   const LinearTerm& term = *contribution.term;
   struct Block {
     int from, to, size;
@@ -73,19 +73,20 @@ void addTerm(Eigen::MatrixXd& front, const Contribution& contribution, const Fac
 
 }  // namespace
 
-Eigen::MatrixXd assembleFront(std::span<const VariableId> variables, std::span<const Contribution> contributions, const FactorGraph& graph,
-                              std::vector<int>& offset) {
+Front assembleFront(std::span<const VariableId> variables, std::span<const Contribution> contributions, const FactorGraph& graph,
+                    std::vector<int>& offset, std::vector<double>& workspace) {
   int size = 0;
   for (const VariableId v : variables) {
     offset[static_cast<std::size_t>(v.value)] = size;
     size += graph.sizeOf(v);
   }
-  Eigen::MatrixXd front = Eigen::MatrixXd::Zero(size + 1, size + 1);
+  workspace.assign(static_cast<std::size_t>(size + 1) * static_cast<std::size_t>(size + 1), 0.0);
+  Front front(workspace.data(), size + 1, size + 1);
   for (const Contribution& c : contributions) addTerm(front, c, graph, offset);
   return front;
 }
 
-std::vector<int> eliminateFront(Eigen::MatrixXd& front, int eliminated) {
+std::vector<int> eliminateFront(Front& front, int eliminated) {
   const Eigen::Index rest = front.rows() - eliminated;
   auto H = front.topLeftCorner(eliminated, eliminated);
   if (!factorizeWhole(H)) return factorizeByScalar(front, eliminated);

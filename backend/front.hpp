@@ -17,9 +17,10 @@ struct Contribution {
 };
 
 /// The sum of the contributions, lower triangle of [H g; g^T c] over `variables` in their order. `offset`, one per variable slot, receives
-/// where each of them begins.
-Eigen::MatrixXd assembleFront(std::span<const VariableId> variables, std::span<const Contribution> contributions, const FactorGraph& graph,
-                              std::vector<int>& offset);
+/// where each of them begins. The front is a view of `workspace`, which grows as needed.
+using Front = Eigen::Map<Eigen::MatrixXd>;
+Front assembleFront(std::span<const VariableId> variables, std::span<const Contribution> contributions, const FactorGraph& graph,
+                    std::vector<int>& offset, std::vector<double>& workspace);
 
 /// Square root of a dense front, the small dense matrix in which a clique's variables are eliminated. On entry the lower triangle of
 /// `front` holds the information [H g; g^T c] of the eliminated variables, then their separator, then the right-hand side. On return the
@@ -27,6 +28,6 @@ Eigen::MatrixXd assembleFront(std::span<const VariableId> variables, std::span<c
 ///
 /// This gives the same R, up to signs, as a QR of the stacked Jacobian rows. A scalar that nothing constrains gets a unit pivot and no
 /// coupling, so that its delta is zero; their list is returned.
-std::vector<int> eliminateFront(Eigen::MatrixXd& front, int eliminated);
+std::vector<int> eliminateFront(Front& front, int eliminated);
 
 }  // namespace motorcade

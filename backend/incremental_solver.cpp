@@ -169,7 +169,8 @@ std::vector<VariableId> IncrementalSolver::reordered(std::span<const VariableId>
   // CCOLAMD wants at least one row in each column.
   for (std::size_t i = 0; i < variables.size(); ++i) rows.push_back({static_cast<int>(i)});
   std::vector<VariableId> order;
-  for (const int c : eliminationOrder(static_cast<int>(variables.size()), rows, group)) order.push_back(variables[static_cast<std::size_t>(c)]);
+  for (const int c : eliminationOrder(static_cast<int>(variables.size()), rows, group))
+    order.push_back(variables[static_cast<std::size_t>(c)]);
   return order;
 }
 

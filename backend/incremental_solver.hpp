@@ -11,8 +11,9 @@
 
 namespace motorcade {
 
-/// Incremental square-root smoothing (iSAM, Kaess et al. 2008, on the tree of iSAM2, 2012): keeps R of the linearised problem as a tree of small
-/// dense cliques; an update eliminates anew only the cliques from where new factors enter up to the root. Gauss-Newton, one step per update.
+/// Incremental square-root smoothing (iSAM, Kaess et al. 2008, on the tree of iSAM2, 2012): keeps R of the linearised problem as a tree of
+/// small dense cliques; an update eliminates anew only the cliques from where new factors enter up to the root. Gauss-Newton, one step per
+/// update.
 ///
 /// Add variables and factors, then `update`. `retire` and `drop` want no additions waiting.
 class IncrementalSolver {

@@ -4,8 +4,8 @@
 
 namespace motorcade {
 
-/// With the information H = L L^T and E the chosen columns of the identity, E^T H^-1 E = Y^T Y, Y = L^-1 E. Forward substitution meets only the
-/// cliques from the chosen variables up to the root; no back-substitution is needed.
+/// With the information H = L L^T and E the chosen columns of the identity, E^T H^-1 E = Y^T Y, Y = L^-1 E. Forward substitution meets only
+/// the cliques from the chosen variables up to the root; no back-substitution is needed.
 std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(std::span<const VariableId> variables) const {
   std::vector<int> start;
   for (const VariableId v : variables) {

@@ -20,7 +20,8 @@ class ObjectFilter {
   ObjectFilter(const Params& params, Timestamp stamp, const SE3& T_world_body, const Matrix6d& covariance);
 
   void predict(Timestamp stamp);
-  /// Returns the innovation's normalised square per dimension, before any robust weight; empty, and nothing changes, when the measurement is unusable.
+  /// Returns the innovation's normalised square per dimension, before any robust weight; empty, and nothing changes, when the measurement
+  /// is unusable.
   std::optional<double> correct(const SE3& T_world_body, const Matrix6d& covariance);
 
   const SE3& pose() const { return T_world_body_; }

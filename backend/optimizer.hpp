@@ -42,9 +42,9 @@ class Optimizer final : public Backend {
 
     RelinearizationPolicy policy = RelinearizationPolicy::kFluid;
     int relinearize_every_updates = 50;
-    double relinearize_m = 0.05, relinearize_rad = 0.005;  // fluid
-    double substitution_threshold = 1e-5;  // m or rad: back-substitution stops where nothing moves by more; 0 is exact
-    int final_iterations = 10;             // at most, in finish()
+    double relinearize_m = 0.3, relinearize_rad = 0.02;  // fluid
+    double substitution_threshold = 1e-4;                // m or rad: back-substitution stops where nothing moves by more; 0 is exact
+    int final_iterations = 10;                           // at most, in finish()
 
     int camera_covariance_frames = 10;  // the camera's covariance is relative to that many frames earlier
     int covariance_lag_frames = 5;      // final covariances are taken that many frames later; what comes after adds little

@@ -18,8 +18,8 @@ void sortUnique(std::vector<T>& items) {
 
 }  // namespace
 
-/// A connected part of the tree whose cliques hold variables that retire. Any change of order inside it leaves what it passes to its parent as it is, so
-/// that retiring costs only this part, wherever it lies.
+/// A connected part of the tree whose cliques hold variables that retire. Any change of order inside it leaves what it passes to its parent
+/// as it is, so that retiring costs only this part, wherever it lies.
 struct IncrementalSolver::RetiringPart {
   std::vector<int> cliques;
   std::vector<VariableId> boundary;
@@ -40,8 +40,7 @@ std::vector<IncrementalSolver::RetiringPart> IncrementalSolver::partsWith(std::s
     const auto separator = tree_[top].separator();
     parts.push_back({.cliques = {top}, .boundary = {separator.begin(), separator.end()}, .parent = tree_[top].parent});
     auto& part = parts.back().cliques;
-    for (std::size_t i = 0; i < part.size(); ++i)
-      std::ranges::copy_if(tree_[part[i]].children, std::back_inserter(part), inside);
+    for (std::size_t i = 0; i < part.size(); ++i) std::ranges::copy_if(tree_[part[i]].children, std::back_inserter(part), inside);
   }
   return parts;
 }
@@ -70,7 +69,8 @@ void IncrementalSolver::retirePart(const RetiringPart& part, std::span<const Var
   sortUnique(neighbours);
   front_variables.insert(front_variables.end(), neighbours.begin(), neighbours.end());
   std::vector<int> offset(graph_.slots(), 0);
-  Eigen::MatrixXd front = assembleFront(front_variables, known, graph_, offset);
+  std::vector<double> workspace;
+  Front front = assembleFront(front_variables, known, graph_, offset, workspace);
   int eliminated = 0;
   for (const VariableId v : leaving) eliminated += graph_.sizeOf(v);
   eliminateFront(front, eliminated);

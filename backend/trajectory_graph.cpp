@@ -110,7 +110,8 @@ void TrajectoryGraph::addObservation(const ObjectObservation& seen, double encou
   }
   if (predicted && !params_.use_smoothness) return;
   record.z = solver_.addVariable(predictedPose(track, seen));
-  if (!constrain(track, record, encounter_share)) addPrior(record.z, solver_.pose(record.z), params_.anchor_sigma_m, params_.anchor_sigma_rad);
+  if (!constrain(track, record, encounter_share))
+    addPrior(record.z, solver_.pose(record.z), params_.anchor_sigma_m, params_.anchor_sigma_rad);
 }
 
 /// False when nothing was known of the pose.
@@ -154,7 +155,8 @@ bool TrajectoryGraph::addCameraEncounter(const ObjectTrack& track, const ObjectR
   if (!root) return false;
   const PoseNoise noise{.sqrt_information = *root, .loss = params_.encounter_loss, .loss_scale = params_.encounter_loss_scale};
   const std::array variables{frames_.at(record.seen.frame).x, track.anchor, record.z};
-  return solver_.addFactor(std::make_unique<CameraEncounterFactor>(variables, CameraEncounterModel{record.seen.T_cam_body}, noise)).has_value();
+  return solver_.addFactor(std::make_unique<CameraEncounterFactor>(variables, CameraEncounterModel{record.seen.T_cam_body}, noise))
+      .has_value();
 }
 
 void TrajectoryGraph::addObjectEncounter(const ObjectObservation& m, const ObjectObservation& n, double share_m, double share_n) {
@@ -196,14 +198,14 @@ void TrajectoryGraph::retireOldest() {
   std::vector<VariableId> retired{camera.x};
   for (auto it = tracks_.begin(); it != tracks_.end();) {
     ObjectTrack& track = it->second;
-    std::erase_if(track.records, [&](const auto& entry) { return entry.first < oldest; });
+    track.records.erase(track.records.begin(), track.records.lower_bound(oldest));
     const auto record = track.records.find(oldest);
     if (record != track.records.end()) {
       record->second.frozen = objectPose(track, oldest);
       if (record->second.z.valid()) retired.push_back(record->second.z);
       record->second.z = {};
     }
-    const bool over = std::ranges::none_of(track.records, [&](const auto& entry) { return entry.first > oldest; });
+    const bool over = track.records.empty() || track.records.rbegin()->first <= oldest;
     if (over && track.anchor.valid()) retired.push_back(track.anchor);
     it = over ? tracks_.erase(it) : std::next(it);
   }

@@ -23,8 +23,8 @@ struct CameraRecord {
 struct ObjectRecord {
   ObjectObservation seen;
   Timestamp stamp;
-  VariableId z;                 // invalid when the frame's pose is not in the graph
-  std::optional<SE3> frozen;    // T_world_body when the pose has left the window
+  VariableId z;               // invalid when the frame's pose is not in the graph
+  std::optional<SE3> frozen;  // T_world_body when the pose has left the window
   std::optional<Matrix6d> covariance;
   std::optional<double> speed_sigma_mps;
 };
@@ -35,8 +35,8 @@ struct ObjectTrack {
   std::map<FrameId, ObjectRecord> records;  // of the window, and the last that left it
 };
 
-/// Turns the measurements of frames into variables and factors, and remembers which is which. A pose that no factor would constrain gets a weak prior
-/// on its initial value, so that any combination of switches can be solved.
+/// Turns the measurements of frames into variables and factors, and remembers which is which. A pose that no factor would constrain gets a
+/// weak prior on its initial value, so that any combination of switches can be solved.
 class TrajectoryGraph {
  public:
   explicit TrajectoryGraph(const Optimizer::Params& params);
@@ -59,8 +59,8 @@ class TrajectoryGraph {
  private:
   void addCamera(const FrameMeasurements& measurements);
   void addObservation(const ObjectObservation& seen, double encounter_share);
-  /// An object-object encounter is made from the same two camera encounters, not measured anew. So it takes a share of their information, and they
-  /// keep the rest: what all of them say together is no more than what was measured.
+  /// An object-object encounter is made from the same two camera encounters, not measured anew. So it takes a share of their information,
+  /// and they keep the rest: what all of them say together is no more than what was measured.
   void addObjectEncounter(const ObjectObservation& m, const ObjectObservation& n, double share_m, double share_n);
   void startTrack(ObjectTrack& track, const SE3& T_world_body);
   bool constrain(const ObjectTrack& track, const ObjectRecord& record, double encounter_share);

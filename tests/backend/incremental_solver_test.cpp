@@ -20,7 +20,8 @@ double differenceFromBatch(const IncrementalSolver& solver) {
   DenseSystem dense(solver.graph());
   dense.converge();
   double largest = 0;
-  for (const VariableId v : solver.graph().variables()) largest = std::max(largest, (dense.pose(v).inverse() * solver.pose(v)).log().norm());
+  for (const VariableId v : solver.graph().variables())
+    largest = std::max(largest, (dense.pose(v).inverse() * solver.pose(v)).log().norm());
   return largest;
 }
 

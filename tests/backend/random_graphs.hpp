@@ -44,7 +44,8 @@ class MultibodyGraph {
     SE3 anchor_truth;
   };
 
-  MultibodyGraph(IncrementalSolver& solver, std::uint64_t seed, int objects) : solver_(solver), random_(seed), objects_(static_cast<std::size_t>(objects)) {}
+  MultibodyGraph(IncrementalSolver& solver, std::uint64_t seed, int objects)
+      : solver_(solver), random_(seed), objects_(static_cast<std::size_t>(objects)) {}
 
   void addFrame() {
     const SE3 before = camera_truth_.empty() ? SE3{} : camera_truth_.back();
@@ -54,7 +55,8 @@ class MultibodyGraph {
     if (n == 1)
       add<PriorFactor, 1>({camera_[0]}, PriorModel{}, 1e-2, 1e-3);
     else
-      add<MotionFactor, 2>({camera_[n - 2], camera_[n - 1]}, MotionModel{noisy(before.inverse() * camera_truth_.back())}, kSigma_m, kSigma_rad);
+      add<MotionFactor, 2>({camera_[n - 2], camera_[n - 1]}, MotionModel{noisy(before.inverse() * camera_truth_.back())}, kSigma_m,
+                           kSigma_rad);
     for (std::size_t m = 0; m < objects_.size(); ++m) addObject(objects_[m], m);
   }
 
@@ -84,7 +86,6 @@ class MultibodyGraph {
 
   void addObject(Object& object, std::size_t number) {
     if (object.truth.empty()) {
-
       object.anchor_truth = SE3(expSO3({0, 0.3, 0}), {3.0 * static_cast<double>(number), 0, 10});
       object.truth.emplace_back();
       object.anchor = solver_.addVariable(object.anchor_truth * random_.pose(0.2, 0.05));
@@ -101,13 +102,15 @@ class MultibodyGraph {
       const SE3 motion = object.truth[object.truth.size() - 2].inverse() * z;
       add<MotionFactor, 2>({object.poses[n - 2], object.poses[n - 1]}, MotionModel{noisy(motion)}, kSigma_m, kSigma_rad);
     }
-    if (n >= 3) add<SmoothMotionFactor, 3>({object.poses[n - 3], object.poses[n - 2], object.poses[n - 1]}, SmoothMotionModel{0.1, 0.1}, 2, 0.5);
+    if (n >= 3)
+      add<SmoothMotionFactor, 3>({object.poses[n - 3], object.poses[n - 2], object.poses[n - 1]}, SmoothMotionModel{0.1, 0.1}, 2, 0.5);
     const SE3 seen = camera_truth_.back().inverse() * object.anchor_truth * z;
     add<CameraEncounterFactor, 3>({camera_.back(), object.anchor, object.poses.back()}, CameraEncounterModel{noisy(seen)}, 0.1, 0.02);
     if (number > 0) {
       const Object& other = objects_[number - 1];
       const SE3 relative = (other.anchor_truth * other.truth.back()).inverse() * object.anchor_truth * z;
-      add<ObjectEncounterFactor, 4>({other.anchor, other.poses.back(), object.anchor, object.poses.back()}, ObjectEncounterModel{noisy(relative)}, 0.2, 0.05);
+      add<ObjectEncounterFactor, 4>({other.anchor, other.poses.back(), object.anchor, object.poses.back()},
+                                    ObjectEncounterModel{noisy(relative)}, 0.2, 0.05);
     }
   }
 

@@ -20,7 +20,8 @@ class SimulatedDrive {
   };
   struct Options {
     int frames = 60;
-    std::vector<Vehicle> vehicles = {{{2, 1, 15}, 0, 9, 0.0, 0, 1000}, {{-4, 1, 30}, 0, 6, 0.15, 0, 1000}, {{4, 1, 25}, 0.2, 8, -0.05, 5, 45}};
+    std::vector<Vehicle> vehicles = {
+        {{2, 1, 15}, 0, 9, 0.0, 0, 1000}, {{-4, 1, 30}, 0, 6, 0.15, 0, 1000}, {{4, 1, 25}, 0.2, 8, -0.05, 5, 45}};
     double dt_s = 0.1;
     double encounter_sigma_m = 0.25, encounter_sigma_rad = 0.03;
     double motion_sigma_m = 0.08, motion_sigma_rad = 0.01;
@@ -52,7 +53,8 @@ class SimulatedDrive {
   FrameMeasurementsPtr measure(int frame) {
     FrameMeasurements m{.frame = {frame}, .stamp = stamp(frame), .T_previous_now = {}, .objects = {}, .ended = {}};
     m.odometry_covariance = covariance(options_.odometry_sigma_m, options_.odometry_sigma_rad);
-    if (frame > 0) m.T_previous_now = camera(frame - 1).inverse() * camera(frame) * random_.pose(options_.odometry_sigma_m, options_.odometry_sigma_rad);
+    if (frame > 0)
+      m.T_previous_now = camera(frame - 1).inverse() * camera(frame) * random_.pose(options_.odometry_sigma_m, options_.odometry_sigma_rad);
     for (std::size_t v = 0; v < options_.vehicles.size(); ++v) {
       const int age = frame - options_.vehicles[v].first_frame;
       if (age == static_cast<int>(options_.vehicles[v].last_frame) - options_.vehicles[v].first_frame + 1) m.ended.push_back(track(v));
@@ -84,7 +86,8 @@ class SimulatedDrive {
     seen.encounter_covariance = covariance(options_.encounter_sigma_m, options_.encounter_sigma_rad);
     if (frame > options_.vehicles[v].first_frame)
       seen.motion = {.since = {frame - 1},
-                     .T_before_now = object(v, frame - 1).inverse() * object(v, frame) * random_.pose(options_.motion_sigma_m, options_.motion_sigma_rad),
+                     .T_before_now = object(v, frame - 1).inverse() * object(v, frame) *
+                                     random_.pose(options_.motion_sigma_m, options_.motion_sigma_rad),
                      .covariance = covariance(options_.motion_sigma_m, options_.motion_sigma_rad)};
     return seen;
   }
