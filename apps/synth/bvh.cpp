@@ -70,7 +70,8 @@ std::uint32_t Bvh::split(std::uint32_t first, std::uint32_t count, const std::ve
   const auto best = bestSplit(items_.data() + first, count, boxes);
   if (!best) return count / 2;
   const auto begin = items_.begin() + first;
-  const auto middle = std::stable_partition(begin, begin + count, [&](std::uint32_t i) { return centre(boxes[i], best->axis) < best->position; });
+  const auto middle =
+      std::stable_partition(begin, begin + count, [&](std::uint32_t i) { return centre(boxes[i], best->axis) < best->position; });
   const auto left = static_cast<std::uint32_t>(middle - begin);
   return left == 0 || left == count ? count / 2 : left;
 }
@@ -81,7 +82,8 @@ std::uint32_t Bvh::build(std::uint32_t first, std::uint32_t count, const std::ve
   };
   std::vector<Range> children{{first, count}};
   while (children.size() < 4) {
-    const auto largest = std::max_element(children.begin(), children.end(), [](const Range& a, const Range& b) { return a.count < b.count; });
+    const auto largest =
+        std::max_element(children.begin(), children.end(), [](const Range& a, const Range& b) { return a.count < b.count; });
     if (largest->count < 2) break;
     const std::uint32_t left = split(largest->first, largest->count, boxes);
     const Range rest{largest->first + left, largest->count - left};
@@ -100,7 +102,8 @@ std::uint32_t Bvh::build(std::uint32_t first, std::uint32_t count, const std::ve
     }
   }
   for (std::size_t i = 0; i < children.size(); ++i) {
-    const std::uint32_t child = children[i].count == 1 ? kLeaf | items_[children[i].first] : build(children[i].first, children[i].count, boxes);
+    const std::uint32_t child =
+        children[i].count == 1 ? kLeaf | items_[children[i].first] : build(children[i].first, children[i].count, boxes);
     nodes_[index].child[i] = child;
   }
   return index;

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <immintrin.h>
-
 #include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
+
+#include <immintrin.h>
 
 #include "apps/synth/vec3.hpp"
 

@@ -11,7 +11,8 @@ Bounds boundsOf(const Primitive& part, const Placed& placed) {
   const Vec3 centre = (part.lo + part.hi) * 0.5F, half = (part.hi - part.lo) * 0.5F;
   const auto absolute = [](const Vec3& v) { return Vec3{std::abs(v.x), std::abs(v.y), std::abs(v.z)}; };
   const Vec3 c = placed.rotation * centre + placed.translation;
-  const Vec3 h{dot(absolute(placed.rotation.row0), half), dot(absolute(placed.rotation.row1), half), dot(absolute(placed.rotation.row2), half)};
+  const Vec3 h{dot(absolute(placed.rotation.row0), half), dot(absolute(placed.rotation.row1), half),
+               dot(absolute(placed.rotation.row2), half)};
   const Vec3 slack{1e-4F, 1e-4F, 1e-4F};
   return {c - h - slack, c + h + slack};
 }

@@ -6,8 +6,8 @@ namespace motorcade::synth {
 
 /// How the pixel lies on the ground: long in the direction of view, narrow across.
 struct Ground::View {
-  float x, y;         // direction of view on the ground
-  float length, width;  // of the pixel's footprint
+  float x, y;                     // direction of view on the ground
+  float length, width;            // of the pixel's footprint
   float along_road, across_road;  // footprint in the road's axes
   std::uint32_t seed;
 
@@ -17,14 +17,17 @@ struct Ground::View {
     float sum = 0;
     for (int i = 0; i < taps; ++i) {
       const float shift = length * ((static_cast<float>(i) + 0.5F) / static_cast<float>(taps) - 0.5F);
-      sum += fractal2(px + shift * x, py + shift * y, spacing, octaves, gain, std::max(width, 0.8F * length / static_cast<float>(taps)), seed + salt);
+      sum += fractal2(px + shift * x, py + shift * y, spacing, octaves, gain, std::max(width, 0.8F * length / static_cast<float>(taps)),
+                      seed + salt);
     }
     return sum / static_cast<float>(taps);
   }
 };
 
 Ground::Ground(const FrameScene& frame)
-    : scene_(&frame.scene()), camera_x_m_(frame.T_map_cam().translation().x()), camera_y_m_(frame.T_map_cam().translation().y()),
+    : scene_(&frame.scene()),
+      camera_x_m_(frame.T_map_cam().translation().x()),
+      camera_y_m_(frame.T_map_cam().translation().y()),
       camera_z_m_(static_cast<float>(frame.T_map_cam().translation().z())) {}
 
 std::optional<Ground::Hit> Ground::hit(const Vec3& origin, const Vec3& direction, float t_max) const {
@@ -74,7 +77,8 @@ float Ground::asphalt(const Hit& hit, const View& view) const {
   }
   const float cracks = view.texture(x, y, 2.1F, 3, 0.5F, 40);
   tone *= 1 - 0.55F * saturate(1 - std::abs(cracks) / (0.025F + 0.5F * view.width)) * saturate(0.06F / (0.01F + view.width));
-  const float lid_s = s - 23 * std::floor(s / 23) - 11, lid_d = hit.where.left_m - (hashOf(static_cast<int>(s / 23), 0, view.seed) % 2 == 0 ? 1.2F : -2.1F);
+  const float lid_s = s - 23 * std::floor(s / 23) - 11,
+              lid_d = hit.where.left_m - (hashOf(static_cast<int>(s / 23), 0, view.seed) % 2 == 0 ? 1.2F : -2.1F);
   const float lid = inside(std::hypot(lid_s, lid_d), -1, 0.34F, view.length);
   tone = lerp(tone, 0.10F + 0.16F * pulses(lid_s, 0.11F, 0.05F, view.along_road) * pulses(lid_d + 9, 0.11F, 0.06F, view.across_road), lid);
   const float wear = view.texture(x, y, 3.7F, 4, 0.7F, 10), grain = view.texture(x, y, 0.22F, 5, 0.86F, 20);
@@ -109,16 +113,19 @@ float Ground::beside(const Hit& hit, const View& view) const {
   const float size = 0.55F;
   const float column = std::floor(hit.where.along_m / size), row = std::floor(hit.where.outside_m / size);
   const float shade = unit(hashOf(static_cast<int>(column), static_cast<int>(row), view.seed + 70)) - 0.5F;
-  const float joint = std::fmax(pulses(hit.where.along_m, size, 0.022F, view.along_road), pulses(hit.where.outside_m, size, 0.022F, view.across_road));
+  const float joint =
+      std::fmax(pulses(hit.where.along_m, size, 0.022F, view.along_road), pulses(hit.where.outside_m, size, 0.022F, view.across_road));
   const float dirt = view.texture(x, y, 1.8F, 6, 0.74F, 80);
   return 0.27F * (1 + 0.5F * shade * visible(size, view.along_road) - 0.5F * joint) * (1 + 0.32F * dirt);
 }
 
 float Ground::reflectance(const Hit& hit, const Vec3& direction, float pixel) const {
   const float flat = std::hypot(direction.x, direction.y), width = hit.t * pixel;
-  View view{direction.x / flat, direction.y / flat, width * std::hypot(flat, direction.z) / std::fmax(-direction.z, 1e-3F), width, 0, 0, scene_->seed * 101U};
+  View view{direction.x / flat, direction.y / flat, width * std::hypot(flat, direction.z) / std::fmax(-direction.z, 1e-3F), width, 0, 0,
+            scene_->seed * 101U};
   if (hit.kerb_face) view.length = 2 * width;
-  const float cosine = std::abs(view.x * hit.where.along_x + view.y * hit.where.along_y), sine = std::sqrt(std::fmax(0.0F, 1 - cosine * cosine));
+  const float cosine = std::abs(view.x * hit.where.along_x + view.y * hit.where.along_y),
+              sine = std::sqrt(std::fmax(0.0F, 1 - cosine * cosine));
   view.along_road = view.length * cosine + width * sine;
   view.across_road = view.length * sine + width * cosine;
   if (hit.kerb_face || hit.where.outside_m > 0) return beside(hit, view);

@@ -53,7 +53,8 @@ double truncationOf(const Model& model, const SE3& T_cam_body, const StereoCamer
     for (int j = 0; j < kWide; ++j)
       for (int k = 0; k < kHigh; ++k) {
         const auto share = [](int n, int of) { return (n + 0.5) / of; };
-        const Eigen::Vector3d p_body((share(i, kLong) - 0.5) * model.length_m, (share(j, kWide) - 0.5) * model.width_m, share(k, kHigh) * model.height_m);
+        const Eigen::Vector3d p_body((share(i, kLong) - 0.5) * model.length_m, (share(j, kWide) - 0.5) * model.width_m,
+                                     share(k, kHigh) * model.height_m);
         const auto uvd = camera.project(T_cam_body * p_body);
         if (!uvd || !camera.inLeftImage(uvd->x(), uvd->y(), -0.5)) ++outside;
       }
@@ -72,7 +73,8 @@ Coverage coverageOf(const FrameScene& frame, const Placed& placed, const StereoC
   Coverage count;
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x) {
-      const bool seen = left.object[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) + static_cast<std::size_t>(x)] == placed.id;
+      const bool seen =
+          left.object[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) + static_cast<std::size_t>(x)] == placed.id;
       count.visible += seen ? 1 : 0;
       if ((x - x0) % step != 0 || (y - y0) % step != 0) continue;
       const Eigen::Vector3d d = R * Eigen::Vector3d((x - camera.cx_px) / camera.fx_px, (y - camera.cy_px) / camera.fy_px, 1);
@@ -84,7 +86,8 @@ Coverage coverageOf(const FrameScene& frame, const Placed& placed, const StereoC
   return count;
 }
 
-std::optional<Label> labelOf(const FrameScene& frame, const Placed& placed, const StereoCamera& camera, const Rendering& left, int min_pixels) {
+std::optional<Label> labelOf(const FrameScene& frame, const Placed& placed, const StereoCamera& camera, const Rendering& left,
+                             int min_pixels) {
   const SE3 T_cam_body = frame.T_map_cam().inverse() * placed.T_map_body;
   const Model& model = *placed.model;
   if (T_cam_body.translation().z() < -0.5 * model.length_m) return std::nullopt;
@@ -125,9 +128,9 @@ std::vector<Label> labelsOf(const FrameScene& frame, const StereoCamera& camera,
 
 std::string labelLine(int frame, const Label& l) {
   std::array<char, 400> text{};
-  std::snprintf(text.data(), text.size(), "%d %d %s %.2f %d %.6f %.2f %.2f %.2f %.2f %.4f %.4f %.4f %.6f %.6f %.6f %.6f", frame, l.id, l.type.c_str(),
-                l.truncated, l.occluded, l.alpha_rad, l.left_px, l.top_px, l.right_px, l.bottom_px, l.height_m, l.width_m, l.length_m,
-                l.location_cam.x(), l.location_cam.y(), l.location_cam.z(), l.rotation_y_rad);
+  std::snprintf(text.data(), text.size(), "%d %d %s %.2f %d %.6f %.2f %.2f %.2f %.2f %.4f %.4f %.4f %.6f %.6f %.6f %.6f", frame, l.id,
+                l.type.c_str(), l.truncated, l.occluded, l.alpha_rad, l.left_px, l.top_px, l.right_px, l.bottom_px, l.height_m, l.width_m,
+                l.length_m, l.location_cam.x(), l.location_cam.y(), l.location_cam.z(), l.rotation_y_rad);
   return text.data();
 }
 

@@ -12,7 +12,8 @@ using LanesFloat = float __attribute__((vector_size(16)));
 
 /// Random numbers in [-1, 1) at (ix, iy), (ix + 1, iy), (ix, iy + 1), (ix + 1, iy + 1): hashOf of each.
 LanesFloat cornerValues(int ix, int iy, std::uint32_t seed) {
-  const std::uint32_t x0 = static_cast<std::uint32_t>(ix) * 0x9e3779b1U, y0 = static_cast<std::uint32_t>(iy) * 0x85ebca77U + seed * 0xc2b2ae3dU;
+  const std::uint32_t x0 = static_cast<std::uint32_t>(ix) * 0x9e3779b1U,
+                      y0 = static_cast<std::uint32_t>(iy) * 0x85ebca77U + seed * 0xc2b2ae3dU;
   const Lanes x{x0, x0 + 0x9e3779b1U, x0, x0 + 0x9e3779b1U}, y{y0, y0, y0 + 0x85ebca77U, y0 + 0x85ebca77U};
   Lanes h = x ^ y;
   h ^= h >> 16;

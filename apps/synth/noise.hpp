@@ -41,7 +41,8 @@ float noise3(float x, float y, float z, std::uint32_t seed);
 /// Weight of a lattice noise with `spacing`: none below 1.2 footprints, all above 2.4.
 inline float visible(float spacing, float footprint) { return saturate((spacing - 1.2F * footprint) / (1.2F * footprint + 1e-9F)); }
 
-/// Sum of `octaves` noises from `spacing` downwards, each half as wide and `gain` times as strong; octaves too fine for the footprint fade out.
+/// Sum of `octaves` noises from `spacing` downwards, each half as wide and `gain` times as strong; octaves too fine for the footprint fade
+/// out.
 float fractal2(float x, float y, float spacing, int octaves, float gain, float footprint, std::uint32_t seed);
 float fractal3(float x, float y, float z, float spacing, int octaves, float gain, float footprint, std::uint32_t seed);
 

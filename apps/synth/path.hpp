@@ -12,7 +12,7 @@ class Profile {
   struct Knot {
     double at, value;
   };
-  Profile(double constant = 0) : knots_{{0, constant}} {}  // NOLINT(google-explicit-constructor): a constant is a profile
+  Profile(double constant = 0) : knots_{{0, constant}} {}         // NOLINT(google-explicit-constructor): a constant is a profile
   Profile(std::vector<Knot> knots) : knots_(std::move(knots)) {}  // NOLINT(google-explicit-constructor)
 
   double operator()(double at) const;

@@ -163,11 +163,15 @@ void Model::cutLast(const Vec3& normal, const Vec3& point) {
   ++parts.back().cuts;
 }
 
-std::optional<SurfaceHit> intersect(const Primitive& part, const Cut* cuts, const Vec3& origin, const Vec3& direction, float t_min, float t_max) {
+std::optional<SurfaceHit> intersect(const Primitive& part, const Cut* cuts, const Vec3& origin, const Vec3& direction, float t_min,
+                                    float t_max) {
   switch (part.shape) {
-    case Shape::kBlock: return intersectBlock(part, cuts, origin, direction, t_min, t_max);
-    case Shape::kCylinder: return intersectCylinder(part, origin, direction, t_min, t_max);
-    case Shape::kEllipsoid: return intersectEllipsoid(part, origin, direction, t_min, t_max);
+    case Shape::kBlock:
+      return intersectBlock(part, cuts, origin, direction, t_min, t_max);
+    case Shape::kCylinder:
+      return intersectCylinder(part, origin, direction, t_min, t_max);
+    case Shape::kEllipsoid:
+      return intersectEllipsoid(part, origin, direction, t_min, t_max);
   }
   return std::nullopt;
 }

@@ -10,8 +10,27 @@
 namespace motorcade::synth {
 
 enum class Material : std::uint8_t {
-  kPaint, kCabin, kGlass, kTyre, kPlastic, kChrome, kHeadLamp, kTailLamp, kPlate, kGrille, kCargo,  // vehicles
-  kBrick, kPlaster, kRoof, kConcrete, kMetal, kWood, kSign, kBark, kLeaves, kHedge,                 // street
+  kPaint,
+  kCabin,
+  kGlass,
+  kTyre,
+  kPlastic,
+  kChrome,
+  kHeadLamp,
+  kTailLamp,
+  kPlate,
+  kGrille,
+  kCargo,  // vehicles
+  kBrick,
+  kPlaster,
+  kRoof,
+  kConcrete,
+  kMetal,
+  kWood,
+  kSign,
+  kBark,
+  kLeaves,
+  kHedge,  // street
 };
 
 enum class Shape : std::uint8_t { kBlock, kCylinder, kEllipsoid };
@@ -54,7 +73,8 @@ struct SurfaceHit {
 };
 
 /// First intersection of the ray with a part in (t_min, t_max), all in the model's frame.
-std::optional<SurfaceHit> intersect(const Primitive& part, const Cut* cuts, const Vec3& origin, const Vec3& direction, float t_min, float t_max);
+std::optional<SurfaceHit> intersect(const Primitive& part, const Cut* cuts, const Vec3& origin, const Vec3& direction, float t_min,
+                                    float t_max);
 
 /// Points on the part whose convex hull holds it: tight for blocks, within 1 % of the radius for round parts.
 std::vector<Vec3> hullPoints(const Primitive& part, const Cut* cuts);

@@ -30,7 +30,7 @@ void parallelRows(int rows, int threads, const std::function<void(int)>& work) {
 }
 
 struct Sample {
-  float light = 0;   // linear
+  float light = 0;    // linear
   float depth_m = 0;  // 0: sky
   std::uint32_t surface = 0;
   std::int16_t object = -1;
@@ -83,7 +83,8 @@ class RayCaster {
     const Vec3 view = normalized(d);
     const float slant = std::fmax(0.15F, std::abs(dot(normal, view)));
     // Geometric mean of the footprint's two sides; steep views are supersampled anyway.
-    const SurfacePoint point{hit.part, placed.model.get(), hit.position_body, hit.normal_body, hit.t * pixel / std::sqrt(slant), placed.wheel_angle_rad};
+    const SurfacePoint point{
+        hit.part, placed.model.get(), hit.position_body, hit.normal_body, hit.t * pixel / std::sqrt(slant), placed.wheel_angle_rad};
     const Reflectance r = reflectanceOf(point);
     const Vec3 position = origin_ + d * hit.t;
     float light = r.diffuse * lit(position, normal) + r.glow;
@@ -150,7 +151,8 @@ Sensor sensorOf(const FrameScene& frame, Eye eye, const RenderOptions& options) 
 bool needsMore(const std::vector<Sample>& samples, int width, int height, int x, int y) {
   constexpr float kContrast = 11;
   const auto at = [&](int i, int j) -> const Sample& {
-    return samples[static_cast<std::size_t>(std::clamp(j, 0, height - 1)) * static_cast<std::size_t>(width) + static_cast<std::size_t>(std::clamp(i, 0, width - 1))];
+    return samples[static_cast<std::size_t>(std::clamp(j, 0, height - 1)) * static_cast<std::size_t>(width) +
+                   static_cast<std::size_t>(std::clamp(i, 0, width - 1))];
   };
   const Sample& centre = at(x, y);
   const float level = response(centre.light);
@@ -165,7 +167,9 @@ bool needsMore(const std::vector<Sample>& samples, int width, int height, int x,
 
 Rendering render(const FrameScene& frame, const StereoCamera& camera, Eye eye, const RenderOptions& options) {
   const int width = camera.width_px, height = camera.height_px;
-  const auto index = [width](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); };
+  const auto index = [width](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  };
   const RayCaster caster(frame, camera, eye);
   std::vector<Sample> samples(index(0, height));
   parallelRows(height, options.threads, [&](int y) {
@@ -178,7 +182,8 @@ Rendering render(const FrameScene& frame, const StereoCamera& camera, Eye eye, c
       const Sample& centre = samples[index(x, y)];
       float light = saturate(centre.light);
       if (needsMore(samples, width, height, x, y)) {
-        for (const auto& [du, dv] : kSpread) light += saturate(caster.cast(static_cast<float>(x) + du, static_cast<float>(y) + dv, 1.6F).light);
+        for (const auto& [du, dv] : kSpread)
+          light += saturate(caster.cast(static_cast<float>(x) + du, static_cast<float>(y) + dv, 1.6F).light);
         light /= kSpread.size() + 1;
       }
       out.image.mutableRow(y)[x] = sensor.read(response(light), x, y);
@@ -191,7 +196,8 @@ Rendering render(const FrameScene& frame, const StereoCamera& camera, Eye eye, c
 
 StereoCamera kittiCamera(int width_px, int height_px) {
   const double scale = width_px / 1242.0;
-  return {721.5377 * scale, 721.5377 * scale, (609.5593 + 0.5) * scale - 0.5, (172.854 + 0.5) * height_px / 375.0 - 0.5, 0.5371657, width_px, height_px};
+  return {721.5377 * scale, 721.5377 * scale, (609.5593 + 0.5) * scale - 0.5, (172.854 + 0.5) * height_px / 375.0 - 0.5, 0.5371657,
+          width_px,         height_px};
 }
 
 }  // namespace motorcade::synth

@@ -14,7 +14,7 @@ enum class Eye { kLeft, kRight };
 /// An eye's picture, and what lies exactly behind the centre of each pixel.
 struct Rendering {
   Image image;
-  std::vector<float> depth_m;  // 0 for the sky
+  std::vector<float> depth_m;        // 0 for the sky
   std::vector<std::int16_t> object;  // id, or -1
 };
 

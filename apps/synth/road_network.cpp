@@ -64,8 +64,7 @@ RoadNetwork::RoadNetwork(std::vector<Road> roads) : roads_(std::move(roads)), al
       for (int y = std::max(0, row - reach); y <= std::min(rows_ - 1, row + reach); ++y)
         for (int x = std::max(0, column - reach); x <= std::min(columns_ - 1, column + reach); ++x) {
           const auto index = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
-          const double d2 =
-              (p - Eigen::Vector2d(origin_x_m_ + (x + 0.5) * kCell_m, origin_y_m_ + (y + 0.5) * kCell_m)).squaredNorm();
+          const double d2 = (p - Eigen::Vector2d(origin_x_m_ + (x + 0.5) * kCell_m, origin_y_m_ + (y + 0.5) * kCell_m)).squaredNorm();
           if (d2 >= nearest[index]) continue;
           if (nearest[index] == std::numeric_limits<double>::max()) cells_[index].push_back({r, i});
           cells_[index].back().sample = i;
@@ -77,10 +76,12 @@ RoadNetwork::RoadNetwork(std::vector<Road> roads) : roads_(std::move(roads)), al
 
 RoadPosition RoadNetwork::locate(double x_m, double y_m) const {
   RoadPosition best;
-  const int column = static_cast<int>(std::floor((x_m - origin_x_m_) / kCell_m)), row = static_cast<int>(std::floor((y_m - origin_y_m_) / kCell_m));
+  const int column = static_cast<int>(std::floor((x_m - origin_x_m_) / kCell_m)),
+            row = static_cast<int>(std::floor((y_m - origin_y_m_) / kCell_m));
   if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return best;
   const Eigen::Vector2d p(x_m, y_m);
-  for (const auto& candidate : cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)]) {
+  for (const auto& candidate :
+       cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)]) {
     const Road& road = roads_[static_cast<std::size_t>(candidate.road)];
     const double step = road.path->length_m() / static_cast<double>(road.path->samples().size() - 1);
     const auto& along = along_[static_cast<std::size_t>(candidate.road)];
@@ -92,8 +93,8 @@ RoadPosition RoadNetwork::locate(double x_m, double y_m) const {
       continue;
     }
     const Eigen::Vector2d& direction = along[static_cast<std::size_t>(foot.sample)];
-    best = {candidate.road, static_cast<float>(foot.s_m), static_cast<float>(foot.left_m), outside, best.outside_m,
-            static_cast<float>(direction.x()), static_cast<float>(direction.y())};
+    best = {candidate.road, static_cast<float>(foot.s_m),      static_cast<float>(foot.left_m),  outside,
+            best.outside_m, static_cast<float>(direction.x()), static_cast<float>(direction.y())};
   }
   return best;
 }

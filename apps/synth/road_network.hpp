@@ -20,11 +20,11 @@ struct Road {
 
 /// Where a ground point lies on the roads.
 struct RoadPosition {
-  int road = -1;              // the road it is deepest inside of or nearest to; -1 far from all
-  float along_m = 0;          // arc length on that road
-  float left_m = 0;           // offset from its centre line
-  float outside_m = 1e3F;     // signed distance from the kerb: negative on the asphalt
-  float next_outside_m = 1e3F;  // the same for the second nearest road
+  int road = -1;                   // the road it is deepest inside of or nearest to; -1 far from all
+  float along_m = 0;               // arc length on that road
+  float left_m = 0;                // offset from its centre line
+  float outside_m = 1e3F;          // signed distance from the kerb: negative on the asphalt
+  float next_outside_m = 1e3F;     // the same for the second nearest road
   float along_x = 1, along_y = 0;  // direction of the road
 };
 

@@ -29,8 +29,8 @@ void SceneBuilder::addParked(VehicleKind kind, int road, double along_m, double 
   const auto point = scene.roads.roads()[static_cast<std::size_t>(road)].path->at(along_m);
   const Eigen::Vector2d p = point.position + left_m * point.left();
   const double heading = point.heading_rad + (backwards ? std::numbers::pi : 0) + random.uniform(-0.02F, 0.02F);
-  scene.fixtures.push_back({std::make_shared<const Model>(makeVehicle(kind, random.bits())),
-                            SE3(expSO3({0, 0, heading}), {p.x(), p.y(), 0}), next_id_++});
+  scene.fixtures.push_back(
+      {std::make_shared<const Model>(makeVehicle(kind, random.bits())), SE3(expSO3({0, 0, heading}), {p.x(), p.y(), 0}), next_id_++});
 }
 
 void SceneBuilder::place(Model model, int road, double along_m, double left_m, double turn_rad, double margin_m) {
@@ -58,12 +58,14 @@ void SceneBuilder::placeWall(int road, const Dressing& d, double side) {
     if (house) {
       const float depth = random.uniform(7, 11), height = random.uniform(5, 14);
       const double setback = random.uniform(0, 2.5F);
-      place(makeBuilding(length - 0.4F, depth, height, random.bits()), road, middle, side * (half + d.clear_m + setback + 0.5 * depth + 0.9), 0, 2.5);
+      place(makeBuilding(length - 0.4F, depth, height, random.bits()), road, middle,
+            side * (half + d.clear_m + setback + 0.5 * depth + 0.9), 0, 2.5);
       if (setback > 1 && random.chance(0.6F)) place(makeFence(length - 2, random.bits()), road, middle, side * (half + d.clear_m), 0, 1.5);
     } else if (random.chance(0.5F)) {
       place(makeHedge(length - 0.5F, random.uniform(1.2F, 2.6F), random.bits()), road, middle, side * (half + d.clear_m + 0.6), 0, 1.5);
       for (const double back : {5.0, 9.0})
-        place(makeTree(random.uniform(6, 10), random.bits()), road, middle + random.uniform(-4, 4), side * (half + d.clear_m + back), 0, 1.9);
+        place(makeTree(random.uniform(6, 10), random.bits()), road, middle + random.uniform(-4, 4), side * (half + d.clear_m + back), 0,
+              1.9);
     } else {
       place(makeFence(length - 1, random.bits()), road, middle, side * (half + d.clear_m + 0.3), 0, 1.5);
       place(makeBush(length - 3, random.bits()), road, middle, side * (half + d.clear_m + 2.2), 0, 1.5);
@@ -76,9 +78,11 @@ void SceneBuilder::placeWall(int road, const Dressing& d, double side) {
 void SceneBuilder::placePavement(int road, const Dressing& d, double side) {
   const double half = scene.roads.roads()[static_cast<std::size_t>(road)].half_width_m;
   for (double s = d.from_m + random.uniform(0, 6); s < d.to_m; s += random.uniform(7, 13)) {
-    if (d.trees && random.chance(0.6F)) place(makeTree(random.uniform(5.5F, 8.5F), random.bits()), road, s, side * (half + 1.1), random.uniform(0, 6), 0.4);
+    if (d.trees && random.chance(0.6F))
+      place(makeTree(random.uniform(5.5F, 8.5F), random.bits()), road, s, side * (half + 1.1), random.uniform(0, 6), 0.4);
     if (random.chance(0.35F)) place(makeTrafficSign(random.bits()), road, s + 2.5, side * (half + 0.7), side < 0 ? 0.15 : 3.3, 0.3);
-    if (!d.rural && random.chance(0.7F)) place(makeStreetClutter(random.bits()), road, s + 4, side * (half + d.clear_m - 0.9), random.uniform(-0.2F, 0.2F), 0.5);
+    if (!d.rural && random.chance(0.7F))
+      place(makeStreetClutter(random.bits()), road, s + 4, side * (half + d.clear_m - 0.9), random.uniform(-0.2F, 0.2F), 0.5);
   }
   for (double s = d.from_m + 11; s < d.to_m; s += 28)
     place(makeLampPost(random.bits()), road, s + (side > 0 ? 14 : 0), side * (half + 0.6), side < 0 ? std::numbers::pi : 0, 0.3);

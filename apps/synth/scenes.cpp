@@ -51,7 +51,8 @@ void buildOvertake(SceneBuilder& b) {
   const double v = vary(b.random, 11, 0.04), start = 60;
   b.setEgo(drive(path, start, v, 0));
   b.addMover(VehicleKind::kCar, drive(path, start - 0.5 + b.random.uniform(-0.5F, 0.5F), Profile({{0, v + 5.5}, {2.8, v + 7.5}}), kLane_m));
-  b.addMover(VehicleKind::kCar, drive(path, start - 4.5 + b.random.uniform(-0.5F, 0.5F), Profile({{0, v + 7.5}, {2.8, v + 8.5}}), -kLane_m));
+  b.addMover(VehicleKind::kCar,
+             drive(path, start - 4.5 + b.random.uniform(-0.5F, 0.5F), Profile({{0, v + 7.5}, {2.8, v + 8.5}}), -kLane_m));
   b.dress(0, {.from_m = 20, .to_m = 240, .parked_share = 0.35});
 }
 
@@ -66,18 +67,25 @@ void buildHighway(SceneBuilder& b) {
     double ahead_m, lane, speed_change, late_change;
     VehicleKind kind;
   };
-  const std::array<Car, 13> cars{{{17, 0, 0.5, 0.2, VehicleKind::kCar},     {24, 1, 2.4, 2.8, VehicleKind::kCar},
-                                  {20, -1, -0.7, -0.3, VehicleKind::kVan},  {38, 0, 2.2, 2.6, VehicleKind::kCar},
-                                  {42, -1, -1.1, -0.7, VehicleKind::kTruck}, {8, 1, 2.0, 2.4, VehicleKind::kCar},
-                                  {-14, 1, 2.6, 2.2, VehicleKind::kCar},    {-30, 1, 2.8, 2.4, VehicleKind::kCar},
-                                  {7, -1, -0.9, -0.5, VehicleKind::kCar},   {-48, 1, 3.0, 2.8, VehicleKind::kCar},
-                                  {58, 1, 3.2, 2.8, VehicleKind::kCar},     {72, -1, -1.4, -1.0, VehicleKind::kTruck},
+  const std::array<Car, 13> cars{{{17, 0, 0.5, 0.2, VehicleKind::kCar},
+                                  {24, 1, 2.4, 2.8, VehicleKind::kCar},
+                                  {20, -1, -0.7, -0.3, VehicleKind::kVan},
+                                  {38, 0, 2.2, 2.6, VehicleKind::kCar},
+                                  {42, -1, -1.1, -0.7, VehicleKind::kTruck},
+                                  {8, 1, 2.0, 2.4, VehicleKind::kCar},
+                                  {-14, 1, 2.6, 2.2, VehicleKind::kCar},
+                                  {-30, 1, 2.8, 2.4, VehicleKind::kCar},
+                                  {7, -1, -0.9, -0.5, VehicleKind::kCar},
+                                  {-48, 1, 3.0, 2.8, VehicleKind::kCar},
+                                  {58, 1, 3.2, 2.8, VehicleKind::kCar},
+                                  {72, -1, -1.4, -1.0, VehicleKind::kTruck},
                                   {52, 0, 1.8, 2.2, VehicleKind::kCar}}};
   for (const auto& car : cars) {
     const double jitter = b.random.uniform(-1, 1);
     Profile left(car.lane * kLane_m);
     if (car.ahead_m == 38) left = Profile({{150, 0}, {230, kLane_m}});  // changes lane
-    b.addMover(car.kind, drive(path, start + car.ahead_m + jitter, Profile({{0, v + car.speed_change}, {12, v + car.late_change}, {21, v + car.speed_change}}), left));
+    b.addMover(car.kind, drive(path, start + car.ahead_m + jitter,
+                               Profile({{0, v + car.speed_change}, {12, v + car.late_change}, {21, v + car.speed_change}}), left));
   }
   b.dress(0, {.from_m = 0, .to_m = 900, .clear_m = 5, .rural = true});
 }
@@ -157,14 +165,12 @@ void buildConvoy(SceneBuilder& b) {
   const auto beside = [&](VehicleKind kind, double ahead_m, double lane, double change, double later) {
     b.addMover(kind, drive(path, start + ahead_m, Profile({{0, v + change}, {3, v + later}, {6, v + change}}), lane * (kLane_m - 0.25)));
   };
-  beside(VehicleKind::kTruck, 14.5, 0, 0.2, -0.3);
-  beside(VehicleKind::kTruck, 8.0, 1, 0.6, -0.5);
-  beside(VehicleKind::kTruck, 7.0, -1, -0.4, 0.7);
-  beside(VehicleKind::kTruck, 18.5, 1, 0.3, -0.2);
-  beside(VehicleKind::kTruck, 17.5, -1, -0.2, 0.4);
-  beside(VehicleKind::kVan, 25.0, 0, 0.4, 0.2);
-  beside(VehicleKind::kTruck, 29.0, 1, 0.2, 0.2);
-  beside(VehicleKind::kTruck, 28.0, -1, 0.1, 0.3);
+  beside(VehicleKind::kTruck, 19.0, 0, 0.2, -0.3);
+  beside(VehicleKind::kTruck, 9.5, 1, 0.6, -0.5);
+  beside(VehicleKind::kVan, 9.0, -1, -0.4, 0.7);
+  beside(VehicleKind::kVan, 21.0, 1, 0.3, -0.2);
+  beside(VehicleKind::kTruck, 21.5, -1, -0.2, 0.4);
+  beside(VehicleKind::kVan, 34.0, 0, 0.4, 0.2);
   b.dress(0, {.from_m = 20, .to_m = 330, .parked_share = 0});
 }
 
@@ -172,7 +178,8 @@ void buildCircuit(SceneBuilder& b) {
   // A rounded rectangle, driven anticlockwise, starting in the middle of a straight.
   constexpr double kRadius_m = 20, kLong_m = 120, kShort_m = 60;
   const Path::Piece corner{0.5 * std::numbers::pi * kRadius_m, 0.5 * std::numbers::pi};
-  const auto path = makePath(0, 0, 0, {{0.5 * kLong_m, 0}, corner, {kShort_m, 0}, corner, {kLong_m, 0}, corner, {kShort_m, 0}, corner, {0.5 * kLong_m, 0}}, true);
+  const auto path = makePath(
+      0, 0, 0, {{0.5 * kLong_m, 0}, corner, {kShort_m, 0}, corner, {kLong_m, 0}, corner, {kShort_m, 0}, corner, {0.5 * kLong_m, 0}}, true);
   b.setRoads({street(path)});
   b.scene.lap_frames = 600;
   b.scene.frames = 600;
@@ -189,7 +196,8 @@ void buildCircuit(SceneBuilder& b) {
   b.addMover(VehicleKind::kCar, periodic(17, 1, -1.75, 2.5, 3, false));
   b.addMover(VehicleKind::kVan, periodic(38, 1, -1.75, 3.0, 2, false));
   for (int i = 0; i < 5; ++i)
-    b.addMover(i == 2 ? VehicleKind::kVan : VehicleKind::kCar, periodic(50 + i * path->length_m() / 5 + b.random.uniform(-12, 12), 1, 1.75, 2.0, 2, true));
+    b.addMover(i == 2 ? VehicleKind::kVan : VehicleKind::kCar,
+               periodic(50 + i * path->length_m() / 5 + b.random.uniform(-12, 12), 1, 1.75, 2.0, 2, true));
   b.dress(0, {.from_m = 0, .to_m = path->length_m() - 12, .parked_share = 0.4});
 }
 
@@ -197,12 +205,17 @@ struct Entry {
   const char* name;
   void (*build)(SceneBuilder&);
 };
-constexpr std::array<Entry, 9> kScenes{{{"overtake", buildOvertake}, {"highway", buildHighway}, {"urban", buildUrban}, {"static", buildStatic},
-                                        {"crossing", buildCrossing}, {"lead", buildLead}, {"stop_and_go", buildStopAndGo}, {"convoy", buildConvoy},
+constexpr std::array<Entry, 9> kScenes{{{"overtake", buildOvertake},
+                                        {"highway", buildHighway},
+                                        {"urban", buildUrban},
+                                        {"static", buildStatic},
+                                        {"crossing", buildCrossing},
+                                        {"lead", buildLead},
+                                        {"stop_and_go", buildStopAndGo},
+                                        {"convoy", buildConvoy},
                                         {"circuit", buildCircuit}}};
 
 }  // namespace
-
 
 std::vector<std::string> sceneNames() {
   std::vector<std::string> names;

@@ -34,7 +34,8 @@ void makeFolders(const fs::path& folder) {
 void writeCalibration(const fs::path& file, const StereoCamera& c) {
   std::string text;
   for (int i = 0; i < 4; ++i)
-    text += format("P%d: %.9g 0 %.9g %.9g 0 %.9g %.9g 0 0 0 1 0\n", i, c.fx_px, c.cx_px, i % 2 == 0 ? 0.0 : -c.fx_px * c.baseline_m, c.fy_px, c.cy_px);
+    text += format("P%d: %.9g 0 %.9g %.9g 0 %.9g %.9g 0 0 0 1 0\n", i, c.fx_px, c.cx_px, i % 2 == 0 ? 0.0 : -c.fx_px * c.baseline_m,
+                   c.fy_px, c.cy_px);
   text += "R0_rect: 1 0 0 0 1 0 0 0 1\n";
   text += "Tr_velo_to_cam: 0 -1 0 0 0 0 -1 0 1 0 0 0\n";
   text += "Tr_imu_to_velo: 1 0 0 0 0 1 0 0 0 0 1 0\n";
@@ -55,7 +56,8 @@ Image instanceMask(const Rendering& left, const StereoCamera& camera) {
   Image mask = ImagePool().acquire(camera.width_px, camera.height_px);
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x)
-      mask.mutableRow(y)[x] = static_cast<std::uint8_t>(left.object[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) + static_cast<std::size_t>(x)] + 1);
+      mask.mutableRow(y)[x] = static_cast<std::uint8_t>(
+          left.object[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) + static_cast<std::size_t>(x)] + 1);
   return mask;
 }
 
@@ -70,7 +72,9 @@ struct Tables {
     poses.writeLine(kittiLine(T_world_map * frame.T_map_cam()));
     for (const auto& label : seen) labels.writeLine(labelLine(frame.frame(), label));
     for (const auto& placed : frame.placed())
-      if (placed.id >= 0) objects.writeLine(format("%d %d %d ", frame.frame(), placed.id, placed.moving ? 1 : 0) + kittiLine(T_world_map * placed.T_map_body));
+      if (placed.id >= 0)
+        objects.writeLine(format("%d %d %d ", frame.frame(), placed.id, placed.moving ? 1 : 0) +
+                          kittiLine(T_world_map * placed.T_map_body));
   }
   void close() {
     for (LineFile* file : {&times, &poses, &labels, &objects}) file->close();

@@ -21,7 +21,9 @@ Model makeBuilding(float length_m, float depth_m, float height_m, std::uint32_t 
   for (float storey = 4; storey < height_m - 2 && random.chance(0.8F); storey += 3.1F)  // balconies
     for (float at = -x + 2.5F; at < x - 2.5F; at += 4.5F)
       for (const float side : {-1.0F, 1.0F})
-        if (random.chance(0.5F)) m.add(Material::kWood, {at, side * y, storey}, {at + 2.2F, side * (y + 0.9F), storey + 0.95F}, random.uniform(0.2F, 0.6F), random.bits());
+        if (random.chance(0.5F))
+          m.add(Material::kWood, {at, side * y, storey}, {at + 2.2F, side * (y + 0.9F), storey + 0.95F}, random.uniform(0.2F, 0.6F),
+                random.bits());
   return m;
 }
 
@@ -46,7 +48,8 @@ Model makeBush(float length_m, std::uint32_t seed) {
   Random random(seed);
   for (float x = -0.5F * length_m; x < 0.5F * length_m; x += 0.9F) {
     const float r = random.uniform(0.6F, 1.1F);
-    m.addEllipsoid(Material::kLeaves, {x, random.uniform(-0.3F, 0.3F), 0.7F * r}, {r, 0.8F * r, r}, random.uniform(0.09F, 0.24F), random.bits());
+    m.addEllipsoid(Material::kLeaves, {x, random.uniform(-0.3F, 0.3F), 0.7F * r}, {r, 0.8F * r, r}, random.uniform(0.09F, 0.24F),
+                   random.bits());
   }
   return m;
 }
@@ -69,7 +72,8 @@ Model makeFence(float length_m, std::uint32_t seed) {
     for (const float z : {0.35F, 1.05F}) m.add(Material::kMetal, {-x, -0.02F, z}, {x, 0.02F, z + 0.06F}, tone, seed);
     for (float at = -x; at < x; at += 0.3F) m.add(Material::kMetal, {at, -0.015F, 0}, {at + 0.03F, 0.015F, 1.25F}, tone, seed);
   }
-  for (float at = -x; at <= x + 0.01F; at += 0.5F * length_m) m.add(Material::kConcrete, {at - 0.08F, -0.08F, 0}, {at + 0.08F, 0.08F, 1.65F}, 0.45F, seed + 1);
+  for (float at = -x; at <= x + 0.01F; at += 0.5F * length_m)
+    m.add(Material::kConcrete, {at - 0.08F, -0.08F, 0}, {at + 0.08F, 0.08F, 1.65F}, 0.45F, seed + 1);
   return m;
 }
 
@@ -88,7 +92,8 @@ Model makeTrafficSign(std::uint32_t seed) {
   Random random(seed);
   m.addCylinder(Material::kMetal, 2, {-0.04F, -0.04F, 0}, {0.04F, 0.04F, 2.9F}, 0.4F, seed);
   const float width = random.uniform(0.3F, 0.55F);
-  m.add(Material::kSign, {-0.07F, -width, 2.1F}, {-0.045F, width, 2.1F + 2 * random.uniform(0.25F, 0.5F)}, random.chance(0.6F) ? 0.75F : 0.12F, seed);
+  m.add(Material::kSign, {-0.07F, -width, 2.1F}, {-0.045F, width, 2.1F + 2 * random.uniform(0.25F, 0.5F)},
+        random.chance(0.6F) ? 0.75F : 0.12F, seed);
   return m;
 }
 

@@ -1,12 +1,12 @@
 #include "apps/synth/synth_command.hpp"
 
-#include <unistd.h>
-
 #include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <thread>
+
+#include <unistd.h>
 
 #include "apps/synth/scene_builder.hpp"
 #include "apps/synth/sequence_writer.hpp"
@@ -55,7 +55,8 @@ int synthesize(const Arguments& arguments, const StereoCamera& camera) {
   };
   synth::writeSequence(scene, arguments.out, options);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::printf("%s: %d stereo pairs of scene '%s' in %.1f s (%.2f per second)\n", arguments.out.c_str(), frames, scene.name.c_str(), seconds, frames / seconds);
+  std::printf("%s: %d stereo pairs of scene '%s' in %.1f s (%.2f per second)\n", arguments.out.c_str(), frames, scene.name.c_str(), seconds,
+              frames / seconds);
   return 0;
 }
 

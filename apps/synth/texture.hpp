@@ -9,8 +9,8 @@ struct SurfacePoint {
   const Primitive* part = nullptr;
   const Model* model = nullptr;
   Vec3 position, normal;
-  float footprint_m = 0;       // width of a pixel on the surface
-  float wheel_angle_rad = 0;   // how far the vehicle's wheels have turned
+  float footprint_m = 0;      // width of a pixel on the surface
+  float wheel_angle_rad = 0;  // how far the vehicle's wheels have turned
 };
 
 /// How a surface answers to light.

@@ -31,7 +31,8 @@ float masonry(const SurfacePoint& s, const WallPoint& w) {
 /// One window: frame, cross bar, curtains or dark room, sill.
 Reflectance window(float x, float y, float width, float height, float f, std::uint32_t bits) {
   const float frame = 1 - inside(x, 0.08F, width - 0.08F, f) * inside(y, 0.08F, height - 0.08F, f);
-  const float bars = std::fmax(inside(x, 0.5F * width - 0.035F, 0.5F * width + 0.035F, f), inside(y, 0.66F * height - 0.03F, 0.66F * height + 0.03F, f));
+  const float bars =
+      std::fmax(inside(x, 0.5F * width - 0.035F, 0.5F * width + 0.035F, f), inside(y, 0.66F * height - 0.03F, 0.66F * height + 0.03F, f));
   const float blind = (bits & 3U) == 0 ? 0.45F : 0.05F;
   const float drawn = height * (0.3F + 0.6F * unit(mix(bits)));
   float room = lerp(0.03F, blind, inside(y, drawn, height, f));
@@ -80,7 +81,8 @@ Reflectance sign(const SurfacePoint& s) {
   const float cell = height / 7;
   const float column = std::floor(w.u / cell), row = std::floor(v / cell);
   const bool ink = hashOf(static_cast<int>(column), static_cast<int>(row), s.part->seed) % 5 < 2 && static_cast<int>(row) % 2 == 1;
-  const float mark = ink ? inside(w.u - column * cell, 0.1F * cell, 0.8F * cell, f) * inside(v - row * cell, 0.05F * cell, 0.95F * cell, f) : 0;
+  const float mark =
+      ink ? inside(w.u - column * cell, 0.1F * cell, 0.8F * cell, f) * inside(v - row * cell, 0.05F * cell, 0.95F * cell, f) : 0;
   const float ground = s.part->tone, letters = ground > 0.4F ? 0.06F : 0.85F;
   return {lerp(lerp(ground, letters, mark), letters, border), 0, 0};
 }
@@ -90,7 +92,8 @@ float planks(const SurfacePoint& s) {
   const float board = std::floor(w.u / 0.14F);
   const float shade = unit(hashOf(static_cast<int>(board), 3, s.part->seed)) - 0.5F;
   const float grain = fractal2(w.u * 6, w.v, 0.4F, 4, 0.7F, s.footprint_m, s.part->seed);
-  return s.part->tone * (1 + visible(0.14F, s.footprint_m) * 0.6F * shade + 0.2F * grain - 0.7F * pulses(w.u, 0.14F, 0.012F, s.footprint_m));
+  return s.part->tone *
+         (1 + visible(0.14F, s.footprint_m) * 0.6F * shade + 0.2F * grain - 0.7F * pulses(w.u, 0.14F, 0.012F, s.footprint_m));
 }
 
 }  // namespace
@@ -100,14 +103,22 @@ Reflectance streetReflectance(const SurfacePoint& s) {
   const float f = s.footprint_m;
   switch (s.part->material) {
     case Material::kBrick:
-    case Material::kPlaster: return facade(s);
+    case Material::kPlaster:
+      return facade(s);
     case Material::kLeaves:
-    case Material::kHedge: return {leaves(s), 0, 0};
-    case Material::kSign: return sign(s);
-    case Material::kWood: return {planks(s), 0, 0};
-    case Material::kRoof: return {s.part->tone * (1 - 0.4F * pulses(p.z, 0.22F, 0.05F, f) + 0.25F * fractal3(p.x, p.y, p.z, 0.9F, 4, 0.7F, f, s.part->seed)), 0, 0};
-    case Material::kBark: return {s.part->tone * (1 + 0.6F * fractal3(p.x * 2, p.y * 2, p.z * 0.6F, 0.22F, 4, 0.75F, f, s.part->seed)), 0, 0};
-    default: return {s.part->tone * (1 + 0.28F * fractal3(p.x, p.y, p.z, 1.1F, 6, 0.72F, f, s.part->seed)), 0, 0};
+    case Material::kHedge:
+      return {leaves(s), 0, 0};
+    case Material::kSign:
+      return sign(s);
+    case Material::kWood:
+      return {planks(s), 0, 0};
+    case Material::kRoof:
+      return {s.part->tone * (1 - 0.4F * pulses(p.z, 0.22F, 0.05F, f) + 0.25F * fractal3(p.x, p.y, p.z, 0.9F, 4, 0.7F, f, s.part->seed)), 0,
+              0};
+    case Material::kBark:
+      return {s.part->tone * (1 + 0.6F * fractal3(p.x * 2, p.y * 2, p.z * 0.6F, 0.22F, 4, 0.75F, f, s.part->seed)), 0, 0};
+    default:
+      return {s.part->tone * (1 + 0.28F * fractal3(p.x, p.y, p.z, 1.1F, 6, 0.72F, f, s.part->seed)), 0, 0};
   }
 }
 

@@ -83,8 +83,7 @@ Reflectance cabin(const SurfacePoint& s) {
   // Seats, headrests and the far windows show through the glass as fixed shapes; stickers and heating wires lie on it.
   float inner = 0.035F + 0.05F * saturate(fractal3(p.x, p.y, p.z, 0.30F, 3, 0.7F, f, s.part->seed + 3) * 1.5F);
   if (std::abs(s.normal.x) > 0.5F) {
-    for (const float at : {-0.36F, 0.36F})
-      inner = lerp(inner, 0.015F, inside(p.y, at - 0.14F, at + 0.14F, f) * inside(v, 0.2F, 0.68F, fv));
+    for (const float at : {-0.36F, 0.36F}) inner = lerp(inner, 0.015F, inside(p.y, at - 0.14F, at + 0.14F, f) * inside(v, 0.2F, 0.68F, fv));
     inner += 0.30F * inside(p.y, 0.44F, 0.53F, f) * inside(v, 0.18F, 0.36F, fv) * unit(mix(s.part->seed));
     inner += 0.02F * pulses(p.z, 0.045F, 0.008F, f);
   } else {
@@ -138,15 +137,20 @@ Reflectance cargo(const SurfacePoint& s) {
   const float stains = fractal2(u, v * 0.6F, 0.8F, 5, 0.65F, f, s.part->seed);
   float tone = s.part->tone * (1 + 0.16F * stains);
   const float band = inside(v, 0.30F * height, 0.74F * height, f);
-  const float ink = writing(u, v - 0.32F * height, 0.30F * height, 0.40F * height, f, s.part->seed + 5) * inside(v, 0.34F * height, 0.70F * height, f);
+  const float ink =
+      writing(u, v - 0.32F * height, 0.30F * height, 0.40F * height, f, s.part->seed + 5) * inside(v, 0.34F * height, 0.70F * height, f);
   const bool light = s.part->tone > 0.35F;
   tone = lerp(tone, light ? 0.14F : 0.55F, band * (side ? 0.75F : 0.5F));
   tone = lerp(tone, light ? 0.72F : 0.08F, ink);
-  tone = lerp(tone, light ? 0.10F : 0.6F, writing(u, v - 0.80F * height, 0.16F, 0.11F * height, f, s.part->seed + 8) * inside(v, 0.8F * height, 0.91F * height, f));
-  tone = lerp(tone, light ? 0.12F : 0.5F, writing(u, v - 0.10F * height, 0.11F, 0.09F * height, f, s.part->seed + 7) * inside(v, 0.1F * height, 0.19F * height, f));
+  tone = lerp(tone, light ? 0.10F : 0.6F,
+              writing(u, v - 0.80F * height, 0.16F, 0.11F * height, f, s.part->seed + 8) * inside(v, 0.8F * height, 0.91F * height, f));
+  tone = lerp(tone, light ? 0.12F : 0.5F,
+              writing(u, v - 0.10F * height, 0.11F, 0.09F * height, f, s.part->seed + 7) * inside(v, 0.1F * height, 0.19F * height, f));
   tone *= 1 - 0.6F * pulses(u + 0.006F, side ? 1.22F : 0.5F * (hi.y - lo.y), 0.018F, f);
   tone *= 1 - 0.45F * pulses(u, 0.15F, 0.022F, f) * std::fmax(line(v, 0.05F, 0.025F, f), line(v, height - 0.05F, 0.025F, f));
-  if (!side) tone *= 1 - 0.6F * std::fmax(line(std::abs(p.y), 0.25F, 0.03F, f), line(v, 0.3F * height, 0.03F, f) * inside(std::abs(p.y), 0.1F, 0.45F, f));
+  if (!side)
+    tone *= 1 - 0.6F * std::fmax(line(std::abs(p.y), 0.25F, 0.03F, f),
+                                 line(v, 0.3F * height, 0.03F, f) * inside(std::abs(p.y), 0.1F, 0.45F, f));
   return {tone, 0.03F, 0};
 }
 
@@ -154,18 +158,29 @@ Reflectance cargo(const SurfacePoint& s) {
 
 Reflectance vehicleReflectance(const SurfacePoint& s) {
   switch (s.part->material) {
-    case Material::kPaint: return paint(s);
-    case Material::kCabin: return cabin(s);
-    case Material::kTyre: return wheel(s);
-    case Material::kHeadLamp: return lamp(s, false);
-    case Material::kTailLamp: return lamp(s, true);
-    case Material::kPlate: return plate(s);
-    case Material::kCargo: return cargo(s);
-    case Material::kGlass: return {s.part->tone, 0.2F, 0};
-    case Material::kChrome: return {0.45F, 0.35F, 0};
-    case Material::kGrille: return {0.22F - 0.19F * pulses(s.position.z, 0.045F, 0.026F, s.footprint_m), 0.03F, 0};
+    case Material::kPaint:
+      return paint(s);
+    case Material::kCabin:
+      return cabin(s);
+    case Material::kTyre:
+      return wheel(s);
+    case Material::kHeadLamp:
+      return lamp(s, false);
+    case Material::kTailLamp:
+      return lamp(s, true);
+    case Material::kPlate:
+      return plate(s);
+    case Material::kCargo:
+      return cargo(s);
+    case Material::kGlass:
+      return {s.part->tone, 0.2F, 0};
+    case Material::kChrome:
+      return {0.45F, 0.35F, 0};
+    case Material::kGrille:
+      return {0.22F - 0.19F * pulses(s.position.z, 0.045F, 0.026F, s.footprint_m), 0.03F, 0};
     default:
-      return {s.part->tone * (1 + 0.25F * fractal3(s.position.x, s.position.y, s.position.z, 0.2F, 4, 0.7F, s.footprint_m, s.part->seed)), 0.02F, 0};
+      return {s.part->tone * (1 + 0.25F * fractal3(s.position.x, s.position.y, s.position.z, 0.2F, 4, 0.7F, s.footprint_m, s.part->seed)),
+              0.02F, 0};
   }
 }
 

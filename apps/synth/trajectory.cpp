@@ -53,7 +53,8 @@ SE3 Ego::T_map_cam(double t_s) const {
   Eigen::Matrix3d body_from_camera;
   body_from_camera << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   const SE3 T_map_body = trajectory.T_map_body(t_s);
-  const Eigen::Vector3d tilt(shake(kRoll_rad, t_s, shake_period_s), shake(kPitch_rad, t_s, shake_period_s), shake(kYaw_rad, t_s, shake_period_s));
+  const Eigen::Vector3d tilt(shake(kRoll_rad, t_s, shake_period_s), shake(kPitch_rad, t_s, shake_period_s),
+                             shake(kYaw_rad, t_s, shake_period_s));
   const Eigen::Vector3d mount(0, 0, camera_height_m + shake(kHeave_m, t_s, shake_period_s));
   return (T_map_body * SE3(expSO3(tilt) * body_from_camera, mount)).normalized();
 }

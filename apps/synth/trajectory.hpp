@@ -11,11 +11,11 @@ namespace motorcade::synth {
 /// The frame `map` is the scene's: z up, ground at z = 0.
 struct Trajectory {
   std::shared_ptr<const Path> path;
-  double start_m = 0;         // arc length at time 0
-  bool backwards = false;     // drives against the path's direction
-  Profile speed_mps;          // over time, never negative
-  Profile left_m;             // offset to the path's left over the distance driven
-  double sway_m = 0;          // a periodic drift along the path: sway_m * sin(2 pi t / sway_period_s + sway_phase_rad)
+  double start_m = 0;      // arc length at time 0
+  bool backwards = false;  // drives against the path's direction
+  Profile speed_mps;       // over time, never negative
+  Profile left_m;          // offset to the path's left over the distance driven
+  double sway_m = 0;       // a periodic drift along the path: sway_m * sin(2 pi t / sway_period_s + sway_phase_rad)
   double sway_period_s = 10, sway_phase_rad = 0;
 
   double distance_m(double t_s) const { return speed_mps.integral(t_s); }

@@ -17,7 +17,8 @@ void addWheels(Model& model, const Shape3& s, float radius, std::initializer_lis
   for (const float x : axles)
     for (const float y : {-1.0F, 1.0F}) {
       const float outer = y * s.side(), inner = y * (s.side() - 0.21F);
-      model.addCylinder(Material::kTyre, 1, {x - radius, std::min(outer, inner), 0}, {x + radius, std::max(outer, inner), 2 * radius}, rim, s.seed);
+      model.addCylinder(Material::kTyre, 1, {x - radius, std::min(outer, inner), 0}, {x + radius, std::max(outer, inner), 2 * radius}, rim,
+                        s.seed);
     }
 }
 
@@ -29,7 +30,8 @@ void addPair(Model& model, Material material, const Vec3& lo, const Vec3& hi, fl
 
 void addFront(Model& m, const Shape3& s, float lamp_z) {
   const float x = s.front(), y = s.side();
-  m.add(Material::kPlastic, {x - 0.25F, -y + 0.10F, 0.26F}, {x, y - 0.10F, 0.46F}, unit(mix(s.seed)) < 0.5F ? 0.07F : 0.8F * s.paint, s.seed);
+  m.add(Material::kPlastic, {x - 0.25F, -y + 0.10F, 0.26F}, {x, y - 0.10F, 0.46F}, unit(mix(s.seed)) < 0.5F ? 0.07F : 0.8F * s.paint,
+        s.seed);
   m.cutLast({1, 0.7F, 0}, {x, y - 0.32F, 0});
   m.cutLast({1, -0.7F, 0}, {x, -y + 0.32F, 0});
   addPair(m, Material::kHeadLamp, {x - 0.30F, y - 0.50F, lamp_z}, {x - 0.03F, y - 0.07F, lamp_z + 0.17F}, 0.6F, s.seed);
@@ -41,7 +43,8 @@ void addFront(Model& m, const Shape3& s, float lamp_z) {
 
 void addRear(Model& m, const Shape3& s, float lamp_z, float lamp_height) {
   const float x = -s.front(), y = s.side();
-  m.add(Material::kPlastic, {x, -y + 0.06F, 0.30F}, {x + 0.25F, y - 0.06F, 0.52F}, unit(mix(s.seed + 1)) < 0.4F ? 0.08F : 0.75F * s.paint, s.seed + 2);
+  m.add(Material::kPlastic, {x, -y + 0.06F, 0.30F}, {x + 0.25F, y - 0.06F, 0.52F}, unit(mix(s.seed + 1)) < 0.4F ? 0.08F : 0.75F * s.paint,
+        s.seed + 2);
   m.cutLast({-1, 0.7F, 0}, {x, y - 0.22F, 0});
   m.cutLast({-1, -0.7F, 0}, {x, -y + 0.22F, 0});
   addPair(m, Material::kTailLamp, {x + 0.03F, y - 0.42F, lamp_z}, {x + 0.35F, y - 0.04F, lamp_z + lamp_height}, 0.15F, s.seed);
@@ -56,7 +59,8 @@ void addRear(Model& m, const Shape3& s, float lamp_z, float lamp_height) {
 
 void addSides(Model& m, const Shape3& s, float mirror_x, float belt_z) {
   const float y = s.side() - 0.03F;
-  addPair(m, Material::kPaint, {mirror_x - 0.10F, y - 0.02F, belt_z + 0.03F}, {mirror_x + 0.08F, y + 0.16F, belt_z + 0.17F}, 0.8F * s.paint, s.seed + 3);
+  addPair(m, Material::kPaint, {mirror_x - 0.10F, y - 0.02F, belt_z + 0.03F}, {mirror_x + 0.08F, y + 0.16F, belt_z + 0.17F}, 0.8F * s.paint,
+          s.seed + 3);
   for (const float x : {-0.17F * s.length, 0.06F * s.length})
     addPair(m, Material::kChrome, {x, y, belt_z - 0.11F}, {x + 0.17F, y + 0.025F, belt_z - 0.07F}, 0.4F, s.seed);
   addPair(m, Material::kPlastic, {-0.27F * s.length, y, 0.24F}, {0.26F * s.length, y + 0.022F, 0.33F}, 0.06F, s.seed);
@@ -85,10 +89,14 @@ Model makeCar(const Shape3& s) {
   addRear(m, s, estate ? 0.70F : 0.66F, estate ? 0.24F : 0.16F);
   addSides(m, s, x - bonnet - 0.25F, belt);
   addWheels(m, s, 0.32F, {-0.30F * s.length, 0.31F * s.length});
-  m.add(Material::kTailLamp, {back + (estate ? 0.19F : 0.35F), -0.16F, s.height - 0.10F}, {back + 0.5F, 0.16F, s.height - 0.06F}, 0.15F, s.seed);
-  if (estate) addPair(m, Material::kChrome, {back + 0.35F, y - 0.28F, s.height - 0.01F}, {0.3F, y - 0.24F, s.height + 0.045F}, 0.4F, s.seed);
-  if (random.chance(0.5F)) m.addCylinder(Material::kPlastic, 2, {back + 0.8F, -0.012F, s.height - 0.02F}, {back + 0.824F, 0.012F, s.height + 0.22F}, 0.03F);
-  if (random.chance(0.6F)) m.add(Material::kSign, {-x + 0.034F, -0.66F, belt - 0.20F}, {-x + 0.06F, -0.44F, belt - 0.06F}, 0.75F, s.seed + 4);  // a sticker
+  m.add(Material::kTailLamp, {back + (estate ? 0.19F : 0.35F), -0.16F, s.height - 0.10F}, {back + 0.5F, 0.16F, s.height - 0.06F}, 0.15F,
+        s.seed);
+  if (estate)
+    addPair(m, Material::kChrome, {back + 0.35F, y - 0.28F, s.height - 0.01F}, {0.3F, y - 0.24F, s.height + 0.045F}, 0.4F, s.seed);
+  if (random.chance(0.5F))
+    m.addCylinder(Material::kPlastic, 2, {back + 0.8F, -0.012F, s.height - 0.02F}, {back + 0.824F, 0.012F, s.height + 0.22F}, 0.03F);
+  if (random.chance(0.6F))
+    m.add(Material::kSign, {-x + 0.034F, -0.66F, belt - 0.20F}, {-x + 0.06F, -0.44F, belt - 0.06F}, 0.75F, s.seed + 4);  // a sticker
   return m;
 }
 

@@ -1,10 +1,10 @@
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <numeric>
+
+#include <gtest/gtest.h>
 
 #include "apps/synth/ground_truth.hpp"
 #include "apps/synth/renderer.hpp"
@@ -22,7 +22,8 @@ const RenderOptions kNoNoise{.threads = 2, .noise_levels = 0, .equal_gains = tru
 std::size_t indexOf(int x, int y) { return static_cast<std::size_t>(y * kCamera.width_px + x); }
 
 Eigen::Vector3d behindPixel(const Rendering& left, int x, int y) {
-  return kCamera.triangulate({static_cast<double>(x), static_cast<double>(y), kCamera.fx_px * kCamera.baseline_m / static_cast<double>(left.depth_m[indexOf(x, y)])});
+  return kCamera.triangulate({static_cast<double>(x), static_cast<double>(y),
+                              kCamera.fx_px * kCamera.baseline_m / static_cast<double>(left.depth_m[indexOf(x, y)])});
 }
 
 std::vector<std::uint8_t> pixels(const Image& image) {
@@ -85,10 +86,12 @@ TEST(SynthRenderer, TheRightEyeShowsTheLeftPictureShiftedByTheDisparity) {
       const int u0 = static_cast<int>(std::floor(u));
       if (u0 < 1 || u0 + 2 >= kCamera.width_px) continue;
       // Where the other eye sees the same surface.
-      const bool same = std::abs(right.depth_m[indexOf(u0, y)] - depth) < 0.02 * depth && std::abs(right.depth_m[indexOf(u0 + 1, y)] - depth) < 0.02 * depth;
+      const bool same = std::abs(right.depth_m[indexOf(u0, y)] - depth) < 0.02 * depth &&
+                        std::abs(right.depth_m[indexOf(u0 + 1, y)] - depth) < 0.02 * depth;
       if (!same) continue;
       const double t = u - u0, sample = (1 - t) * right.image.at(u0, y) + t * right.image.at(u0 + 1, y);
-      const double slope = 0.25 * (right.image.at(u0 + 2, y) - right.image.at(u0 - 1, y) + right.image.at(u0 + 1, y) - right.image.at(u0, y));
+      const double slope =
+          0.25 * (right.image.at(u0 + 2, y) - right.image.at(u0 - 1, y) + right.image.at(u0 + 1, y) - right.image.at(u0, y));
       differences.push_back(std::abs(sample - left.image.at(x, y)));
       if (differences.back() < 20) {
         shift += slope * (sample - left.image.at(x, y));
@@ -156,8 +159,8 @@ TEST(SynthSequence, IsTheSameForASeedAndAnyThreadCountAndStartsAtTheIdentity) {
   writeSequence(scene, folder / "one", options);
   options.render.threads = 3;
   writeSequence(makeScene("overtake", 5), folder / "three", options);
-  for (const char* file : {"image_0/000001.png", "image_1/000001.png", "disp/000001.png", "instance/000001.png", "poses.txt", "label_02.txt", "object_poses.txt",
-                           "calib.txt", "times.txt"})
+  for (const char* file : {"image_0/000001.png", "image_1/000001.png", "disp/000001.png", "instance/000001.png", "poses.txt",
+                           "label_02.txt", "object_poses.txt", "calib.txt", "times.txt"})
     EXPECT_EQ(content(folder / "one" / file), content(folder / "three" / file)) << file;
   writeSequence(makeScene("overtake", 6), folder / "other", options);
   EXPECT_NE(content(folder / "one/image_0/000001.png"), content(folder / "other/image_0/000001.png"));
@@ -190,7 +193,8 @@ TEST(SynthScenes, VehiclesNeverTouch) {
         vehicles.push_back(ego);
         for (std::size_t i = 0; i < vehicles.size(); ++i)
           for (std::size_t j = 0; j < vehicles.size(); ++j)
-            ASSERT_FALSE(i != j && overlap(vehicles[i], vehicles[j], 0.1)) << name << " seed " << seed << " frame " << k << ": " << vehicles[i].id << " and " << vehicles[j].id;
+            ASSERT_FALSE(i != j && overlap(vehicles[i], vehicles[j], 0.1))
+                << name << " seed " << seed << " frame " << k << ": " << vehicles[i].id << " and " << vehicles[j].id;
       }
     }
 }
