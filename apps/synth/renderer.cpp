@@ -149,16 +149,17 @@ Sensor sensorOf(const FrameScene& frame, Eye eye, const RenderOptions& options) 
 
 /// True where a pixel differs from a neighbour in surface or clearly in light: one ray is not enough there.
 bool needsMore(const std::vector<Sample>& samples, int width, int height, int x, int y) {
-  constexpr float kContrast = 11;
+  constexpr float kContrast = 11, kGroundContrast = 30;  // the ground's grain is filtered already: only shadows and paint count
   const auto at = [&](int i, int j) -> const Sample& {
     return samples[static_cast<std::size_t>(std::clamp(j, 0, height - 1)) * static_cast<std::size_t>(width) +
                    static_cast<std::size_t>(std::clamp(i, 0, width - 1))];
   };
   const Sample& centre = at(x, y);
   const float level = response(centre.light);
+  const float contrast = centre.surface == kRoadSurface || centre.surface == kBesideSurface ? kGroundContrast : kContrast;
   for (const auto [dx, dy] : {std::array{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
     const Sample& other = at(x + dx, y + dy);
-    if (other.surface != centre.surface || std::abs(response(other.light) - level) > kContrast) return true;
+    if (other.surface != centre.surface || std::abs(response(other.light) - level) > contrast) return true;
   }
   return false;
 }
