@@ -1,0 +1,178 @@
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+#include "io/run_folder.hpp"
+
+/// `motorcade run` from outside, on a short rendered drive that the build's test fixture makes.
+namespace motorcade {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const fs::path kSequence = MOTORCADE_RENDERED_SEQUENCE;
+constexpr std::size_t kFrames = MOTORCADE_RENDERED_FRAMES;
+const std::vector<std::string> kReproducible{"camera_online.txt", "camera_final.txt",   "camera_online.tum",
+                                             "camera_final.tum",  "objects_online.csv", "objects_final.csv"};
+
+std::string contentOf(const fs::path& file) {
+  std::ostringstream content;
+  content << std::ifstream(file, std::ios::binary).rdbuf();
+  return content.str();
+}
+
+class Run : public testing::Test {
+ protected:
+  Run()
+      : folder_(fs::path(testing::TempDir()) /
+                ("motorcade_run_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~Run() override { fs::remove_all(folder_); }
+
+  /// Runs the program and gives its exit code.
+  int motorcade(const std::string& arguments, const std::string& prefix = "") {
+    const std::string command =
+        prefix + MOTORCADE_PROGRAM " " + arguments + " >" + (folder_ / "stdout").string() + " 2>" + errors().string();
+    return WEXITSTATUS(std::system(command.c_str()));
+  }
+  int run(const std::string& name, const std::string& options = "", const fs::path& sequence = kSequence) {
+    return motorcade("run " + sequence.string() + " --out " + out(name).string() + " " + options);
+  }
+  fs::path out(const std::string& name) const { return folder_ / name; }
+  fs::path errors() const { return folder_ / "stderr"; }
+  nlohmann::json summary(const std::string& name) const { return nlohmann::json::parse(contentOf(out(name) / "summary.json")); }
+
+  /// A copy of the rendered drive with one image cut short.
+  fs::path damagedSequence() {
+    const fs::path copy = folder_ / "damaged";
+    fs::copy(kSequence, copy, fs::copy_options::recursive);
+    for (const auto& entry : fs::directory_iterator(copy / "image_0"))
+      if (entry.path().stem() == "000003") fs::resize_file(entry.path(), 100);
+    return copy;
+  }
+
+  void expectSame(const std::string& a, const std::string& b) {
+    for (const std::string& file : kReproducible) EXPECT_TRUE(contentOf(out(a) / file) == contentOf(out(b) / file)) << file;
+  }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(Run, WritesTheSameBytesForEveryNumberOfThreadsAndEveryRate) {
+  ASSERT_EQ(run("two", "--threads 2"), 0) << contentOf(errors());
+  ASSERT_EQ(run("one", "--threads 1"), 0);
+  ASSERT_EQ(run("paced", "--threads 2 --rate 25 --set pipeline.frames_in_flight=2"), 0);
+  expectSame("two", "one");
+  expectSame("two", "paced");
+}
+
+TEST_F(Run, WritesALinePerFrameAndACompleteSummary) {
+  ASSERT_EQ(run("out", "--require tracked=0.9"), 0) << contentOf(errors());
+  const RunFolder folder = readRunFolder(out("out"));
+  EXPECT_EQ(folder.frames.size(), kFrames);
+  EXPECT_EQ(folder.online.camera.size(), kFrames);
+  EXPECT_EQ(folder.final.camera.size(), kFrames);
+  const auto json = summary("out");
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_EQ(json["frames"]["received"], kFrames);
+  EXPECT_EQ(json["latency_ms"]["count"], kFrames);
+  for (const auto& queue : json["queues"]) EXPECT_LE(queue["high_water"], json["frames_in_flight"]) << queue;
+}
+
+TEST_F(Run, FollowsItsOwnEffectiveConfiguration) {
+  ASSERT_EQ(run("first", "--set frontend.optical_flow.max_tracks=400"), 0) << contentOf(errors());
+  ASSERT_EQ(run("second", "--config " + (out("first") / "effective_config.toml").string()), 0) << contentOf(errors());
+  EXPECT_EQ(contentOf(out("first") / "effective_config.toml"), contentOf(out("second") / "effective_config.toml"));
+  expectSame("first", "second");
+}
+
+TEST_F(Run, RunsTheOtherDetectorAndTheOtherBackend) {
+  EXPECT_EQ(run("sift", "--set frontend.detector=sift --require tracked=0.8"), 0) << contentOf(errors());
+  EXPECT_EQ(run("filter", "--set backend=filter --require tracked=0.9"), 0) << contentOf(errors());
+}
+
+TEST_F(Run, ReordersAndRelinearisesEveryNUpdates) {
+  ASSERT_EQ(run("every", "--set backend.relinearization=every --set backend.relinearize_every_updates=3"), 0) << contentOf(errors());
+  EXPECT_GT(summary("every")["solver"]["relinearizations"], 0);
+  EXPECT_GT(summary("every")["solver"]["reorderings"], 0);
+}
+
+TEST_F(Run, TakesOnlyTheFramesAskedFor) {
+  ASSERT_EQ(run("part", "--frames 2:5"), 0) << contentOf(errors());
+  const RunFolder folder = readRunFolder(out("part"));
+  EXPECT_EQ(folder.first_frame, 2);
+  EXPECT_EQ(folder.final.camera.size(), 3u);
+  EXPECT_EQ(run("none", "--frames 1000:"), 2);
+}
+
+TEST_F(Run, RejectsADamagedImageAndGoesOn) {
+  const fs::path damaged = damagedSequence();
+  ASSERT_EQ(run("out", "", damaged), 0) << contentOf(errors());
+  const RunFolder folder = readRunFolder(out("out"));
+  ASSERT_EQ(folder.frames.size(), kFrames);
+  EXPECT_EQ(folder.frames[3].status, FrameStatus::kRejected);
+  EXPECT_EQ(folder.final.camera.size(), kFrames);
+  EXPECT_EQ(summary("out")["frames"]["rejected"], 1);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("000003"));
+  EXPECT_EQ(run("strict", "--require tracked=1", damaged), 5);
+}
+
+TEST_F(Run, AccountsForEveryFrameOfALiveCameraThatIsTooFast) {
+  ASSERT_EQ(run("live", "--live --rate 300"), 0) << contentOf(errors());
+  const auto frames = summary("live")["frames"];
+  EXPECT_EQ(frames["received"], kFrames);
+  EXPECT_EQ(frames["received"], frames["processed"].get<int>() + frames["dropped"].get<int>() + frames["rejected"].get<int>());
+  const RunFolder folder = readRunFolder(out("live"));
+  EXPECT_EQ(folder.frames.size(), kFrames);
+  EXPECT_EQ(folder.online.camera.size(), kFrames);
+  EXPECT_EQ(folder.final.camera.size(), kFrames);
+}
+
+TEST_F(Run, FlushesItsResultsWhenASignalEndsIt) {
+  const auto interrupted = [&](const std::string& signal) {
+    return motorcade("run " + kSequence.string() + " --rate 1 --out " + out(signal).string(),
+                     "timeout --preserve-status -s " + signal + " 2 ");
+  };
+  EXPECT_EQ(interrupted("INT"), 130);
+  EXPECT_EQ(interrupted("TERM"), 143);
+  const RunFolder folder = readRunFolder(out("INT"));
+  EXPECT_GE(folder.frames.size(), 1u);
+  EXPECT_EQ(folder.final.camera.size(), folder.frames.size());
+  EXPECT_EQ(summary("INT")["complete"], false);
+}
+
+TEST_F(Run, TellsWhatIsWrongByItsExitCode) {
+  EXPECT_EQ(motorcade("run"), 2);
+  EXPECT_EQ(motorcade("--version"), 0);
+  EXPECT_EQ(run("x", "--rate fast"), 2);
+  EXPECT_EQ(run("x", "--live --rate max"), 2);
+  EXPECT_EQ(run("x", "--require lost=1"), 2);
+  EXPECT_EQ(run("x", "--threads 0"), 2);
+  EXPECT_EQ(run("x", "--set frontend.corner.max_corners=5"), 2);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("did you mean 'frontend.corners.max_corners'"));
+  EXPECT_EQ(run("x", "", out("nowhere")), 3);
+  EXPECT_EQ(motorcade("run " + kSequence.string() + " --out " + (kSequence / "calib.txt").string()), 4);
+}
+
+TEST_F(Run, FollowsRealFramesReproducibly) {
+  const fs::path drive = fs::path(MOTORCADE_SOURCE_DIR) / "../shared/data/kitti_tracking_0003";
+  if (!fs::exists(drive)) GTEST_SKIP() << drive << " is not there";
+  ASSERT_EQ(run("two", "--frames 0:25 --threads 2 --require tracked=1", drive), 0) << contentOf(errors());
+  ASSERT_EQ(run("one", "--frames 0:25 --threads 1", drive), 0);
+  expectSame("two", "one");
+}
+
+}  // namespace
+}  // namespace motorcade
