@@ -12,7 +12,11 @@ cmake --preset release --log-level=WARNING
 cmake --build --preset release --target motorcade
 
 echo "== Rendering the scene 'overtake'"
-[[ -e $results/sequence/rendered ]] || { "$motorcade" synth "$results/sequence" --scene overtake && touch "$results/sequence/rendered"; }
+if [[ $results/sequence/times.txt -nt $motorcade ]]; then
+  echo "already there"
+else
+  "$motorcade" synth "$results/sequence" --scene overtake
+fi
 
 echo "== Following it at 10 pairs per second"
 "$motorcade" run "$results/sequence" --out "$results/run" --rate 10

@@ -6,6 +6,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "apps/draw/draw_command.hpp"
+#include "apps/evaluate/evaluate_command.hpp"
 #include "apps/run/run_command.hpp"
 #include "apps/synth/synth_command.hpp"
 #include "io/errors.hpp"
@@ -40,6 +42,8 @@ int main(int argc, char** argv) {
   std::function<int()> action;
   motorcade::addRunCommand(app, action);
   motorcade::addSynthCommand(app, action);
+  motorcade::addEvaluateCommand(app, action);
+  motorcade::addDrawCommand(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
