@@ -50,7 +50,8 @@ SiftPoints SiftDetector::operator()(const Image& image) const {
     // The same place in several orientations is one point: they come one after the other.
     if (!points.corners.empty() && points.corners.back().u_px == keypoint.pt.x && points.corners.back().v_px == keypoint.pt.y) continue;
     points.corners.push_back({keypoint.pt.x, keypoint.pt.y, keypoint.response});
-    std::copy_n(descriptors.ptr<float>(i), points.descriptors.emplace_back().size(), points.descriptors.back().begin());
+    SiftDescriptor& descriptor = points.descriptors.emplace_back();
+    std::copy_n(descriptors.ptr<float>(i), descriptor.size(), descriptor.begin());
   }
   return points;
 }
