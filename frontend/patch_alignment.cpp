@@ -232,6 +232,7 @@ Eigen::Matrix3f gram(const PatchTemplate& patch) {
 /// Information of a deformation whose standard deviation is `sigma`, for the noise that 8-bit images have at least (3 gray levels).
 constexpr float priorInformation(float sigma) { return 9 / (sigma * sigma); }
 constexpr float kScaleSigma = 0.1F, kRowSlopeSigma = 0.3F, kColumnSlopeSigma = 0.15F;
+constexpr float kMaxStep_px = 1.5F;    // the gain comes out too small, and the step too long, while the patches do not overlap well
 constexpr float kMinInformation = 60;  // of the shift: root mean square gradient of 0.7 gray levels per pixel over 11x11
 
 /// Share of the patch that template and deformation explain, as a correlation.
@@ -286,17 +287,16 @@ std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& 
     if (!inside(image, u, v)) return std::nullopt;
     const Moments moments = momentsAt(patch, image, u, v, 0);
     if (moments.appearance <= 0) return std::nullopt;
-    const Eigen::Vector3f step = patch.inverse_hessian * moments.descent * (patch.norm / moments.appearance);
-    const bool converged = step.head<2>().squaredNorm() < params.max_step_px * params.max_step_px;
-    if (converged || iteration + 1 == params.max_iterations) {
-      const float ncc = explainedCorrelation(patch, moments);
-      if (ncc < params.min_ncc) return std::nullopt;
-      const float sigma = std::max(shiftSigma(patch, moments, ncc, 0), shiftSigma(patch, moments, ncc, 1));
-      return AlignedPatch{u - step.x(), v - step.y(), ncc, std::hypot(sigma, static_cast<float>(params.sigma_floor_px))};
-    }
+    Eigen::Vector3f step = patch.inverse_hessian * moments.descent * (patch.norm / moments.appearance);
+    step *= std::min(1.0F, kMaxStep_px / step.head<2>().norm());
     u -= step.x();
     v -= step.y();
     if (std::hypot(u - u_guess_px, v - v_guess_px) > params.max_shift_px) return std::nullopt;
+    if (step.head<2>().squaredNorm() > params.max_step_px * params.max_step_px) continue;
+    const float ncc = explainedCorrelation(patch, moments);
+    if (ncc < params.min_ncc) return std::nullopt;
+    const float sigma = std::max(shiftSigma(patch, moments, ncc, 0), shiftSigma(patch, moments, ncc, 1));
+    return AlignedPatch{u, v, ncc, std::hypot(sigma, static_cast<float>(params.sigma_floor_px))};
   }
   return std::nullopt;
 }
@@ -389,7 +389,8 @@ std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right
     if (moments.appearance <= 0) return std::nullopt;
     const float gain = moments.appearance / patch->norm;
     const Eigen::Vector3f pull(0, gain * patch->prior[1] * slope, 0);
-    const Eigen::Vector3f step = patch->inverse_hessian * (moments.descent + pull) / gain;
+    Eigen::Vector3f step = patch->inverse_hessian * (moments.descent + pull) / gain;
+    step[0] = std::clamp(step[0], -kMaxStep_px, kMaxStep_px);
     u_right -= step[0];
     slope = std::clamp(slope - step[1], -max_slope, max_slope);
     if (std::abs(u_right - first_guess) > kMaxShift_px) return std::nullopt;

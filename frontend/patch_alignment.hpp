@@ -16,10 +16,10 @@ inline constexpr int kMaxPatchWindow_px = 13;
 
 struct PatchParams {
   int window_px = 11;         // side of the patch, odd
-  int max_iterations = 10;    // of Gauss-Newton, per level
+  int max_iterations = 12;    // of Gauss-Newton, per level
   double max_step_px = 0.02;  // converged below this
   double max_shift_px = 4;    // from the guess, per level; further is a failure
-  double min_ncc = 0.8;       // normalised cross-correlation at the solution
+  double min_ncc = 0.65;      // normalised cross-correlation at the solution
   double sigma_floor_px = 0.1;
 };
 
@@ -66,7 +66,7 @@ struct DisparityParams {
   int window_px = 11;
   double search_radius_px = 3;  // whole-pixel search around the prediction; 0 goes straight to the refinement
   int max_iterations = 8;
-  double min_ncc = 0.8;
+  double min_ncc = 0.65;
   double sigma_floor_px = 0.1;
   double max_sigma_px = 1;
 };
