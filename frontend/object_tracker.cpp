@@ -176,20 +176,34 @@ void ObjectTracker::bear(const SceneMotion& scene, const Segment& segment, std::
   objects_.push_back(std::move(object));
 }
 
-/// Of two objects on one vehicle the older stays; the younger's points find their way to it by adoption.
+/// Of two objects on one vehicle the older stays and takes the points of the younger.
 void ObjectTracker::mergeTwins() {
-  for (std::size_t older = 0; older < objects_.size(); ++older) {
-    if (objects_[older].ended) continue;
-    const auto extent = objects_[older].extent(params_.merge_distance_m);
-    for (std::size_t younger = older + 1; younger < objects_.size(); ++younger) {
-      TrackedObject& twin = objects_[younger];
-      if (twin.ended) continue;
-      const Eigen::Vector3d origin = objects_[older].T_cam_body.inverse() * twin.T_cam_body.translation();
-      const Eigen::Vector3d dv = objects_[older].velocityAt_mps(origin) - twin.kinematics.velocityWorld_mps();
-      const double slack_m = std::sqrt(twin.kinematics.poseCovariance().topLeftCorner<3, 3>().trace());
-      if (extent.exteriorDistance(origin) < slack_m && dv.norm() < params_.merge_speed_mps) twin.ended = true;
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    for (std::size_t j = i + 1; j < objects_.size(); ++j) {
+      TrackedObject &older = objects_[i], &younger = objects_[j];
+      if (older.ended || younger.ended || !areTwins(older, younger)) continue;
+      const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
+      for (auto& p : younger.points) {
+        p.p_body = T_older_younger * p.p_body;
+        p.covariance = T_older_younger.rotation() * p.covariance * T_older_younger.rotation().transpose();
+        p.misfits = 0;
+      }
+      older.adopt(younger.points);
+      younger.ended = true;
     }
   }
+}
+
+bool ObjectTracker::areTwins(const TrackedObject& older, const TrackedObject& younger) const {
+  const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
+  Eigen::AlignedBox3d both = older.extent(0);
+  for (const auto& p : younger.points) both.extend(T_older_younger * p.p_body);
+  const double slack_m = 2 * std::sqrt(older.kinematics.poseCovariance().topLeftCorner<3, 3>().trace() +
+                                       younger.kinematics.poseCovariance().topLeftCorner<3, 3>().trace());
+  if (!params_.adoption.vehicle.holds(both, slack_m)) return false;
+  const Eigen::Vector3d dv = older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps();
+  const double sigma_mps = std::hypot(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());
+  return dv.norm() < params_.twin_speed_mps + 2 * sigma_mps;
 }
 
 void ObjectTracker::bury(FrameMeasurements& measurements) {

@@ -28,8 +28,7 @@ class ObjectTracker {
     double stop_speed_mps = 0.5, start_speed_mps = 1.0;
     int stop_frames = 3;                 // in a row below the stop speed
     double image_margin_px = 50;         // an unseen object this far outside the image has left
-    double merge_distance_m = 1.0;       // an object whose origin lies in another's extent, grown by this, is the same vehicle ...
-    double merge_speed_mps = 2.0;        // ... if their velocities differ by less
+    double twin_speed_mps = 1.5;         // two objects that fit into one vehicle are one if their velocities differ by less
     double birth_turn_rate_radps = 0.2;  // standard deviation
     ObjectKinematics::Params kinematics;
     ObjectAssociation::Params association;
@@ -50,6 +49,7 @@ class ObjectTracker {
   void coast(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements);
   void updateState(TrackedObject& object) const;
   void mergeTwins();
+  bool areTwins(const TrackedObject& older, const TrackedObject& younger) const;
   void bury(FrameMeasurements& measurements);
   bool leftView(const TrackedObject& object) const;
 

@@ -48,8 +48,9 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
     if (taken[i] || p.label == PointLabel::kGround) return;
     BodyPoint candidate = toBody(object, p);
     const double slack_m = params_.depth_noise_sigmas * std::sqrt(candidate.covariance.trace());
-    if (extent.exteriorDistance(candidate.p_body) > slack_m) return;
-    if (Eigen::AlignedBox3d(known).extend(candidate.p_body).sizes().maxCoeff() > params_.max_length_m + slack_m) return;
+    const Eigen::AlignedBox3d grown = Eigen::AlignedBox3d(known).extend(candidate.p_body);
+    const bool close = extent.exteriorDistance(candidate.p_body) < slack_m && grown.sizes().maxCoeff() < params_.max_length_m + slack_m;
+    if (!close && !(segment && params_.vehicle.holds(grown, slack_m))) return;
     if (!movesWith(object, p, scene, previous_scene, T_world_cam)) return;
     taken[i] = true;
     adopted.push_back(candidate);
@@ -59,8 +60,7 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
   } else {
     for (std::size_t i = 0; i < scene.points.size(); ++i) consider(i);
   }
-  object.points.insert(object.points.end(), adopted.begin(), adopted.end());
-  std::sort(object.points.begin(), object.points.end(), [](const BodyPoint& a, const BodyPoint& b) { return a.point < b.point; });
+  object.adopt(adopted);
 }
 
 }  // namespace motorcade

@@ -5,13 +5,22 @@
 
 namespace motorcade {
 
+/// An ordinary vehicle: what may be one body without further evidence.
+struct VehicleSize {
+  double length_m = 6.0, width_m = 2.8, height_m = 3.2;
+  bool holds(const Eigen::AlignedBox3d& box, double slack_m) const {
+    return (box.sizes().array() < Eigen::Array3d(length_m, width_m, height_m) + slack_m).all();
+  }
+};
+
 /// Decides which scene points join an object: those inside its extent that move with it.
 class PointAdoption {
  public:
   struct Params {
-    double margin_m = 0.8;           // beyond the points known so far
-    double depth_noise_sigmas = 2.0; // by which the margin grows
-    double max_length_m = 14.0;      // of the body, along its axes
+    double margin_m = 0.8;            // beyond the points known so far
+    double depth_noise_sigmas = 2.0;  // by which the margin grows
+    double max_length_m = 14.0;       // of the body, along its axes: it grows to this by and by
+    VehicleSize vehicle;              // within it, points of a segment that was matched to the object need no neighbours
     double fits_chi2 = 9.0;          // 3 degrees of freedom
     double not_static_chi2 = 16.0;
     double min_speed_mps = 1.0;      // slower objects cannot be told from the background by motion

@@ -85,16 +85,30 @@ std::vector<SceneMotionEstimator::Sighted> SceneMotionEstimator::closeCircle(con
     while (track != tracks_.end() && track->point < f.point) ++track;
     const bool known = track != tracks_.end() && track->point == f.point;
     Sighted s{.flow = f, .track = known ? &*track : nullptr, .disparity = std::nullopt};
-    if (known) {
-      s.disparity = verifyInRightImage(*stereo.features, f, *track, predicted_T_now_previous);
-    } else if (f.corner >= 0) {
-      s.disparity = stereo.of_corner[static_cast<std::size_t>(f.corner)];
-    }
+    s.disparity = known ? verifyInRightImage(*stereo.features, f, *track, predicted_T_now_previous) : firstDisparity(stereo, f);
     if (s.disparity) s.disparity->disparity_px += static_cast<float>(disparity_offset_.offset_px());
     if (s.disparity && !(s.disparity->disparity_px > 0)) s.disparity.reset();
     if (known || s.disparity) sighted.push_back(s);
   }
   return sighted;
+}
+
+/// Stereo matching gives it where the track was born; where it failed there, a matched corner close by tells where to look.
+std::optional<StereoMatch> SceneMotionEstimator::firstDisparity(const StereoMatches& stereo, const FlowTrack& flow) const {
+  if (flow.corner >= 0 && stereo.of_corner[static_cast<std::size_t>(flow.corner)])
+    return stereo.of_corner[static_cast<std::size_t>(flow.corner)];
+  const StereoMatch* nearest = nullptr;
+  double nearest_px = params_.neighbour_px;
+  for (std::size_t i = 0; i < stereo.of_corner.size(); ++i) {
+    const Corner& c = stereo.features->corners[i];
+    const double distance_px = std::max(std::abs(c.u_px - flow.u_px), std::abs(c.v_px - flow.v_px));
+    if (!stereo.of_corner[i] || distance_px >= nearest_px) continue;
+    nearest = &*stereo.of_corner[i];
+    nearest_px = distance_px;
+  }
+  if (!nearest) return std::nullopt;
+  const ImagePyramid &left = stereo.features->left, &right = stereo.features->right;
+  return refineDisparity(left.levels.front(), right.levels.front(), flow.u_px, flow.v_px, nearest->disparity_px, params_.disparity);
 }
 
 /// The disparity lies between that of a point at rest and that of a point which moves along with the camera.

@@ -24,6 +24,7 @@ class SceneMotionEstimator {
  public:
   struct Params {
     DisparityParams disparity;
+    double neighbour_px = 10;          // a track without disparity tries that of a corner this near
     double unpredicted_search = 0.15;  // extra search for disparity, as a fraction of it, while the camera's motion is unknown
     double sigma_flow_px = 0.25;       // standard deviations are never below these
     double sigma_disparity_px = 0.25;
@@ -52,6 +53,7 @@ class SceneMotionEstimator {
   };
 
   std::vector<Sighted> closeCircle(const StereoMatches& stereo, const OpticalFlow& flow, const SE3& predicted_T_previous_now) const;
+  std::optional<StereoMatch> firstDisparity(const StereoMatches& stereo, const FlowTrack& flow) const;
   std::optional<StereoMatch> verifyInRightImage(const Features& features, const FlowTrack& flow, const PointTrack& track,
                                                 const SE3& predicted_T_now_previous) const;
   PoseObservation observe(const Sighted& sighted) const;

@@ -9,6 +9,11 @@ const BodyPoint* TrackedObject::find(PointId point) const {
   return at != points.end() && at->point == point ? &*at : nullptr;
 }
 
+void TrackedObject::adopt(const std::vector<BodyPoint>& more) {
+  points.insert(points.end(), more.begin(), more.end());
+  std::sort(points.begin(), points.end(), [](const BodyPoint& a, const BodyPoint& b) { return a.point < b.point; });
+}
+
 Eigen::AlignedBox3d TrackedObject::extent(double margin_m) const {
   Eigen::AlignedBox3d box(Eigen::Vector3d::Zero());
   for (const auto& p : points) box.extend(p.p_body);

@@ -37,6 +37,8 @@ struct TrackedObject {
   bool ended = false;
 
   const BodyPoint* find(PointId point) const;
+  /// Adds points and keeps the order.
+  void adopt(const std::vector<BodyPoint>& more);
   /// Box around the points in body axes, grown by `margin_m`.
   Eigen::AlignedBox3d extent(double margin_m) const;
   /// Velocity relative to the world of a place on the body, in world axes.

@@ -131,6 +131,7 @@ void addOpticalFlow(std::vector<Parameter>& table, OpticalFlowTracker::Params& p
 
 void addSceneMotion(std::vector<Parameter>& table, SceneMotionEstimator::Params& p) {
   Section(table, "frontend.motion")
+      .add("neighbour_px", p.neighbour_px, kNotNegative)
       .add("unpredicted_search", p.unpredicted_search, kNotNegative)
       .add("sigma_flow_px", p.sigma_flow_px, kPositive)
       .add("sigma_disparity_px", p.sigma_disparity_px, kPositive)
@@ -140,6 +141,15 @@ void addSceneMotion(std::vector<Parameter>& table, SceneMotionEstimator::Params&
       .add("lost_sigma_m", p.lost_sigma_m, kPositive)
       .add("lost_sigma_rad", p.lost_sigma_rad, kPositive);
   addDisparity(Section(table, "frontend.motion.disparity"), p.disparity);
+  Section(table, "frontend.disparity_offset")
+      .add("prior_sigma_px", p.disparity_offset.prior_sigma_px, kNotNegative)
+      .add("max_rate_px", p.disparity_offset.max_rate_px, kPositive)
+      .add("window_frames", p.calibration_frames, {2, PointTrack::kCapacity - 1})
+      .add("min_motion_m", p.disparity_offset.min_motion_m, kPositive)
+      .add("min_points", p.disparity_offset.min_points, Range{7})
+      .add("inlier_chi2", p.disparity_offset.inlier_chi2, kPositive)
+      .add("huber_sigmas", p.disparity_offset.huber_sigmas, kPositive)
+      .add("variance_inflation", p.disparity_offset.variance_inflation, Range{1});
   Section(table, "frontend.ego_motion")
       .add("max_hypotheses", p.ego_motion.max_hypotheses, {1, 10'000})
       .add("scored_points", p.ego_motion.scored_points, kAtLeastOne)
@@ -148,8 +158,8 @@ void addSceneMotion(std::vector<Parameter>& table, SceneMotionEstimator::Params&
       .add("known_mover_weight", p.ego_motion.known_mover_weight, kShare);
   addPoseFit(Section(table, "frontend.ego_motion.fit"), p.ego_motion.fit);
   Section(table, "frontend.scene_flow")
-      .add("max_observations", p.scene_flow.max_observations, {2, 100})
-      .add("min_observations", p.scene_flow.min_observations, {2, 100})
+      .add("max_observations", p.scene_flow.max_observations, {2, PointTrack::kCapacity})
+      .add("min_observations", p.scene_flow.min_observations, {2, PointTrack::kCapacity})
       .add("pose_jitter_px", p.scene_flow.pose_jitter_px, kNotNegative)
       .add("max_speed_mps", p.scene_flow.max_speed_mps, kPositive)
       .add("huber_sigmas", p.scene_flow.huber_sigmas, kPositive)
@@ -202,8 +212,7 @@ void addTracking(std::vector<Parameter>& table, ObjectTracker::Params& p) {
       .add("start_speed_mps", p.start_speed_mps, kNotNegative)
       .add("stop_frames", p.stop_frames, kAtLeastOne)
       .add("image_margin_px", p.image_margin_px, kNotNegative)
-      .add("merge_distance_m", p.merge_distance_m, kNotNegative)
-      .add("merge_speed_mps", p.merge_speed_mps, kNotNegative)
+      .add("twin_speed_mps", p.twin_speed_mps, kNotNegative)
       .add("birth_turn_rate_radps", p.birth_turn_rate_radps, kPositive);
   Section(table, "frontend.tracking.kinematics")
       .add("acceleration_along_mps2", p.kinematics.acceleration_along_mps2, kPositive)
@@ -229,6 +238,9 @@ void addObjects(std::vector<Parameter>& table, ObjectTracker::Params& p) {
       .add("margin_m", p.adoption.margin_m, kNotNegative)
       .add("depth_noise_sigmas", p.adoption.depth_noise_sigmas, kNotNegative)
       .add("max_length_m", p.adoption.max_length_m, kPositive)
+      .add("vehicle_length_m", p.adoption.vehicle.length_m, kPositive)
+      .add("vehicle_width_m", p.adoption.vehicle.width_m, kPositive)
+      .add("vehicle_height_m", p.adoption.vehicle.height_m, kPositive)
       .add("fits_chi2", p.adoption.fits_chi2, kPositive)
       .add("not_static_chi2", p.adoption.not_static_chi2, kPositive)
       .add("min_speed_mps", p.adoption.min_speed_mps, kNotNegative);
