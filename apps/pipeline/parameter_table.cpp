@@ -92,6 +92,7 @@ void addPreparation(std::vector<Parameter>& table, FeaturePreparation::Params& p
       .add("cell_px", p.corners.cell_px, {4, 1000})
       .add("max_per_cell", p.corners.max_per_cell, {1, 1000})
       .add("min_score", p.corners.min_score, kNotNegative)
+      .add("min_score_over_grain", p.corners.min_score_over_grain, kNotNegative)
       .add("border_px", p.corners.border_px, {4, 1000})
       .add("min_distance_px", p.corners.min_distance_px, {1, 100});
   Section(table, "frontend.sift")
@@ -123,6 +124,10 @@ void addOpticalFlow(std::vector<Parameter>& table, OpticalFlowTracker::Params& p
       .add("border_px", p.border_px, {0, 1000})
       .add("keyframe_frames", p.keyframe_frames, {1, 1000})
       .add("keyframe_min_ncc", p.keyframe_min_ncc, kShare)
+      .add("keyframe_max_drift_px", p.keyframe_max_drift_px, kPositive)
+      .add("moving_level", p.moving_level, {0, 7})
+      .add("young_level", p.young_level, {0, 7})
+      .add("young_margin_px", p.young_margin_px, kNotNegative)
       .add("sift_max_flow_px", p.sift_max_flow_px, kPositive)
       .add("sift_max_ratio", p.sift_max_ratio, kShare)
       .add("sift_sigma_px", p.sift_sigma_px, kPositive);
@@ -139,7 +144,8 @@ void addSceneMotion(std::vector<Parameter>& table, SceneMotionEstimator::Params&
       .add("static_chi2_per_dof", p.static_chi2_per_dof, kPositive)
       .add("max_ground_noise_m", p.max_ground_noise_m, kPositive)
       .add("lost_sigma_m", p.lost_sigma_m, kPositive)
-      .add("lost_sigma_rad", p.lost_sigma_rad, kPositive);
+      .add("lost_sigma_rad", p.lost_sigma_rad, kPositive)
+      .add("calibration_frames", p.calibration_frames, kAnyCount);
   addDisparity(Section(table, "frontend.motion.disparity"), p.disparity);
   Section(table, "frontend.disparity_offset")
       .add("prior_sigma_px", p.disparity_offset.prior_sigma_px, kNotNegative)

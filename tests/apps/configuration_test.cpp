@@ -1,6 +1,11 @@
 #include "apps/pipeline/configuration.hpp"
 
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -69,6 +74,34 @@ TEST(Configuration, ReadsBackWhatItWrites) {
 TEST(Configuration, BindsEachKeyOnceWithItsDefaultInRange) {
   PipelineConfig config;
   EXPECT_NO_THROW(applyToml(config, toToml(config), "defaults"));  // TOML itself refuses a key or section that comes twice
+}
+
+/// The numbers and flags that the `Params` of a header declare.
+std::vector<std::string> parametersDeclaredIn(const std::filesystem::path& header) {
+  const std::regex begin(R"(\s*struct \w*Params \{)"), end(R"(\s*\};)"), member(R"(\s*(int|double|bool) [^/]*=.*)"), name(R"((\w+) =)");
+  std::vector<std::string> names;
+  bool inside = false;
+  std::ifstream file(header);
+  for (std::string line; std::getline(file, line);) {
+    if (std::regex_match(line, begin)) inside = true;
+    if (std::regex_match(line, end)) inside = false;
+    if (!inside || !std::regex_match(line, member)) continue;
+    const std::string code = line.substr(0, line.find("//"));
+    for (std::sregex_iterator found(code.begin(), code.end(), name), none; found != none; ++found) names.push_back((*found)[1]);
+  }
+  return names;
+}
+
+TEST(Configuration, KnowsEveryParameterOfEveryStage) {
+  PipelineConfig config;
+  std::set<std::string> known;
+  for (const Parameter& parameter : parameterTable(config)) known.insert(parameter.name);
+  const std::filesystem::path root = MOTORCADE_SOURCE_DIR;
+  std::vector<std::filesystem::path> headers{root / "backend/optimizer.hpp", root / "backend/filter_backend.hpp"};
+  for (const auto& entry : std::filesystem::directory_iterator(root / "frontend"))
+    if (entry.path().extension() == ".hpp") headers.push_back(entry.path());
+  for (const auto& header : headers)
+    for (const std::string& name : parametersDeclaredIn(header)) EXPECT_TRUE(known.contains(name)) << header << ": " << name;
 }
 
 TEST(Configuration, NamesFileLineAndNearestKeyOfAnUnknownOne) {
