@@ -15,7 +15,8 @@ __extension__ using Wide = __int128;
 /// Position in 1/16 px. Differences stay below 2^30, so that products of two fit 64 bits and of four 128.
 struct GridPoint {
   std::int64_t x, y;
-  auto operator<=>(const GridPoint&) const = default;
+  bool operator==(const GridPoint&) const = default;
+  bool operator<(const GridPoint& other) const { return std::tie(x, y) < std::tie(other.x, other.y); }
 };
 
 GridPoint quantized(const Eigen::Vector2d& p_px) {
@@ -203,7 +204,7 @@ Vertices mergeDuplicates(std::span<const Eigen::Vector2d> points_px, std::vector
 
 /// The three vertices with the smallest first, in their cyclic order.
 std::array<int, 3> smallestFirst(std::array<int, 3> t) {
-  std::ranges::rotate(t, std::ranges::min_element(t));
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
 }
 

@@ -24,7 +24,8 @@ struct Shift {
 struct Keyframe {
   Image image;
   float u_px = 0, v_px = 0;
-  int frames = 0;  // since then
+  int frames = 0;   // since then
+  float scale = 1;  // by which the patch has grown since then
 };
 
 struct Track {
@@ -240,25 +241,27 @@ struct OpticalFlowTracker::State {
 
 /// Takes over a frame-to-frame position, after alignment to the keyframe where that still looks alike.
 void OpticalFlowTracker::State::moveTo(Track& track, const AlignedPatch& found, const Image& now) const {
+  Keyframe& keyframe = track.keyframe;
   AlignedPatch position = found;
-  ++track.keyframe.frames;
-  bool anchored = false;
-  if (track.keyframe.frames > 1) {
+  ++keyframe.frames;
+  keyframe.scale *= std::exp(found.log_growth);
+  bool anchored = keyframe.frames == 1;  // found from the keyframe itself
+  if (!anchored) {
     PatchParams held = params.patch;
-    held.min_ncc = params.keyframe_min_ncc;
+    held.min_ncc = found.ncc - params.keyframe_max_ncc_loss;
     held.max_shift_px = params.keyframe_max_drift_px;
-    const auto patch =
-        makeTemplate(track.keyframe.image, track.keyframe.u_px, track.keyframe.v_px, held.window_px, PatchDeformation::kScale);
+    const auto patch = makeTemplate(keyframe.image, keyframe.u_px, keyframe.v_px, held.window_px, PatchDeformation::kScale, keyframe.scale);
     const auto aligned = patch ? alignPatch(*patch, now, found.u_px, found.v_px, held) : std::nullopt;
-    if (aligned) position = *aligned;
+    if (aligned) {
+      position = *aligned;
+      keyframe.scale *= std::exp(aligned->log_growth);
+    }
     anchored = aligned.has_value();
-  } else {
-    anchored = found.ncc >= params.keyframe_min_ncc;
   }
   track.shift = {position.u_px - track.seen.u_px, position.v_px - track.seen.v_px};
   track.seen = {track.seen.point, position.u_px, position.v_px, position.sigma_px, track.seen.age + 1, -1};
   track.moved = true;
-  if (!anchored || track.keyframe.frames >= params.keyframe_frames) track.keyframe = {now, position.u_px, position.v_px, 0};
+  if (!anchored || keyframe.frames >= params.keyframe_frames) keyframe = {now, position.u_px, position.v_px, 0, 1};
 }
 
 /// Tracks that moved before: their own velocity is the guess.
@@ -317,7 +320,7 @@ void OpticalFlowTracker::State::startTrack(const Features& now, int corner) {
   const Corner& at = now.corners[static_cast<std::size_t>(corner)];
   Track& track = tracks.emplace_back();
   track.seen = {{next_point++}, at.u_px, at.v_px, static_cast<float>(params.patch.sigma_floor_px), 1, corner};
-  track.keyframe = {now.left.levels.front(), at.u_px, at.v_px, 0};
+  track.keyframe = {now.left.levels.front(), at.u_px, at.v_px, 0, 1};
 }
 
 /// Starts tracks at the strongest free corners of the cells, those with the fewest tracks first.
@@ -325,7 +328,8 @@ void OpticalFlowTracker::State::startTracks(const Features& now) {
   const Image& image = now.left.levels.front();
   const int columns = (image.width() + params.cell_px - 1) / params.cell_px, rows = (image.height() + params.cell_px - 1) / params.cell_px;
   const auto cellOf = [&](float u_px, float v_px) {
-    return static_cast<std::size_t>(static_cast<int>(v_px) / params.cell_px * columns + static_cast<int>(u_px) / params.cell_px);
+    const int cell = static_cast<int>(v_px) / params.cell_px * columns + static_cast<int>(u_px) / params.cell_px;
+    return static_cast<std::size_t>(cell);
   };
   std::vector<int> population(static_cast<std::size_t>(columns) * rows, 0);
   Occupancy occupancy(image.width(), image.height(), params.min_distance_px);

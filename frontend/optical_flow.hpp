@@ -22,16 +22,16 @@ class OpticalFlowTracker {
     double max_round_trip_px = 0.5;
     double max_flow_px = 250;
     int border_px = 6;
-    int keyframe_frames = 6;           // a track is anchored again after this many
-    double keyframe_min_ncc = 0.9;     // or when it no longer looks like its keyframe
-    double keyframe_max_drift_px = 1;  // between the frame-to-frame position and the keyframe's
-    int moving_level = 2;              // pyramid level at which a track with known velocity starts
-    int young_level = 1;               // and one without
-    double young_margin_px = 20;       // how far a new track may move otherwise than its neighbours
+    int keyframe_frames = 6;             // a track is anchored again after this many
+    double keyframe_max_ncc_loss = 0.2;  // or when it looks less like its keyframe than like the frame before, by more than this
+    double keyframe_max_drift_px = 1;    // between the frame-to-frame position and the keyframe's
+    int moving_level = 2;                // pyramid level at which a track with known velocity starts
+    int young_level = 1;                 // and one without
+    double young_margin_px = 20;         // how far a new track may move otherwise than its neighbours
     PatchParams patch;
     double sift_max_flow_px = 150;
     double sift_max_ratio = 0.85;
-    double sift_sigma_px = 0.3;
+    double sift_sigma_px = 0.4;
   };
   OpticalFlowTracker(const Params& params, const StereoCamera& camera);
   OpticalFlowTracker(OpticalFlowTracker&&) noexcept;

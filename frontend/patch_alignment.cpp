@@ -84,7 +84,8 @@ bool inside(const Image& image, float u_px, float v_px) {
 
 /// Bilinear samples of a square around (u, v), `kStride` apart; what follows the last column is unspecified but finite.
 void sampleSquare(const Image& image, float u_px, float v_px, int side_px, float* out) {
-  const float left = u_px - static_cast<float>(side_px / 2), top = v_px - static_cast<float>(side_px / 2);
+  const int half = side_px / 2;
+  const float left = u_px - static_cast<float>(half), top = v_px - static_cast<float>(half);
   const int x = static_cast<int>(std::floor(left)), y = static_cast<int>(std::floor(top));
   const float fx = left - static_cast<float>(x), fy = top - static_cast<float>(y);
   const Block block(image, x, y, side_px + 1, side_px + 1);
@@ -95,6 +96,26 @@ void sampleSquare(const Image& image, float u_px, float v_px, int side_px, float
       const Lanes lower = pixels(q + c) * (1 - fx) + pixels(q + c + 1) * fx;
       const Lanes value = upper * (1 - fy) + lower * fy;
       std::memcpy(out + r * kStride + c, &value, sizeof value);
+    }
+  }
+}
+
+/// The same with samples 1 / scale px apart: slower, for scales near one.
+void sampleScaledSquare(const Image& image, float u_px, float v_px, int side_px, float scale, float* out) {
+  const int half = side_px / 2;
+  const auto last_u = static_cast<float>(image.width() - 1), last_v = static_cast<float>(image.height() - 1);
+  for (int r = 0; r < side_px; ++r) {
+    const float v = std::clamp(v_px + static_cast<float>(r - half) / scale, 0.0F, last_v);
+    const int y = std::min(static_cast<int>(v), image.height() - 2);
+    const float fy = v - static_cast<float>(y);
+    const std::uint8_t *p = image.row(y), *q = image.row(y + 1);
+    for (int c = 0; c < side_px; ++c) {
+      const float u = std::clamp(u_px + static_cast<float>(c - half) / scale, 0.0F, last_u);
+      const int x = std::min(static_cast<int>(u), image.width() - 2);
+      const float fx = u - static_cast<float>(x);
+      const float upper = static_cast<float>(p[x]) + fx * static_cast<float>(p[x + 1] - p[x]);
+      const float lower = static_cast<float>(q[x]) + fx * static_cast<float>(q[x + 1] - q[x]);
+      out[r * kStride + c] = upper + fy * (lower - upper);
     }
   }
 }
@@ -242,22 +263,29 @@ float explainedCorrelation(const PatchTemplate& patch, const Moments& moments) {
   return std::sqrt(std::min(1.0F, (moments.appearance * moments.appearance + deformation) / moments.variation));
 }
 
-/// Standard deviation of the shift along parameter i when the residual is white.
+/// Standard deviation of the shift along parameter i, from a residual taken as white. What that leaves out (noise in the gradients of H,
+/// deformations beyond the model) is in the factor, fitted to the median error on rendered street scenes.
+constexpr float kSigmaFactor = 1.35F;
 float shiftSigma(const PatchTemplate& patch, const Moments& moments, float ncc, int parameter) {
   const float gain = moments.appearance / patch.norm;
   const int freedom = patch.window_px * patch.window_px - 5;
   const float noise_variance = std::max(0.0F, moments.variation * (1 - ncc * ncc)) / static_cast<float>(freedom);
-  return std::sqrt(noise_variance * patch.inverse_hessian(parameter, parameter)) / gain;
+  return kSigmaFactor * std::sqrt(noise_variance * patch.inverse_hessian(parameter, parameter)) / gain;
 }
 
 }  // namespace
 
-std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px, PatchDeformation deformation) {
+std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px, PatchDeformation deformation,
+                                          float scale) {
   assert(window_px % 2 == 1 && window_px <= kMaxPatchWindow_px);
   std::optional<PatchTemplate> patch;  // the only object returned, so that it is never copied
   if (!inside(image, u_px, v_px)) return patch;
   alignas(32) Square square{};
-  sampleSquare(image, u_px, v_px, window_px + 2, square.data());
+  if (scale == 1) {
+    sampleSquare(image, u_px, v_px, window_px + 2, square.data());
+  } else {
+    sampleScaledSquare(image, u_px, v_px, window_px + 2, scale, square.data());
+  }
   patch.emplace();
   patch->window_px = window_px;
   setAppearance(*patch, square);
@@ -296,7 +324,7 @@ std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& 
     const float ncc = explainedCorrelation(patch, moments);
     if (ncc < params.min_ncc) return std::nullopt;
     const float sigma = std::max(shiftSigma(patch, moments, ncc, 0), shiftSigma(patch, moments, ncc, 1));
-    return AlignedPatch{u, v, ncc, std::hypot(sigma, static_cast<float>(params.sigma_floor_px))};
+    return AlignedPatch{u, v, ncc, -step[2], std::hypot(sigma, static_cast<float>(params.sigma_floor_px))};
   }
   return std::nullopt;
 }
@@ -380,7 +408,8 @@ std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right
   if (params.search_radius_px > 0) start_px = searchAround(left, right, u_px, v_px, predicted_disparity_px, params.search_radius_px);
 
   constexpr float kConverged_px = 0.02F, kMaxShift_px = 2;
-  const float max_slope = static_cast<float>(kMaxShearShift_px) / static_cast<float>(params.window_px / 2);
+  const int half = params.window_px / 2;
+  const float max_slope = static_cast<float>(kMaxShearShift_px) / static_cast<float>(half);
   float u_right = u - static_cast<float>(start_px), slope = 0;
   const float first_guess = u_right;
   for (int iteration = 0; iteration < params.max_iterations; ++iteration) {

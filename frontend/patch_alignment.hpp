@@ -20,7 +20,7 @@ struct PatchParams {
   double max_step_px = 0.02;  // converged below this
   double max_shift_px = 4;    // from the guess, per level; further is a failure
   double min_ncc = 0.65;      // normalised cross-correlation at the solution
-  double sigma_floor_px = 0.1;
+  double sigma_floor_px = 0.12;
 };
 
 /// How a patch may deform beside its shift: a small change of scale in time, a slope of the disparity between the eyes.
@@ -41,13 +41,16 @@ struct PatchTemplate {
   Eigen::Matrix3f inverse_hessian;
 };
 
-/// Empty without the texture that the shift needs, or when the point lies outside the image.
-std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px, PatchDeformation deformation);
+/// Empty without the texture that the shift needs, or when the point lies outside the image. With a `scale` the template shows the image
+/// that much enlarged around the point: how a point that was seen from afar looks now.
+std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px, PatchDeformation deformation,
+                                          float scale = 1);
 
 struct AlignedPatch {
   float u_px = 0, v_px = 0;
-  float ncc = 0;       // with the deformation taken into account
-  float sigma_px = 0;  // standard deviation of each coordinate, from residual and H; of the worse one, never below the floor
+  float ncc = 0;         // with the deformation taken into account
+  float log_growth = 0;  // log scale of what `image` shows over the template's
+  float sigma_px = 0;    // standard deviation of each coordinate, from residual and H; of the worse one, never below the floor
 };
 
 /// Finds a kScale template in `image` near a guess by inverse-compositional Gauss-Newton (Baker, Matthews 2004).
@@ -67,7 +70,7 @@ struct DisparityParams {
   double search_radius_px = 3;  // whole-pixel search around the prediction; 0 goes straight to the refinement
   int max_iterations = 8;
   double min_ncc = 0.65;
-  double sigma_floor_px = 0.1;
+  double sigma_floor_px = 0.12;
   double max_sigma_px = 1;
 };
 

@@ -9,6 +9,9 @@
 namespace motorcade {
 namespace {
 
+/// Of descriptors, whose norm is about 512: bounds matches that have no rival for the ratio to judge by.
+constexpr double kMaxDistance = 250;
+
 float squaredDistance(const SiftDescriptor& a, const SiftDescriptor& b) {
   float sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
@@ -72,7 +75,8 @@ std::vector<int> matchSift(const std::vector<Corner>& from, const std::vector<Si
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Nearest& nearest = forward[i];
     const bool mutual = nearest.index >= 0 && backward[static_cast<std::size_t>(nearest.index)].index == static_cast<int>(i);
-    if (mutual && nearest.distance < max_ratio * max_ratio * nearest.second) match[i] = nearest.index;
+    const double limit = std::min(max_ratio * max_ratio * nearest.second, kMaxDistance * kMaxDistance);
+    if (mutual && nearest.distance < limit) match[i] = nearest.index;
   }
   return match;
 }

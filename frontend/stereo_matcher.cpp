@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "frontend/sift_features.hpp"
@@ -32,7 +33,8 @@ std::optional<int> searchColumns(const Image& image, int u, int v, const Image& 
   last_u = std::min(last_u, other.width() - 1 - half);
   if (last_u < first_u) return std::nullopt;
   Costs costs;
-  const auto searched = std::span(costs).first(static_cast<std::size_t>(last_u - first_u + 1));
+  const int places = last_u - first_u + 1;
+  const auto searched = std::span(costs).first(static_cast<std::size_t>(places));
   windowDifferences(image, u, v, other, first_u, v, {params.search_columns, params.search_rows}, searched);
   const auto best = uniqueMinimum(searched, params.max_uniqueness_ratio);
   if (!best) return std::nullopt;

@@ -20,7 +20,7 @@ class StereoMatcher {
     DisparityParams refinement;
     double sift_max_row_px = 1.5;
     double sift_max_ratio = 0.9;
-    double sift_sigma_px = 0.3;
+    double sift_sigma_px = 0.4;
   };
   StereoMatcher(const Params& params, const StereoCamera& camera);
   StereoMatchesPtr operator()(const FeaturesPtr& features) const;

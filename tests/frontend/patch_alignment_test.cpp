@@ -80,17 +80,35 @@ TEST(PatchAlignment, PyramidReachesFarShifts) {
 TEST(PatchAlignment, ScaleChangeMovesNoPoint) {
   const test::Texture texture(13, 8, 30);
   const Image from = test::render(kWidth, kHeight, texture);
-  ErrorStatistics error;
+  ErrorStatistics error, growth;
   forEachPlace(25, [&](double u, double v) {
     constexpr double kScale = 1.08;
     const auto grown = [&](double x, double y) { return texture(u + (x - u) / kScale, v + (y - v) / kScale); };
     const Image to = test::render(kWidth, kHeight, grown);
     const auto patch = makeTemplate(from, static_cast<float>(u), static_cast<float>(v), 11, PatchDeformation::kScale);
     const auto aligned = patch ? alignPatch(*patch, to, static_cast<float>(u), static_cast<float>(v), {}) : std::nullopt;
-    if (aligned) error.add(std::hypot(aligned->u_px - u, aligned->v_px - v), aligned->sigma_px);
+    if (!aligned) return;
+    error.add(std::hypot(aligned->u_px - u, aligned->v_px - v), aligned->sigma_px);
+    growth.add(aligned->log_growth - std::log(kScale), 1);
   });
   EXPECT_GT(error.count, 20);
   EXPECT_LT(error.rms(), 0.1);
+  EXPECT_LT(growth.rms(), 0.02);  // the prior pulls it towards none
+}
+
+TEST(PatchAlignment, AlignsATemplateMadeAtTheScaleOfNow) {
+  const test::Texture texture(18, 8, 30);
+  const Image from = test::render(kWidth, kHeight, texture);
+  constexpr float kScale = 1.4F;
+  const auto grown = [&](double x, double y) { return texture(120.3 + (x - 131.8) / kScale, 65.6 + (y - 60.1) / kScale); };
+  const Image to = test::render(kWidth, kHeight, grown);
+  const auto patch = makeTemplate(from, 120.3F, 65.6F, 11, PatchDeformation::kScale, kScale);
+  ASSERT_TRUE(patch);
+  const auto aligned = alignPatch(*patch, to, 131, 61, {});
+  ASSERT_TRUE(aligned);
+  EXPECT_NEAR(aligned->u_px, 131.8, 0.05);
+  EXPECT_NEAR(aligned->v_px, 60.1, 0.05);
+  EXPECT_NEAR(aligned->log_growth, 0, 0.02);
 }
 
 TEST(PatchAlignment, RefusesPatchesWithoutTexture) {
