@@ -14,6 +14,8 @@ class MotionSegmenter {
  public:
   struct Params {
     double max_flow_chi2 = 11.3;          // of a scene-flow difference, 3 degrees of freedom: 99 %
+    double speed_tolerance_mps = 0.2;     // differences on one body that its points' covariances do not explain: model errors, ...
+    double max_turn_rate_radps = 0.4;     // ... and turning
     double max_gap_m = 2.0;               // between neighbours on one vehicle, beyond what their depth noise explains
     double max_speed_sigma_mps = 4.0;     // points less certain than this are no vertices
     double epipolar_violation_sigmas = 4; // an end that violates the geometry of a static world and one that does not are cut apart

@@ -16,7 +16,7 @@ namespace {
 /// A sighting with the relation of its camera to the newest one.
 struct Observation {
   Eigen::Vector3d uvd_px;
-  Eigen::Vector3d inverse_variance;
+  Eigen::Vector3d variance_px2;
   const CameraTrail::Relation* relation;
 };
 
@@ -27,15 +27,15 @@ struct Window {
   auto end() const { return observations.begin() + size; }
 };
 
-Window collect(const PointTrack& track, const CameraTrail& trail, const SceneFlowEstimator::Params& params) {
+Window collect(const PointTrack& track, const CameraTrail& trail, double pose_jitter_px, int observations) {
   Window window;
-  const double jitter2 = params.pose_jitter_px * params.pose_jitter_px;
-  for (int i = std::max(0, track.count - params.max_observations); i < track.count; ++i) {
+  const double jitter2 = pose_jitter_px * pose_jitter_px;
+  for (int i = std::max(0, track.count - observations); i < track.count; ++i) {
     const auto& s = track.sightings[static_cast<std::size_t>(i)];
     const auto* relation = trail.find(s.step);
     if (!relation) continue;
     const Eigen::Array3d variance = s.sigma_px.cast<double>().array().square() + jitter2;
-    window.observations[static_cast<std::size_t>(window.size++)] = {s.uvd_px.cast<double>(), variance.inverse(), relation};
+    window.observations[static_cast<std::size_t>(window.size++)] = {s.uvd_px.cast<double>(), variance, relation};
   }
   return window;
 }
@@ -44,90 +44,95 @@ Window collect(const PointTrack& track, const CameraTrail& trail, const SceneFlo
 struct Linearized {
   Eigen::Matrix3d JtWJ;
   Eigen::Vector3d JtWr;
-  double chi2;
-  double weight;
+  double cost;  // robust, as a chi-square value: residuals in the linear part of the loss count by it
 };
 
-std::optional<Linearized> linearize(const StereoCamera& camera, const Observation& o, const Eigen::Vector3d& p_now, double huber_sigmas) {
+/// `wander_m` is the standard deviation by which the point may be off the model's position at that time.
+std::optional<Linearized> linearize(const StereoCamera& camera, const Observation& o, const Eigen::Vector3d& p_now, double wander_m,
+                                    double huber_sigmas) {
   const Eigen::Vector3d p_then = o.relation->T_then_now * p_now;
   const auto uvd = camera.project(p_then);
   if (!uvd) return std::nullopt;
   const Eigen::Matrix3d J = camera.projectionJacobian(p_then) * o.relation->T_then_now.rotation();
+  Eigen::Matrix3d S = wander_m * wander_m * J * J.transpose();
+  S.diagonal() += o.variance_px2;
+  const Eigen::Matrix3d W = S.inverse();
   const Eigen::Vector3d r = o.uvd_px - *uvd;
-  const double chi2 = r.cwiseAbs2().dot(o.inverse_variance);
-  const double weight = robustWeight(RobustLoss::kHuber, std::sqrt(chi2), huber_sigmas);
-  const Eigen::Matrix3d JtW = J.transpose() * (weight * o.inverse_variance).asDiagonal();
-  return Linearized{JtW * J, JtW * r, chi2, weight};
-}
-
-/// Robust cost of a window under a motion, as a chi-square value: residuals in the linear part of the loss count by it.
-double windowChi2(const StereoCamera& camera, const Window& window, const Eigen::Vector3d& p, const Eigen::Vector3d& v, double huber_sigmas) {
-  double chi2 = 0;
-  for (const auto& o : window) {
-    const auto uvd = camera.project(o.relation->T_then_now * Eigen::Vector3d(p + o.relation->dt_s * v));
-    if (!uvd) return std::numeric_limits<double>::infinity();
-    const double squared = (o.uvd_px - *uvd).cwiseAbs2().dot(o.inverse_variance);
-    chi2 += 2 * robustCost(RobustLoss::kHuber, std::sqrt(squared), huber_sigmas);
-  }
-  return chi2;
+  const double norm = std::sqrt(r.dot(W * r));
+  const Eigen::Matrix3d JtW = robustWeight(RobustLoss::kHuber, norm, huber_sigmas) * J.transpose() * W;
+  return Linearized{JtW * J, JtW * r, 2 * robustCost(RobustLoss::kHuber, norm, huber_sigmas)};
 }
 
 }  // namespace
 
 std::optional<SceneFlowEstimator::StaticFit> SceneFlowEstimator::fitStatic(const PointTrack& track, const CameraTrail& trail) const {
-  const Window window = collect(track, trail, params_);
+  const Window window = collect(track, trail, params_.pose_jitter_px, params_.max_observations);
   if (window.size == 0) return std::nullopt;
   Eigen::Vector3d p = camera_.triangulate(track.newest().uvd_px.cast<double>());
-  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
-  for (int iteration = 0; iteration < params_.iterations; ++iteration) {
-    H.setZero();
+  for (int iteration = 0;; ++iteration) {
+    Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    double chi2 = 0;
     for (const auto& o : window) {
-      const auto l = linearize(camera_, o, p, params_.huber_sigmas);
+      const auto l = linearize(camera_, o, p, 0, params_.huber_sigmas);
       if (!l) return std::nullopt;
       H += l->JtWJ;
       b += l->JtWr;
+      chi2 += l->cost;
     }
+    if (iteration == params_.iterations) return StaticFit{p, H.inverse(), chi2};
     p += H.inverse() * b;
     if (!p.allFinite() || p.z() < StereoCamera::kMinDepth_m) return std::nullopt;
   }
-  return StaticFit{p, H.inverse(), windowChi2(camera_, window, p, Eigen::Vector3d::Zero(), params_.huber_sigmas)};
 }
 
 std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, const CameraTrail& trail, const StaticFit& at_rest) const {
-  const Window window = collect(track, trail, params_);
+  for (int n = std::min(params_.max_observations, track.count); n >= params_.min_observations; n = n > 5 ? (n + 1) / 2 : n - 1) {
+    auto flow = fitMoving(track, trail, n);
+    if (!flow) continue;
+    flow->static_chi2 = at_rest.chi2;
+    return flow;
+  }
+  return std::nullopt;
+}
+
+std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, const CameraTrail& trail, int observations) const {
+  const Window window = collect(track, trail, params_.pose_jitter_px, observations);
   if (window.size < params_.min_observations) return std::nullopt;
   Eigen::Vector3d p = camera_.triangulate(track.newest().uvd_px.cast<double>());
   Eigen::Vector3d v = Eigen::Vector3d::Zero();
   const double prior_information = 1.0 / (params_.max_speed_mps * params_.max_speed_mps);
-  Matrix6d H = Matrix6d::Zero();
-  for (int iteration = 0; iteration < params_.iterations; ++iteration) {
-    H.setZero();
+  for (int iteration = 0;; ++iteration) {
+    Matrix6d H = Matrix6d::Zero();
     H.bottomRightCorner<3, 3>().diagonal().setConstant(prior_information);
     Vector6d b;
     b << Eigen::Vector3d::Zero(), -prior_information * v;
+    double chi2 = 0;
     for (const auto& o : window) {
       const double dt_s = o.relation->dt_s;
-      const auto l = linearize(camera_, o, p + dt_s * v, params_.huber_sigmas);
+      const auto l = linearize(camera_, o, p + dt_s * v, 0.5 * params_.acceleration_mps2 * dt_s * dt_s, params_.huber_sigmas);
       if (!l) return std::nullopt;
       H.topLeftCorner<3, 3>() += l->JtWJ;
       H.topRightCorner<3, 3>() += dt_s * l->JtWJ;
       H.bottomRightCorner<3, 3>() += dt_s * dt_s * l->JtWJ;
       b.head<3>() += l->JtWr;
       b.tail<3>() += dt_s * l->JtWr;
+      chi2 += l->cost;
     }
     H.bottomLeftCorner<3, 3>() = H.topRightCorner<3, 3>().transpose();
+    if (iteration == params_.iterations) {
+      if (!(chi2 < params_.max_chi2_per_dof * (3.0 * window.size - 6.0))) return std::nullopt;
+      return SceneFlow{.p_cam = p,
+                       .velocity_mps = v,
+                       .covariance = H.ldlt().solve(Matrix6d::Identity()),
+                       .moving_chi2 = chi2,
+                       .observations = window.size};
+    }
     const Vector6d step = H.ldlt().solve(b);
     p += step.head<3>();
     v += step.tail<3>();
     if (!step.allFinite() || p.z() < StereoCamera::kMinDepth_m) return std::nullopt;
   }
-  SceneFlow flow{.p_cam = p, .velocity_mps = v, .covariance = H.ldlt().solve(Matrix6d::Identity())};
-  flow.static_chi2 = at_rest.chi2;
-  flow.moving_chi2 = windowChi2(camera_, window, p, v, params_.huber_sigmas);
-  flow.observations = window.size;
-  if (!(flow.moving_chi2 < params_.max_chi2_per_dof * (3.0 * window.size - 6.0))) return std::nullopt;
-  return flow;
 }
 
 }  // namespace motorcade

@@ -123,7 +123,7 @@ void addOpticalFlow(std::vector<Parameter>& table, OpticalFlowTracker::Params& p
       .add("max_flow_px", p.max_flow_px, kPositive)
       .add("border_px", p.border_px, {0, 1000})
       .add("keyframe_frames", p.keyframe_frames, {1, 1000})
-      .add("keyframe_min_ncc", p.keyframe_min_ncc, kShare)
+      .add("keyframe_max_ncc_loss", p.keyframe_max_ncc_loss, kShare)
       .add("keyframe_max_drift_px", p.keyframe_max_drift_px, kPositive)
       .add("moving_level", p.moving_level, {0, 7})
       .add("young_level", p.young_level, {0, 7})
@@ -168,6 +168,7 @@ void addSceneMotion(std::vector<Parameter>& table, SceneMotionEstimator::Params&
       .add("min_observations", p.scene_flow.min_observations, {2, PointTrack::kCapacity})
       .add("pose_jitter_px", p.scene_flow.pose_jitter_px, kNotNegative)
       .add("max_speed_mps", p.scene_flow.max_speed_mps, kPositive)
+      .add("acceleration_mps2", p.scene_flow.acceleration_mps2, kNotNegative)
       .add("huber_sigmas", p.scene_flow.huber_sigmas, kPositive)
       .add("max_chi2_per_dof", p.scene_flow.max_chi2_per_dof, kPositive)
       .add("iterations", p.scene_flow.iterations, {1, 100});
@@ -190,6 +191,8 @@ void addGroundPlane(std::vector<Parameter>& table, GroundPlaneEstimator::Params&
 void addSegmentation(std::vector<Parameter>& table, MotionSegmenter::Params& p) {
   Section(table, "frontend.segmentation")
       .add("max_flow_chi2", p.max_flow_chi2, kPositive)
+      .add("speed_tolerance_mps", p.speed_tolerance_mps, kNotNegative)
+      .add("max_turn_rate_radps", p.max_turn_rate_radps, kNotNegative)
       .add("max_gap_m", p.max_gap_m, kPositive)
       .add("max_speed_sigma_mps", p.max_speed_sigma_mps, kPositive)
       .add("epipolar_violation_sigmas", p.epipolar_violation_sigmas, kPositive)
