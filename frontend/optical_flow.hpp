@@ -16,7 +16,7 @@ namespace motorcade {
 class OpticalFlowTracker {
  public:
   struct Params {
-    int max_tracks = 1200;
+    int max_tracks = 2000;
     int cell_px = 48;
     double min_distance_px = 5;  // between tracks
     double max_round_trip_px = 0.5;

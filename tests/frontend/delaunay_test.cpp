@@ -8,28 +8,16 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/empty_circle.hpp"
+
 namespace motorcade {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
-using Whole = std::int64_t;
-
-struct Grid {
-  Whole x, y;
-};
-Grid onGrid(const Eigen::Vector2d& p) { return {std::llround(16 * p.x()), std::llround(16 * p.y())}; }
-
-/// Positive when a, b, c turn clockwise as seen in the image.
-Whole turn(const Grid& a, const Grid& b, const Grid& c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
-
-/// Strictly inside, by the determinant in long double: exact for coordinates below 2^13.
-bool insideCircle(const Grid& a, const Grid& b, const Grid& c, const Grid& d) {
-  const auto lift = [&](const Grid& p) { return static_cast<long double>((p.x - d.x) * (p.x - d.x) + (p.y - d.y) * (p.y - d.y)); };
-  const auto cross = [&](const Grid& p, const Grid& q) {
-    return static_cast<long double>((p.x - d.x) * (q.y - d.y) - (p.y - d.y) * (q.x - d.x));
-  };
-  return lift(a) * cross(b, c) + lift(b) * cross(c, a) + lift(c) * cross(a, b) > 0;
-}
+using test::Grid;
+using test::onGrid;
+using test::turn;
+using test::Whole;
 
 /// Twice the area of the convex hull, by gift wrapping over all pairs.
 Whole hullAreaTwice(const std::vector<Grid>& points) {
@@ -70,7 +58,7 @@ void expectDelaunay(const Points& points_px, const DelaunayGraph& graph) {
     const Grid a = position[t[0]], b = position[t[1]], c = position[t[2]];
     ASSERT_GT(turn(a, b, c), 0);
     area += turn(a, b, c);
-    for (const Grid& d : distinct) ASSERT_FALSE(insideCircle(a, b, c, d));
+    for (const Grid& d : distinct) ASSERT_LE(circleSide(a, b, c, d), 0);
     for (int k = 0; k < 3; ++k) ++triangles_at[{std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])}];
   }
   for (const auto& edge : graph.edges) {
