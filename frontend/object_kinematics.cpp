@@ -26,10 +26,11 @@ void ObjectKinematics::predict(double dt_s, const Params& params) {
       params.acceleration_tilt_radps2, params.acceleration_tilt_radps2, params.acceleration_yaw_radps2;
   density = density.cwiseAbs2();
   Matrix12d Q = Matrix12d::Zero();
-  Q.topLeftCorner<6, 6>().diagonal() = density * dt_s * dt_s * dt_s / 3;
-  Q.topRightCorner<6, 6>().diagonal() = density * dt_s * dt_s / 2;
+  const double span_s = std::abs(dt_s);
+  Q.topLeftCorner<6, 6>().diagonal() = density * span_s * span_s * span_s / 3;
+  Q.topRightCorner<6, 6>().diagonal() = density * dt_s * span_s / 2;
   Q.bottomLeftCorner<6, 6>() = Q.topRightCorner<6, 6>();
-  Q.bottomRightCorner<6, 6>().diagonal() = density * dt_s;
+  Q.bottomRightCorner<6, 6>().diagonal() = density * span_s;
 
   T_world_body_ = (T_world_body_ * motion).normalized();
   covariance_ = F * covariance_ * F.transpose() + Q;

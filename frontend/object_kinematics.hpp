@@ -33,7 +33,7 @@ class ObjectKinematics {
   Matrix6d poseCovariance() const { return covariance_.topLeftCorner<6, 6>(); }
   Eigen::Matrix3d velocityCovariance() const { return covariance_.block<3, 3>(6, 6); }
 
-  /// Constant twist over dt, T <- T exp(twist dt).
+  /// Constant twist over dt, T <- T exp(twist dt); a negative dt looks back.
   void predict(double dt_s, const Params& params);
 
   /// Takes over a pose whose estimation already used `pose()` and `poseCovariance()` as its prior; the twist follows by their correlation.

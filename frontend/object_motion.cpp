@@ -48,36 +48,44 @@ PosePrior ObjectMotionEstimator::weakPrior(const SE3& T_cam_body) const {
   return {T_cam_body, sigma.cwiseAbs2().cwiseInverse().asDiagonal()};
 }
 
+std::optional<ObjectMotionEstimator::Agreement> ObjectMotionEstimator::agree(const TrackedObject& object, const SceneMotion& scene,
+                                                                             const PosePrior& prior) const {
+  Agreement a{.fit = {}, .seen = sightings(object, scene), .inliers = {}};
+  if (static_cast<int>(a.seen.size()) < params_.min_points) return std::nullopt;
+  std::vector<PoseObservation> observations;
+  for (const auto& s : a.seen) observations.push_back(observe(object.points[s.body_point], *s.now));
+  auto fit = fitPose(camera_, observations, prior.mean, params_.fit, &prior);
+  if (!fit) return std::nullopt;
+  a.fit = std::move(*fit);
+  for (std::size_t i = 0; i < a.seen.size(); ++i)
+    if (a.fit.chi2[i] < params_.inlier_chi2) a.inliers.push_back(a.seen[i]);
+  a.enough = static_cast<int>(a.inliers.size()) >= params_.min_points;
+  return a;
+}
+
 std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& object, const SceneMotion& scene,
                                                                const SceneMotion* previous_scene, const SE3& T_world_cam) const {
-  const auto seen = sightings(object, scene);
-  if (static_cast<int>(seen.size()) < params_.min_points) return std::nullopt;
-  std::vector<PoseObservation> observations;
-  for (const auto& s : seen) observations.push_back(observe(object.points[s.body_point], *s.now));
   const PosePrior prior{T_world_cam.inverse() * object.kinematics.pose(), object.kinematics.poseCovariance().inverse()};
-  const auto fit = fitPose(camera_, observations, prior.mean, params_.fit, &prior);
-  if (!fit) return std::nullopt;
-
-  std::vector<Sighting> inliers;
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    if (fit->chi2[i] < params_.inlier_chi2) inliers.push_back(seen[i]);
-  if (static_cast<int>(inliers.size()) < params_.min_points) {
-    dropMisfits(object, seen, fit->chi2);
+  const auto agreement = agree(object, scene, prior);
+  if (!agreement) return std::nullopt;
+  if (!agreement->enough) {
+    dropMisfits(object, agreement->seen, agreement->fit.chi2);
     return std::nullopt;
   }
-  object.T_cam_body = fit->T_cam_a;
-  object.kinematics.acceptPose((T_world_cam * fit->T_cam_a).normalized(), fit->covariance);
-
-  ObjectObservation observation;
-  observation.points = static_cast<int>(inliers.size());
-  std::vector<const ScenePoint*> visible;
-  for (const auto& s : inliers) visible.push_back(s.now);
-  observation.box = imageBox(visible);
-  measureEncounter(object, inliers, observation);
-  if (previous_scene) measureMotion(object, inliers, scene, *previous_scene, observation);
-  refinePoints(object, inliers);
-  dropMisfits(object, seen, fit->chi2);
+  object.T_cam_body = agreement->fit.T_cam_a;
+  object.kinematics.acceptPose((T_world_cam * object.T_cam_body).normalized(), agreement->fit.covariance);
+  ObjectObservation observation = measureEncounter(object, agreement->inliers, object.T_cam_body);
+  if (previous_scene) measureMotion(object, agreement->inliers, scene, *previous_scene, observation);
+  refinePoints(object, agreement->inliers);
+  dropMisfits(object, agreement->seen, agreement->fit.chi2);
   return observation;
+}
+
+std::optional<ObjectObservation> ObjectMotionEstimator::lookBack(const TrackedObject& object, const SceneMotion& earlier,
+                                                                 const PosePrior& prior) const {
+  const auto agreement = agree(object, earlier, prior);
+  if (!agreement || !agreement->enough) return std::nullopt;
+  return measureEncounter(object, agreement->inliers, agreement->fit.T_cam_a);
 }
 
 void ObjectMotionEstimator::dropMisfits(TrackedObject& object, const std::vector<Sighting>& seen, const std::vector<double>& chi2) const {
@@ -90,16 +98,23 @@ void ObjectMotionEstimator::dropMisfits(TrackedObject& object, const std::vector
   object.points = std::move(kept);
 }
 
-void ObjectMotionEstimator::measureEncounter(const TrackedObject& object, const std::vector<Sighting>& inliers,
-                                             ObjectObservation& observation) const {
+ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& object, const std::vector<Sighting>& inliers,
+                                                          const SE3& T_cam_body) const {
   const bool split = static_cast<int>(inliers.size()) >= params_.split_points;
   std::vector<PoseObservation> observations;
-  for (const auto& s : inliers)
+  std::vector<const ScenePoint*> visible;
+  for (const auto& s : inliers) {
+    visible.push_back(s.now);
     if (!split || measuresEncounter(s.now->point)) observations.push_back(observe(object.points[s.body_point], *s.now));
-  const PosePrior weak = weakPrior(object.T_cam_body);
-  const auto fit = fitPose(camera_, observations, object.T_cam_body, params_.fit, &weak);
-  observation.T_cam_body = fit ? fit->T_cam_a : object.T_cam_body;
+  }
+  const PosePrior weak = weakPrior(T_cam_body);
+  const auto fit = fitPose(camera_, observations, T_cam_body, params_.fit, &weak);
+  ObjectObservation observation;
+  observation.points = static_cast<int>(inliers.size());
+  observation.box = imageBox(visible);
+  observation.T_cam_body = fit ? fit->T_cam_a : T_cam_body;
   observation.encounter_covariance = fit ? fit->covariance : Matrix6d(weak.information.inverse());
+  return observation;
 }
 
 /// The motion since the frame before, from points that the encounter did not use. With b the body as it stood then and X = T_cam_b

@@ -27,6 +27,10 @@ class ObjectMotionEstimator {
   std::optional<ObjectObservation> follow(TrackedObject& object, const SceneMotion& scene, const SceneMotion* previous_scene,
                                           const SE3& T_world_cam) const;
 
+  /// Pose in an earlier frame, when the object was not yet known but its points were already followed: from their sightings then, with a
+  /// prior on the pose. Empty when too few of them agree. Leaves the object as it is.
+  std::optional<ObjectObservation> lookBack(const TrackedObject& object, const SceneMotion& earlier, const PosePrior& prior) const;
+
   /// Encounter of an object that is born in this frame: its body frame is where its points say, up to their noise.
   ObjectObservation firstSight(const TrackedObject& object, const SceneMotion& scene) const;
 
@@ -38,8 +42,15 @@ class ObjectMotionEstimator {
   std::vector<Sighting> sightings(const TrackedObject& object, const SceneMotion& scene) const;
   PoseObservation observe(const BodyPoint& point, const ScenePoint& now) const;
   PosePrior weakPrior(const SE3& T_cam_body) const;
+  /// The pose that the sightings and the prior agree on, and the sightings that fit it.
+  struct Agreement {
+    PoseFit fit;
+    std::vector<Sighting> seen, inliers;
+    bool enough = false;
+  };
+  std::optional<Agreement> agree(const TrackedObject& object, const SceneMotion& scene, const PosePrior& prior) const;
   void dropMisfits(TrackedObject& object, const std::vector<Sighting>& seen, const std::vector<double>& chi2) const;
-  void measureEncounter(const TrackedObject& object, const std::vector<Sighting>& inliers, ObjectObservation& observation) const;
+  ObjectObservation measureEncounter(const TrackedObject& object, const std::vector<Sighting>& inliers, const SE3& T_cam_body) const;
   void measureMotion(const TrackedObject& object, const std::vector<Sighting>& inliers, const SceneMotion& scene,
                      const SceneMotion& previous_scene, ObjectObservation& observation) const;
   void refinePoints(TrackedObject& object, const std::vector<Sighting>& inliers) const;

@@ -39,6 +39,8 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   std::stable_sort(measurements->objects.begin(), measurements->objects.end(),
                    [](const ObjectObservation& a, const ObjectObservation& b) { return a.track < b.track; });
   previous_scene_ = scene;
+  past_.push_back({scene, T_world_cam_});
+  if (static_cast<int>(past_.size()) > params_.look_back_frames + params_.confirm_sightings) past_.pop_front();
   return measurements;
 }
 
@@ -88,11 +90,28 @@ void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measuremen
   const Eigen::Matrix3d R_travel = travelAxes(object.kinematics.velocityWorld_mps(), R.col(2));
   object.changeBodyFrame(SE3(R.transpose() * R_travel, Eigen::Vector3d::Zero()));
   object.confirmed = true;
+  lookBack(object, measurements.stamp);
   for (auto& o : object.backlog) {
     o.track = object.track;
     measurements.objects.push_back(std::move(o));
   }
   object.backlog.clear();
+}
+
+/// The points from which an object is born were followed for some frames before: they tell where it was then.
+void ObjectTracker::lookBack(TrackedObject& object, Timestamp now) const {
+  auto earlier = past_.rbegin();
+  while (earlier != past_.rend() && earlier->scene->frame >= object.backlog.front().frame) ++earlier;
+  for (int k = 0; k < params_.look_back_frames && earlier != past_.rend(); ++k, ++earlier) {
+    ObjectKinematics then = object.kinematics;
+    then.predict(secondsBetween(now, earlier->scene->stamp), params_.kinematics);
+    const PosePrior prior{earlier->T_world_cam.inverse() * then.pose(), then.poseCovariance().inverse()};
+    auto observation = motion_.lookBack(object, *earlier->scene, prior);
+    if (!observation) return;
+    observation->frame = earlier->scene->frame;
+    observation->velocity_cam_mps = earlier->T_world_cam.rotation().transpose() * then.velocityWorld_mps();
+    object.backlog.insert(object.backlog.begin(), std::move(*observation));
+  }
 }
 
 void ObjectTracker::coast(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "core/messages.hpp"
@@ -23,6 +24,7 @@ class ObjectTracker {
     double confirm_speed_mps = 1.0;      // and its speed, ...
     double confirm_significance = 5.0;   // ... in standard deviations, ...
     double confirm_travel_m = 0.5;       // ... and its way since birth
+    int look_back_frames = 6;            // before its birth in which a confirmed object is looked for among the points followed then
     int max_tentative_misses = 1;
     int max_coasted_frames = 5;          // rows in state `predicted`
     double stop_speed_mps = 0.5, start_speed_mps = 1.0;
@@ -46,6 +48,7 @@ class ObjectTracker {
   void bear(const SceneMotion& scene, const Segment& segment, std::vector<bool>& taken);
   void record(TrackedObject& object, ObjectObservation observation, FrameMeasurements& measurements);
   void confirm(TrackedObject& object, FrameMeasurements& measurements);
+  void lookBack(TrackedObject& object, Timestamp now) const;
   void coast(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements);
   void updateState(TrackedObject& object) const;
   void mergeTwins();
@@ -59,8 +62,15 @@ class ObjectTracker {
   PointAdoption adopt_;
   ObjectMotionEstimator motion_;
 
+  /// A frame of the recent past.
+  struct PastScene {
+    SceneMotionPtr scene;
+    SE3 T_world_cam;
+  };
+
   SE3 T_world_cam_;
   SceneMotionPtr previous_scene_;
+  std::deque<PastScene> past_;  // oldest first, the previous scene last
   std::vector<TrackedObject> objects_;  // ordered by track
   std::int64_t next_track_ = 0;
 };
