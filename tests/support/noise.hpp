@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "core/se3.hpp"
+
+namespace motorcade::test {
+
+/// Seeded draws for simulated measurements.
+class Noise {
+ public:
+  explicit Noise(std::uint64_t seed) : generator_(seed) {}
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
+  double gaussian(double sigma = 1.0) { return sigma * normal_(generator_); }
+  /// Independent components.
+  template <int N>
+  Eigen::Matrix<double, N, 1> gaussian(const Eigen::Matrix<double, N, 1>& sigma) {
+    return sigma.unaryExpr([&](double s) { return gaussian(s); });
+  }
+  template <int N>
+  Eigen::Matrix<double, N, 1> correlated(const Eigen::Matrix<double, N, N>& covariance) {
+    return covariance.llt().matrixL() * gaussian(Eigen::Matrix<double, N, 1>(Eigen::Matrix<double, N, 1>::Ones()));
+  }
+  Eigen::Vector3d inBox(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    return {uniform(low.x(), high.x()), uniform(low.y(), high.y()), uniform(low.z(), high.z())};
+  }
+
+ private:
+  std::mt19937_64 generator_;
+  std::normal_distribution<double> normal_;
+};
+
+/// A covariance without structure, its standard deviations around `sigma`.
+template <int N>
+Eigen::Matrix<double, N, N> randomCovariance(Noise& noise, const Eigen::Matrix<double, N, 1>& sigma) {
+  Eigen::Matrix<double, N, N> A;
+  for (int i = 0; i < N; ++i) A.col(i) = noise.gaussian(Eigen::Matrix<double, N, 1>(Eigen::Matrix<double, N, 1>::Ones()));
+  A += 2 * Eigen::Matrix<double, N, N>::Identity();
+  return sigma.asDiagonal() * (A * A.transpose() / (N + 4.0)) * sigma.asDiagonal();
+}
+
+/// Normalised error squared (NEES): chi-square with N degrees of freedom for an error with this covariance.
+template <int N>
+double nees(const Eigen::Matrix<double, N, 1>& error, const Eigen::Matrix<double, N, N>& covariance) {
+  return error.dot(covariance.inverse() * error);
+}
+
+/// Half the width of the interval that the mean of n chi-square values lies in with 95 % probability; the normal approximation holds
+/// to a percent for the hundreds of draws that tests use.
+inline double meanChi2Spread(double degrees_of_freedom, int n) { return 1.96 * std::sqrt(2 * degrees_of_freedom / n); }
+
+}  // namespace motorcade::test
