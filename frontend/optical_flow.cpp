@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frontend/image_pyramid.hpp"
+#include "frontend/parallel_items.hpp"
 #include "frontend/sift_features.hpp"
 
 namespace motorcade {
@@ -267,29 +268,33 @@ void OpticalFlowTracker::State::moveTo(Track& track, const AlignedPatch& found, 
 /// Tracks that moved before: their own velocity is the guess.
 void OpticalFlowTracker::State::followMoving(const PointFollower& follower, const Image& now) {
   const int level = std::min(params.moving_level, follower.coarsest());
-  for (Track& track : tracks) {
-    if (track.seen.age < 2) continue;
+  forEachItem(tracks.size(), [&](std::size_t i) {
+    Track& track = tracks[i];
+    if (track.seen.age < 2) return;
     const auto found = follower.follow(track.seen, {&track.shift, 1}, level);
     if (found) moveTo(track, *found, now);
-  }
+  });
 }
 
 /// New tracks, and those that their own velocity misled: guesses come from neighbours that moved and from corners that look alike.
 void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const Features& now) {
   std::vector<const Track*> moved;
+  std::vector<Track*> still;
   moved.reserve(tracks.size());
-  for (const Track& track : tracks)
-    if (track.moved) moved.push_back(&track);
-  const CornerLookup corners(now);
   for (Track& track : tracks) {
-    if (track.moved) continue;
+    if (track.moved) moved.push_back(&track);
+    else still.push_back(&track);
+  }
+  const CornerLookup corners(now);
+  forEachItem(still.size(), [&](std::size_t i) {
+    Track& track = *still[i];
     const auto neighbours = shiftOfNeighbours(track.seen, moved);
     Guesses guesses;
     guesses.add(neighbours.value_or(Shift{}));
     corners.addSimilar(previous->left, track.seen, boundsAround(neighbours, params), guesses);
     const auto found = follower.follow(track.seen, guesses.all(), std::min(params.young_level, follower.coarsest()));
     if (found) moveTo(track, *found, now.left.levels.front());
-  }
+  });
 }
 
 /// Ends tracks that were not found, left the image or met an older track.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "frontend/geometric_constraints.hpp"
+#include "frontend/parallel_items.hpp"
 
 namespace motorcade {
 
@@ -79,17 +80,20 @@ std::vector<SceneMotionEstimator::Sighted> SceneMotionEstimator::closeCircle(con
                                                                              const SE3& predicted_T_previous_now) const {
   std::vector<Sighted> sighted;
   sighted.reserve(flow.tracks.size());
-  const SE3 predicted_T_now_previous = predicted_T_previous_now.inverse();
   auto track = tracks_.begin();
   for (const auto& f : flow.tracks) {
     while (track != tracks_.end() && track->point < f.point) ++track;
     const bool known = track != tracks_.end() && track->point == f.point;
-    Sighted s{.flow = f, .track = known ? &*track : nullptr, .disparity = std::nullopt};
-    s.disparity = known ? verifyInRightImage(*stereo.features, f, *track, predicted_T_now_previous) : firstDisparity(stereo, f);
+    sighted.push_back({.flow = f, .track = known ? &*track : nullptr, .disparity = std::nullopt});
+  }
+  const SE3 predicted_T_now_previous = predicted_T_previous_now.inverse();
+  forEachItem(sighted.size(), [&](std::size_t i) {
+    Sighted& s = sighted[i];
+    s.disparity = s.track ? verifyInRightImage(*stereo.features, s.flow, *s.track, predicted_T_now_previous) : firstDisparity(stereo, s.flow);
     if (s.disparity) s.disparity->disparity_px += static_cast<float>(disparity_offset_.offset_px());
     if (s.disparity && !(s.disparity->disparity_px > 0)) s.disparity.reset();
-    if (known || s.disparity) sighted.push_back(s);
-  }
+  });
+  std::erase_if(sighted, [](const Sighted& s) { return !s.track && !s.disparity; });
   return sighted;
 }
 
@@ -175,16 +179,10 @@ std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sigh
 }
 
 void SceneMotionEstimator::updateTracks(const std::vector<Sighted>& sighted) {
-  std::vector<PointTrack> updated;
-  updated.reserve(sighted.size());
+  std::vector<PointTrack> updated(sighted.size());
+  forEachItem(sighted.size(), [&](std::size_t i) { updated[i] = sighted[i].disparity ? extendTrack(sighted[i]) : *sighted[i].track; });
   const std::int64_t oldest_kept = trail_.newest().step - params_.max_missed_frames;
-  for (const auto& s : sighted) {
-    if (s.disparity) {
-      updated.push_back(extendTrack(s));
-    } else if (s.track->newest().step >= oldest_kept) {
-      updated.push_back(*s.track);
-    }
-  }
+  std::erase_if(updated, [&](const PointTrack& track) { return track.newest().step < oldest_kept; });
   tracks_ = std::move(updated);
 }
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace motorcade {
+
+/// Calls `work(i)` for every i below `count`, on whatever threads the arena has to spare. The items must not depend on each other.
+/// Isolated: while a stage waits for its own items here, its thread does not start on another frame.
+template <class Work>
+void forEachItem(std::size_t count, const Work& work) {
+  constexpr std::size_t kGrain = 16;
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain), [&](const tbb::blocked_range<std::size_t>& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
+    });
+  });
+}
+
+}  // namespace motorcade
