@@ -98,7 +98,7 @@ TEST(DisparityOffset, FollowsTheEstimateAtABoundedRate) {
     EXPECT_DOUBLE_EQ(estimator.offset_px(), before + change);
     before = estimator.offset_px();
   }
-  EXPECT_GT(before, 0.1);           // half of the truth at the least, against the prior
+  EXPECT_GT(before, 0.1);             // half of the truth at the least, against the prior
   EXPECT_EQ(estimator.advance(), 0);  // arrived
 }
 

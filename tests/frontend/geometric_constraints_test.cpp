@@ -12,7 +12,8 @@ using test::kRig;
 const Eigen::Vector3d kSigma_px(0.3, 0.3, 0.3);
 const SE3 kT_now_then(Eigen::Matrix3d::Identity(), {0, 0, -3});  // 3 m straight ahead
 
-std::optional<GeometricResidual> residual(const Eigen::Vector3d& p_then, const Eigen::Vector3d& step_m, const SE3& T_now_then = kT_now_then) {
+std::optional<GeometricResidual> residual(const Eigen::Vector3d& p_then, const Eigen::Vector3d& step_m,
+                                          const SE3& T_now_then = kT_now_then) {
   const Eigen::Vector2d now = kRig.project(T_now_then * Eigen::Vector3d(p_then + step_m))->head<2>();
   return geometricResidual(kRig, *kRig.project(p_then), kSigma_px, now, kSigma_px.x(), T_now_then);
 }

@@ -22,21 +22,21 @@ struct Street {
   explicit Street(std::uint64_t seed) : noise(seed) {}
 
   /// `count` points in a box about `centre`; returns the body's number. The velocities scatter by their covariance.
-  int add(const Eigen::Vector3d& centre, const Eigen::Vector3d& half_size, const Eigen::Vector3d& velocity_mps, int count, double sigma_mps = 0.3) {
+  int add(const Eigen::Vector3d& centre, const Eigen::Vector3d& half_size, const Eigen::Vector3d& velocity_mps, int count,
+          double sigma_mps = 0.3) {
     for (int i = 0; i < count; ++i) {
       const Eigen::Vector3d p = centre + noise.inBox(-half_size, half_size);
       const Eigen::Vector3d uvd = *kRig.project(p), sigma(0.4 * sigma_mps, 0.4 * sigma_mps, sigma_mps);
       SceneFlow flow{.p_cam = p, .velocity_mps = velocity_mps + noise.gaussian(sigma), .covariance = Matrix6d::Zero(), .observations = 6};
       flow.covariance.topLeftCorner<3, 3>() = test::triangulationCovariance(uvd) / 6;
       flow.covariance.bottomRightCorner<3, 3>() = sigma.cwiseAbs2().asDiagonal();
-      points.push_back({.point = {static_cast<std::int64_t>(points.size())}, .uvd_px = uvd, .sigma_px = test::kSightingSigma_px, .flow = flow});
+      points.push_back(
+          {.point = {static_cast<std::int64_t>(points.size())}, .uvd_px = uvd, .sigma_px = test::kSightingSigma_px, .flow = flow});
       body.push_back(bodies);
     }
     return bodies++;
   }
-  std::vector<Segment> segments() {
-    return MotionSegmenter({}, kRig)(points, std::vector<bool>(points.size(), false), GroundPlane{});
-  }
+  std::vector<Segment> segments() { return MotionSegmenter({}, kRig)(points, std::vector<bool>(points.size(), false), GroundPlane{}); }
   /// Share of a body's points with a label.
   double share(int of_body, PointLabel label) const {
     int all = 0, labelled = 0;

@@ -29,7 +29,8 @@ struct TwoFrames {
     test::Noise noise(1);
     for (std::int64_t id = 0; id < points; ++id) {
       const Eigen::Vector3d p = noise.inBox({-1, -0.9, -0.6}, {1, 0.9, 0.8});
-      before.points.push_back({.point = {id}, .uvd_px = *kRig.project(T_cam_body_before * p), .sigma_px = test::kSightingSigma_px, .flow = {}});
+      before.points.push_back(
+          {.point = {id}, .uvd_px = *kRig.project(T_cam_body_before * p), .sigma_px = test::kSightingSigma_px, .flow = {}});
       now.points.push_back({.point = {id}, .uvd_px = *kRig.project(T_cam_body * p), .sigma_px = test::kSightingSigma_px, .flow = {}});
       object.points.push_back({{id}, p, 1e-4 * Eigen::Matrix3d::Identity()});
     }
@@ -62,7 +63,8 @@ std::pair<double, double> influence(std::int64_t parity) {
   shifted.shift(parity, 0.4);
   const auto a = clean.follow(), b = shifted.follow();
   if (!a || !b || !a->motion || !b->motion) return {-1, -1};
-  return {(a->T_cam_body.inverse() * b->T_cam_body).log().norm(), (a->motion->T_before_now.inverse() * b->motion->T_before_now).log().norm()};
+  return {(a->T_cam_body.inverse() * b->T_cam_body).log().norm(),
+          (a->motion->T_before_now.inverse() * b->motion->T_before_now).log().norm()};
 }
 
 TEST(ObjectMotion, EncounterAndMotionShareNoPoint) {

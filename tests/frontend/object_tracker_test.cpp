@@ -106,8 +106,9 @@ TEST(ObjectTracker, ACarThatStopsIsStoppedUntilItMovesAgain) {
 
 TEST(ObjectTracker, ParkedCarsAreNeverReported) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const Drive drive({{.x_m = 4, .z_m = 25, .speed_mps = 0}, {.x_m = -4, .z_m = 40, .speed_mps = 0}, {.x_m = 5, .z_m = 60, .speed_mps = 0}}, 10,
-                      30, seed);
+    const Drive drive(
+        {{.x_m = 4, .z_m = 25, .speed_mps = 0}, {.x_m = -4, .z_m = 40, .speed_mps = 0}, {.x_m = 5, .z_m = 60, .speed_mps = 0}}, 10, 30,
+        seed);
     EXPECT_TRUE(drive.tracks().empty()) << "seed " << seed;
   }
 }
@@ -126,7 +127,8 @@ TEST(ObjectTracker, TwoCarsThatPassEachOtherKeepTheirIds) {
 
 TEST(ObjectTracker, TheBodysXAxisLiesAlongTheTravel) {
   for (const double heading : {0.0, 0.6, 3.1}) {
-    const Drive drive({{.x_m = heading == 0.6 ? -5.0 : -3.0, .z_m = heading > 3 ? 40.0 : 18.0, .heading_rad = heading, .speed_mps = 7}}, 6, 18);
+    const Drive drive({{.x_m = heading == 0.6 ? -5.0 : -3.0, .z_m = heading > 3 ? 40.0 : 18.0, .heading_rad = heading, .speed_mps = 7}}, 6,
+                      18);
     ASSERT_FALSE(drive.tracks().empty());
     const auto all = drive.observations(*drive.tracks().begin());
     for (const auto& o : all) {
@@ -155,8 +157,8 @@ TEST(ObjectTracker, EncounterAndMotionErrorsAreWithinTheirCovariances) {
       encounter += test::nees((truth.inverse() * o.T_cam_body).log(), o.encounter_covariance);
       ++encounters;
       if (!o.motion) continue;
-      const SE3 moved = (drive.traffic.car(0, static_cast<int>(o.motion->since.value)) * T_car_body).inverse() * drive.traffic.car(0, frame) *
-                        T_car_body;
+      const SE3 moved =
+          (drive.traffic.car(0, static_cast<int>(o.motion->since.value)) * T_car_body).inverse() * drive.traffic.car(0, frame) * T_car_body;
       motion += test::nees((moved.inverse() * o.motion->T_before_now).log(), o.motion->covariance);
       ++motions;
     }

@@ -129,7 +129,8 @@ class SimulatedTraffic {
     const SceneFlowEstimator flow({}, kRig);
     std::erase_if(seen_, [&](const auto& t) { return t.second.newest().step != trail_.newest().step; });
     for (const auto& [point, track] : seen_) {
-      ScenePoint p{.point = point, .uvd_px = track.newest().uvd_px.cast<double>(), .sigma_px = kSightingSigma_px, .age = track.count, .flow = {}};
+      ScenePoint p{
+          .point = point, .uvd_px = track.newest().uvd_px.cast<double>(), .sigma_px = kSightingSigma_px, .age = track.count, .flow = {}};
       if (const auto at_rest = flow.fitStatic(track, trail_)) p.flow = flow.fitMoving(track, trail_, *at_rest);
       scene.points.push_back(p);
     }

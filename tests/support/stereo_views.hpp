@@ -15,7 +15,8 @@ inline const StereoCamera kRig{720, 720, 620, 188, 0.54, 1242, 375};
 inline const Eigen::Vector3d kSightingSigma_px = Eigen::Vector3d::Constant(0.3);
 
 /// A sighting with noise; empty outside the image.
-inline std::optional<Eigen::Vector3d> look(const Eigen::Vector3d& p_cam, Noise& noise, const Eigen::Vector3d& sigma_px = kSightingSigma_px) {
+inline std::optional<Eigen::Vector3d> look(const Eigen::Vector3d& p_cam, Noise& noise,
+                                           const Eigen::Vector3d& sigma_px = kSightingSigma_px) {
   const auto uvd = kRig.project(p_cam);
   if (!uvd || !kRig.inLeftImage(uvd->x(), uvd->y())) return std::nullopt;
   const Eigen::Vector3d seen = *uvd + noise.gaussian(sigma_px);
