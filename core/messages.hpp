@@ -75,7 +75,8 @@ struct FrameMeasurements {
   /// Ego-motion T_cam(previous)_cam(now); predicted, with a wide covariance, unless the status is kGood. Identity in the first frame.
   SE3 T_previous_now;
   Matrix6d odometry_covariance = Matrix6d::Identity();
-  /// Objects of this frame. An object that was confirmed now brings its earlier observations along, oldest first, before its own of this frame.
+  /// Objects of this frame. An object that was confirmed now brings its earlier observations along, oldest first, before its own of this
+  /// frame.
   std::vector<ObjectObservation> objects;
   /// Tracks that ended: nothing will be observed of them any more.
   std::vector<TrackId> ended;

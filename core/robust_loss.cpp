@@ -7,10 +7,14 @@ namespace motorcade {
 double robustWeight(RobustLoss loss, double residual, double scale) {
   const double r = std::abs(residual), x = r / scale;
   switch (loss) {
-    case RobustLoss::kNone: return 1.0;
-    case RobustLoss::kHuber: return x <= 1.0 ? 1.0 : 1.0 / x;
-    case RobustLoss::kCauchy: return 1.0 / (1.0 + x * x);
-    case RobustLoss::kTukey: return x < 1.0 ? (1.0 - x * x) * (1.0 - x * x) : 0.0;
+    case RobustLoss::kNone:
+      return 1.0;
+    case RobustLoss::kHuber:
+      return x <= 1.0 ? 1.0 : 1.0 / x;
+    case RobustLoss::kCauchy:
+      return 1.0 / (1.0 + x * x);
+    case RobustLoss::kTukey:
+      return x < 1.0 ? (1.0 - x * x) * (1.0 - x * x) : 0.0;
   }
   return 1.0;
 }
@@ -18,9 +22,12 @@ double robustWeight(RobustLoss loss, double residual, double scale) {
 double robustCost(RobustLoss loss, double residual, double scale) {
   const double r = std::abs(residual), x = r / scale;
   switch (loss) {
-    case RobustLoss::kNone: return 0.5 * r * r;
-    case RobustLoss::kHuber: return x <= 1.0 ? 0.5 * r * r : scale * (r - 0.5 * scale);
-    case RobustLoss::kCauchy: return 0.5 * scale * scale * std::log1p(x * x);
+    case RobustLoss::kNone:
+      return 0.5 * r * r;
+    case RobustLoss::kHuber:
+      return x <= 1.0 ? 0.5 * r * r : scale * (r - 0.5 * scale);
+    case RobustLoss::kCauchy:
+      return 0.5 * scale * scale * std::log1p(x * x);
     case RobustLoss::kTukey: {
       const double y = 1.0 - x * x;
       return scale * scale / 6.0 * (x < 1.0 ? 1.0 - y * y * y : 1.0);

@@ -29,9 +29,7 @@ class SE3 {
   const Eigen::Vector3d& translation() const { return translation_; }
 
   SE3 inverse() const { return {rotation_.transpose(), -(rotation_.transpose() * translation_)}; }
-  SE3 operator*(const SE3& other) const {
-    return {rotation_ * other.rotation_, rotation_ * other.translation_ + translation_};
-  }
+  SE3 operator*(const SE3& other) const { return {rotation_ * other.rotation_, rotation_ * other.translation_ + translation_}; }
   Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return rotation_ * p + translation_; }
 
   /// The same motion with the rotation put back onto SO(3); call it where many products are chained.

@@ -87,9 +87,9 @@ class SpscRing {
   static constexpr std::size_t kCacheLine = 64;
   std::vector<T> slots_;
   std::size_t mask_;
-  alignas(kCacheLine) std::atomic<std::uint64_t> head_{0};  // next slot to pop
-  alignas(kCacheLine) std::atomic<std::uint64_t> tail_{0};  // next slot to push
-  std::uint64_t high_water_ = 0;                            // producer only
+  alignas(kCacheLine) std::atomic<std::uint64_t> head_{0};                // next slot to pop
+  alignas(kCacheLine) std::atomic<std::uint64_t> tail_{0};                // next slot to push
+  std::uint64_t high_water_ = 0;                                          // producer only
   alignas(kCacheLine) std::atomic<std::uint32_t> pushed_{0}, popped_{0};  // event counts to wait on
   std::atomic<bool> closed_{false};
 };

@@ -16,8 +16,8 @@ using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
 /// Unknowns of one window: (motion by right perturbation of T_now_then, offset).
 struct Linearized {
-  Eigen::Vector3d residual_px;        // observed - predicted
-  Eigen::Matrix<double, 3, 7> J;      // of predicted - observed
+  Eigen::Vector3d residual_px;    // observed - predicted
+  Eigen::Matrix<double, 3, 7> J;  // of predicted - observed
   Eigen::Matrix3d information;
 };
 

@@ -24,13 +24,13 @@ struct StereoCorrespondence {
 class DisparityOffsetEstimator {
  public:
   struct Params {
-    double prior_sigma_px = 0.1;        // of a rig that was calibrated well; 0 switches the estimation off
-    double max_rate_px = 0.005;         // per frame, by which the offset in use follows the estimate, so that no depth jumps
-    double min_motion_m = 2.0;          // of the camera between the two frames
+    double prior_sigma_px = 0.1;  // of a rig that was calibrated well; 0 switches the estimation off
+    double max_rate_px = 0.005;   // per frame, by which the offset in use follows the estimate, so that no depth jumps
+    double min_motion_m = 2.0;    // of the camera between the two frames
     int min_points = 60;
-    double inlier_chi2 = 9.0;           // 3 degrees of freedom
+    double inlier_chi2 = 9.0;  // 3 degrees of freedom
     double huber_sigmas = 2.0;
-    double variance_inflation = 3.0;    // neighbouring windows share points and their errors
+    double variance_inflation = 3.0;  // neighbouring windows share points and their errors
   };
   DisparityOffsetEstimator(const Params& params, const StereoCamera& camera);
 

@@ -69,8 +69,9 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
   return best;
 }
 
-std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObservation> observations, const std::vector<bool>& moved_before,
-                                                        const SE3& predicted_T_previous_now, std::uint64_t seed) const {
+std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObservation> observations,
+                                                        const std::vector<bool>& moved_before, const SE3& predicted_T_previous_now,
+                                                        std::uint64_t seed) const {
   assert(observations.size() == moved_before.size());
   if (static_cast<int>(observations.size()) < params_.min_inliers) return std::nullopt;
   const SE3 start = bestHypothesis(observations, moved_before, predicted_T_previous_now.inverse(), seed);

@@ -24,8 +24,8 @@ class EgoMotionEstimator {
  public:
   struct Params {
     int max_hypotheses = 80;
-    int scored_points = 300;        // per hypothesis, spread evenly over the observations
-    double inlier_chi2 = 12.0;      // 3 degrees of freedom: 99 % is 11.3
+    int scored_points = 300;    // per hypothesis, spread evenly over the observations
+    double inlier_chi2 = 12.0;  // 3 degrees of freedom: 99 % is 11.3
     int min_inliers = 12;
     double known_mover_weight = 0.1;  // vote of a point that moved in the previous frame
     PoseFitParams fit;
@@ -39,8 +39,8 @@ class EgoMotionEstimator {
                                       const SE3& predicted_T_previous_now, std::uint64_t seed) const;
 
  private:
-  SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& moved_before, const SE3& predicted_T_now_previous,
-                     std::uint64_t seed) const;
+  SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& moved_before,
+                     const SE3& predicted_T_now_previous, std::uint64_t seed) const;
 
   Params params_;
   StereoCamera camera_;

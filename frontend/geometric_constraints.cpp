@@ -9,7 +9,8 @@ namespace {
 constexpr double kMinLine_px = 0.05;  // shorter stretches of the epipolar line have no direction
 
 /// Where the point of `uv_then` with disparity d appears now.
-std::optional<Eigen::Vector2d> transfer(const StereoCamera& camera, const Eigen::Vector3d& uvd_then_px, double disparity_px, const SE3& T_now_then) {
+std::optional<Eigen::Vector2d> transfer(const StereoCamera& camera, const Eigen::Vector3d& uvd_then_px, double disparity_px,
+                                        const SE3& T_now_then) {
   const auto uvd = camera.project(T_now_then * camera.triangulate({uvd_then_px.x(), uvd_then_px.y(), disparity_px}));
   if (!uvd) return std::nullopt;
   return uvd->head<2>();

@@ -29,7 +29,7 @@ class GroundPlaneEstimator {
     double inlier_m = 0.08;
     int hypotheses = 60;
     int min_inliers = 15;
-    double memory = 0.7;                            // weight of the previous plane in the new one
+    double memory = 0.7;  // weight of the previous plane in the new one
   };
   explicit GroundPlaneEstimator(const Params& params);
 

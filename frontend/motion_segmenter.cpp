@@ -57,7 +57,8 @@ bool MotionSegmenter::isVertex(const ScenePoint& point) const {
 
 bool MotionSegmenter::belongTogether(const ScenePoint& a, const ScenePoint& b) const {
   const Eigen::Vector3d dv = a.flow->velocity_mps - b.flow->velocity_mps, dp = a.flow->p_cam - b.flow->p_cam;
-  const double distance = dp.norm(), tolerance_mps = params_.speed_tolerance_mps + params_.max_turn_rate_radps * std::min(distance, params_.max_gap_m);
+  const double distance = dp.norm(),
+               tolerance_mps = params_.speed_tolerance_mps + params_.max_turn_rate_radps * std::min(distance, params_.max_gap_m);
   Eigen::Matrix3d C = velocityCovariance(a) + velocityCovariance(b);
   C.diagonal().array() += tolerance_mps * tolerance_mps;
   if (dv.dot(C.inverse() * dv) > params_.max_flow_chi2) return false;

@@ -19,7 +19,8 @@ double sharedPoints(const TrackedObject& object, const SceneMotion& scene, const
   return static_cast<double>(shared) / static_cast<double>(segment.points.size());
 }
 
-double ObjectAssociation::cost(const TrackedObject& object, const SceneMotion& scene, const Segment& segment, const SE3& T_world_cam) const {
+double ObjectAssociation::cost(const TrackedObject& object, const SceneMotion& scene, const Segment& segment,
+                               const SE3& T_world_cam) const {
   const Eigen::Matrix3d& R = T_world_cam.rotation();
   const Eigen::Vector3d up = -(R * scene.ground.normal_cam);
   Eigen::Matrix<double, 2, 3> over_ground;  // projects onto the road: two axes across the normal

@@ -12,8 +12,8 @@ namespace motorcade {
 class ObjectAssociation {
  public:
   struct Params {
-    double gate_chi2 = 16.0;            // position and velocity over the ground, 4 degrees of freedom
-    double centroid_spread_m = 1.5;     // standard deviation of a segment's centroid about the body's origin
+    double gate_chi2 = 16.0;         // position and velocity over the ground, 4 degrees of freedom
+    double centroid_spread_m = 1.5;  // standard deviation of a segment's centroid about the body's origin
     double velocity_spread_mps = 1.0;
     double shared_points_bonus = 20.0;  // cost taken off when all points of the segment are the object's already
     double claimed_share = 0.3;         // a segment with this share of an object's points belongs to it whatever the distance

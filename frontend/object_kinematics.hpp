@@ -47,7 +47,8 @@ class ObjectKinematics {
 
  private:
   template <int N>
-  void correct(const Eigen::Matrix<double, N, 1>& residual, const Eigen::Matrix<double, N, 12>& J, const Eigen::Matrix<double, N, 1>& sigma);
+  void correct(const Eigen::Matrix<double, N, 1>& residual, const Eigen::Matrix<double, N, 12>& J,
+               const Eigen::Matrix<double, N, 1>& sigma);
 
   SE3 T_world_body_;
   Vector6d twist_ = Vector6d::Zero();

@@ -135,8 +135,10 @@ void ObjectMotionEstimator::measureMotion(const TrackedObject& object, const std
   const PosePrior weak = weakPrior(object.T_cam_body);
   const auto fit = fitPose(camera_, observations, object.T_cam_body, params_.fit, &weak);
   if (!fit) return;
-  observation.motion = ObjectObservation::Motion{previous_scene.frame, (T_body_cam_before * scene.T_previous_now * fit->T_cam_a).normalized(),
-                                                 fit->covariance};
+  const Matrix6d A = fit->T_cam_a.inverse().adjoint();  // carries the odometry's perturbation to the end of the product
+  observation.motion =
+      ObjectObservation::Motion{previous_scene.frame, (T_body_cam_before * scene.T_previous_now * fit->T_cam_a).normalized(),
+                                fit->covariance + A * scene.odometry_covariance * A.transpose()};
 }
 
 /// One Kalman step per point, the pose taken as known.

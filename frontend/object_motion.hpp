@@ -12,18 +12,19 @@ namespace motorcade {
 class ObjectMotionEstimator {
  public:
   struct Params {
-    int min_points = 3;               // that agree on a pose
-    double inlier_chi2 = 12.0;        // 3 degrees of freedom
-    int max_misfits = 2;              // then a point is no longer counted to the body
-    int split_points = 12;            // from here on, half of the points measure the encounter and half the motion
-    double weak_position_m = 2.0;     // prior that only closes directions which the points leave open
+    int min_points = 3;            // that agree on a pose
+    double inlier_chi2 = 12.0;     // 3 degrees of freedom
+    int max_misfits = 2;           // then a point is no longer counted to the body
+    int split_points = 12;         // from here on, half of the points measure the encounter and half the motion
+    double weak_position_m = 2.0;  // prior that only closes directions which the points leave open
     double weak_yaw_rad = 0.15, weak_tilt_rad = 0.03;
     PoseFitParams fit;
   };
   ObjectMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
   /// Pose from the body points seen in `scene`, with the predicted kinematics as prior; updates kinematics, points and misfits.
-  /// Empty (and the object unchanged but for misfits) when too few points agree. The result's frame, track and state are filled by the caller.
+  /// Empty (and the object unchanged but for misfits) when too few points agree. The result's frame, track and state are filled by the
+  /// caller.
   std::optional<ObjectObservation> follow(TrackedObject& object, const SceneMotion& scene, const SceneMotion* previous_scene,
                                           const SE3& T_world_cam) const;
 

@@ -79,8 +79,7 @@ void ObjectTracker::record(TrackedObject& object, ObjectObservation observation,
   object.backlog.push_back(std::move(observation));
   const double travelled_m = (object.kinematics.pose().translation() - object.birthplace_world).norm();
   const double speed = object.kinematics.speed_mps();
-  const bool moves =
-      speed > params_.confirm_speed_mps && speed > params_.confirm_significance * object.kinematics.speedSigma_mps();
+  const bool moves = speed > params_.confirm_speed_mps && speed > params_.confirm_significance * object.kinematics.speedSigma_mps();
   if (object.sightings >= params_.confirm_sightings && moves && travelled_m > params_.confirm_travel_m) confirm(object, measurements);
 }
 
@@ -128,7 +127,8 @@ void ObjectTracker::coast(TrackedObject& object, const SceneMotion& scene, Frame
   predicted.state = ObjectState::kPredicted;
   predicted.T_cam_body = object.T_cam_body;
   predicted.encounter_covariance = object.kinematics.poseCovariance();
-  if (const auto origin = camera_.project(object.T_cam_body.translation())) predicted.box = {origin->x(), origin->y(), origin->x(), origin->y()};
+  if (const auto origin = camera_.project(object.T_cam_body.translation()))
+    predicted.box = {origin->x(), origin->y(), origin->x(), origin->y()};
   record(object, std::move(predicted), measurements);
 }
 

@@ -20,13 +20,13 @@ namespace motorcade {
 class ObjectTracker {
  public:
   struct Params {
-    int confirm_sightings = 3;           // frames with a measurement before an object is reported
-    double confirm_speed_mps = 1.0;      // and its speed, ...
-    double confirm_significance = 5.0;   // ... in standard deviations, ...
-    double confirm_travel_m = 0.5;       // ... and its way since birth
-    int look_back_frames = 6;            // before its birth in which a confirmed object is looked for among the points followed then
+    int confirm_sightings = 3;          // frames with a measurement before an object is reported
+    double confirm_speed_mps = 1.0;     // and its speed, ...
+    double confirm_significance = 5.0;  // ... in standard deviations, ...
+    double confirm_travel_m = 0.5;      // ... and its way since birth
+    int look_back_frames = 6;           // before its birth in which a confirmed object is looked for among the points followed then
     int max_tentative_misses = 1;
-    int max_coasted_frames = 5;          // rows in state `predicted`
+    int max_coasted_frames = 5;  // rows in state `predicted`
     double stop_speed_mps = 0.5, start_speed_mps = 1.0;
     int stop_frames = 3;                 // in a row below the stop speed
     double image_margin_px = 50;         // an unseen object this far outside the image has left
@@ -70,7 +70,7 @@ class ObjectTracker {
 
   SE3 T_world_cam_;
   SceneMotionPtr previous_scene_;
-  std::deque<PastScene> past_;  // oldest first, the previous scene last
+  std::deque<PastScene> past_;          // oldest first, the previous scene last
   std::vector<TrackedObject> objects_;  // ordered by track
   std::int64_t next_track_ = 0;
 };

@@ -282,8 +282,10 @@ void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const
   std::vector<Track*> still;
   moved.reserve(tracks.size());
   for (Track& track : tracks) {
-    if (track.moved) moved.push_back(&track);
-    else still.push_back(&track);
+    if (track.moved)
+      moved.push_back(&track);
+    else
+      still.push_back(&track);
   }
   const CornerLookup corners(now);
   forEachItem(still.size(), [&](std::size_t i) {

@@ -21,9 +21,9 @@ class PointAdoption {
     double depth_noise_sigmas = 2.0;  // by which the margin grows
     double max_length_m = 14.0;       // of the body, along its axes: it grows to this by and by
     VehicleSize vehicle;              // within it, points of a segment that was matched to the object need no neighbours
-    double fits_chi2 = 9.0;          // 3 degrees of freedom
+    double fits_chi2 = 9.0;           // 3 degrees of freedom
     double not_static_chi2 = 16.0;
-    double min_speed_mps = 1.0;      // slower objects cannot be told from the background by motion
+    double min_speed_mps = 1.0;  // slower objects cannot be told from the background by motion
   };
   PointAdoption(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 

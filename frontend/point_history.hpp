@@ -26,7 +26,7 @@ struct PointTrack {
   static constexpr int kCapacity = 10;
 
   PointId point;
-  int count = 0;  // sightings held, at most kCapacity
+  int count = 0;                                   // sightings held, at most kCapacity
   std::array<PointSighting, kCapacity> sightings;  // oldest first
   std::optional<SceneFlow> flow;                   // of the newest sighting
   std::optional<Eigen::Vector3d> p_static_cam;     // position of a point at rest, in the camera of the newest sighting

@@ -86,11 +86,12 @@ std::optional<SceneFlowEstimator::StaticFit> SceneFlowEstimator::fitStatic(const
   }
 }
 
-std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, const CameraTrail& trail, const StaticFit& at_rest) const {
+std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, const CameraTrail& trail,
+                                                       const std::optional<StaticFit>& at_rest) const {
   for (int n = std::min(params_.max_observations, track.count); n >= params_.min_observations; n = n > 5 ? (n + 1) / 2 : n - 1) {
     auto flow = fitMoving(track, trail, n);
     if (!flow) continue;
-    flow->static_chi2 = at_rest.chi2;
+    flow->static_chi2 = at_rest ? at_rest->chi2 : std::numeric_limits<double>::infinity();
     return flow;
   }
   return std::nullopt;

@@ -19,7 +19,7 @@ class SceneFlowEstimator {
     double max_speed_mps = 60;     // standard deviation of the velocity's prior
     double acceleration_mps2 = 1;  // standard deviation of what the moving model leaves out: old sightings count less, where it would show
     double huber_sigmas = 2.5;
-    double max_chi2_per_dof = 6;   // of the moving fit: above it the track is no single rigid point
+    double max_chi2_per_dof = 6;  // of the moving fit: above it the track is no single rigid point
     int iterations = 3;
   };
   SceneFlowEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
@@ -32,9 +32,10 @@ class SceneFlowEstimator {
   };
   std::optional<StaticFit> fitStatic(const PointTrack& track, const CameraTrail& trail) const;
 
-  /// A point with constant velocity v: p_k = T_k_now (p + v dt_k + a dt_k^2 / 2), a ~ N(0, acceleration^2) as noise, over the longest window that such a motion fits: near vehicles that
-  /// brake or turn leave it within half a second. Empty with too few sightings or when no window fits.
-  std::optional<SceneFlow> fitMoving(const PointTrack& track, const CameraTrail& trail, const StaticFit& at_rest) const;
+  /// A point with constant velocity v: p_k = T_k_now (p + v dt_k + a dt_k^2 / 2), a ~ N(0, acceleration^2) as noise, over the longest
+  /// window that such a motion fits: near vehicles that brake or turn leave it within half a second. Empty with too few sightings or when
+  /// no window fits.
+  std::optional<SceneFlow> fitMoving(const PointTrack& track, const CameraTrail& trail, const std::optional<StaticFit>& at_rest) const;
 
  private:
   std::optional<SceneFlow> fitMoving(const PointTrack& track, const CameraTrail& trail, int observations) const;

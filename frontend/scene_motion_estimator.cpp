@@ -89,7 +89,8 @@ std::vector<SceneMotionEstimator::Sighted> SceneMotionEstimator::closeCircle(con
   const SE3 predicted_T_now_previous = predicted_T_previous_now.inverse();
   forEachItem(sighted.size(), [&](std::size_t i) {
     Sighted& s = sighted[i];
-    s.disparity = s.track ? verifyInRightImage(*stereo.features, s.flow, *s.track, predicted_T_now_previous) : firstDisparity(stereo, s.flow);
+    s.disparity =
+        s.track ? verifyInRightImage(*stereo.features, s.flow, *s.track, predicted_T_now_previous) : firstDisparity(stereo, s.flow);
     if (s.disparity) s.disparity->disparity_px += static_cast<float>(disparity_offset_.offset_px());
     if (s.disparity && !(s.disparity->disparity_px > 0)) s.disparity.reset();
   });
@@ -116,8 +117,8 @@ std::optional<StereoMatch> SceneMotionEstimator::firstDisparity(const StereoMatc
 }
 
 /// The disparity lies between that of a point at rest and that of a point which moves along with the camera.
-std::optional<StereoMatch> SceneMotionEstimator::verifyInRightImage(const Features& features, const FlowTrack& flow, const PointTrack& track,
-                                                                    const SE3& predicted_T_now_previous) const {
+std::optional<StereoMatch> SceneMotionEstimator::verifyInRightImage(const Features& features, const FlowTrack& flow,
+                                                                    const PointTrack& track, const SE3& predicted_T_now_previous) const {
   const double before_px = track.newest().uvd_px.z();
   const auto at_rest = camera_.project(predicted_T_now_previous * lastPosition(track).p_a);
   const double at_rest_px = at_rest ? at_rest->z() : before_px;
@@ -152,7 +153,8 @@ PoseObservation SceneMotionEstimator::observe(const Sighted& sighted) const {
   return o;
 }
 
-std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted, SceneMotion& motion) const {
+std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted,
+                                                          SceneMotion& motion) const {
   std::vector<PoseObservation> observations;
   std::vector<bool> moved_before, inliers(sighted.size(), false);
   std::vector<std::size_t> of_observation;
@@ -198,13 +200,12 @@ PointTrack SceneMotionEstimator::extendTrack(const Sighted& s) const {
   track.p_static_cam.reset();
   track.flow.reset();
   const auto at_rest = scene_flow_.fitStatic(track, trail_);
-  if (!at_rest) return track;
   const double degrees_of_freedom = std::max(1.0, 3.0 * track.count - 3.0);
-  if (track.count > 1 && at_rest->chi2 < params_.static_chi2_per_dof * degrees_of_freedom) {
+  if (at_rest && track.count > 1 && at_rest->chi2 < params_.static_chi2_per_dof * degrees_of_freedom) {
     track.p_static_cam = at_rest->p_cam;
     track.static_covariance = at_rest->covariance;
   }
-  track.flow = scene_flow_.fitMoving(track, trail_, *at_rest);
+  track.flow = scene_flow_.fitMoving(track, trail_, at_rest);
   return track;
 }
 

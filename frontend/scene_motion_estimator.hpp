@@ -32,7 +32,7 @@ class SceneMotionEstimator {
     double static_chi2_per_dof = 3.0;  // a track that fits a point at rest this well enters the ego-motion with its fitted position
     double max_ground_noise_m = 0.3;   // a point's height above the road may be off by this much of its depth noise
     double lost_sigma_m = 0.3, lost_sigma_rad = 0.02;  // of the predicted motion when the ego-motion is lost
-    int calibration_frames = 5;        // length of the windows from which the disparity offset is learned
+    int calibration_frames = 5;                        // length of the windows from which the disparity offset is learned
     DisparityOffsetEstimator::Params disparity_offset;
     EgoMotionEstimator::Params ego_motion;
     SceneFlowEstimator::Params scene_flow;

@@ -34,9 +34,9 @@ struct PoseFit {
 
 struct PoseFitParams {
   int max_iterations = 10;
-  double huber_sigmas = 2.0;     // where the loss turns linear, in units of the whitened residual norm
-  double outlier_chi2 = 16.0;    // observations above it get no weight after the first iterations
-  double min_step = 1e-6;        // convergence: norm of the increment (m, rad)
+  double huber_sigmas = 2.0;   // where the loss turns linear, in units of the whitened residual norm
+  double outlier_chi2 = 16.0;  // observations above it get no weight after the first iterations
+  double min_step = 1e-6;      // convergence: norm of the increment (m, rad)
 };
 
 /// Pose of frame `a` in the camera by robust, covariance-weighted Gauss-Newton:

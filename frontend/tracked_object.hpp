@@ -22,15 +22,15 @@ struct BodyPoint {
 /// A vehicle that the tracker follows. The body frame's origin is the centroid of the points at birth, fixed to the vehicle from then on.
 struct TrackedObject {
   TrackId track;
-  ObjectKinematics kinematics;    // in the front-end's own odometry world
-  SE3 T_cam_body;                 // of the newest frame, and of the one before
+  ObjectKinematics kinematics;  // in the front-end's own odometry world
+  SE3 T_cam_body;               // of the newest frame, and of the one before
   SE3 T_cam_body_before;
   FrameId seen_before;            // frame of T_cam_body_before's measurement; invalid while there is none
   std::vector<BodyPoint> points;  // ordered by point
   ObjectState state = ObjectState::kMoving;
   bool confirmed = false;
   int sightings = 0;
-  int coasted = 0;                // frames in a row without a measurement
+  int coasted = 0;  // frames in a row without a measurement
   int slow_frames = 0;
   Eigen::Vector3d birthplace_world = Eigen::Vector3d::Zero();
   std::vector<ObjectObservation> backlog;  // until it is confirmed

@@ -1,8 +1,8 @@
 #include "core/se3.hpp"
 
-#include <gtest/gtest.h>
-
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "tests/support/matchers.hpp"
 #include "tests/support/numeric_jacobian.hpp"

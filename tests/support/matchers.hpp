@@ -1,8 +1,7 @@
 #pragma once
 
-#include <gmock/gmock.h>
-
 #include <Eigen/Core>
+#include <gmock/gmock.h>
 
 #include "core/se3.hpp"
 
