@@ -1,10 +1,8 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
-#include "apps/synth/bvh.hpp"
 #include "apps/synth/scene.hpp"
 
 namespace motorcade::synth {
@@ -20,15 +18,6 @@ struct Placed {
   float wheel_angle_rad = 0;
 };
 
-/// What a ray meets first.
-struct RayHit {
-  float t = 0;
-  const Placed* placed = nullptr;
-  const Primitive* part = nullptr;
-  std::uint32_t surface = 0;  // one number per flat or round piece of surface
-  Vec3 normal_body, position_body;
-};
-
 /// The scene at the time of one frame. Ray coordinates: map axes, origin at the left camera.
 class FrameScene {
  public:
@@ -39,16 +28,18 @@ class FrameScene {
   const SE3& T_map_cam() const { return T_map_cam_; }
   const std::vector<Placed>& placed() const { return placed_; }
 
-  std::optional<RayHit> firstHit(const Vec3& origin, const Vec3& direction, float t_max) const;
-  /// The first hit on one thing, whatever hides it.
-  std::optional<RayHit> hitOn(const Placed& placed, const Vec3& origin, const Vec3& direction) const;
-  /// Light that arrives along `direction`: 1 or 0.
-  bool occluded(const Vec3& origin, const Vec3& direction, float t_max) const;
-
- private:
+  /// Every part of every placed thing.
   struct Item {
     std::uint32_t placed = 0, part = 0;
   };
+  const std::vector<Item>& items() const { return items_; }
+  const Placed& placedOf(std::uint32_t item) const { return placed_[items_[item].placed]; }
+  const Primitive& partOf(std::uint32_t item) const { return placedOf(item).model->parts[items_[item].part]; }
+
+  /// True if the left eye's ray meets the thing, whatever hides it.
+  static bool meets(const Placed& placed, const Vec3& direction);
+
+ private:
   void place(std::shared_ptr<const Model> model, const SE3& T_map_body, int id, bool moving, double wheel_angle_rad);
 
   const Scene* scene_;
@@ -56,7 +47,6 @@ class FrameScene {
   SE3 T_map_cam_;
   std::vector<Placed> placed_;
   std::vector<Item> items_;
-  std::optional<Bvh> bvh_;
 };
 
 }  // namespace motorcade::synth

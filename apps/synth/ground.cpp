@@ -31,8 +31,8 @@ Ground::Ground(const FrameScene& frame)
       camera_z_m_(static_cast<float>(frame.T_map_cam().translation().z())) {}
 
 std::optional<Ground::Hit> Ground::hit(const Vec3& origin, const Vec3& direction, float t_max) const {
-  if (direction.z > -1e-5F) return std::nullopt;
-  const float high_t = (kKerb_m - camera_z_m_ - origin.z) / direction.z, low_t = (-camera_z_m_ - origin.z) / direction.z;
+  if (direction.z > -kLevel) return std::nullopt;
+  const float high_t = (kKerb_m - camera_z_m_ - origin.z) / direction.z, low_t = farthest(origin, direction);
   if (high_t >= t_max) return std::nullopt;
   const auto locate = [&](float t) {
     const Vec3 p = origin + direction * t;
@@ -42,10 +42,15 @@ std::optional<Ground::Hit> Ground::hit(const Vec3& origin, const Vec3& direction
     const Vec3 p = origin + direction * t;
     return Hit{t, normal, where, {static_cast<float>(camera_x_m_) + p.x, static_cast<float>(camera_y_m_) + p.y, camera_z_m_ + p.z}, kerb};
   };
+  const auto onRoad = [&](const RoadPosition& where) {
+    return low_t < t_max ? std::optional(at(low_t, {0, 0, 1}, where, false)) : std::nullopt;
+  };
+  const auto low = locate(low_t);
+  // Too far from the kerb to have been beyond it one kerb higher.
+  if (low.outside_m < -(low_t - high_t) * std::hypot(direction.x, direction.y)) return onRoad(low);
   const auto high = locate(high_t);
   if (high.outside_m >= 0) return at(high_t, {0, 0, 1}, high, false);
-  const auto low = locate(low_t);
-  if (low.outside_m <= 0) return low_t < t_max ? std::optional(at(low_t, {0, 0, 1}, low, false)) : std::nullopt;
+  if (low.outside_m <= 0) return onRoad(low);
   // Between the two planes the ray runs into the face of the kerb.
   float before = high_t, after = low_t, inside_m = high.outside_m, outside_m = low.outside_m;
   RoadPosition where = low;

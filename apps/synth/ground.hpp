@@ -20,12 +20,17 @@ class Ground {
     Vec3 position_map;
     bool kerb_face = false;
   };
+  /// No ray meets the ground later than where it crosses the road's plane.
+  float farthest(const Vec3& origin, const Vec3& direction) const {
+    return direction.z > -kLevel ? 1e30F : (-camera_z_m_ - origin.z) / direction.z;
+  }
   /// Where a ray from the camera meets the ground, before t_max.
   std::optional<Hit> hit(const Vec3& origin, const Vec3& direction, float t_max) const;
   /// Reflectance at a hit; `pixel` is the width of a pixel at t = 1.
   float reflectance(const Hit& hit, const Vec3& direction, float pixel) const;
 
  private:
+  static constexpr float kLevel = 1e-5F;  // rays that fall less are taken as level
   struct View;
   float asphalt(const Hit& hit, const View& view) const;
   float paint(const Hit& hit, const View& view) const;

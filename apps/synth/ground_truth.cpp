@@ -79,7 +79,7 @@ Coverage coverageOf(const FrameScene& frame, const Placed& placed, const StereoC
       if ((x - x0) % step != 0 || (y - y0) % step != 0) continue;
       const Eigen::Vector3d d = R * Eigen::Vector3d((x - camera.cx_px) / camera.fx_px, (y - camera.cy_px) / camera.fy_px, 1);
       const Vec3 direction{static_cast<float>(d.x()), static_cast<float>(d.y()), static_cast<float>(d.z())};
-      if (!seen && !frame.hitOn(placed, {}, direction)) continue;
+      if (!seen && !FrameScene::meets(placed, direction)) continue;
       ++count.alone;
       count.visible_on_grid += seen ? 1 : 0;
     }

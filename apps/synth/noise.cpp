@@ -1,30 +1,118 @@
 #include "apps/synth/noise.hpp"
 
+#include <cassert>
+
 namespace motorcade::synth {
 namespace {
 
-float fade(float t) { return t * t * (3 - 2 * t); }
+/// Several lanes at once, by the compiler's vector types.
+template <int N>
+struct Lanes {
+  using Float __attribute__((vector_size(4 * N))) = float;
+  using Int __attribute__((vector_size(4 * N))) = std::int32_t;
+  using Bits __attribute__((vector_size(4 * N))) = std::uint32_t;
+};
 
-/// Four lanes at once, by the compiler's vector types.
-using Lanes = std::uint32_t __attribute__((vector_size(16)));
-using LanesInt = std::int32_t __attribute__((vector_size(16)));
-using LanesFloat = float __attribute__((vector_size(16)));
+template <class T>
+[[gnu::always_inline]] inline T fade(const T& t) {
+  return t * t * (3 - 2 * t);
+}
+template <class T>
+[[gnu::always_inline]] inline T between(const T& a, const T& b, const T& t) {
+  return a + (b - a) * t;
+}
 
-/// Random numbers in [-1, 1) at (ix, iy), (ix + 1, iy), (ix, iy + 1), (ix + 1, iy + 1): hashOf of each.
-LanesFloat cornerValues(int ix, int iy, std::uint32_t seed) {
-  const std::uint32_t x0 = static_cast<std::uint32_t>(ix) * 0x9e3779b1U,
-                      y0 = static_cast<std::uint32_t>(iy) * 0x85ebca77U + seed * 0xc2b2ae3dU;
-  const Lanes x{x0, x0 + 0x9e3779b1U, x0, x0 + 0x9e3779b1U}, y{y0, y0, y0 + 0x85ebca77U, y0 + 0x85ebca77U};
-  Lanes h = x ^ y;
+/// A coordinate of each lane as a lattice cell and the position in it.
+template <int N>
+struct Cell {
+  typename Lanes<N>::Bits cell;
+  typename Lanes<N>::Float blend;
+};
+template <int N>
+[[gnu::always_inline]] inline Cell<N> cellOf(const typename Lanes<N>::Float& x) {
+  using Float = typename Lanes<N>::Float;
+  using Int = typename Lanes<N>::Int;
+  Int whole = __builtin_convertvector(x, Int);
+  whole += x < __builtin_convertvector(whole, Float);  // true is -1: rounds down
+  const Float rest = x - __builtin_convertvector(whole, Float);
+  return {reinterpret_cast<typename Lanes<N>::Bits>(whole), fade(rest)};
+}
+
+constexpr std::uint32_t kX = 0x9e3779b1U, kY = 0x85ebca77U, kSeed = 0xc2b2ae3dU, kZ = 0x27d4eb2fU;  // as in hashOf
+
+/// mix(bits) as a number in [-1, 1).
+template <int N>
+[[gnu::always_inline]] inline typename Lanes<N>::Float value(typename Lanes<N>::Bits h) {
   h ^= h >> 16;
   h *= 0x7feb352dU;
   h ^= h >> 15;
   h *= 0x846ca68bU;
   h ^= h >> 16;
-  return __builtin_convertvector(reinterpret_cast<LanesInt>(h >> 8), LanesFloat) * 0x1p-23F - 1.0F;
+  return __builtin_convertvector(reinterpret_cast<typename Lanes<N>::Int>(h >> 8), typename Lanes<N>::Float) * 0x1p-23F - 1.0F;
 }
 
-float blend(const LanesFloat& v, float tx, float ty) { return lerp(lerp(v[0], v[1], tx), lerp(v[2], v[3], tx), ty); }
+/// noise2 with another point and seed in each lane.
+template <int N>
+[[gnu::always_inline]] inline typename Lanes<N>::Float planeNoise(const Cell<N>& x, const Cell<N>& y, const typename Lanes<N>::Bits& seed) {
+  const typename Lanes<N>::Bits x0 = x.cell * kX, y0 = y.cell * kY + seed * kSeed;
+  return between(between(value<N>(x0 ^ y0), value<N>((x0 + kX) ^ y0), x.blend),
+                 between(value<N>(x0 ^ (y0 + kY)), value<N>((x0 + kX) ^ (y0 + kY)), x.blend), y.blend);
+}
+
+/// A sum of noises, each half as wide and `gain` times as strong as the one before.
+struct Fractal {
+  float spacing, gain, footprint;
+  int octaves;
+  std::uint32_t seed;
+  bool reaches(int octave) const { return octaves > octave && visible(spacing / static_cast<float>(1 << octave), footprint) > 0; }
+};
+
+/// One octave in each lane.
+template <int N>
+struct Octaves {
+  typename Lanes<N>::Float per_spacing, weight;
+  typename Lanes<N>::Bits seed;
+
+  [[gnu::always_inline]] explicit Octaves(const Fractal& f) {
+    using Float = typename Lanes<N>::Float;
+    const float gain2 = f.gain * f.gain, gain4 = gain2 * gain2, floor = 1.2F * f.footprint;
+    Float twice, amplitude, number;
+    if constexpr (N == 4) {
+      number = Float{0, 1, 2, 3};
+      twice = Float{1, 2, 4, 8};
+      amplitude = Float{1, f.gain, gain2, gain2 * f.gain};
+    } else {
+      number = Float{0, 1, 2, 3, 4, 5, 6, 7};
+      twice = Float{1, 2, 4, 8, 16, 32, 64, 128};
+      amplitude = Float{1, f.gain, gain2, gain2 * f.gain, gain4, gain4 * f.gain, gain4 * gain2, gain4 * gain2 * f.gain};
+    }
+    per_spacing = twice * (1 / f.spacing);
+    const Float seen = (f.spacing / twice - floor) * (1 / (floor + 1e-9F)), none{};
+    const Float part = seen < none ? none : seen > none + 1 ? none + 1 : seen;  // as visible()
+    weight = number < none + static_cast<float>(f.octaves) ? part * amplitude : none;
+    seed = f.seed + __builtin_convertvector(number, typename Lanes<N>::Bits);
+  }
+  [[gnu::always_inline]] float sum(const typename Lanes<N>::Float& noise) const {
+    const typename Lanes<N>::Float terms = weight * noise;
+    float all = 0;
+    for (int i = 0; i < N; ++i) all += terms[i];
+    return all;
+  }
+};
+
+template <int N>
+[[gnu::noinline]] float sum2(const Fractal& f, float x, float y) {
+  const Octaves<N> octaves(f);
+  return octaves.sum(planeNoise<N>(cellOf<N>(x * octaves.per_spacing), cellOf<N>(y * octaves.per_spacing), octaves.seed));
+}
+
+template <int N>
+[[gnu::noinline]] float sum3(const Fractal& f, float x, float y, float z) {
+  const Octaves<N> octaves(f);
+  const Cell<N> cx = cellOf<N>(x * octaves.per_spacing), cy = cellOf<N>(y * octaves.per_spacing), cz = cellOf<N>(z * octaves.per_spacing);
+  const typename Lanes<N>::Bits below = octaves.seed + cz.cell * kZ;
+  return octaves.sum(between(planeNoise<N>(cx, cy, below), planeNoise<N>(cx, cy, below + kZ), cz.blend));
+}
 
 /// Integral of the pulse train from 0 to x.
 float pulseIntegral(float x, float period, float width) {
@@ -39,37 +127,31 @@ float pulses(float x, float period, float width, float footprint) {
   return saturate((pulseIntegral(x + 0.5F * f, period, width) - pulseIntegral(x - 0.5F * f, period, width)) / f);
 }
 
-float noise2(float x, float y, std::uint32_t seed) {
-  const float fx = std::floor(x), fy = std::floor(y);
-  return blend(cornerValues(static_cast<int>(fx), static_cast<int>(fy), seed), fade(x - fx), fade(y - fy));
-}
+float noise2(float x, float y, std::uint32_t seed) { return fractal2(x, y, 1, 1, 1, 0, seed); }
 
 float noise3(float x, float y, float z, std::uint32_t seed) {
   const float fx = std::floor(x), fy = std::floor(y), fz = std::floor(z);
-  const int ix = static_cast<int>(fx), iy = static_cast<int>(fy);
-  const std::uint32_t below = seed + static_cast<std::uint32_t>(static_cast<int>(fz)) * 0x27d4eb2fU;
-  const LanesFloat a = cornerValues(ix, iy, below), b = cornerValues(ix, iy, below + 0x27d4eb2fU);
-  return blend(a + (b - a) * fade(z - fz), fade(x - fx), fade(y - fy));
+  const auto bits = [](float whole) { return static_cast<std::uint32_t>(static_cast<int>(whole)); };
+  const std::uint32_t x0 = bits(fx) * kX, y0 = bits(fy) * kY + (seed + bits(fz) * kZ) * kSeed, up = kZ * kSeed;
+  const std::uint32_t x1 = x0 + kX, y1 = y0 + kY;
+  const Lanes<8>::Float v =
+      value<8>(Lanes<8>::Bits{x0, x1, x0, x1, x0, x1, x0, x1} ^ Lanes<8>::Bits{y0, y0, y1, y1, y0 + up, y0 + up, y1 + up, y1 + up});
+  const float tx = fade(x - fx), ty = fade(y - fy), tz = fade(z - fz);
+  return lerp(lerp(lerp(v[0], v[1], tx), lerp(v[2], v[3], tx), ty), lerp(lerp(v[4], v[5], tx), lerp(v[6], v[7], tx), ty), tz);
 }
 
 float fractal2(float x, float y, float spacing, int octaves, float gain, float footprint, std::uint32_t seed) {
-  float sum = 0, amplitude = 1;
-  for (int i = 0; i < octaves; ++i, spacing *= 0.5F, amplitude *= gain) {
-    const float weight = visible(spacing, footprint);
-    if (weight <= 0) break;
-    sum += weight * amplitude * noise2(x / spacing, y / spacing, seed + static_cast<std::uint32_t>(i));
-  }
-  return sum;
+  assert(octaves <= 8);
+  const Fractal fractal{spacing, gain, footprint, octaves, seed};
+  if (!fractal.reaches(0)) return 0;
+  return fractal.reaches(4) ? sum2<8>(fractal, x, y) : sum2<4>(fractal, x, y);
 }
 
 float fractal3(float x, float y, float z, float spacing, int octaves, float gain, float footprint, std::uint32_t seed) {
-  float sum = 0, amplitude = 1;
-  for (int i = 0; i < octaves; ++i, spacing *= 0.5F, amplitude *= gain) {
-    const float weight = visible(spacing, footprint);
-    if (weight <= 0) break;
-    sum += weight * amplitude * noise3(x / spacing, y / spacing, z / spacing, seed + static_cast<std::uint32_t>(i));
-  }
-  return sum;
+  assert(octaves <= 8);
+  const Fractal fractal{spacing, gain, footprint, octaves, seed};
+  if (!fractal.reaches(0)) return 0;
+  return fractal.reaches(4) ? sum3<8>(fractal, x, y, z) : sum3<4>(fractal, x, y, z);
 }
 
 }  // namespace motorcade::synth

@@ -29,11 +29,18 @@ void parallelRows(int rows, int threads, const std::function<void(int)>& work) {
   loop();
 }
 
+/// Whether the sun reaches a point, and on the ground whether something low hangs over it.
+struct Exposure {
+  bool sunny = false, covered = false;
+  bool operator==(const Exposure&) const = default;
+};
+
 struct Sample {
   float light = 0;    // linear
   float depth_m = 0;  // 0: sky
   std::uint32_t surface = 0;
   std::int16_t object = -1;
+  Exposure exposure;
 };
 
 constexpr std::uint32_t kSkySurface = 0xffffffffU, kRoadSurface = 0xfffffffeU, kKerbSurface = 0xfffffffdU, kBesideSurface = 0xfffffffcU;
@@ -41,53 +48,62 @@ constexpr std::uint32_t kSkySurface = 0xffffffffU, kRoadSurface = 0xfffffffeU, k
 /// Casts rays of one eye into one frame.
 class RayCaster {
  public:
-  RayCaster(const FrameScene& frame, const StereoCamera& camera, Eye eye) : frame_(frame), ground_(frame), camera_(camera) {
-    const auto& R = frame.T_map_cam().rotation();
-    const auto column = [&](int i) { return Vec3{static_cast<float>(R(0, i)), static_cast<float>(R(1, i)), static_cast<float>(R(2, i))}; };
-    right_ = column(0);
-    down_ = column(1);
-    ahead_ = column(2);
-    if (eye == Eye::kRight) origin_ = right_ * static_cast<float>(camera.baseline_m);
-    pixel_ = static_cast<float>(1 / camera.fx_px);
-  }
+  RayCaster(const FrameScene& frame, const StereoCamera& camera, Eye eye)
+      : frame_(frame),
+        ground_(frame),
+        rays_(frame, camera, eye),
+        to_sun_(frame, frame.scene().sun),
+        upwards_(frame, {0, 0, 1}),
+        pixel_(static_cast<float>(1 / camera.fx_px)) {}
 
-  /// `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel.
-  Sample cast(float u_px, float v_px, float sharpness) const {
-    // Unit depth along the optical axis, so that the ray's parameter is the depth.
-    const Vec3 d = ahead_ + right_ * ((u_px - static_cast<float>(camera_.cx_px)) * pixel_) +
-                   down_ * ((v_px - static_cast<float>(camera_.cy_px)) / static_cast<float>(camera_.fy_px));
+  /// `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel. An exposure that is known already, from the
+  /// pixel and its neighbours, saves the rays towards the light.
+  Sample cast(float u_px, float v_px, float sharpness, const std::optional<Exposure>& known) const {
+    const Vec3 d = rays_.direction(u_px, v_px);
     const float pixel = pixel_ / sharpness;
-    const auto ground = ground_.hit(origin_, d, kFar_m);
-    const auto hit = frame_.firstHit(origin_, d, ground ? ground->t : kFar_m);
-    if (hit) return {haze(shade(*hit, d, pixel), hit->t), hit->t, hit->surface, static_cast<std::int16_t>(hit->placed->id)};
+    const auto hit = rays_.firstHit(u_px, v_px, d, std::min(kFar_m, ground_.farthest(rays_.origin(), d)));
+    const auto ground = ground_.hit(rays_.origin(), d, hit ? hit->t : kFar_m);
     if (ground) {
       const std::uint32_t surface = ground->kerb_face ? kKerbSurface : ground->where.outside_m < 0 ? kRoadSurface : kBesideSurface;
-      return {haze(shade(*ground, d, pixel), ground->t), ground->t, surface, -1};
+      const Exposure exposure = known ? *known : exposureOf(*ground, d);
+      return {haze(shade(*ground, d, pixel, exposure), ground->t), ground->t, surface, -1, exposure};
     }
-    return {skyRadiance(normalized(d), pixel, frame_.scene().seed), 0, kSkySurface, -1};
+    if (hit) {
+      const Vec3 normal = hit->placed->rotation * hit->normal_body;
+      const Exposure exposure = known ? *known : Exposure{sunny(rays_.origin() + d * hit->t, normal), false};
+      return {haze(shade(*hit, normal, d, pixel, exposure), hit->t), hit->t, hit->surface, static_cast<std::int16_t>(hit->placed->id),
+              exposure};
+    }
+    return {skyRadiance(normalized(d), pixel, frame_.scene().seed), 0, kSkySurface, -1, {}};
   }
 
  private:
-  /// Light on a surface: sun unless something is in its way, and the sky.
-  float lit(const Vec3& position, const Vec3& normal) const {
-    const Vec3& sun = frame_.scene().sun;
-    const float cosine = dot(normal, sun);
-    const float sky = kAmbient * (0.62F + 0.38F * normal.z);
-    if (cosine <= 0 || frame_.occluded(position + normal * 2e-3F, sun, 60)) return sky;
-    return sky + kSun * cosine;
+  bool sunny(const Vec3& position, const Vec3& normal) const {
+    return dot(normal, frame_.scene().sun) > 0 && !to_sun_.occluded(position + normal * 2e-3F, 60);
   }
 
-  float shade(const RayHit& hit, const Vec3& d, float pixel) const {
+  /// Under a car little of the sky is seen.
+  Exposure exposureOf(const Ground::Hit& hit, const Vec3& d) const {
+    const Vec3 position = rays_.origin() + d * hit.t;
+    const bool sun = sunny(position, hit.normal);
+    return {sun, !sun && hit.t < 60 && upwards_.occluded(position + hit.normal * 2e-3F, 1)};
+  }
+
+  /// Light on a surface, from the sky and from the sun.
+  float lit(const Vec3& normal, const Exposure& exposure) const {
+    const float sky = kAmbient * (0.62F + 0.38F * normal.z) * (exposure.covered ? 0.35F : 1);
+    return exposure.sunny ? sky + kSun * std::fmax(0.0F, dot(normal, frame_.scene().sun)) : sky;
+  }
+
+  float shade(const RayHit& hit, const Vec3& normal, const Vec3& d, float pixel, const Exposure& exposure) const {
     const Placed& placed = *hit.placed;
-    const Vec3 normal = placed.rotation * hit.normal_body;
     const Vec3 view = normalized(d);
     const float slant = std::fmax(0.15F, std::abs(dot(normal, view)));
     // Geometric mean of the footprint's two sides; steep views are supersampled anyway.
     const SurfacePoint point{
         hit.part, placed.model.get(), hit.position_body, hit.normal_body, hit.t * pixel / std::sqrt(slant), placed.wheel_angle_rad};
     const Reflectance r = reflectanceOf(point);
-    const Vec3 position = origin_ + d * hit.t;
-    float light = r.diffuse * lit(position, normal) + r.glow;
+    float light = r.diffuse * lit(normal, exposure) + r.glow;
     if (r.mirror > 0) {
       const Vec3 bounced = view - normal * (2 * dot(view, normal));
       const float fresnel = r.mirror + (1 - r.mirror) * 0.6F * std::pow(1 - slant, 5.0F);
@@ -96,28 +112,25 @@ class RayCaster {
     return light;
   }
 
-  float shade(const Ground::Hit& hit, const Vec3& d, float pixel) const {
-    const Vec3 position = origin_ + d * hit.t;
-    float light = lit(position, hit.normal);
-    // Under a car little of the sky is seen.
-    if (light < 0.5F && hit.t < 60 && frame_.occluded(position + hit.normal * 2e-3F, {0, 0, 1}, 1.0F)) light *= 0.35F;
-    return ground_.reflectance(hit, d, pixel) * light;
+  float shade(const Ground::Hit& hit, const Vec3& d, float pixel, const Exposure& exposure) const {
+    return ground_.reflectance(hit, d, pixel) * lit(hit.normal, exposure);
   }
 
   static float haze(float light, float depth_m) { return lerp(light, 0.55F, 1 - std::exp(-depth_m / 900)); }
 
   const FrameScene& frame_;
   Ground ground_;
-  const StereoCamera& camera_;
-  Vec3 origin_, right_, down_, ahead_;
-  float pixel_ = 0;
+  EyeRays rays_;
+  ParallelRays to_sun_, upwards_;
+  float pixel_;
 };
 
 /// Gray level of linear light: a camera's square-root-like response.
 float response(float light) { return 255 * std::sqrt(saturate(light * 0.98F)); }
 
-/// Rays in a pixel besides the one through its centre: point symmetric, so that no pixel leans to a side.
-constexpr std::array<std::array<float, 2>, 4> kSpread{{{-0.4F, -0.2F}, {-0.2F, 0.4F}, {0.2F, -0.4F}, {0.4F, 0.2F}}};
+/// Rays in a pixel besides the one through its centre: point symmetric, so that no pixel leans to a side. The first two serve alone where
+/// only the texture changes.
+constexpr std::array<std::array<float, 2>, 4> kSpread{{{-0.4F, -0.2F}, {0.4F, 0.2F}, {-0.2F, 0.4F}, {0.2F, -0.4F}}};
 
 /// Sum of four uniform numbers: near enough to a Gaussian.
 float gaussian(std::uint32_t hash) {
@@ -147,21 +160,48 @@ Sensor sensorOf(const FrameScene& frame, Eye eye, const RenderOptions& options) 
   return {different ? 1.02F : 1.0F, different ? -1.5F : 0.0F, options.noise_levels, seed};
 }
 
-/// True where a pixel differs from a neighbour in surface or clearly in light: one ray is not enough there.
-bool needsMore(const std::vector<Sample>& samples, int width, int height, int x, int y) {
+/// What a pixel needs besides the ray through its centre.
+struct Refinement {
+  std::size_t rays = 0;
+  std::optional<Exposure> exposure;  // where the neighbours have it too
+};
+
+/// Compares a pixel with its neighbours: most rays where the surface or its shadow changes, some where the light does.
+Refinement refinementOf(const std::vector<Sample>& samples, int width, int height, int x, int y) {
   constexpr float kContrast = 11, kGroundContrast = 30;  // the ground's grain is filtered already: only shadows and paint count
   const auto at = [&](int i, int j) -> const Sample& {
     return samples[static_cast<std::size_t>(std::clamp(j, 0, height - 1)) * static_cast<std::size_t>(width) +
                    static_cast<std::size_t>(std::clamp(i, 0, width - 1))];
   };
   const Sample& centre = at(x, y);
-  const float level = response(centre.light);
-  const float contrast = centre.surface == kRoadSurface || centre.surface == kBesideSurface ? kGroundContrast : kContrast;
+  const bool ground = centre.surface == kRoadSurface || centre.surface == kBesideSurface;
+  const float level = response(centre.light), contrast = ground ? kGroundContrast : kContrast;
+  bool same_surface = true, same_exposure = true, same_light = true;
   for (const auto [dx, dy] : {std::array{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
     const Sample& other = at(x + dx, y + dy);
-    if (other.surface != centre.surface || std::abs(response(other.light) - level) > contrast) return true;
+    same_surface = same_surface && other.surface == centre.surface;
+    same_exposure = same_exposure && other.exposure == centre.exposure;
+    same_light = same_light && std::abs(response(other.light) - level) <= contrast;
   }
-  return false;
+  Refinement refinement;
+  if (same_exposure) refinement.exposure = centre.exposure;
+  if (!same_surface || (!same_light && (ground || !same_exposure)))
+    refinement.rays = kSpread.size();
+  else if (!same_light)
+    refinement.rays = 2;
+  return refinement;
+}
+
+/// Mean light of a pixel, by the rays through it.
+float lightOf(const RayCaster& caster, const Sample& centre, const Refinement& refinement, int x, int y) {
+  const auto rays = static_cast<float>(refinement.rays + 1);
+  float light = saturate(centre.light);
+  for (std::size_t i = 0; i < refinement.rays; ++i) {
+    const auto [du, dv] = kSpread[i];
+    light +=
+        saturate(caster.cast(static_cast<float>(x) + du, static_cast<float>(y) + dv, rays > 3 ? 1.6F : 1.3F, refinement.exposure).light);
+  }
+  return light / rays;
 }
 
 }  // namespace
@@ -174,19 +214,14 @@ Rendering render(const FrameScene& frame, const StereoCamera& camera, Eye eye, c
   const RayCaster caster(frame, camera, eye);
   std::vector<Sample> samples(index(0, height));
   parallelRows(height, options.threads, [&](int y) {
-    for (int x = 0; x < width; ++x) samples[index(x, y)] = caster.cast(static_cast<float>(x), static_cast<float>(y), 1);
+    for (int x = 0; x < width; ++x) samples[index(x, y)] = caster.cast(static_cast<float>(x), static_cast<float>(y), 1, {});
   });
   Rendering out{ImagePool().acquire(width, height), std::vector<float>(samples.size()), std::vector<std::int16_t>(samples.size())};
   const Sensor sensor = sensorOf(frame, eye, options);
   parallelRows(height, options.threads, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const Sample& centre = samples[index(x, y)];
-      float light = saturate(centre.light);
-      if (needsMore(samples, width, height, x, y)) {
-        for (const auto& [du, dv] : kSpread)
-          light += saturate(caster.cast(static_cast<float>(x) + du, static_cast<float>(y) + dv, 1.6F).light);
-        light /= kSpread.size() + 1;
-      }
+      const float light = lightOf(caster, centre, refinementOf(samples, width, height, x, y), x, y);
       out.image.mutableRow(y)[x] = sensor.read(response(light), x, y);
       out.depth_m[index(x, y)] = centre.depth_m;
       out.object[index(x, y)] = centre.object;

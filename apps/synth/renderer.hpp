@@ -4,12 +4,11 @@
 #include <vector>
 
 #include "apps/synth/frame_scene.hpp"
+#include "apps/synth/rays.hpp"
 #include "core/image.hpp"
 #include "core/stereo_camera.hpp"
 
 namespace motorcade::synth {
-
-enum class Eye { kLeft, kRight };
 
 /// An eye's picture, and what lies exactly behind the centre of each pixel.
 struct Rendering {

@@ -103,9 +103,10 @@ Model makeCar(const Shape3& s) {
 Model makeVan(const Shape3& s) {
   Model m;
   const float x = s.front(), y = s.side() - 0.03F;
-  m.add(Material::kCargo, {-x + 0.04F, -y, 0.55F}, {x - 1.75F, y, s.height}, s.paint, s.seed);
-  m.cutLast({0, 1, 0.35F}, {0, y, s.height - 0.25F});
-  m.cutLast({0, -1, 0.35F}, {0, -y, s.height - 0.25F});
+  const float inner = y - 0.008F;  // within the panels below: no two faces in one plane
+  m.add(Material::kCargo, {-x + 0.05F, -inner, 0.55F}, {x - 1.75F, inner, s.height}, s.paint, s.seed);
+  m.cutLast({0, 1, 0.35F}, {0, inner, s.height - 0.25F});
+  m.cutLast({0, -1, 0.35F}, {0, -inner, s.height - 0.25F});
   m.add(Material::kPaint, {-x + 0.04F, -y, 0.28F}, {x - 0.04F, y, 1.05F}, s.paint, s.seed);
   m.cutLast({0.25F, 0, 1}, {x - 0.75F, 0, 1.05F});
   m.add(Material::kCabin, {x - 1.80F, -y + 0.02F, 1.04F}, {x - 0.55F, y - 0.02F, s.height - 0.05F}, s.paint, s.seed);
@@ -125,7 +126,7 @@ Model makeTruck(const Shape3& s) {
   const float x = s.front(), y = s.side() - 0.03F;
   m.add(Material::kCargo, {-x + 0.05F, -y, 1.0F}, {x - 2.0F, y, s.height}, s.paint, s.seed);
   m.add(Material::kPlastic, {-x + 0.15F, -0.45F, 0.55F}, {x - 0.4F, 0.45F, 1.0F}, 0.06F, s.seed);
-  m.add(Material::kPaint, {x - 1.85F, -y + 0.06F, 0.42F}, {x - 0.02F, y - 0.06F, 1.55F}, 0.6F, s.seed + 1);
+  m.add(Material::kPaint, {x - 1.85F, -y + 0.06F, 0.42F}, {x - 0.02F, y - 0.06F, 1.5F}, 0.6F, s.seed + 1);
   m.add(Material::kCabin, {x - 1.85F, -y + 0.06F, 1.5F}, {x - 0.02F, y - 0.06F, std::min(2.85F, s.height - 0.1F)}, 0.6F, s.seed + 1);
   m.cutLast({0.97F, 0, 0.2F}, {x - 0.02F, 0, 1.6F});
   addFront(m, s, 0.62F);
