@@ -168,7 +168,7 @@ bool ParallelRays::occluded(const Vec3& origin, float t_max) const {
     const Placed& placed = frame_.placedOf(item);
     const Vec3 o = placed.rotation.transposed(origin - placed.translation);
     const Vec3& d = directions_body_[frame_.items()[item].placed];
-    blocked = intersect(frame_.partOf(item), placed.model->cuts.data(), o, d, 2e-3F, t_max).has_value();
+    blocked = intersect(frame_.partOf(item), placed.model->cuts.data(), o, d, 1e-4F, t_max).has_value();
     return blocked ? from - 1e6F : limit;
   });
   return blocked;

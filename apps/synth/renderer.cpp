@@ -70,7 +70,7 @@ class RayCaster {
     }
     if (hit) {
       const Vec3 normal = hit->placed->rotation * hit->normal_body;
-      const Exposure exposure = known ? *known : Exposure{sunny(rays_.origin() + d * hit->t, normal), false};
+      const Exposure exposure = known ? *known : Exposure{sunny(rays_.origin() + d * hit->t + normal * 2e-3F, normal), false};
       return {haze(shade(*hit, normal, d, pixel, exposure), hit->t), hit->t, hit->surface, static_cast<std::int16_t>(hit->placed->id),
               exposure};
     }
@@ -79,14 +79,15 @@ class RayCaster {
 
  private:
   bool sunny(const Vec3& position, const Vec3& normal) const {
-    return dot(normal, frame_.scene().sun) > 0 && !to_sun_.occluded(position + normal * 2e-3F, 60);
+    return dot(normal, frame_.scene().sun) > 0 && !to_sun_.occluded(position, 60);
   }
 
-  /// Under a car little of the sky is seen.
+  /// Under a car little of the sky is seen. The rays start on the ground itself, which is no obstacle, so that tyres shade where they
+  /// stand.
   Exposure exposureOf(const Ground::Hit& hit, const Vec3& d) const {
     const Vec3 position = rays_.origin() + d * hit.t;
     const bool sun = sunny(position, hit.normal);
-    return {sun, !sun && hit.t < 60 && upwards_.occluded(position + hit.normal * 2e-3F, 1)};
+    return {sun, !sun && hit.t < 60 && upwards_.occluded(position, 1.05F)};
   }
 
   /// Light on a surface, from the sky and from the sun.
