@@ -48,6 +48,35 @@ std::string content(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// Where a ray meets the nearest of all parts, tried one by one; t_max if none.
+float nearestOfAll(const FrameScene& frame, const Vec3& origin, const Vec3& direction, float t_min, float t_max) {
+  for (std::uint32_t i = 0; i < frame.items().size(); ++i) {
+    const Placed& placed = frame.placedOf(i);
+    const Vec3 o = placed.rotation.transposed(origin - placed.translation), d = placed.rotation.transposed(direction);
+    if (const auto hit = intersect(frame.partOf(i), placed.model->cuts.data(), o, d, t_min, t_max)) t_max = hit->t;
+  }
+  return t_max;
+}
+
+TEST(SynthRays, MeetWhatTryingEveryPartFinds) {
+  for (const char* name : {"urban", "highway"}) {
+    const Scene scene = makeScene(name, 2);
+    const FrameScene frame(scene, 30, true);
+    const EyeRays eye(frame, kCamera, Eye::kRight);
+    const ParallelRays to_sun(frame, scene.sun);
+    Random random(5);
+    for (int i = 0; i < 3000; ++i) {
+      const float u_px = random.uniform(-0.5F, 413.5F), v_px = random.uniform(-0.5F, 124.5F);
+      const Vec3 d = eye.direction(u_px, v_px);
+      const auto hit = eye.firstHit(u_px, v_px, d, 300);
+      const float t = nearestOfAll(frame, eye.origin(), d, 1e-3F, 300);
+      ASSERT_NEAR(hit ? hit->t : 300, t, 1e-5F * t) << name << " " << u_px << " " << v_px;  // float rounding
+      const Vec3 origin = eye.origin() + d * (0.99F * t);
+      ASSERT_EQ(to_sun.occluded(origin, 60), nearestOfAll(frame, origin, scene.sun, 1e-4F, 60) < 60) << name << " " << u_px << " " << v_px;
+    }
+  }
+}
+
 TEST(SynthRenderer, DepthsLieOnTheRoadAndInsideTheVehicles) {
   const Scene scene = makeScene("static", 3);
   const FrameScene frame(scene, 5, true);
