@@ -53,6 +53,14 @@ class Run : public testing::Test {
   fs::path errors() const { return folder_ / "stderr"; }
   nlohmann::json summary(const std::string& name) const { return nlohmann::json::parse(contentOf(out(name) / "summary.json")); }
 
+  /// The measures of a run against the truth of its sequence.
+  nlohmann::json evaluate(const std::string& name, const fs::path& sequence = kSequence) {
+    const fs::path file = folder_ / (name + ".json");
+    EXPECT_EQ(motorcade("evaluate " + out(name).string() + " --sequence " + sequence.string() + " --json " + file.string()), 0)
+        << contentOf(errors());
+    return nlohmann::json::parse(contentOf(file));
+  }
+
   /// A copy of the rendered drive with one image cut short.
   fs::path damagedSequence() {
     const fs::path copy = folder_ / "damaged";
@@ -89,6 +97,17 @@ TEST_F(Run, WritesALinePerFrameAndACompleteSummary) {
   EXPECT_EQ(json["frames"]["received"], kFrames);
   EXPECT_EQ(json["latency_ms"]["count"], kFrames);
   for (const auto& queue : json["queues"]) EXPECT_LE(queue["high_water"], json["frames_in_flight"]) << queue;
+}
+
+TEST_F(Run, FollowsTheCameraAndTheCarAheadOnARenderedDrive) {
+  ASSERT_EQ(run("out"), 0) << contentOf(errors());
+  const auto measured = evaluate("out")["final"];
+  EXPECT_LT(measured["camera"]["rpe_t_m"]["rmse"], 0.01);  // it reaches 0.002: room for other processors' rounding
+  EXPECT_LT(measured["camera"]["rpe_r_deg"]["rmse"], 0.02);
+  ASSERT_EQ(measured["objects"].size(), 1U);
+  EXPECT_LT(measured["motion"]["me_t_m"]["mean"], 0.05);
+  EXPECT_GT(measured["detection"]["within_30m"]["recall"], 0.9);
+  EXPECT_EQ(measured["detection"]["false_rows"], 0);
 }
 
 TEST_F(Run, FollowsItsOwnEffectiveConfiguration) {
@@ -174,6 +193,20 @@ class RealRun : public Run {
   }
   const fs::path drive_ = fs::path(MOTORCADE_SOURCE_DIR) / "../shared/data/kitti_tracking_0003";
 };
+
+TEST_F(RealRun, FollowsTheCameraAndTheTwoLeadCars) {
+  ASSERT_EQ(run("out", "--require tracked=1", drive_), 0) << contentOf(errors());
+  const auto measured = evaluate("out", drive_)["final"];
+  EXPECT_LT(measured["camera"]["ate_m"]["rmse"], 0.42);  // VISO2-S reaches 0.42 m and 0.039 deg here
+  EXPECT_LT(measured["camera"]["rpe_r_deg"]["rmse"], 0.039);
+  ASSERT_EQ(measured["objects"].size(), 2U);  // parked cars are never reported as moving
+  for (const auto& object : measured["objects"]) {
+    const double share_followed = object["followed_frames"].get<double>() / object["labelled_frames"].get<double>();
+    EXPECT_GT(share_followed, 0.8) << object;
+  }
+  EXPECT_LE(measured["detection"]["id_switches"], 1);
+  EXPECT_LE(measured["detection"]["false_rows"], 2);  // about 1 % of the rows
+}
 
 TEST_F(RealRun, WritesTheSameBytesForEveryNumberOfThreads) {
   ASSERT_EQ(run("two", "--frames 0:40 --threads 2 --require tracked=1", drive_), 0) << contentOf(errors());
