@@ -14,17 +14,6 @@ struct Voter {
   double weight;
 };
 
-std::vector<Voter> chooseVoters(std::span<const PoseObservation> observations, const std::vector<bool>& moved_before,
-                                const EgoMotionEstimator::Params& params) {
-  std::vector<Voter> voters;
-  const double stride = std::max(1.0, static_cast<double>(observations.size()) / params.scored_points);
-  for (double at = 0; at < static_cast<double>(observations.size()); at += stride) {
-    const auto i = static_cast<std::size_t>(at);
-    voters.push_back({&observations[i], moved_before[i] ? params.known_mover_weight : 1.0});
-  }
-  return voters;
-}
-
 /// Truncated quadratic score (MSAC): the smaller the better.
 double score(const StereoCamera& camera, const std::vector<Voter>& voters, const SE3& T_now_previous, double inlier_chi2) {
   double sum = 0;
@@ -40,24 +29,36 @@ double totalWeight(const std::vector<Voter>& voters) {
 
 }  // namespace
 
-SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& moved_before,
+double EgoMotionEstimator::weightOf(EgoHint hint) const {
+  if (hint == EgoHint::kMoved) return params_.known_mover_weight;
+  return hint == EgoHint::kGround ? params_.ground_weight : 1.0;
+}
+
+SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observations, std::span<const EgoHint> hints,
                                        const SE3& predicted_T_now_previous, std::uint64_t seed) const {
-  const auto voters = chooseVoters(observations, moved_before, params_);
+  std::vector<Voter> voters;
+  const double stride = std::max(1.0, static_cast<double>(observations.size()) / params_.scored_points);
+  for (double at = 0; at < static_cast<double>(observations.size()); at += stride)
+    voters.push_back({&observations[static_cast<std::size_t>(at)], weightOf(hints[static_cast<std::size_t>(at)])});
+  std::vector<std::size_t> candidates, ground;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (hints[i] != EgoHint::kMoved) candidates.push_back(i);
+    if (hints[i] == EgoHint::kGround) ground.push_back(i);
+  }
   PoseFitParams minimal = params_.fit;
   minimal.max_iterations = 5;
-  std::vector<std::size_t> candidates;
-  for (std::size_t i = 0; i < observations.size(); ++i)
-    if (!moved_before[i]) candidates.push_back(i);
 
   SE3 best = predicted_T_now_previous;
   double best_score = score(camera_, voters, best, params_.inlier_chi2);
   const double worst_score = params_.inlier_chi2 * totalWeight(voters);
   if (candidates.size() < 3) return best;
   std::mt19937_64 random(seed);
-  std::uniform_int_distribution<std::size_t> pick(0, candidates.size() - 1);
+  constexpr std::size_t kEnoughGround = 20;  // to draw every other sample from the road alone
   for (int k = 0; k < params_.max_hypotheses; ++k) {
-    std::array<PoseObservation, 3> sample{observations[candidates[pick(random)]], observations[candidates[pick(random)]],
-                                          observations[candidates[pick(random)]]};
+    const auto& from = k % 2 == 1 && ground.size() >= kEnoughGround ? ground : candidates;
+    std::uniform_int_distribution<std::size_t> pick(0, from.size() - 1);
+    std::array<PoseObservation, 3> sample{observations[from[pick(random)]], observations[from[pick(random)]],
+                                          observations[from[pick(random)]]};
     const auto fit = fitPose(camera_, sample, predicted_T_now_previous, minimal);
     if (!fit) continue;
     const double fit_score = score(camera_, voters, fit->T_cam_a, params_.inlier_chi2);
@@ -69,12 +70,11 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
   return best;
 }
 
-std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObservation> observations,
-                                                        const std::vector<bool>& moved_before, const SE3& predicted_T_previous_now,
-                                                        std::uint64_t seed) const {
-  assert(observations.size() == moved_before.size());
+std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObservation> observations, std::span<const EgoHint> hints,
+                                                        const SE3& predicted_T_previous_now, std::uint64_t seed) const {
+  assert(observations.size() == hints.size());
   if (static_cast<int>(observations.size()) < params_.min_inliers) return std::nullopt;
-  const SE3 start = bestHypothesis(observations, moved_before, predicted_T_previous_now.inverse(), seed);
+  const SE3 start = bestHypothesis(observations, hints, predicted_T_previous_now.inverse(), seed);
 
   std::vector<PoseObservation> agreeing;
   for (const auto& o : observations)

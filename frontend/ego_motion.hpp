@@ -19,6 +19,13 @@ struct EgoMotion {
   int inlier_count = 0;
 };
 
+/// What is known of a point before the camera's motion is.
+enum class EgoHint : std::uint8_t {
+  kNone,
+  kMoved,   // moved in the previous frame
+  kGround,  // lay on the road: its vote breaks the tie where vehicles fill the view
+};
+
 /// RANSAC over three points, then covariance-weighted refinement over all inliers. Stateless.
 class EgoMotionEstimator {
  public:
@@ -28,19 +35,21 @@ class EgoMotionEstimator {
     double inlier_chi2 = 12.0;  // 3 degrees of freedom: 99 % is 11.3
     int min_inliers = 12;
     double known_mover_weight = 0.1;  // vote of a point that moved in the previous frame
+    double ground_weight = 4;         // and of one on the road
     PoseFitParams fit;
   };
   EgoMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
-  /// `observations` hold points in the previous camera's frame; `moved_before[i]` marks last frame's movers.
+  /// `observations` hold points in the previous camera's frame, `hints` what is known of each.
   /// The predicted motion is scored first; random samples are drawn from a generator seeded with `seed` (the frame number).
   /// Empty when too few points agree on any motion.
-  std::optional<EgoMotion> operator()(std::span<const PoseObservation> observations, const std::vector<bool>& moved_before,
+  std::optional<EgoMotion> operator()(std::span<const PoseObservation> observations, std::span<const EgoHint> hints,
                                       const SE3& predicted_T_previous_now, std::uint64_t seed) const;
 
  private:
-  SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& moved_before,
-                     const SE3& predicted_T_now_previous, std::uint64_t seed) const;
+  double weightOf(EgoHint hint) const;
+  SE3 bestHypothesis(std::span<const PoseObservation> observations, std::span<const EgoHint> hints, const SE3& predicted_T_now_previous,
+                     std::uint64_t seed) const;
 
   Params params_;
   StereoCamera camera_;

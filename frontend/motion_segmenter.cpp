@@ -51,7 +51,7 @@ PooledVelocity poolVelocities(const std::vector<int>& members, const std::vector
 }  // namespace
 
 bool MotionSegmenter::isVertex(const ScenePoint& point) const {
-  if (!point.flow || point.label == PointLabel::kGround) return false;
+  if (!point.flow || point.repeats || point.label == PointLabel::kGround) return false;
   return std::sqrt(velocityCovariance(point).trace()) < params_.max_speed_sigma_mps;
 }
 

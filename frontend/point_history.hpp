@@ -32,6 +32,7 @@ struct PointTrack {
   std::optional<Eigen::Vector3d> p_static_cam;     // position of a point at rest, in the camera of the newest sighting
   Eigen::Matrix3d static_covariance = Eigen::Matrix3d::Identity();
   PointLabel label = PointLabel::kUnknown;
+  int repeats = 0;  // counts up with every frame in which it was found at rest as well, down with the others
 
   const PointSighting& newest() const { return sightings[static_cast<std::size_t>(count - 1)]; }
   /// The sighting of a frame, or null.

@@ -38,9 +38,12 @@ SceneMotionPtr SceneMotionEstimator::operator()(const StereoMatchesPtr& stereo, 
   }
   if (frame.rejected()) motion->status = FrameStatus::kRejected;
   trail_.add(frame.stamp, motion->T_previous_now);
-  if (frame.rejected()) return motion;
+  if (frame.rejected()) {
+    previous_features_.reset();
+    return motion;
+  }
 
-  updateTracks(sighted);
+  updateTracks(sighted, stereo->features);
   fillPoints(sighted, inliers, *motion);
   std::vector<bool> violates_geometry;
   for (const auto& track : tracks_)
@@ -153,18 +156,26 @@ PoseObservation SceneMotionEstimator::observe(const Sighted& sighted) const {
   return o;
 }
 
+EgoHint SceneMotionEstimator::hintOf(const PointTrack& track, const Eigen::Vector3d& p_last) const {
+  if (track.label == PointLabel::kMoving) return EgoHint::kMoved;
+  const double height_m = ground_plane_.last().heightOf_m(p_last);
+  const bool near = p_last.z() < params_.ground_plane.max_depth_m;
+  return near && std::abs(height_m) < params_.max_ground_noise_m ? EgoHint::kGround : EgoHint::kNone;
+}
+
 std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted,
                                                           SceneMotion& motion) const {
   std::vector<PoseObservation> observations;
-  std::vector<bool> moved_before, inliers(sighted.size(), false);
+  std::vector<EgoHint> hints;
+  std::vector<bool> inliers(sighted.size(), false);
   std::vector<std::size_t> of_observation;
   for (std::size_t i = 0; i < sighted.size(); ++i) {
     if (!sighted[i].track || !sighted[i].disparity) continue;
     observations.push_back(observe(sighted[i]));
-    moved_before.push_back(sighted[i].track->label == PointLabel::kMoving);
+    hints.push_back(hintOf(*sighted[i].track, observations.back().p_a));
     of_observation.push_back(i);
   }
-  const auto ego = ego_motion_(observations, moved_before, predicted, static_cast<std::uint64_t>(motion.frame.value));
+  const auto ego = ego_motion_(observations, hints, predicted, static_cast<std::uint64_t>(motion.frame.value));
   if (!ego) {
     motion.status = FrameStatus::kLost;
     motion.T_previous_now = predicted;
@@ -180,15 +191,28 @@ std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sigh
   return inliers;
 }
 
-void SceneMotionEstimator::updateTracks(const std::vector<Sighted>& sighted) {
+void SceneMotionEstimator::updateTracks(const std::vector<Sighted>& sighted, const FeaturesPtr& features) {
   std::vector<PointTrack> updated(sighted.size());
-  forEachItem(sighted.size(), [&](std::size_t i) { updated[i] = sighted[i].disparity ? extendTrack(sighted[i]) : *sighted[i].track; });
+  const Image& now = features->left.levels.front();
+  forEachItem(sighted.size(), [&](std::size_t i) { updated[i] = sighted[i].disparity ? extendTrack(sighted[i], now) : *sighted[i].track; });
+  previous_features_ = features;
   const std::int64_t oldest_kept = trail_.newest().step - params_.max_missed_frames;
   std::erase_if(updated, [&](const PointTrack& track) { return track.newest().step < oldest_kept; });
   tracks_ = std::move(updated);
 }
 
-PointTrack SceneMotionEstimator::extendTrack(const Sighted& s) const {
+bool SceneMotionEstimator::isFoundAtRest(const Sighted& s, const Image& now) const {
+  const CameraTrail::Relation* before = s.track ? trail_.find(s.track->newest().step) : nullptr;
+  if (!before || !previous_features_ || s.track->newest().step + 1 != trail_.newest().step) return false;
+  const Eigen::Vector3d uvd_now(s.flow.u_px, s.flow.v_px, s.disparity->disparity_px);
+  const Eigen::Vector3d p_now = camera_.triangulate(uvd_now), p_before = before->T_then_now * p_now;
+  const auto at_rest = camera_.project(p_before);
+  if (!at_rest) return false;
+  return isFoundAtRestToo(now, uvd_now.head<2>(), previous_features_->left.levels.front(), at_rest->head<2>(),
+                          s.track->newest().uvd_px.head<2>().cast<double>(), p_now.z() / p_before.z(), params_.repeated_texture);
+}
+
+PointTrack SceneMotionEstimator::extendTrack(const Sighted& s, const Image& now) const {
   PointTrack track;
   if (s.track) track = *s.track;
   track.point = s.flow.point;
@@ -206,6 +230,8 @@ PointTrack SceneMotionEstimator::extendTrack(const Sighted& s) const {
     track.static_covariance = at_rest->covariance;
   }
   track.flow = scene_flow_.fitMoving(track, trail_, at_rest);
+  if (track.flow && track.flow->static_chi2 - track.flow->moving_chi2 > params_.repeat_check_chi2)
+    track.repeats = std::clamp(track.repeats + (isFoundAtRest(s, now) ? 1 : -1), 0, 3);
   return track;
 }
 
@@ -220,6 +246,7 @@ void SceneMotionEstimator::fillPoints(const std::vector<Sighted>& sighted, const
                              .uvd_px = newest.uvd_px.cast<double>(),
                              .sigma_px = newest.sigma_px.cast<double>(),
                              .age = track->count,
+                             .repeats = track->repeats > 0,
                              .ego_inlier = inliers[i],
                              .flow = track->flow});
   }

@@ -12,6 +12,7 @@
 #include "frontend/motion_segmenter.hpp"
 #include "frontend/patch_alignment.hpp"
 #include "frontend/point_history.hpp"
+#include "frontend/repeated_texture.hpp"
 #include "frontend/scene_flow.hpp"
 
 namespace motorcade {
@@ -30,7 +31,9 @@ class SceneMotionEstimator {
     double sigma_disparity_px = 0.25;
     int max_missed_frames = 2;         // a point may be without disparity so long before its track is dropped
     double static_chi2_per_dof = 3.0;  // a track that fits a point at rest this well enters the ego-motion with its fitted position
-    double max_ground_noise_m = 0.3;   // a point's height above the road may be off by this much of its depth noise
+    double repeat_check_chi2 = 16;     // points that fit motion by so much better than rest are checked for repeated texture
+    RepeatedTextureParams repeated_texture;
+    double max_ground_noise_m = 0.3;                   // a point's height above the road may be off by this much of its depth noise
     double lost_sigma_m = 0.3, lost_sigma_rad = 0.02;  // of the predicted motion when the ego-motion is lost
     int calibration_frames = 5;                        // length of the windows from which the disparity offset is learned
     DisparityOffsetEstimator::Params disparity_offset;
@@ -60,9 +63,12 @@ class SceneMotionEstimator {
   /// Position of a track in the newest camera of the trail, with its covariance: the fitted one while it fits a point at rest, else the
   /// triangulated one.
   PoseObservation lastPosition(const PointTrack& track) const;
+  EgoHint hintOf(const PointTrack& track, const Eigen::Vector3d& p_last) const;
   std::vector<bool> estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted, SceneMotion& motion) const;
-  void updateTracks(const std::vector<Sighted>& sighted);
-  PointTrack extendTrack(const Sighted& sighted) const;
+  void updateTracks(const std::vector<Sighted>& sighted, const FeaturesPtr& features);
+  /// The track of a point whose disparity was found, with what its sightings up to now tell.
+  PointTrack extendTrack(const Sighted& sighted, const Image& now) const;
+  bool isFoundAtRest(const Sighted& sighted, const Image& now) const;
   void fillPoints(const std::vector<Sighted>& sighted, const std::vector<bool>& inliers, SceneMotion& motion) const;
   void markGround(SceneMotion& motion, const std::vector<bool>& violates_geometry);
   void calibrateDisparity();
@@ -79,6 +85,7 @@ class SceneMotionEstimator {
   MotionSegmenter segmenter_;
 
   std::vector<PointTrack> tracks_;  // ordered by point
+  FeaturesPtr previous_features_;   // empty at the start and after a rejected frame
   CameraTrail trail_;
   std::optional<SE3> last_motion_;  // T_previous_now of the last frame
   double last_dt_s_ = 0;

@@ -142,11 +142,17 @@ void addSceneMotion(std::vector<Parameter>& table, SceneMotionEstimator::Params&
       .add("sigma_disparity_px", p.sigma_disparity_px, kPositive)
       .add("max_missed_frames", p.max_missed_frames, kAnyCount)
       .add("static_chi2_per_dof", p.static_chi2_per_dof, kPositive)
+      .add("repeat_check_chi2", p.repeat_check_chi2, kPositive)
       .add("max_ground_noise_m", p.max_ground_noise_m, kPositive)
       .add("lost_sigma_m", p.lost_sigma_m, kPositive)
       .add("lost_sigma_rad", p.lost_sigma_rad, kPositive)
       .add("calibration_frames", p.calibration_frames, kAnyCount);
   addDisparity(Section(table, "frontend.motion.disparity"), p.disparity);
+  Section(table, "frontend.motion.repeated_texture")
+      .add("window_px", p.repeated_texture.window_px, {3, kMaxPatchWindow_px})
+      .add("min_ncc", p.repeated_texture.min_ncc, kShare)
+      .add("max_prediction_px", p.repeated_texture.max_prediction_px, kPositive)
+      .add("min_separation_px", p.repeated_texture.min_separation_px, kPositive);
   Section(table, "frontend.disparity_offset")
       .add("prior_sigma_px", p.disparity_offset.prior_sigma_px, kNotNegative)
       .add("max_rate_px", p.disparity_offset.max_rate_px, kPositive)
@@ -161,7 +167,8 @@ void addSceneMotion(std::vector<Parameter>& table, SceneMotionEstimator::Params&
       .add("scored_points", p.ego_motion.scored_points, kAtLeastOne)
       .add("inlier_chi2", p.ego_motion.inlier_chi2, kPositive)
       .add("min_inliers", p.ego_motion.min_inliers, Range{3})
-      .add("known_mover_weight", p.ego_motion.known_mover_weight, kShare);
+      .add("known_mover_weight", p.ego_motion.known_mover_weight, kShare)
+      .add("ground_weight", p.ego_motion.ground_weight, kPositive);
   addPoseFit(Section(table, "frontend.ego_motion.fit"), p.ego_motion.fit);
   Section(table, "frontend.scene_flow")
       .add("max_observations", p.scene_flow.max_observations, {2, PointTrack::kCapacity})
