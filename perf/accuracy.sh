@@ -25,10 +25,12 @@ camera_row() {  # NAME JSON
 }
 
 object_row() {  # NAME JSON
-  jq -r --arg name "$1" 'def f(n): if . == null then "-" else . * pow(10; n) | round / pow(10; n) end;
+  jq -r --arg name "$1" 'def f(n): . * pow(10; n) | round / pow(10; n);
     def share: if (.labels // 0) == 0 then "-" else "\(100 * .recall | f(0)) % (\(.found)/\(.labels))" end;
+    def mean(n): if (.count // 0) == 0 then "-" else .mean | f(n) end;
     .final as $x | $x.detection as $d |
-    "| \($name) | \($d.within_30m | share) | \($d.from_30_to_50m | share) | \($d.false_rows) of \($d.rows) | \($d.id_switches) | \($x.motion.me_t_m.mean | f(3)) | \($x.motion.me_r_deg.mean | f(2)) | \($x.motion.speed_error_mps.rmse | f(2)) |"' "$2"
+    if $d.rows == null then "| \($name) | no labels | | | | | | |" else
+    "| \($name) | \($d.within_30m | share) | \($d.from_30_to_50m | share) | \($d.false_rows) of \($d.rows) | \($d.id_switches) | \($x.motion.me_t_m | mean(3)) | \($x.motion.me_r_deg | mean(2)) | \($x.motion.speed_error_mps | mean(2)) |" end' "$2"
 }
 
 drives=()
@@ -53,6 +55,6 @@ echo "| drive | frames | ATE m | end error | RPE_t m rmse / median | RPE_r deg r
 echo "| --- | --- | --- | --- | --- | --- |"
 for name in "${drives[@]}" "${scenes[@]}"; do camera_row "$name" "$out/$name.json"; done
 echo
-echo "| drive | recall to 30 m | 30 to 50 m | false rows | id switches | ME_t m | ME_r deg | speed m/s |"
+echo "| drive | recall to 30 m | 30 to 50 m | false rows | id switches | ME_t m | ME_r deg | mean speed error m/s |"
 echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
 for name in "${drives[@]}" "${scenes[@]}"; do object_row "$name" "$out/$name.json"; done
