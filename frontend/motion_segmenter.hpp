@@ -29,7 +29,7 @@ class MotionSegmenter {
     double systematic_disparity_pxps = 0.15;
     double certain_static_sigma_mps = 1.0;  // a component whose velocity is known this well and is not significant is static
     double max_extent_m = 14.0;
-    double max_height_m = 4.5;         // of the lowest point above the road
+    double max_height_m = 2.5;         // of the lowest point above the road: what is all higher is leaves and signs
     double max_vertical_ratio = 0.35;  // vertical part of a vehicle's velocity
   };
   MotionSegmenter(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
