@@ -1,17 +1,20 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <functional>
 #include <thread>
 
 namespace motorcade {
 
-/// Waits for SIGINT and SIGTERM on a thread of its own, so that a run can end in order; a second signal ends the program at once.
+/// Waits for SIGINT and SIGTERM on a thread of its own, so that a run can end in order; a second signal ends the program at
+/// once, unless it comes within a second: `timeout` and terminals send the same one to a process and to its group.
 /// Make it before the threads that are to be spared: they inherit that both signals are blocked.
 class StopSignals {
  public:
   StopSignals();
+  /// Leaves both signals blocked after one came: the program is about to end in order.
   ~StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
@@ -22,6 +25,9 @@ class StopSignals {
   int received() const { return received_.load(); }
 
  private:
+  /// The next signal within that time, or not a positive number.
+  int next(std::chrono::milliseconds patience) const;
+
   sigset_t signals_, before_;
   std::atomic<int> received_{0};
 };
