@@ -9,6 +9,7 @@
 namespace motorcade {
 
 std::vector<int> eliminationOrder(int columns, std::span<const std::vector<int>> rows, std::span<const int> group) {
+  if (columns <= 1) return std::vector<int>(static_cast<std::size_t>(columns), 0);  // CCOLAMD overruns where a group is not below `columns`
   // CCOLAMD wants compressed columns of row numbers.
   std::vector<int> start(static_cast<std::size_t>(columns) + 1, 0);
   for (const auto& row : rows)
