@@ -19,7 +19,7 @@ struct Clique {
   /// (size + 1) x frontal_size: columns are the rows of [R S d], so R^T above, S^T, and d^T last.
   Eigen::MatrixXd L;
   /// Information [H g; g^T c] that elimination leaves on the separator; lower triangle.
-  LinearTerm remainder{.form = LinearTerm::Form::kInformation, .matrix = {}};
+  LinearTerm remainder{.form = Factor::Form::kInformation, .matrix = {}};
 
   std::span<const VariableId> frontalVariables() const { return {variables.data(), static_cast<std::size_t>(frontals)}; }
   std::span<const VariableId> separator() const { return std::span(variables).subspan(static_cast<std::size_t>(frontals)); }

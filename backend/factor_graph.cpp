@@ -35,8 +35,10 @@ LinearTerm FactorGraph::linearized(const Factor& factor) const {
   std::vector<const Value*> values;
   values.reserve(factor.variables().size());
   for (const VariableId v : factor.variables()) values.push_back(&(*this)[v].linearization_point);
-  LinearTerm term;
-  factor.linearize(values, term);
+  int columns = 1;
+  for (const VariableId v : factor.variables()) columns += sizeOf(v);
+  LinearTerm term{.form = factor.form(), .matrix = Eigen::MatrixXd(factor.rows(), columns)};
+  factor.linearize(values, term.matrix);
   return term;
 }
 

@@ -9,6 +9,12 @@
 
 namespace motorcade {
 
+/// A factor near its linearisation point, in the factor's form.
+struct LinearTerm {
+  Factor::Form form = Factor::Form::kJacobian;
+  Eigen::MatrixXd matrix;
+};
+
 /// The variables and factors of a least-squares problem, with each factor linearised at its variables' linearisation points.
 class FactorGraph {
  public:

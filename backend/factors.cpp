@@ -13,11 +13,17 @@ std::optional<Matrix6d> squareRootInformation(const Matrix6d& covariance) {
   return root;
 }
 
+Vector6d PriorModel::residual(const std::array<SE3, 1>& T) const { return (mean.inverse() * T[0]).log(); }
+
 PoseResidual<1> PriorModel::evaluate(const std::array<SE3, 1>& T) const {
   PoseResidual<1> result;
-  result.residual = (mean.inverse() * T[0]).log();
+  result.residual = residual(T);
   result.J[0] = rightJacobianInverseSE3(result.residual);
   return result;
+}
+
+Vector6d MotionModel::residual(const std::array<SE3, 2>& before_now) const {
+  return (motion.inverse() * (before_now[0].inverse() * before_now[1])).log();
 }
 
 PoseResidual<2> MotionModel::evaluate(const std::array<SE3, 2>& before_now) const {
@@ -27,6 +33,11 @@ PoseResidual<2> MotionModel::evaluate(const std::array<SE3, 2>& before_now) cons
   result.J[1] = rightJacobianInverseSE3(result.residual);
   result.J[0] = -result.J[1] * T_before_now.inverse().adjoint();
   return result;
+}
+
+Vector6d CameraEncounterModel::residual(const std::array<SE3, 3>& x_a_z) const {
+  const auto& [x, a, z] = x_a_z;
+  return ((a * z).inverse() * x * T_cam_body).inverse().log();
 }
 
 PoseResidual<3> CameraEncounterModel::evaluate(const std::array<SE3, 3>& x_a_z) const {
@@ -40,6 +51,11 @@ PoseResidual<3> CameraEncounterModel::evaluate(const std::array<SE3, 3>& x_a_z) 
   return result;
 }
 
+Vector6d ObjectEncounterModel::residual(const std::array<SE3, 4>& am_zm_an_zn) const {
+  const auto& [a_m, z_m, a_n, z_n] = am_zm_an_zn;
+  return ((a_n * z_n).inverse() * (a_m * z_m) * T_m_n).inverse().log();
+}
+
 PoseResidual<4> ObjectEncounterModel::evaluate(const std::array<SE3, 4>& am_zm_an_zn) const {
   const auto& [a_m, z_m, a_n, z_n] = am_zm_an_zn;
   const SE3 T_n_m = (a_n * z_n).inverse() * (a_m * z_m);
@@ -50,6 +66,10 @@ PoseResidual<4> ObjectEncounterModel::evaluate(const std::array<SE3, 4>& am_zm_a
   result.J[1] = -result.J[3] * T_n_m.adjoint();
   result.J[0] = -result.J[3] * (T_n_m * z_m.inverse()).adjoint();
   return result;
+}
+
+Vector6d SmoothMotionModel::residual(const std::array<SE3, 3>& z) const {
+  return (z[1].inverse() * z[2]).log() / dt_after_s - (z[0].inverse() * z[1]).log() / dt_before_s;
 }
 
 PoseResidual<3> SmoothMotionModel::evaluate(const std::array<SE3, 3>& z) const {

@@ -12,6 +12,7 @@ namespace motorcade {
 /// r = log(mean^-1 * T)
 struct PriorModel {
   SE3 mean;
+  Vector6d residual(const std::array<SE3, 1>& T) const;
   PoseResidual<1> evaluate(const std::array<SE3, 1>& T) const;
 };
 using PriorFactor = PoseFactor<PriorModel, 1>;
@@ -20,6 +21,7 @@ using PriorFactor = PoseFactor<PriorModel, 1>;
 ///   r = log(motion^-1 * T_before^-1 * T_now)
 struct MotionModel {
   SE3 motion;  // T_before_now
+  Vector6d residual(const std::array<SE3, 2>& before_now) const;
   PoseResidual<2> evaluate(const std::array<SE3, 2>& before_now) const;
 };
 using MotionFactor = PoseFactor<MotionModel, 2>;
@@ -28,6 +30,7 @@ using MotionFactor = PoseFactor<MotionModel, 2>;
 ///   r = log(T_cam_body^-1 * x^-1 * a * z)
 struct CameraEncounterModel {
   SE3 T_cam_body;
+  Vector6d residual(const std::array<SE3, 3>& x_a_z) const;
   PoseResidual<3> evaluate(const std::array<SE3, 3>& x_a_z) const;
 };
 using CameraEncounterFactor = PoseFactor<CameraEncounterModel, 3>;
@@ -36,6 +39,7 @@ using CameraEncounterFactor = PoseFactor<CameraEncounterModel, 3>;
 ///   r = log(T_m_n^-1 * (a_m z_m)^-1 * (a_n z_n))
 struct ObjectEncounterModel {
   SE3 T_m_n;
+  Vector6d residual(const std::array<SE3, 4>& am_zm_an_zn) const;
   PoseResidual<4> evaluate(const std::array<SE3, 4>& am_zm_an_zn) const;
 };
 using ObjectEncounterFactor = PoseFactor<ObjectEncounterModel, 4>;
@@ -44,6 +48,7 @@ using ObjectEncounterFactor = PoseFactor<ObjectEncounterModel, 4>;
 ///   r = log(z_i^-1 z_{i+1}) / dt_after - log(z_{i-1}^-1 z_i) / dt_before    [m/s, rad/s]
 struct SmoothMotionModel {
   double dt_before_s = 0, dt_after_s = 0;
+  Vector6d residual(const std::array<SE3, 3>& z) const;
   PoseResidual<3> evaluate(const std::array<SE3, 3>& z) const;
 };
 using SmoothMotionFactor = PoseFactor<SmoothMotionModel, 3>;

@@ -56,7 +56,7 @@ void addTerm(Front& front, const Contribution& contribution, const FactorGraph& 
       const bool flipped = row.to < column.to;
       const Block &low = flipped ? column : row, &high = flipped ? row : column;
       auto target = front.block(low.to, high.to, low.size, high.size);
-      if (term.form == LinearTerm::Form::kJacobian) {
+      if (term.form == Factor::Form::kJacobian) {
         target += term.matrix.middleCols(low.from, low.size).transpose().lazyProduct(term.matrix.middleCols(high.from, high.size));
       } else if (!flipped) {
         const auto source = term.matrix.block(row.from, column.from, row.size, column.size);

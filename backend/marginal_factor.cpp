@@ -1,6 +1,7 @@
 #include "backend/marginal_factor.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include <Eigen/Eigenvalues>
 
@@ -16,19 +17,28 @@ Eigen::MatrixXd pseudoInverse(const Eigen::MatrixXd& matrix) {
   return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
+template <int N>
+void moveBlock(Eigen::Ref<Eigen::MatrixXd> term, Eigen::Index at, const Eigen::Matrix<double, N, N>& J) {
+  term.middleCols<N>(at) = (term.middleCols<N>(at) * J).eval();
+  term.middleRows<N>(at) = (J.transpose() * term.middleRows<N>(at)).eval();
+}
+
 }  // namespace
 
 MarginalFactor::MarginalFactor(std::vector<VariableId> variables, std::vector<Value> values, Eigen::MatrixXd information)
-    : Factor(std::move(variables)), values_(std::move(values)), information_(std::move(information)) {
+    : Factor(std::move(variables), Form::kInformation, static_cast<int>(information.rows())), values_(std::move(values)), information_(std::move(information)) {
   information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
 }
 
-void MarginalFactor::linearize(std::span<const Value* const> values, LinearTerm& term) const {
+void MarginalFactor::residual(std::span<const Value* const>, Eigen::Ref<Eigen::VectorXd>) const {
+  assert(false && "a quadratic in information form has no residual");
+}
+
+void MarginalFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
   // e(delta) ~ e + J delta with J = Jr^-1(e) for poses, so [H g; g^T c] -> T^T [H g; g^T c] T with T = [J e; 0 1].
   const Eigen::Index n = information_.rows() - 1;
   Eigen::VectorXd e(n);
-  term.form = LinearTerm::Form::kInformation;
-  term.matrix = information_;
+  term = information_;
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < values_.size(); ++k) {
     const SmallVector move = local(values_[k], *values[k]);
@@ -37,15 +47,12 @@ void MarginalFactor::linearize(std::span<const Value* const> values, LinearTerm&
   }
   if (e.cwiseAbs().maxCoeff() == 0) return;
   const Eigen::VectorXd shift = information_.topLeftCorner(n, n) * e;
-  term.matrix(n, n) += e.dot(shift) + 2 * e.dot(information_.col(n).head(n));
-  term.matrix.row(n).head(n) += shift.transpose();
+  term(n, n) += e.dot(shift) + 2 * e.dot(information_.col(n).head(n));
+  term.row(n).head(n) += shift.transpose();
   at = 0;
   for (const Value& value : values_) {
-    if (std::holds_alternative<SE3>(value)) {
-      const Matrix6d J = rightJacobianInverseSE3(e.segment<6>(at));
-      term.matrix.middleCols<6>(at) = (term.matrix.middleCols<6>(at) * J).eval();
-      term.matrix.middleRows<6>(at) = (J.transpose() * term.matrix.middleRows<6>(at)).eval();
-    }
+    if (std::holds_alternative<SE3>(value)) moveBlock<6>(term, at, rightJacobianInverseSE3(e.segment<6>(at)));
+    if (std::holds_alternative<SE2>(value)) moveBlock<3>(term, at, rightJacobianInverseSE2(e.segment<3>(at)));
     at += dimension(value);
   }
 }

@@ -13,7 +13,8 @@ class MarginalFactor final : public Factor {
   /// `information` is the lower triangle of [H g; g^T c] over the stacked deltas from `values`.
   MarginalFactor(std::vector<VariableId> variables, std::vector<Value> values, Eigen::MatrixXd information);
 
-  void linearize(std::span<const Value* const> values, LinearTerm& term) const override;
+  void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
+  void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const override;
 
   /// The same knowledge without `gone`, which are marginalised; empty when nothing is left.
   std::unique_ptr<MarginalFactor> without(std::span<const VariableId> gone) const;

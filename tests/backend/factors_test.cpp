@@ -100,10 +100,10 @@ TEST(PoseFactor, RobustLossWeightsTheWhitenedResidual) {
   huber.loss_scale = 2.0;
   const Value far = SE3(Eigen::Matrix3d::Identity(), {0.8, 0, 0});  // 8 sigma
   const std::array values{&far};
-  LinearTerm full, weighted;
+  Eigen::MatrixXd full(6, 7), weighted(6, 7);
   PriorFactor({VariableId{0}}, PriorModel{}, plain).linearize(values, full);
   PriorFactor({VariableId{0}}, PriorModel{}, huber).linearize(values, weighted);
-  EXPECT_THAT(weighted.matrix, IsNear((0.5 * full.matrix).eval(), 1e-12));  // weight 2/8, applied to the square
+  EXPECT_THAT(weighted, IsNear((0.5 * full).eval(), 1e-12));  // weight 2/8, applied to the square
 }
 
 TEST(MarginalFactor, KeepsItsQuadraticWhenTheLinearizationPointMoves) {
@@ -118,13 +118,13 @@ TEST(MarginalFactor, KeepsItsQuadraticWhenTheLinearizationPointMoves) {
     return e.dot(information * e);
   };
   const Value value = now;
-  LinearTerm term;
+  Eigen::MatrixXd term(7, 7);
   factor.linearize(std::array{&value}, term);
-  EXPECT_NEAR(term.matrix(6, 6), cost(now), 1e-12);
+  EXPECT_NEAR(term(6, 6), cost(now), 1e-12);
   for (int i = 0; i < 6; ++i) {
     Vector6d step = Vector6d::Zero();
     step[i] = 1e-6;
-    EXPECT_NEAR(2 * term.matrix(6, i), (cost(now * SE3::exp(step)) - cost(now * SE3::exp(-step))) / 2e-6, 1e-6);
+    EXPECT_NEAR(2 * term(6, i), (cost(now * SE3::exp(step)) - cost(now * SE3::exp(-step))) / 2e-6, 1e-6);
   }
 }
 

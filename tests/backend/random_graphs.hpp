@@ -145,10 +145,10 @@ class DenseSystem {
         values.push_back(&values_[static_cast<std::size_t>(v.value)]);
         for (int i = 0; i < graph_.sizeOf(v); ++i) at.push_back(offset(v) + i);
       }
-      LinearTerm term;
-      graph_.factor(f).linearize(values, term);
-      Eigen::MatrixXd quadratic = term.matrix;
-      if (term.form == LinearTerm::Form::kJacobian) quadratic = term.matrix.transpose() * term.matrix;
+      const Factor& factor = graph_.factor(f);
+      Eigen::MatrixXd quadratic(factor.rows(), static_cast<Eigen::Index>(at.size()) + 1);
+      factor.linearize(values, quadratic);
+      if (factor.form() == Factor::Form::kJacobian) quadratic = (quadratic.transpose() * quadratic).eval();
       quadratic.triangularView<Eigen::StrictlyUpper>() = quadratic.transpose();
       const auto n = static_cast<Eigen::Index>(at.size());
       for (Eigen::Index i = 0; i < n; ++i) {

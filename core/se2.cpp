@@ -1,0 +1,61 @@
+#include "core/se2.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace motorcade {
+namespace {
+
+double wrapped(double angle_rad) { return std::remainder(angle_rad, 2 * std::numbers::pi); }
+
+/// V with exp(rho, phi) = (phi, V rho): V = [a -b; b a], a = sin(phi) / phi, b = (1 - cos(phi)) / phi.
+struct LeftJacobian {
+  double a, b;
+  explicit LeftJacobian(double phi)
+      : a(std::abs(phi) < 1e-4 ? 1 - phi * phi / 6 : std::sin(phi) / phi),
+        b(std::abs(phi) < 1e-4 ? phi / 2 - phi * phi * phi / 24 : 2 * std::sin(phi / 2) * std::sin(phi / 2) / phi) {}
+};
+
+}  // namespace
+
+SE2::SE2(double angle_rad, const Eigen::Vector2d& translation_m) : angle_rad_(wrapped(angle_rad)), translation_(translation_m) {}
+
+SE2 SE2::exp(const Eigen::Vector3d& xi) {
+  const LeftJacobian V(xi[2]);
+  return {xi[2], {V.a * xi[0] - V.b * xi[1], V.b * xi[0] + V.a * xi[1]}};
+}
+
+Eigen::Vector3d SE2::log() const {
+  const LeftJacobian V(angle_rad_);
+  const double determinant = V.a * V.a + V.b * V.b;
+  return {(V.a * translation_.x() + V.b * translation_.y()) / determinant, (V.a * translation_.y() - V.b * translation_.x()) / determinant,
+          angle_rad_};
+}
+
+Eigen::Matrix2d SE2::rotation() const {
+  const double c = std::cos(angle_rad_), s = std::sin(angle_rad_);
+  return (Eigen::Matrix2d() << c, -s, s, c).finished();
+}
+
+SE2 SE2::inverse() const { return {-angle_rad_, -(rotation().transpose() * translation_)}; }
+
+SE2 SE2::operator*(const SE2& other) const { return {angle_rad_ + other.angle_rad_, *this * other.translation_}; }
+
+Eigen::Matrix3d SE2::adjoint() const {
+  Eigen::Matrix3d Ad = Eigen::Matrix3d::Identity();
+  Ad.topLeftCorner<2, 2>() = rotation();
+  Ad(0, 2) = translation_.y();
+  Ad(1, 2) = -translation_.x();
+  return Ad;
+}
+
+Eigen::Matrix3d rightJacobianInverseSE2(const Eigen::Vector3d& xi) {
+  // As a power series in ad: Jr^-1 = I + ad / 2 + (1 - h) / phi^2 ad^2 with h = (phi / 2) cot(phi / 2); ad^3 = -phi^2 ad.
+  const double phi = xi[2], half = phi / 2;
+  const double s = std::abs(phi) < 1e-3 ? 1.0 / 12 + phi * phi / 720 : (1 - half / std::tan(half)) / (phi * phi);
+  Eigen::Matrix3d ad;
+  ad << 0, -phi, xi[1], phi, 0, -xi[0], 0, 0, 0;
+  return Eigen::Matrix3d::Identity() + 0.5 * ad + s * ad * ad;
+}
+
+}  // namespace motorcade
