@@ -92,9 +92,9 @@ struct Tile {
 /// L of the N columns that are being eliminated.
 template <int N>
 struct Triangle {
-  double below[N][N]{};  // below[c][r] = L(r, c)
-  double inverse[N]{};   // of the diagonal; zero where singular
-  double smallest_ratio = 1;
+  double below[N][N]{};       // below[c][r] = L(r, c)
+  double inverse[N]{};        // of the diagonal; zero where singular
+  double largest_growth = 1;  // of a diagonal entry over its pivot
 
   /// Right-looking elimination of the tile whose first N rows are the triangle. The pivot's reciprocal updates the remaining columns while
   /// its root is still being taken.
@@ -107,9 +107,9 @@ struct Triangle {
         clear(tile, c);
         continue;
       }
-      smallest_ratio = std::min(smallest_ratio, pivot / diagonal[c]);
       const double reciprocal = 1 / pivot;
       inverse[c] = std::sqrt(pivot) * reciprocal;
+      largest_growth = std::max(largest_growth, diagonal[c] * reciprocal);
 #pragma GCC unroll 4
       for (int r = c + 1; r < N; ++r) {
         const Vec factor = broadcast(tile.at[0][c][r] * reciprocal);
@@ -150,7 +150,8 @@ struct Triangle {
   }
 };
 
-/// Eliminates N columns from `first` on: left-looking, each tile takes all updates by earlier columns at once.
+/// Eliminates N columns from `first` on: left-looking, each tile takes all updates by earlier columns at once. Returns the largest ratio of
+/// a diagonal entry to its pivot, at least 1.
 template <int N>
 double factorizeColumns(double* panel, int ld, int rows, int first, std::vector<int>& singular) {
   double* const columns = panel + first * ld;
@@ -171,7 +172,7 @@ double factorizeColumns(double* panel, int ld, int rows, int first, std::vector<
   });
   for (int c = 0; c < N; ++c)
     if (triangle.inverse[c] == 0) singular.push_back(first + c);
-  return triangle.smallest_ratio;
+  return triangle.largest_growth;
 }
 
 /// The outer product's operands.
@@ -211,22 +212,26 @@ struct OuterProduct {
   }
 };
 
-/// H += J^T J of K rows of J, which are `stride` apart from column to column.
-template <int K>
-void addRowsProduct(const double* jacobian, int stride, int cols, double* h, int ldh) {
-  for (int i = 0; i < cols; i += kLanes) {
-    const int count = std::min(cols - i, kLanes);
-    const auto entry = [&](int k, int lane) { return lane < count ? jacobian[k + (i + lane) * stride] : 0.0; };
-    Vec transposed[K];
+/// Rows i to i + kCount - 1 of H += J^T J, of K rows of J whose columns are `stride` apart.
+template <int K, int kCount>
+[[gnu::always_inline]] inline void addRowsOfProduct(const double* jacobian, int stride, int i, double* h, int ldh) {
+  const auto entry = [&](int k, int lane) { return lane < kCount ? jacobian[k + (i + lane) * stride] : 0.0; };
+  Vec transposed[K];
 #pragma GCC unroll 6
-    for (int k = 0; k < K; ++k) transposed[k] = Vec{entry(k, 0), entry(k, 1), entry(k, 2), entry(k, 3)};
-    for (int j = 0; j < i + count; ++j) {
-      Vec total = load(h + i + j * ldh);
+  for (int k = 0; k < K; ++k) transposed[k] = Vec{entry(k, 0), entry(k, 1), entry(k, 2), entry(k, 3)};
+  for (int j = 0; j < i + kCount; ++j) {
+    Vec total = load(h + i + j * ldh);
 #pragma GCC unroll 6
-      for (int k = 0; k < K; ++k) total += transposed[k] * broadcast(jacobian[k + j * stride]);
-      store(h + i + j * ldh, total);
-    }
+    for (int k = 0; k < K; ++k) total += transposed[k] * broadcast(jacobian[k + j * stride]);
+    store(h + i + j * ldh, total);
   }
+}
+
+template <int K>
+void addProduct(const double* jacobian, int stride, int cols, double* h, int ldh) {
+  int i = 0;
+  for (; i + kLanes <= cols; i += kLanes) addRowsOfProduct<K, kLanes>(jacobian, stride, i, h, ldh);
+  if (i < cols) withConstant<kLanes - 1>(cols - i, [&]<int kCount>() { addRowsOfProduct<K, kCount>(jacobian, stride, i, h, ldh); });
 }
 
 /// sums[c] += m(:, c)^T x over n rows.
@@ -287,13 +292,13 @@ void forwardSubstituteColumns(const double* panel, int ld, int rows, int first, 
 
 double factorizePanel(double* panel, int ld, int rows, int columns, std::vector<int>& singular) {
   assert(ld % kLanes == 0 && ld >= rows && rows > columns);
-  double smallest_ratio = 1;
+  double largest_growth = 1;
   for (int first = 0; first < columns; first += kLanes) {
     withConstant<kLanes>(std::min(columns - first, kLanes), [&]<int N>() {
-      smallest_ratio = std::min(smallest_ratio, factorizeColumns<N>(panel, ld, rows, first, singular));
+      largest_growth = std::max(largest_growth, factorizeColumns<N>(panel, ld, rows, first, singular));
     });
   }
-  return smallest_ratio;
+  return 1 / largest_growth;
 }
 
 void subtractOuterProduct(double* c, int ldc, const double* a, int lda, int n, int k) {
@@ -306,9 +311,9 @@ void subtractOuterProduct(double* c, int ldc, const double* a, int lda, int n, i
 void addJacobianProduct(const double* jacobian, int rows, int cols, double* h, int ldh) {
   assert(ldh % kLanes == 0 && ldh >= cols);
   int row = 0;
-  for (; row + 6 <= rows; row += 6) addRowsProduct<6>(jacobian + row, rows, cols, h, ldh);
-  for (; row + 3 <= rows; row += 3) addRowsProduct<3>(jacobian + row, rows, cols, h, ldh);
-  for (; row < rows; ++row) addRowsProduct<1>(jacobian + row, rows, cols, h, ldh);
+  for (; row + 6 <= rows; row += 6) addProduct<6>(jacobian + row, rows, cols, h, ldh);
+  for (; row + 3 <= rows; row += 3) addProduct<3>(jacobian + row, rows, cols, h, ldh);
+  for (; row < rows; ++row) addProduct<1>(jacobian + row, rows, cols, h, ldh);
 }
 
 void backSubstitute(const double* panel, int ld, int rows, int columns, const double* x_separator, double* x_frontal) {
