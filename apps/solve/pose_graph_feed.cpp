@@ -1,0 +1,212 @@
+#include "apps/solve/pose_graph_feed.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <ctime>
+
+#include "backend/factors.hpp"
+#include "backend/relative_pose_factor.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr double kGaugeSigma = 1e-4;  // m and rad; no edge pulls against it, so that it only has to be small
+
+double threadCpu_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+std::vector<std::size_t> updateEnds(const PoseGraph& graph, const PoseGraphIndex& index, PoseGraphFeed::Pace pace) {
+  std::vector<std::size_t> ends;
+  if (pace == PoseGraphFeed::Pace::kByPose && graph.frame_ends.empty()) {
+    for (std::size_t pose = 0; pose < index.size(); ++pose) ends.push_back(pose + 1);
+    return ends;
+  }
+  if (pace == PoseGraphFeed::Pace::kByPose)
+    for (const std::int64_t id : graph.frame_ends) ends.push_back(index.at(id + 1));
+  ends.push_back(index.size());  // the last frame may have no end yet
+  std::ranges::sort(ends);
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  if (ends.front() == 0) ends.erase(ends.begin());
+  return ends;
+}
+
+std::unique_ptr<Factor> gaugeOf(VariableId v, bool planar) {
+  const double weight = 1 / kGaugeSigma;
+  if (planar) return std::make_unique<PriorFactorSE2>(v, SE2{}, Eigen::Matrix3d::Identity() * weight * weight);
+  return std::make_unique<PriorFactor>(std::array{v}, PriorModel{}, PoseNoise{.sqrt_information = Matrix6d::Identity() * weight});
+}
+
+std::unique_ptr<Factor> factorOf(const PoseGraph::Edge& edge, VariableId from, VariableId to) {
+  if (const auto* planar = std::get_if<SE2>(&edge.measured))
+    return std::make_unique<RelativePoseFactorSE2>(from, to, *planar, edge.information);
+  return std::make_unique<RelativePoseFactorSE3>(from, to, std::get<SE3>(edge.measured), edge.information);
+}
+
+PoseGraph::Pose poseIn(const Value& value) {
+  if (const auto* planar = std::get_if<SE2>(&value)) return *planar;
+  return std::get<SE3>(value);
+}
+
+}  // namespace
+
+PoseGraphFeed::PoseGraphFeed(const PoseGraph& graph, const IncrementalSolver::Params& params, Pace pace)
+    : graph_(graph),
+      index_(graph),
+      solver_(params),
+      update_ends_(updateEnds(graph, index_, pace)),
+      variable_(index_.size()),
+      waits_(index_.size(), 0) {
+  while (gauge_pose_ < index_.size() && index_.neighbours(gauge_pose_).empty()) ++gauge_pose_;
+  if (gauge_pose_ == index_.size()) gauge_pose_ = 0;
+}
+
+PoseGraphFeed::Update PoseGraphFeed::next() {
+  assert(!atEnd());
+  const double start_ms = threadCpu_ms();
+  Update update;
+  for (const std::size_t end = update_ends_[updates_done_++]; fed_ < end; ++fed_) feedPose(fed_, update);
+  update.report = solver_.update();
+  update.cpu_ms = threadCpu_ms() - start_ms;
+  return update;
+}
+
+void PoseGraphFeed::feedPose(std::size_t pose, Update& update) {
+  if (pose == gauge_pose_) {
+    add(pose, graph_.planar ? Value(SE2{}) : Value(SE3{}), update);
+    solver_.addFactor(gaugeOf(variable_[pose], graph_.planar));
+  } else if (const auto joint = joinedTo(pose)) {
+    addWithWaiting(pose, *joint, update);
+  } else {
+    waits_[pose] = 1;
+  }
+}
+
+/// By odometry where there is any, else by the first edge in the file to a pose that is there.
+std::optional<PoseGraphFeed::Neighbour> PoseGraphFeed::joinedTo(std::size_t pose) const {
+  std::optional<Neighbour> first;
+  for (const Neighbour& neighbour : index_.neighbours(pose)) {
+    if (!present(neighbour.pose)) continue;
+    if (index_.id(neighbour.pose) == index_.id(pose) - 1) return neighbour;
+    if (!first) first = neighbour;
+  }
+  return first;
+}
+
+/// Breadth first: a pose that waited is placed over as few edges as possible.
+void PoseGraphFeed::addWithWaiting(std::size_t pose, const Neighbour& joint, Update& update) {
+  struct Joining {
+    std::size_t pose;
+    Neighbour joint;
+  };
+  std::vector<Joining> queue{{pose, joint}};
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    const Joining joining = queue[i];
+    add(joining.pose, moved(solver_.estimate(variable_[joining.joint.pose]), joining.joint, joining.pose), update);
+    for (const Neighbour& neighbour : index_.neighbours(joining.pose)) {
+      if (waits_[neighbour.pose] == 0) continue;
+      waits_[neighbour.pose] = 0;
+      queue.push_back({neighbour.pose, {joining.pose, neighbour.edge}});
+    }
+  }
+}
+
+void PoseGraphFeed::add(std::size_t pose, const Value& initial, Update& update) {
+  variable_[pose] = solver_.addVariable(initial);
+  assert(static_cast<std::size_t>(variable_[pose].value) == pose_of_variable_.size());
+  pose_of_variable_.push_back(pose);
+  ++update.poses;
+  for (const Neighbour& neighbour : index_.neighbours(pose)) {
+    if (!present(neighbour.pose)) continue;
+    const auto& edge = graph_.edges[neighbour.edge];
+    const bool forward = edge.to == index_.id(pose);
+    const VariableId other = variable_[neighbour.pose];
+    if (!solver_.addFactor(factorOf(edge, forward ? other : variable_[pose], forward ? variable_[pose] : other))) {
+      refused_edges_.push_back(neighbour.edge);
+      continue;
+    }
+    ++edge_count_, ++update.edges;
+  }
+}
+
+/// From a pose at `start` over an edge to its neighbour.
+Value PoseGraphFeed::moved(const Value& start, const Neighbour& from, std::size_t to) const {
+  const auto& edge = graph_.edges[from.edge];
+  const bool forward = edge.to == index_.id(to);
+  if (const auto* pose = std::get_if<SE2>(&start)) {
+    const SE2& Z = std::get<SE2>(edge.measured);
+    return *pose * (forward ? Z : Z.inverse());
+  }
+  const SE3& Z = std::get<SE3>(edge.measured);
+  return (std::get<SE3>(start) * (forward ? Z : Z.inverse())).normalized();
+}
+
+std::optional<VariableId> PoseGraphFeed::variableOf(std::int64_t pose_id) const {
+  const std::size_t pose = index_.at(pose_id);
+  if (pose == index_.size() || index_.id(pose) != pose_id || !present(pose)) return std::nullopt;
+  return variable_[pose];
+}
+
+double PoseGraphFeed::chi2() const {
+  double sum = 0;
+  Eigen::VectorXd r(graph_.planar ? 3 : 6);
+  for (std::size_t pose = 0; pose < fed_; ++pose) {
+    for (const Neighbour& neighbour : index_.neighbours(pose)) {
+      const auto& edge = graph_.edges[neighbour.edge];
+      if (edge.from != index_.id(pose) || !present(pose) || !present(neighbour.pose)) continue;
+      if (std::ranges::find(refused_edges_, neighbour.edge) != refused_edges_.end()) continue;
+      const Value from = solver_.estimate(variable_[pose]), to = solver_.estimate(variable_[neighbour.pose]);
+      factorOf(edge, variable_[pose], variable_[neighbour.pose])->residual(std::array{&from, &to}, r);
+      sum += r.squaredNorm();
+    }
+  }
+  return sum;
+}
+
+std::vector<std::vector<std::int64_t>> PoseGraphFeed::disconnectedParts() const {
+  std::vector<std::vector<std::int64_t>> parts;
+  std::vector<char> placed(index_.size(), 0);
+  for (std::size_t pose = 0; pose < fed_; ++pose) {
+    if (waits_[pose] == 0 || placed[pose] != 0) continue;
+    parts.emplace_back();
+    for (const auto& vertex : placedPart(pose, placed)) parts.back().push_back(vertex.id);
+    std::ranges::sort(parts.back());
+  }
+  return parts;
+}
+
+std::vector<PoseGraph::Vertex> PoseGraphFeed::vertices() const {
+  std::vector<PoseGraph::Vertex> vertices;
+  std::vector<char> placed(index_.size(), 0);
+  for (std::size_t pose = 0; pose < fed_; ++pose) {
+    if (present(pose)) {
+      vertices.push_back({index_.id(pose), poseIn(solver_.estimate(variable_[pose]))});
+    } else if (placed[pose] == 0) {
+      const auto part = placedPart(pose, placed);
+      vertices.insert(vertices.end(), part.begin(), part.end());
+    }
+  }
+  std::ranges::sort(vertices, {}, &PoseGraph::Vertex::id);
+  return vertices;
+}
+
+/// The poses that wait together with `first`, placed along their edges.
+std::vector<PoseGraph::Vertex> PoseGraphFeed::placedPart(std::size_t first, std::vector<char>& placed) const {
+  std::vector<std::pair<std::size_t, Value>> part{{first, graph_.planar ? Value(SE2{}) : Value(SE3{})}};
+  placed[first] = 1;
+  std::vector<PoseGraph::Vertex> vertices;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const auto [pose, value] = part[i];
+    vertices.push_back({index_.id(pose), poseIn(value)});
+    for (const Neighbour& neighbour : index_.neighbours(pose)) {
+      if (waits_[neighbour.pose] == 0 || placed[neighbour.pose] != 0) continue;
+      placed[neighbour.pose] = 1;
+      part.emplace_back(neighbour.pose, moved(value, {pose, neighbour.edge}, neighbour.pose));
+    }
+  }
+  return vertices;
+}
+
+}  // namespace motorcade

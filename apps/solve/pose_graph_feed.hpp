@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "apps/solve/pose_graph_index.hpp"
+#include "backend/incremental_solver.hpp"
+
+namespace motorcade {
+
+/// Feeds a pose graph to the incremental solver in the order of the poses' ids, as if it were being driven: a pose comes with all edges to
+/// poses that are there already and starts where odometry puts it, whatever vertices the file lists. The first pose that has an edge is
+/// held at the identity by a tight prior. A pose that no edge joins yet waits; it enters with all that waited for it once an edge does.
+class PoseGraphFeed {
+ public:
+  enum class Pace {
+    kByPose,  // an update per pose; where the graph has frames, an update per frame
+    kAtOnce,  // everything in one update
+  };
+  struct Update {
+    double cpu_ms = 0;  // of the thread: building and adding variables and factors, and the solver's update
+    int poses = 0, edges = 0;
+    IncrementalSolver::Report report;
+  };
+
+  /// Keeps a reference to the graph.
+  PoseGraphFeed(const PoseGraph& graph, const IncrementalSolver::Params& params, Pace pace = Pace::kByPose);
+
+  std::size_t updateCount() const { return update_ends_.size(); }
+  bool atEnd() const { return updates_done_ == update_ends_.size(); }
+  /// Feeds the next update, while not at the end.
+  Update next();
+
+  IncrementalSolver& solver() { return solver_; }
+  const IncrementalSolver& solver() const { return solver_; }
+
+  /// Empty while the pose is not in the solver.
+  std::optional<VariableId> variableOf(std::int64_t pose_id) const;
+  std::int64_t poseOf(VariableId v) const { return index_.id(pose_of_variable_[static_cast<std::size_t>(v.value)]); }
+
+  std::size_t poseCount() const { return pose_of_variable_.size(); }  // in the solver
+  std::size_t edgeCount() const { return edge_count_; }               // in the solver
+  /// Of the edges in the solver, at its estimate; without the prior.
+  double chi2() const;
+  /// Edges that the solver refused because they are not finite where they entered: indices into the graph's.
+  const std::vector<std::size_t>& refusedEdges() const { return refused_edges_; }
+  /// Of the poses fed so far that no edge joins to the rest: their ids, part by part.
+  std::vector<std::vector<std::int64_t>> disconnectedParts() const;
+  /// Every pose fed so far: the estimate; a disconnected part along its edges, its first pose at the identity.
+  std::vector<PoseGraph::Vertex> vertices() const;
+
+ private:
+  using Neighbour = PoseGraphIndex::Neighbour;
+
+  void feedPose(std::size_t pose, Update& update);
+  std::optional<Neighbour> joinedTo(std::size_t pose) const;
+  void addWithWaiting(std::size_t pose, const Neighbour& joint, Update& update);
+  void add(std::size_t pose, const Value& initial, Update& update);
+  Value moved(const Value& start, const Neighbour& from, std::size_t to) const;
+  bool present(std::size_t pose) const { return variable_[pose].valid(); }
+  std::vector<PoseGraph::Vertex> placedPart(std::size_t first, std::vector<char>& placed) const;
+
+  const PoseGraph& graph_;
+  PoseGraphIndex index_;
+  IncrementalSolver solver_;
+  std::vector<std::size_t> update_ends_;  // per update, the pose after its last
+  std::size_t updates_done_ = 0, fed_ = 0, gauge_pose_ = 0, edge_count_ = 0;
+  std::vector<VariableId> variable_;  // per pose; not valid while it is not in the solver
+  std::vector<std::size_t> pose_of_variable_;
+  std::vector<char> waits_;  // per pose
+  std::vector<std::size_t> refused_edges_;
+};
+
+}  // namespace motorcade
