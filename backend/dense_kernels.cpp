@@ -12,7 +12,8 @@ typedef double Vec __attribute__((vector_size(32)));
 typedef double UnalignedVec __attribute__((vector_size(32), may_alias, aligned(8)));
 
 constexpr int kLanes = 4;
-constexpr int kTileVecs = 3;  // 12 x 4 tiles: 12 sums, 3 vectors of A and one of B fill the 16 registers
+constexpr int kTileVecs = 3;   // 12 x 4 tiles: 12 sums, 3 vectors of A and one of B fill the 16 registers
+constexpr int kMaxDepth = 48;  // columns that an outer product takes at once: what stays in the first-level caches of data and pages
 
 Vec load(const double* from) { return *reinterpret_cast<const UnalignedVec*>(from); }
 void store(double* to, Vec value) { *reinterpret_cast<UnalignedVec*>(to) = value; }
@@ -272,10 +273,12 @@ template <int N>
 void forwardSubstituteColumns(const double* panel, int ld, int rows, int first, double* g) {
   const double* const L = panel + first * ld;
   double d[N];
+  double inverse[N];
+  for (int c = 0; c < N; ++c) inverse[c] = 1 / L[first + c + c * ld];
   for (int c = 0; c < N; ++c) {
     double rest = g[first + c];
     for (int b = 0; b < c; ++b) rest -= L[first + c + b * ld] * d[b];
-    g[first + c] = d[c] = rest / L[first + c + c * ld];
+    g[first + c] = d[c] = rest * inverse[c];
   }
   int i = first + N;
   for (; i + kLanes <= rows - 1; i += kLanes) {
@@ -303,9 +306,12 @@ double factorizePanel(double* panel, int ld, int rows, int columns, std::vector<
 
 void subtractOuterProduct(double* c, int ldc, const double* a, int lda, int n, int k) {
   assert(ldc % kLanes == 0 && ldc >= n && lda % kLanes == 0);
-  if (k == 0) return;
-  const OuterProduct product{.c = c, .ldc = ldc, .a = a, .lda = lda, .n = n, .k = k};
-  forTiles(0, vecsFor(n), [&]<int V>(int vec) { product.subtractRows<V>(vec * kLanes); });
+  const int passes = (k + kMaxDepth - 1) / kMaxDepth;
+  for (int pass = 0; pass < passes; ++pass) {
+    const int from = k * pass / passes, to = k * (pass + 1) / passes;
+    const OuterProduct product{.c = c, .ldc = ldc, .a = a + from * lda, .lda = lda, .n = n, .k = to - from};
+    forTiles(0, vecsFor(n), [&]<int V>(int vec) { product.subtractRows<V>(vec * kLanes); });
+  }
 }
 
 void addJacobianProduct(const double* jacobian, int rows, int cols, double* h, int ldh) {

@@ -11,6 +11,7 @@ namespace motorcade {
 /// Matrices are column-major. A leading dimension (`ld...`) is a multiple of 4 and at least the number of rows: the rows that pad it belong
 /// to the buffer, hold anything, and are written to, as is the strictly upper triangle within 4 x 4 blocks on the diagonal. Neither is ever
 /// read for a result. Buffers need no alignment beyond a double's; nothing outside of ld * columns is touched, and nothing is allocated.
+/// Large matrices are slower when ld is a multiple of 512, as their columns compete for the same cache lines.
 
 /// A pivot is singular when not above this times its diagonal entry before elimination: rounding leaves about 1e-16.
 constexpr double kSingularPivot = 1e-13;

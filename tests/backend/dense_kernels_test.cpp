@@ -100,6 +100,17 @@ TEST(DenseKernels, OuterProductOfAPanelLeavesTheSchurComplement) {
   });
 }
 
+TEST(DenseKernels, OuterProductTakesMoreColumnsThanItCaches) {
+  std::mt19937 random(2);
+  for (const int k : {47, 48, 49, 96, 97, 150}) {
+    const MatrixXd A = randomMatrix(29, k, random), C = randomInformation(29, random);
+    PaddedMatrix left(A), remainder(C);
+    subtractOuterProduct(remainder.data(), remainder.ld(), left.data(), left.ld(), 29, k);
+    const MatrixXd expected = (C - A * A.transpose()).triangularView<Eigen::Lower>();
+    EXPECT_LT((remainder.lower() - expected).cwiseAbs().maxCoeff(), kTol);
+  }
+}
+
 TEST(DenseKernels, OuterProductReadsNothingPastItsRows) {
   std::mt19937 random(3);
   for (int n = 1; n <= 40; ++n) {
