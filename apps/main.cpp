@@ -9,6 +9,7 @@
 #include "apps/draw/draw_command.hpp"
 #include "apps/evaluate/evaluate_command.hpp"
 #include "apps/run/run_command.hpp"
+#include "apps/solve/solve_command.hpp"
 #include "apps/synth/synth_command.hpp"
 #include "io/errors.hpp"
 
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
   motorcade::addSynthCommand(app, action);
   motorcade::addEvaluateCommand(app, action);
   motorcade::addDrawCommand(app, action);
+  motorcade::addSolveCommand(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -35,6 +35,7 @@ struct PoseGraph {
     int line;
     std::string name;    // of whom: "pose 17", "edge from pose 3 to pose 4"
     std::string detail;  // names the line and what became of it
+    std::vector<std::int64_t> poses;
   };
 
   bool planar = false;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <ctime>
 
+#include "apps/solve/thread_clock.hpp"
 #include "backend/factors.hpp"
 #include "backend/relative_pose_factor.hpp"
 
@@ -11,12 +11,6 @@ namespace motorcade {
 namespace {
 
 constexpr double kGaugeSigma = 1e-4;  // m and rad; no edge pulls against it, so that it only has to be small
-
-double threadCpu_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 std::vector<std::size_t> updateEnds(const PoseGraph& graph, const PoseGraphIndex& index, PoseGraphFeed::Pace pace) {
   std::vector<std::size_t> ends;
@@ -68,8 +62,9 @@ PoseGraphFeed::Update PoseGraphFeed::next() {
   const double start_ms = threadCpu_ms();
   Update update;
   for (const std::size_t end = update_ends_[updates_done_++]; fed_ < end; ++fed_) feedPose(fed_, update);
-  update.report = solver_.update();
+  const auto& report = solver_.update();
   update.cpu_ms = threadCpu_ms() - start_ms;
+  update.report = report;
   return update;
 }
 
@@ -111,6 +106,11 @@ void PoseGraphFeed::addWithWaiting(std::size_t pose, const Neighbour& joint, Upd
       queue.push_back({neighbour.pose, {joining.pose, neighbour.edge}});
     }
   }
+  if (queue.size() == 1) return;
+  LateJoin late{.joining = index_.id(pose), .waited = {}};
+  for (std::size_t i = 1; i < queue.size(); ++i) late.waited.push_back(index_.id(queue[i].pose));
+  std::ranges::sort(late.waited);
+  late_joins_.push_back(std::move(late));
 }
 
 void PoseGraphFeed::add(std::size_t pose, const Value& initial, Update& update) {

@@ -19,9 +19,15 @@ class PoseGraphFeed {
     kAtOnce,  // everything in one update
   };
   struct Update {
-    double cpu_ms = 0;  // of the thread: building and adding variables and factors, and the solver's update
+    double cpu_ms = 0;  // of the thread, for adding variables and factors and for the solver's update
     int poses = 0, edges = 0;
     IncrementalSolver::Report report;
+  };
+
+  /// Poses that waited until `joining` came.
+  struct LateJoin {
+    std::int64_t joining;
+    std::vector<std::int64_t> waited;
   };
 
   /// Keeps a reference to the graph.
@@ -41,10 +47,12 @@ class PoseGraphFeed {
 
   std::size_t poseCount() const { return pose_of_variable_.size(); }  // in the solver
   std::size_t edgeCount() const { return edge_count_; }               // in the solver
+  std::int64_t gaugePose() const { return index_.id(gauge_pose_); }   // held at the identity
   /// Of the edges in the solver, at its estimate; without the prior.
   double chi2() const;
   /// Edges that the solver refused because they are not finite where they entered: indices into the graph's.
   const std::vector<std::size_t>& refusedEdges() const { return refused_edges_; }
+  const std::vector<LateJoin>& lateJoins() const { return late_joins_; }
   /// Of the poses fed so far that no edge joins to the rest: their ids, part by part.
   std::vector<std::vector<std::int64_t>> disconnectedParts() const;
   /// Every pose fed so far: the estimate; a disconnected part along its edges, its first pose at the identity.
@@ -70,6 +78,7 @@ class PoseGraphFeed {
   std::vector<std::size_t> pose_of_variable_;
   std::vector<char> waits_;  // per pose
   std::vector<std::size_t> refused_edges_;
+  std::vector<LateJoin> late_joins_;
 };
 
 }  // namespace motorcade

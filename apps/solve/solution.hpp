@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/solve/pose_graph_feed.hpp"
+
+namespace motorcade {
+
+/// What a user should know of a graph and its solution.
+struct SolveProblem {
+  std::string kind;    // one word
+  std::string name;    // of whom: "pose 17"
+  std::string detail;  // what, and what became of it
+  std::vector<std::int64_t> poses;
+};
+
+/// A solved graph, and what it took.
+struct Solution {
+  std::size_t poses = 0, edges = 0;  // in the solution
+  double chi2 = 0, total_ms = 0;
+  std::vector<double> update_ms;  // CPU time of each update
+  std::vector<std::int64_t> update_eliminated_scalars;
+  std::vector<SolveProblem> problems;  // of the file, then of the solution
+  std::vector<PoseGraph::Vertex> vertices;
+};
+
+/// Smooths the graph as it comes, an update per pose or frame.
+Solution solveIncrementally(const PoseGraph& graph, const IncrementalSolver::Params& params);
+
+/// Gauss-Newton on the whole graph until nothing moves, from odometry; where that does not get there, from the incremental solution.
+Solution solveAtOnce(const PoseGraph& graph, const IncrementalSolver::Params& params);
+
+}  // namespace motorcade

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace motorcade {
+
+struct SolveOptions {
+  std::filesystem::path graph{}, out{}, json{};
+  std::string policy = "fluid";
+  int batch_every_updates = 0;      // 0: the solver's own
+  std::int64_t budget_scalars = 0;  // 0: no limit
+  bool at_once = false, every_update = false;
+};
+
+/// Solves a pose graph, prints the result and writes what else was asked for; gives the exit code. Failures are UserErrors.
+int runSolve(const SolveOptions& options);
+
+/// Registers `motorcade solve`; parsing it sets `action`.
+void addSolveCommand(CLI::App& app, std::function<int()>& action);
+
+}  // namespace motorcade

@@ -1,0 +1,58 @@
+#include "apps/solve/solve_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+namespace motorcade {
+namespace {
+
+struct Times {
+  double median_ms = 0, p99_ms = 0, max_ms = 0;
+};
+
+/// By nearest rank: each is the time of an update.
+Times timesOf(std::vector<double> update_ms) {
+  if (update_ms.empty()) return {};
+  std::ranges::sort(update_ms);
+  const auto rank = [&](double share) {
+    return update_ms[static_cast<std::size_t>(std::ceil(share * static_cast<double>(update_ms.size()))) - 1];
+  };
+  return {rank(0.5), rank(0.99), update_ms.back()};
+}
+
+}  // namespace
+
+std::string textOf(const Solution& solution) {
+  const Times times = timesOf(solution.update_ms);
+  char head[400];
+  std::snprintf(head, sizeof(head),
+                "%zu poses, %zu edges, %zu updates\n"
+                "chi2 %.6f\n"
+                "CPU time: total %.3f s; per update median %.3f ms, p99 %.3f ms, max %.3f ms\n",
+                solution.poses, solution.edges, solution.update_ms.size(), solution.chi2, 1e-3 * solution.total_ms, times.median_ms,
+                times.p99_ms, times.max_ms);
+  std::string text = head;
+  if (!solution.problems.empty()) text += std::to_string(solution.problems.size()) + " problems\n";
+  for (const auto& problem : solution.problems) text += "  " + problem.name + ": " + problem.detail + "\n";
+  return text;
+}
+
+std::string jsonOf(const Solution& solution, const SolveOptions& options) {
+  const Times times = timesOf(solution.update_ms);
+  nlohmann::ordered_json json = {{"graph", options.graph.string()},      {"poses", solution.poses}, {"edges", solution.edges},
+                                 {"updates", solution.update_ms.size()}, {"chi2", solution.chi2},   {"total_s", 1e-3 * solution.total_ms},
+                                 {"median_ms", times.median_ms},         {"p99_ms", times.p99_ms},  {"max_ms", times.max_ms}};
+  json["problems"] = nlohmann::ordered_json::array();
+  for (const auto& p : solution.problems)
+    json["problems"].push_back({{"kind", p.kind}, {"name", p.name}, {"detail", p.detail}, {"poses", p.poses}});
+  if (options.every_update) {
+    json["update_ms"] = solution.update_ms;
+    json["update_eliminated_scalars"] = solution.update_eliminated_scalars;
+  }
+  return json.dump(2);
+}
+
+}  // namespace motorcade
