@@ -64,10 +64,19 @@ std::optional<double> numberOf(std::string_view word) {
   return value;
 }
 
-bool allFinite(std::span<const double> numbers) {
-  for (const double n : numbers)
-    if (!std::isfinite(n)) return false;
-  return true;
+/// Finite, and so that squares of products stay finite too.
+bool allUsable(std::span<const double> numbers) {
+  constexpr double kLargest = 1e50;
+  return std::ranges::all_of(numbers, [](double n) { return std::abs(n) <= kLargest; });
+}
+
+/// As an error message shows it: a file that is no text must not reach the terminal.
+std::string shown(std::string_view word) {
+  constexpr std::size_t kMostCharacters = 40;
+  std::string text(word.substr(0, kMostCharacters));
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  return "'" + text + (word.size() > kMostCharacters ? "...'" : "'");
 }
 
 /// Row by row, the upper triangle.
@@ -140,7 +149,7 @@ void Reader::readLine(std::string_view tag, std::string_view rest) {
   if (tag == "FRAME") return readIds(tag, rest, graph_.frame_ends);
   for (const TagFormat& format : kFormats)
     if (tag == format.tag) return readElement(format, rest);
-  fail("unknown tag '" + std::string(tag) + "': remove the line, or write it as one of VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT, " +
+  fail("unknown tag " + shown(tag) + ": remove the line, or write it as one of VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT, " +
        "EDGE_SE3:QUAT, FIX, FRAME");
 }
 
@@ -172,7 +181,7 @@ void Reader::readElement(const TagFormat& format, std::string_view rest) {
       ids[count] = idOf(word);
     } else if (count < format.ids + needed) {
       const auto number = numberOf(word);
-      if (!number) fail("'" + std::string(word) + "' stands where a number belongs; write a decimal number");
+      if (!number) fail(shown(word) + " stands where a number belongs; write a decimal number");
       numbers[count - format.ids] = *number;
     }
   }
@@ -195,8 +204,8 @@ void Reader::readElement(const TagFormat& format, std::string_view rest) {
 void Reader::addVertex(std::int64_t id, std::span<const double> numbers) {
   const auto [first, is_new] = line_of_vertex_.emplace(id, line_);
   if (!is_new) return report(Kind::kDuplicateVertex, id, "is given again; line " + std::to_string(first->second) + " is kept");
-  if (!allFinite(numbers)) {
-    report(Kind::kNotFinite, id, "its value is not finite and is left out");
+  if (!allUsable(numbers)) {
+    report(Kind::kNotFinite, id, "its value is not finite or too large; left out");
     graph_.vertices.push_back({id, graph_.planar ? PoseGraph::Pose(SE2{}) : PoseGraph::Pose(SE3{})});
     return;
   }
@@ -204,8 +213,8 @@ void Reader::addVertex(std::int64_t id, std::span<const double> numbers) {
 }
 
 void Reader::addEdge(std::int64_t from, std::int64_t to, std::span<const double> pose, std::span<const double> information) {
-  if (!allFinite(pose)) return report(Kind::kNotFinite, from, to, "the measurement is not finite; left out");
-  if (!allFinite(information)) return report(Kind::kNotFinite, from, to, "the information is not finite; left out");
+  if (!allUsable(pose)) return report(Kind::kNotFinite, from, to, "the measurement is not finite or too large; left out");
+  if (!allUsable(information)) return report(Kind::kNotFinite, from, to, "the information is not finite or too large; left out");
   const PoseGraph::Edge edge{from, to, line_, poseOf(pose), informationOf(information, graph_.planar ? 3 : 6)};
   if (from == to) return report(Kind::kSelfEdge, from, to, "joins a pose to itself; left out");
   if (edge.information.llt().info() != Eigen::Success) {
@@ -225,8 +234,7 @@ PoseGraph::Pose Reader::poseOf(std::span<const double> numbers) const {
 std::int64_t Reader::idOf(std::string_view word) const {
   std::int64_t id = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), id);
-  if (error != std::errc() || end != word.data() + word.size())
-    fail("'" + std::string(word) + "' stands where an id belongs; ids are whole numbers");
+  if (error != std::errc() || end != word.data() + word.size()) fail(shown(word) + " stands where an id belongs; ids are whole numbers");
   if (id < 0) fail("the id " + std::string(word) + " is negative; number the poses from 0");
   return id;
 }

@@ -19,7 +19,7 @@ std::vector<std::size_t> updateEnds(const PoseGraph& graph, const PoseGraphIndex
     return ends;
   }
   if (pace == PoseGraphFeed::Pace::kByPose)
-    for (const std::int64_t id : graph.frame_ends) ends.push_back(index.at(id + 1));
+    for (const std::int64_t id : graph.frame_ends) ends.push_back(index.after(id));
   ends.push_back(index.size());  // the last frame may have no end yet
   std::ranges::sort(ends);
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());

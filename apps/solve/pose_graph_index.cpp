@@ -23,4 +23,8 @@ std::size_t PoseGraphIndex::at(std::int64_t id) const {
   return static_cast<std::size_t>(std::ranges::lower_bound(graph_.poses, id) - graph_.poses.begin());
 }
 
+std::size_t PoseGraphIndex::after(std::int64_t id) const {
+  return static_cast<std::size_t>(std::ranges::upper_bound(graph_.poses, id) - graph_.poses.begin());
+}
+
 }  // namespace motorcade

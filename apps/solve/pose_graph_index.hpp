@@ -27,6 +27,8 @@ class PoseGraphIndex {
   std::int64_t id(std::size_t pose) const { return graph_.poses[pose]; }
   /// The pose with this id, or the first with a higher one.
   std::size_t at(std::int64_t id) const;
+  /// The first pose with a higher id.
+  std::size_t after(std::int64_t id) const;
 
  private:
   const PoseGraph& graph_;

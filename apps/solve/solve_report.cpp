@@ -52,7 +52,7 @@ std::string jsonOf(const Solution& solution, const SolveOptions& options) {
     json["update_ms"] = solution.update_ms;
     json["update_eliminated_scalars"] = solution.update_eliminated_scalars;
   }
-  return json.dump(2);
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);  // paths may hold any bytes
 }
 
 }  // namespace motorcade
