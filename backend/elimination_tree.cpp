@@ -3,182 +3,348 @@
 #include <algorithm>
 #include <cassert>
 
+#include "backend/dense_kernels.hpp"
+
 namespace motorcade {
 namespace {
 
 std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-}  // namespace
+std::size_t panelLength(const Clique& c) { return index(c.panelStride()) * index(c.frontal_size); }
+std::size_t remainderLength(const Clique& c) { return index(c.remainderStride()) * index(c.separatorSize() + 1); }
 
-/// The pattern of the result: positions count `order`, then `boundary`.
-struct EliminationTree::Symbolic {
-  struct Group {
-    std::vector<int> positions;  // ascending: frontals, then the separator
-    int frontals = 0;
-    int parent = -1;  // group
-    std::vector<const Contribution*> contributions;
-  };
-  std::vector<Group> groups;  // parents before children
-};
+}  // namespace
 
 int EliminationTree::cliqueOf(VariableId v) const { return index(v) < clique_of_.size() ? clique_of_[index(v)] : -1; }
 
-std::vector<int> EliminationTree::cliquesWith(VariableId v) const {
-  std::vector<int> found;
-  if (cliqueOf(v) < 0) return found;
-  found.push_back(cliqueOf(v));
-  for (std::size_t i = 0; i < found.size(); ++i)
-    for (const int child : (*this)[found[i]].children)
-      if (std::ranges::find((*this)[child].separator(), v) != (*this)[child].separator().end()) found.push_back(child);
-  return found;
+int EliminationTree::ownerOf(const Factor& factor) const {
+  const auto first = std::ranges::min_element(factor.variables(), {}, [&](VariableId v) { return sequence_[index(v)]; });
+  return cliqueOf(*first);
 }
 
-EliminationTree::Removed EliminationTree::remove(std::span<const int> cliques) {
-  Removed removed;
-  std::vector<int> sorted(cliques.begin(), cliques.end());
-  std::ranges::sort(sorted);
-  const auto isRemoved = [&](int clique) { return std::ranges::binary_search(sorted, clique); };
-  for (const int id : sorted) {
+std::int64_t EliminationTree::sequence(int clique) const {
+  // By the last frontal: the first may have joined its parent's clique past others.
+  return sequence_[index((*this)[clique].frontalVariables().back())];
+}
+
+void EliminationTree::appendCliquesWith(VariableId v, std::vector<int>& found) const {
+  std::size_t next = found.size();
+  if (cliqueOf(v) < 0) return;
+  found.push_back(cliqueOf(v));
+  for (; next < found.size(); ++next)
+    for (int child = (*this)[found[next]].first_child; child >= 0; child = (*this)[child].next_sibling)
+      if (std::ranges::find((*this)[child].separator(), v) != (*this)[child].separator().end()) found.push_back(child);
+}
+
+void EliminationTree::Removed::clear() {
+  variables.clear();
+  factors.clear();
+  orphans.clear();
+}
+
+void EliminationTree::remove(std::span<const int> cliques, Removed& removed) {
+  leaving_.resize(cliques_.size(), 0);
+  for (const int id : cliques) leaving_[index(id)] = 1;
+  for (const int id : cliques) {
     Clique& clique = cliques_[index(id)];
     for (const VariableId v : clique.frontalVariables()) {
       removed.variables.push_back(v);
       clique_of_[index(v)] = -1;
     }
-    for (const int child : clique.children) {
-      if (isRemoved(child)) continue;
-      cliques_[index(child)].parent = -1;
-      removed.orphans.push_back(child);
+    removed.factors.insert(removed.factors.end(), clique.factors.begin(), clique.factors.end());
+    for (int child = clique.first_child; child >= 0; child = cliques_[index(child)].next_sibling)
+      if (!leaving_[index(child)]) removed.orphans.push_back(child);
+    const bool below_one_that_stays = clique.parent >= 0 && !leaving_[index(clique.parent)];
+    if (below_one_that_stays) {
+      if (clique.previous_sibling >= 0)
+        cliques_[index(clique.previous_sibling)].next_sibling = clique.next_sibling;
+      else
+        cliques_[index(clique.parent)].first_child = clique.next_sibling;
+      if (clique.next_sibling >= 0) cliques_[index(clique.next_sibling)].previous_sibling = clique.previous_sibling;
     }
-    if (clique.parent >= 0 && !isRemoved(clique.parent)) std::erase(cliques_[index(clique.parent)].children, id);
   }
-  std::erase_if(roots_, isRemoved);
-  for (const int id : sorted) {
-    cliques_[index(id)] = {};
+  for (const int orphan : removed.orphans) {
+    Clique& clique = cliques_[index(orphan)];
+    clique.parent = clique.next_sibling = clique.previous_sibling = -1;
+  }
+  std::erase_if(roots_, [&](int root) { return leaving_[index(root)] != 0; });
+  for (const int id : cliques) {
+    leaving_[index(id)] = 0;
+    release(cliques_[index(id)]);
     free_.push_back(id);
   }
-  std::ranges::sort(removed.variables, {}, [&](VariableId v) { return sequence(v); });
-  return removed;
+  std::ranges::sort(removed.variables, {}, [&](VariableId v) { return sequence_[index(v)]; });
 }
 
-EliminationTree::Symbolic EliminationTree::analyze(const Elimination& problem) {
-  const int count = static_cast<int>(problem.order.size());
-  for (int i = 0; i < count; ++i) position_[index(problem.order[index(i)])] = i;
-  for (std::size_t i = 0; i < problem.boundary.size(); ++i) position_[index(problem.boundary[i])] = count + static_cast<int>(i);
-
-  // Column structures, each the union of what is first eliminated here and of what the columns below leave over.
-  std::vector<std::vector<int>> columns(index(count));
-  std::vector<std::vector<const Contribution*>> owned(index(count));
-  for (const Contribution& c : problem.contributions) {
-    int first = count + static_cast<int>(problem.boundary.size());
-    for (const VariableId v : c.variables) first = std::min(first, position_[index(v)]);
-    assert(first >= 0 && first < count);
-    owned[index(first)].push_back(&c);
-    for (const VariableId v : c.variables) columns[index(first)].push_back(position_[index(v)]);
-  }
-  std::vector<int> parent(index(count), -1);
-  for (int j = 0; j < count; ++j) {
-    auto& column = columns[index(j)];
-    std::ranges::sort(column);
-    column.erase(std::unique(column.begin(), column.end()), column.end());
-    if (!column.empty() && column.front() == j) column.erase(column.begin());
-    if (column.empty() || column.front() >= count) continue;
-    parent[index(j)] = column.front();
-    auto& above = columns[index(column.front())];
-    above.insert(above.end(), column.begin(), column.end());
-  }
-
-  // Fundamental supernodes: a column whose separator is all of its parent's clique joins that clique.
-  Symbolic symbolic;
-  std::vector<int> group_of(index(count), -1);
-  for (int j = count - 1; j >= 0; --j) {
-    const int above = parent[index(j)] < 0 ? -1 : group_of[index(parent[index(j)])];
-    int g = above;
-    if (above < 0 || columns[index(j)].size() != symbolic.groups[index(above)].positions.size()) {
-      g = static_cast<int>(symbolic.groups.size());
-      symbolic.groups.push_back({.positions = columns[index(j)], .frontals = 0, .parent = above, .contributions = {}});
-    }
-    auto& group = symbolic.groups[index(g)];
-    group.positions.insert(group.positions.begin(), j);
-    ++group.frontals;
-    group.contributions.insert(group.contributions.end(), owned[index(j)].begin(), owned[index(j)].end());
-    group_of[index(j)] = g;
-  }
-  return symbolic;
-}
-
-void EliminationTree::attach(int orphan, int parent) {
-  cliques_[index(orphan)].parent = parent;
-  cliques_[index(parent)].children.push_back(orphan);
+void EliminationTree::release(Clique& clique) {
+  pool_.give(clique.panel, panelLength(clique));
+  pool_.give(clique.remainder, remainderLength(clique));
+  pool_.give(clique.carry, index(clique.separatorSize()));
+  clique.variables.clear();
+  clique.row_in_parent.clear();
+  clique.factors.clear();
+  clique.singular.clear();
+  clique.panel = clique.remainder = clique.carry = nullptr;
+  clique.parent = clique.first_child = clique.next_sibling = clique.previous_sibling = -1;
+  clique.alive = false;
 }
 
 int EliminationTree::newClique() {
+  int id = static_cast<int>(cliques_.size());
   if (free_.empty()) {
     cliques_.emplace_back();
-    return static_cast<int>(cliques_.size()) - 1;
+  } else {
+    id = free_.back();
+    free_.pop_back();
   }
-  const int id = free_.back();
-  free_.pop_back();
+  cliques_[index(id)].alive = true;
   return id;
 }
 
-EliminationTree::Result EliminationTree::eliminate(const Elimination& problem, const FactorGraph& graph, bool renumber) {
-  clique_of_.resize(graph.slots(), -1);
-  sequence_.resize(graph.slots(), -1);
-  position_.resize(graph.slots(), -1);
-  offset_.resize(graph.slots(), -1);
-  for (const VariableId v : problem.order)
-    if (renumber || sequence_[index(v)] < 0) sequence_[index(v)] = next_sequence_++;
-  const Symbolic symbolic = analyze(problem);
+void EliminationTree::attach(int orphan, int parent) {
+  Clique &child = cliques_[index(orphan)], &above = cliques_[index(parent)];
+  child.parent = parent;
+  child.previous_sibling = -1;
+  child.next_sibling = above.first_child;
+  if (above.first_child >= 0) cliques_[index(above.first_child)].previous_sibling = orphan;
+  above.first_child = orphan;
+  child.row_in_parent.clear();
+  int at = 0;
+  for (const VariableId v : above.variables) {
+    offset_[index(v)] = at;
+    at += graph_.sizeOf(v);
+  }
+  for (const VariableId v : child.separator()) child.row_in_parent.push_back(offset_[index(v)]);
+}
 
-  Result result;
-  for (const auto& group : symbolic.groups) {
+void EliminationTree::forget(VariableId v) {
+  clique_of_[index(v)] = -1;
+  sequence_[index(v)] = -1;
+}
+
+void EliminationTree::removeFactor(int owner, FactorId factor) { std::erase(cliques_[index(owner)].factors, factor); }
+
+void EliminationTree::clearFindings() {
+  singular_.clear();
+  weakest_ = {};
+}
+
+void EliminationTree::eliminate(const Elimination& problem, std::vector<int>& created) {
+  clique_of_.resize(graph_.slots(), -1);
+  sequence_.resize(graph_.slots(), -1);
+  offset_.resize(graph_.slots(), -1);
+  if (problem.renumber)
+    for (const VariableId v : problem.order) sequence_[index(v)] = next_sequence_++;
+
+  const int count = static_cast<int>(problem.order.size());
+  auto& position = offset_;
+  scalars_.clear();
+  for (const VariableId v : problem.order) position[index(v)] = static_cast<int>(scalars_.size()), scalars_.push_back(graph_.sizeOf(v));
+  for (const VariableId v : problem.boundary) position[index(v)] = static_cast<int>(scalars_.size()), scalars_.push_back(graph_.sizeOf(v));
+  pattern_.begin(count, static_cast<int>(problem.boundary.size()));
+  const auto addTerm = [&](std::span<const VariableId> variables) {
+    term_positions_.clear();
+    for (const VariableId v : variables) term_positions_.push_back(position[index(v)]);
+    pattern_.addTerm(term_positions_);
+  };
+  for (const FactorId f : problem.factors) addTerm(graph_.factor(f).variables());
+  for (const int orphan : problem.orphans) addTerm((*this)[orphan].separator());
+  pattern_.analyze(scalars_);
+
+  group_clique_.clear();
+  const std::size_t first = created.size();
+  for (const auto& group : pattern_.groups()) {
     const int id = newClique();
+    group_clique_.push_back(id);
+    created.push_back(id);
     Clique& clique = cliques_[index(id)];
-    clique.parent = group.parent < 0 ? problem.parent : result.cliques[index(group.parent)];
     clique.frontals = group.frontals;
-    for (const int p : group.positions) {
-      const bool inside = p < static_cast<int>(problem.order.size());
-      clique.variables.push_back(inside ? problem.order[index(p)] : problem.boundary[index(p) - problem.order.size()]);
-    }
+    for (const int p : pattern_.positions(group))
+      clique.variables.push_back(p < count ? problem.order[index(p)] : problem.boundary[index(p - count)]);
     for (const VariableId v : clique.frontalVariables()) clique_of_[index(v)] = id;
-    (clique.parent < 0 ? roots_ : cliques_[index(clique.parent)].children).push_back(id);
-    result.cliques.push_back(id);
+    layOut(clique);
   }
-  for (std::size_t g = symbolic.groups.size(); g-- > 0;) {
-    const int id = result.cliques[g];
-    for (const Contribution* c : symbolic.groups[g].contributions)
-      if (c->child >= 0) attach(c->child, id);
-    fill(cliques_[index(id)], symbolic.groups[g].contributions, graph, result);
+  for (std::size_t f = 0; f < problem.factors.size(); ++f)
+    cliques_[index(group_clique_[index(pattern_.groupOfTerm(static_cast<int>(f)))])].factors.push_back(problem.factors[f]);
+  // From here on `offset_` serves the fronts.
+  for (std::size_t g = 0; g < pattern_.groups().size(); ++g) {
+    const int above = pattern_.groups()[g].parent, parent = above < 0 ? problem.parent : group_clique_[index(above)];
+    if (parent >= 0)
+      attach(group_clique_[g], parent);
+    else
+      roots_.push_back(group_clique_[g]);
   }
+  for (std::size_t o = 0; o < problem.orphans.size(); ++o)
+    attach(problem.orphans[o], group_clique_[index(pattern_.groupOfTerm(static_cast<int>(problem.factors.size() + o)))]);
+  for (std::size_t i = created.size(); i-- > first;) refresh(created[i]);
+}
+
+/// Sizes and memory of a clique from its variables.
+void EliminationTree::layOut(Clique& clique) {
+  clique.frontal_size = clique.size = 0;
+  for (std::size_t i = 0; i < clique.variables.size(); ++i) {
+    clique.size += graph_.sizeOf(clique.variables[i]);
+    if (i < index(clique.frontals)) clique.frontal_size = clique.size;
+  }
+  clique.panel = pool_.take(panelLength(clique));
+  clique.remainder = pool_.take(remainderLength(clique));
+  clique.carry = pool_.take(index(clique.separatorSize()));
+}
+
+Eigen::MatrixXd EliminationTree::marginal(std::span<const VariableId> eliminated, std::span<const VariableId> separator,
+                                          std::span<const FactorId> factors) {
+  Clique clique;
+  clique.variables.assign(eliminated.begin(), eliminated.end());
+  clique.variables.insert(clique.variables.end(), separator.begin(), separator.end());
+  clique.factors.assign(factors.begin(), factors.end());
+  clique.frontals = static_cast<int>(eliminated.size());
+  layOut(clique);
+  eliminateFront(clique);
+  const int rows = clique.separatorSize() + 1;
+  const Eigen::MatrixXd result =
+      Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(clique.remainder, rows, rows, Eigen::OuterStride<>(clique.remainderStride()));
+  release(clique);
   return result;
 }
 
-void EliminationTree::fill(Clique& clique, std::span<const Contribution* const> contributions, const FactorGraph& graph, Result& result) {
-  std::vector<Contribution> all;
-  for (const Contribution* c : contributions)
-    if (c->child < 0) all.push_back(*c);
-  for (const int child : clique.children) all.push_back({cliques_[index(child)].separator(), &cliques_[index(child)].remainder, child});
-  Front front = assembleFront(clique.variables, all, graph, offset_, workspace_);
-  clique.size = static_cast<int>(front.rows()) - 1;
-  clique.frontal_size =
-      clique.frontals < static_cast<int>(clique.variables.size()) ? offset_[index(clique.variables[index(clique.frontals)])] : clique.size;
-  const auto singular = eliminateFront(front, clique.frontal_size);
-  for (const int scalar : singular) {
-    std::size_t v = 0;
-    while (v + 1 < index(clique.frontals) && offset_[index(clique.variables[v + 1])] <= scalar) ++v;
-    result.singular.push_back({clique.variables[v], scalar - offset_[index(clique.variables[v])]});
-  }
-  const int rest = clique.size + 1 - clique.frontal_size;
-  clique.L = front.leftCols(clique.frontal_size);
-  clique.remainder.matrix = front.bottomRightCorner(rest, rest);
-  result.eliminated_scalars += clique.frontal_size;
+void EliminationTree::refresh(int id) {
+  Clique& clique = cliques_[index(id)];
+  eliminateFront(clique);
+  eliminated_scalars_ += clique.frontal_size;
 }
 
-std::size_t EliminationTree::storedScalars() const {
-  std::size_t scalars = 0;
-  for (const Clique& c : cliques_) scalars += static_cast<std::size_t>(c.L.size() + c.remainder.matrix.size());
-  return scalars;
+/// Gathers the front, factorises it, and holds what has no information.
+void EliminationTree::eliminateFront(Clique& clique) {
+  std::fill_n(clique.panel, panelLength(clique), 0.0);
+  std::fill_n(clique.remainder, remainderLength(clique), 0.0);
+  int at = 0;
+  for (const VariableId v : clique.variables) {
+    offset_[index(v)] = at;
+    at += graph_.sizeOf(v);
+  }
+  for (const FactorId f : clique.factors) addFactorTo(clique, f);
+  for (int child = clique.first_child; child >= 0; child = cliques_[index(child)].next_sibling) addChildTo(clique, cliques_[index(child)]);
+
+  clique.singular.clear();
+  const int n = clique.frontal_size, rest = clique.separatorSize(), stride = clique.panelStride();
+  const double ratio = factorizePanel(clique.panel, stride, clique.size + 1, n, clique.singular);
+  subtractOuterProduct(clique.remainder, clique.remainderStride(), clique.panel + n, stride, rest + 1, n);
+  for (int i = 0; i < rest; ++i) clique.carry[i] = clique.remainder[index(i) * index(clique.remainderStride()) + index(rest)];
+  if (ratio < weakest_.ratio) weakest_ = {.variable = clique.variables.front(), .ratio = ratio};
+  for (const int column : clique.singular) holdSingular(clique, column);
+}
+
+/// Keeps the x of a scalar without information where the estimate stands.
+void EliminationTree::holdSingular(Clique& clique, int column) {
+  std::size_t v = 0;
+  int component = column;
+  while (component >= graph_.sizeOf(clique.variables[v])) component -= graph_.sizeOf(clique.variables[v++]);
+  const VariableId variable = clique.variables[v];
+  singular_.push_back({variable, component});
+  clique.panel[index(column) * index(clique.panelStride()) + index(clique.size)] = -graph_[variable].x_applied[index(component)];
+}
+
+/// The place of an entry of the front's lower triangle.
+double* EliminationTree::entry(Clique& clique, int row, int column) const {
+  const int n = clique.frontal_size;
+  if (column < n) return clique.panel + index(column) * index(clique.panelStride()) + index(row);
+  return clique.remainder + index(column - n) * index(clique.remainderStride()) + index(row - n);
+}
+
+/// Adds the lower triangle of a small symmetric matrix whose rows are given in spans.
+void EliminationTree::addSymmetric(Clique& clique, const double* source, int stride, std::span<const RowSpan> spans) {
+  for (std::size_t b = 0; b < spans.size(); ++b) {
+    const RowSpan column = spans[b];
+    for (int j = 0; j < column.size; ++j) {
+      // The block on the diagonal, then those below it.
+      const double* from = source + index(column.from + j) * index(stride);
+      double* to = entry(clique, column.to + j, column.to + j);
+      for (int i = j; i < column.size; ++i) to[i - j] += from[column.from + i];
+      for (std::size_t a = b + 1; a < spans.size(); ++a) {
+        const RowSpan row = spans[a];
+        if (row.to > column.to) {
+          to = entry(clique, row.to, column.to + j);
+          for (int i = 0; i < row.size; ++i) to[i] += from[row.from + i];
+        } else {
+          for (int i = 0; i < row.size; ++i) *entry(clique, column.to + j, row.to + i) += from[row.from + i];
+        }
+      }
+    }
+  }
+}
+
+void EliminationTree::addFactorTo(Clique& clique, FactorId id) {
+  const Factor& factor = graph_.factor(id);
+  const auto term = graph_.term(id);
+  spans_.clear();
+  int from = 0;
+  for (const VariableId v : factor.variables()) {
+    spans_.push_back({from, offset_[index(v)], graph_.sizeOf(v)});
+    from += graph_.sizeOf(v);
+  }
+  spans_.push_back({from, clique.size, 1});
+  if (factor.form() == Factor::Form::kInformation) {
+    addSymmetric(clique, term.data(), static_cast<int>(term.rows()), spans_);
+    return;
+  }
+  const int columns = static_cast<int>(term.cols()), stride = (columns + 3) / 4 * 4;
+  product_.assign(index(columns) * index(stride), 0.0);
+  addJacobianProduct(term.data(), static_cast<int>(term.rows()), columns, product_.data(), stride);
+  addSymmetric(clique, product_.data(), stride, spans_);
+}
+
+void EliminationTree::addChildTo(Clique& clique, const Clique& child) {
+  spans_.clear();
+  int from = 0;
+  const auto separator = child.separator();
+  for (std::size_t i = 0; i < separator.size(); ++i) {
+    const int to = child.row_in_parent[i], size = graph_.sizeOf(separator[i]);
+    if (!spans_.empty() && spans_.back().to + spans_.back().size == to)
+      spans_.back().size += size;
+    else
+      spans_.push_back({from, to, size});
+    from += size;
+  }
+  splitAtFrontals(clique.frontal_size);
+  addSymmetric(clique, child.remainder, child.remainderStride(), spans_);
+  // The right-hand side, which `carry` holds when it changed alone.
+  for (const RowSpan& span : spans_)
+    for (int i = 0; i < span.size; ++i) *entry(clique, clique.size, span.to + i) += child.carry[span.from + i];
+}
+
+/// A span must not reach across the border between panel and remainder.
+void EliminationTree::splitAtFrontals(int frontal_size) {
+  for (std::size_t i = 0; i < spans_.size(); ++i) {
+    RowSpan& span = spans_[i];
+    const int inside = frontal_size - span.to;
+    if (inside <= 0 || inside >= span.size) continue;
+    const RowSpan rest{span.from + inside, span.to + inside, span.size - inside};
+    span.size = inside;
+    spans_.insert(spans_.begin() + static_cast<std::ptrdiff_t>(i) + 1, rest);
+    return;
+  }
+}
+
+void EliminationTree::shiftRightHandSide(int id, std::span<double> change, std::span<double> parent_change) {
+  Clique& clique = cliques_[index(id)];
+  const int n = clique.frontal_size, rest = clique.separatorSize(), stride = clique.panelStride();
+  // d of the change alone, then added to the former d.
+  former_.resize(index(n));
+  double* last_row = clique.panel + clique.size;
+  for (int j = 0; j < n; ++j) former_[index(j)] = last_row[index(j) * index(stride)];
+  double cost = 0;  // nobody asks for it
+  forwardSubstitute(clique.panel, stride, clique.size + 1, n, clique.singular, change.data(), cost);
+  for (int j = 0; j < n; ++j) last_row[index(j) * index(stride)] += former_[index(j)];
+  for (int i = 0; i < rest; ++i) clique.carry[i] += change[index(n + i)];
+  if (parent_change.empty()) return;  // none, or one that is eliminated anew
+  int from = n;
+  const auto separator = clique.separator();
+  for (std::size_t v = 0; v < separator.size(); ++v) {
+    const int to = clique.row_in_parent[v], size = graph_.sizeOf(separator[v]);
+    for (int i = 0; i < size; ++i) parent_change[index(to + i)] += change[index(from + i)];
+    from += size;
+  }
 }
 
 }  // namespace motorcade

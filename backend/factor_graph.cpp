@@ -1,6 +1,9 @@
 #include "backend/factor_graph.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <numbers>
 
 namespace motorcade {
 namespace {
@@ -17,11 +20,23 @@ IdType takeSlot(std::vector<IdType>& free, std::vector<Slot>& slots) {
   return id;
 }
 
+using Column = Eigen::Map<Eigen::VectorXd>;
+
+SmallVector step(const FactorGraph::Variable& variable) {
+  SmallVector d(variable.size);
+  for (int i = 0; i < variable.size; ++i) d[i] = variable.x[static_cast<std::size_t>(i)] - variable.x_applied[static_cast<std::size_t>(i)];
+  return d;
+}
+
 }  // namespace
 
 VariableId FactorGraph::addVariable(const Value& initial) {
   const VariableId id = takeSlot(free_variables_, variables_);
-  (*this)[id] = {.linearization_point = initial, .delta = SmallVector::Zero(dimension(initial)), .factors = {}, .alive = true};
+  Variable& variable = (*this)[id];
+  variable.applied_estimate = variable.linearization_point = initial;
+  variable.x = variable.x_applied = variable.information = {};
+  variable.size = dimension(initial);
+  variable.alive = true;
   return id;
 }
 
@@ -31,23 +46,130 @@ void FactorGraph::removeVariable(VariableId id) {
   free_variables_.push_back(id);
 }
 
-LinearTerm FactorGraph::linearized(const Factor& factor) const {
-  std::vector<const Value*> values;
-  values.reserve(factor.variables().size());
-  for (const VariableId v : factor.variables()) values.push_back(&(*this)[v].linearization_point);
-  int columns = 1;
-  for (const VariableId v : factor.variables()) columns += sizeOf(v);
-  LinearTerm term{.form = factor.form(), .matrix = Eigen::MatrixXd(factor.rows(), columns)};
-  factor.linearize(values, term.matrix);
-  return term;
+Value FactorGraph::estimate(VariableId id) const {
+  const Variable& variable = (*this)[id];
+  if (variable.x == variable.x_applied) return variable.applied_estimate;
+  return displaced(variable.applied_estimate, step(variable));
+}
+
+void FactorGraph::apply(VariableId id) {
+  Variable& variable = (*this)[id];
+  if (variable.x == variable.x_applied) return;
+  variable.applied_estimate = displaced(variable.applied_estimate, step(variable));
+  variable.x_applied = variable.x;
+}
+
+void FactorGraph::restartCoordinates() {
+  for (std::size_t i = 0; i < variables_.size(); ++i) {
+    if (!variables_[i].alive) continue;
+    apply({static_cast<std::int64_t>(i)});
+    variables_[i].x = variables_[i].x_applied = {};
+    variables_[i].linearization_point = variables_[i].applied_estimate;
+  }
+}
+
+double FactorGraph::turnSinceLinearization(VariableId id) const {
+  const Variable& variable = (*this)[id];
+  if (const auto* now = std::get_if<SE3>(&variable.applied_estimate)) {
+    const auto& then = std::get<SE3>(variable.linearization_point);
+    return std::acos(std::clamp(0.5 * (now->rotation().cwiseProduct(then.rotation()).sum() - 1), -1.0, 1.0));
+  }
+  if (const auto* now = std::get_if<SE2>(&variable.applied_estimate)) {
+    const auto& then = std::get<SE2>(variable.linearization_point);
+    return std::abs(std::remainder(now->angle_rad() - then.angle_rad(), 2 * std::numbers::pi));
+  }
+  return 0;
+}
+
+std::span<const Value* const> FactorGraph::valuesOf(const Factor& factor, Value Variable::*member) {
+  values_.clear();
+  for (const VariableId v : factor.variables()) values_.push_back(&((*this)[v].*member));
+  return values_;
+}
+
+/// The stacked coordinates of the factor's variables where the estimates stand, in `coordinates_`.
+Column FactorGraph::appliedCoordinates(const Factor& factor) {
+  coordinates_.clear();
+  for (const VariableId v : factor.variables()) {
+    const Variable& variable = (*this)[v];
+    coordinates_.insert(coordinates_.end(), variable.x_applied.begin(), variable.x_applied.begin() + variable.size);
+  }
+  return {coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size())};
+}
+
+/// From right perturbations to steps in the world's axes: to first order rho = R^T dp, phi = R^T dphi.
+void FactorGraph::turnToWorldAxes(const Factor& factor, Term term) const {
+  const bool both_sides = factor.form() == Factor::Form::kInformation;
+  Eigen::Index at = 0;
+  for (const VariableId v : factor.variables()) {
+    const Value& value = both_sides ? (*this)[v].applied_estimate : (*this)[v].linearization_point;
+    if (const auto* pose = std::get_if<SE3>(&value)) {
+      const Eigen::Matrix3d& R = pose->rotation();
+      for (const Eigen::Index k : {at, at + 3}) {
+        for (Eigen::Index i = 0; i < term.rows(); ++i) term.row(i).segment<3>(k) = (term.row(i).segment<3>(k) * R.transpose()).eval();
+        if (both_sides) term.middleRows<3>(k) = (R * term.middleRows<3>(k)).eval();
+      }
+    } else if (const auto* planar = std::get_if<SE2>(&value)) {
+      const Eigen::Matrix2d R = planar->rotation();
+      for (Eigen::Index i = 0; i < term.rows(); ++i) term.row(i).segment<2>(at) = (term.row(i).segment<2>(at) * R.transpose()).eval();
+      if (both_sides) term.middleRows<2>(at) = (R * term.middleRows<2>(at)).eval();
+    }
+    at += sizeOf(v);
+  }
+}
+
+/// Fills `term` in steps from the applied estimates. False when it is not finite.
+bool FactorGraph::evaluate(const Factor& factor, Term term) {
+  if (factor.form() == Factor::Form::kJacobian) {
+    factor.linearize(valuesOf(factor, &Variable::linearization_point), term);
+    factor.residual(valuesOf(factor, &Variable::applied_estimate), term.col(term.cols() - 1));
+  } else {
+    factor.linearize(valuesOf(factor, &Variable::applied_estimate), term);
+  }
+  turnToWorldAxes(factor, term);
+  return std::isfinite(term.sum());  // an infinity or NaN anywhere spoils the sum
+}
+
+/// From steps to coordinates: the model's right-hand side at x = 0.
+void FactorGraph::shiftToCoordinates(const Factor& factor, Term term) {
+  const Column x = appliedCoordinates(factor);
+  const Eigen::Index n = x.size();
+  if (factor.form() == Factor::Form::kJacobian) {
+    term.col(n).noalias() -= term.leftCols(n) * x;
+    return;
+  }
+  const Eigen::VectorXd Hx = term.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * x;
+  term(n, n) += x.dot(Hx) - 2 * x.dot(term.row(n).head(n));
+  term.row(n).head(n) -= Hx.transpose();
 }
 
 std::optional<FactorId> FactorGraph::addFactor(std::unique_ptr<const Factor> factor) {
-  LinearTerm term = linearized(*factor);
-  if (!term.matrix.allFinite()) return std::nullopt;
+  int columns = 1;
+  for (const VariableId v : factor->variables()) columns += sizeOf(v);
+  const auto size = static_cast<std::size_t>(factor->rows() * columns);
+  double* data = terms_.take(size);
+  const Term term(data, factor->rows(), columns);
+  if (!evaluate(*factor, term)) {
+    terms_.give(data, size);
+    return std::nullopt;
+  }
   const FactorId id = takeSlot(free_factors_, factors_);
-  for (const VariableId v : factor->variables()) (*this)[v].factors.push_back(id);
-  factors_[static_cast<std::size_t>(id.value)] = {std::move(factor), std::move(term)};
+  int at = 0;
+  for (const VariableId v : factor->variables()) {
+    Variable& variable = (*this)[v];
+    variable.factors.push_back(id);
+    for (int i = 0; i < variable.size; ++i, ++at)
+      variable.information[static_cast<std::size_t>(i)] +=
+          factor->form() == Factor::Form::kJacobian ? term.col(at).squaredNorm() : term(at, at);
+  }
+  LinearizedFactor& slot = factors_[static_cast<std::size_t>(id.value)];
+  slot.term = data;
+  slot.columns = columns;
+  slot.drift = 0;
+  slot.cost = 0;
+  setCost(slot, costOf(*factor, term));
+  shiftToCoordinates(*factor, term);
+  slot.factor = std::move(factor);
   return id;
 }
 
@@ -55,20 +177,77 @@ void FactorGraph::removeFactor(FactorId id) {
   auto& slot = factors_[static_cast<std::size_t>(id.value)];
   assert(slot.factor);
   for (const VariableId v : slot.factor->variables()) std::erase((*this)[v].factors, id);
-  slot = {};
+  setCost(slot, 0);
+  terms_.give(slot.term, static_cast<std::size_t>(slot.factor->rows() * slot.columns));
+  slot.factor = nullptr;
+  slot.term = nullptr;
   free_factors_.push_back(id);
-}
-
-void FactorGraph::moveToEstimate(VariableId id) {
-  Variable& variable = (*this)[id];
-  variable.linearization_point = retract(variable.linearization_point, variable.delta);
-  variable.delta.setZero();
 }
 
 void FactorGraph::linearize(FactorId id) {
   auto& slot = factors_[static_cast<std::size_t>(id.value)];
-  LinearTerm term = linearized(*slot.factor);
-  if (term.matrix.allFinite()) slot.term = std::move(term);
+  const Factor& factor = *slot.factor;
+  matrix_.resize(static_cast<std::size_t>(factor.rows() * slot.columns));
+  const Term fresh(matrix_.data(), factor.rows(), slot.columns);
+  if (!evaluate(factor, fresh)) return;
+  setCost(slot, costOf(factor, fresh));
+  shiftToCoordinates(factor, fresh);
+  term(id) = fresh;
+  slot.drift = 0;
+}
+
+FactorGraph::Mismatch FactorGraph::mismatch(FactorId id) {
+  const Factor& factor = *slot(id).factor;
+  const Term model = term(id);
+  if (factor.form() == Factor::Form::kInformation) return {.norm = informationMismatch(id), .r = {}};
+  residual_.resize(static_cast<std::size_t>(factor.rows()));
+  Column r(residual_.data(), factor.rows());
+  factor.residual(valuesOf(factor, &Variable::applied_estimate), r);
+  setCost(factors_[static_cast<std::size_t>(id.value)], r.squaredNorm());
+  const Column x = appliedCoordinates(factor);
+  r -= model.col(x.size());
+  r.noalias() -= model.leftCols(x.size()) * x;
+  return {.norm = r.norm(), .r = residual_};
+}
+
+/// By the difference of the gradients, each entry over the square root of its information.
+double FactorGraph::informationMismatch(FactorId id) {
+  const Factor& factor = *slot(id).factor;
+  const Term model = term(id);
+  const Eigen::Index n = model.cols() - 1;
+  matrix_.resize(static_cast<std::size_t>(model.size()));
+  Term fresh(matrix_.data(), model.rows(), model.cols());
+  if (!evaluate(factor, fresh)) return 0;
+  setCost(factors_[static_cast<std::size_t>(id.value)], costOf(factor, fresh));
+  const Column x = appliedCoordinates(factor);
+  Eigen::VectorXd difference = fresh.row(n).head(n) - model.row(n).head(n);
+  difference -= model.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * x;
+  double squared = 0;
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (fresh(i, i) > 0) squared += difference[i] * difference[i] / fresh(i, i);
+  return std::sqrt(squared);
+}
+
+void FactorGraph::correctResidual(FactorId id, std::span<const double> r) {
+  Term model = term(id);
+  for (Eigen::Index i = 0; i < model.rows(); ++i) model(i, model.cols() - 1) += r[static_cast<std::size_t>(i)];
+}
+
+double FactorGraph::costOf(const Factor& factor, const Term& term) {
+  return factor.form() == Factor::Form::kJacobian ? term.col(term.cols() - 1).squaredNorm() : term(term.rows() - 1, term.cols() - 1);
+}
+
+void FactorGraph::setCost(LinearizedFactor& slot, double cost) {
+  total_cost_ += cost - slot.cost;
+  slot.cost = cost;
+}
+
+bool FactorGraph::contains(VariableId id) const {
+  return id.value >= 0 && static_cast<std::size_t>(id.value) < variables_.size() && (*this)[id].alive;
+}
+
+bool FactorGraph::contains(FactorId id) const {
+  return id.value >= 0 && static_cast<std::size_t>(id.value) < factors_.size() && slot(id).factor;
 }
 
 std::vector<VariableId> FactorGraph::variables() const {

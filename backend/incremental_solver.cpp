@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
-#include "backend/ordering.hpp"
+#include "backend/dense_kernels.hpp"
 
 namespace motorcade {
 namespace {
 
 std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
+std::size_t index(FactorId f) { return static_cast<std::size_t>(f.value); }
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 template <class T>
 void sortUnique(std::vector<T>& items) {
@@ -24,100 +27,367 @@ VariableId IncrementalSolver::addVariable(const Value& initial) {
   return v;
 }
 
+bool IncrementalSolver::usable(const Factor& factor) {
+  const auto variables = factor.variables();
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    SolverProblem problem{.variable = variables[i], .direction = {}, .factors = {}};
+    if (!graph_.contains(variables[i]))
+      problem.kind = SolverProblem::Kind::kUnknownVariable;
+    else if (std::ranges::count(variables, variables[i]) > 1)
+      problem.kind = SolverProblem::Kind::kRepeatedVariable;
+    else
+      continue;
+    refused_.push_back(problem);
+    return false;
+  }
+  return true;
+}
+
 std::optional<FactorId> IncrementalSolver::addFactor(std::unique_ptr<const Factor> factor) {
+  if (!usable(*factor)) return std::nullopt;
+  const VariableId first = factor->variables().front();
   const auto id = graph_.addFactor(std::move(factor));
-  if (!id) return std::nullopt;
+  if (!id) {
+    refused_.push_back({.kind = SolverProblem::Kind::kNotFinite, .variable = first, .direction = {}, .factors = {}});
+    return std::nullopt;
+  }
   const auto variables = graph_.factor(*id).variables();
   touched_.insert(touched_.end(), variables.begin(), variables.end());
+  new_factors_.push_back(*id);
   return id;
 }
 
 void IncrementalSolver::removeFactor(FactorId id) {
   const auto variables = graph_.factor(id).variables();
-  touched_.insert(touched_.end(), variables.begin(), variables.end());
+  if (std::erase(new_factors_, id) == 0) {
+    touched_.insert(touched_.end(), variables.begin(), variables.end());
+    tree_.removeFactor(tree_.ownerOf(graph_.factor(id)), id);
+  }
   graph_.removeFactor(id);
 }
 
-IncrementalSolver::Report IncrementalSolver::update() {
-  Report report;
+void IncrementalSolver::beginReport() {
+  report_.problems.clear();
+  report_.problems.swap(refused_);
+  report_.moved.clear();
+  report_.eliminated_scalars = -tree_.eliminatedScalars();
+  report_.substituted_scalars = 0;
+  report_.relinearized_variables = report_.relinearized_factors = report_.corrected_factors = report_.deferred_variables = 0;
+  report_.largest_change = 0;
+  tree_.clearFindings();
+  budget_left_ = params_.budget_scalars > 0 ? params_.budget_scalars : std::numeric_limits<std::int64_t>::max();
+}
+
+void IncrementalSolver::endReport() {
+  report_.eliminated_scalars += tree_.eliminatedScalars();
+  report_.deferred_variables = static_cast<int>(stale_.size());
+  if (report_.relinearized_factors > 0) ++counters_.relinearizations;
+  sortUnique(report_.moved);
+  reportSingular();
+  touched_.clear();
+  new_variables_.clear();
+  new_factors_.clear();
+}
+
+const IncrementalSolver::Report& IncrementalSolver::update() {
+  beginReport();
   ++counters_.updates;
-  sortUnique(touched_);
   if (params_.policy == Policy::kEveryN && counters_.updates % params_.batch_every_updates == 0) {
-    batchStep(report);
+    batchStep();
   } else {
-    std::vector<int> cliques;
-    for (const VariableId v : touched_)
-      if (tree_.cliqueOf(v) >= 0) cliques.push_back(tree_.cliqueOf(v));
-    if (params_.policy == Policy::kFluid) {
-      const auto moved = movedVariables();
-      report.relinearized_variables = static_cast<int>(moved.size());
-      if (!moved.empty()) ++counters_.relinearizations;
-      const auto dependent = relinearize(moved);
-      cliques.insert(cliques.end(), dependent.begin(), dependent.end());
+    step(true);
+    new_factors_.clear();
+    for (int i = 1; i < params_.iterations_per_update && unsettled(); ++i) step(false);
+  }
+  endReport();
+  return report_;
+}
+
+/// One Gauss-Newton step: folds in what is new, corrects the models that are off, solves for x, and lets the estimates follow.
+void IncrementalSolver::step(bool fold) {
+  ++step_;
+  work_.resize(tree_.slots(), Work::kNone);
+  change_begin_.resize(tree_.slots());
+  dirty_.clear();
+  changes_.clear();
+  removed_cliques_.clear();
+  created_.clear();
+  if (fold) markTouched();
+  if (params_.policy == Policy::kFluid) correctModels();
+  workThroughDirtyCliques();
+  if (fold) rebuildTop();
+  substitution_sigmas_ = params_.substitution_sigmas;
+  substitute();
+  if (params_.policy == Policy::kFluid) compareModels();
+}
+
+bool IncrementalSolver::unsettled() const { return !off_.empty(); }
+
+/// Marks a clique and all above it.
+void IncrementalSolver::markWork(int clique, Work work) {
+  for (int c = clique; c >= 0 && work_[index(c)] < work; c = tree_[c].parent) {
+    if (work_[index(c)] == Work::kNone) {
+      dirty_.push_back(c);
+      change_begin_[index(c)] = changes_.size();
+      if (work == Work::kShift) changes_.resize(changes_.size() + index(tree_[c].size), 0.0);
     }
-    auto removed = tree_.remove(withAncestors(std::move(cliques)));
-    removed.variables.insert(removed.variables.end(), new_variables_.begin(), new_variables_.end());
-    rebuild(std::move(removed.variables), removed.orphans, params_.policy == Policy::kFluid ? Order::kReorder : Order::kKeep, report);
+    work_[index(c)] = work;
   }
-  touched_.clear();
-  new_variables_.clear();
-  return report;
 }
 
-void IncrementalSolver::batchStep(Report& report) {
-  const auto variables = graph_.variables();
-  relinearize(variables);
-  std::vector<int> cliques;
-  for (const VariableId v : variables)
-    if (tree_.cliqueOf(v) >= 0) cliques.push_back(tree_.cliqueOf(v));
-  sortUnique(cliques);
-  tree_.remove(cliques);
-  ++counters_.relinearizations, ++counters_.reorderings, ++counters_.batch_solves;
-  report.relinearized_variables = static_cast<int>(variables.size());
-  rebuild(variables, {}, Order::kReorder, report);
+void IncrementalSolver::markTouched() {
+  sortUnique(touched_);
+  for (const VariableId v : touched_)
+    for (int c = tree_.cliqueOf(v); c >= 0 && work_[index(c)] != Work::kRemoved; c = tree_[c].parent) {
+      work_[index(c)] = Work::kRemoved;
+      removed_cliques_.push_back(c);
+    }
 }
 
-IncrementalSolver::Report IncrementalSolver::converge(int max_iterations, double tolerance) {
-  Report report;
-  for (int i = 0; i < max_iterations; ++i) {
-    report = {};
-    batchStep(report);
-    if (report.largest_change < tolerance) break;
-  }
-  touched_.clear();
-  new_variables_.clear();
-  return report;
+/// Not in the tree yet.
+bool IncrementalSolver::isNew(FactorId f) const { return std::ranges::find(new_factors_, f) != new_factors_.end(); }
+
+std::int64_t IncrementalSolver::costOfRefresh(int clique) const {
+  std::int64_t cost = 0;
+  for (int c = clique; c >= 0 && work_[index(c)] < Work::kRefresh; c = tree_[c].parent) cost += tree_[c].frontal_size;
+  return cost;
 }
 
-std::vector<VariableId> IncrementalSolver::movedVariables() const {
-  std::vector<VariableId> moved;
-  for (const VariableId v : graph_.variables()) {
-    const auto& variable = graph_[v];
-    const bool pose = std::holds_alternative<SE3>(variable.linearization_point);
-    const auto linear = variable.delta.head(pose ? 3 : variable.delta.size());
-    const bool turned = pose && variable.delta.tail(3).cwiseAbs().maxCoeff() > params_.relinearize_rad;
-    if (turned || linear.cwiseAbs().maxCoeff() > params_.relinearize_m) moved.push_back(v);
-  }
-  return moved;
+void IncrementalSolver::correctModels() {
+  collectStale();
+  std::size_t kept = 0;
+  for (const StaleVariable& stale : stale_)
+    if (!relinearizeWithinBudget(stale.variable)) stale_[kept++] = stale;
+  stale_.resize(kept);
+  for (const OffModel& off : off_)
+    if (graph_.contains(off.factor) && checked_in_step_[index(off.factor)] != step_) shiftResidual(off.factor);
+  off_.clear();
 }
 
-/// Returns the cliques that depend on the linearisation points of the variables.
-std::vector<int> IncrementalSolver::relinearize(std::span<const VariableId> variables) {
-  std::vector<int> cliques;
-  std::vector<FactorId> factors;
-  for (const VariableId v : variables) {
-    graph_.moveToEstimate(v);
-    const auto with = tree_.cliquesWith(v);
-    cliques.insert(cliques.end(), with.begin(), with.end());
-    factors.insert(factors.end(), graph_[v].factors.begin(), graph_[v].factors.end());
+/// Variables to relinearise, each once, the worst first.
+void IncrementalSolver::collectStale() {
+  for (const OffModel& off : off_) {
+    if (!graph_.contains(off.factor)) continue;
+    const double drift = graph_.drift(off.factor) + off.mismatch;
+    if (drift <= params_.jacobian_drift_sigmas && graph_.factor(off.factor).form() == Factor::Form::kJacobian) continue;
+    for (const VariableId v : graph_.factor(off.factor).variables()) stale_.push_back({v, drift});
   }
-  sortUnique(factors);
-  for (const FactorId f : factors) {
+  std::erase_if(stale_, [&](const StaleVariable& stale) { return !graph_.contains(stale.variable); });
+  std::ranges::sort(stale_, [](const auto& a, const auto& b) { return a.variable < b.variable || (a.variable == b.variable && a.urgency > b.urgency); });
+  const auto twice = std::ranges::unique(stale_, {}, &StaleVariable::variable);
+  stale_.erase(twice.begin(), twice.end());
+  std::ranges::sort(stale_, [](const auto& a, const auto& b) { return a.urgency > b.urgency || (a.urgency == b.urgency && a.variable < b.variable); });
+}
+
+bool IncrementalSolver::relinearizeWithinBudget(VariableId v) {
+  std::int64_t cost = 0;
+  for (const FactorId f : graph_[v].factors)
+    if (!isNew(f)) cost += costOfRefresh(tree_.ownerOf(graph_.factor(f)));
+  if (cost > budget_left_) return false;
+  budget_left_ -= cost;
+  graph_.moveLinearizationPoint(v);
+  ++report_.relinearized_variables;
+  for (const FactorId f : graph_[v].factors) {
     graph_.linearize(f);
-    for (const VariableId v : graph_.factor(f).variables())
-      if (tree_.cliqueOf(v) >= 0) cliques.push_back(tree_.cliqueOf(v));
+    checked_in_step_.resize(graph_.factorSlots(), 0);
+    checked_in_step_[index(f)] = step_;
+    if (!isNew(f)) markWork(tree_.ownerOf(graph_.factor(f)), Work::kRefresh);
+    ++report_.relinearized_factors;
   }
-  return cliques;
+  return true;
+}
+
+void IncrementalSolver::shiftResidual(FactorId id) {
+  const auto mismatch = graph_.mismatch(id);
+  const Factor& factor = graph_.factor(id);
+  graph_.correctResidual(id, mismatch.r);
+  graph_.addDrift(id, mismatch.norm);
+  ++report_.corrected_factors;
+  const int owner = tree_.ownerOf(factor);
+  markWork(owner, Work::kShift);
+  if (work_[index(owner)] != Work::kShift) return;  // is eliminated anew
+  const Clique& clique = tree_[owner];
+  const auto J = graph_.term(id);
+  const Eigen::Map<const Eigen::VectorXd> r(mismatch.r.data(), factor.rows());
+  double* change = changes_.data() + change_begin_[index(owner)];
+  int column = 0;
+  for (const VariableId v : factor.variables()) {
+    int row = 0;
+    for (const VariableId u : clique.variables) {
+      if (u == v) break;
+      row += graph_.sizeOf(u);
+    }
+    for (int i = 0; i < graph_.sizeOf(v); ++i, ++column) change[row + i] += J.col(column).dot(r);
+  }
+}
+
+void IncrementalSolver::workThroughDirtyCliques() {
+  std::ranges::sort(dirty_, {}, [&](int c) { return tree_.sequence(c); });
+  for (const int c : dirty_) {
+    if (work_[index(c)] == Work::kRefresh) {
+      tree_.refresh(c);
+    } else {
+      const int parent = tree_[c].parent;
+      const bool passed_on = parent >= 0 && work_[index(parent)] == Work::kShift;
+      std::span<double> parent_change;
+      if (passed_on) parent_change = {changes_.data() + change_begin_[index(parent)], index(tree_[parent].size)};
+      tree_.shiftRightHandSide(c, {changes_.data() + change_begin_[index(c)], index(tree_[c].size)}, parent_change);
+    }
+  }
+}
+
+void IncrementalSolver::rebuildTop() {
+  removed_.clear();
+  for (const int c : removed_cliques_) work_[index(c)] = Work::kNone;
+  tree_.remove(removed_cliques_, removed_);
+  removed_.variables.insert(removed_.variables.end(), new_variables_.begin(), new_variables_.end());
+  removed_.factors.insert(removed_.factors.end(), new_factors_.begin(), new_factors_.end());
+  if (removed_.variables.empty()) return;
+  const bool reorder = params_.policy == Policy::kFluid;
+  const auto order = reorder ? reordered(removed_.variables, removed_.factors, removed_.orphans) : std::span<const VariableId>(removed_.variables);
+  tree_.eliminate({.order = order, .boundary = {}, .factors = removed_.factors, .orphans = removed_.orphans}, created_);
+  work_.resize(tree_.slots(), Work::kNone);
+  change_begin_.resize(tree_.slots());
+  for (const int c : created_) work_[index(c)] = Work::kNew;
+}
+
+/// The variables with little fill, those that the newest factors touch last: they will be touched again next.
+std::span<const VariableId> IncrementalSolver::reordered(std::span<const VariableId> variables, std::span<const FactorId> factors,
+                                                         std::span<const int> orphans) {
+  column_of_.resize(graph_.slots(), -1);
+  group_.assign(variables.size(), 0);
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    column_of_[index(variables[i])] = static_cast<int>(i);
+    if (std::ranges::binary_search(touched_, variables[i])) group_[i] = 1;
+  }
+  ordering_.begin(static_cast<int>(variables.size()));
+  const auto addRow = [&](std::span<const VariableId> row) {
+    row_.clear();
+    for (const VariableId v : row) row_.push_back(column_of_[index(v)]);
+    ordering_.addRow(row_);
+  };
+  for (const FactorId f : factors) addRow(graph_.factor(f).variables());
+  for (const int orphan : orphans) addRow(tree_[orphan].separator());
+  order_.clear();
+  for (const int column : ordering_.order(group_)) order_.push_back(variables[index(column)]);
+  return order_;
+}
+
+/// Back-substitution from the roots downwards, as far as anything changed.
+void IncrementalSolver::substitute() {
+  moved_.clear();
+  moved_in_step_.resize(graph_.slots(), 0);
+  open_.clear();
+  for (const int root : tree_.roots())
+    if (work_[index(root)] != Work::kNone) open_.push_back(root);
+  while (!open_.empty()) {
+    const int id = open_.back();
+    const Clique& clique = tree_[id];
+    open_.pop_back();
+    work_[index(id)] = Work::kNone;
+    solve(clique);
+    for (int child = clique.first_child; child >= 0; child = tree_[child].next_sibling) {
+      const bool changed = work_[index(child)] != Work::kNone ||
+                           std::ranges::any_of(tree_[child].separator(), [&](VariableId v) { return moved_in_step_[index(v)] == step_; });
+      if (changed) open_.push_back(child);
+    }
+  }
+  report_.moved.insert(report_.moved.end(), moved_.begin(), moved_.end());
+  for (const VariableId v : moved_) graph_.apply(v);
+}
+
+void IncrementalSolver::solve(const Clique& clique) {
+  x_separator_.clear();
+  for (const VariableId v : clique.separator()) {
+    const auto& x = graph_[v].x;
+    x_separator_.insert(x_separator_.end(), x.begin(), x.begin() + graph_.sizeOf(v));
+  }
+  x_frontal_.resize(index(clique.frontal_size));
+  backSubstitute(clique.panel, clique.panelStride(), clique.size + 1, clique.frontal_size, x_separator_.data(), x_frontal_.data());
+  report_.substituted_scalars += clique.frontal_size;
+  std::size_t at = 0;
+  for (const VariableId v : clique.frontalVariables()) {
+    auto& variable = graph_[v];
+    double change = 0, sigmas_squared = 0;
+    for (std::size_t i = 0; i < index(variable.size); ++i, ++at) {
+      change = std::max(change, std::abs(x_frontal_[at] - variable.x[i]));
+      const double step = x_frontal_[at] - variable.x_applied[i];
+      sigmas_squared = std::max(sigmas_squared, step * step * variable.information[i]);
+      variable.x[i] = x_frontal_[at];
+    }
+    report_.largest_change = std::max(report_.largest_change, change);
+    if (sigmas_squared <= substitution_sigmas_ * substitution_sigmas_) continue;
+    moved_in_step_[index(v)] = step_;
+    moved_.push_back(v);
+  }
+}
+
+/// Finds the models that are off after the step.
+void IncrementalSolver::compareModels() {
+  checked_in_step_.resize(graph_.factorSlots(), 0);
+  const double mean_square = graph_.factorCount() == 0 ? 0 : graph_.totalCost() / static_cast<double>(graph_.factorCount());
+  const double tolerance = params_.mismatch_tolerance * std::sqrt(std::max(mean_square, 1e-8));
+  for (const VariableId v : moved_) {
+    if (const double turn = graph_.turnSinceLinearization(v); turn > params_.relinearize_rad) stale_.push_back({v, turn / params_.relinearize_rad});
+    for (const FactorId f : graph_[v].factors) {
+      if (checked_in_step_[index(f)] == step_) continue;
+      checked_in_step_[index(f)] = step_;
+      const double norm = graph_.mismatch(f).norm;
+      if (norm > tolerance) off_.push_back({f, norm});
+    }
+  }
+}
+
+/// Relinearises and reorders everything.
+void IncrementalSolver::batchStep() {
+  ++step_;
+  graph_.restartCoordinates();
+  report_.relinearized_factors += static_cast<int>(graph_.factorCount());
+  off_.clear();
+  stale_.clear();
+  removed_cliques_.clear();
+  created_.clear();
+  work_.resize(tree_.slots(), Work::kNone);
+  for (std::size_t c = 0; c < tree_.slots(); ++c)
+    if (tree_[static_cast<int>(c)].alive) removed_cliques_.push_back(static_cast<int>(c));
+  removed_.clear();
+  tree_.remove(removed_cliques_, removed_);
+  order_ = graph_.variables();
+  std::vector<VariableId> variables = order_;
+  const std::vector<FactorId> factors = graph_.factors();
+  for (const FactorId f : factors) graph_.linearize(f);
+  if (variables.empty()) return;
+  tree_.eliminate({.order = reordered(variables, factors, {}), .boundary = {}, .factors = factors, .orphans = {}}, created_);
+  work_.resize(tree_.slots(), Work::kNone);
+  change_begin_.resize(tree_.slots());
+  for (const int c : created_) work_[index(c)] = Work::kNew;
+  ++counters_.reorderings, ++counters_.batch_solves;
+  substitution_sigmas_ = 0;
+  substitute();
+  if (params_.policy == Policy::kFluid) compareModels();
+}
+
+const IncrementalSolver::Report& IncrementalSolver::converge(int max_iterations, double tolerance) {
+  beginReport();
+  for (int i = 0; i < max_iterations; ++i) {
+    report_.largest_change = 0;
+    batchStep();
+    if (report_.largest_change < tolerance) break;
+  }
+  endReport();
+  return report_;
+}
+
+void IncrementalSolver::reportSingular() {
+  for (const SingularScalar& scalar : tree_.singular()) {
+    const bool known = std::ranges::any_of(report_.problems, [&](const SolverProblem& p) {
+      return p.kind == SolverProblem::Kind::kUnconstrained && p.variable == scalar.variable && p.direction[scalar.component] != 0;
+    });
+    if (known || !graph_.contains(scalar.variable)) continue;
+    SmallVector direction = SmallVector::Zero(graph_.sizeOf(scalar.variable));
+    direction[scalar.component] = 1;
+    report_.problems.push_back({.kind = SolverProblem::Kind::kUnconstrained, .variable = scalar.variable, .direction = direction, .factors = graph_[scalar.variable].factors});
+  }
 }
 
 std::vector<int> IncrementalSolver::withAncestors(std::vector<int> cliques) const {
@@ -132,114 +402,11 @@ std::vector<int> IncrementalSolver::withAncestors(std::vector<int> cliques) cons
   return all;
 }
 
-/// Factors whose variables all lie among `variables` and `boundary`, at least one among `variables`; and what the orphans left.
-std::vector<Contribution> IncrementalSolver::contributionsOf(std::span<const VariableId> variables, std::span<const VariableId> boundary,
-                                                             std::span<const int> orphans) {
-  marked_.resize(graph_.slots(), 0);
-  for (const VariableId v : variables) marked_[index(v)] = 1;
-  for (const VariableId v : boundary) marked_[index(v)] = 2;
-  std::vector<Contribution> contributions;
-  for (const VariableId v : variables) {
-    for (const FactorId f : graph_[v].factors) {
-      const auto members = graph_.factor(f).variables();
-      const auto owner = std::ranges::find_if(members, [&](VariableId m) { return marked_[index(m)] == 1; });
-      const bool complete = std::ranges::all_of(members, [&](VariableId m) { return marked_[index(m)] != 0; });
-      if (complete && *owner == v) contributions.push_back({members, &graph_.term(f), -1});
-    }
-  }
-  for (const int orphan : orphans) contributions.push_back({tree_[orphan].separator(), &tree_[orphan].remainder, orphan});
-  for (const VariableId v : variables) marked_[index(v)] = 0;
-  for (const VariableId v : boundary) marked_[index(v)] = 0;
-  return contributions;
-}
-
-/// The variables with little fill, those that the newest factors touch last: they will be touched again next.
-std::vector<VariableId> IncrementalSolver::reordered(std::span<const VariableId> variables,
-                                                     std::span<const Contribution> contributions) const {
-  std::vector<int> column(graph_.slots(), -1), group(variables.size(), 0);
-  for (std::size_t i = 0; i < variables.size(); ++i) {
-    column[index(variables[i])] = static_cast<int>(i);
-    if (std::ranges::binary_search(touched_, variables[i])) group[i] = 1;
-  }
-  std::vector<std::vector<int>> rows;
-  for (const Contribution& c : contributions) {
-    rows.emplace_back();
-    for (const VariableId v : c.variables) rows.back().push_back(column[index(v)]);
-  }
-  // CCOLAMD wants at least one row in each column.
-  for (std::size_t i = 0; i < variables.size(); ++i) rows.push_back({static_cast<int>(i)});
-  std::vector<VariableId> order;
-  for (const int c : eliminationOrder(static_cast<int>(variables.size()), rows, group))
-    order.push_back(variables[static_cast<std::size_t>(c)]);
-  return order;
-}
-
-void IncrementalSolver::rebuild(std::vector<VariableId> variables, std::span<const int> orphans, Order order, Report& report) {
-  if (variables.empty()) return;
-  Elimination problem;
-  problem.contributions = contributionsOf(variables, {}, orphans);
-  problem.order = order == Order::kReorder ? reordered(variables, problem.contributions) : std::move(variables);
-  const auto result = tree_.eliminate(problem, graph_, order == Order::kReorder);
-  report.singular.insert(report.singular.end(), result.singular.begin(), result.singular.end());
-  report.eliminated_scalars += result.eliminated_scalars;
-  substitute(result.cliques, report);
-}
-
-/// Back-substitution from the new cliques downwards, as far as anything changes.
-void IncrementalSolver::substitute(std::span<const int> new_cliques, Report& report) {
-  delta_changed_.assign(graph_.slots(), 0);
-  for (const int id : new_cliques) solve(tree_[id], true, report);
-  std::vector<int> is_new(new_cliques.begin(), new_cliques.end());
-  std::ranges::sort(is_new);
-  std::vector<int> below;
-  for (const int id : new_cliques)
-    for (const int child : tree_[id].children)
-      if (!std::ranges::binary_search(is_new, child)) below.push_back(child);
-  while (!below.empty()) {
-    const Clique& clique = tree_[below.back()];
-    below.pop_back();
-    if (std::ranges::none_of(clique.separator(), [&](VariableId v) { return delta_changed_[index(v)] != 0; })) continue;
-    if (solve(clique, false, report)) below.insert(below.end(), clique.children.begin(), clique.children.end());
-  }
-}
-
-/// True when the subtree below may have to change.
-bool IncrementalSolver::solve(const Clique& clique, bool is_new, Report& report) {
-  const int n = clique.frontal_size, rest = clique.size - n;
-  Eigen::VectorXd right = -clique.L.row(clique.size).transpose();
-  bool spreads = is_new;
-  if (rest > 0) {
-    Eigen::VectorXd x(rest);
-    int at = 0;
-    for (const VariableId v : clique.separator()) {
-      x.segment(at, graph_.sizeOf(v)) = graph_[v].delta;
-      at += graph_.sizeOf(v);
-      spreads |= delta_changed_[index(v)] != 0;
-    }
-    right.noalias() -= clique.L.middleRows(n, rest).transpose() * x;
-  }
-  clique.L.topRows(n).triangularView<Eigen::Lower>().transpose().solveInPlace(right);
-  int at = 0;
-  for (const VariableId v : clique.frontalVariables()) {
-    auto& delta = graph_[v].delta;
-    const auto solution = right.segment(at, delta.size());
-    at += static_cast<int>(delta.size());
-    const double change = (solution - delta).cwiseAbs().maxCoeff();
-    report.largest_change = std::max(report.largest_change, change);
-    if (change > params_.substitution_threshold) delta_changed_[index(v)] = 1;
-    if (is_new || change > params_.substitution_threshold) delta = solution;
-  }
-  return spreads;
-}
-
 SolverCounters IncrementalSolver::counters() const {
   SolverCounters counters = counters_;
   counters.variables = static_cast<std::int64_t>(graph_.variableCount());
   counters.factors = static_cast<std::int64_t>(graph_.factorCount());
-  for (const int root : tree_.roots()) {
-    const auto& left = tree_[root].remainder.matrix;  // what no variable explains: the minimum of the linearised cost
-    counters.chi2 += left(left.rows() - 1, left.cols() - 1);
-  }
+  counters.chi2 = graph_.totalCost();
   return counters;
 }
 

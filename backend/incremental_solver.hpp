@@ -7,82 +7,143 @@
 
 #include "backend/elimination_tree.hpp"
 #include "backend/factor_graph.hpp"
+#include "backend/ordering.hpp"
+#include "backend/solver_problem.hpp"
 #include "core/messages.hpp"
 
 namespace motorcade {
 
 /// Incremental square-root smoothing (iSAM, Kaess et al. 2008, on the tree of iSAM2, 2012): keeps R of the linearised problem as a tree of
-/// small dense cliques; an update eliminates anew only the cliques from where new factors enter up to the root. Gauss-Newton, one step per
-/// update.
+/// cliques; an update eliminates anew only the cliques from where new factors enter up to the root.
+///
+/// Fluid relinearisation goes by factors rather than by variables: after each step the linear model of every factor whose variables moved is
+/// compared with the factor itself. Where only the residual is off, its right-hand side is corrected, which costs a substitution; where the
+/// Jacobian has drifted too, the cliques above are eliminated anew, the worst first, as far as the budget reaches.
 ///
 /// Add variables and factors, then `update`. `retire` and `drop` want no additions waiting.
 class IncrementalSolver {
  public:
   enum class Policy {
-    kEveryN,  // keeps the order and the linearisation between batch steps, every `batch_every_updates`
-    kFluid,   // relinearises what moved past the thresholds and reorders what an update touches
+    kEveryN,  // keeps the order and the linear models between batch steps, every `batch_every_updates` (iSAM)
+    kFluid,   // corrects the models that are off and reorders what an update touches
   };
   struct Params {
     Policy policy = Policy::kFluid;
     int batch_every_updates = 50;
-    double relinearize_m = 0.05, relinearize_rad = 0.005;  // entries of vectors count as m
-    double substitution_threshold = 1e-5;                  // deltas that change by less do not spread; 0 is exact
+    double mismatch_tolerance = 0.02;        // of a linear model, over the root mean square of the residuals; 0 corrects all that moved
+    double jacobian_drift_sigmas = 0.1;      // summed mismatch of a factor at which its variables are relinearised; 0: at each correction
+    double relinearize_rad = 0.03;           // turn of a variable at which it is relinearised
+    double substitution_sigmas = 1e-3;       // steps below that, in conditional standard deviations, do not spread; 0 is exact
+    int iterations_per_update = 2;           // Gauss-Newton steps at most, while models are off
+    std::int64_t budget_scalars = 0;         // eliminated per update beyond what the new factors ask for; 0: no limit
   };
   struct Report {
-    std::vector<SingularScalar> singular;  // held at delta zero
-    int eliminated_scalars = 0, relinearized_variables = 0;
-    double largest_change = 0;  // of any delta, m or rad
+    std::vector<SolverProblem> problems;
+    std::vector<VariableId> moved;          // whose estimates changed by more than the substitution threshold
+    std::int64_t eliminated_scalars = 0, substituted_scalars = 0;
+    int relinearized_variables = 0, relinearized_factors = 0, corrected_factors = 0;
+    int deferred_variables = 0;  // whose relinearisation the budget put off
+    double largest_change = 0;  // of any x, m or rad
   };
 
   explicit IncrementalSolver(const Params& params) : params_(params) {}
 
   VariableId addVariable(const Value& initial);
-  /// Empty when the factor is not finite: it is left out.
+  /// Empty when the factor cannot be used; the next report says why.
   std::optional<FactorId> addFactor(std::unique_ptr<const Factor> factor);
   void removeFactor(FactorId id);
-  Report update();
+  /// The report lasts until the next change of the solver.
+  const Report& update();
 
   /// Marginalises variables: what they know stays as a factor on their neighbours, and the solution does not change.
   void retire(std::span<const VariableId> variables);
   /// Removes variables with all that was measured of them.
-  Report drop(std::span<const VariableId> variables);
-  /// Relinearises everything until no delta exceeds `tolerance`.
-  Report converge(int max_iterations, double tolerance);
+  const Report& drop(std::span<const VariableId> variables);
+  /// Relinearises everything until no x changes by more than `tolerance`.
+  const Report& converge(int max_iterations, double tolerance);
 
   Value estimate(VariableId v) const { return graph_.estimate(v); }
   SE3 pose(VariableId v) const { return std::get<SE3>(estimate(v)); }
-  /// Joint covariance of the variables' deltas, stacked, from R. Empty when the system is singular there.
+  /// Joint covariance of right perturbations of the variables, stacked, from R. Empty when the system is singular there.
   std::optional<Eigen::MatrixXd> jointCovariance(std::span<const VariableId> variables) const;
 
   /// In the counters, `relinearizations` are updates that relinearised anything; `reorderings` and `batch_solves` concern the whole system.
   SolverCounters counters() const;
   const FactorGraph& graph() const { return graph_; }
   const EliminationTree& tree() const { return tree_; }
+  std::size_t heldBytes() const { return graph_.termBytes() + tree_.heldBytes(); }
 
  private:
-  enum class Order { kKeep, kReorder };
+  /// What a step does with a clique.
+  enum class Work : char { kNone, kShift, kRefresh, kRemoved, kNew };
+  struct OffModel {
+    FactorId factor;
+    double mismatch = 0;
+  };
   struct RetiringPart;
 
-  std::vector<int> relinearize(std::span<const VariableId> variables);
-  std::vector<VariableId> movedVariables() const;
+  void beginReport();
+  void endReport();
+  void step(bool fold);
+  void batchStep();
+  bool unsettled() const;
+
+  void markWork(int clique, Work work);
+  void markTouched();
+  bool isNew(FactorId f) const;
+  std::int64_t costOfRefresh(int clique) const;
+  void correctModels();
+  void collectStale();
+  bool relinearizeWithinBudget(VariableId v);
+  void shiftResidual(FactorId id);
+  void workThroughDirtyCliques();
+  void rebuildTop();
+  std::span<const VariableId> reordered(std::span<const VariableId> variables, std::span<const FactorId> factors,
+                                        std::span<const int> orphans);
+  void substitute();
+  void solve(const Clique& clique);
+  void follow(double threshold_sigmas);
+  void compareModels();
+  void reportSingular();
+  bool usable(const Factor& factor);
   std::vector<int> withAncestors(std::vector<int> cliques) const;
-  std::vector<Contribution> contributionsOf(std::span<const VariableId> variables, std::span<const VariableId> boundary,
-                                            std::span<const int> orphans);
-  std::vector<VariableId> reordered(std::span<const VariableId> variables, std::span<const Contribution> contributions) const;
-  void rebuild(std::vector<VariableId> variables, std::span<const int> orphans, Order order, Report& report);
-  void substitute(std::span<const int> new_cliques, Report& report);
-  bool solve(const Clique& clique, bool is_new, Report& report);
-  void batchStep(Report& report);
+
   std::vector<RetiringPart> partsWith(std::span<const VariableId> variables) const;
   void retirePart(const RetiringPart& part, std::span<const VariableId> gone);
 
   Params params_;
   FactorGraph graph_;
-  EliminationTree tree_;
-  std::vector<VariableId> touched_, new_variables_;
-  std::vector<char> marked_;         // scratch, per variable: in the set at hand
-  std::vector<char> delta_changed_;  // scratch, per variable
+  EliminationTree tree_{graph_};
+  Ordering ordering_;
+  Report report_;
   SolverCounters counters_;
+  std::int64_t budget_left_ = 0;
+  std::vector<SolverProblem> refused_;  // since the last update
+
+  std::vector<VariableId> touched_, new_variables_;
+  std::vector<FactorId> new_factors_;
+  std::vector<OffModel> off_;     // models to correct in the next step
+  struct StaleVariable {
+    VariableId variable;
+    double urgency = 0;
+  };
+  std::vector<StaleVariable> stale_;  // whose linearisation points are off
+
+  // Of the step at hand.
+  std::uint32_t step_ = 0;
+  double substitution_sigmas_ = 0;
+  std::vector<Work> work_;                // per clique
+  std::vector<int> dirty_;                // cliques to shift or refresh
+  std::vector<int> removed_cliques_, created_;
+  EliminationTree::Removed removed_;
+  std::vector<std::size_t> change_begin_;  // per clique: where its right-hand side's change lies in `changes_`
+  std::vector<double> changes_;
+  std::vector<VariableId> moved_;
+  std::vector<std::uint32_t> moved_in_step_, checked_in_step_;  // per variable, per factor
+  std::vector<int> open_;                                       // cliques to solve
+  std::vector<double> x_separator_, x_frontal_;
+  std::vector<VariableId> order_;
+  std::vector<int> column_of_, row_, group_;
 };
 
 }  // namespace motorcade

@@ -13,7 +13,7 @@ std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(std::span<cons
     start.push_back(tree_.cliqueOf(v));
   }
   std::vector<int> path = withAncestors(std::move(start));
-  std::ranges::sort(path, {}, [&](int c) { return tree_.sequence(tree_[c].variables.front()); });
+  std::ranges::sort(path, {}, [&](int c) { return tree_.sequence(c); });
 
   std::vector<int> row(graph_.slots(), -1);
   int rows = 0, columns = 0;
@@ -33,11 +33,13 @@ std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(std::span<cons
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(columns, columns);
   for (const int c : path) {
     const Clique& clique = tree_[c];
+    if (!clique.singular.empty()) return std::nullopt;
     const int n = clique.frontal_size;
+    const Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>> L(clique.panel, clique.size, n, Eigen::OuterStride<>(clique.panelStride()));
     auto y = rest.middleRows(row[static_cast<std::size_t>(clique.variables.front().value)], n);
-    clique.L.topRows(n).triangularView<Eigen::Lower>().solveInPlace(y);
+    L.topRows(n).triangularView<Eigen::Lower>().solveInPlace(y);
     covariance.selfadjointView<Eigen::Lower>().rankUpdate(y.transpose());
-    const Eigen::MatrixXd passed = clique.L.middleRows(n, clique.size - n) * y;
+    const Eigen::MatrixXd passed = L.bottomRows(clique.separatorSize()) * y;
     int at = 0;
     for (const VariableId v : clique.separator()) {
       rest.middleRows(row[static_cast<std::size_t>(v.value)], graph_.sizeOf(v)) -= passed.middleRows(at, graph_.sizeOf(v));
@@ -46,6 +48,22 @@ std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(std::span<cons
   }
   covariance.triangularView<Eigen::StrictlyUpper>() = covariance.transpose();
   if (!covariance.allFinite()) return std::nullopt;
+  // From steps in the world's axes to right perturbations.
+  column = 0;
+  for (const VariableId v : variables) {
+    const auto turn = [&]<int N>(const Eigen::Matrix<double, N, N>& R, int at) {
+      covariance.middleRows<N>(at) = (R.transpose() * covariance.middleRows<N>(at)).eval();
+      covariance.middleCols<N>(at) = (covariance.middleCols<N>(at) * R).eval();
+    };
+    const Value value = graph_.estimate(v);
+    if (const auto* pose = std::get_if<SE3>(&value)) {
+      turn(pose->rotation(), column);
+      turn(pose->rotation(), column + 3);
+    } else if (const auto* planar = std::get_if<SE2>(&value)) {
+      turn(planar->rotation(), column);
+    }
+    column += graph_.sizeOf(v);
+  }
   return covariance;
 }
 

@@ -41,14 +41,16 @@ void check(const Optimizer::Params& p) {
                    {"acceleration_tilt_radps2", p.acceleration_tilt_radps2},
                    {"object_encounter_share", p.object_encounter_share},
                    {"relinearize_every_updates", static_cast<double>(p.relinearize_every_updates)},
+                   {"iterations_per_update", static_cast<double>(p.iterations_per_update)},
                    {"final_iterations", static_cast<double>(p.final_iterations)},
                    {"camera_covariance_frames", static_cast<double>(p.camera_covariance_frames)}});
   requireNotNegative({{"window_frames", static_cast<double>(p.window_frames)},
                       {"object_encounter_distance_m", p.object_encounter_distance_m},
                       {"object_encounter_partners", static_cast<double>(p.object_encounter_partners)},
-                      {"relinearize_m", p.relinearize_m},
-                      {"relinearize_rad", p.relinearize_rad},
-                      {"substitution_threshold", p.substitution_threshold},
+                      {"mismatch_tolerance", p.mismatch_tolerance},
+                      {"jacobian_drift_sigmas", p.jacobian_drift_sigmas},
+                      {"substitution_sigmas", p.substitution_sigmas},
+                      {"budget_scalars", static_cast<double>(p.budget_scalars)},
                       {"covariance_lag_frames", static_cast<double>(p.covariance_lag_frames)}});
   if (!(p.object_encounter_share < 1)) throw std::invalid_argument("backend: object_encounter_share must be below 1");
 }

@@ -17,6 +17,23 @@ Eigen::MatrixXd pseudoInverse(const Eigen::MatrixXd& matrix) {
   return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
+/// Of the displacement to a pose, under a right perturbation of the pose.
+Matrix6d stepJacobian(const SE3& now, const Eigen::Vector3d& turn_rad) {
+  // log(exp(d) * exp(phi)) ~ phi + Jl^-1(phi) d, Jl^-1(phi) = Jr^-1(-phi); d = R * perturbation.
+  Vector6d minus = Vector6d::Zero();
+  minus.tail<3>() = -turn_rad;
+  Matrix6d J = Matrix6d::Zero();
+  J.topLeftCorner<3, 3>() = now.rotation();
+  J.bottomRightCorner<3, 3>() = rightJacobianInverseSE3(minus).bottomRightCorner<3, 3>() * now.rotation();
+  return J;
+}
+
+Eigen::Matrix3d stepJacobian(const SE2& now) {
+  Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
+  J.topLeftCorner<2, 2>() = now.rotation();
+  return J;
+}
+
 template <int N>
 void moveBlock(Eigen::Ref<Eigen::MatrixXd> term, Eigen::Index at, const Eigen::Matrix<double, N, N>& J) {
   term.middleCols<N>(at) = (term.middleCols<N>(at) * J).eval();
@@ -35,24 +52,25 @@ void MarginalFactor::residual(std::span<const Value* const>, Eigen::Ref<Eigen::V
 }
 
 void MarginalFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
-  // e(delta) ~ e + J delta with J = Jr^-1(e) for poses, so [H g; g^T c] -> T^T [H g; g^T c] T with T = [J e; 0 1].
+  // e(delta) ~ e + J delta, so [H g; g^T c] -> T^T [H g; g^T c] T with T = [J e; 0 1].
   const Eigen::Index n = information_.rows() - 1;
   Eigen::VectorXd e(n);
   term = information_;
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < values_.size(); ++k) {
-    const SmallVector move = local(values_[k], *values[k]);
+    const SmallVector move = displacement(values_[k], *values[k]);
     e.segment(at, move.size()) = move;
     at += move.size();
   }
-  if (e.cwiseAbs().maxCoeff() == 0) return;
   const Eigen::VectorXd shift = information_.topLeftCorner(n, n) * e;
   term(n, n) += e.dot(shift) + 2 * e.dot(information_.col(n).head(n));
   term.row(n).head(n) += shift.transpose();
   at = 0;
+  std::size_t k = 0;
   for (const Value& value : values_) {
-    if (std::holds_alternative<SE3>(value)) moveBlock<6>(term, at, rightJacobianInverseSE3(e.segment<6>(at)));
-    if (std::holds_alternative<SE2>(value)) moveBlock<3>(term, at, rightJacobianInverseSE2(e.segment<3>(at)));
+    if (const auto* pose = std::get_if<SE3>(values[k])) moveBlock<6>(term, at, stepJacobian(*pose, e.segment<3>(at + 3)));
+    if (const auto* pose = std::get_if<SE2>(values[k])) moveBlock<3>(term, at, stepJacobian(*pose));
+    ++k;
     at += dimension(value);
   }
 }

@@ -13,7 +13,7 @@ class Optimizer final : public Backend {
  public:
   enum class RelinearizationPolicy {
     kEveryN,  // reorder and relinearise everything every `relinearize_every_updates` (the paper)
-    kFluid,   // relinearise what moved past the thresholds, in each update
+    kFluid,   // correct the linear models that are off, in each update
   };
   struct Params {
     int window_frames = 1000;  // a frame is final when it leaves the window; 0 keeps everything
@@ -42,8 +42,9 @@ class Optimizer final : public Backend {
 
     RelinearizationPolicy policy = RelinearizationPolicy::kFluid;
     int relinearize_every_updates = 50;
-    double relinearize_m = 0.3, relinearize_rad = 0.02;  // fluid
-    double substitution_threshold = 1e-4;                // m or rad: back-substitution stops where nothing moves by more; 0 is exact
+    /// Fluid: see IncrementalSolver::Params.
+    double mismatch_tolerance = 0.02, jacobian_drift_sigmas = 0.3, substitution_sigmas = 1e-3;
+    int iterations_per_update = 2, budget_scalars = 0;
     int final_iterations = 10;                           // at most, in finish()
 
     int camera_covariance_frames = 10;  // the camera's covariance is relative to that many frames earlier

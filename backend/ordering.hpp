@@ -5,8 +5,20 @@
 
 namespace motorcade {
 
-/// An elimination order with little fill for the columns of a sparse matrix whose rows hold the column numbers `rows[i]`: constrained
-/// column approximate minimum degree (CCOLAMD). Columns of a higher `group` come later. The result lists columns in order.
-std::vector<int> eliminationOrder(int columns, std::span<const std::vector<int>> rows, std::span<const int> group);
+/// An elimination order with little fill for the columns of a sparse matrix: constrained column approximate minimum degree (CCOLAMD).
+/// Add rows, then order. Keeps its memory for the next time.
+class Ordering {
+ public:
+  void begin(int columns);
+  /// A row with entries in these columns.
+  void addRow(std::span<const int> columns);
+  /// Columns of a higher `group` come later. The result lists columns in order, and lasts until the next `begin`.
+  std::span<const int> order(std::span<const int> group);
+
+ private:
+  int columns_ = 0, rows_ = 0;
+  std::vector<int> entry_row_, entry_column_;
+  std::vector<int> start_, next_, row_numbers_, members_;
+};
 
 }  // namespace motorcade

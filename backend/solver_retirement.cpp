@@ -16,6 +16,22 @@ void sortUnique(std::vector<T>& items) {
   items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
+/// What the eliminated variables knew, stated in the coordinates of `neighbours`, as a prior around their present estimates.
+std::unique_ptr<MarginalFactor> marginalPrior(const FactorGraph& graph, const std::vector<VariableId>& neighbours, Eigen::MatrixXd knowledge) {
+  const Eigen::Index n = knowledge.rows() - 1;
+  Eigen::VectorXd x(n);
+  std::vector<Value> values;
+  Eigen::Index at = 0;
+  for (const VariableId v : neighbours) {
+    values.push_back(graph[v].applied_estimate);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(graph.sizeOf(v)); ++i) x[at++] = graph[v].x_applied[i];
+  }
+  const Eigen::VectorXd Hx = knowledge.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * x;
+  knowledge(n, n) += x.dot(Hx) + 2 * x.dot(knowledge.row(n).head(n));
+  knowledge.row(n).head(n) += Hx.transpose();
+  return std::make_unique<MarginalFactor>(neighbours, std::move(values), std::move(knowledge));
+}
+
 }  // namespace
 
 /// A connected part of the tree whose cliques hold variables that retire. Any change of order inside it leaves what it passes to its parent
@@ -29,18 +45,19 @@ struct IncrementalSolver::RetiringPart {
 std::vector<IncrementalSolver::RetiringPart> IncrementalSolver::partsWith(std::span<const VariableId> variables) const {
   std::vector<int> cliques;
   for (const VariableId v : variables) {
-    const auto with = tree_.cliquesWith(v);
-    cliques.insert(cliques.end(), with.begin(), with.end());
+    tree_.appendCliquesWith(v, cliques);
   }
   sortUnique(cliques);
   const auto inside = [&](int clique) { return std::ranges::binary_search(cliques, clique); };
   std::vector<RetiringPart> parts;
   for (const int top : cliques) {
-    if (inside(tree_[top].parent)) continue;
+    if (tree_[top].parent >= 0 && inside(tree_[top].parent)) continue;
     const auto separator = tree_[top].separator();
     parts.push_back({.cliques = {top}, .boundary = {separator.begin(), separator.end()}, .parent = tree_[top].parent});
     auto& part = parts.back().cliques;
-    for (std::size_t i = 0; i < part.size(); ++i) std::ranges::copy_if(tree_[part[i]].children, std::back_inserter(part), inside);
+    for (std::size_t i = 0; i < part.size(); ++i)
+      for (int child = tree_[part[i]].first_child; child >= 0; child = tree_[child].next_sibling)
+        if (inside(child)) part.push_back(child);
   }
   return parts;
 }
@@ -52,28 +69,21 @@ void IncrementalSolver::retire(std::span<const VariableId> variables) {
 }
 
 void IncrementalSolver::retirePart(const RetiringPart& part, std::span<const VariableId> gone) {
-  const auto removed = tree_.remove(part.cliques);
+  removed_.clear();
+  tree_.remove(part.cliques, removed_);
   std::vector<VariableId> leaving, staying;
-  for (const VariableId v : removed.variables) (contains(gone, v) ? leaving : staying).push_back(v);
+  for (const VariableId v : removed_.variables) (contains(gone, v) ? leaving : staying).push_back(v);
 
   // The factors of those that leave, and the neighbours on whom their knowledge falls.
-  std::vector<FactorId> factors;
-  std::vector<VariableId> front_variables = leaving, neighbours;
+  std::vector<FactorId> factors, kept;
+  std::vector<VariableId> neighbours;
   for (const VariableId v : leaving) factors.insert(factors.end(), graph_[v].factors.begin(), graph_[v].factors.end());
   sortUnique(factors);
-  std::vector<Contribution> known;
-  for (const FactorId f : factors) {
-    known.push_back({graph_.factor(f).variables(), &graph_.term(f), -1});
+  std::ranges::copy_if(removed_.factors, std::back_inserter(kept), [&](FactorId f) { return !std::ranges::binary_search(factors, f); });
+  for (const FactorId f : factors)
     std::ranges::copy_if(graph_.factor(f).variables(), std::back_inserter(neighbours), [&](VariableId v) { return !contains(leaving, v); });
-  }
   sortUnique(neighbours);
-  front_variables.insert(front_variables.end(), neighbours.begin(), neighbours.end());
-  std::vector<int> offset(graph_.slots(), 0);
-  std::vector<double> workspace;
-  Front front = assembleFront(front_variables, known, graph_, offset, workspace);
-  int eliminated = 0;
-  for (const VariableId v : leaving) eliminated += graph_.sizeOf(v);
-  eliminateFront(front, eliminated);
+  auto knowledge = tree_.marginal(leaving, neighbours, factors);
 
   for (const FactorId f : factors) graph_.removeFactor(f);
   for (const VariableId v : leaving) {
@@ -81,14 +91,14 @@ void IncrementalSolver::retirePart(const RetiringPart& part, std::span<const Var
     graph_.removeVariable(v);
   }
   if (!neighbours.empty()) {
-    std::vector<Value> values;
-    for (const VariableId v : neighbours) values.push_back(graph_[v].linearization_point);
-    const Eigen::Index rest = front.rows() - eliminated;
-    graph_.addFactor(std::make_unique<MarginalFactor>(neighbours, std::move(values), front.bottomRightCorner(rest, rest)));
+    const auto prior = graph_.addFactor(marginalPrior(graph_, neighbours, std::move(knowledge)));
+    const bool inside = std::ranges::any_of(neighbours, [&](VariableId v) { return contains(staying, v); });
+    if (prior && inside) kept.push_back(*prior);
+    if (prior && !inside) tree_.addFactor(tree_.ownerOf(graph_.factor(*prior)), *prior);
   }
 
   std::vector<int> orphans;
-  for (const int orphan : removed.orphans) {
+  for (const int orphan : removed_.orphans) {
     const auto separator = tree_[orphan].separator();
     const bool outside = std::ranges::none_of(separator, [&](VariableId v) { return contains(staying, v); });
     if (outside)
@@ -97,39 +107,50 @@ void IncrementalSolver::retirePart(const RetiringPart& part, std::span<const Var
       orphans.push_back(orphan);
   }
   if (staying.empty()) return;
-  Elimination problem{.order = staying, .boundary = part.boundary, .contributions = {}, .parent = part.parent};
-  problem.contributions = contributionsOf(staying, part.boundary, orphans);
-  tree_.eliminate(problem, graph_, false);
+  created_.clear();
+  tree_.eliminate({.order = staying, .boundary = part.boundary, .factors = kept, .orphans = orphans, .parent = part.parent, .renumber = false},
+                  created_);
 }
 
-IncrementalSolver::Report IncrementalSolver::drop(std::span<const VariableId> variables) {
+const IncrementalSolver::Report& IncrementalSolver::drop(std::span<const VariableId> variables) {
   assert(touched_.empty() && new_variables_.empty());
-  std::vector<int> cliques;
+  beginReport();
   std::vector<FactorId> factors;
+  std::vector<int> cliques;
   for (const VariableId v : variables) {
-    const auto with = tree_.cliquesWith(v);
-    cliques.insert(cliques.end(), with.begin(), with.end());
+    tree_.appendCliquesWith(v, cliques);
     factors.insert(factors.end(), graph_[v].factors.begin(), graph_[v].factors.end());
   }
   sortUnique(factors);
   for (const FactorId f : factors)
     for (const VariableId v : graph_.factor(f).variables()) cliques.push_back(tree_.cliqueOf(v));
-  auto removed = tree_.remove(withAncestors(std::move(cliques)));
+  const auto all = withAncestors(std::move(cliques));
+  removed_.clear();
+  tree_.remove(all, removed_);
 
+  std::vector<FactorId> kept;
+  std::ranges::copy_if(removed_.factors, std::back_inserter(kept), [&](FactorId f) { return !std::ranges::binary_search(factors, f); });
   for (const FactorId f : factors) {
     const auto* marginal = dynamic_cast<const MarginalFactor*>(&graph_.factor(f));
     auto reduced = marginal ? marginal->without(variables) : nullptr;
     graph_.removeFactor(f);
-    if (reduced) graph_.addFactor(std::move(reduced));
+    if (!reduced) continue;
+    if (const auto id = graph_.addFactor(std::move(reduced))) kept.push_back(*id);
   }
   for (const VariableId v : variables) {
-    std::erase(removed.variables, v);
+    std::erase(removed_.variables, v);
     tree_.forget(v);
     graph_.removeVariable(v);
   }
-  Report report;
-  rebuild(std::move(removed.variables), removed.orphans, Order::kKeep, report);
-  return report;
+  ++step_;
+  created_.clear();
+  tree_.eliminate({.order = removed_.variables, .boundary = {}, .factors = kept, .orphans = removed_.orphans, .renumber = false}, created_);
+  work_.assign(tree_.slots(), Work::kNone);
+  for (const int c : created_) work_[static_cast<std::size_t>(c)] = Work::kNew;
+  substitute();
+  if (params_.policy == Policy::kFluid) compareModels();
+  endReport();
+  return report_;
 }
 
 }  // namespace motorcade

@@ -20,9 +20,11 @@ IncrementalSolver::Params solverParams(const Optimizer::Params& params) {
   return {.policy = params.policy == Optimizer::RelinearizationPolicy::kFluid ? IncrementalSolver::Policy::kFluid
                                                                               : IncrementalSolver::Policy::kEveryN,
           .batch_every_updates = params.relinearize_every_updates,
-          .relinearize_m = params.relinearize_m,
-          .relinearize_rad = params.relinearize_rad,
-          .substitution_threshold = params.substitution_threshold};
+          .mismatch_tolerance = params.mismatch_tolerance,
+          .jacobian_drift_sigmas = params.jacobian_drift_sigmas,
+          .substitution_sigmas = params.substitution_sigmas,
+          .iterations_per_update = params.iterations_per_update,
+          .budget_scalars = params.budget_scalars};
 }
 
 constexpr double kUnknownMotion_m = 2.0, kUnknownMotion_rad = 0.2;  // odometry whose covariance is unusable
@@ -179,7 +181,8 @@ SE3 TrajectoryGraph::objectPose(const ObjectTrack& track, FrameId frame) const {
 
 void TrajectoryGraph::dropSingular(const IncrementalSolver::Report& report) {
   std::set<VariableId> singular;
-  for (const auto& scalar : report.singular) singular.insert(scalar.variable);
+  for (const auto& problem : report.problems)
+    if (problem.kind == SolverProblem::Kind::kUnconstrained) singular.insert(problem.variable);
   if (singular.empty()) return;
   for (auto& [id, track] : tracks_) {
     std::vector<VariableId> variables;

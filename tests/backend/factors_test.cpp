@@ -111,10 +111,10 @@ TEST(MarginalFactor, KeepsItsQuadraticWhenTheLinearizationPointMoves) {
   const SE3 then = random.pose(1, 0.5), now = then * random.pose(0.1, 0.05);
   const Eigen::Matrix<double, 7, 7> root = Eigen::Matrix<double, 7, 7>::Random();
   const Eigen::MatrixXd information = root.transpose() * root;
-  const MarginalFactor factor({VariableId{0}}, {then}, information);
+  const MarginalFactor factor({VariableId{0}}, {then}, information);  // of a step in the world's axes
   const auto cost = [&](const SE3& T) {
     Eigen::Matrix<double, 7, 1> e;
-    e << (then.inverse() * T).log(), 1;
+    e << displacement(then, T), 1;
     return e.dot(information * e);
   };
   const Value value = now;
