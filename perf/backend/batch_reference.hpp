@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+
+#include "apps/solve/pose_graph_feed.hpp"
+
+namespace motorcade::perf {
+
+/// The batch solution of the first updates of a graph, for more and more of them: each starts from the one before, relinearises everything,
+/// and goes on until nothing moves. Solved with the solver's default parameters, whatever is measured.
+class BatchReference {
+ public:
+  /// Keeps a reference to the graph.
+  explicit BatchReference(const PoseGraph& graph) : feed_(graph, IncrementalSolver::Params{}) {}
+
+  /// `updates` may not go down. False when it does not converge.
+  bool advanceTo(std::size_t updates);
+  const PoseGraphFeed& feed() const { return feed_; }
+
+ private:
+  PoseGraphFeed feed_;
+  std::size_t updates_ = 0;
+};
+
+/// Gauss-Newton until nothing moves any more; false when that does not come about.
+bool converge(PoseGraphFeed& feed);
+
+/// How much a solution's chi2 lies above the optimum.
+double excessPercent(double chi2, double optimum);
+
+}  // namespace motorcade::perf
