@@ -14,12 +14,12 @@ constexpr double kExact = 1e-6;      // chi2 of measurements that agree: an open
 
 bool BatchReference::advanceTo(std::size_t updates) {
   for (; updates_ < updates; ++updates_) feed_.next();
-  return converge(feed_);
+  return converge(feed_.solver());
 }
 
-bool converge(PoseGraphFeed& feed) {
-  const auto& report = feed.solver().converge(kMaxIterations, kConverged);
-  return report.largest_change < kConverged && std::isfinite(feed.chi2());
+bool converge(IncrementalSolver& solver) {
+  const auto& report = solver.converge(kMaxIterations, kConverged);
+  return report.largest_change < kConverged && std::isfinite(solver.counters().chi2);
 }
 
 double excessPercent(double chi2, double optimum) { return 100 * (chi2 - optimum) / std::max(optimum, kExact); }

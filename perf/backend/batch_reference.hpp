@@ -23,7 +23,7 @@ class BatchReference {
 };
 
 /// Gauss-Newton until nothing moves any more; false when that does not come about.
-bool converge(PoseGraphFeed& feed);
+bool converge(IncrementalSolver& solver);
 
 /// How much a solution's chi2 lies above the optimum.
 double excessPercent(double chi2, double optimum);

@@ -82,6 +82,7 @@ Json jsonOf(const MultibodyBin& bin) {
           {"update_ms", jsonOf(bin.update_ms)},
           {"retire_ms", jsonOf(bin.retire_ms)},
           {"eliminated_scalars", jsonOf(bin.eliminated_scalars)},
+          {"substituted_scalars", jsonOf(bin.substituted_scalars)},
           {"normalized_error", bin.normalized_error},
           {"variables", bin.variables},
           {"factors", bin.factors},
@@ -108,26 +109,30 @@ void printAging(const MultibodyAging& aging, int frames) {
 
 void printBin(const MultibodyRun& run, const MultibodyBin& bin) {
   const int frames = run.options.window_frames > 0 ? std::min(bin.frame, run.options.window_frames) : bin.frame;
-  std::printf("%8d %9.3f %8.3f %8.3f %9.3f %8.0f %8.0f %9zu %9.2f %9.1f %8.2f %8.2f %7.2f\n", bin.frame, bin.update_ms.median,
+  std::printf("%8d %9.3f %8.3f %8.3f %9.3f %7.0f %7.0f %7.0f %7.0f %9zu %8.2f %9.1f %8.2f %8.2f %7.2f\n", bin.frame, bin.update_ms.median,
               bin.update_ms.p99, bin.update_ms.max, bin.retire_ms.median, bin.eliminated_scalars.median, bin.eliminated_scalars.p99,
-              bin.variables, mebibytes(bin.held_bytes), 1024 * mebibytes(bin.held_bytes) / frames, mebibytes(bin.heap_bytes),
-              mebibytes(bin.resident_bytes), bin.normalized_error);
+              bin.substituted_scalars.median, bin.substituted_scalars.p99, bin.variables, mebibytes(bin.held_bytes),
+              1024 * mebibytes(bin.held_bytes) / frames, mebibytes(bin.heap_bytes), mebibytes(bin.resident_bytes), bin.normalized_error);
 }
 
 }  // namespace
 
 void printGraphHead() {
-  std::printf("%-20s %7s %7s %9s %9s %8s %8s %13s %13s %8s %11s %8s %8s %9s\n", "graph", "poses", "edges", "total s", "median ms", "p99 ms",
-              "max ms", "chi2", "optimum", "excess %", "scalars/upd", "median", "p99", "held MiB");
+  std::printf("%-20s %6s %6s %8s %9s %8s %8s %12s %12s %8s %7s %7s %7s %7s %7s %7s %8s\n", "graph", "poses", "edges", "total s",
+              "median ms", "p99 ms", "max ms", "chi2", "optimum", "excess %", "elim.", "median", "p99", "subst.", "median", "p99",
+              "held MiB");
 }
 
 void printGraph(const GraphFigures& figures) {
   const GraphRun& run = figures.run;
-  const Quantiles ms = quantilesOf(run.cpu_ms), scalars = quantilesOf(run.eliminated_scalars);
-  std::printf("%-20s %7zu %7zu %9.3f %9.3f %8.3f %8.3f %13.6g %13.6g %8.4f %11.1f %8.0f %8.0f %9.2f%s\n", figures.name.c_str(), run.poses,
-              run.edges, 1e-3 * ms.total, ms.median, ms.p99, ms.max, run.chi2, run.optimum, excessPercent(run.chi2, run.optimum),
-              scalars.total / static_cast<double>(std::max<std::size_t>(1, run.cpu_ms.size())), scalars.median, scalars.p99,
-              mebibytes(run.held_bytes), run.reached_from_odometry ? "" : "  (optimum not reached from odometry)");
+  const Quantiles ms = quantilesOf(run.cpu_ms), eliminated = quantilesOf(run.eliminated_scalars),
+                  substituted = quantilesOf(run.substituted_scalars);
+  const auto updates = static_cast<double>(std::max<std::size_t>(1, run.cpu_ms.size()));
+  std::printf("%-20s %6zu %6zu %8.3f %9.3f %8.3f %8.3f %12.7g %12.7g %8.4f %7.0f %7.0f %7.0f %7.0f %7.0f %7.0f %8.2f%s\n",
+              figures.name.c_str(), run.poses, run.edges, 1e-3 * ms.total, ms.median, ms.p99, ms.max, run.chi2, run.optimum,
+              excessPercent(run.chi2, run.optimum), eliminated.total / updates, eliminated.median, eliminated.p99,
+              substituted.total / updates, substituted.median, substituted.p99, mebibytes(run.held_bytes),
+              run.reached_from_odometry ? "" : "  (optimum not reached from odometry)");
   if (run.problems > 0) std::printf("  %zu problems reported\n", run.problems);
   if (figures.closures) printClosures(figures);
   if (figures.check) printCheck(*figures.check);
@@ -143,6 +148,7 @@ Json jsonOf(const GraphFigures& figures) {
                {"problems", run.problems},
                {"cpu_ms", jsonOf(quantilesOf(run.cpu_ms))},
                {"eliminated_scalars", jsonOf(quantilesOf(run.eliminated_scalars))},
+               {"substituted_scalars", jsonOf(quantilesOf(run.substituted_scalars))},
                {"chi2", run.chi2},
                {"optimum", run.optimum},
                {"excess_percent", excessPercent(run.chi2, run.optimum)},
@@ -156,8 +162,8 @@ Json jsonOf(const GraphFigures& figures) {
 void printMultibody(const MultibodyRun& run) {
   std::printf("\n%d objects in view, %d frames, window %d, seed %llu: total %.3f s, max %.3f ms\n", run.options.objects, run.options.frames,
               run.options.window_frames, static_cast<unsigned long long>(run.options.seed), 1e-3 * run.update_ms.total, run.update_ms.max);
-  std::printf("%8s %9s %8s %8s %9s %8s %8s %9s %9s %9s %8s %8s %7s\n", "around", "update ms", "p99", "max", "retire ms", "scalars", "p99",
-              "variables", "held MiB", "KiB/frame", "heap MiB", "RSS MiB", "error^2");
+  std::printf("%8s %9s %8s %8s %9s %7s %7s %7s %7s %9s %8s %9s %8s %8s %7s\n", "around", "update ms", "p99", "max", "retire ms", "elim.",
+              "p99", "subst.", "p99", "variables", "held MiB", "KiB/frame", "heap MiB", "RSS MiB", "error^2");
   for (const MultibodyBin& bin : run.bins) printBin(run, bin);
   if (const auto growth = run.timeGrowth()) std::printf("  median of the last row over that of the first: %.3f\n", *growth);
   if (run.aging) printAging(*run.aging, run.options.frames);

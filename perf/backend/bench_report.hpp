@@ -9,7 +9,7 @@
 #include "perf/backend/multibody_run.hpp"
 #include "perf/backend/solution_check.hpp"
 
-/// Rows of tables on standard output, and the same figures as JSON.
+/// Rows of tables on standard output, and the same figures as JSON. Scalars are per update: eliminated, and solved for by substitution.
 namespace motorcade::perf {
 
 struct GraphFigures {

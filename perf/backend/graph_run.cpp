@@ -12,11 +12,11 @@ constexpr std::ptrdiff_t kClosureFrames = 50;
 constexpr double kSettledPercent = 0.1;
 
 void findOptimum(const PoseGraph& graph, PoseGraphFeed& solved, GraphRun& run) {
-  converge(solved);
+  converge(solved.solver());
   run.optimum = solved.chi2();
   PoseGraphFeed at_once(graph, IncrementalSolver::Params{}, PoseGraphFeed::Pace::kAtOnce);
   at_once.next();
-  if (!converge(at_once)) return;
+  if (!converge(at_once.solver())) return;
   const double from_odometry = at_once.chi2();
   run.reached_from_odometry = excessPercent(from_odometry, run.optimum) < 0.001;
   run.optimum = std::min(run.optimum, from_odometry);
@@ -31,6 +31,7 @@ GraphRun runGraph(const PoseGraph& graph, const IncrementalSolver::Params& param
     const auto update = feed.next();
     run.cpu_ms.push_back(update.cpu_ms);
     run.eliminated_scalars.push_back(static_cast<double>(update.report.eliminated_scalars));
+    run.substituted_scalars.push_back(static_cast<double>(update.report.substituted_scalars));
     run.problems += update.report.problems.size();
   }
   run.poses = feed.poseCount();

@@ -10,8 +10,8 @@ namespace motorcade::perf {
 
 /// What it took to solve a pose graph, an update per pose or frame.
 struct GraphRun {
-  std::size_t poses = 0, edges = 0, problems = 0;  // in the solution; that updates reported
-  std::vector<double> cpu_ms, eliminated_scalars;  // per update
+  std::size_t poses = 0, edges = 0, problems = 0;                       // in the solution; that updates reported
+  std::vector<double> cpu_ms, eliminated_scalars, substituted_scalars;  // per update
   double chi2 = 0;
   std::size_t held_bytes = 0;
 

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "apps/solve/thread_clock.hpp"
+#include "perf/backend/batch_reference.hpp"
 #include "perf/backend/multibody_stream.hpp"
 #include "perf/backend/process_memory.hpp"
 
@@ -13,8 +14,6 @@ namespace {
 constexpr int kFirstBin = 1000, kHalfBin = 500;
 constexpr int kAgingFrames = 1000;
 constexpr int kErrorFrames = 10;  // apart, so that errors are independent
-constexpr int kMaxIterations = 40;
-constexpr double kConverged = 1e-6;  // m and rad
 
 /// 1000, 2000, 5000, 10000, ..., as far as their bins do not meet that of the last frame.
 std::vector<int> binFrames(int frames) {
@@ -32,7 +31,7 @@ class Drive {
   /// Memory for the costs of so many frames is there from the start, so that the process does not grow by it.
   Drive(const IncrementalSolver::Params& params, int window_frames, int frames)
       : solver_(params), stream_(solver_, static_cast<std::size_t>(window_frames)) {
-    for (auto* costs : {&update_ms_, &retire_ms_, &eliminated_scalars_}) {
+    for (auto* costs : {&update_ms_, &retire_ms_, &eliminated_scalars_, &substituted_scalars_}) {
       costs->assign(static_cast<std::size_t>(frames), 0);
       costs->clear();
     }
@@ -44,6 +43,7 @@ class Drive {
     stream_.add(frame);
     const auto& report = solver_.update();
     eliminated_scalars_.push_back(static_cast<double>(report.eliminated_scalars));
+    substituted_scalars_.push_back(static_cast<double>(report.substituted_scalars));
     problems_ += report.problems.size();
     const double updated_ms = threadCpu_ms();
     if (const auto retired = stream_.takeRetired(); !retired.empty()) solver_.retire(retired);
@@ -57,14 +57,15 @@ class Drive {
   const MultibodyStream& stream() const { return stream_; }
   std::size_t problems() const { return problems_; }
   // From one update on.
-  Quantiles update_ms(std::size_t from) const { return quantilesOf(std::span(update_ms_).subspan(from)); }
-  Quantiles retire_ms(std::size_t from) const { return quantilesOf(std::span(retire_ms_).subspan(from)); }
+  Quantiles updateTimes_ms(std::size_t from) const { return quantilesOf(std::span(update_ms_).subspan(from)); }
+  Quantiles retireTimes_ms(std::size_t from) const { return quantilesOf(std::span(retire_ms_).subspan(from)); }
   Quantiles eliminatedScalars(std::size_t from) const { return quantilesOf(std::span(eliminated_scalars_).subspan(from)); }
+  Quantiles substitutedScalars(std::size_t from) const { return quantilesOf(std::span(substituted_scalars_).subspan(from)); }
 
  private:
   IncrementalSolver solver_;
   MultibodyStream stream_;
-  std::vector<double> update_ms_, retire_ms_, eliminated_scalars_;
+  std::vector<double> update_ms_, retire_ms_, eliminated_scalars_, substituted_scalars_;
   std::size_t problems_ = 0;
 };
 
@@ -73,9 +74,10 @@ MultibodyBin binAround(int middle, const Drive& drive, const std::vector<double>
   const auto begin = static_cast<std::size_t>(std::max(0, middle - kHalfBin));
   const double error_count = static_cast<double>(std::max<std::size_t>(1, errors.size()));
   return {.frame = middle,
-          .update_ms = drive.update_ms(begin),
-          .retire_ms = drive.retire_ms(begin),
+          .update_ms = drive.updateTimes_ms(begin),
+          .retire_ms = drive.retireTimes_ms(begin),
           .eliminated_scalars = drive.eliminatedScalars(begin),
+          .substituted_scalars = drive.substitutedScalars(begin),
           .normalized_error = quantilesOf(errors).total / error_count,
           .held_bytes = drive.solver().heldBytes(),
           .heap_bytes = heapBytes(),
@@ -111,8 +113,8 @@ MultibodyAging measureAging(Drive& old, MultibodyScene& scene, const Incremental
   }
   const auto compared = static_cast<std::size_t>(warm_up);
   const std::size_t compared_old = compared + static_cast<std::size_t>(options.frames);
-  return {.old_ms = old.update_ms(compared_old).median,
-          .young_ms = young.update_ms(compared).median,
+  return {.old_ms = old.updateTimes_ms(compared_old).median,
+          .young_ms = young.updateTimes_ms(compared).median,
           .old_scalars = old.eliminatedScalars(compared_old).median,
           .young_scalars = young.eliminatedScalars(compared).median};
 }
@@ -120,7 +122,7 @@ MultibodyAging measureAging(Drive& old, MultibodyScene& scene, const Incremental
 /// The cost itself holds that of all that was retired, in which an excess would vanish.
 double excessOverConverged(IncrementalSolver& solver) {
   const double chi2 = solver.counters().chi2;
-  solver.converge(kMaxIterations, kConverged);
+  converge(solver);
   constexpr double kRows = 6;
   return 100 * (chi2 - solver.counters().chi2) / (kRows * static_cast<double>(solver.graph().factorCount()));
 }
@@ -138,7 +140,7 @@ MultibodyRun runMultibody(const IncrementalSolver::Params& params, const Multibo
   MultibodyScene scene(options.objects, options.seed);
   Drive drive(params, options.window_frames, options.frames);
   run.bins = driveThroughBins(drive, scene, options.frames);
-  run.update_ms = drive.update_ms(0);
+  run.update_ms = drive.updateTimes_ms(0);
   if (options.window_frames > 0) run.aging = measureAging(drive, scene, params, options);
   run.problems = drive.problems();
   run.chi2_excess_percent = excessOverConverged(drive.solver());

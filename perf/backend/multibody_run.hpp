@@ -15,10 +15,10 @@ struct MultibodyOptions {
 
 /// How the solver fares around one length of a run.
 struct MultibodyBin {
-  int frame = 0;                   // in the middle
-  Quantiles update_ms, retire_ms;  // CPU time; retiring is part of the update
-  Quantiles eliminated_scalars;    // without those of retiring
-  double normalized_error = 0;     // mean of the newest camera pose's, relative to ten frames earlier; 1 is expected
+  int frame = 0;                                      // in the middle
+  Quantiles update_ms, retire_ms;                     // CPU time; retiring is part of the update
+  Quantiles eliminated_scalars, substituted_scalars;  // without those of retiring
+  double normalized_error = 0;                        // mean of the newest camera pose's, relative to ten frames earlier; 1 is expected
   // At its end.
   std::size_t held_bytes = 0, heap_bytes = 0, resident_bytes = 0, variables = 0, factors = 0;
 };

@@ -41,9 +41,9 @@ void addOptions(CLI::App& app, Options& options) {
       ->delimiter(',')
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  app.add_option("--frames", options.drive.frames, "Length of the drives")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--frames", options.drive.frames, "Length of the drives")->check(CLI::Range(1, 10'000'000))->capture_default_str();
   app.add_option("--window", options.drive.window_frames, "Frames that are kept; 0: all")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();
   app.add_option("--seed", options.drive.seed, "Of the drives, and of the updates that --check looks at")->capture_default_str();
   app.add_option("--json", options.json, "File for all figures as JSON");
