@@ -127,7 +127,7 @@ bool FactorGraph::evaluate(const Factor& factor, Term term) {
     factor.linearize(valuesOf(factor, &Variable::applied_estimate), term);
   }
   turnToWorldAxes(factor, term);
-  return std::isfinite(term.sum());  // an infinity or NaN anywhere spoils the sum
+  return std::isfinite(term.squaredNorm());  // an infinity or NaN anywhere spoils the sum; the elimination needs the squares
 }
 
 /// From steps to coordinates: the model's right-hand side at x = 0.
@@ -238,6 +238,7 @@ double FactorGraph::costOf(const Factor& factor, const Term& term) {
 }
 
 void FactorGraph::setCost(LinearizedFactor& slot, double cost) {
+  if (!std::isfinite(cost)) return;  // it would never leave the sum again
   total_cost_ += cost - slot.cost;
   slot.cost = cost;
 }

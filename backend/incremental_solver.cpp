@@ -19,25 +19,31 @@ void sortUnique(std::vector<T>& items) {
   items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
+/// A factor over these variables was left out.
+SolverProblem refusal(SolverProblem::Kind kind, VariableId because_of, std::span<const VariableId> variables) {
+  SolverProblem problem{.kind = kind, .variable = because_of};
+  std::ranges::copy_if(variables, std::back_inserter(problem.others), [&](VariableId v) { return v != because_of; });
+  return problem;
+}
+
 }  // namespace
 
 VariableId IncrementalSolver::addVariable(const Value& initial) {
   const VariableId v = graph_.addVariable(initial);
+  explanations_.forget(v);
   new_variables_.push_back(v);
   return v;
 }
 
 bool IncrementalSolver::usable(const Factor& factor) {
   const auto variables = factor.variables();
-  for (std::size_t i = 0; i < variables.size(); ++i) {
-    SolverProblem problem{.variable = variables[i], .direction = {}, .factors = {}};
-    if (!graph_.contains(variables[i]))
-      problem.kind = SolverProblem::Kind::kUnknownVariable;
-    else if (std::ranges::count(variables, variables[i]) > 1)
-      problem.kind = SolverProblem::Kind::kRepeatedVariable;
+  for (const VariableId v : variables) {
+    if (!graph_.contains(v))
+      refused_.push_back(refusal(SolverProblem::Kind::kUnknownVariable, v, variables));
+    else if (std::ranges::count(variables, v) > 1)
+      refused_.push_back(refusal(SolverProblem::Kind::kRepeatedVariable, v, variables));
     else
       continue;
-    refused_.push_back(problem);
     return false;
   }
   return true;
@@ -45,14 +51,15 @@ bool IncrementalSolver::usable(const Factor& factor) {
 
 std::optional<FactorId> IncrementalSolver::addFactor(std::unique_ptr<const Factor> factor) {
   if (!usable(*factor)) return std::nullopt;
-  const VariableId first = factor->variables().front();
+  const std::size_t count = touched_.size();
+  touched_.insert(touched_.end(), factor->variables().begin(), factor->variables().end());
   const auto id = graph_.addFactor(std::move(factor));
   if (!id) {
-    refused_.push_back({.kind = SolverProblem::Kind::kNotFinite, .variable = first, .direction = {}, .factors = {}});
+    const auto variables = std::span(touched_).subspan(count);
+    refused_.push_back(refusal(SolverProblem::Kind::kNotFinite, variables.front(), variables));
+    touched_.resize(count);
     return std::nullopt;
   }
-  const auto variables = graph_.factor(*id).variables();
-  touched_.insert(touched_.end(), variables.begin(), variables.end());
   new_factors_.push_back(*id);
   return id;
 }
@@ -83,7 +90,7 @@ void IncrementalSolver::endReport() {
   report_.deferred_variables = static_cast<int>(stale_.size());
   if (report_.relinearized_factors > 0) ++counters_.relinearizations;
   sortUnique(report_.moved);
-  reportSingular();
+  explanations_.append(graph_, tree_, report_.problems);
   touched_.clear();
   new_variables_.clear();
   new_factors_.clear();
@@ -376,18 +383,6 @@ const IncrementalSolver::Report& IncrementalSolver::converge(int max_iterations,
   }
   endReport();
   return report_;
-}
-
-void IncrementalSolver::reportSingular() {
-  for (const SingularScalar& scalar : tree_.singular()) {
-    const bool known = std::ranges::any_of(report_.problems, [&](const SolverProblem& p) {
-      return p.kind == SolverProblem::Kind::kUnconstrained && p.variable == scalar.variable && p.direction[scalar.component] != 0;
-    });
-    if (known || !graph_.contains(scalar.variable)) continue;
-    SmallVector direction = SmallVector::Zero(graph_.sizeOf(scalar.variable));
-    direction[scalar.component] = 1;
-    report_.problems.push_back({.kind = SolverProblem::Kind::kUnconstrained, .variable = scalar.variable, .direction = direction, .factors = graph_[scalar.variable].factors});
-  }
 }
 
 std::vector<int> IncrementalSolver::withAncestors(std::vector<int> cliques) const {

@@ -8,6 +8,7 @@
 #include "backend/elimination_tree.hpp"
 #include "backend/factor_graph.hpp"
 #include "backend/ordering.hpp"
+#include "backend/solver_explanations.hpp"
 #include "backend/solver_problem.hpp"
 #include "core/messages.hpp"
 
@@ -104,7 +105,6 @@ class IncrementalSolver {
   void solve(const Clique& clique);
   void follow(double threshold_sigmas);
   void compareModels();
-  void reportSingular();
   bool usable(const Factor& factor);
   std::vector<int> withAncestors(std::vector<int> cliques) const;
 
@@ -119,6 +119,7 @@ class IncrementalSolver {
   SolverCounters counters_;
   std::int64_t budget_left_ = 0;
   std::vector<SolverProblem> refused_;  // since the last update
+  SolverExplanations explanations_;
 
   std::vector<VariableId> touched_, new_variables_;
   std::vector<FactorId> new_factors_;

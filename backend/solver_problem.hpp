@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "backend/factor_graph.hpp"
@@ -11,20 +12,29 @@ namespace motorcade {
 /// What is wrong with a graph, found by an update.
 struct SolverProblem {
   enum class Kind {
-    kUnconstrained,      // no factor constrains the variable along `direction`: its estimate stays where it is
-    kBadlyConditioned,   // the factors constrain it by so little, compared with their size, that rounding eats the result
-    kNotFinite,          // the factor has NaN or infinity at its variables' estimates: it was left out
-    kUnknownVariable,    // the factor names a variable that is not in the graph: it was left out
-    kRepeatedVariable,   // the factor names a variable twice: it was left out
+    kUnconstrained,     // no factor constrains the variable along `directions`: its estimate stays where it is
+    kMissingPrior,      // nothing holds a connected part of the graph: all its variables can move together
+    kDisconnectedPart,  // the same, while something holds the rest of the graph
+    kBadlyConditioned,  // factors constrain the variable by so little, compared with their size, that rounding eats the result
+    kIndefinite,        // factors state negative information along `directions`: the estimate stays where it is
+    kNotFinite,         // the factor overflows or is not a number at its variables' estimates: it was left out
+    kUnknownVariable,   // the factor names a variable that is not in the graph: it was left out
+    kRepeatedVariable,  // the factor names a variable twice: it was left out
   };
   Kind kind = Kind::kUnconstrained;
-  VariableId variable;
-  SmallVector direction;            // of unit length, in the variable's own perturbation; empty where it does not apply
-  std::vector<FactorId> factors;    // that touch the variable
-  std::int64_t part_variables = 0;  // in the connected part of the graph that the variable belongs to; the whole part may be free to move
+  VariableId variable;                    // of those that move together, the one that was held
+  std::vector<SmallVector> directions{};  // of unit length, in the variable's own perturbation; empty for a factor that was left out
+  std::vector<FactorId> factors{};        // that touch the variable
+  std::vector<VariableId> others{};       // that a factor that was left out names besides
+  std::int64_t freedoms = 0;              // independent motions; more than `directions` when the variable rests in some of them
+  std::int64_t moving_variables = 0;      // that take part in them
+  std::int64_t part_variables = 0;        // in the connected part of the graph
 };
 
-/// A sentence, with `name` giving the variable's name: "pose 17 is not constrained along y (0.8) and yaw (0.6); ...".
+/// One word: "missing_prior".
+std::string_view nameOf(SolverProblem::Kind kind);
+
+/// A sentence on what is wrong, what the solver did, and the mend, with `name` giving a variable's name. The variable may be gone since.
 std::string describe(const SolverProblem& problem, const FactorGraph& graph, const std::function<std::string(VariableId)>& name);
 
 }  // namespace motorcade

@@ -189,8 +189,8 @@ TEST(IncrementalSolver, NamesAnUnconstrainedVariableAndGoesOn) {
   graph.addFrame();
   const VariableId loose = solver.addVariable(SE3{});
   const auto& report = solver.update();
-  ASSERT_EQ(report.problems.size(), 6u);
-  for (const auto& problem : report.problems) EXPECT_EQ(problem.variable, loose);
+  ASSERT_EQ(report.problems.size(), 1U);
+  EXPECT_EQ(report.problems[0].variable, loose);
   EXPECT_TRUE(solver.drop(std::vector{loose}).problems.empty());
   graph.addFrame();
   EXPECT_TRUE(solver.update().problems.empty());
