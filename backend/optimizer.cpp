@@ -11,11 +11,12 @@ class Optimizer::Smoother {
 
   EstimatesPtr add(const FrameMeasurements& measurements) {
     graph_.add(measurements);
+    Estimates estimates{.online = {}, .finals = {}, .counters = {}, .problems = graph_.problems()};
     if (params_.compute_covariances) {
       if (const auto settled = lagged()) reader_.refreshCovariances(*settled);
       reader_.refreshCovariances(measurements.frame);
     }
-    Estimates estimates{.online = reader_.read(measurements.frame), .finals = {}, .counters = {}};
+    estimates.online = reader_.read(measurements.frame);
     while (params_.window_frames > 0 && graph_.frames().size() > static_cast<std::size_t>(params_.window_frames)) {
       estimates.finals.push_back(reader_.read(graph_.frames().begin()->first));
       graph_.retireOldest();

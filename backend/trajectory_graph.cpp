@@ -27,6 +27,12 @@ IncrementalSolver::Params solverParams(const Optimizer::Params& params) {
           .budget_scalars = params.budget_scalars};
 }
 
+/// Of variables, not of a factor that was left out.
+bool isTrouble(SolverProblem::Kind kind) {
+  using Kind = SolverProblem::Kind;
+  return kind != Kind::kNotFinite && kind != Kind::kUnknownVariable && kind != Kind::kRepeatedVariable;
+}
+
 constexpr double kUnknownMotion_m = 2.0, kUnknownMotion_rad = 0.2;  // odometry whose covariance is unusable
 
 }  // namespace
@@ -38,6 +44,7 @@ TrajectoryGraph::TrajectoryGraph(const Optimizer::Params& params)
       solver_(solverParams(params)) {}
 
 void TrajectoryGraph::add(const FrameMeasurements& measurements) {
+  problems_.clear();
   addCamera(measurements);
   std::vector<const ObjectObservation*> seen_now;
   for (const ObjectObservation& seen : measurements.objects)
@@ -49,7 +56,11 @@ void TrajectoryGraph::add(const FrameMeasurements& measurements) {
   for (const auto& [m, n] : pairs) ++partners[seen_now[m]->track], ++partners[seen_now[n]->track];
 
   for (const ObjectObservation& seen : measurements.objects) {
-    if (!frames_.contains(seen.frame) || !isFinite(seen.T_cam_body)) continue;
+    if (!frames_.contains(seen.frame)) continue;
+    if (!isFinite(seen.T_cam_body)) {
+      leftOut(seen, "its pose, which is not finite,");
+      continue;
+    }
     const bool shares = seen.frame == measurements.frame && partners.contains(seen.track);
     addObservation(seen, shares ? 1.0 - params_.object_encounter_share : 1.0);
   }
@@ -57,7 +68,7 @@ void TrajectoryGraph::add(const FrameMeasurements& measurements) {
     const auto share = [&](std::size_t i) { return params_.object_encounter_share / partners[seen_now[i]->track]; };
     addObjectEncounter(*seen_now[m], *seen_now[n], share(m), share(n));
   }
-  dropSingular(solver_.update());
+  dropTroubled(solver_.update());
 }
 
 void TrajectoryGraph::addPrior(VariableId v, const SE3& mean, double sigma_m, double sigma_rad) {
@@ -75,7 +86,11 @@ void TrajectoryGraph::addCamera(const FrameMeasurements& measurements) {
     record.x = solver_.addVariable(solver_.pose(before) * T_previous_now);
     const auto root = squareRootInformation(params_.odometry_variance_scale * measurements.odometry_covariance);
     PoseNoise noise = isotropic(kUnknownMotion_m, kUnknownMotion_rad);
-    if (root && isFinite(measurements.T_previous_now)) noise.sqrt_information = *root;
+    if (root && isFinite(measurements.T_previous_now))
+      noise.sqrt_information = *root;
+    else
+      problems_.push_back("the camera's motion or its covariance is unusable: taken as " +
+                          std::string(isFinite(measurements.T_previous_now) ? "measured" : "standing still") + ", and next to unknown");
     solver_.addFactor(std::make_unique<MotionFactor>(std::array{before, record.x}, MotionModel{T_previous_now}, noise));
   }
   frames_.emplace(measurements.frame, record);
@@ -133,7 +148,10 @@ bool TrajectoryGraph::addMotion(const ObjectTrack& track, const ObjectRecord& re
   const auto before = track.records.find(motion.since);
   if (before == track.records.end() || !before->second.z.valid()) return false;
   const auto root = squareRootInformation(params_.motion_variance_scale * motion.covariance);
-  if (!root) return false;
+  if (!root) {
+    leftOut(record.seen, "its motion, whose covariance is not positive definite,");
+    return false;
+  }
   const PoseNoise noise{.sqrt_information = *root, .loss = params_.motion_loss, .loss_scale = params_.motion_loss_scale};
   const std::array variables{before->second.z, record.z};
   return solver_.addFactor(std::make_unique<MotionFactor>(variables, MotionModel{motion.T_before_now}, noise)).has_value();
@@ -154,7 +172,10 @@ bool TrajectoryGraph::addSmoothness(const ObjectTrack& track, FrameId frame) {
 
 bool TrajectoryGraph::addCameraEncounter(const ObjectTrack& track, const ObjectRecord& record, double share) {
   const auto root = squareRootInformation(params_.encounter_variance_scale / share * record.seen.encounter_covariance);
-  if (!root) return false;
+  if (!root) {
+    leftOut(record.seen, "its pose, whose covariance is not positive definite,");
+    return false;
+  }
   const PoseNoise noise{.sqrt_information = *root, .loss = params_.encounter_loss, .loss_scale = params_.encounter_loss_scale};
   const std::array variables{frames_.at(record.seen.frame).x, track.anchor, record.z};
   return solver_.addFactor(std::make_unique<CameraEncounterFactor>(variables, CameraEncounterModel{record.seen.T_cam_body}, noise))
@@ -179,20 +200,56 @@ SE3 TrajectoryGraph::objectPose(const ObjectTrack& track, FrameId frame) const {
   return (solver_.pose(frames_.at(frame).x) * record.seen.T_cam_body).normalized();
 }
 
-void TrajectoryGraph::dropSingular(const IncrementalSolver::Report& report) {
-  std::set<VariableId> singular;
-  for (const auto& problem : report.problems)
-    if (problem.kind == SolverProblem::Kind::kUnconstrained) singular.insert(problem.variable);
-  if (singular.empty()) return;
-  for (auto& [id, track] : tracks_) {
-    std::vector<VariableId> variables;
-    if (track.anchor.valid()) variables.push_back(track.anchor);
+void TrajectoryGraph::leftOut(const ObjectObservation& seen, const std::string& what) {
+  problems_.push_back("object " + std::to_string(seen.track.value) + ", frame " + std::to_string(seen.frame.value) + ": " + what +
+                      " is left out");
+}
+
+std::vector<VariableId> TrajectoryGraph::variablesOf(const ObjectTrack& track) const {
+  std::vector<VariableId> variables;
+  if (track.anchor.valid()) variables.push_back(track.anchor);
+  for (const auto& [frame, record] : track.records)
+    if (record.z.valid()) variables.push_back(record.z);
+  return variables;
+}
+
+std::optional<TrackId> TrajectoryGraph::objectOf(VariableId v) const {
+  for (const auto& [id, track] : tracks_)
+    if (std::ranges::count(variablesOf(track), v) > 0) return id;
+  return std::nullopt;
+}
+
+std::string TrajectoryGraph::nameOf(VariableId v) const {
+  for (const auto& [frame, camera] : frames_)
+    if (camera.x == v) return "camera pose of frame " + std::to_string(frame.value);
+  for (const auto& [id, track] : tracks_) {
+    if (track.anchor == v) return "anchor of object " + std::to_string(id.value);
     for (const auto& [frame, record] : track.records)
-      if (record.z.valid()) variables.push_back(record.z);
-    if (std::ranges::none_of(variables, [&](VariableId v) { return singular.contains(v); })) continue;
-    solver_.drop(variables);
-    track.anchor = {};
-    for (auto& [frame, record] : track.records) record.z = {};
+      if (record.z == v) return "pose of object " + std::to_string(id.value) + " in frame " + std::to_string(frame.value);
+  }
+  return "a variable that is gone";
+}
+
+/// Until no trouble is left that an object has.
+void TrajectoryGraph::dropTroubled(const IncrementalSolver::Report& report) {
+  std::vector<SolverProblem> found = report.problems;
+  while (!found.empty()) {
+    std::vector<TrackId> troubled;
+    for (const SolverProblem& problem : found) {
+      const auto object = isTrouble(problem.kind) ? objectOf(problem.variable) : std::nullopt;
+      if (object) troubled.push_back(*object);
+      const std::string text = describe(problem, solver_.graph(), [&](VariableId v) { return nameOf(v); });
+      problems_.push_back(object ? "object " + std::to_string(object->value) + " is dropped: " + text : text);
+    }
+    found.clear();
+    for (const TrackId id : troubled) {
+      ObjectTrack& track = tracks_.at(id);
+      if (!track.anchor.valid()) continue;  // dropped just now
+      const auto& after = solver_.drop(variablesOf(track));
+      found.insert(found.end(), after.problems.begin(), after.problems.end());
+      track.anchor = {};
+      for (auto& [frame, record] : track.records) record.z = {};
+    }
   }
 }
 
@@ -218,7 +275,8 @@ void TrajectoryGraph::retireOldest() {
 
 void TrajectoryGraph::converge() {
   constexpr double kConverged = 1e-7;  // m or rad
-  dropSingular(solver_.converge(params_.final_iterations, kConverged));
+  problems_.clear();
+  dropTroubled(solver_.converge(params_.final_iterations, kConverged));
 }
 
 }  // namespace motorcade

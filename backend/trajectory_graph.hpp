@@ -2,7 +2,7 @@
 
 #include <map>
 #include <optional>
-#include <set>
+#include <string>
 #include <vector>
 
 #include "backend/factors.hpp"
@@ -41,8 +41,11 @@ class TrajectoryGraph {
  public:
   explicit TrajectoryGraph(const Optimizer::Params& params);
 
-  /// Adds a frame with its objects, and updates the solver. Objects that turn out singular are dropped.
+  /// Adds a frame with its objects, and updates the solver. Measurements that are no numbers are left out, and an object that the system
+  /// cannot determine is dropped: it starts anew with its next observation.
   void add(const FrameMeasurements& measurements);
+  /// What was left out or dropped in the last `add`, in sentences about camera and objects.
+  const std::vector<std::string>& problems() const { return problems_; }
   /// Marginalises the oldest frame.
   void retireOldest();
   void converge();
@@ -69,13 +72,18 @@ class TrajectoryGraph {
   bool addCameraEncounter(const ObjectTrack& track, const ObjectRecord& record, double share);
   void addPrior(VariableId v, const SE3& mean, double sigma_m, double sigma_rad);
   SE3 predictedPose(const ObjectTrack& track, const ObjectObservation& seen) const;
-  void dropSingular(const IncrementalSolver::Report& report);
+  void dropTroubled(const IncrementalSolver::Report& report);
+  std::vector<VariableId> variablesOf(const ObjectTrack& track) const;
+  std::optional<TrackId> objectOf(VariableId v) const;
+  std::string nameOf(VariableId v) const;
+  void leftOut(const ObjectObservation& seen, const std::string& what);
 
   Optimizer::Params params_;
   AccelerationNoise acceleration_;
   IncrementalSolver solver_;
   std::map<FrameId, CameraRecord> frames_;
   std::map<TrackId, ObjectTrack> tracks_;
+  std::vector<std::string> problems_;
 };
 
 }  // namespace motorcade

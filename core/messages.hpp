@@ -117,6 +117,7 @@ struct Estimates {
   FrameEstimate online;
   std::vector<FrameEstimate> finals;  // frames that left the window with this update, oldest first
   SolverCounters counters;
+  std::vector<std::string> problems{};  // sentences for the log: what was left out or dropped, and why
 };
 using EstimatesPtr = std::shared_ptr<const Estimates>;
 

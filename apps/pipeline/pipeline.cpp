@@ -378,6 +378,8 @@ void Pipeline::Impl::optimise(Job& job) {
         lost.online.status = FrameStatus::kLost;
         return std::make_shared<const Estimates>(std::move(lost));
       });
+  for (const std::string& problem : job.estimates->problems)
+    log_(LogLevel::kWarning, "frame " + std::to_string(job.timing.frame.value) + ": " + problem);
   gauges_[kToPublish].enter();
 }
 
