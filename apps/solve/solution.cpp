@@ -24,19 +24,15 @@ std::string namesOf(const std::vector<std::int64_t>& ids) {
   return text;
 }
 
-/// What the solver itself found, each once. Solvers report either problems that they can describe, or bare scalars.
-template <class Report>
-void addSolverProblems(const Report& report, const PoseGraphFeed& feed, std::vector<SolveProblem>& problems) {
+/// What the solver itself found, each once.
+void addSolverProblems(const IncrementalSolver::Report& report, const PoseGraphFeed& feed, std::vector<SolveProblem>& problems) {
   const auto nameOf = [&](VariableId v) { return namesOf({feed.poseOf(v)}); };
-  const auto add = [&](VariableId v, const std::string& detail) {
-    SolveProblem problem{"solver", nameOf(v), detail, {feed.poseOf(v)}};
+  for (const SolverProblem& found : report.problems) {
+    if (found.kind == SolverProblem::Kind::kNotFinite) continue;  // is told with the edge and its line
+    SolveProblem problem{std::string(motorcade::nameOf(found.kind)), nameOf(found.variable), describe(found, feed.solver().graph(), nameOf),
+                         {feed.poseOf(found.variable)}};
     const auto same = [&](const SolveProblem& p) { return p.kind == problem.kind && p.name == problem.name; };
     if (std::ranges::none_of(problems, same)) problems.push_back(std::move(problem));
-  };
-  if constexpr (requires { report.problems; }) {
-    for (const auto& found : report.problems) add(found.variable, describe(found, feed.solver().graph(), nameOf));
-  } else {
-    for (const auto& found : report.singular) add(found.variable, "not constrained in component " + std::to_string(found.component));
   }
 }
 
@@ -98,6 +94,7 @@ bool converge(PoseGraphFeed& feed, Solution& solution) {
   const double start_ms = threadCpu_ms();
   const auto& report = feed.solver().converge(kMaxIterations, kConverged);
   solution.total_ms += threadCpu_ms() - start_ms;
+  addSolverProblems(report, feed, solution.problems);
   return report.largest_change < kConverged && std::isfinite(feed.chi2());
 }
 

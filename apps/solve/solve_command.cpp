@@ -13,16 +13,6 @@
 namespace motorcade {
 namespace {
 
-/// Of solvers that have one.
-template <class Params>
-void setBudget(Params& params, std::int64_t scalars) {
-  if constexpr (requires { params.budget_scalars; }) {
-    params.budget_scalars = scalars;
-  } else if (scalars > 0) {
-    throw UsageError("--budget: this build's solver has no budget; leave it out");
-  }
-}
-
 IncrementalSolver::Params solverParams(const SolveOptions& options) {
   IncrementalSolver::Params params;
   params.policy = options.policy == "every" ? IncrementalSolver::Policy::kEveryN : IncrementalSolver::Policy::kFluid;
@@ -30,7 +20,7 @@ IncrementalSolver::Params solverParams(const SolveOptions& options) {
     if (options.policy != "every") throw UsageError("--every goes with --policy every");
     params.batch_every_updates = options.batch_every_updates;
   }
-  setBudget(params, options.budget_scalars);
+  params.budget_scalars = options.budget_scalars;
   return params;
 }
 

@@ -202,6 +202,13 @@ TEST_F(Solve, ANumberTooLargeDoesNotSpoilTheRest) {
   EXPECT_NEAR(result["chi2"], 0, kTol);
 }
 
+TEST_F(Solve, AJointThatSaysNextToNothingIsNamedWithItsMend) {
+  const json result = solved(quarterTurn(0, 1) + "EDGE_SE2 1 2 1 0 0 1e-14 0 0 1e-14 0 1e-14\n" + quarterTurn(2, 3));
+  ASSERT_THAT(kinds(result), ElementsAre("badly_conditioned"));
+  EXPECT_THAT(std::string(result["problems"][0]["name"]), testing::AnyOf("pose 2", "pose 3"));
+  EXPECT_THAT(printed(), AllOf(HasSubstr("badly conditioned in any direction"), HasSubstr("bring their information closer together")));
+}
+
 TEST_F(Solve, ErrorsSayWhatToMend) {
   EXPECT_THAT(errorOf("EDGE_SE2 0 1 1 0 0 1 0 0 1 0\n"), AllOf(HasSubstr("graph.g2o, line 1"), HasSubstr("give it 11")));
   EXPECT_THAT(errorOf(quarterTurn(0, 1) + ahead(1, 2)), AllOf(HasSubstr("line 2"), HasSubstr("two files")));
@@ -233,6 +240,7 @@ TEST_F(Solve, APublicGraphIsSmoothedPoseByPose) {
   const json result = solvedFile(manhattan);
   EXPECT_EQ(result["updates"], 3500);
   EXPECT_LT(result["chi2"], 1.01 * 3549.04);
+  EXPECT_THAT(result["problems"], IsEmpty());
 }
 
 TEST(PoseGraphFeed, KnowsVariablesPosesAndChi2AfterEachUpdate) {
