@@ -14,6 +14,22 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 std::size_t panelLength(const Clique& c) { return index(c.panelStride()) * index(c.frontal_size); }
 std::size_t remainderLength(const Clique& c) { return index(c.remainderStride()) * index(c.separatorSize() + 1); }
 
+/// With the 4 x 4 blocks on the diagonal whole, as the kernels read them.
+void clearLowerTriangle(double* matrix, int stride, int columns) {
+  for (int j = 0; j < columns; ++j, matrix += stride) std::fill(matrix + j / 4 * 4, matrix + stride, 0.0);
+}
+
+/// Mostly the six or three scalars of a pose.
+inline void addTo(double* to, const double* from, int count) {
+  if (count == 6) {
+    for (int i = 0; i < 6; ++i) to[i] += from[i];
+  } else if (count == 3) {
+    for (int i = 0; i < 3; ++i) to[i] += from[i];
+  } else {
+    for (int i = 0; i < count; ++i) to[i] += from[i];
+  }
+}
+
 }  // namespace
 
 int EliminationTree::cliqueOf(VariableId v) const { return index(v) < clique_of_.size() ? clique_of_[index(v)] : -1; }
@@ -216,8 +232,8 @@ void EliminationTree::refresh(int id) {
 
 /// Gathers the front, factorises it, and holds what has no information.
 void EliminationTree::eliminateFront(Clique& clique) {
-  std::fill_n(clique.panel, panelLength(clique), 0.0);
-  std::fill_n(clique.remainder, remainderLength(clique), 0.0);
+  clearLowerTriangle(clique.panel, clique.panelStride(), clique.frontal_size);
+  clearLowerTriangle(clique.remainder, clique.remainderStride(), clique.separatorSize() + 1);
   int at = 0;
   for (const VariableId v : clique.variables) {
     offset_[index(v)] = at;
@@ -242,33 +258,30 @@ void EliminationTree::holdSingular(Clique& clique, int column) {
   while (component >= graph_.sizeOf(clique.variables[v])) component -= graph_.sizeOf(clique.variables[v++]);
   const VariableId variable = clique.variables[v];
   singular_.push_back({variable, component});
-  clique.panel[index(column) * index(clique.panelStride()) + index(clique.size)] = -graph_[variable].x_applied[index(component)];
+  clique.panel[index(column) * index(clique.panelStride()) + index(clique.size)] = -graph_[variable].x[index(component)];
 }
 
-/// The place of an entry of the front's lower triangle.
-double* EliminationTree::entry(Clique& clique, int row, int column) const {
+/// A column of the front's lower triangle, such that [row] is the entry.
+double* EliminationTree::column(Clique& clique, int column) const {
   const int n = clique.frontal_size;
-  if (column < n) return clique.panel + index(column) * index(clique.panelStride()) + index(row);
-  return clique.remainder + index(column - n) * index(clique.remainderStride()) + index(row - n);
+  if (column < n) return clique.panel + index(column) * index(clique.panelStride());
+  return clique.remainder + index(column - n) * index(clique.remainderStride()) - n;
 }
 
 /// Adds the lower triangle of a small symmetric matrix whose rows are given in spans.
 void EliminationTree::addSymmetric(Clique& clique, const double* source, int stride, std::span<const RowSpan> spans) {
   for (std::size_t b = 0; b < spans.size(); ++b) {
-    const RowSpan column = spans[b];
-    for (int j = 0; j < column.size; ++j) {
-      // The block on the diagonal, then those below it.
-      const double* from = source + index(column.from + j) * index(stride);
-      double* to = entry(clique, column.to + j, column.to + j);
-      for (int i = j; i < column.size; ++i) to[i - j] += from[column.from + i];
-      for (std::size_t a = b + 1; a < spans.size(); ++a) {
-        const RowSpan row = spans[a];
-        if (row.to > column.to) {
-          to = entry(clique, row.to, column.to + j);
-          for (int i = 0; i < row.size; ++i) to[i] += from[row.from + i];
-        } else {
-          for (int i = 0; i < row.size; ++i) *entry(clique, column.to + j, row.to + i) += from[row.from + i];
-        }
+    const RowSpan columns = spans[b];
+    const std::span<const RowSpan> below = spans.subspan(b + 1);
+    for (int j = 0; j < columns.size; ++j) {
+      const double* from = source + index(columns.from + j) * index(stride);
+      double* to = column(clique, columns.to + j);
+      addTo(to + columns.to + j, from + columns.from + j, columns.size - j);
+      for (const RowSpan& rows : below) {
+        if (rows.to > columns.to)
+          addTo(to + rows.to, from + rows.from, rows.size);
+        else  // above the diagonal
+          for (int i = 0; i < rows.size; ++i) column(clique, rows.to + i)[columns.to + j] += from[rows.from + i];
       }
     }
   }
@@ -310,7 +323,7 @@ void EliminationTree::addChildTo(Clique& clique, const Clique& child) {
   addSymmetric(clique, child.remainder, child.remainderStride(), spans_);
   // The right-hand side, which `carry` holds when it changed alone.
   for (const RowSpan& span : spans_)
-    for (int i = 0; i < span.size; ++i) *entry(clique, clique.size, span.to + i) += child.carry[span.from + i];
+    for (int i = 0; i < span.size; ++i) column(clique, span.to + i)[clique.size] += child.carry[span.from + i];
 }
 
 /// A span must not reach across the border between panel and remainder.

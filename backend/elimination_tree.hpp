@@ -119,7 +119,7 @@ class EliminationTree {
   void holdSingular(Clique& clique, int column);
   void addFactorTo(Clique& clique, FactorId id);
   void addChildTo(Clique& clique, const Clique& child);
-  double* entry(Clique& clique, int row, int column) const;
+  double* column(Clique& clique, int column) const;
 
   const FactorGraph& graph_;
   std::vector<Clique> cliques_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
+#include <limits>
 
 namespace motorcade {
 namespace {
@@ -34,7 +34,7 @@ VariableId FactorGraph::addVariable(const Value& initial) {
   const VariableId id = takeSlot(free_variables_, variables_);
   Variable& variable = (*this)[id];
   variable.applied_estimate = variable.linearization_point = initial;
-  variable.x = variable.x_applied = variable.information = {};
+  variable.x = variable.x_spread = variable.x_compared = variable.x_linearized = variable.x_applied = variable.information = {};
   variable.size = dimension(initial);
   variable.alive = true;
   return id;
@@ -59,26 +59,48 @@ void FactorGraph::apply(VariableId id) {
   variable.x_applied = variable.x;
 }
 
+void FactorGraph::apply(const Factor& factor) {
+  for (const VariableId v : factor.variables()) apply(v);
+}
+
 void FactorGraph::restartCoordinates() {
   for (std::size_t i = 0; i < variables_.size(); ++i) {
-    if (!variables_[i].alive) continue;
+    Variable& variable = variables_[i];
+    if (!variable.alive) continue;
     apply({static_cast<std::int64_t>(i)});
-    variables_[i].x = variables_[i].x_applied = {};
-    variables_[i].linearization_point = variables_[i].applied_estimate;
+    variable.x = variable.x_spread = variable.x_compared = variable.x_linearized = variable.x_applied = {};
+    variable.linearization_point = variable.applied_estimate;
   }
 }
 
+void FactorGraph::moveLinearizationPoint(VariableId id) {
+  apply(id);
+  Variable& variable = (*this)[id];
+  variable.linearization_point = variable.applied_estimate;
+  variable.x_linearized = variable.x;
+}
+
+/// The turn between two coordinates of a variable; zero for vectors.
+double FactorGraph::turnBetween(const Variable& variable, const Coordinates& from, const Coordinates& to) {
+  if (std::holds_alternative<SmallVector>(variable.applied_estimate)) return 0;
+  double squared = 0;
+  for (std::size_t i = variable.size == 3 ? 2 : 3; i < static_cast<std::size_t>(variable.size); ++i) squared += (to[i] - from[i]) * (to[i] - from[i]);
+  return std::sqrt(squared);
+}
+
 double FactorGraph::turnSinceLinearization(VariableId id) const {
+  return turnBetween((*this)[id], (*this)[id].x_linearized, (*this)[id].x);
+}
+
+double FactorGraph::mismatchBound(VariableId id) const {
   const Variable& variable = (*this)[id];
-  if (const auto* now = std::get_if<SE3>(&variable.applied_estimate)) {
-    const auto& then = std::get<SE3>(variable.linearization_point);
-    return std::acos(std::clamp(0.5 * (now->rotation().cwiseProduct(then.rotation()).sum() - 1), -1.0, 1.0));
+  if (std::holds_alternative<SmallVector>(variable.applied_estimate)) return std::numeric_limits<double>::infinity();
+  double sigmas_squared = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(variable.size); ++i) {
+    const double step = variable.x[i] - variable.x_compared[i];
+    sigmas_squared += step * step * variable.information[i];
   }
-  if (const auto* now = std::get_if<SE2>(&variable.applied_estimate)) {
-    const auto& then = std::get<SE2>(variable.linearization_point);
-    return std::abs(std::remainder(now->angle_rad() - then.angle_rad(), 2 * std::numbers::pi));
-  }
-  return 0;
+  return turnBetween(variable, variable.x_compared, variable.x) * std::sqrt(sigmas_squared);
 }
 
 std::span<const Value* const> FactorGraph::valuesOf(const Factor& factor, Value Variable::*member) {
@@ -120,6 +142,7 @@ void FactorGraph::turnToWorldAxes(const Factor& factor, Term term) const {
 
 /// Fills `term` in steps from the applied estimates. False when it is not finite.
 bool FactorGraph::evaluate(const Factor& factor, Term term) {
+  apply(factor);
   if (factor.form() == Factor::Form::kJacobian) {
     factor.linearize(valuesOf(factor, &Variable::linearization_point), term);
     factor.residual(valuesOf(factor, &Variable::applied_estimate), term.col(term.cols() - 1));
@@ -199,7 +222,8 @@ void FactorGraph::linearize(FactorId id) {
 FactorGraph::Mismatch FactorGraph::mismatch(FactorId id) {
   const Factor& factor = *slot(id).factor;
   const Term model = term(id);
-  if (factor.form() == Factor::Form::kInformation) return {.norm = informationMismatch(id), .r = {}};
+  if (factor.form() == Factor::Form::kInformation) return informationMismatch(id);
+  apply(factor);
   residual_.resize(static_cast<std::size_t>(factor.rows()));
   Column r(residual_.data(), factor.rows());
   factor.residual(valuesOf(factor, &Variable::applied_estimate), r);
@@ -210,27 +234,32 @@ FactorGraph::Mismatch FactorGraph::mismatch(FactorId id) {
   return {.norm = r.norm(), .r = residual_};
 }
 
-/// By the difference of the gradients, each entry over the square root of its information.
-double FactorGraph::informationMismatch(FactorId id) {
+/// Of the gradient, and by its entries over the square root of their information.
+FactorGraph::Mismatch FactorGraph::informationMismatch(FactorId id) {
   const Factor& factor = *slot(id).factor;
   const Term model = term(id);
   const Eigen::Index n = model.cols() - 1;
   matrix_.resize(static_cast<std::size_t>(model.size()));
+  residual_.assign(static_cast<std::size_t>(n), 0.0);
   Term fresh(matrix_.data(), model.rows(), model.cols());
-  if (!evaluate(factor, fresh)) return 0;
+  if (!evaluate(factor, fresh)) return {.norm = 0, .r = residual_};
   setCost(factors_[static_cast<std::size_t>(id.value)], costOf(factor, fresh));
-  const Column x = appliedCoordinates(factor);
-  Eigen::VectorXd difference = fresh.row(n).head(n) - model.row(n).head(n);
-  difference -= model.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * x;
+  Column difference(residual_.data(), n);
+  difference = fresh.row(n).head(n) - model.row(n).head(n);
+  difference.noalias() -= model.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * appliedCoordinates(factor);
   double squared = 0;
   for (Eigen::Index i = 0; i < n; ++i)
     if (fresh(i, i) > 0) squared += difference[i] * difference[i] / fresh(i, i);
-  return std::sqrt(squared);
+  return {.norm = std::sqrt(squared), .r = residual_};
 }
 
 void FactorGraph::correctResidual(FactorId id, std::span<const double> r) {
   Term model = term(id);
-  for (Eigen::Index i = 0; i < model.rows(); ++i) model(i, model.cols() - 1) += r[static_cast<std::size_t>(i)];
+  const Eigen::Map<const Eigen::VectorXd> shift(r.data(), static_cast<Eigen::Index>(r.size()));
+  if (slot(id).factor->form() == Factor::Form::kInformation)
+    model.row(model.rows() - 1).head(shift.size()) += shift.transpose();
+  else
+    model.col(model.cols() - 1) += shift;
 }
 
 double FactorGraph::costOf(const Factor& factor, const Term& term) {

@@ -26,13 +26,17 @@ class FactorGraph {
   using Coordinates = std::array<double, kMaxDimension>;
 
   struct Variable {
-    Value linearization_point;                      // where the Jacobians of all its factors are taken
-    Value applied_estimate;                         // at x_applied
-    Coordinates x{}, x_applied{};                   // the solution of the linear system; where the estimate stands
-    Coordinates information{};                      // diagonal of J^T J of its factors as they came: what a step means in standard deviations
-    std::vector<FactorId> factors;
     int size = 0;
     bool alive = false;
+    Coordinates x{};                  // the solution of the linear system
+    Coordinates x_spread{};           // the one that the cliques below were solved with
+    Coordinates information{};        // diagonal of J^T J of its factors as they came: what a step means in standard deviations
+    Coordinates x_compared{};         // where its factors' models were last compared with the factors
+    Coordinates x_linearized{};       // at the linearisation point
+    Coordinates x_applied{};          // at the applied estimate
+    Value applied_estimate;           // moves up to x before it is used
+    Value linearization_point;        // where the Jacobians of all its factors are taken
+    std::vector<FactorId> factors;
   };
   /// [J | r] or [H g; g^T c] in the coordinates, column-major.
   using Term = Eigen::Map<Eigen::MatrixXd>;
@@ -47,22 +51,26 @@ class FactorGraph {
 
   /// Lets the estimate follow x.
   void apply(VariableId id);
+  /// A bound, in standard deviations, of how far the linear models of the variable's factors went off by its steps since they were last
+  /// compared: mismatch comes from turning and grows with turn times step. Infinite for vectors, of whose factors nothing is known.
+  double mismatchBound(VariableId id) const;
+  void markCompared(VariableId id) { (*this)[id].x_compared = (*this)[id].x; }
   /// Applies all x, and begins them at zero again: all models must be linearised anew.
   void restartCoordinates();
   /// The Jacobians of the variable's factors are to be taken where its estimate stands: linearise them after that.
-  void moveLinearizationPoint(VariableId id) { (*this)[id].linearization_point = (*this)[id].applied_estimate; }
+  void moveLinearizationPoint(VariableId id);
   /// How far the estimate has turned since [rad].
   double turnSinceLinearization(VariableId id) const;
-  /// A new linear model: the Jacobian at the linearisation points, the residual at the applied estimates. Keeps the former one if the new one
+  /// A new linear model: the Jacobian at the linearisation points, the residual at the estimates. Keeps the former one if the new one
   /// is not finite.
   void linearize(FactorId id);
-  /// How far the linear model is off at the applied estimates, in standard deviations. The vector lasts until the next call.
+  /// How far the linear model is off at the estimates, in standard deviations. The vector lasts until the next call.
   struct Mismatch {
     double norm = 0;
-    std::span<const double> r;  // true residual minus the model's; empty for Form::kInformation
+    std::span<const double> r;  // true residual minus the model's; for Form::kInformation, of the gradient
   };
   Mismatch mismatch(FactorId id);
-  /// Shifts the model's residual; the Jacobian stays.
+  /// Shifts the model's residual (for Form::kInformation its gradient) by a mismatch; the Jacobian stays.
   void correctResidual(FactorId id, std::span<const double> r);
 
   const Variable& operator[](VariableId id) const { return variables_[static_cast<std::size_t>(id.value)]; }
@@ -98,12 +106,14 @@ class FactorGraph {
     double drift = 0, cost = 0;
   };
   const LinearizedFactor& slot(FactorId id) const { return factors_[static_cast<std::size_t>(id.value)]; }
+  void apply(const Factor& factor);
+  static double turnBetween(const Variable& variable, const Coordinates& from, const Coordinates& to);
   std::span<const Value* const> valuesOf(const Factor& factor, Value Variable::*member);
   Eigen::Map<Eigen::VectorXd> appliedCoordinates(const Factor& factor);
   void turnToWorldAxes(const Factor& factor, Term term) const;
   bool evaluate(const Factor& factor, Term term);
   void shiftToCoordinates(const Factor& factor, Term term);
-  double informationMismatch(FactorId id);
+  Mismatch informationMismatch(FactorId id);
   static double costOf(const Factor& factor, const Term& term);
   void setCost(LinearizedFactor& slot, double cost);
 

@@ -10,7 +10,6 @@ namespace motorcade {
 namespace {
 
 std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
-std::size_t index(FactorId f) { return static_cast<std::size_t>(f.value); }
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 template <class T>
@@ -104,7 +103,7 @@ const IncrementalSolver::Report& IncrementalSolver::update() {
   } else {
     step(true);
     new_factors_.clear();
-    for (int i = 1; i < params_.iterations_per_update && unsettled(); ++i) step(false);
+    for (int i = 1; i < params_.iterations_per_update && !off_.empty(); ++i) step(false);
   }
   endReport();
   return report_;
@@ -123,12 +122,10 @@ void IncrementalSolver::step(bool fold) {
   if (params_.policy == Policy::kFluid) correctModels();
   workThroughDirtyCliques();
   if (fold) rebuildTop();
-  substitution_sigmas_ = params_.substitution_sigmas;
+  spread_sigmas_ = params_.substitution_tolerance * rmsResidual();
   substitute();
   if (params_.policy == Policy::kFluid) compareModels();
 }
-
-bool IncrementalSolver::unsettled() const { return !off_.empty(); }
 
 /// Marks a clique and all above it.
 void IncrementalSolver::markWork(int clique, Work work) {
@@ -149,83 +146,6 @@ void IncrementalSolver::markTouched() {
       work_[index(c)] = Work::kRemoved;
       removed_cliques_.push_back(c);
     }
-}
-
-/// Not in the tree yet.
-bool IncrementalSolver::isNew(FactorId f) const { return std::ranges::find(new_factors_, f) != new_factors_.end(); }
-
-std::int64_t IncrementalSolver::costOfRefresh(int clique) const {
-  std::int64_t cost = 0;
-  for (int c = clique; c >= 0 && work_[index(c)] < Work::kRefresh; c = tree_[c].parent) cost += tree_[c].frontal_size;
-  return cost;
-}
-
-void IncrementalSolver::correctModels() {
-  collectStale();
-  std::size_t kept = 0;
-  for (const StaleVariable& stale : stale_)
-    if (!relinearizeWithinBudget(stale.variable)) stale_[kept++] = stale;
-  stale_.resize(kept);
-  for (const OffModel& off : off_)
-    if (graph_.contains(off.factor) && checked_in_step_[index(off.factor)] != step_) shiftResidual(off.factor);
-  off_.clear();
-}
-
-/// Variables to relinearise, each once, the worst first.
-void IncrementalSolver::collectStale() {
-  for (const OffModel& off : off_) {
-    if (!graph_.contains(off.factor)) continue;
-    const double drift = graph_.drift(off.factor) + off.mismatch;
-    if (drift <= params_.jacobian_drift_sigmas && graph_.factor(off.factor).form() == Factor::Form::kJacobian) continue;
-    for (const VariableId v : graph_.factor(off.factor).variables()) stale_.push_back({v, drift});
-  }
-  std::erase_if(stale_, [&](const StaleVariable& stale) { return !graph_.contains(stale.variable); });
-  std::ranges::sort(stale_, [](const auto& a, const auto& b) { return a.variable < b.variable || (a.variable == b.variable && a.urgency > b.urgency); });
-  const auto twice = std::ranges::unique(stale_, {}, &StaleVariable::variable);
-  stale_.erase(twice.begin(), twice.end());
-  std::ranges::sort(stale_, [](const auto& a, const auto& b) { return a.urgency > b.urgency || (a.urgency == b.urgency && a.variable < b.variable); });
-}
-
-bool IncrementalSolver::relinearizeWithinBudget(VariableId v) {
-  std::int64_t cost = 0;
-  for (const FactorId f : graph_[v].factors)
-    if (!isNew(f)) cost += costOfRefresh(tree_.ownerOf(graph_.factor(f)));
-  if (cost > budget_left_) return false;
-  budget_left_ -= cost;
-  graph_.moveLinearizationPoint(v);
-  ++report_.relinearized_variables;
-  for (const FactorId f : graph_[v].factors) {
-    graph_.linearize(f);
-    checked_in_step_.resize(graph_.factorSlots(), 0);
-    checked_in_step_[index(f)] = step_;
-    if (!isNew(f)) markWork(tree_.ownerOf(graph_.factor(f)), Work::kRefresh);
-    ++report_.relinearized_factors;
-  }
-  return true;
-}
-
-void IncrementalSolver::shiftResidual(FactorId id) {
-  const auto mismatch = graph_.mismatch(id);
-  const Factor& factor = graph_.factor(id);
-  graph_.correctResidual(id, mismatch.r);
-  graph_.addDrift(id, mismatch.norm);
-  ++report_.corrected_factors;
-  const int owner = tree_.ownerOf(factor);
-  markWork(owner, Work::kShift);
-  if (work_[index(owner)] != Work::kShift) return;  // is eliminated anew
-  const Clique& clique = tree_[owner];
-  const auto J = graph_.term(id);
-  const Eigen::Map<const Eigen::VectorXd> r(mismatch.r.data(), factor.rows());
-  double* change = changes_.data() + change_begin_[index(owner)];
-  int column = 0;
-  for (const VariableId v : factor.variables()) {
-    int row = 0;
-    for (const VariableId u : clique.variables) {
-      if (u == v) break;
-      row += graph_.sizeOf(u);
-    }
-    for (int i = 0; i < graph_.sizeOf(v); ++i, ++column) change[row + i] += J.col(column).dot(r);
-  }
 }
 
 void IncrementalSolver::workThroughDirtyCliques() {
@@ -251,33 +171,11 @@ void IncrementalSolver::rebuildTop() {
   removed_.factors.insert(removed_.factors.end(), new_factors_.begin(), new_factors_.end());
   if (removed_.variables.empty()) return;
   const bool reorder = params_.policy == Policy::kFluid;
-  const auto order = reorder ? reordered(removed_.variables, removed_.factors, removed_.orphans) : std::span<const VariableId>(removed_.variables);
+  const auto order = reorder ? reordered_(removed_.variables, removed_.factors, removed_.orphans, touched_) : std::span<const VariableId>(removed_.variables);
   tree_.eliminate({.order = order, .boundary = {}, .factors = removed_.factors, .orphans = removed_.orphans}, created_);
   work_.resize(tree_.slots(), Work::kNone);
   change_begin_.resize(tree_.slots());
   for (const int c : created_) work_[index(c)] = Work::kNew;
-}
-
-/// The variables with little fill, those that the newest factors touch last: they will be touched again next.
-std::span<const VariableId> IncrementalSolver::reordered(std::span<const VariableId> variables, std::span<const FactorId> factors,
-                                                         std::span<const int> orphans) {
-  column_of_.resize(graph_.slots(), -1);
-  group_.assign(variables.size(), 0);
-  for (std::size_t i = 0; i < variables.size(); ++i) {
-    column_of_[index(variables[i])] = static_cast<int>(i);
-    if (std::ranges::binary_search(touched_, variables[i])) group_[i] = 1;
-  }
-  ordering_.begin(static_cast<int>(variables.size()));
-  const auto addRow = [&](std::span<const VariableId> row) {
-    row_.clear();
-    for (const VariableId v : row) row_.push_back(column_of_[index(v)]);
-    ordering_.addRow(row_);
-  };
-  for (const FactorId f : factors) addRow(graph_.factor(f).variables());
-  for (const int orphan : orphans) addRow(tree_[orphan].separator());
-  order_.clear();
-  for (const int column : ordering_.order(group_)) order_.push_back(variables[index(column)]);
-  return order_;
 }
 
 /// Back-substitution from the roots downwards, as far as anything changed.
@@ -300,7 +198,6 @@ void IncrementalSolver::substitute() {
     }
   }
   report_.moved.insert(report_.moved.end(), moved_.begin(), moved_.end());
-  for (const VariableId v : moved_) graph_.apply(v);
 }
 
 void IncrementalSolver::solve(const Clique& clique) {
@@ -318,30 +215,15 @@ void IncrementalSolver::solve(const Clique& clique) {
     double change = 0, sigmas_squared = 0;
     for (std::size_t i = 0; i < index(variable.size); ++i, ++at) {
       change = std::max(change, std::abs(x_frontal_[at] - variable.x[i]));
-      const double step = x_frontal_[at] - variable.x_applied[i];
+      const double step = x_frontal_[at] - variable.x_spread[i];
       sigmas_squared = std::max(sigmas_squared, step * step * variable.information[i]);
       variable.x[i] = x_frontal_[at];
     }
     report_.largest_change = std::max(report_.largest_change, change);
-    if (sigmas_squared <= substitution_sigmas_ * substitution_sigmas_) continue;
+    if (sigmas_squared <= spread_sigmas_ * spread_sigmas_) continue;
+    variable.x_spread = variable.x;
     moved_in_step_[index(v)] = step_;
     moved_.push_back(v);
-  }
-}
-
-/// Finds the models that are off after the step.
-void IncrementalSolver::compareModels() {
-  checked_in_step_.resize(graph_.factorSlots(), 0);
-  const double mean_square = graph_.factorCount() == 0 ? 0 : graph_.totalCost() / static_cast<double>(graph_.factorCount());
-  const double tolerance = params_.mismatch_tolerance * std::sqrt(std::max(mean_square, 1e-8));
-  for (const VariableId v : moved_) {
-    if (const double turn = graph_.turnSinceLinearization(v); turn > params_.relinearize_rad) stale_.push_back({v, turn / params_.relinearize_rad});
-    for (const FactorId f : graph_[v].factors) {
-      if (checked_in_step_[index(f)] == step_) continue;
-      checked_in_step_[index(f)] = step_;
-      const double norm = graph_.mismatch(f).norm;
-      if (norm > tolerance) off_.push_back({f, norm});
-    }
   }
 }
 
@@ -359,17 +241,16 @@ void IncrementalSolver::batchStep() {
     if (tree_[static_cast<int>(c)].alive) removed_cliques_.push_back(static_cast<int>(c));
   removed_.clear();
   tree_.remove(removed_cliques_, removed_);
-  order_ = graph_.variables();
-  std::vector<VariableId> variables = order_;
+  const std::vector<VariableId> variables = graph_.variables();
   const std::vector<FactorId> factors = graph_.factors();
   for (const FactorId f : factors) graph_.linearize(f);
   if (variables.empty()) return;
-  tree_.eliminate({.order = reordered(variables, factors, {}), .boundary = {}, .factors = factors, .orphans = {}}, created_);
+  tree_.eliminate({.order = reordered_(variables, factors, {}, touched_), .boundary = {}, .factors = factors, .orphans = {}}, created_);
   work_.resize(tree_.slots(), Work::kNone);
   change_begin_.resize(tree_.slots());
   for (const int c : created_) work_[index(c)] = Work::kNew;
   ++counters_.reorderings, ++counters_.batch_solves;
-  substitution_sigmas_ = 0;
+  spread_sigmas_ = 0;
   substitute();
   if (params_.policy == Policy::kFluid) compareModels();
 }

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "backend/affected_order.hpp"
 #include "backend/elimination_tree.hpp"
 #include "backend/factor_graph.hpp"
-#include "backend/ordering.hpp"
 #include "backend/solver_explanations.hpp"
 #include "backend/solver_problem.hpp"
 #include "core/messages.hpp"
@@ -17,9 +17,10 @@ namespace motorcade {
 /// Incremental square-root smoothing (iSAM, Kaess et al. 2008, on the tree of iSAM2, 2012): keeps R of the linearised problem as a tree of
 /// cliques; an update eliminates anew only the cliques from where new factors enter up to the root.
 ///
-/// Fluid relinearisation goes by factors rather than by variables: after each step the linear model of every factor whose variables moved is
-/// compared with the factor itself. Where only the residual is off, its right-hand side is corrected, which costs a substitution; where the
-/// Jacobian has drifted too, the cliques above are eliminated anew, the worst first, as far as the budget reaches.
+/// Fluid relinearisation tells residuals from Jacobians. After each step the linear models of the factors whose variables moved are compared
+/// with the factors themselves; where a residual is off, its right-hand side is corrected, which costs a substitution. Where variables have
+/// turned since their Jacobians were taken, these are taken anew and the cliques above eliminated again, the worst first, as far as the
+/// budget reaches.
 ///
 /// Add variables and factors, then `update`. `retire` and `drop` want no additions waiting.
 class IncrementalSolver {
@@ -31,12 +32,14 @@ class IncrementalSolver {
   struct Params {
     Policy policy = Policy::kFluid;
     int batch_every_updates = 50;
-    double mismatch_tolerance = 0.02;        // of a linear model, over the root mean square of the residuals; 0 corrects all that moved
-    double jacobian_drift_sigmas = 0.1;      // summed mismatch of a factor at which its variables are relinearised; 0: at each correction
-    double relinearize_rad = 0.03;           // turn of a variable at which it is relinearised
-    double substitution_sigmas = 1e-3;       // steps below that, in conditional standard deviations, do not spread; 0 is exact
-    int iterations_per_update = 2;           // Gauss-Newton steps at most, while models are off
-    std::int64_t budget_scalars = 0;         // eliminated per update beyond what the new factors ask for; 0: no limit
+    // Of kFluid. Zero tolerances are exact.
+    double mismatch_tolerance = 0.05;      // of a linear model, over the root mean square of the residuals
+    double jacobian_drift_sigmas = 0.5;    // summed mismatch of a factor at which its variables are relinearised
+    double relinearize_rad = 0.05;         // turn of a variable at which it is relinearised as soon as possible; from a fifth of it on, at leisure
+    double substitution_tolerance = 0.05;  // steps below that, in conditional standard deviations over the same mean, do not spread
+    double urgent_flops = 4e7, polish_flops = 4e6;  // about as much work per update goes into relinearisation, as soon as possible and at leisure
+    int iterations_per_update = 1;         // Gauss-Newton steps at most, while models are off
+    std::int64_t budget_scalars = 0;       // eliminated per update beyond what the new factors ask for; 0: no limit
   };
   struct Report {
     std::vector<SolverProblem> problems;
@@ -48,6 +51,8 @@ class IncrementalSolver {
   };
 
   explicit IncrementalSolver(const Params& params) : params_(params) {}
+  IncrementalSolver(const IncrementalSolver&) = delete;  // its parts refer to each other
+  IncrementalSolver& operator=(const IncrementalSolver&) = delete;
 
   VariableId addVariable(const Value& initial);
   /// Empty when the factor cannot be used; the next report says why.
@@ -87,24 +92,29 @@ class IncrementalSolver {
   void endReport();
   void step(bool fold);
   void batchStep();
-  bool unsettled() const;
 
   void markWork(int clique, Work work);
   void markTouched();
-  bool isNew(FactorId f) const;
-  std::int64_t costOfRefresh(int clique) const;
-  void correctModels();
-  void collectStale();
-  bool relinearizeWithinBudget(VariableId v);
-  void shiftResidual(FactorId id);
   void workThroughDirtyCliques();
   void rebuildTop();
-  std::span<const VariableId> reordered(std::span<const VariableId> variables, std::span<const FactorId> factors,
-                                        std::span<const int> orphans);
   void substitute();
   void solve(const Clique& clique);
-  void follow(double threshold_sigmas);
+
+  double rmsResidual() const;
   void compareModels();
+  void markStale(VariableId v, double turn_rad);
+  void correctModels();
+  void relinearizeStale();
+  bool isStale(VariableId v) const;
+  struct EliminationWork {
+    std::int64_t scalars = 0;
+    double flops = 0;
+  };
+  EliminationWork workOfRelinearizing(VariableId v);
+  void relinearize(VariableId v);
+  bool isNew(FactorId f) const;
+  void shiftResidual(FactorId id);
+
   bool usable(const Factor& factor);
   std::vector<int> withAncestors(std::vector<int> cliques) const;
 
@@ -114,7 +124,7 @@ class IncrementalSolver {
   Params params_;
   FactorGraph graph_;
   EliminationTree tree_{graph_};
-  Ordering ordering_;
+  AffectedOrder reordered_{graph_, tree_};
   Report report_;
   SolverCounters counters_;
   std::int64_t budget_left_ = 0;
@@ -123,16 +133,13 @@ class IncrementalSolver {
 
   std::vector<VariableId> touched_, new_variables_;
   std::vector<FactorId> new_factors_;
-  std::vector<OffModel> off_;     // models to correct in the next step
-  struct StaleVariable {
-    VariableId variable;
-    double urgency = 0;
-  };
-  std::vector<StaleVariable> stale_;  // whose linearisation points are off
+  std::vector<OffModel> off_;        // models to correct in the next step
+  std::vector<VariableId> stale_;    // whose linearisation points are off
+  std::vector<double> staleness_;    // per variable: its turn [rad] when it became stale, 0 when it is not
 
   // Of the step at hand.
   std::uint32_t step_ = 0;
-  double substitution_sigmas_ = 0;
+  double spread_sigmas_ = 0;
   std::vector<Work> work_;                // per clique
   std::vector<int> dirty_;                // cliques to shift or refresh
   std::vector<int> removed_cliques_, created_;
@@ -140,11 +147,11 @@ class IncrementalSolver {
   std::vector<std::size_t> change_begin_;  // per clique: where its right-hand side's change lies in `changes_`
   std::vector<double> changes_;
   std::vector<VariableId> moved_;
-  std::vector<std::uint32_t> moved_in_step_, checked_in_step_;  // per variable, per factor
+  std::vector<std::uint32_t> moved_in_step_, checked_in_step_, relinearized_in_step_;  // per variable, per factor, per factor
+  std::vector<std::uint32_t> counted_;                                                 // per clique
+  std::uint32_t count_mark_ = 0;
   std::vector<int> open_;                                       // cliques to solve
   std::vector<double> x_separator_, x_frontal_;
-  std::vector<VariableId> order_;
-  std::vector<int> column_of_, row_, group_;
 };
 
 }  // namespace motorcade

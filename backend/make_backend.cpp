@@ -49,7 +49,7 @@ void check(const Optimizer::Params& p) {
                       {"object_encounter_partners", static_cast<double>(p.object_encounter_partners)},
                       {"mismatch_tolerance", p.mismatch_tolerance},
                       {"jacobian_drift_sigmas", p.jacobian_drift_sigmas},
-                      {"substitution_sigmas", p.substitution_sigmas},
+                      {"substitution_tolerance", p.substitution_tolerance},
                       {"budget_scalars", static_cast<double>(p.budget_scalars)},
                       {"covariance_lag_frames", static_cast<double>(p.covariance_lag_frames)}});
   if (!(p.object_encounter_share < 1)) throw std::invalid_argument("backend: object_encounter_share must be below 1");

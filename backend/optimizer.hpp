@@ -43,7 +43,7 @@ class Optimizer final : public Backend {
     RelinearizationPolicy policy = RelinearizationPolicy::kFluid;
     int relinearize_every_updates = 50;
     /// Fluid: see IncrementalSolver::Params.
-    double mismatch_tolerance = 0.02, jacobian_drift_sigmas = 0.3, substitution_sigmas = 1e-3;
+    double mismatch_tolerance = 0.02, jacobian_drift_sigmas = 0.3, substitution_tolerance = 0.02;
     int iterations_per_update = 2, budget_scalars = 0;
     int final_iterations = 10;                           // at most, in finish()
 

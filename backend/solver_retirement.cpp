@@ -17,12 +17,13 @@ void sortUnique(std::vector<T>& items) {
 }
 
 /// What the eliminated variables knew, stated in the coordinates of `neighbours`, as a prior around their present estimates.
-std::unique_ptr<MarginalFactor> marginalPrior(const FactorGraph& graph, const std::vector<VariableId>& neighbours, Eigen::MatrixXd knowledge) {
+std::unique_ptr<MarginalFactor> marginalPrior(FactorGraph& graph, const std::vector<VariableId>& neighbours, Eigen::MatrixXd knowledge) {
   const Eigen::Index n = knowledge.rows() - 1;
   Eigen::VectorXd x(n);
   std::vector<Value> values;
   Eigen::Index at = 0;
   for (const VariableId v : neighbours) {
+    graph.apply(v);
     values.push_back(graph[v].applied_estimate);
     for (std::size_t i = 0; i < static_cast<std::size_t>(graph.sizeOf(v)); ++i) x[at++] = graph[v].x_applied[i];
   }

@@ -22,7 +22,7 @@ IncrementalSolver::Params solverParams(const Optimizer::Params& params) {
           .batch_every_updates = params.relinearize_every_updates,
           .mismatch_tolerance = params.mismatch_tolerance,
           .jacobian_drift_sigmas = params.jacobian_drift_sigmas,
-          .substitution_sigmas = params.substitution_sigmas,
+          .substitution_tolerance = params.substitution_tolerance,
           .iterations_per_update = params.iterations_per_update,
           .budget_scalars = params.budget_scalars};
 }

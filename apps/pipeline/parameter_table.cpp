@@ -284,7 +284,7 @@ void addSmoother(std::vector<Parameter>& table, BackendParams& backend) {
       .add("relinearize_every_updates", p.relinearize_every_updates, kAtLeastOne)
       .add("mismatch_tolerance", p.mismatch_tolerance, kNotNegative)
       .add("jacobian_drift_sigmas", p.jacobian_drift_sigmas, kNotNegative)
-      .add("substitution_sigmas", p.substitution_sigmas, kNotNegative)
+      .add("substitution_tolerance", p.substitution_tolerance, kNotNegative)
       .add("iterations_per_update", p.iterations_per_update, kAtLeastOne)
       .add("budget_scalars", p.budget_scalars, kNotNegative)
       .add("final_iterations", p.final_iterations, kAnyCount)

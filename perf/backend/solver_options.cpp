@@ -25,7 +25,7 @@ void addSolverOptions(CLI::App& app, IncrementalSolver::Params& params) {
   add("--mismatch-tolerance", params.mismatch_tolerance, "Of a linear model, over the root mean square of the residuals");
   add("--jacobian-drift", params.jacobian_drift_sigmas, "Summed mismatch of a factor at which its variables are relinearised");
   add("--relinearize", params.relinearize_rad, "Turn of a variable at which it is relinearised [rad]");
-  add("--substitution-sigmas", params.substitution_sigmas, "Steps below that do not spread");
+  add("--substitution-tolerance", params.substitution_tolerance, "Steps below that do not spread");
   add("--iterations", params.iterations_per_update, "Gauss-Newton steps per update, at most");
   add("--budget", params.budget_scalars, "Scalars eliminated per update beyond what new factors ask for; 0: no limit");
 }
@@ -36,7 +36,7 @@ nlohmann::ordered_json jsonOf(const IncrementalSolver::Params& params) {
           {"mismatch_tolerance", params.mismatch_tolerance},
           {"jacobian_drift_sigmas", params.jacobian_drift_sigmas},
           {"relinearize_rad", params.relinearize_rad},
-          {"substitution_sigmas", params.substitution_sigmas},
+          {"substitution_tolerance", params.substitution_tolerance},
           {"iterations_per_update", params.iterations_per_update},
           {"budget_scalars", params.budget_scalars}};
 }

@@ -13,7 +13,7 @@ using test::IsNear;
 using test::IsNearPose;
 using test::MultibodyGraph;
 
-constexpr IncrementalSolver::Params kExact{.mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0, .substitution_sigmas = 0};
+constexpr IncrementalSolver::Params kExact{.mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0, .substitution_tolerance = 0};
 
 /// Largest pose difference between the solver and a converged dense solution of its own graph.
 double differenceFromBatch(const IncrementalSolver& solver) {

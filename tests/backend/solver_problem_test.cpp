@@ -24,10 +24,10 @@ using testing::IsEmpty;
 using testing::UnorderedElementsAreArray;
 
 constexpr IncrementalSolver::Params kExact{
-    .mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0, .substitution_sigmas = 0};
+    .mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0, .substitution_tolerance = 0};
 constexpr double kSame = 1e-8;  // of two solvers that both have converged
 
-std::string nameOf(VariableId v) { return "v" + std::to_string(v.value); }
+std::string nameOf(VariableId v) { return std::string("v").append(std::to_string(v.value)); }
 
 std::vector<Kind> kindsOf(const std::vector<SolverProblem>& problems) {
   std::vector<Kind> kinds;

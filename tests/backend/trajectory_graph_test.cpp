@@ -53,7 +53,7 @@ Optimizer::Params withoutAnchors() {
   Optimizer::Params params;
   params.anchor_sigma_m = params.anchor_sigma_rad = std::numeric_limits<double>::infinity();
   params.use_object_encounter = false;
-  params.mismatch_tolerance = params.jacobian_drift_sigmas = params.substitution_sigmas = 0;
+  params.mismatch_tolerance = params.jacobian_drift_sigmas = params.substitution_tolerance = 0;
   return params;
 }
 

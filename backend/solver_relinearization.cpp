@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <cmath>
+
+#include "backend/incremental_solver.hpp"
+
+/// Fluid relinearisation: which linear models are off after a step, and what the next step does about it.
+namespace motorcade {
+namespace {
+
+std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
+std::size_t index(FactorId f) { return static_cast<std::size_t>(f.value); }
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+constexpr double kComparedShare = 0.25;  // of the tolerance: below it a variable's factors need no look
+constexpr double kMildShare = 0.2;
+constexpr std::size_t kWorstAtOnce = 16;
+
+}  // namespace
+
+/// Root mean square over the factors of their residuals' norms, in standard deviations: the scale of all tolerances.
+double IncrementalSolver::rmsResidual() const {
+  const double mean_square = graph_.factorCount() == 0 ? 0 : graph_.totalCost() / static_cast<double>(graph_.factorCount());
+  return std::sqrt(std::max(mean_square, 1e-8));
+}
+
+/// Finds the models that are off after the step.
+void IncrementalSolver::compareModels() {
+  checked_in_step_.resize(graph_.factorSlots(), 0);
+  const double tolerance = params_.mismatch_tolerance * rmsResidual();
+  for (const VariableId v : moved_) {
+    if (const double turn = graph_.turnSinceLinearization(v); turn > kMildShare * params_.relinearize_rad) markStale(v, turn);
+    if (graph_.mismatchBound(v) < kComparedShare * tolerance) continue;
+    graph_.markCompared(v);
+    for (const FactorId f : graph_[v].factors) {
+      if (checked_in_step_[index(f)] == step_) continue;
+      checked_in_step_[index(f)] = step_;
+      const double norm = graph_.mismatch(f).norm;
+      if (norm > tolerance) off_.push_back({f, norm});
+    }
+  }
+}
+
+/// The variable's factors want new Jacobians; `turn_rad` says how urgently.
+void IncrementalSolver::markStale(VariableId v, double turn_rad) {
+  staleness_.resize(graph_.slots(), 0.0);
+  double& staleness = staleness_[index(v)];
+  if (staleness == 0) stale_.push_back(v);
+  staleness = std::max(staleness, std::max(turn_rad, 1e-12));
+}
+
+/// Puts the models right that are off: by new Jacobians where they drifted and the budget allows, by new right-hand sides elsewhere.
+void IncrementalSolver::correctModels() {
+  std::erase_if(off_, [&](const OffModel& off) { return !graph_.contains(off.factor); });
+  for (const OffModel& off : off_)
+    if (graph_.drift(off.factor) + off.mismatch > params_.jacobian_drift_sigmas)
+      for (const VariableId v : graph_.factor(off.factor).variables()) markStale(v, std::max(params_.relinearize_rad * 1.0001, graph_.turnSinceLinearization(v)));
+  relinearizeStale();
+  for (const OffModel& off : off_)
+    if (relinearized_in_step_[index(off.factor)] != step_) shiftResidual(off.factor);
+  off_.clear();
+}
+
+/// First what costs nothing, as its cliques are eliminated anew in any case; then the worst, as far as the budgets reach: one for those so far
+/// off that the solution suffers, one for the others, which can wait.
+void IncrementalSolver::relinearizeStale() {
+  relinearized_in_step_.resize(graph_.factorSlots(), 0);
+  for (const int c : removed_cliques_)
+    for (const VariableId v : tree_[c].frontalVariables())
+      if (isStale(v) && workOfRelinearizing(v).scalars == 0) relinearize(v);
+  std::erase_if(stale_, [&](VariableId v) { return !graph_.contains(v) || !isStale(v); });
+  const auto worse = [&](VariableId a, VariableId b) {
+    const double turn_a = staleness_[index(a)], turn_b = staleness_[index(b)];
+    return turn_a > turn_b || (turn_a == turn_b && a < b);
+  };
+  double urgent_flops = params_.urgent_flops, polish_flops = params_.polish_flops;
+  bool budget_reaches = true;
+  for (std::size_t done = 0; done < stale_.size() && budget_reaches;) {
+    const auto from = stale_.begin() + static_cast<std::ptrdiff_t>(done);
+    const std::size_t end = std::min(done + kWorstAtOnce, stale_.size());
+    std::partial_sort(from, stale_.begin() + static_cast<std::ptrdiff_t>(end), stale_.end(), worse);
+    for (; done < end; ++done) {
+      const VariableId v = stale_[done];
+      if (!isStale(v)) continue;  // twice in the list
+      double& flops_left = staleness_[index(v)] > params_.relinearize_rad ? urgent_flops : polish_flops;
+      const EliminationWork work = workOfRelinearizing(v);
+      if (work.scalars > budget_left_ || work.flops > flops_left) {
+        budget_reaches = false;
+        continue;
+      }
+      budget_left_ -= work.scalars;
+      flops_left -= work.flops;
+      relinearize(v);
+    }
+  }
+}
+
+bool IncrementalSolver::isStale(VariableId v) const { return index(v) < staleness_.size() && staleness_[index(v)] > 0; }
+
+/// What is eliminated anew for it beyond what is in any case.
+IncrementalSolver::EliminationWork IncrementalSolver::workOfRelinearizing(VariableId v) {
+  counted_.resize(tree_.slots(), 0);
+  ++count_mark_;
+  EliminationWork work;
+  for (const FactorId f : graph_[v].factors) {
+    if (isNew(f)) continue;
+    for (int c = tree_.ownerOf(graph_.factor(f)); c >= 0 && work_[index(c)] < Work::kRefresh && counted_[index(c)] != count_mark_; c = tree_[c].parent) {
+      counted_[index(c)] = count_mark_;
+      work.scalars += tree_[c].frontal_size;
+      work.flops += static_cast<double>(tree_[c].frontal_size) * tree_[c].size * tree_[c].size;
+    }
+  }
+  return work;
+}
+
+void IncrementalSolver::relinearize(VariableId v) {
+  graph_.moveLinearizationPoint(v);
+  if (isStale(v)) staleness_[index(v)] = 0;
+  ++report_.relinearized_variables;
+  for (const FactorId f : graph_[v].factors) {
+    if (relinearized_in_step_[index(f)] != step_) ++report_.relinearized_factors;
+    relinearized_in_step_[index(f)] = step_;
+    graph_.linearize(f);
+    if (!isNew(f)) markWork(tree_.ownerOf(graph_.factor(f)), Work::kRefresh);
+  }
+}
+
+/// Not in the tree yet.
+bool IncrementalSolver::isNew(FactorId f) const { return std::ranges::find(new_factors_, f) != new_factors_.end(); }
+
+/// The model's new residual changes the right-hand side of its clique by J^T r.
+void IncrementalSolver::shiftResidual(FactorId id) {
+  const auto mismatch = graph_.mismatch(id);
+  graph_.correctResidual(id, mismatch.r);
+  graph_.addDrift(id, mismatch.norm);
+  ++report_.corrected_factors;
+  const Factor& factor = graph_.factor(id);
+  const int owner = tree_.ownerOf(factor);
+  markWork(owner, Work::kShift);
+  if (work_[index(owner)] != Work::kShift) return;  // is eliminated anew
+  const auto J = graph_.term(id);
+  const bool gradient = factor.form() == Factor::Form::kInformation;
+  const Eigen::Map<const Eigen::VectorXd> r(mismatch.r.data(), static_cast<Eigen::Index>(mismatch.r.size()));
+  double* change = changes_.data() + change_begin_[index(owner)];
+  int column = 0;
+  for (const VariableId v : factor.variables()) {
+    int row = 0;
+    for (const VariableId u : tree_[owner].variables) {
+      if (u == v) break;
+      row += graph_.sizeOf(u);
+    }
+    for (int i = 0; i < graph_.sizeOf(v); ++i, ++column) change[row + i] += gradient ? r[column] : J.col(column).dot(r);
+  }
+}
+
+}  // namespace motorcade
