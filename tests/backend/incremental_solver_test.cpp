@@ -2,46 +2,20 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/backend/dense_system.hpp"
 #include "tests/backend/random_graphs.hpp"
+#include "tests/backend/tree_information.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace motorcade {
 namespace {
 
 using test::DenseSystem;
+using test::differenceFromBatch;
 using test::IsNear;
 using test::IsNearPose;
+using test::kExact;
 using test::MultibodyGraph;
-
-constexpr IncrementalSolver::Params kExact{.mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0, .substitution_tolerance = 0};
-
-/// Largest pose difference between the solver and a converged dense solution of its own graph.
-double differenceFromBatch(const IncrementalSolver& solver) {
-  DenseSystem dense(solver.graph());
-  dense.converge();
-  double largest = 0;
-  for (const VariableId v : solver.graph().variables())
-    largest = std::max(largest, (dense.pose(v).inverse() * solver.pose(v)).log().norm());
-  return largest;
-}
-
-/// R^T R of the whole tree, in the dense system's order of variables.
-Eigen::MatrixXd informationOf(const IncrementalSolver& solver, const DenseSystem& dense, Eigen::Index size) {
-  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(size, size);
-  std::vector<int> open = solver.tree().roots();
-  while (!open.empty()) {
-    const Clique& clique = solver.tree()[open.back()];
-    open.pop_back();
-    for (int child = clique.first_child; child >= 0; child = solver.tree()[child].next_sibling) open.push_back(child);
-    std::vector<int> at;
-    for (const VariableId v : clique.variables)
-      for (int i = 0; i < solver.graph().sizeOf(v); ++i) at.push_back(dense.offset(v) + i);
-    Eigen::MatrixXd L = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(clique.panel, clique.size, clique.frontal_size, Eigen::OuterStride<>(clique.panelStride()));
-    L.topRows(clique.frontal_size).triangularView<Eigen::StrictlyUpper>().setZero();
-    H(at, at) += L * L.transpose();
-  }
-  return H;
-}
 
 TEST(IncrementalSolver, ConvergesToTheBatchSolutionOfRandomMultibodyGraphs) {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
@@ -90,20 +64,10 @@ TEST(IncrementalSolver, FoldingLeavesTheFactorOfTheWholeInformation) {
       graph.addFrame();
       solver.update();
     }
-    // All linearised at the initial values: put those into the reference too.
-    DenseSystem dense(solver.graph());
-    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(31 * 6 + 12, 31 * 6 + 12);
-    H.resize(static_cast<Eigen::Index>(6 * solver.counters().variables), static_cast<Eigen::Index>(6 * solver.counters().variables));
-    H.setZero();
-    for (const FactorId f : solver.graph().factors()) {
-      std::vector<int> at;
-      for (const VariableId v : solver.graph().factor(f).variables())
-        for (int i = 0; i < 6; ++i) at.push_back(dense.offset(v) + i);
-      const auto J = solver.graph().term(f).leftCols(static_cast<Eigen::Index>(at.size()));
-      H(at, at) += J.transpose() * J;
-    }
-    const Eigen::MatrixXd folded = informationOf(solver, dense, H.rows());
-    EXPECT_LT((folded - H).cwiseAbs().maxCoeff(), 1e-9 * H.cwiseAbs().maxCoeff());
+    const DenseSystem dense(solver.graph());
+    const Eigen::MatrixXd expected = test::informationOfFactors(solver.graph(), dense).topLeftCorner(dense.size(), dense.size());
+    const Eigen::MatrixXd folded = test::informationOfTree(solver.tree(), dense).topLeftCorner(dense.size(), dense.size());
+    EXPECT_THAT(folded, IsNear(expected, 1e-9 * expected.cwiseAbs().maxCoeff()));
   }
 }
 

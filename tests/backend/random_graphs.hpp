@@ -3,8 +3,6 @@
 #include <random>
 #include <vector>
 
-#include <Eigen/Dense>
-
 #include "backend/factors.hpp"
 #include "backend/incremental_solver.hpp"
 
@@ -44,8 +42,9 @@ class MultibodyGraph {
     SE3 anchor_truth;
   };
 
-  MultibodyGraph(IncrementalSolver& solver, std::uint64_t seed, int objects)
-      : solver_(solver), random_(seed), objects_(static_cast<std::size_t>(objects)) {}
+  /// With a loss, one camera encounter in eight is an outlier, and all of them have it.
+  MultibodyGraph(IncrementalSolver& solver, std::uint64_t seed, int objects, RobustLoss loss = RobustLoss::kNone)
+      : solver_(solver), random_(seed), loss_(loss), objects_(static_cast<std::size_t>(objects)) {}
 
   void addFrame() {
     const SE3 before = camera_truth_.empty() ? SE3{} : camera_truth_.back();
@@ -63,11 +62,21 @@ class MultibodyGraph {
   const std::vector<VariableId>& camera() const { return camera_; }
   const std::vector<Object>& objects() const { return objects_; }
   RandomPoses& random() { return random_; }
+  /// Comes into view with the next frame.
+  void startObject() { objects_.emplace_back(); }
+  /// Forgets an object, and returns its variables.
+  std::vector<VariableId> takeObject(std::size_t m) {
+    std::vector<VariableId> variables = objects_[m].poses;
+    variables.push_back(objects_[m].anchor);
+    objects_.erase(objects_.begin() + static_cast<std::ptrdiff_t>(m));
+    return variables;
+  }
   /// Forgets the oldest camera pose and object poses, and returns them.
   std::vector<VariableId> takeOldest() {
     std::vector<VariableId> oldest{camera_.front()};
     camera_.erase(camera_.begin());
     for (Object& object : objects_) {
+      if (object.poses.size() < 2) continue;  // the next frame hangs on the last
       oldest.push_back(object.poses.front());
       object.poses.erase(object.poses.begin());
     }
@@ -80,8 +89,12 @@ class MultibodyGraph {
   SE3 noisy(const SE3& T) { return T * random_.pose(kSigma_m, kSigma_rad); }
 
   template <class FactorType, std::size_t N, class Model>
-  void add(const std::array<VariableId, N>& variables, const Model& model, double sigma_m, double sigma_rad) {
-    solver_.addFactor(std::make_unique<FactorType>(variables, model, isotropicNoise(sigma_m, sigma_rad)));
+  void add(const std::array<VariableId, N>& variables, const Model& model, double sigma_m, double sigma_rad,
+           RobustLoss loss = RobustLoss::kNone) {
+    PoseNoise noise = isotropicNoise(sigma_m, sigma_rad);
+    noise.loss = loss;
+    noise.loss_scale = 3;  // of six dimensions: the norm is about 2.4
+    solver_.addFactor(std::make_unique<FactorType>(variables, model, noise));
   }
 
   void addObject(Object& object, std::size_t number) {
@@ -105,7 +118,9 @@ class MultibodyGraph {
     if (n >= 3)
       add<SmoothMotionFactor, 3>({object.poses[n - 3], object.poses[n - 2], object.poses[n - 1]}, SmoothMotionModel{0.1, 0.1}, 2, 0.5);
     const SE3 seen = camera_truth_.back().inverse() * object.anchor_truth * z;
-    add<CameraEncounterFactor, 3>({camera_.back(), object.anchor, object.poses.back()}, CameraEncounterModel{noisy(seen)}, 0.1, 0.02);
+    const SE3 slip = loss_ != RobustLoss::kNone && random_.below(8) == 0 ? random_.pose(2, 0.3) : SE3{};
+    add<CameraEncounterFactor, 3>({camera_.back(), object.anchor, object.poses.back()}, CameraEncounterModel{noisy(seen) * slip}, 0.1, 0.02,
+                                  loss_);
     if (number > 0) {
       const Object& other = objects_[number - 1];
       const SE3 relative = (other.anchor_truth * other.truth.back()).inverse() * object.anchor_truth * z;
@@ -116,70 +131,10 @@ class MultibodyGraph {
 
   IncrementalSolver& solver_;
   RandomPoses random_;
+  RobustLoss loss_;
   std::vector<Object> objects_;
   std::vector<VariableId> camera_;
   std::vector<SE3> camera_truth_;
-};
-
-/// Dense Gauss-Newton over the factors of a graph, written independently of the solver.
-class DenseSystem {
- public:
-  explicit DenseSystem(const FactorGraph& graph) : graph_(graph), variables_(graph.variables()) {
-    for (const VariableId v : variables_) {
-      offset_.resize(std::max(offset_.size(), static_cast<std::size_t>(v.value) + 1));
-      offset_[static_cast<std::size_t>(v.value)] = size_;
-      size_ += graph.sizeOf(v);
-      values_.resize(offset_.size());
-      values_[static_cast<std::size_t>(v.value)] = graph.estimate(v);
-    }
-  }
-
-  /// The information matrix at the present values, and the gradient.
-  std::pair<Eigen::MatrixXd, Eigen::VectorXd> linearized() const {
-    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(size_, size_);
-    Eigen::VectorXd g = Eigen::VectorXd::Zero(size_);
-    for (const FactorId f : graph_.factors()) {
-      std::vector<const Value*> values;
-      std::vector<int> at;
-      for (const VariableId v : graph_.factor(f).variables()) {
-        values.push_back(&values_[static_cast<std::size_t>(v.value)]);
-        for (int i = 0; i < graph_.sizeOf(v); ++i) at.push_back(offset(v) + i);
-      }
-      const Factor& factor = graph_.factor(f);
-      Eigen::MatrixXd quadratic(factor.rows(), static_cast<Eigen::Index>(at.size()) + 1);
-      factor.linearize(values, quadratic);
-      if (factor.form() == Factor::Form::kJacobian) quadratic = (quadratic.transpose() * quadratic).eval();
-      quadratic.triangularView<Eigen::StrictlyUpper>() = quadratic.transpose();
-      const auto n = static_cast<Eigen::Index>(at.size());
-      for (Eigen::Index i = 0; i < n; ++i) {
-        g[at[static_cast<std::size_t>(i)]] += quadratic(n, i);
-        for (Eigen::Index j = 0; j < n; ++j) H(at[static_cast<std::size_t>(i)], at[static_cast<std::size_t>(j)]) += quadratic(i, j);
-      }
-    }
-    return {H, g};
-  }
-
-  void converge() {
-    for (int i = 0; i < 50; ++i) {
-      const auto [H, g] = linearized();
-      const Eigen::VectorXd delta = -H.ldlt().solve(g);
-      for (const VariableId v : variables_) {
-        Value& value = values_[static_cast<std::size_t>(v.value)];
-        value = retract(value, delta.segment(offset(v), graph_.sizeOf(v)));
-      }
-      if (delta.cwiseAbs().maxCoeff() < 1e-12) return;
-    }
-  }
-
-  int offset(VariableId v) const { return offset_[static_cast<std::size_t>(v.value)]; }
-  SE3 pose(VariableId v) const { return std::get<SE3>(values_[static_cast<std::size_t>(v.value)]); }
-
- private:
-  const FactorGraph& graph_;
-  std::vector<VariableId> variables_;
-  std::vector<int> offset_;
-  std::vector<Value> values_;
-  int size_ = 0;
 };
 
 }  // namespace motorcade::test

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "backend/incremental_solver.hpp"
+#include "tests/support/noise.hpp"
+
+namespace motorcade::test {
+
+/// Thresholds at zero: the solver corrects and relinearises whatever moved.
+inline constexpr IncrementalSolver::Params kExact{
+    .mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0, .substitution_sigmas = 0};
+
+/// Dense Gauss-Newton over the factors of a graph, written independently of the solver.
+class DenseSystem {
+ public:
+  /// Begins at the graph's estimates.
+  explicit DenseSystem(const FactorGraph& graph)
+      : graph_(graph), variables_(graph.variables()), offset_(graph.slots()), values_(graph.slots()) {
+    for (const VariableId v : variables_) {
+      offset_[index(v)] = size_;
+      size_ += graph.sizeOf(v);
+      values_[index(v)] = graph.estimate(v);
+    }
+  }
+
+  /// The information matrix at the present values, and the gradient.
+  std::pair<Eigen::MatrixXd, Eigen::VectorXd> linearized() const {
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(size_, size_);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(size_);
+    for (const FactorId f : graph_.factors()) {
+      const Factor& factor = graph_.factor(f);
+      std::vector<const Value*> values;
+      for (const VariableId v : factor.variables()) values.push_back(&values_[index(v)]);
+      const auto at = entries(factor.variables());
+      const auto n = static_cast<Eigen::Index>(at.size());
+      Eigen::MatrixXd quadratic(factor.rows(), n + 1);
+      factor.linearize(values, quadratic);
+      if (factor.form() == Factor::Form::kJacobian) quadratic = (quadratic.transpose() * quadratic).eval();
+      quadratic.triangularView<Eigen::StrictlyUpper>() = quadratic.transpose();
+      H(at, at) += quadratic.topLeftCorner(n, n);
+      g(at) += quadratic.col(n).head(n);
+    }
+    return {H, g};
+  }
+
+  /// Robust losses converge linearly only, hence the many steps.
+  void converge() {
+    for (int i = 0; i < 500; ++i) {
+      const auto [H, g] = linearized();
+      const Eigen::VectorXd delta = -H.ldlt().solve(g);
+      move(delta);
+      if (delta.cwiseAbs().maxCoeff() < 1e-12) return;
+    }
+  }
+
+  /// Moves every value by `delta`, under right perturbations.
+  void move(const Eigen::VectorXd& delta) {
+    for (const VariableId v : variables_) values_[index(v)] = retract(value(v), delta.segment(offset(v), graph_.sizeOf(v)));
+  }
+
+  int size() const { return size_; }
+  int offset(VariableId v) const { return offset_[index(v)]; }
+  /// Rows of these variables.
+  std::vector<int> entries(std::span<const VariableId> variables) const {
+    std::vector<int> at;
+    for (const VariableId v : variables)
+      for (int i = 0; i < graph_.sizeOf(v); ++i) at.push_back(offset(v) + i);
+    return at;
+  }
+  const Value& value(VariableId v) const { return values_[index(v)]; }
+
+ private:
+  static std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
+
+  const FactorGraph& graph_;
+  std::vector<VariableId> variables_;
+  std::vector<int> offset_;
+  std::vector<Value> values_;
+  int size_ = 0;
+};
+
+/// Updates until nothing moves any more.
+inline void settle(IncrementalSolver& solver) {
+  for (int i = 0; i < 200; ++i)
+    if (solver.update().largest_change < 1e-11) return;
+}
+
+/// Largest difference of a variable between the solver and a converged dense solution of its own graph, which begins `nudge` (standard
+/// deviation of each component) beside the solver's: a point that is stationary but no minimum would be left.
+inline double differenceFromBatch(const IncrementalSolver& solver, double nudge = 0.01) {
+  DenseSystem dense(solver.graph());
+  Noise noise(static_cast<std::uint64_t>(dense.size()));
+  Eigen::VectorXd delta(dense.size());
+  for (double& d : delta) d = noise.gaussian(nudge);
+  dense.move(delta);
+  dense.converge();
+  double largest = 0;
+  for (const VariableId v : solver.graph().variables()) largest = std::max(largest, local(dense.value(v), solver.estimate(v)).norm());
+  return largest;
+}
+
+}  // namespace motorcade::test
