@@ -72,8 +72,7 @@ TEST(IncrementalSolverBudget, EliminatesNoMoreThanTheNewFactorsAskForAndTheBudge
   }
 }
 
-/// Off: crashes. A marginal prior whose relinearisation is put off is corrected like a residual, which it does not have.
-TEST(IncrementalSolverBudget, DISABLED_PutsOffMarginalPriorsToo) {
+TEST(IncrementalSolverBudget, PutsOffMarginalPriorsToo) {
   for (const std::int64_t budget : {1, 60, 1000, 100000}) {
     IncrementalSolver solver(withBudget(budget));
     MultibodyGraph graph(solver, 1, 2);
@@ -99,13 +98,14 @@ TEST(IncrementalSolverBudget, WorkThatIsPutOffIsDoneInQuietUpdates) {
       most_deferred = std::max(most_deferred, solver.update().deferred_variables);
     }
     EXPECT_GT(most_deferred, 0);
+    EXPECT_LE(most_deferred, solver.counters().variables);
     EXPECT_EQ(finishOverQuietUpdates(solver, kBudget), 0);
     EXPECT_LT(differenceFromBatch(solver), kTol) << "seed " << seed;
   }
 }
 
-/// Off: a variable that costs more than the whole budget is put off for ever, and the cost of one with many factors is counted too high:
-/// cliques above several of them count several times. A budget of 300 fails here, though all variables together have only 372 scalars.
+/// Off: a variable that costs more than the whole budget is put off for ever. Here it is an object's anchor, with a factor in each of
+/// twenty frames; all variables together have 372 scalars.
 TEST(IncrementalSolverBudget, DISABLED_ABudgetBelowTheWholeGetsThereToo) {
   constexpr std::int64_t kBudget = 300;
   IncrementalSolver solver(withBudget(kBudget));

@@ -5,6 +5,7 @@
 #include "backend/incremental_solver.hpp"
 #include "tests/backend/dense_system.hpp"
 #include "tests/backend/random_factors.hpp"
+#include "tests/backend/tree_information.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace motorcade {
@@ -94,21 +95,53 @@ TEST(JointCovariance, EqualsTheDenseInverseAfterRetirement) {
   }
 }
 
-/// Right perturbations of where the pose is now, not of where it was linearised: the whole trajectory turns by a radian and moves by metres
-/// when a sure measurement of its end comes.
-TEST(JointCovariance, FollowsALargeMotionSinceLinearization) {
+/// The whole trajectory turns and moves when a sure measurement of its end comes: its start is known to 2 m and 0.4 rad only.
+Trajectory swungTrajectory(IncrementalSolver& solver, std::uint64_t seed) {
+  Trajectory trajectory(solver, seed, seed % 2 == 0 ? RandomWorld::Kind::kSpace : RandomWorld::Kind::kPlane, 40);
+  for (int i = 0; i < 12; ++i) trajectory.extend();
+  const Value before = solver.estimate(trajectory.variables()[5]);
+  solver.addFactor(trajectory.world().prior(trajectory.variables().back(), 0.1));
+  settle(solver);
+  EXPECT_GT(displacement(before, solver.estimate(trajectory.variables()[5])).norm(), 0.3);
+  return trajectory;
+}
+
+TEST(JointCovariance, EqualsTheDenseInverseAfterALargeMotion) {
   for (std::uint64_t seed = 0; seed < 16; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const auto kind = seed % 2 == 0 ? RandomWorld::Kind::kSpace : RandomWorld::Kind::kPlane;
     IncrementalSolver solver(kExact);
-    Trajectory trajectory(solver, seed, kind, 40);  // the start is known to 2 m and 0.4 rad only
-    for (int i = 0; i < 12; ++i) trajectory.extend();
-    const Value before = solver.estimate(trajectory.variables()[5]);
-    solver.addFactor(trajectory.world().prior(trajectory.variables().back(), 0.1));
-    settle(solver);
-    const SmallVector moved = displacement(before, solver.estimate(trajectory.variables()[5]));
-    EXPECT_GT(moved.norm(), 0.3);
+    Trajectory trajectory = swungTrajectory(solver, seed);
     for (int i = 0; i < 4; ++i) expectDenseInverse(solver, trajectory.some());
+  }
+}
+
+/// Takes steps in the world's axes to right perturbations of a pose.
+Eigen::MatrixXd turnOf(const Value& value) {
+  Eigen::MatrixXd turn = Eigen::MatrixXd::Identity(dimension(value), dimension(value));
+  if (const auto* pose = std::get_if<SE3>(&value)) {
+    turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = pose->rotation().transpose();
+  } else if (const auto* planar = std::get_if<SE2>(&value)) {
+    turn.topLeftCorner<2, 2>() = planar->rotation().transpose();
+  }
+  return turn;
+}
+
+/// With Jacobians that stay where they were first taken, the covariance is that of the linear models, under right perturbations of where
+/// the pose is now.
+TEST(JointCovariance, IsStatedWhereThePoseIsNotWhereItWasLinearized) {
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    IncrementalSolver::Params params = kExact;
+    params.jacobian_drift_sigmas = params.relinearize_rad = 1e9;
+    IncrementalSolver solver(params);
+    Trajectory trajectory = swungTrajectory(solver, seed);
+    const DenseSystem dense(solver.graph());
+    const Eigen::MatrixXd covariance =
+        test::informationOfFactors(solver.graph(), dense).topLeftCorner(dense.size(), dense.size()).inverse();
+    for (const VariableId v : trajectory.variables()) {
+      const auto at = dense.entries(std::array{v});
+      const Eigen::MatrixXd turn = turnOf(solver.estimate(v)), expected = turn * covariance(at, at) * turn.transpose();
+      EXPECT_THAT(*solver.jointCovariance(std::array{v}), IsNear(expected, 1e-6 * expected.cwiseAbs().maxCoeff())) << "seed " << seed;
+    }
   }
 }
 
