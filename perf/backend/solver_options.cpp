@@ -26,6 +26,8 @@ void addSolverOptions(CLI::App& app, IncrementalSolver::Params& params) {
   add("--jacobian-drift", params.jacobian_drift_sigmas, "Summed mismatch of a factor at which its variables are relinearised");
   add("--relinearize", params.relinearize_rad, "Turn of a variable at which it is relinearised [rad]");
   add("--substitution-tolerance", params.substitution_tolerance, "Steps below that do not spread");
+  add("--urgent-flops", params.urgent_flops, "Work per update that goes into relinearisation as soon as possible");
+  add("--polish-flops", params.polish_flops, "Work per update that goes into relinearisation at leisure");
   add("--iterations", params.iterations_per_update, "Gauss-Newton steps per update, at most");
   add("--budget", params.budget_scalars, "Scalars eliminated per update beyond what new factors ask for; 0: no limit");
 }
@@ -37,6 +39,8 @@ nlohmann::ordered_json jsonOf(const IncrementalSolver::Params& params) {
           {"jacobian_drift_sigmas", params.jacobian_drift_sigmas},
           {"relinearize_rad", params.relinearize_rad},
           {"substitution_tolerance", params.substitution_tolerance},
+          {"urgent_flops", params.urgent_flops},
+          {"polish_flops", params.polish_flops},
           {"iterations_per_update", params.iterations_per_update},
           {"budget_scalars", params.budget_scalars}};
 }
