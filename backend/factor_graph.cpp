@@ -190,9 +190,10 @@ std::optional<FactorId> FactorGraph::addFactor(std::unique_ptr<const Factor> fac
   slot.columns = columns;
   slot.drift = 0;
   slot.cost = 0;
-  setCost(slot, costOf(*factor, term));
-  shiftToCoordinates(*factor, term);
   slot.factor = std::move(factor);
+  setCost(slot, costOf(*slot.factor, term));
+  shiftToCoordinates(*slot.factor, term);
+  if (slot.factor->form() == Factor::Form::kJacobian) ++residual_count_;
   return id;
 }
 
@@ -201,6 +202,7 @@ void FactorGraph::removeFactor(FactorId id) {
   assert(slot.factor);
   for (const VariableId v : slot.factor->variables()) std::erase((*this)[v].factors, id);
   setCost(slot, 0);
+  if (slot.factor->form() == Factor::Form::kJacobian) --residual_count_;
   terms_.give(slot.term, static_cast<std::size_t>(slot.factor->rows() * slot.columns));
   slot.factor = nullptr;
   slot.term = nullptr;
@@ -269,8 +271,11 @@ double FactorGraph::costOf(const Factor& factor, const Term& term) {
 void FactorGraph::setCost(LinearizedFactor& slot, double cost) {
   if (!std::isfinite(cost)) return;  // it would never leave the sum again
   total_cost_ += cost - slot.cost;
+  if (slot.factor->form() == Factor::Form::kJacobian) residual_cost_ += cost - slot.cost;
   slot.cost = cost;
 }
+
+double FactorGraph::meanSquareResidual() const { return residual_count_ == 0 ? 0 : residual_cost_ / static_cast<double>(residual_count_); }
 
 bool FactorGraph::contains(VariableId id) const {
   return id.value >= 0 && static_cast<std::size_t>(id.value) < variables_.size() && (*this)[id].alive;

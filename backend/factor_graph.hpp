@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -83,6 +84,8 @@ class FactorGraph {
   void addDrift(FactorId id, double mismatch) { factors_[static_cast<std::size_t>(id.value)].drift += mismatch; }
   /// Sum of the factors' squared residuals, each at the estimates when it was last looked at.
   double totalCost() const { return total_cost_; }
+  /// Over the factors with residuals: the cost of a marginal prior counts everything that ever retired into it.
+  double meanSquareResidual() const;
 
   int sizeOf(VariableId id) const { return (*this)[id].size; }
   Value estimate(VariableId id) const;
@@ -122,7 +125,8 @@ class FactorGraph {
   std::vector<VariableId> free_variables_;
   std::vector<FactorId> free_factors_;
   BlockPool terms_;
-  double total_cost_ = 0;
+  double total_cost_ = 0, residual_cost_ = 0;
+  std::int64_t residual_count_ = 0;
   std::vector<const Value*> values_;           // scratch
   // Aligned: how Eigen sums up depends on where the memory lies, and results must not.
   std::vector<double, Eigen::aligned_allocator<double>> coordinates_, residual_, matrix_;  // scratch

@@ -37,7 +37,8 @@ class IncrementalSolver {
     double jacobian_drift_sigmas = 0.5;    // summed mismatch of a factor at which its variables are relinearised
     double relinearize_rad = 0.05;         // turn of a variable at which it is relinearised as soon as possible; from a fifth of it on, at leisure
     double substitution_tolerance = 0.05;  // steps below that, in conditional standard deviations over the same mean, do not spread
-    double urgent_flops = 4e7, polish_flops = 4e6;  // about as much work per update goes into relinearisation, as soon as possible and at leisure
+    double urgent_flops = 4e7;             // allowance per update for relinearisation as soon as possible
+    double polish_flops = 1e6;             // and at leisure
     int iterations_per_update = 1;         // Gauss-Newton steps at most, while models are off
     std::int64_t budget_scalars = 0;       // eliminated per update beyond what the new factors ask for; 0: no limit
   };

@@ -19,8 +19,7 @@ constexpr std::size_t kWorstAtOnce = 16;
 
 /// Root mean square over the factors of their residuals' norms, in standard deviations: the scale of all tolerances.
 double IncrementalSolver::rmsResidual() const {
-  const double mean_square = graph_.factorCount() == 0 ? 0 : graph_.totalCost() / static_cast<double>(graph_.factorCount());
-  return std::sqrt(std::max(mean_square, 1e-8));
+  return std::sqrt(std::max(graph_.meanSquareResidual(), 1e-8));
 }
 
 /// Finds the models that are off after the step.
@@ -50,7 +49,8 @@ void IncrementalSolver::markStale(VariableId v, double turn_rad) {
 
 /// Puts the models right that are off: by new Jacobians where they drifted and the budget allows, by new right-hand sides elsewhere.
 void IncrementalSolver::correctModels() {
-  std::erase_if(off_, [&](const OffModel& off) { return !graph_.contains(off.factor); });
+  // A new factor may have taken the id of one that left.
+  std::erase_if(off_, [&](const OffModel& off) { return !graph_.contains(off.factor) || isNew(off.factor); });
   for (const OffModel& off : off_)
     if (graph_.drift(off.factor) + off.mismatch > params_.jacobian_drift_sigmas)
       for (const VariableId v : graph_.factor(off.factor).variables()) markStale(v, std::max(params_.relinearize_rad * 1.0001, graph_.turnSinceLinearization(v)));
@@ -67,7 +67,10 @@ void IncrementalSolver::relinearizeStale() {
   for (const int c : removed_cliques_)
     for (const VariableId v : tree_[c].frontalVariables())
       if (isStale(v) && workOfRelinearizing(v).scalars == 0) relinearize(v);
-  std::erase_if(stale_, [&](VariableId v) { return !graph_.contains(v) || !isStale(v); });
+  std::erase_if(stale_, [&](VariableId v) {
+    if (!graph_.contains(v)) staleness_[index(v)] = 0;  // its id may be given out again
+    return !isStale(v);
+  });
   const auto worse = [&](VariableId a, VariableId b) {
     const double turn_a = staleness_[index(a)], turn_b = staleness_[index(b)];
     return turn_a > turn_b || (turn_a == turn_b && a < b);
@@ -92,6 +95,7 @@ void IncrementalSolver::relinearizeStale() {
       relinearize(v);
     }
   }
+  std::erase_if(stale_, [&](VariableId v) { return !isStale(v); });
 }
 
 bool IncrementalSolver::isStale(VariableId v) const { return index(v) < staleness_.size() && staleness_[index(v)] > 0; }

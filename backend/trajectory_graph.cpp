@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "backend/object_pairs.hpp"
 
@@ -23,6 +24,9 @@ IncrementalSolver::Params solverParams(const Optimizer::Params& params) {
           .mismatch_tolerance = params.mismatch_tolerance,
           .jacobian_drift_sigmas = params.jacobian_drift_sigmas,
           .substitution_tolerance = params.substitution_tolerance,
+          // No allowances: a window costs little, and objects that little ties down sway when only part of them is relinearised.
+          .urgent_flops = std::numeric_limits<double>::infinity(),
+          .polish_flops = std::numeric_limits<double>::infinity(),
           .iterations_per_update = params.iterations_per_update,
           .budget_scalars = params.budget_scalars};
 }
