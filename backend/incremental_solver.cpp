@@ -233,6 +233,7 @@ void IncrementalSolver::batchStep() {
   graph_.restartCoordinates();
   report_.relinearized_factors += static_cast<int>(graph_.factorCount());
   off_.clear();
+  for (const VariableId v : stale_) staleness_[index(v)] = 0;
   stale_.clear();
   removed_cliques_.clear();
   created_.clear();

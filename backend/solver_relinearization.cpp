@@ -12,7 +12,8 @@ std::size_t index(FactorId f) { return static_cast<std::size_t>(f.value); }
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double kComparedShare = 0.25;  // of the tolerance: below it a variable's factors need no look
-constexpr double kMildShare = 0.2;
+constexpr double kLeisurelyShare = 0.2;  // of the turn at which relinearisation is urgent
+constexpr double kDriftedShare = 1.0001;  // of the same: a Jacobian that drifted is urgent however little its variables turned
 constexpr std::size_t kWorstAtOnce = 16;
 
 }  // namespace
@@ -27,7 +28,7 @@ void IncrementalSolver::compareModels() {
   checked_in_step_.resize(graph_.factorSlots(), 0);
   const double tolerance = params_.mismatch_tolerance * rmsResidual();
   for (const VariableId v : moved_) {
-    if (const double turn = graph_.turnSinceLinearization(v); turn > kMildShare * params_.relinearize_rad) markStale(v, turn);
+    if (const double turn = graph_.turnSinceLinearization(v); turn > kLeisurelyShare * params_.relinearize_rad) markStale(v, turn);
     if (graph_.mismatchBound(v) < kComparedShare * tolerance) continue;
     graph_.markCompared(v);
     for (const FactorId f : graph_[v].factors) {
@@ -53,15 +54,16 @@ void IncrementalSolver::correctModels() {
   std::erase_if(off_, [&](const OffModel& off) { return !graph_.contains(off.factor) || isNew(off.factor); });
   for (const OffModel& off : off_)
     if (graph_.drift(off.factor) + off.mismatch > params_.jacobian_drift_sigmas)
-      for (const VariableId v : graph_.factor(off.factor).variables()) markStale(v, std::max(params_.relinearize_rad * 1.0001, graph_.turnSinceLinearization(v)));
+      for (const VariableId v : graph_.factor(off.factor).variables())
+        markStale(v, std::max(kDriftedShare * params_.relinearize_rad, graph_.turnSinceLinearization(v)));
   relinearizeStale();
   for (const OffModel& off : off_)
     if (relinearized_in_step_[index(off.factor)] != step_) shiftResidual(off.factor);
   off_.clear();
 }
 
-/// First what costs nothing, as its cliques are eliminated anew in any case; then the worst, as far as the budgets reach: one for those so far
-/// off that the solution suffers, one for the others, which can wait.
+/// First what costs nothing, as its cliques are eliminated anew in any case; then the worst, as far as the allowances reach: one for those so
+/// far off that the solution suffers, one for the others, which can wait. The budget bounds both.
 void IncrementalSolver::relinearizeStale() {
   relinearized_in_step_.resize(graph_.factorSlots(), 0);
   for (const int c : removed_cliques_)
