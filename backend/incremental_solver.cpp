@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <cmath>
 
 #include "backend/dense_kernels.hpp"
@@ -11,6 +12,8 @@ namespace {
 
 std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+constexpr double kPaceShare = 0.1;  // of the newest update in the mean pace
 
 template <class T>
 void sortUnique(std::vector<T>& items) {
@@ -81,7 +84,21 @@ void IncrementalSolver::beginReport() {
   report_.relinearized_variables = report_.relinearized_factors = report_.corrected_factors = report_.deferred_variables = 0;
   report_.largest_change = 0;
   tree_.clearFindings();
-  budget_left_ = params_.budget_scalars > 0 ? params_.budget_scalars : std::numeric_limits<std::int64_t>::max();
+  budget_left_ = budget();
+}
+
+std::int64_t IncrementalSolver::budget() const {
+  auto scalars = std::numeric_limits<std::int64_t>::max();
+  if (params_.budget_scalars > 0) scalars = params_.budget_scalars + saved_scalars_;
+  if (params_.budget_ms > 0 && scalars_per_ms_ > 0)
+    scalars = std::min(scalars, static_cast<std::int64_t>(params_.budget_ms * scalars_per_ms_) + saved_scalars_);
+  return scalars;
+}
+
+void IncrementalSolver::notePace(double update_ms) {
+  if (report_.eliminated_scalars == 0 || update_ms <= 0) return;
+  const double now = static_cast<double>(report_.eliminated_scalars) / update_ms;
+  scalars_per_ms_ = scalars_per_ms_ > 0 ? scalars_per_ms_ + kPaceShare * (now - scalars_per_ms_) : now;
 }
 
 void IncrementalSolver::endReport() {
@@ -96,6 +113,7 @@ void IncrementalSolver::endReport() {
 }
 
 const IncrementalSolver::Report& IncrementalSolver::update() {
+  const auto begin = std::chrono::steady_clock::now();
   beginReport();
   ++counters_.updates;
   if (params_.policy == Policy::kEveryN && counters_.updates % params_.batch_every_updates == 0) {
@@ -103,10 +121,16 @@ const IncrementalSolver::Report& IncrementalSolver::update() {
   } else {
     step(true);
     new_factors_.clear();
-    for (int i = 1; i < params_.iterations_per_update && !off_.empty(); ++i) step(false);
+    for (int i = 1; i < params_.iterations_per_update && mayIterate(); ++i) step(false);
   }
   endReport();
+  if (params_.budget_ms > 0) notePace(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   return report_;
+}
+
+/// Models are off, and the update has not cost too much yet for another step.
+bool IncrementalSolver::mayIterate() const {
+  return !off_.empty() && (params_.iterated_scalars == 0 || report_.substituted_scalars <= params_.iterated_scalars);
 }
 
 /// One Gauss-Newton step: folds in what is new, corrects the models that are off, solves for x, and lets the estimates follow.

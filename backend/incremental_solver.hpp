@@ -39,8 +39,10 @@ class IncrementalSolver {
     double substitution_tolerance = 0.05;  // steps below that, in conditional standard deviations over the same mean, do not spread
     double urgent_flops = 4e7;             // allowance per update for relinearisation as soon as possible
     double polish_flops = 1e6;             // and at leisure
-    int iterations_per_update = 1;         // Gauss-Newton steps at most, while models are off
+    int iterations_per_update = 2;         // Gauss-Newton steps at most, while models are off
+    std::int64_t iterated_scalars = 3000;  // substituted in an update, up to which it may take a further step; 0: no limit
     std::int64_t budget_scalars = 0;       // eliminated per update beyond what the new factors ask for; 0: no limit
+    double budget_ms = 0;                  // the same as time, at the pace of the updates before, so results depend on the machine; 0: no limit
   };
   struct Report {
     std::vector<SolverProblem> problems;
@@ -83,14 +85,19 @@ class IncrementalSolver {
  private:
   /// What a step does with a clique.
   enum class Work : char { kNone, kShift, kRefresh, kRemoved, kNew };
+  /// How far the budget and the allowances reach.
+  enum class Reach : char { kWithin, kBeyondAllowance, kBeyondBudget };
   struct OffModel {
     FactorId factor;
     double mismatch = 0;
   };
   struct RetiringPart;
 
+  std::int64_t budget() const;
+  void notePace(double update_ms);
   void beginReport();
   void endReport();
+  bool mayIterate() const;
   void step(bool fold);
   void batchStep();
 
@@ -106,6 +113,8 @@ class IncrementalSolver {
   void markStale(VariableId v, double turn_rad);
   void correctModels();
   void relinearizeStale();
+  Reach relinearizeRegion(VariableId worst, double& flops_left);
+  Reach relinearizeWithin(VariableId v, double& flops_left);
   bool isStale(VariableId v) const;
   struct EliminationWork {
     std::int64_t scalars = 0;
@@ -128,7 +137,8 @@ class IncrementalSolver {
   AffectedOrder reordered_{graph_, tree_};
   Report report_;
   SolverCounters counters_;
-  std::int64_t budget_left_ = 0;
+  double scalars_per_ms_ = 0;  // with `budget_ms`: of the updates so far; 0 before the first
+  std::int64_t budget_left_ = 0, saved_scalars_ = 0;  // saved for a variable that costs more than the budget
   std::vector<SolverProblem> refused_;  // since the last update
   SolverExplanations explanations_;
 
@@ -151,6 +161,10 @@ class IncrementalSolver {
   std::vector<std::uint32_t> moved_in_step_, checked_in_step_, relinearized_in_step_;  // per variable, per factor, per factor
   std::vector<std::uint32_t> counted_;                                                 // per clique
   std::uint32_t count_mark_ = 0;
+  std::vector<FactorId> relinearized_;
+  std::vector<VariableId> region_;
+  std::vector<std::uint32_t> in_region_;  // per variable
+  std::uint32_t region_mark_ = 0;
   std::vector<int> open_;                                       // cliques to solve
   std::vector<double> x_separator_, x_frontal_;
 };

@@ -51,6 +51,7 @@ void check(const Optimizer::Params& p) {
                       {"jacobian_drift_sigmas", p.jacobian_drift_sigmas},
                       {"substitution_tolerance", p.substitution_tolerance},
                       {"budget_scalars", static_cast<double>(p.budget_scalars)},
+                      {"budget_ms", p.budget_ms},
                       {"covariance_lag_frames", static_cast<double>(p.covariance_lag_frames)}});
   if (!(p.object_encounter_share < 1)) throw std::invalid_argument("backend: object_encounter_share must be below 1");
 }

@@ -14,7 +14,8 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 constexpr double kComparedShare = 0.25;  // of the tolerance: below it a variable's factors need no look
 constexpr double kLeisurelyShare = 0.2;  // of the turn at which relinearisation is urgent
 constexpr double kDriftedShare = 1.0001;  // of the same: a Jacobian that drifted is urgent however little its variables turned
-constexpr std::size_t kWorstAtOnce = 16;
+constexpr double kTurnedWithShare = 0.1;  // of the worst variable's turn: those that turned more are relinearised with it
+constexpr std::size_t kWorstAtOnce = 16, kLargestRegion = 1000;
 
 }  // namespace
 
@@ -56,14 +57,18 @@ void IncrementalSolver::correctModels() {
     if (graph_.drift(off.factor) + off.mismatch > params_.jacobian_drift_sigmas)
       for (const VariableId v : graph_.factor(off.factor).variables())
         markStale(v, std::max(kDriftedShare * params_.relinearize_rad, graph_.turnSinceLinearization(v)));
+  relinearized_.clear();
   relinearizeStale();
+  for (const FactorId f : relinearized_) graph_.linearize(f);
+  report_.relinearized_factors += static_cast<int>(relinearized_.size());
   for (const OffModel& off : off_)
     if (relinearized_in_step_[index(off.factor)] != step_) shiftResidual(off.factor);
   off_.clear();
 }
 
 /// First what costs nothing, as its cliques are eliminated anew in any case; then the worst, as far as the allowances reach: one for those so
-/// far off that the solution suffers, one for the others, which can wait. The budget bounds both.
+/// far off that the solution suffers, one for the others, which can wait. The budget bounds both; what an update leaves of it is saved while
+/// the worst variable costs more.
 void IncrementalSolver::relinearizeStale() {
   relinearized_in_step_.resize(graph_.factorSlots(), 0);
   for (const int c : removed_cliques_)
@@ -78,26 +83,48 @@ void IncrementalSolver::relinearizeStale() {
     return turn_a > turn_b || (turn_a == turn_b && a < b);
   };
   double urgent_flops = params_.urgent_flops, polish_flops = params_.polish_flops;
-  bool budget_reaches = true;
-  for (std::size_t done = 0; done < stale_.size() && budget_reaches;) {
+  auto reach = Reach::kWithin;
+  for (std::size_t done = 0; done < stale_.size() && reach == Reach::kWithin;) {
     const auto from = stale_.begin() + static_cast<std::ptrdiff_t>(done);
     const std::size_t end = std::min(done + kWorstAtOnce, stale_.size());
     std::partial_sort(from, stale_.begin() + static_cast<std::ptrdiff_t>(end), stale_.end(), worse);
-    for (; done < end; ++done) {
+    for (; done < end && reach != Reach::kBeyondBudget; ++done) {
       const VariableId v = stale_[done];
-      if (!isStale(v)) continue;  // twice in the list
+      if (!isStale(v)) continue;  // twice in the list, or of the region of one before it
       double& flops_left = staleness_[index(v)] > params_.relinearize_rad ? urgent_flops : polish_flops;
-      const EliminationWork work = workOfRelinearizing(v);
-      if (work.scalars > budget_left_ || work.flops > flops_left) {
-        budget_reaches = false;
-        continue;
-      }
-      budget_left_ -= work.scalars;
-      flops_left -= work.flops;
-      relinearize(v);
+      reach = std::max(reach, relinearizeRegion(v, flops_left));
     }
   }
   std::erase_if(stale_, [&](VariableId v) { return !isStale(v); });
+  saved_scalars_ = reach == Reach::kBeyondBudget ? budget_left_ : 0;
+}
+
+/// The variable and, as new Jacobians of a part of a stiff region bias the rest of it, the connected ones that turned with it.
+IncrementalSolver::Reach IncrementalSolver::relinearizeRegion(VariableId worst, double& flops_left) {
+  const double turn_rad = kTurnedWithShare * staleness_[index(worst)];
+  if (const Reach reach = relinearizeWithin(worst, flops_left); reach != Reach::kWithin) return reach;
+  region_.assign(1, worst);
+  ++region_mark_;
+  in_region_.resize(graph_.slots(), 0);
+  in_region_[index(worst)] = region_mark_;
+  for (std::size_t i = 0; i < region_.size() && i < kLargestRegion; ++i)
+    for (const FactorId f : graph_[region_[i]].factors)
+      for (const VariableId v : graph_.factor(f).variables()) {
+        if (in_region_[index(v)] == region_mark_ || graph_.turnSinceLinearization(v) <= turn_rad) continue;
+        in_region_[index(v)] = region_mark_;
+        if (relinearizeWithin(v, flops_left) == Reach::kWithin) region_.push_back(v);
+      }
+  return Reach::kWithin;
+}
+
+IncrementalSolver::Reach IncrementalSolver::relinearizeWithin(VariableId v, double& flops_left) {
+  const EliminationWork work = workOfRelinearizing(v);
+  if (work.scalars > budget_left_) return Reach::kBeyondBudget;
+  if (work.flops > flops_left) return Reach::kBeyondAllowance;
+  budget_left_ -= work.scalars;
+  flops_left -= work.flops;
+  relinearize(v);
+  return Reach::kWithin;
 }
 
 bool IncrementalSolver::isStale(VariableId v) const { return index(v) < staleness_.size() && staleness_[index(v)] > 0; }
@@ -118,14 +145,15 @@ IncrementalSolver::EliminationWork IncrementalSolver::workOfRelinearizing(Variab
   return work;
 }
 
+/// Its factors get their Jacobians when the points of all variables have moved.
 void IncrementalSolver::relinearize(VariableId v) {
   graph_.moveLinearizationPoint(v);
   if (isStale(v)) staleness_[index(v)] = 0;
   ++report_.relinearized_variables;
   for (const FactorId f : graph_[v].factors) {
-    if (relinearized_in_step_[index(f)] != step_) ++report_.relinearized_factors;
+    if (relinearized_in_step_[index(f)] == step_) continue;
     relinearized_in_step_[index(f)] = step_;
-    graph_.linearize(f);
+    relinearized_.push_back(f);
     if (!isNew(f)) markWork(tree_.ownerOf(graph_.factor(f)), Work::kRefresh);
   }
 }

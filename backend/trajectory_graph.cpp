@@ -28,7 +28,9 @@ IncrementalSolver::Params solverParams(const Optimizer::Params& params) {
           .urgent_flops = std::numeric_limits<double>::infinity(),
           .polish_flops = std::numeric_limits<double>::infinity(),
           .iterations_per_update = params.iterations_per_update,
-          .budget_scalars = params.budget_scalars};
+          .iterated_scalars = 0,
+          .budget_scalars = params.budget_scalars,
+          .budget_ms = params.budget_ms};
 }
 
 /// Of variables, not of a factor that was left out.

@@ -24,6 +24,8 @@ PipelineConfig configurationOf(const RunOptions& options) {
   for (const std::string& assignment : options.assignments) applyAssignment(config, assignment);
   if (options.threads) applyAssignment(config, "pipeline.threads=" + std::to_string(*options.threads));
   if (options.live) config.pipeline.policy = InputPolicy::kLive;
+  if (config.backend.smoother.budget_ms > 0 && config.pipeline.policy != InputPolicy::kLive)
+    throw UsageError("backend.budget_ms: a budget in milliseconds would make replay irreproducible; use backend.budget_scalars, or --live");
   return config;
 }
 

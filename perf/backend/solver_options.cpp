@@ -29,6 +29,7 @@ void addSolverOptions(CLI::App& app, IncrementalSolver::Params& params) {
   add("--urgent-flops", params.urgent_flops, "Work per update that goes into relinearisation as soon as possible");
   add("--polish-flops", params.polish_flops, "Work per update that goes into relinearisation at leisure");
   add("--iterations", params.iterations_per_update, "Gauss-Newton steps per update, at most");
+  add("--iterated-scalars", params.iterated_scalars, "Substituted in an update, up to which it may take a further step; 0: no limit");
   add("--budget", params.budget_scalars, "Scalars eliminated per update beyond what new factors ask for; 0: no limit");
 }
 
@@ -42,6 +43,7 @@ nlohmann::ordered_json jsonOf(const IncrementalSolver::Params& params) {
           {"urgent_flops", params.urgent_flops},
           {"polish_flops", params.polish_flops},
           {"iterations_per_update", params.iterations_per_update},
+          {"iterated_scalars", params.iterated_scalars},
           {"budget_scalars", params.budget_scalars}};
 }
 
