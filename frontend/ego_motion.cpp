@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
+#include <map>
 #include <random>
+#include <utility>
 
 namespace motorcade {
 namespace {
@@ -29,39 +32,61 @@ double totalWeight(const std::vector<Voter>& voters) {
 
 }  // namespace
 
-double EgoMotionEstimator::weightOf(EgoHint hint) const {
-  if (hint == EgoHint::kMoved) return params_.known_mover_weight;
-  return hint == EgoHint::kGround ? params_.ground_weight : 1.0;
+/// Of each observation. The world is larger than the vehicles in it, though these may carry most points: so what counts is the floor space
+/// that agrees. Points share the vote of their cell; those beyond `vote_depth_m` share by bearing.
+std::vector<double> EgoMotionEstimator::votes(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers) const {
+  std::map<std::pair<int, int>, int> points_in;
+  std::vector<int*> sharing;
+  sharing.reserve(observations.size());
+  for (const auto& o : observations) {
+    const double scale = std::min(1.0, params_.vote_depth_m / o.p_a.z()) / params_.vote_cell_m;
+    int& points = points_in[{static_cast<int>(std::floor(scale * o.p_a.x())), static_cast<int>(std::floor(scale * o.p_a.z()))}];
+    ++points;
+    sharing.push_back(&points);
+  }
+  std::vector<double> votes;
+  votes.reserve(observations.size());
+  for (std::size_t i = 0; i < observations.size(); ++i) votes.push_back((known_movers[i] ? params_.known_mover_weight : 1.0) / *sharing[i]);
+  return votes;
 }
 
-SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observations, std::span<const EgoHint> hints,
-                                       const SE3& predicted_T_now_previous, std::uint64_t seed) const {
+bool EgoMotionEstimator::follows(const SE3& T_now_previous, const PredictedMotion& predicted) const {
+  const double change_m = (T_now_previous.inverse().translation() - predicted.T_previous_now.translation()).norm();
+  return change_m < params_.max_acceleration_mps2 * predicted.dt_s * predicted.dt_s;
+}
+
+SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
+                                       const PredictedMotion& predicted, std::uint64_t seed) const {
+  const auto vote = votes(observations, known_movers);
   std::vector<Voter> voters;
   const double stride = std::max(1.0, static_cast<double>(observations.size()) / params_.scored_points);
   for (double at = 0; at < static_cast<double>(observations.size()); at += stride)
-    voters.push_back({&observations[static_cast<std::size_t>(at)], weightOf(hints[static_cast<std::size_t>(at)])});
-  std::vector<std::size_t> candidates, ground;
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    if (hints[i] != EgoHint::kMoved) candidates.push_back(i);
-    if (hints[i] == EgoHint::kGround) ground.push_back(i);
-  }
+    voters.push_back({&observations[static_cast<std::size_t>(at)], vote[static_cast<std::size_t>(at)]});
+  std::vector<double> votes_up_to(observations.size());
+  double total = 0;
+  for (std::size_t i = 0; i < observations.size(); ++i) votes_up_to[i] = total += known_movers[i] ? 0.0 : vote[i];
   PoseFitParams minimal = params_.fit;
   minimal.max_iterations = 5;
 
-  SE3 best = predicted_T_now_previous;
+  SE3 best = predicted.T_previous_now.inverse();
+  const SE3 start = best;
   double best_score = score(camera_, voters, best, params_.inlier_chi2);
   const double worst_score = params_.inlier_chi2 * totalWeight(voters);
-  if (candidates.size() < 3) return best;
+  const double trust = std::min(1.0, static_cast<double>(predicted.steady_frames) / params_.trusted_steady_frames);
+  const double penalty = params_.surprise_penalty * trust * worst_score;
+  if (total <= 0) return best;
   std::mt19937_64 random(seed);
-  constexpr std::size_t kEnoughGround = 20;  // to draw every other sample from the road alone
+  std::uniform_real_distribution<double> upTo(0, total);
+  const auto pick = [&] {
+    const auto at = std::ranges::upper_bound(votes_up_to, upTo(random));
+    return observations[std::min(static_cast<std::size_t>(at - votes_up_to.begin()), observations.size() - 1)];
+  };
   for (int k = 0; k < params_.max_hypotheses; ++k) {
-    const auto& from = k % 2 == 1 && ground.size() >= kEnoughGround ? ground : candidates;
-    std::uniform_int_distribution<std::size_t> pick(0, from.size() - 1);
-    std::array<PoseObservation, 3> sample{observations[from[pick(random)]], observations[from[pick(random)]],
-                                          observations[from[pick(random)]]};
-    const auto fit = fitPose(camera_, sample, predicted_T_now_previous, minimal);
+    const std::array<PoseObservation, 3> sample{pick(), pick(), pick()};
+    const auto fit = fitPose(camera_, sample, start, minimal);
     if (!fit) continue;
-    const double fit_score = score(camera_, voters, fit->T_cam_a, params_.inlier_chi2);
+    double fit_score = score(camera_, voters, fit->T_cam_a, params_.inlier_chi2);
+    if (!follows(fit->T_cam_a, predicted)) fit_score += penalty;
     if (fit_score >= best_score) continue;
     best_score = fit_score;
     best = fit->T_cam_a;
@@ -70,11 +95,11 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
   return best;
 }
 
-std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObservation> observations, std::span<const EgoHint> hints,
-                                                        const SE3& predicted_T_previous_now, std::uint64_t seed) const {
-  assert(observations.size() == hints.size());
+std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
+                                                        const PredictedMotion& predicted, std::uint64_t seed) const {
+  assert(observations.size() == known_movers.size());
   if (static_cast<int>(observations.size()) < params_.min_inliers) return std::nullopt;
-  const SE3 start = bestHypothesis(observations, hints, predicted_T_previous_now.inverse(), seed);
+  const SE3 start = bestHypothesis(observations, known_movers, predicted, seed);
 
   std::vector<PoseObservation> agreeing;
   for (const auto& o : observations)
@@ -91,6 +116,7 @@ std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObse
   for (const auto& o : observations) ego.inliers.push_back(poseChi2(camera_, o, fit->T_cam_a) < params_.inlier_chi2);
   ego.inlier_count = static_cast<int>(std::count(ego.inliers.begin(), ego.inliers.end(), true));
   if (ego.inlier_count < params_.min_inliers) return std::nullopt;
+  ego.steady = follows(fit->T_cam_a, predicted);
   return ego;
 }
 

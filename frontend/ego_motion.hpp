@@ -17,13 +17,14 @@ struct EgoMotion {
   Matrix6d covariance;        // right perturbation of T_previous_now
   std::vector<bool> inliers;  // one per observation
   int inlier_count = 0;
+  bool steady = false;  // as a vehicle can have moved after what was predicted
 };
 
-/// What is known of a point before the camera's motion is.
-enum class EgoHint : std::uint8_t {
-  kNone,
-  kMoved,   // moved in the previous frame
-  kGround,  // lay on the road: its vote breaks the tie where vehicles fill the view
+/// What the frames before tell of the camera's motion.
+struct PredictedMotion {
+  SE3 T_previous_now;
+  double dt_s = 0;        // from the previous frame to now
+  int steady_frames = 0;  // in a row that moved as the frame before them did; 0: no motion is known
 };
 
 /// RANSAC over three points, then covariance-weighted refinement over all inliers. Stateless.
@@ -34,21 +35,26 @@ class EgoMotionEstimator {
     int scored_points = 300;    // per hypothesis, spread evenly over the observations
     double inlier_chi2 = 12.0;  // 3 degrees of freedom: 99 % is 11.3
     int min_inliers = 12;
-    double known_mover_weight = 0.1;  // vote of a point that moved in the previous frame
-    double ground_weight = 4;         // and of one on the road
+    double known_mover_weight = 0.1;    // vote of a point that moved in the previous frame
+    double vote_cell_m = 4.0;           // edge of the floor's cells, each with one vote
+    double vote_depth_m = 40.0;         // beyond it the floor is not told apart by depth
+    double max_acceleration_mps2 = 20;  // of the camera, jitter of its times included
+    double surprise_penalty = 0.3;      // votes, as a share of all, against a motion beyond it
+    int trusted_steady_frames = 10;     // after which the penalty counts in full
     PoseFitParams fit;
   };
   EgoMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
-  /// `observations` hold points in the previous camera's frame, `hints` what is known of each.
-  /// The predicted motion is scored first; random samples are drawn from a generator seeded with `seed` (the frame number).
+  /// `observations` hold points in the previous camera's frame, `known_movers` whether they moved in the one before it.
+  /// The predicted motion is scored first, and what a vehicle cannot do after it must win by more; random samples are drawn from a generator seeded with `seed` (the frame number).
   /// Empty when too few points agree on any motion.
-  std::optional<EgoMotion> operator()(std::span<const PoseObservation> observations, std::span<const EgoHint> hints,
-                                      const SE3& predicted_T_previous_now, std::uint64_t seed) const;
+  std::optional<EgoMotion> operator()(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
+                                      const PredictedMotion& predicted, std::uint64_t seed) const;
 
  private:
-  double weightOf(EgoHint hint) const;
-  SE3 bestHypothesis(std::span<const PoseObservation> observations, std::span<const EgoHint> hints, const SE3& predicted_T_now_previous,
+  std::vector<double> votes(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers) const;
+  bool follows(const SE3& T_now_previous, const PredictedMotion& predicted) const;
+  SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers, const PredictedMotion& predicted,
                      std::uint64_t seed) const;
 
   Params params_;

@@ -156,26 +156,20 @@ PoseObservation SceneMotionEstimator::observe(const Sighted& sighted) const {
   return o;
 }
 
-EgoHint SceneMotionEstimator::hintOf(const PointTrack& track, const Eigen::Vector3d& p_last) const {
-  if (track.label == PointLabel::kMoving) return EgoHint::kMoved;
-  const double height_m = ground_plane_.last().heightOf_m(p_last);
-  const bool near = p_last.z() < params_.ground_plane.max_depth_m;
-  return near && std::abs(height_m) < params_.max_ground_noise_m ? EgoHint::kGround : EgoHint::kNone;
-}
-
 std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted,
-                                                          SceneMotion& motion) const {
+                                                          SceneMotion& motion) {
   std::vector<PoseObservation> observations;
-  std::vector<EgoHint> hints;
+  std::vector<bool> known_movers;
   std::vector<bool> inliers(sighted.size(), false);
   std::vector<std::size_t> of_observation;
   for (std::size_t i = 0; i < sighted.size(); ++i) {
     if (!sighted[i].track || !sighted[i].disparity) continue;
     observations.push_back(observe(sighted[i]));
-    hints.push_back(hintOf(*sighted[i].track, observations.back().p_a));
+    known_movers.push_back(sighted[i].track->label == PointLabel::kMoving);
     of_observation.push_back(i);
   }
-  const auto ego = ego_motion_(observations, hints, predicted, static_cast<std::uint64_t>(motion.frame.value));
+  const PredictedMotion expected{predicted, secondsBetween(trail_.newest().stamp, motion.stamp), steady_frames_};
+  const auto ego = ego_motion_(observations, known_movers, expected, static_cast<std::uint64_t>(motion.frame.value));
   if (!ego) {
     motion.status = FrameStatus::kLost;
     motion.T_previous_now = predicted;
@@ -184,6 +178,7 @@ std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sigh
     motion.odometry_covariance.diagonal().tail<3>().setConstant(params_.lost_sigma_rad * params_.lost_sigma_rad);
     return inliers;
   }
+  if (last_motion_) steady_frames_ = ego->steady ? steady_frames_ + 1 : 0;
   motion.T_previous_now = ego->T_previous_now;
   motion.odometry_covariance = ego->covariance;
   motion.ego_inliers = ego->inlier_count;

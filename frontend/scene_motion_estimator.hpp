@@ -63,8 +63,7 @@ class SceneMotionEstimator {
   /// Position of a track in the newest camera of the trail, with its covariance: the fitted one while it fits a point at rest, else the
   /// triangulated one.
   PoseObservation lastPosition(const PointTrack& track) const;
-  EgoHint hintOf(const PointTrack& track, const Eigen::Vector3d& p_last) const;
-  std::vector<bool> estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted, SceneMotion& motion) const;
+  std::vector<bool> estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted, SceneMotion& motion);
   void updateTracks(const std::vector<Sighted>& sighted, const FeaturesPtr& features);
   /// The track of a point whose disparity was found, with what its sightings up to now tell.
   PointTrack extendTrack(const Sighted& sighted, const Image& now) const;
@@ -89,6 +88,7 @@ class SceneMotionEstimator {
   CameraTrail trail_;
   std::optional<SE3> last_motion_;  // T_previous_now of the last frame
   double last_dt_s_ = 0;
+  int steady_frames_ = 0;  // see PredictedMotion
 };
 
 }  // namespace motorcade

@@ -168,7 +168,11 @@ void addSceneMotion(std::vector<Parameter>& table, SceneMotionEstimator::Params&
       .add("inlier_chi2", p.ego_motion.inlier_chi2, kPositive)
       .add("min_inliers", p.ego_motion.min_inliers, Range{3})
       .add("known_mover_weight", p.ego_motion.known_mover_weight, kShare)
-      .add("ground_weight", p.ego_motion.ground_weight, kPositive);
+      .add("vote_cell_m", p.ego_motion.vote_cell_m, kPositive)
+      .add("vote_depth_m", p.ego_motion.vote_depth_m, kPositive)
+      .add("max_acceleration_mps2", p.ego_motion.max_acceleration_mps2, kPositive)
+      .add("surprise_penalty", p.ego_motion.surprise_penalty, kShare)
+      .add("trusted_steady_frames", p.ego_motion.trusted_steady_frames, kAtLeastOne);
   addPoseFit(Section(table, "frontend.ego_motion.fit"), p.ego_motion.fit);
   Section(table, "frontend.scene_flow")
       .add("max_observations", p.scene_flow.max_observations, {2, PointTrack::kCapacity})
