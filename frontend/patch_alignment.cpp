@@ -26,12 +26,20 @@ static_assert(kMaxPatchWindow_px + 2 * kMaxShearShift_px + 4 + kStride + 1 <= kB
 using Lanes = float __attribute__((vector_size(32)));
 using Words = std::int16_t __attribute__((vector_size(32)));
 constexpr int kWordLanes = 16;
+using WordFloats = float __attribute__((vector_size(4 * kWordLanes)));
 
 #ifdef __AVX2__
 inline Lanes pixels(const std::uint8_t* p) {
   return Lanes(_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)))));
 }
 inline Words wordPixels(const std::uint8_t* p) { return Words(_mm256_cvtepu8_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)))); }
+inline Words magnitude(const Words& x) { return Words(_mm256_abs_epi16(__m256i(x))); }
+/// p[columns[i]] for columns below 16.
+inline Lanes pixelsAt(const std::uint8_t* p, const std::uint8_t* columns) {
+  const __m128i row = _mm_loadu_si128(reinterpret_cast<const __m128i*>(p));
+  const __m128i picked = _mm_shuffle_epi8(row, _mm_loadl_epi64(reinterpret_cast<const __m128i*>(columns)));
+  return Lanes(_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(picked)));
+}
 #else
 inline Lanes pixels(const std::uint8_t* p) {
   Lanes lanes;
@@ -43,12 +51,24 @@ inline Words wordPixels(const std::uint8_t* p) {
   for (int i = 0; i < kWordLanes; ++i) words[i] = p[i];
   return words;
 }
+inline Words magnitude(const Words& x) { return x < 0 ? -x : x; }
+inline Lanes pixelsAt(const std::uint8_t* p, const std::uint8_t* columns) {
+  Lanes lanes;
+  for (int i = 0; i < 8; ++i) lanes[i] = p[columns[i]];
+  return lanes;
+}
 #endif
 
 inline Lanes floats(const float* p) {
   Lanes lanes;
   std::memcpy(&lanes, p, sizeof lanes);
   return lanes;
+}
+
+inline Words words(const std::int16_t* p) {
+  Words words;
+  std::memcpy(&words, p, sizeof words);
+  return words;
 }
 
 inline float total(const Lanes& x) { return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7])); }
@@ -100,22 +120,40 @@ void sampleSquare(const Image& image, float u_px, float v_px, int side_px, float
   }
 }
 
-/// The same with samples 1 / scale px apart: slower, for scales near one.
+/// Where eight neighbouring samples of a row lie that are not a pixel apart.
+struct SampleColumns {
+  int first = 0;                                          // pixel
+  alignas(8) std::array<std::uint8_t, 8> left{}, right{};  // pixels beside each sample, from the first on
+  Lanes weight{};                                         // of the right one
+};
+
+/// The same with samples 1 / scale px apart; the scale is at least `kMinTemplateScale`.
 void sampleScaledSquare(const Image& image, float u_px, float v_px, int side_px, float scale, float* out) {
   const int half = side_px / 2;
   const auto last_u = static_cast<float>(image.width() - 1), last_v = static_cast<float>(image.height() - 1);
+  std::array<SampleColumns, kStride / 8> columns;
+  for (int c = 0; c < kStride; ++c) {
+    SampleColumns& group = columns[static_cast<std::size_t>(c / 8)];
+    const auto lane = static_cast<std::size_t>(c % 8);
+    const float u = std::clamp(u_px + static_cast<float>(c - half) / scale, 0.0F, last_u);
+    const int x = std::min(static_cast<int>(u), image.width() - 2);
+    if (lane == 0) group.first = x;
+    group.left[lane] = static_cast<std::uint8_t>(x - group.first);
+    group.right[lane] = static_cast<std::uint8_t>(x + 1 - group.first);
+    group.weight[c % 8] = u - static_cast<float>(x);
+  }
   for (int r = 0; r < side_px; ++r) {
     const float v = std::clamp(v_px + static_cast<float>(r - half) / scale, 0.0F, last_v);
     const int y = std::min(static_cast<int>(v), image.height() - 2);
     const float fy = v - static_cast<float>(y);
-    const std::uint8_t *p = image.row(y), *q = image.row(y + 1);
-    for (int c = 0; c < side_px; ++c) {
-      const float u = std::clamp(u_px + static_cast<float>(c - half) / scale, 0.0F, last_u);
-      const int x = std::min(static_cast<int>(u), image.width() - 2);
-      const float fx = u - static_cast<float>(x);
-      const float upper = static_cast<float>(p[x]) + fx * static_cast<float>(p[x + 1] - p[x]);
-      const float lower = static_cast<float>(q[x]) + fx * static_cast<float>(q[x + 1] - q[x]);
-      out[r * kStride + c] = upper + fy * (lower - upper);
+    for (int c = 0; c < kStride; c += 8) {
+      const SampleColumns& group = columns[static_cast<std::size_t>(c / 8)];
+      const std::uint8_t *p = image.row(y) + group.first, *q = image.row(y + 1) + group.first;
+      const Lanes p_left = pixelsAt(p, group.left.data()), q_left = pixelsAt(q, group.left.data());
+      const Lanes upper = p_left + group.weight * (pixelsAt(p, group.right.data()) - p_left);
+      const Lanes lower = q_left + group.weight * (pixelsAt(q, group.right.data()) - q_left);
+      const Lanes value = upper + fy * (lower - upper);
+      std::memcpy(out + r * kStride + c, &value, sizeof value);
     }
   }
 }
@@ -279,8 +317,8 @@ std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float 
                                           float scale) {
   assert(window_px % 2 == 1 && window_px <= kMaxPatchWindow_px);
   std::optional<PatchTemplate> patch;  // the only object returned, so that it is never copied
-  if (!inside(image, u_px, v_px)) return patch;
-  alignas(32) Square square{};
+  if (!inside(image, u_px, v_px) || scale < kMinTemplateScale) return patch;
+  alignas(32) Square square;
   if (scale == 1) {
     sampleSquare(image, u_px, v_px, window_px + 2, square.data());
   } else {
@@ -355,26 +393,36 @@ float correlation(const PatchTemplate& patch, const Image& image, float u_px, fl
 
 void windowDifferences(const Image& image, int u, int v, const Image& other, int other_u, int other_v, WindowSize window,
                        std::span<std::uint16_t> costs) {
-  assert(window.columns * window.rows <= kMaxWindowPixels);
+  assert(fits(window));
   const int half_columns = window.columns / 2, half_rows = window.rows / 2, count = static_cast<int>(costs.size());
   const float per_pixel = 1 / static_cast<float>(window.columns * window.rows);
   const std::uint8_t* own = image.row(v - half_rows) + u - half_columns;
+  // Their pixels as words, row by row, and the columns' sums: what sixteen neighbouring windows read.
+  constexpr int kReadColumns = 2 * kWordLanes;
+  alignas(32) std::array<std::int16_t, kReadColumns * kMaxWindowRows> theirs;
+  alignas(32) std::array<std::int16_t, kReadColumns> column_sums;
+  int own_sum = 0;
+  for (int r = 0; r < window.rows; ++r)
+    for (int c = 0; c < window.columns; ++c) own_sum += own[r * image.stride() + c];
   for (int first = 0; first < count; first += kWordLanes) {
-    // Reads up to 15 bytes past the row's last window: the next row, or the room that each image has after its last.
-    const std::uint8_t* theirs = other.row(other_v - half_rows) + other_u - half_columns + first;
-    Words brighter{};  // sum of their pixels minus ours
+    // Reads up to 31 bytes past a window's first pixel: the next row, or the room that each image has after its last.
+    const std::uint8_t* from = other.row(other_v - half_rows) + other_u - half_columns + first;
+    for (int c = 0; c < kReadColumns; c += kWordLanes) {
+      Words sum{};
+      for (int r = 0; r < window.rows; ++r) {
+        const Words pixel_words = wordPixels(from + r * other.stride() + c);
+        std::memcpy(theirs.data() + r * kReadColumns + c, &pixel_words, sizeof pixel_words);
+        sum += pixel_words;
+      }
+      std::memcpy(column_sums.data() + c, &sum, sizeof sum);
+    }
+    Words brighter = Words{} - static_cast<std::int16_t>(own_sum);  // sum of their pixels minus ours
+    for (int c = 0; c < window.columns; ++c) brighter += words(column_sums.data() + c);
+    const Words offset = __builtin_convertvector(__builtin_convertvector(brighter, WordFloats) * per_pixel, Words);
+    Words cost{};
     for (int r = 0; r < window.rows; ++r)
       for (int c = 0; c < window.columns; ++c)
-        brighter += wordPixels(theirs + r * other.stride() + c) - static_cast<std::int16_t>(own[r * image.stride() + c]);
-    Words offset;
-    for (int i = 0; i < kWordLanes; ++i) offset[i] = static_cast<std::int16_t>(static_cast<float>(brighter[i]) * per_pixel);
-    Words cost{};
-    for (int r = 0; r < window.rows; ++r) {
-      for (int c = 0; c < window.columns; ++c) {
-        const Words d = wordPixels(theirs + r * other.stride() + c) - offset - static_cast<std::int16_t>(own[r * image.stride() + c]);
-        cost += d < 0 ? -d : d;
-      }
-    }
+        cost += magnitude(words(theirs.data() + r * kReadColumns + c) - offset - static_cast<std::int16_t>(own[r * image.stride() + c]));
     std::memcpy(costs.data() + first, &cost, static_cast<std::size_t>(std::min(kWordLanes, count - first)) * sizeof(std::uint16_t));
   }
 }

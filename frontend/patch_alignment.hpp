@@ -41,8 +41,10 @@ struct PatchTemplate {
   Eigen::Matrix3f inverse_hessian;
 };
 
+inline constexpr float kMinTemplateScale = 0.6F;
+
 /// Empty without the texture that the shift needs, or when the point lies outside the image. With a `scale` the template shows the image
-/// that much enlarged around the point: how a point that was seen from afar looks now.
+/// that much enlarged around the point: how a point that was seen from afar looks now; empty below kMinTemplateScale.
 std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px, PatchDeformation deformation,
                                           float scale = 1);
 
@@ -85,7 +87,11 @@ struct WindowSize {
   int columns = 11, rows = 7;  // odd
 };
 inline constexpr int kMaxWindowCosts = 512;
+inline constexpr int kMaxWindowColumns = 17, kMaxWindowRows = 15;
 inline constexpr int kMaxWindowPixels = 128;  // sums of differences then fit 15 bits and a sign
+constexpr bool fits(WindowSize window) {
+  return window.columns <= kMaxWindowColumns && window.rows <= kMaxWindowRows && window.columns * window.rows <= kMaxWindowPixels;
+}
 
 /// Sums of absolute differences, means removed, between the window around (u, v) of `image` and those around (other_u + i, other_v) of
 /// `other`, i < costs.size() <= kMaxWindowCosts. All windows lie inside their images.

@@ -87,6 +87,9 @@ StereoMatcher::StereoMatcher(const Params& params, const StereoCamera&) : params
     throw std::invalid_argument("stereo matcher: max_disparity_px must be between 1 and " + std::to_string(kMaxWindowCosts - 1));
   if (params.search_columns % 2 == 0 || params.search_rows % 2 == 0)
     throw std::invalid_argument("stereo matcher: search_columns and search_rows must be odd");
+  if (!fits({params.search_columns, params.search_rows}))
+    throw std::invalid_argument("stereo matcher: search_columns must be at most " + std::to_string(kMaxWindowColumns) + ", search_rows at most " +
+                                std::to_string(kMaxWindowRows) + ", and their product at most " + std::to_string(kMaxWindowPixels));
 }
 
 StereoMatchesPtr StereoMatcher::operator()(const FeaturesPtr& features) const {
