@@ -190,8 +190,32 @@ std::array<Lanes, 2> windowMask(int window_px) {
   return mask;
 }
 
-/// Moments of the patch at (u, v), its rows shifted by `shear` px per row. Intensities are taken relative to the template's mean, which
-/// changes no moment but keeps digits.
+/// Moments of the patch at (u, v). Intensities are taken relative to the template's mean, which changes no moment but keeps digits.
+Moments momentsAt(const PatchTemplate& patch, const Image& image, float u_px, float v_px) {
+  const int window = patch.window_px, half = window / 2;
+  const float top = v_px - static_cast<float>(half), left = u_px - static_cast<float>(half);
+  const int y = static_cast<int>(std::floor(top)), x = static_cast<int>(std::floor(left));
+  const Block block(image, x, y, window + 1, window + 1);
+  const float fx = left - static_cast<float>(x), fy = top - static_cast<float>(y);
+  const auto mask = windowMask(window);
+  const auto between = [&](const std::uint8_t* p) {
+    const Lanes here = pixels(p);
+    return here + fx * (pixels(p + 1) - here);
+  };
+  std::array<Lanes, 2> upper{between(block.row(0)) - patch.mean, between(block.row(0) + 8) - patch.mean};
+  MomentLanes lanes;
+  for (int r = 0; r < window; ++r) {
+    for (int c = 0; c < kStride; c += 8) {
+      const auto group = static_cast<std::size_t>(c / 8);
+      const Lanes lower = between(block.row(r + 1) + c) - patch.mean;
+      lanes.add(patch, r * kStride + c, mask[group], upper[group] + fy * (lower - upper[group]));
+      upper[group] = lower;
+    }
+  }
+  return lanes.moments(window * window);
+}
+
+/// The same with the rows shifted by `shear` px per row.
 Moments momentsAt(const PatchTemplate& patch, const Image& image, float u_px, float v_px, float shear) {
   const int window = patch.window_px, half = window / 2;
   const float top = v_px - static_cast<float>(half), left = u_px - static_cast<float>(half);
@@ -351,7 +375,7 @@ std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& 
   float u = u_guess_px, v = v_guess_px;
   for (int iteration = 0; iteration < params.max_iterations; ++iteration) {
     if (!inside(image, u, v)) return std::nullopt;
-    const Moments moments = momentsAt(patch, image, u, v, 0);
+    const Moments moments = momentsAt(patch, image, u, v);
     if (moments.appearance <= 0) return std::nullopt;
     Eigen::Vector3f step = patch.inverse_hessian * moments.descent * (patch.norm / moments.appearance);
     step *= std::min(1.0F, kMaxStep_px / step.head<2>().norm());
@@ -387,7 +411,7 @@ std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, float u_px, flo
 
 float correlation(const PatchTemplate& patch, const Image& image, float u_px, float v_px) {
   if (!inside(image, u_px, v_px)) return -1;
-  const Moments moments = momentsAt(patch, image, u_px, v_px, 0);
+  const Moments moments = momentsAt(patch, image, u_px, v_px);
   return moments.variation > 0 ? moments.appearance / std::sqrt(moments.variation) : -1;
 }
 
