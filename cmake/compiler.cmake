@@ -24,6 +24,8 @@ function(motorcade_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wold-style-cast -Werror
     -Wno-array-bounds)  # GCC 12 mistakes Eigen's vector loads from 3-vectors for overruns
+  # Nobody reads errno after a square root or traps a floating-point exception: this lets such loops become vector code, with the same values.
+  target_compile_options(${target} PRIVATE -fno-math-errno -fno-trapping-math)
   if(NOT MOTORCADE_PORTABLE)
     # Public: Eigen's alignment and inlined kernels must agree between the library and its users.
     target_compile_options(${target} PUBLIC -march=x86-64-v3)
