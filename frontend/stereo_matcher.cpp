@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "frontend/image_pyramid.hpp"
 #include "frontend/sift_features.hpp"
 
 namespace motorcade {
@@ -26,29 +28,49 @@ std::optional<int> uniqueMinimum(std::span<const std::uint16_t> costs, double ma
 }
 
 /// Column in `other`, between first_u and last_u, whose window looks most like the one at (u, v) of `image`.
-std::optional<int> searchColumns(const Image& image, int u, int v, const Image& other, int first_u, int last_u,
-                                 const StereoMatcher::Params& params) {
-  const int half = params.search_columns / 2;
+std::optional<int> searchColumns(const Image& image, int u, int v, const Image& other, int first_u, int last_u, WindowSize window,
+                                 double max_uniqueness_ratio) {
+  const int half = window.columns / 2;
   first_u = std::max(first_u, half);
   last_u = std::min(last_u, other.width() - 1 - half);
   if (last_u < first_u) return std::nullopt;
   Costs costs;
-  const int places = last_u - first_u + 1;
-  const auto searched = std::span(costs).first(static_cast<std::size_t>(places));
-  windowDifferences(image, u, v, other, first_u, v, {params.search_columns, params.search_rows}, searched);
-  const auto best = uniqueMinimum(searched, params.max_uniqueness_ratio);
+  const auto searched = std::span(costs).first(static_cast<std::size_t>(last_u - first_u + 1));
+  windowDifferences(image, u, v, other, first_u, v, window, searched);
+  const auto best = uniqueMinimum(searched, max_uniqueness_ratio);
   if (!best) return std::nullopt;
   return first_u + *best;
 }
 
-/// Disparity to a whole pixel, agreed on from left to right and back.
-std::optional<int> searchDisparity(const Image& left, const Image& right, int u, int v, const StereoMatcher::Params& params) {
-  const int half_columns = params.search_columns / 2, half_rows = params.search_rows / 2;
-  if (v < half_rows || v + half_rows >= left.height() || u < half_columns || u + half_columns >= left.width()) return std::nullopt;
-  const auto u_right = searchColumns(left, u, v, right, u - params.max_disparity_px, u, params);
+bool holds(const Image& image, int u, int v, WindowSize window) {
+  const int half_columns = window.columns / 2, half_rows = window.rows / 2;
+  return v >= half_rows && v + half_rows < image.height() && u >= half_columns && u + half_columns < image.width();
+}
+
+/// Disparity to a whole pixel of the images given, agreed on from left to right and back.
+std::optional<int> searchDisparity(const Image& left, const Image& right, int u, int v, int max_disparity_px, const StereoMatcher::Params& params) {
+  const WindowSize window{params.search_columns, params.search_rows};
+  if (!holds(left, u, v, window)) return std::nullopt;
+  const auto u_right = searchColumns(left, u, v, right, u - max_disparity_px, u, window, params.max_uniqueness_ratio);
   if (!u_right) return std::nullopt;
-  const auto u_back = searchColumns(right, *u_right, v, left, *u_right, *u_right + params.max_disparity_px, params);
+  const auto u_back = searchColumns(right, *u_right, v, left, *u_right, *u_right + max_disparity_px, window, params.max_uniqueness_ratio);
   if (!u_back || std::abs(*u_back - u) > params.max_round_trip_px) return std::nullopt;
+  return u - *u_right;
+}
+
+/// Disparity to a whole pixel of full size: searched in the images of half size, then among the pixels around.
+std::optional<int> searchCoarseToFine(const Features& features, float u_px, float v_px, const StereoMatcher::Params& params) {
+  const int u = static_cast<int>(u_px), v = static_cast<int>(v_px);
+  const Image &left = features.left.levels.front(), &right = features.right.levels.front();
+  if (features.left.levels.size() < 2) return searchDisparity(left, right, u, v, params.max_disparity_px, params);
+  const auto half_size_px = searchDisparity(features.left.levels[1], features.right.levels[1], static_cast<int>(std::lround(toLevel(u_px, 1))),
+                                            static_cast<int>(std::lround(toLevel(v_px, 1))), params.max_disparity_px / 2, params);
+  constexpr WindowSize kWindow;
+  if (!half_size_px || !holds(left, u, v, kWindow)) return std::nullopt;
+  const int middle = u - 2 * *half_size_px;
+  constexpr int kReach_px = 3;
+  const auto u_right = searchColumns(left, u, v, right, middle - kReach_px, std::min(u, middle + kReach_px), kWindow, 1);
+  if (!u_right) return std::nullopt;
   return u - *u_right;
 }
 
@@ -60,7 +82,7 @@ std::vector<std::optional<StereoMatch>> matchCorners(const Features& features, c
   matches.reserve(features.corners.size());
   for (const Corner& corner : features.corners) {
     auto& match = matches.emplace_back();
-    const auto whole_px = searchDisparity(left, right, static_cast<int>(corner.u_px), static_cast<int>(corner.v_px), params);
+    const auto whole_px = searchCoarseToFine(features, corner.u_px, corner.v_px, params);
     if (whole_px) match = refineDisparity(left, right, corner.u_px, corner.v_px, *whole_px, refinement);
     if (match && match->disparity_px < params.min_disparity_px) match.reset();
   }
