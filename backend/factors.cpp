@@ -1,5 +1,7 @@
 #include "backend/factors.hpp"
 
+#include <cmath>
+
 #include <Eigen/Cholesky>
 
 namespace motorcade {
@@ -94,6 +96,12 @@ Vector6d AccelerationNoise::density() const {
 PoseNoise smoothMotionNoise(const AccelerationNoise& acceleration, double dt_before_s, double dt_after_s) {
   const Vector6d variance = 0.5 * (dt_before_s + dt_after_s) * acceleration.density();
   return {.sqrt_information = variance.cwiseSqrt().cwiseInverse().asDiagonal()};
+}
+
+double correlatedSeriesInflation(double dt_s, double correlation_time_s) {
+  if (!(dt_s > 0) || !(correlation_time_s > 0)) return 1;
+  const double rho = std::exp(-dt_s / correlation_time_s);
+  return (1 + rho) / (1 - rho);
 }
 
 }  // namespace motorcade

@@ -64,4 +64,9 @@ struct AccelerationNoise {
 /// differences are correlated from one to the next (1/4); q (dt1 + dt2) / 2, independent, has the right variance over many intervals.
 PoseNoise smoothMotionNoise(const AccelerationNoise& acceleration, double dt_before_s, double dt_after_s);
 
+/// How much wider a measurement's variance is to be taken when it is one of a series, dt apart, whose errors die out as exp(-t / time):
+/// the mean of n has (1 + rho) / (1 - rho) times the variance of the mean of n independent ones, rho = exp(-dt / time) (Priestley, Spectral
+/// analysis and time series, 1981, section 5.3.2).
+double correlatedSeriesInflation(double dt_s, double correlation_time_s);
+
 }  // namespace motorcade

@@ -45,6 +45,7 @@ void check(const Optimizer::Params& p) {
                    {"final_iterations", static_cast<double>(p.final_iterations)},
                    {"camera_covariance_frames", static_cast<double>(p.camera_covariance_frames)}});
   requireNotNegative({{"window_frames", static_cast<double>(p.window_frames)},
+                      {"object_correlation_s", p.object_correlation_s},
                       {"object_encounter_distance_m", p.object_encounter_distance_m},
                       {"object_encounter_partners", static_cast<double>(p.object_encounter_partners)},
                       {"mismatch_tolerance", p.mismatch_tolerance},

@@ -24,8 +24,12 @@ class Optimizer final : public Backend {
     /// Losses act on whitened residual norms of six dimensions.
     RobustLoss encounter_loss = RobustLoss::kHuber, motion_loss = RobustLoss::kHuber;
     double encounter_loss_scale = 4.5, motion_loss_scale = 4.5;
-    /// Factors on the variances of the front-end's covariances: 1 takes them as they are.
-    double odometry_variance_scale = 1.0, encounter_variance_scale = 1.0, motion_variance_scale = 1.0;
+    /// Factors on the variances of the front-end's covariances: 1 takes them as they are. Odometry of successive frames reuses points, so
+    /// that its errors add up to more than their variances; 1.5 makes ten frames' motion consistent on rendered scenes.
+    double odometry_variance_scale = 1.5, encounter_variance_scale = 1.0, motion_variance_scale = 1.0;
+    /// An object's points measure it again and again with the errors of their places on the body: time for which an error lasts in
+    /// encounters and motions. Each counts as the share of an independent measurement that it is; 0 takes all as independent.
+    double object_correlation_s = 1.0;
 
     /// Gauge of the camera's and of each object's graph, and the weak prior of an anchor.
     double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
@@ -33,8 +37,8 @@ class Optimizer final : public Backend {
     double anchor_sigma_m = 100.0, anchor_sigma_rad = 3.0;
 
     /// Smooth motion: white noise on acceleration, as the standard deviation of the velocity's change after one second.
-    double acceleration_along_mps2 = 2.0, acceleration_sideways_mps2 = 0.5, acceleration_vertical_mps2 = 0.3;
-    double acceleration_yaw_radps2 = 0.3, acceleration_tilt_radps2 = 0.1;
+    double acceleration_along_mps2 = 1.0, acceleration_sideways_mps2 = 0.5, acceleration_vertical_mps2 = 0.3;
+    double acceleration_yaw_radps2 = 0.3, acceleration_tilt_radps2 = 0.03;
 
     /// Share of two camera encounters' information that goes to the encounter of the two objects, and which pairs get one.
     double object_encounter_share = 0.2, object_encounter_distance_m = 15.0;

@@ -40,6 +40,7 @@ bool isTrouble(SolverProblem::Kind kind) {
 }
 
 constexpr double kUnknownMotion_m = 2.0, kUnknownMotion_rad = 0.2;  // odometry whose covariance is unusable
+constexpr double kUsualInterval_s = 0.1;                            // between frames, until there are two
 
 }  // namespace
 
@@ -47,6 +48,7 @@ TrajectoryGraph::TrajectoryGraph(const Optimizer::Params& params)
     : params_(params),
       acceleration_{params.acceleration_along_mps2, params.acceleration_sideways_mps2, params.acceleration_vertical_mps2,
                     params.acceleration_yaw_radps2, params.acceleration_tilt_radps2},
+      series_inflation_(correlatedSeriesInflation(kUsualInterval_s, params.object_correlation_s)),
       solver_(solverParams(params)) {}
 
 void TrajectoryGraph::add(const FrameMeasurements& measurements) {
@@ -98,6 +100,10 @@ void TrajectoryGraph::addCamera(const FrameMeasurements& measurements) {
       problems_.push_back("the camera's motion or its covariance is unusable: taken as " +
                           std::string(isFinite(measurements.T_previous_now) ? "measured" : "standing still") + ", and next to unknown");
     solver_.addFactor(std::make_unique<MotionFactor>(std::array{before, record.x}, MotionModel{T_previous_now}, noise));
+  }
+  if (!frames_.empty()) {
+    const double dt_s = secondsBetween(frames_.rbegin()->second.stamp, measurements.stamp);
+    series_inflation_ = correlatedSeriesInflation(dt_s, params_.object_correlation_s);
   }
   frames_.emplace(measurements.frame, record);
 }
@@ -153,7 +159,7 @@ bool TrajectoryGraph::addMotion(const ObjectTrack& track, const ObjectRecord& re
   const auto& motion = *record.seen.motion;
   const auto before = track.records.find(motion.since);
   if (before == track.records.end() || !before->second.z.valid()) return false;
-  const auto root = squareRootInformation(params_.motion_variance_scale * motion.covariance);
+  const auto root = squareRootInformation(series_inflation_ * params_.motion_variance_scale * motion.covariance);
   if (!root) {
     leftOut(record.seen, "its motion, whose covariance is not positive definite,");
     return false;
@@ -177,7 +183,7 @@ bool TrajectoryGraph::addSmoothness(const ObjectTrack& track, FrameId frame) {
 }
 
 bool TrajectoryGraph::addCameraEncounter(const ObjectTrack& track, const ObjectRecord& record, double share) {
-  const auto root = squareRootInformation(params_.encounter_variance_scale / share * record.seen.encounter_covariance);
+  const auto root = squareRootInformation(series_inflation_ * params_.encounter_variance_scale / share * record.seen.encounter_covariance);
   if (!root) {
     leftOut(record.seen, "its pose, whose covariance is not positive definite,");
     return false;
@@ -191,7 +197,8 @@ bool TrajectoryGraph::addCameraEncounter(const ObjectTrack& track, const ObjectR
 void TrajectoryGraph::addObjectEncounter(const ObjectObservation& m, const ObjectObservation& n, double share_m, double share_n) {
   const ObjectTrack &track_m = tracks_.at(m.track), &track_n = tracks_.at(n.track);
   const VariableId z_m = track_m.records.at(m.frame).z, z_n = track_n.records.at(n.frame).z;
-  const RelativePose relative = relativePose(m, n, params_.encounter_variance_scale / share_m, params_.encounter_variance_scale / share_n);
+  const double scale = series_inflation_ * params_.encounter_variance_scale;
+  const RelativePose relative = relativePose(m, n, scale / share_m, scale / share_n);
   const auto root = squareRootInformation(relative.covariance);
   if (!root || !z_m.valid() || !z_n.valid()) return;
   const PoseNoise noise{.sqrt_information = *root, .loss = params_.encounter_loss, .loss_scale = params_.encounter_loss_scale};

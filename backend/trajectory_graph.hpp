@@ -80,6 +80,7 @@ class TrajectoryGraph {
 
   Optimizer::Params params_;
   AccelerationNoise acceleration_;
+  double series_inflation_;  // of the variances of an object's measurements, at the rate of the newest frames
   IncrementalSolver solver_;
   std::map<FrameId, CameraRecord> frames_;
   std::map<TrackId, ObjectTrack> tracks_;

@@ -308,6 +308,7 @@ void addSmoother(std::vector<Parameter>& table, BackendParams& backend) {
       .add("odometry_variance_scale", p.odometry_variance_scale, kPositive)
       .add("encounter_variance_scale", p.encounter_variance_scale, kPositive)
       .add("motion_variance_scale", p.motion_variance_scale, kPositive)
+      .add("object_correlation_s", p.object_correlation_s, kNotNegative)
       .add("first_pose_sigma_m", p.first_pose_sigma_m, kPositive)
       .add("first_pose_sigma_rad", p.first_pose_sigma_rad, kPositive)
       .add("object_origin_sigma_m", p.object_origin_sigma_m, kPositive)
