@@ -51,6 +51,7 @@ void check(const Optimizer::Params& p) {
                       {"mismatch_tolerance", p.mismatch_tolerance},
                       {"jacobian_drift_sigmas", p.jacobian_drift_sigmas},
                       {"substitution_tolerance", p.substitution_tolerance},
+                      {"online_correction_s", p.online_correction_s},
                       {"budget_scalars", static_cast<double>(p.budget_scalars)},
                       {"budget_ms", p.budget_ms},
                       {"covariance_lag_frames", static_cast<double>(p.covariance_lag_frames)}});

@@ -44,6 +44,10 @@ class Optimizer final : public Backend {
     double object_encounter_share = 0.2, object_encounter_distance_m = 15.0;
     int object_encounter_partners = 1;
 
+    /// Published online, an object's pose moves as the object does, and corrections of its whole track come in over this time: they would
+    /// look like motion. 0 publishes each pose as it is estimated.
+    double online_correction_s = 1.0;
+
     RelinearizationPolicy policy = RelinearizationPolicy::kFluid;
     int relinearize_every_updates = 50;
     /// Fluid: see IncrementalSolver::Params.

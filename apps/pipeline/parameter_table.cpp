@@ -292,6 +292,7 @@ void addSmoother(std::vector<Parameter>& table, BackendParams& backend) {
       .add("iterations_per_update", p.iterations_per_update, kAtLeastOne)
       .add("budget_scalars", p.budget_scalars, kNotNegative)
       .add("budget_ms", p.budget_ms, kNotNegative)
+      .add("online_correction_s", p.online_correction_s, kNotNegative)
       .add("final_iterations", p.final_iterations, kAnyCount)
       .add("compute_covariances", p.compute_covariances)
       .add("camera_covariance_frames", p.camera_covariance_frames, kAtLeastOne)

@@ -129,6 +129,42 @@ TEST(Optimizer, AnErrorThatLastsIsNotTakenForManyMeasurements) {
   EXPECT_GT(untold_nees, 3.0);
 }
 
+/// Error of the objects' published steps from frame to frame, RMS [m].
+double stepError_m(const std::vector<FrameEstimate>& estimates, const SimulatedDrive& drive) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 1; i < estimates.size(); ++i)
+    for (const auto& before : estimates[i - 1].objects)
+      for (const auto& now : estimates[i].objects) {
+        if (now.track != before.track) continue;
+        const auto vehicle = static_cast<std::size_t>(now.track.value - 100);
+        const int frame = static_cast<int>(i);
+        const SE3 truth = drive.object(vehicle, frame - 1).inverse() * drive.object(vehicle, frame);
+        sum += (truth.inverse() * before.T_world_body.inverse() * now.T_world_body).translation().squaredNorm();
+        ++count;
+      }
+  return std::sqrt(sum / count);
+}
+
+TEST(Optimizer, PublishedObjectsDoNotMoveByTheirCorrections) {
+  const SimulatedDrive drive(0, {});
+  Optimizer::Params as_estimated = kIndependent;
+  as_estimated.online_correction_s = 0;
+  double steps = 0, steps_as_estimated = 0, poses = 0, poses_as_estimated = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const auto continuous = smooth(seed, kIndependent), plain = smooth(seed, as_estimated);
+    steps += stepError_m(continuous.online, drive);
+    steps_as_estimated += stepError_m(plain.online, drive);
+    poses += error_m(continuous.online);
+    poses_as_estimated += error_m(plain.online);
+    EXPECT_EQ(error_m(continuous.finals), error_m(plain.finals));
+  }
+  std::cout << "online steps " << steps / 10 << " m, as estimated " << steps_as_estimated / 10 << " m; poses " << poses / 10 << " and "
+            << poses_as_estimated / 10 << " m\n";
+  EXPECT_LT(steps, 0.8 * steps_as_estimated);
+  EXPECT_LT(poses, 1.2 * poses_as_estimated);
+}
+
 TEST(Optimizer, EachKindOfFactorMatters) {
   const auto all = smooth(2).finals;
   const auto differs = [&](const Optimizer::Params& params) {
