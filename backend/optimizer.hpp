@@ -37,7 +37,7 @@ class Optimizer final : public Backend {
     double anchor_sigma_m = 100.0, anchor_sigma_rad = 3.0;
 
     /// Smooth motion: white noise on acceleration, as the standard deviation of the velocity's change after one second.
-    double acceleration_along_mps2 = 1.0, acceleration_sideways_mps2 = 0.5, acceleration_vertical_mps2 = 0.3;
+    double acceleration_along_mps2 = 1.5, acceleration_sideways_mps2 = 0.5, acceleration_vertical_mps2 = 0.3;
     double acceleration_yaw_radps2 = 0.3, acceleration_tilt_radps2 = 0.03;
 
     /// Share of two camera encounters' information that goes to the encounter of the two objects, and which pairs get one.
@@ -46,7 +46,7 @@ class Optimizer final : public Backend {
 
     /// Published online, an object's pose moves as the object does, and corrections of its whole track come in over this time: they would
     /// look like motion. 0 publishes each pose as it is estimated.
-    double online_correction_s = 1.0;
+    double online_correction_s = 0.5;
 
     RelinearizationPolicy policy = RelinearizationPolicy::kFluid;
     int relinearize_every_updates = 50;
