@@ -17,6 +17,8 @@ namespace {
 
 using Params = OpticalFlowTracker::Params;
 
+constexpr double kMaxGrey = 255;
+
 struct Shift {
   float du_px = 0, dv_px = 0;
 };
@@ -132,6 +134,7 @@ struct Guesses {
 /// How a point looks, for a quick comparison: 8x8 pixels of each of two levels, their means removed.
 class Signature {
  public:
+  static constexpr int kSide = 8, kPixels = 2 * kSide * kSide;
   Signature(const ImagePyramid& pyramid, float u_px, float v_px) {
     for (int level = 0; level < 2; ++level) {
       const Image& image = pyramid.levels[std::min(static_cast<std::size_t>(level), pyramid.levels.size() - 1)];
@@ -147,7 +150,6 @@ class Signature {
   }
 
  private:
-  static constexpr int kSide = 8;
   static void fill(const Image& image, int x, int y, std::uint8_t* out) {
     int sum = 0;
     for (int r = 0; r < kSide; ++r)
@@ -156,7 +158,7 @@ class Signature {
     for (int r = 0; r < kSide; ++r)
       for (int c = 0; c < kSide; ++c) out[r * kSide + c] = static_cast<std::uint8_t>(std::clamp(image.row(y + r)[x + c] + shift, 0, 255));
   }
-  std::array<std::uint8_t, 2 * kSide * kSide> values_;
+  std::array<std::uint8_t, kPixels> values_;
 };
 
 /// The corners of a frame, to look up where a point of the frame before may have gone.
@@ -168,11 +170,12 @@ class CornerLookup {
       by_row_.push_back({corner.u_px, corner.v_px, Signature(features.left, corner.u_px, corner.v_px)});
     std::ranges::stable_sort(by_row_, {}, &Entry::v_px);
   }
-  /// Adds the shifts to the two corners within the bounds that look most like the point.
-  void addSimilar(const ImagePyramid& from, const FlowTrack& point, const ShiftBounds& bounds, Guesses& guesses) const {
+  /// Adds the shifts to the two corners within the bounds that look most like the point and differ by less than `max_difference` per pixel.
+  void addSimilar(const ImagePyramid& from, const FlowTrack& point, const ShiftBounds& bounds, double max_difference,
+                  Guesses& guesses) const {
     const Signature signature(from, point.u_px, point.v_px);
-    constexpr int kFar = std::numeric_limits<int>::max();
-    std::array<std::pair<int, Shift>, 2> best{{{kFar, {}}, {kFar, {}}}};
+    const int limit = static_cast<int>(max_difference * Signature::kPixels);
+    std::array<std::pair<int, Shift>, 2> best{{{limit, {}}, {limit, {}}}};
     for (auto entry = std::ranges::lower_bound(by_row_, point.v_px + bounds.min_dv_px, {}, &Entry::v_px); entry != by_row_.end(); ++entry) {
       const float du = entry->u_px - point.u_px, dv = entry->v_px - point.v_px;
       if (dv > bounds.max_dv_px) break;
@@ -183,7 +186,7 @@ class CornerLookup {
       if (distance < best[0].first) std::swap(best[0], best[1]);
     }
     for (const auto& [distance, shift] : best)
-      if (distance < kFar) guesses.add(shift);
+      if (distance < limit) guesses.add(shift);
   }
 
  private:
@@ -218,6 +221,12 @@ ShiftBounds boundsAround(const std::optional<Shift>& neighbours, const Params& p
   if (!neighbours) return {-reach, reach, -reach / 2, reach / 2};
   const float du = 1.3F * neighbours->du_px, dv = 1.3F * neighbours->dv_px, margin = static_cast<float>(params.young_margin_px);
   return {std::min(du, 0.0F) - margin, std::max(du, 0.0F) + margin, std::min(dv, 0.0F) - margin, std::max(dv, 0.0F) + margin};
+}
+
+/// The same for a point of a vehicle that crosses or overtakes: the road is level, hence only sideways.
+ShiftBounds widened(const ShiftBounds& near, const Params& params) {
+  const auto more = static_cast<float>(std::max(0.0, params.far_margin_px - params.young_margin_px));
+  return {near.min_du_px - more, near.max_du_px + more, near.min_dv_px, near.max_dv_px};
 }
 
 bool sameSize(const Image& a, const Image& b) { return a.width() == b.width() && a.height() == b.height(); }
@@ -288,13 +297,20 @@ void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const
       still.push_back(&track);
   }
   const CornerLookup corners(now);
+  const int level = std::min(params.young_level, follower.coarsest());
   forEachItem(still.size(), [&](std::size_t i) {
     Track& track = *still[i];
     const auto neighbours = shiftOfNeighbours(track.seen, moved);
     Guesses guesses;
     guesses.add(neighbours.value_or(Shift{}));
-    corners.addSimilar(previous->left, track.seen, boundsAround(neighbours, params), guesses);
-    const auto found = follower.follow(track.seen, guesses.all(), std::min(params.young_level, follower.coarsest()));
+    const ShiftBounds near = boundsAround(neighbours, params);
+    corners.addSimilar(previous->left, track.seen, near, kMaxGrey, guesses);
+    auto found = follower.follow(track.seen, guesses.all(), level);
+    if (!found) {
+      Guesses far;
+      corners.addSimilar(previous->left, track.seen, widened(near, params), params.far_max_difference, far);
+      if (far.count > 0) found = follower.follow(track.seen, far.all(), level);
+    }
     if (found) moveTo(track, *found, now.left.levels.front());
   });
 }

@@ -28,6 +28,8 @@ class OpticalFlowTracker {
     int moving_level = 2;                // pyramid level at which a track with known velocity starts
     int young_level = 1;                 // and one without
     double young_margin_px = 20;         // how far a new track may move otherwise than its neighbours
+    double far_margin_px = 150;          // and sideways, when nothing like it is that near: vehicles that cross or overtake
+    double far_max_difference = 30;      // mean difference of grey values to a corner that far
     PatchParams patch;
     double sift_max_flow_px = 150;
     double sift_max_ratio = 0.85;

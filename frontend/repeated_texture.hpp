@@ -17,8 +17,7 @@ struct RepeatedTextureParams {
 };
 
 /// Is the patch around `now_px` also found in the image before at the place from which a point at rest would have come, and not only where
-/// it was followed from? (Backwards, because a car that drives ahead sees less of the scene now than before.) `scale` is the size of the
-/// patch at rest before over that now.
+/// it was followed from? `scale` is the size of the patch at rest before over that now. Works forwards as well, with the roles exchanged.
 bool isFoundAtRestToo(const Image& now, const Eigen::Vector2d& now_px, const Image& before, const Eigen::Vector2d& at_rest_px,
                       const Eigen::Vector2d& followed_from_px, double scale, const RepeatedTextureParams& params);
 

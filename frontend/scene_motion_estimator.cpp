@@ -196,15 +196,21 @@ void SceneMotionEstimator::updateTracks(const std::vector<Sighted>& sighted, con
   tracks_ = std::move(updated);
 }
 
+/// Looked for both ways: something else may hide its place at rest in one of the two images.
 bool SceneMotionEstimator::isFoundAtRest(const Sighted& s, const Image& now) const {
   const CameraTrail::Relation* before = s.track ? trail_.find(s.track->newest().step) : nullptr;
   if (!before || !previous_features_ || s.track->newest().step + 1 != trail_.newest().step) return false;
-  const Eigen::Vector3d uvd_now(s.flow.u_px, s.flow.v_px, s.disparity->disparity_px);
-  const Eigen::Vector3d p_now = camera_.triangulate(uvd_now), p_before = before->T_then_now * p_now;
-  const auto at_rest = camera_.project(p_before);
-  if (!at_rest) return false;
-  return isFoundAtRestToo(now, uvd_now.head<2>(), previous_features_->left.levels.front(), at_rest->head<2>(),
-                          s.track->newest().uvd_px.head<2>().cast<double>(), p_now.z() / p_before.z(), params_.repeated_texture);
+  const Image& image_before = previous_features_->left.levels.front();
+  const Eigen::Vector3d uvd_now(s.flow.u_px, s.flow.v_px, s.disparity->disparity_px), uvd_before = s.track->newest().uvd_px.cast<double>();
+  const auto found = [&](const Eigen::Vector3d& uvd, const Image& image, const SE3& T_other_this, const Eigen::Vector3d& uvd_other,
+                         const Image& other) {
+    const Eigen::Vector3d p = camera_.triangulate(uvd), p_other = T_other_this * p;
+    const auto at_rest = camera_.project(p_other);
+    return at_rest && isFoundAtRestToo(image, uvd.head<2>(), other, at_rest->head<2>(), uvd_other.head<2>(), p.z() / p_other.z(),
+                                       params_.repeated_texture);
+  };
+  return found(uvd_now, now, before->T_then_now, uvd_before, image_before) ||
+         found(uvd_before, image_before, before->T_then_now.inverse(), uvd_now, now);
 }
 
 PointTrack SceneMotionEstimator::extendTrack(const Sighted& s, const Image& now) const {

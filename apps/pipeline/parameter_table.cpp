@@ -128,6 +128,8 @@ void addOpticalFlow(std::vector<Parameter>& table, OpticalFlowTracker::Params& p
       .add("moving_level", p.moving_level, {0, 7})
       .add("young_level", p.young_level, {0, 7})
       .add("young_margin_px", p.young_margin_px, kNotNegative)
+      .add("far_margin_px", p.far_margin_px, kNotNegative)
+      .add("far_max_difference", p.far_max_difference, {0, 255})
       .add("sift_max_flow_px", p.sift_max_flow_px, kPositive)
       .add("sift_max_ratio", p.sift_max_ratio, kShare)
       .add("sift_sigma_px", p.sift_sigma_px, kPositive);

@@ -72,6 +72,32 @@ TEST(OpticalFlowTracker, FollowsLargeMotionFromTheFirstFrame) {
   EXPECT_GE(followed, 100);
 }
 
+/// A block of another texture that moves to the right across a wall at rest.
+TEST(OpticalFlowTracker, FollowsWhatCrossesAStandingScene) {
+  constexpr double kSpeed_px = 45;
+  const test::Texture wall(61, 7, 60), vehicle(62, 7, 60);
+  const FeaturePreparation prepare{{}};
+  OpticalFlowTracker track({}, kCamera);
+  const auto left_px = [&](int frame) { return 100 + frame * kSpeed_px; };
+  const auto at = [&](int frame) {
+    const auto gray = [&](double x, double y) {
+      const bool on_vehicle = x > left_px(frame) && x < left_px(frame) + 140 && y > 80 && y < 160;
+      return on_vehicle ? vehicle(x - left_px(frame), y) : wall(x, y);
+    };
+    const Image image = test::render(kWidth, kHeight, gray, {.noise = 2, .seed = static_cast<unsigned>(frame)});
+    return track(prepare(test::stereoFrame(frame, image, image)));
+  };
+  const auto before = at(0), now = at(1);
+  int crossing = 0;
+  for (const FlowTrack& point : now->tracks) {
+    if (point.age < 2 || point.u_px < left_px(1) + 8 || point.u_px > left_px(1) + 132 || point.v_px < 88 || point.v_px > 152) continue;
+    const auto then = std::ranges::find(before->tracks, point.point, &FlowTrack::point);
+    ASSERT_NE(then, before->tracks.end());
+    crossing += std::abs(point.u_px - then->u_px - kSpeed_px) < 1;
+  }
+  EXPECT_GE(crossing, 10);
+}
+
 TEST(OpticalFlowTracker, OrdersTracksByIdsThatAreNeverUsedTwice) {
   const MovingWall wall(9.3, 2.2);
   OpticalFlowTracker track({}, kCamera);
