@@ -14,8 +14,8 @@ class ObjectKinematics {
 
   struct Params {
     // White noise on acceleration: standard deviation of the twist's change after one second.
-    double acceleration_along_mps2 = 4.0, acceleration_sideways_mps2 = 1.0, acceleration_vertical_mps2 = 0.5;
-    double acceleration_yaw_radps2 = 0.6, acceleration_tilt_radps2 = 0.1;
+    double acceleration_along_mps2 = 2.0, acceleration_sideways_mps2 = 1.0, acceleration_vertical_mps2 = 0.5;
+    double acceleration_yaw_radps2 = 0.1, acceleration_tilt_radps2 = 0.1;
     // A vehicle rolls along its own x axis and stands upright on the road.
     double slip_mps = 0.4, slip_per_mps = 0.03, vertical_mps = 0.3, tilt_rate_radps = 0.05;
     double tilt_rad = 0.04;

@@ -16,6 +16,8 @@ Eigen::Matrix3d travelAxes(const Eigen::Vector3d& velocity, const Eigen::Vector3
   return R;
 }
 
+double positionSigma_m(const TrackedObject& object) { return std::sqrt(object.kinematics.poseCovariance().topLeftCorner<3, 3>().trace()); }
+
 Eigen::Vector3d upInWorld(const SceneMotion& scene, const SE3& T_world_cam) { return -(T_world_cam.rotation() * scene.ground.normal_cam); }
 
 }  // namespace
@@ -83,11 +85,12 @@ void ObjectTracker::record(TrackedObject& object, ObjectObservation observation,
   if (object.sightings >= params_.confirm_sightings && moves && travelled_m > params_.confirm_travel_m) confirm(object, measurements);
 }
 
-/// The direction of travel is known better now than at birth: the body's x axis is laid along it, once and for all.
+/// The direction of travel is known better now than at birth, and points that were not the body's are gone: the body's x axis is laid along
+/// the travel and its origin amid the points, once and for all.
 void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measurements) {
   const Eigen::Matrix3d& R = object.kinematics.pose().rotation();
   const Eigen::Matrix3d R_travel = travelAxes(object.kinematics.velocityWorld_mps(), R.col(2));
-  object.changeBodyFrame(SE3(R.transpose() * R_travel, Eigen::Vector3d::Zero()));
+  object.changeBodyFrame(SE3(R.transpose() * R_travel, object.middle()));
   object.confirmed = true;
   lookBack(object, measurements.stamp);
   for (auto& o : object.backlog) {
@@ -116,12 +119,12 @@ void ObjectTracker::lookBack(TrackedObject& object, Timestamp now) const {
 void ObjectTracker::coast(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements) {
   ++object.coasted;
   object.seen_before = FrameId{};
-  const int allowed = object.confirmed ? params_.max_coasted_frames : params_.max_tentative_misses;
-  if (object.coasted > allowed || leftView(object)) {
+  const int allowed = object.confirmed ? params_.max_lost_frames : params_.max_tentative_misses;
+  if (object.coasted > allowed || leftView(object) || positionSigma_m(object) > params_.max_lost_sigma_m) {
     object.ended = true;
     return;
   }
-  if (!object.confirmed) return;
+  if (!object.confirmed || object.coasted > params_.max_coasted_frames) return;
   ObjectObservation predicted;
   predicted.frame = scene.frame;
   predicted.state = ObjectState::kPredicted;
@@ -152,10 +155,9 @@ void ObjectTracker::associate(const SceneMotion& scene) {
 
   const std::size_t known = objects_.size();
   for (std::size_t s = 0; s < scene.segments.size(); ++s)
-    if (object_of[s] >= 0)
-      adopt_(objects_[static_cast<std::size_t>(object_of[s])], scene, previous_scene_.get(), &scene.segments[s], T_world_cam_, taken);
+    if (object_of[s] >= 0) adopt_(objects_[static_cast<std::size_t>(object_of[s])], scene, &scene.segments[s], T_world_cam_, taken);
   for (std::size_t m = 0; m < known; ++m)
-    if (objects_[m].coasted == 0) adopt_(objects_[m], scene, previous_scene_.get(), nullptr, T_world_cam_, taken);
+    if (objects_[m].coasted == 0) adopt_(objects_[m], scene, nullptr, T_world_cam_, taken);
   for (std::size_t s = 0; s < scene.segments.size(); ++s)
     if (object_of[s] < 0 && scene.segments[s].label == PointLabel::kMoving) bear(scene, scene.segments[s], taken);
 }
@@ -215,10 +217,9 @@ void ObjectTracker::mergeTwins() {
 
 bool ObjectTracker::areTwins(const TrackedObject& older, const TrackedObject& younger) const {
   const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
-  Eigen::AlignedBox3d both = older.extent(0);
-  for (const auto& p : younger.points) both.extend(T_older_younger * p.p_body);
-  const double slack_m = 2 * std::sqrt(older.kinematics.poseCovariance().topLeftCorner<3, 3>().trace() +
-                                       younger.kinematics.poseCovariance().topLeftCorner<3, 3>().trace());
+  const Eigen::AlignedBox3d both = older.core(SE3{}).merged(younger.core(T_older_younger));
+  if (older.coasted > 0 && younger.sightings > 1) return false;  // one that is seen longer than the other was lost is not the other
+  const double slack_m = std::min(params_.twin_slack_m, 2 * std::hypot(positionSigma_m(older), positionSigma_m(younger)));
   if (!params_.adoption.vehicle.holds(both, slack_m)) return false;
   const Eigen::Vector3d dv = older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps();
   const double sigma_mps = std::hypot(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());

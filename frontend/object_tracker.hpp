@@ -22,16 +22,19 @@ class ObjectTracker {
   struct Params {
     int confirm_sightings = 3;          // frames with a measurement before an object is reported
     double confirm_speed_mps = 1.0;     // and its speed, ...
-    double confirm_significance = 5.0;  // ... in standard deviations, ...
+    double confirm_significance = 9.0;  // ... in standard deviations, ...
     double confirm_travel_m = 0.5;      // ... and its way since birth
     int look_back_frames = 6;           // before its birth in which a confirmed object is looked for among the points followed then
     int max_tentative_misses = 1;
-    int max_coasted_frames = 5;  // rows in state `predicted`
+    int max_coasted_frames = 5;   // rows in state `predicted`
+    int max_lost_frames = 15;     // an object that was confirmed is known again so long after it was seen last, ...
+    double max_lost_sigma_m = 3;  // ... and while its place is known so well
     double stop_speed_mps = 0.5, start_speed_mps = 1.0;
-    int stop_frames = 3;                 // in a row below the stop speed
-    double image_margin_px = 50;         // an unseen object this far outside the image has left
-    double twin_speed_mps = 1.5;         // two objects that fit into one vehicle are one if their velocities differ by less
-    double birth_turn_rate_radps = 0.2;  // standard deviation
+    int stop_frames = 3;                  // in a row below the stop speed
+    double image_margin_px = 50;          // an unseen object this far outside the image has left
+    double twin_speed_mps = 1.5;          // two objects that fit into one vehicle are one if their velocities differ by less
+    double twin_slack_m = 2;              // by which they may exceed the vehicle at most, however uncertain their places are
+    double birth_turn_rate_radps = 0.05;  // standard deviation
     ObjectKinematics::Params kinematics;
     ObjectAssociation::Params association;
     PointAdoption::Params adoption;

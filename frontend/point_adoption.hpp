@@ -19,7 +19,7 @@ class PointAdoption {
   struct Params {
     double margin_m = 0.8;            // beyond the points known so far
     double depth_noise_sigmas = 2.0;  // by which the margin grows
-    double max_length_m = 14.0;       // of the body, along its axes: it grows to this by and by
+    double max_length_m = 14.0;       // of the body: it grows to this by and by
     VehicleSize vehicle;              // within it, points of a segment that was matched to the object need no neighbours
     double fits_chi2 = 9.0;           // 3 degrees of freedom
     double not_static_chi2 = 16.0;
@@ -28,15 +28,15 @@ class PointAdoption {
   PointAdoption(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
   /// Adds the points of `segment` (or, without one, of the whole scene) that fit. `taken[i]` marks points of some object; kept up to date.
-  void operator()(TrackedObject& object, const SceneMotion& scene, const SceneMotion* previous_scene, const Segment* segment,
-                  const SE3& T_world_cam, std::vector<bool>& taken) const;
+  void operator()(TrackedObject& object, const SceneMotion& scene, const Segment* segment, const SE3& T_world_cam,
+                  std::vector<bool>& taken) const;
 
   /// Puts a point into the object's frame, with the covariance that its disparity gives.
   BodyPoint toBody(const TrackedObject& object, const ScenePoint& point) const;
 
  private:
-  bool movesWith(const TrackedObject& object, const ScenePoint& point, const SceneMotion& scene, const SceneMotion* previous_scene,
-                 const SE3& T_world_cam) const;
+  bool movesWith(const TrackedObject& object, const ScenePoint& point, const SE3& T_world_cam) const;
+  bool couldBeOneBody(const Eigen::AlignedBox3d& box, double slack_m) const;
 
   Params params_;
   StereoCamera camera_;

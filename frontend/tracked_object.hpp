@@ -19,7 +19,8 @@ struct BodyPoint {
   int misfits = 0;  // frames in a row in which it did not move with the body
 };
 
-/// A vehicle that the tracker follows. The body frame's origin is the centroid of the points at birth, fixed to the vehicle from then on.
+/// A vehicle that the tracker follows. The body frame's origin is the middle of the points when it is confirmed, fixed to the vehicle from
+/// then on.
 struct TrackedObject {
   TrackId track;
   ObjectKinematics kinematics;  // in the front-end's own odometry world
@@ -41,8 +42,14 @@ struct TrackedObject {
   void adopt(const std::vector<BodyPoint>& more);
   /// Box around the points in body axes, grown by `margin_m`.
   Eigen::AlignedBox3d extent(double margin_m) const;
+  /// Box around the points, moved by `T`, without the outermost share at each side (at most half): strays do not stretch it.
+  Eigen::AlignedBox3d core(const SE3& T, double left_out = 0.1) const;
+  /// Median of the points, axis by axis.
+  Eigen::Vector3d middle() const;
   /// Velocity relative to the world of a place on the body, in world axes.
   Eigen::Vector3d velocityAt_mps(const Eigen::Vector3d& p_body) const;
+  /// Misfit of a point's velocity to the body's there; chi-square with 3 degrees of freedom.
+  double velocityChi2(const SceneFlow& flow, const SE3& T_world_cam) const;
   void changeBodyFrame(const SE3& T_body_new);
 };
 

@@ -78,7 +78,7 @@ TEST(ObjectKinematics, NoiseOfTwoHalfStepsIsThatOfAWhole) {
   halves.predict(0.1, {});
   EXPECT_THAT(halves.poseCovariance(), IsNear(whole.poseCovariance(), 1e-14));  // rounding
   EXPECT_THAT(halves.velocityCovariance(), IsNear(whole.velocityCovariance(), 1e-14));
-  EXPECT_NEAR(whole.velocityCovariance()(0, 0), 0.01 + 16 * 0.2, 1e-12);  // 4 m/s^2 along, white
+  EXPECT_NEAR(whole.velocityCovariance()(0, 0), 0.01 + 4 * 0.2, 1e-12);  // 2 m/s^2 along, white
 }
 
 TEST(ObjectKinematics, AcceptingAPoseIsAKalmanUpdateOfTheWholeState) {
