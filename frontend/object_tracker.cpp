@@ -20,6 +20,14 @@ double positionSigma_m(const TrackedObject& object) { return std::sqrt(object.ki
 
 Eigen::Vector3d upInWorld(const SceneMotion& scene, const SE3& T_world_cam) { return -(T_world_cam.rotation() * scene.ground.normal_cam); }
 
+/// Vehicles do not: half of the smaller box lies in the other.
+bool overlap(Eigen::AlignedBox3d a, Eigen::AlignedBox3d b) {
+  constexpr double kMargin_m = 0.3;  // of faces seen from one side only
+  for (auto* box : {&a, &b}) box->min().array() -= kMargin_m, box->max().array() += kMargin_m;
+  const Eigen::AlignedBox3d common = a.intersection(b);
+  return !common.isEmpty() && common.volume() > 0.8 * std::min(a.volume(), b.volume());
+}
+
 }  // namespace
 
 ObjectTracker::ObjectTracker(const Params& params, const StereoCamera& camera)
@@ -82,7 +90,8 @@ void ObjectTracker::record(TrackedObject& object, ObjectObservation observation,
   const double travelled_m = (object.kinematics.pose().translation() - object.birthplace_world).norm();
   const double speed = object.kinematics.speed_mps();
   const bool moves = speed > params_.confirm_speed_mps && speed > params_.confirm_significance * object.kinematics.speedSigma_mps();
-  if (object.sightings >= params_.confirm_sightings && moves && travelled_m > params_.confirm_travel_m) confirm(object, measurements);
+  const bool far_enough = object.sightings >= params_.confirm_sightings && travelled_m > params_.confirm_travel_m;
+  if (far_enough && moves && object.extent(0).diagonal().norm() > params_.confirm_extent_m) confirm(object, measurements);
 }
 
 /// The direction of travel is known better now than at birth, and points that were not the body's are gone: the body's x axis is laid along
@@ -217,13 +226,14 @@ void ObjectTracker::mergeTwins() {
 
 bool ObjectTracker::areTwins(const TrackedObject& older, const TrackedObject& younger) const {
   const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
-  const Eigen::AlignedBox3d both = older.core(SE3{}).merged(younger.core(T_older_younger));
+  const Eigen::AlignedBox3d own = older.core(SE3{}), other = younger.core(T_older_younger);
   if (older.coasted > 0 && younger.sightings > 1) return false;  // one that is seen longer than the other was lost is not the other
   const double slack_m = std::min(params_.twin_slack_m, 2 * std::hypot(positionSigma_m(older), positionSigma_m(younger)));
-  if (!params_.adoption.vehicle.holds(both, slack_m)) return false;
+  const bool one_vehicle = params_.adoption.vehicle.holds(own.merged(other), slack_m);
+  if (!one_vehicle && !overlap(own, other)) return false;
   const Eigen::Vector3d dv = older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps();
   const double sigma_mps = std::hypot(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());
-  return dv.norm() < params_.twin_speed_mps + 2 * sigma_mps;
+  return dv.norm() < params_.twin_speed_mps + (one_vehicle ? 2 * sigma_mps : 0);
 }
 
 void ObjectTracker::bury(FrameMeasurements& measurements) {

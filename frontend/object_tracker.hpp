@@ -23,7 +23,8 @@ class ObjectTracker {
     int confirm_sightings = 3;          // frames with a measurement before an object is reported
     double confirm_speed_mps = 1.0;     // and its speed, ...
     double confirm_significance = 9.0;  // ... in standard deviations, ...
-    double confirm_travel_m = 0.5;      // ... and its way since birth
+    double confirm_travel_m = 0.5;      // ... its way since birth ...
+    double confirm_extent_m = 0.3;      // ... and the span of its points
     int look_back_frames = 6;           // before its birth in which a confirmed object is looked for among the points followed then
     int max_tentative_misses = 1;
     int max_coasted_frames = 5;   // rows in state `predicted`
