@@ -240,7 +240,7 @@ Moments momentsAt(const PatchTemplate& patch, const Image& image, float u_px, fl
   return lanes.moments(window * window);
 }
 
-using Square = std::array<float, kStride*(kMaxPatchWindow_px + 2)>;
+using Square = std::array<float, kStride*(kMaxPatchWindow_px + 3)>;  // lanes beyond the window read into one row more
 
 void store(PatchTemplate::Plane& plane, int offset, const Lanes& lanes) { std::memcpy(plane.data() + offset, &lanes, sizeof lanes); }
 
@@ -348,6 +348,7 @@ std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float 
   } else {
     sampleScaledSquare(image, u_px, v_px, window_px + 2, scale, square.data());
   }
+  std::fill_n(square.begin() + (window_px + 2) * kStride, kStride, 0.0F);
   patch.emplace();
   patch->window_px = window_px;
   setAppearance(*patch, square);

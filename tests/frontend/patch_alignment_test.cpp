@@ -111,6 +111,25 @@ TEST(PatchAlignment, AlignsATemplateMadeAtTheScaleOfNow) {
   EXPECT_NEAR(aligned->log_growth, 0, 0.02);
 }
 
+/// Leaves not-a-number where the next call has its stack.
+[[gnu::noinline]] void poisonStack() {
+  volatile float garbage[8192];
+  for (volatile float& value : garbage) value = std::nanf("");
+}
+
+TEST(PatchAlignment, TakesNothingFromMemoryThatNobodyWrote) {
+  const Image image = test::render(kWidth, kHeight, test::Texture(11), {.noise = 1.5, .seed = 1});
+  for (const float scale : {1.0F, 1.1F}) {
+    for (const int window_px : {9, 11, kMaxPatchWindow_px}) {
+      poisonStack();
+      const auto patch = makeTemplate(image, 120.3F, 65.6F, window_px, PatchDeformation::kScale, scale);
+      ASSERT_TRUE(patch);
+      EXPECT_TRUE(std::isfinite(patch->norm));
+      EXPECT_TRUE(patch->inverse_hessian.allFinite()) << "window " << window_px << ", scale " << scale;
+    }
+  }
+}
+
 TEST(PatchAlignment, RefusesPatchesWithoutTexture) {
   const Image flat = test::render(64, 64, [](double, double) { return 100.0; });
   EXPECT_FALSE(makeTemplate(flat, 30, 30, 11, PatchDeformation::kScale));
