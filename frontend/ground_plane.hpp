@@ -35,8 +35,6 @@ class GroundPlaneEstimator {
 
   /// Points that moved in the last frame should be left out by the caller. Keeps the last plane when too few points lie on one.
   GroundPlane operator()(std::span<const GroundCandidate> points, std::uint64_t seed);
-  /// The plane of the frame before, or the one assumed at the start.
-  const GroundPlane& last() const { return plane_; }
 
  private:
   bool plausible(const GroundPlane& plane) const;

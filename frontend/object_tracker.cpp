@@ -20,12 +20,12 @@ double positionSigma_m(const TrackedObject& object) { return std::sqrt(object.ki
 
 Eigen::Vector3d upInWorld(const SceneMotion& scene, const SE3& T_world_cam) { return -(T_world_cam.rotation() * scene.ground.normal_cam); }
 
-/// Vehicles do not: half of the smaller box lies in the other.
+/// Vehicles do not: most of the smaller box lies in the other.
 bool overlap(Eigen::AlignedBox3d a, Eigen::AlignedBox3d b) {
-  constexpr double kMargin_m = 0.3;  // of faces seen from one side only
+  constexpr double kMargin_m = 0.3, kMost = 0.8;  // a margin, as a face alone has no depth
   for (auto* box : {&a, &b}) box->min().array() -= kMargin_m, box->max().array() += kMargin_m;
   const Eigen::AlignedBox3d common = a.intersection(b);
-  return !common.isEmpty() && common.volume() > 0.8 * std::min(a.volume(), b.volume());
+  return !common.isEmpty() && common.volume() > kMost * std::min(a.volume(), b.volume());
 }
 
 }  // namespace

@@ -127,6 +127,14 @@ TEST(ObjectTracker, ParkedCarsAreNeverReported) {
   }
 }
 
+TEST(ObjectTracker, WhatIsNoLargerThanAHandIsNoVehicle) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const auto follow = [&](double size) { return Drive({{.x_m = 0.5, .z_m = 8, .points = 20, .size = size}}, 10, 20, seed).tracks().size(); };
+    EXPECT_EQ(follow(0.01), 0U) << "seed " << seed;
+    EXPECT_EQ(follow(1), 1U) << "seed " << seed;
+  }
+}
+
 TEST(ObjectTracker, TwoCarsThatPassEachOtherKeepTheirIds) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const Drive drive({{.x_m = -1.8, .z_m = 20, .speed_mps = 7}, {.x_m = 1.8, .z_m = 11, .speed_mps = 11}}, 8, 40, seed);

@@ -18,6 +18,7 @@ struct SimulatedCar {
   double x_m = 0, z_m = 15, heading_rad = 0;  // at the start; heading 0 drives along the world's z, positive turns right
   double speed_mps = 10, turn_rate_radps = 0;
   int points = 40;
+  double size = 1;  // of the box on which they lie, over a car's
   int gone_from = 1'000'000, gone_until = 1'000'000;  // frames without any of its points
   int stands_from = 1'000'000, stands_until = 1'000'000;
 };
@@ -33,7 +34,7 @@ class SimulatedTraffic {
     for (const auto& car : cars_) {
       T_world_car_.push_back({poseOf(car)});
       std::vector<Eigen::Vector3d> points;
-      for (int i = 0; i < car.points; ++i) points.push_back(pointOnBox());
+      for (int i = 0; i < car.points; ++i) points.push_back(car.size * pointOnBox());
       points_of_car_.push_back(points);
     }
     for (int i = 0; i < 120; ++i) {
