@@ -46,7 +46,8 @@ class EgoMotionEstimator {
   EgoMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
   /// `observations` hold points in the previous camera's frame, `known_movers` whether they moved in the one before it.
-  /// The predicted motion is scored first, and what a vehicle cannot do after it must win by more; random samples are drawn from a generator seeded with `seed` (the frame number).
+  /// The predicted motion is scored first, and what a vehicle cannot do after it must win by more. Random samples are drawn from a generator
+  /// seeded with `seed` (the frame number).
   /// Empty when too few points agree on any motion.
   std::optional<EgoMotion> operator()(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
                                       const PredictedMotion& predicted, std::uint64_t seed) const;

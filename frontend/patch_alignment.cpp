@@ -12,6 +12,7 @@
 #include <Eigen/LU>
 
 #include "frontend/image_pyramid.hpp"
+#include "frontend/window_differences.hpp"
 
 namespace motorcade {
 namespace {
@@ -22,18 +23,13 @@ constexpr int kBlockRows = kMaxPatchWindow_px + 3;
 constexpr int kBlockStride = 48;
 static_assert(kMaxPatchWindow_px + 2 * kMaxShearShift_px + 4 + kStride + 1 <= kBlockStride);
 
-// Vectors of the compilers' own kind; GCC 12 turns their widening of bytes into scalar code, hence the two intrinsics.
+// Vectors of the compilers' own kind; GCC 12 turns their widening of bytes into scalar code, hence the intrinsics.
 using Lanes = float __attribute__((vector_size(32)));
-using Words = std::int16_t __attribute__((vector_size(32)));
-constexpr int kWordLanes = 16;
-using WordFloats = float __attribute__((vector_size(4 * kWordLanes)));
 
 #ifdef __AVX2__
 inline Lanes pixels(const std::uint8_t* p) {
   return Lanes(_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)))));
 }
-inline Words wordPixels(const std::uint8_t* p) { return Words(_mm256_cvtepu8_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)))); }
-inline Words magnitude(const Words& x) { return Words(_mm256_abs_epi16(__m256i(x))); }
 /// p[columns[i]] for columns below 16.
 inline Lanes pixelsAt(const std::uint8_t* p, const std::uint8_t* columns) {
   const __m128i row = _mm_loadu_si128(reinterpret_cast<const __m128i*>(p));
@@ -46,12 +42,6 @@ inline Lanes pixels(const std::uint8_t* p) {
   for (int i = 0; i < 8; ++i) lanes[i] = p[i];
   return lanes;
 }
-inline Words wordPixels(const std::uint8_t* p) {
-  Words words;
-  for (int i = 0; i < kWordLanes; ++i) words[i] = p[i];
-  return words;
-}
-inline Words magnitude(const Words& x) { return x < 0 ? -x : x; }
 inline Lanes pixelsAt(const std::uint8_t* p, const std::uint8_t* columns) {
   Lanes lanes;
   for (int i = 0; i < 8; ++i) lanes[i] = p[columns[i]];
@@ -63,12 +53,6 @@ inline Lanes floats(const float* p) {
   Lanes lanes;
   std::memcpy(&lanes, p, sizeof lanes);
   return lanes;
-}
-
-inline Words words(const std::int16_t* p) {
-  Words words;
-  std::memcpy(&words, p, sizeof words);
-  return words;
 }
 
 inline float total(const Lanes& x) { return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7])); }
@@ -122,9 +106,9 @@ void sampleSquare(const Image& image, float u_px, float v_px, int side_px, float
 
 /// Where eight neighbouring samples of a row lie that are not a pixel apart.
 struct SampleColumns {
-  int first = 0;                                          // pixel
+  int first = 0;                                           // pixel
   alignas(8) std::array<std::uint8_t, 8> left{}, right{};  // pixels beside each sample, from the first on
-  Lanes weight{};                                         // of the right one
+  Lanes weight{};                                          // of the right one
 };
 
 /// The same with samples 1 / scale px apart; the scale is at least `kMinTemplateScale`.
@@ -414,42 +398,6 @@ float correlation(const PatchTemplate& patch, const Image& image, float u_px, fl
   if (!inside(image, u_px, v_px)) return -1;
   const Moments moments = momentsAt(patch, image, u_px, v_px);
   return moments.variation > 0 ? moments.appearance / std::sqrt(moments.variation) : -1;
-}
-
-void windowDifferences(const Image& image, int u, int v, const Image& other, int other_u, int other_v, WindowSize window,
-                       std::span<std::uint16_t> costs) {
-  assert(fits(window));
-  const int half_columns = window.columns / 2, half_rows = window.rows / 2, count = static_cast<int>(costs.size());
-  const float per_pixel = 1 / static_cast<float>(window.columns * window.rows);
-  const std::uint8_t* own = image.row(v - half_rows) + u - half_columns;
-  // Their pixels as words, row by row, and the columns' sums: what sixteen neighbouring windows read.
-  constexpr int kReadColumns = 2 * kWordLanes;
-  alignas(32) std::array<std::int16_t, kReadColumns * kMaxWindowRows> theirs;
-  alignas(32) std::array<std::int16_t, kReadColumns> column_sums;
-  int own_sum = 0;
-  for (int r = 0; r < window.rows; ++r)
-    for (int c = 0; c < window.columns; ++c) own_sum += own[r * image.stride() + c];
-  for (int first = 0; first < count; first += kWordLanes) {
-    // Reads up to 31 bytes past a window's first pixel: the next row, or the room that each image has after its last.
-    const std::uint8_t* from = other.row(other_v - half_rows) + other_u - half_columns + first;
-    for (int c = 0; c < kReadColumns; c += kWordLanes) {
-      Words sum{};
-      for (int r = 0; r < window.rows; ++r) {
-        const Words pixel_words = wordPixels(from + r * other.stride() + c);
-        std::memcpy(theirs.data() + r * kReadColumns + c, &pixel_words, sizeof pixel_words);
-        sum += pixel_words;
-      }
-      std::memcpy(column_sums.data() + c, &sum, sizeof sum);
-    }
-    Words brighter = Words{} - static_cast<std::int16_t>(own_sum);  // sum of their pixels minus ours
-    for (int c = 0; c < window.columns; ++c) brighter += words(column_sums.data() + c);
-    const Words offset = __builtin_convertvector(__builtin_convertvector(brighter, WordFloats) * per_pixel, Words);
-    Words cost{};
-    for (int r = 0; r < window.rows; ++r)
-      for (int c = 0; c < window.columns; ++c)
-        cost += magnitude(words(theirs.data() + r * kReadColumns + c) - offset - static_cast<std::int16_t>(own[r * image.stride() + c]));
-    std::memcpy(costs.data() + first, &cost, static_cast<std::size_t>(std::min(kWordLanes, count - first)) * sizeof(std::uint16_t));
-  }
 }
 
 namespace {

@@ -10,6 +10,7 @@
 
 #include "frontend/image_pyramid.hpp"
 #include "frontend/sift_features.hpp"
+#include "frontend/window_differences.hpp"
 
 namespace motorcade {
 namespace {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "apps/pipeline/configuration.hpp"
+#include "frontend/window_differences.hpp"
 
 namespace motorcade {
 namespace {
