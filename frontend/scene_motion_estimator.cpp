@@ -119,17 +119,23 @@ std::optional<StereoMatch> SceneMotionEstimator::firstDisparity(const StereoMatc
   return refineDisparity(left.levels.front(), right.levels.front(), flow.u_px, flow.v_px, nearest->disparity_px, params_.disparity);
 }
 
-/// The disparity lies between that of a point at rest and that of a point which moves along with the camera.
+/// The disparity lies between that of a point at rest and that of a point which moves along with the camera; where nothing is found there,
+/// it may be a vehicle that comes towards the camera or overtakes it, at up to the camera's own speed.
 std::optional<StereoMatch> SceneMotionEstimator::verifyInRightImage(const Features& features, const FlowTrack& flow,
                                                                     const PointTrack& track, const SE3& predicted_T_now_previous) const {
   const double before_px = track.newest().uvd_px.z();
   const auto at_rest = camera_.project(predicted_T_now_previous * lastPosition(track).p_a);
   const double at_rest_px = at_rest ? at_rest->z() : before_px;
+  const double middle_px = 0.5 * (at_rest_px + before_px) - disparity_offset_.offset_px(), change_px = std::abs(at_rest_px - before_px);
   DisparityParams search = params_.disparity;
-  search.search_radius_px += 0.5 * std::abs(at_rest_px - before_px);
   if (!last_motion_) search.search_radius_px += params_.unpredicted_search * before_px;
-  return refineDisparity(features.left.levels.front(), features.right.levels.front(), flow.u_px, flow.v_px,
-                         0.5 * (at_rest_px + before_px) - disparity_offset_.offset_px(), search);
+  const auto within = [&](double reach_px) {
+    DisparityParams wider = search;
+    wider.search_radius_px += reach_px;
+    return refineDisparity(features.left.levels.front(), features.right.levels.front(), flow.u_px, flow.v_px, middle_px, wider);
+  };
+  const auto between = within(0.5 * change_px);
+  return between || change_px < search.search_radius_px ? between : within(1.5 * change_px);
 }
 
 PoseObservation SceneMotionEstimator::lastPosition(const PointTrack& track) const {
@@ -156,8 +162,7 @@ PoseObservation SceneMotionEstimator::observe(const Sighted& sighted) const {
   return o;
 }
 
-std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted,
-                                                          SceneMotion& motion) {
+std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted, SceneMotion& motion) {
   std::vector<PoseObservation> observations;
   std::vector<bool> known_movers;
   std::vector<bool> inliers(sighted.size(), false);
