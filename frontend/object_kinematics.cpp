@@ -47,6 +47,13 @@ void ObjectKinematics::acceptPose(const SE3& T_world_body, const Matrix6d& covar
   covariance_.bottomRightCorner<6, 6>() -= gain * (P - covariance) * gain.transpose();
 }
 
+void ObjectKinematics::fusePlace(const Eigen::Vector3d& p_body, const Eigen::Vector3d& p_world, double sigma_m) {
+  Eigen::Matrix<double, 3, 12> J = Eigen::Matrix<double, 3, 12>::Zero();
+  J.leftCols<3>() = Eigen::Matrix3d::Identity();
+  J.middleCols<3>(3) = -hat(p_body);
+  correct<3>(T_world_body_.inverse() * p_world - p_body, J, Eigen::Vector3d::Constant(sigma_m));
+}
+
 void ObjectKinematics::fuseVehicleModel(const Eigen::Vector3d& up_world, const Params& params) {
   Eigen::Matrix<double, 6, 1> residual, sigma;
   Eigen::Matrix<double, 6, 12> J = Eigen::Matrix<double, 6, 12>::Zero();

@@ -39,6 +39,9 @@ class ObjectKinematics {
   /// Takes over a pose whose estimation already used `pose()` and `poseCovariance()` as its prior; the twist follows by their correlation.
   void acceptPose(const SE3& T_world_body, const Matrix6d& covariance);
 
+  /// A place on the body, `p_body`, was seen at `p_world`; `sigma_m` along each axis.
+  void fusePlace(const Eigen::Vector3d& p_body, const Eigen::Vector3d& p_world, double sigma_m);
+
   /// Velocity along the body's x axis, and the body upright: `up_world` is the road's normal, away from the ground.
   void fuseVehicleModel(const Eigen::Vector3d& up_world, const Params& params);
 

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "frontend/vehicles_abreast.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -20,12 +22,26 @@ double positionSigma_m(const TrackedObject& object) { return std::sqrt(object.ki
 
 Eigen::Vector3d upInWorld(const SceneMotion& scene, const SE3& T_world_cam) { return -(T_world_cam.rotation() * scene.ground.normal_cam); }
 
-/// Vehicles do not: most of the smaller box lies in the other.
-bool overlap(Eigen::AlignedBox3d a, Eigen::AlignedBox3d b) {
-  constexpr double kMargin_m = 0.3, kMost = 0.8;  // a margin, as a face alone has no depth
-  for (auto* box : {&a, &b}) box->min().array() -= kMargin_m, box->max().array() += kMargin_m;
-  const Eigen::AlignedBox3d common = a.intersection(b);
-  return !common.isEmpty() && common.volume() > kMost * std::min(a.volume(), b.volume());
+/// Vehicles do not: most points of the one lie within the other.
+bool within(const TrackedObject& one, const SE3& T_other_one, const TrackedObject& other) {
+  constexpr double kMargin_m = 0.3, kMost = 0.7;  // a margin, as a face alone has no depth
+  Eigen::AlignedBox3d box = other.core(SE3{});
+  box.min().array() -= kMargin_m;
+  box.max().array() += kMargin_m;
+  const auto inside = std::ranges::count_if(one.points, [&](const BodyPoint& p) { return box.contains(T_other_one * p.p_body); });
+  return static_cast<double>(inside) > kMost * static_cast<double>(one.points.size());
+}
+
+/// A few points that seem to lie behind a vehicle with many, and within its outline, are the vehicle's own with wrong disparities.
+bool looksThrough(const ObjectObservation& few, const std::vector<ObjectObservation>& objects) {
+  constexpr double kMargin = 0.1;  // of the outline's width and height
+  constexpr int kMany = 5;
+  return std::ranges::any_of(objects, [&](const ObjectObservation& o) {
+    const double du = kMargin * (o.box.right_px - o.box.left_px), dv = kMargin * (o.box.bottom_px - o.box.top_px);
+    return o.frame == few.frame && o.points >= kMany * few.points && o.T_cam_body.translation().z() < few.T_cam_body.translation().z() &&
+           o.box.left_px - du < few.box.left_px && few.box.right_px < o.box.right_px + du && o.box.top_px - dv < few.box.top_px &&
+           few.box.bottom_px < o.box.bottom_px + dv;
+  });
 }
 
 }  // namespace
@@ -71,6 +87,7 @@ void ObjectTracker::follow(TrackedObject& object, const SceneMotion& scene, Fram
   object.kinematics.fuseVehicleModel(upInWorld(scene, T_world_cam_), params_.kinematics);
   object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
   object.coasted = 0;
+  object.last_middle = object.middle();
   ++object.sightings;
   updateState(object);
   observation->frame = scene.frame;
@@ -86,7 +103,9 @@ void ObjectTracker::record(TrackedObject& object, ObjectObservation observation,
     measurements.objects.push_back(std::move(observation));
     return;
   }
+  const bool hidden = looksThrough(observation, measurements.objects);
   object.backlog.push_back(std::move(observation));
+  if (hidden) return;
   const double travelled_m = (object.kinematics.pose().translation() - object.birthplace_world).norm();
   const double speed = object.kinematics.speed_mps();
   const bool moves = speed > params_.confirm_speed_mps && speed > params_.confirm_significance * object.kinematics.speedSigma_mps();
@@ -144,6 +163,12 @@ void ObjectTracker::coast(TrackedObject& object, const SceneMotion& scene, Frame
   record(object, std::move(predicted), measurements);
 }
 
+/// Where it was lost from sight its place has drifted: what is seen again is taken for what was seen last.
+void ObjectTracker::reappear(TrackedObject& object, const Segment& segment) const {
+  object.kinematics.fusePlace(object.last_middle, T_world_cam_ * segment.centroid_cam, params_.reappearance_spread_m);
+  object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
+}
+
 bool ObjectTracker::leftView(const TrackedObject& object) const {
   const auto uvd = camera_.project(object.T_cam_body.translation());
   return !uvd || !camera_.inLeftImage(uvd->x(), uvd->y(), -params_.image_margin_px);
@@ -163,8 +188,12 @@ void ObjectTracker::associate(const SceneMotion& scene) {
     taken[i] = std::any_of(objects_.begin(), objects_.end(), [&](const auto& o) { return o.find(scene.points[i].point) != nullptr; });
 
   const std::size_t known = objects_.size();
-  for (std::size_t s = 0; s < scene.segments.size(); ++s)
-    if (object_of[s] >= 0) adopt_(objects_[static_cast<std::size_t>(object_of[s])], scene, &scene.segments[s], T_world_cam_, taken);
+  for (std::size_t s = 0; s < scene.segments.size(); ++s) {
+    if (object_of[s] < 0) continue;
+    TrackedObject& object = objects_[static_cast<std::size_t>(object_of[s])];
+    if (object.coasted > 0 && sharedPoints(object, scene, scene.segments[s]) == 0) reappear(object, scene.segments[s]);
+    adopt_(object, scene, &scene.segments[s], T_world_cam_, taken);
+  }
   for (std::size_t m = 0; m < known; ++m)
     if (objects_[m].coasted == 0) adopt_(objects_[m], scene, nullptr, T_world_cam_, taken);
   for (std::size_t s = 0; s < scene.segments.size(); ++s)
@@ -172,20 +201,23 @@ void ObjectTracker::associate(const SceneMotion& scene) {
 }
 
 void ObjectTracker::bear(const SceneMotion& scene, const Segment& segment, std::vector<bool>& taken) {
-  std::vector<std::size_t> free;
+  std::vector<int> free;
   for (const int i : segment.points)
-    if (!taken[static_cast<std::size_t>(i)]) free.push_back(static_cast<std::size_t>(i));
-  if (static_cast<int>(free.size()) < params_.motion.min_points) return;
+    if (!taken[static_cast<std::size_t>(i)]) free.push_back(i);
+  for (const Segment& vehicle : splitAbreast(segment, free, scene, params_.adoption.vehicle.width_m))
+    if (static_cast<int>(vehicle.points.size()) >= params_.motion.min_points) bearOne(scene, vehicle, taken);
+}
 
+void ObjectTracker::bearOne(const SceneMotion& scene, const Segment& segment, std::vector<bool>& taken) {
   TrackedObject object;
   object.track = TrackId{next_track_++};
   const Eigen::Matrix3d R_world_body = travelAxes(T_world_cam_.rotation() * segment.velocity_mps, upInWorld(scene, T_world_cam_));
   object.birthplace_world = T_world_cam_ * segment.centroid_cam;
   const SE3 T_world_body(R_world_body, object.birthplace_world);
   object.T_cam_body = object.T_cam_body_before = T_world_cam_.inverse() * T_world_body;
-  for (const std::size_t i : free) {
-    object.points.push_back(adopt_.toBody(object, scene.points[i]));
-    taken[i] = true;
+  for (const int i : segment.points) {
+    object.points.push_back(adopt_.toBody(object, scene.points[static_cast<std::size_t>(i)]));
+    taken[static_cast<std::size_t>(i)] = true;
   }
   ObjectObservation first = motion_.firstSight(object, scene);
   first.frame = scene.frame;
@@ -230,7 +262,7 @@ bool ObjectTracker::areTwins(const TrackedObject& older, const TrackedObject& yo
   if (older.coasted > 0 && younger.sightings > 1) return false;  // one that is seen longer than the other was lost is not the other
   const double slack_m = std::min(params_.twin_slack_m, 2 * std::hypot(positionSigma_m(older), positionSigma_m(younger)));
   const bool one_vehicle = params_.adoption.vehicle.holds(own.merged(other), slack_m);
-  if (!one_vehicle && !overlap(own, other)) return false;
+  if (!one_vehicle && !within(younger, T_older_younger, older) && !within(older, T_older_younger.inverse(), younger)) return false;
   const Eigen::Vector3d dv = older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps();
   const double sigma_mps = std::hypot(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());
   return dv.norm() < params_.twin_speed_mps + (one_vehicle ? 2 * sigma_mps : 0);

@@ -27,9 +27,10 @@ class ObjectTracker {
     double confirm_extent_m = 0.3;      // ... and the span of its points
     int look_back_frames = 6;           // before its birth in which a confirmed object is looked for among the points followed then
     int max_tentative_misses = 1;
-    int max_coasted_frames = 5;   // rows in state `predicted`
-    int max_lost_frames = 15;     // an object that was confirmed is known again so long after it was seen last, ...
-    double max_lost_sigma_m = 3;  // ... and while its place is known so well
+    int max_coasted_frames = 5;          // rows in state `predicted`
+    int max_lost_frames = 15;            // an object that was confirmed is known again so long after it was seen last, ...
+    double max_lost_sigma_m = 3;         // ... and while its place is known so well
+    double reappearance_spread_m = 1.0;  // standard deviation of the middle of its points then about that of those seen last
     double stop_speed_mps = 0.5, start_speed_mps = 1.0;
     int stop_frames = 3;                  // in a row below the stop speed
     double image_margin_px = 50;          // an unseen object this far outside the image has left
@@ -50,9 +51,11 @@ class ObjectTracker {
   void follow(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements);
   void associate(const SceneMotion& scene);
   void bear(const SceneMotion& scene, const Segment& segment, std::vector<bool>& taken);
+  void bearOne(const SceneMotion& scene, const Segment& segment, std::vector<bool>& taken);
   void record(TrackedObject& object, ObjectObservation observation, FrameMeasurements& measurements);
   void confirm(TrackedObject& object, FrameMeasurements& measurements);
   void lookBack(TrackedObject& object, Timestamp now) const;
+  void reappear(TrackedObject& object, const Segment& segment) const;
   void coast(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements);
   void updateState(TrackedObject& object) const;
   void mergeTwins();

@@ -17,7 +17,7 @@ bool PointAdoption::movesWith(const TrackedObject& object, const ScenePoint& poi
 
 /// A long vehicle is found by and by; it is no wider or higher than others.
 bool PointAdoption::couldBeOneBody(const Eigen::AlignedBox3d& box, double slack_m) const {
-  const VehicleSize longest{params_.max_length_m, params_.vehicle.width_m + params_.margin_m, params_.vehicle.height_m + params_.margin_m};
+  const VehicleSize longest{params_.max_length_m, params_.vehicle.width_m, params_.vehicle.height_m};
   return longest.holds(box, slack_m);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "frontend/half_occlusion.hpp"
 #include "frontend/image_pyramid.hpp"
 #include "frontend/sift_features.hpp"
 #include "frontend/window_differences.hpp"
@@ -49,7 +50,8 @@ bool holds(const Image& image, int u, int v, WindowSize window) {
 }
 
 /// Disparity to a whole pixel of the images given, agreed on from left to right and back.
-std::optional<int> searchDisparity(const Image& left, const Image& right, int u, int v, int max_disparity_px, const StereoMatcher::Params& params) {
+std::optional<int> searchDisparity(const Image& left, const Image& right, int u, int v, int max_disparity_px,
+                                   const StereoMatcher::Params& params) {
   const WindowSize window{params.search_columns, params.search_rows};
   if (!holds(left, u, v, window)) return std::nullopt;
   const auto u_right = searchColumns(left, u, v, right, u - max_disparity_px, u, window, params.max_uniqueness_ratio);
@@ -64,8 +66,9 @@ std::optional<int> searchCoarseToFine(const Features& features, float u_px, floa
   const int u = static_cast<int>(u_px), v = static_cast<int>(v_px);
   const Image &left = features.left.levels.front(), &right = features.right.levels.front();
   if (features.left.levels.size() < 2) return searchDisparity(left, right, u, v, params.max_disparity_px, params);
-  const auto half_size_px = searchDisparity(features.left.levels[1], features.right.levels[1], static_cast<int>(std::lround(toLevel(u_px, 1))),
-                                            static_cast<int>(std::lround(toLevel(v_px, 1))), params.max_disparity_px / 2, params);
+  const auto half_size_px =
+      searchDisparity(features.left.levels[1], features.right.levels[1], static_cast<int>(std::lround(toLevel(u_px, 1))),
+                      static_cast<int>(std::lround(toLevel(v_px, 1))), params.max_disparity_px / 2, params);
   constexpr WindowSize kWindow;
   if (!half_size_px || !holds(left, u, v, kWindow)) return std::nullopt;
   const int middle = u - 2 * *half_size_px;
@@ -111,14 +114,16 @@ StereoMatcher::StereoMatcher(const Params& params, const StereoCamera&) : params
   if (params.search_columns % 2 == 0 || params.search_rows % 2 == 0)
     throw std::invalid_argument("stereo matcher: search_columns and search_rows must be odd");
   if (!fits({params.search_columns, params.search_rows}))
-    throw std::invalid_argument("stereo matcher: search_columns must be at most " + std::to_string(kMaxWindowColumns) + ", search_rows at most " +
-                                std::to_string(kMaxWindowRows) + ", and their product at most " + std::to_string(kMaxWindowPixels));
+    throw std::invalid_argument("stereo matcher: search_columns must be at most " + std::to_string(kMaxWindowColumns) +
+                                ", search_rows at most " + std::to_string(kMaxWindowRows) + ", and their product at most " +
+                                std::to_string(kMaxWindowPixels));
 }
 
 StereoMatchesPtr StereoMatcher::operator()(const FeaturesPtr& features) const {
   StereoMatches matches{.features = features, .of_corner = {}};
   if (!features->frame->rejected())
     matches.of_corner = features->descriptors.empty() ? matchCorners(*features, params_) : matchDescriptors(*features, params_);
+  dropHalfOccluded(features->corners, matches.of_corner);
   return std::make_shared<const StereoMatches>(std::move(matches));
 }
 

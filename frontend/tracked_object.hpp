@@ -33,6 +33,7 @@ struct TrackedObject {
   int sightings = 0;
   int coasted = 0;  // frames in a row without a measurement
   int slow_frames = 0;
+  Eigen::Vector3d last_middle = Eigen::Vector3d::Zero();  // of the points when it was seen last, in body axes
   Eigen::Vector3d birthplace_world = Eigen::Vector3d::Zero();
   std::vector<ObjectObservation> backlog;  // until it is confirmed
   bool ended = false;

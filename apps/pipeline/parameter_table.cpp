@@ -235,6 +235,7 @@ void addTracking(std::vector<Parameter>& table, ObjectTracker::Params& p) {
       .add("max_coasted_frames", p.max_coasted_frames, {0, 5})
       .add("max_lost_frames", p.max_lost_frames, kAnyCount)
       .add("max_lost_sigma_m", p.max_lost_sigma_m, kPositive)
+      .add("reappearance_spread_m", p.reappearance_spread_m, kPositive)
       .add("stop_speed_mps", p.stop_speed_mps, kNotNegative)
       .add("start_speed_mps", p.start_speed_mps, kNotNegative)
       .add("stop_frames", p.stop_frames, kAtLeastOne)

@@ -27,7 +27,8 @@ SE3 trueMotion() {
 
 enum class Movers { kTruckBesideUs, kEverywhere };
 
-Street street(int at_rest, int moving, std::uint64_t seed, const SE3& T_previous_now = trueMotion(), Movers movers = Movers::kTruckBesideUs) {
+Street street(int at_rest, int moving, std::uint64_t seed, const SE3& T_previous_now = trueMotion(),
+              Movers movers = Movers::kTruckBesideUs) {
   const Eigen::Vector3d step_m(0.15, 0, 0.9);  // of the movers: about our own way, as in traffic
   Noise noise(seed);
   Street s;

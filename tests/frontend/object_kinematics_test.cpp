@@ -50,6 +50,27 @@ TEST(ObjectKinematics, PredictsAConstantTwist) {
   EXPECT_EQ(k.twist(), car.twist);
 }
 
+TEST(ObjectKinematics, APlaceSeenOnTheBodyDrawsItThere) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const Car car(seed);
+    const Eigen::Vector3d p_body(2, -0.5, 0.7), seen_world = car.T_world_body * p_body + Eigen::Vector3d(0.04, -0.02, 0.03);
+    const auto distance = [&](double sigma_m) {
+      ObjectKinematics k = car.kinematics();
+      k.fusePlace(p_body, seen_world, sigma_m);
+      return (k.pose() * p_body - seen_world).norm();
+    };
+    const double before_m = (car.T_world_body * p_body - seen_world).norm();
+    EXPECT_LT(distance(1e-3), 0.03 * before_m) << seed;  // trusted: all the way
+    EXPECT_LT(distance(0.2), before_m) << seed;
+    EXPECT_NEAR(distance(100), before_m, 1e-3) << seed;  // not trusted: nowhere
+
+    ObjectKinematics k = car.kinematics();
+    k.fusePlace(p_body, car.T_world_body * p_body, 0.2);
+    EXPECT_THAT(k.pose(), IsNearPose(car.T_world_body, 1e-12)) << seed;  // as expected: only surer
+    EXPECT_LT(k.poseCovariance().trace(), car.kinematics().poseCovariance().trace()) << seed;
+  }
+}
+
 TEST(ObjectKinematics, PredictedCovarianceFollowsTheFiniteDifferencesOfTheMotion) {
   constexpr double kDt_s = 0.3;
   const Car car(2);

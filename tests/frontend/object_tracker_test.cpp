@@ -107,6 +107,45 @@ TEST(ObjectTracker, ACarThatComesBackWithinASecondKeepsItsId) {
   }
 }
 
+TEST(ObjectTracker, ACarThatComesBackIsWhereItIsSeenAgain) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    // Unseen it waits for half a second: its place was predicted three metres ahead.
+    const Drive drive(
+        {{.x_m = 0.5, .z_m = 18, .speed_mps = 6, .points = 60, .gone_from = 25, .gone_until = 30, .stands_from = 25, .stands_until = 30}},
+        6, 45, seed);
+    ASSERT_EQ(drive.tracks().size(), 1U) << "seed " << seed;
+    const auto all = drive.observations(*drive.tracks().begin());
+    const auto placeAt = [&](std::int64_t frame) {
+      const auto at = std::ranges::find_if(all, [&](const auto& o) { return o.frame.value == frame; });
+      return drive.bodyOnCar(*at, 0).translation();
+    };
+    EXPECT_LT((placeAt(44) - placeAt(24)).norm(), 1.8) << "seed " << seed;
+  }
+}
+
+TEST(ObjectTracker, TwoCarsSideBySideAreTwoFromTheFirstFrame) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const Drive drive({{.x_m = -1.5, .z_m = 14, .speed_mps = 10, .points = 80}, {.x_m = 1.1, .z_m = 14.5, .speed_mps = 10, .points = 80}},
+                      10, 30, seed);
+    ASSERT_EQ(drive.tracks().size(), 2U) << "seed " << seed;
+    for (const TrackId track : drive.tracks()) {
+      const auto all = drive.observations(track);
+      EXPECT_GE(all.size(), 27U) << "seed " << seed;
+      for (const auto& o : all) EXPECT_EQ(drive.carOf(o, 2), drive.carOf(all.front(), 2)) << "seed " << seed;
+    }
+  }
+}
+
+/// A truck's few points with wrong disparities: a speck behind it and within its outline, at its speed.
+TEST(ObjectTracker, AFewPointsSeenThroughAVehicleAreNoVehicle) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const SimulatedCar truck{.x_m = 0.5, .z_m = 10, .speed_mps = 10, .points = 200};
+    const SimulatedCar speck{.x_m = 0.7, .z_m = 16, .speed_mps = 10, .points = 16, .size = 0.4};
+    EXPECT_EQ(Drive({speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
+    EXPECT_EQ(Drive({truck, speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
+  }
+}
+
 TEST(ObjectTracker, ACarThatStopsIsStoppedUntilItMovesAgain) {
   const Drive drive({{.x_m = 3, .z_m = 20, .speed_mps = 5, .points = 60, .stands_from = 20, .stands_until = 45}}, 2, 65);
   ASSERT_EQ(drive.tracks().size(), 1U);
@@ -129,7 +168,9 @@ TEST(ObjectTracker, ParkedCarsAreNeverReported) {
 
 TEST(ObjectTracker, WhatIsNoLargerThanAHandIsNoVehicle) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const auto follow = [&](double size) { return Drive({{.x_m = 0.5, .z_m = 8, .points = 20, .size = size}}, 10, 20, seed).tracks().size(); };
+    const auto follow = [&](double size) {
+      return Drive({{.x_m = 0.5, .z_m = 8, .points = 20, .size = size}}, 10, 20, seed).tracks().size();
+    };
     EXPECT_EQ(follow(0.01), 0U) << "seed " << seed;
     EXPECT_EQ(follow(1), 1U) << "seed " << seed;
   }
