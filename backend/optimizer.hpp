@@ -29,7 +29,7 @@ class Optimizer final : public Backend {
     double odometry_variance_scale = 1.5, encounter_variance_scale = 1.0, motion_variance_scale = 1.0;
     /// An object's points measure it again and again with the errors of their places on the body: time for which an error lasts in
     /// encounters and motions. Each counts as the share of an independent measurement that it is; 0 takes all as independent.
-    double object_correlation_s = 1.0;
+    double object_correlation_s = 3.0;
 
     /// Gauge of the camera's and of each object's graph, and the weak prior of an anchor.
     double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
@@ -38,7 +38,7 @@ class Optimizer final : public Backend {
 
     /// Smooth motion: white noise on acceleration, as the standard deviation of the velocity's change after one second.
     double acceleration_along_mps2 = 1.5, acceleration_sideways_mps2 = 0.5, acceleration_vertical_mps2 = 0.3;
-    double acceleration_yaw_radps2 = 0.3, acceleration_tilt_radps2 = 0.03;
+    double acceleration_yaw_radps2 = 0.07, acceleration_tilt_radps2 = 0.03;
 
     /// Share of two camera encounters' information that goes to the encounter of the two objects, and which pairs get one.
     double object_encounter_share = 0.2, object_encounter_distance_m = 15.0;

@@ -88,6 +88,29 @@ std::optional<ObjectObservation> ObjectMotionEstimator::lookBack(const TrackedOb
   return measureEncounter(object, agreement->inliers, agreement->fit.T_cam_a);
 }
 
+std::optional<ObjectObservation> ObjectMotionEstimator::presence(const TrackedObject& object, const SceneMotion& scene,
+                                                                 const PosePrior& predicted) const {
+  const auto origin = camera_.project(predicted.mean.translation());
+  if (!origin || !camera_.inLeftImage(origin->x(), origin->y())) return std::nullopt;
+  Eigen::AlignedBox3d outline = object.core(SE3{});
+  outline.min().array() -= params_.presence_margin_m;
+  outline.max().array() += params_.presence_margin_m;
+  const SE3 T_body_cam = predicted.mean.inverse();
+  std::vector<const ScenePoint*> visible;
+  for (const ScenePoint& p : scene.points) {
+    if (p.label == PointLabel::kStatic || p.label == PointLabel::kGround || p.repeats) continue;
+    const double depth_noise_m = 2 * p.sigma_px.z() / p.uvd_px.z() * camera_.triangulate(p.uvd_px).norm();
+    if (outline.exteriorDistance(T_body_cam * camera_.triangulate(p.uvd_px)) < depth_noise_m) visible.push_back(&p);
+  }
+  if (static_cast<int>(visible.size()) < params_.min_points) return std::nullopt;
+  ObjectObservation observation;
+  observation.points = static_cast<int>(visible.size());
+  observation.box = imageBox(visible);
+  observation.T_cam_body = predicted.mean;
+  observation.encounter_covariance = predicted.information.inverse();
+  return observation;
+}
+
 void ObjectMotionEstimator::dropMisfits(TrackedObject& object, const std::vector<Sighting>& seen, const std::vector<double>& chi2) const {
   std::vector<BodyPoint> kept;  // a point that was not seen is gone: its id never comes back
   for (std::size_t i = 0; i < seen.size(); ++i) {

@@ -18,6 +18,7 @@ class ObjectMotionEstimator {
     int split_points = 12;         // from here on, half of the points measure the encounter and half the motion
     double weak_position_m = 2.0;  // prior that only closes directions which the points leave open
     double weak_yaw_rad = 0.15, weak_tilt_rad = 0.03;
+    double presence_margin_m = 0.8;  // by which other points may lie beyond those known, and still show that the object is there
     PoseFitParams fit;
   };
   ObjectMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
@@ -31,6 +32,9 @@ class ObjectMotionEstimator {
   /// Pose in an earlier frame, when the object was not yet known but its points were already followed: from their sightings then, with a
   /// prior on the pose. Empty when too few of them agree. Leaves the object as it is.
   std::optional<ObjectObservation> lookBack(const TrackedObject& object, const SceneMotion& earlier, const PosePrior& prior) const;
+
+  /// Where no points of its own were followed: the predicted pose, when enough points of unknown motion lie within its outline there.
+  std::optional<ObjectObservation> presence(const TrackedObject& object, const SceneMotion& scene, const PosePrior& predicted) const;
 
   /// Encounter of an object that is born in this frame: its body frame is where its points say, up to their noise.
   ObjectObservation firstSight(const TrackedObject& object, const SceneMotion& scene) const;

@@ -18,7 +18,8 @@ Eigen::Matrix3d travelAxes(const Eigen::Vector3d& velocity, const Eigen::Vector3
   return R;
 }
 
-double positionSigma_m(const TrackedObject& object) { return std::sqrt(object.kinematics.poseCovariance().topLeftCorner<3, 3>().trace()); }
+double placeSigma_m(const ObjectKinematics& kinematics) { return std::sqrt(kinematics.poseCovariance().topLeftCorner<3, 3>().trace()); }
+double placeSigma_m(const TrackedObject& object) { return placeSigma_m(object.kinematics); }
 
 Eigen::Vector3d upInWorld(const SceneMotion& scene, const SE3& T_world_cam) { return -(T_world_cam.rotation() * scene.ground.normal_cam); }
 
@@ -137,6 +138,7 @@ void ObjectTracker::lookBack(TrackedObject& object, Timestamp now) const {
     then.predict(secondsBetween(now, earlier->scene->stamp), params_.kinematics);
     const PosePrior prior{earlier->T_world_cam.inverse() * then.pose(), then.poseCovariance().inverse()};
     auto observation = motion_.lookBack(object, *earlier->scene, prior);
+    if (!observation && placeSigma_m(then) < params_.max_presence_sigma_m) observation = motion_.presence(object, *earlier->scene, prior);
     if (!observation) return;
     observation->frame = earlier->scene->frame;
     observation->velocity_cam_mps = earlier->T_world_cam.rotation().transpose() * then.velocityWorld_mps();
@@ -148,11 +150,19 @@ void ObjectTracker::coast(TrackedObject& object, const SceneMotion& scene, Frame
   ++object.coasted;
   object.seen_before = FrameId{};
   const int allowed = object.confirmed ? params_.max_lost_frames : params_.max_tentative_misses;
-  if (object.coasted > allowed || leftView(object) || positionSigma_m(object) > params_.max_lost_sigma_m) {
+  if (object.coasted > allowed || leftView(object) || placeSigma_m(object) > params_.max_lost_sigma_m) {
     object.ended = true;
     return;
   }
-  if (!object.confirmed || object.coasted > params_.max_coasted_frames) return;
+  if (!object.confirmed) return;
+  if (placeSigma_m(object) < params_.max_presence_sigma_m) {
+    if (auto present = motion_.presence(object, scene, {object.T_cam_body, object.kinematics.poseCovariance().inverse()})) {
+      present->frame = scene.frame;
+      present->state = object.state;
+      return record(object, std::move(*present), measurements);
+    }
+  }
+  if (object.coasted > params_.max_coasted_frames) return;
   ObjectObservation predicted;
   predicted.frame = scene.frame;
   predicted.state = ObjectState::kPredicted;
@@ -260,7 +270,7 @@ bool ObjectTracker::areTwins(const TrackedObject& older, const TrackedObject& yo
   const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
   const Eigen::AlignedBox3d own = older.core(SE3{}), other = younger.core(T_older_younger);
   if (older.coasted > 0 && younger.sightings > 1) return false;  // one that is seen longer than the other was lost is not the other
-  const double slack_m = std::min(params_.twin_slack_m, 2 * std::hypot(positionSigma_m(older), positionSigma_m(younger)));
+  const double slack_m = std::min(params_.twin_slack_m, 2 * std::hypot(placeSigma_m(older), placeSigma_m(younger)));
   const bool one_vehicle = params_.adoption.vehicle.holds(own.merged(other), slack_m);
   if (!one_vehicle && !within(younger, T_older_younger, older) && !within(older, T_older_younger.inverse(), younger)) return false;
   const Eigen::Vector3d dv = older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps();

@@ -234,6 +234,7 @@ void addTracking(std::vector<Parameter>& table, ObjectTracker::Params& p) {
       .add("max_tentative_misses", p.max_tentative_misses, kAnyCount)
       .add("max_coasted_frames", p.max_coasted_frames, {0, 5})
       .add("max_lost_frames", p.max_lost_frames, kAnyCount)
+      .add("max_presence_sigma_m", p.max_presence_sigma_m, kPositive)
       .add("max_lost_sigma_m", p.max_lost_sigma_m, kPositive)
       .add("reappearance_spread_m", p.reappearance_spread_m, kPositive)
       .add("stop_speed_mps", p.stop_speed_mps, kNotNegative)
@@ -280,7 +281,8 @@ void addObjects(std::vector<Parameter>& table, ObjectTracker::Params& p) {
       .add("split_points", p.motion.split_points, kAtLeastOne)
       .add("weak_position_m", p.motion.weak_position_m, kPositive)
       .add("weak_yaw_rad", p.motion.weak_yaw_rad, kPositive)
-      .add("weak_tilt_rad", p.motion.weak_tilt_rad, kPositive);
+      .add("weak_tilt_rad", p.motion.weak_tilt_rad, kPositive)
+      .add("presence_margin_m", p.motion.presence_margin_m, kNotNegative);
   addPoseFit(Section(table, "frontend.object_motion.fit"), p.motion.fit);
 }
 

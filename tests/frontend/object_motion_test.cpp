@@ -95,6 +95,50 @@ TEST(ObjectMotion, AGapInTheSightingsLeavesTheMotionOut) {
   EXPECT_FALSE(o->motion);
 }
 
+/// A frame in which none of the car's own points was followed, only others.
+struct Unfollowed : TwoFrames {
+  PosePrior predicted{T_cam_body, (0.04 * Matrix6d::Identity()).inverse()};
+  Unfollowed() : TwoFrames(30) { now.points.clear(); }
+  void see(int count, const Eigen::Vector3d& p_body, PointLabel label) {
+    for (int i = 0; i < count; ++i) {
+      const PointId id{1000 + static_cast<std::int64_t>(now.points.size())};
+      const Eigen::Vector3d uvd = *kRig.project(T_cam_body * (p_body + Eigen::Vector3d(0, 0.1 * i, 0)));
+      now.points.push_back({.point = id, .uvd_px = uvd, .sigma_px = test::kSightingSigma_px, .label = label, .flow = {}});
+    }
+  }
+  std::optional<ObjectObservation> presence() const { return ObjectMotionEstimator({}, kRig).presence(object, now, predicted); }
+};
+
+TEST(ObjectMotion, PointsWithinItsOutlineShowThatAnObjectIsWhereItWasPredicted) {
+  Unfollowed frames;
+  frames.see(4, {-0.5, 0, 0.3}, PointLabel::kUnknown);
+  const auto o = frames.presence();
+  ASSERT_TRUE(o);
+  EXPECT_EQ(o->points, 4);
+  EXPECT_THAT(o->T_cam_body, IsNearPose(frames.T_cam_body, 0.0));
+  EXPECT_TRUE(o->encounter_covariance.isApprox(0.04 * Matrix6d::Identity(), 1e-9));  // no surer than the prediction
+  EXPECT_LT(o->box.left_px, o->box.right_px);
+  EXPECT_FALSE(o->motion);
+}
+
+TEST(ObjectMotion, PointsAtRestBesideOrTooFewShowNoObject) {
+  Unfollowed at_rest, beside, few;
+  at_rest.see(4, {-0.5, 0, 0.3}, PointLabel::kStatic);
+  at_rest.see(4, {-0.5, 0, -0.4}, PointLabel::kGround);
+  beside.see(4, {-0.5, 3, 0.3}, PointLabel::kUnknown);
+  few.see(2, {-0.5, 0, 0.3}, PointLabel::kUnknown);
+  for (const auto* frames : {&at_rest, &beside, &few}) EXPECT_FALSE(frames->presence());
+}
+
+TEST(ObjectMotion, AnObjectThatIsPredictedOutsideTheImageIsNotThere) {
+  Unfollowed frames;
+  frames.see(4, {-0.5, 0, 0.3}, PointLabel::kUnknown);
+  frames.predicted.mean = SE3(frames.T_cam_body.rotation(), {0, 0, -2});
+  EXPECT_FALSE(frames.presence());
+  frames.predicted.mean = SE3(frames.T_cam_body.rotation(), {-12, 1, 12});
+  EXPECT_FALSE(frames.presence());
+}
+
 TEST(ObjectMotion, PointsThatLeaveTheBodyAreDropped) {
   TwoFrames frames(30);
   for (std::size_t i = 0; i < 3; ++i) frames.now.points[i].uvd_px.x() += 30;
