@@ -53,8 +53,8 @@ class Optimizer final : public Backend {
     /// Fluid: see IncrementalSolver::Params.
     double mismatch_tolerance = 0.02, jacobian_drift_sigmas = 0.3, substitution_tolerance = 0.02;
     int iterations_per_update = 2, budget_scalars = 0;
-    double budget_ms = 0;                                // for live drives: replay would not be reproducible
-    int final_iterations = 10;                           // at most, in finish()
+    double budget_ms = 0;       // for live drives: replay would not be reproducible
+    int final_iterations = 10;  // at most, in finish()
 
     int camera_covariance_frames = 10;  // the camera's covariance is relative to that many frames earlier
     int covariance_lag_frames = 5;      // final covariances are taken that many frames later; what comes after adds little

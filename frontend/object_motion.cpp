@@ -96,12 +96,16 @@ std::optional<ObjectObservation> ObjectMotionEstimator::presence(const TrackedOb
   outline.min().array() -= params_.presence_margin_m;
   outline.max().array() += params_.presence_margin_m;
   const SE3 T_body_cam = predicted.mean.inverse();
+  const auto mayLieWithin = [&](const ScenePoint& p) {
+    const Eigen::Vector3d p_body = T_body_cam * camera_.triangulate(p.uvd_px);
+    const Eigen::Vector3d beyond = p_body - p_body.cwiseMax(outline.min()).cwiseMin(outline.max());
+    const Eigen::Matrix3d J = T_body_cam.rotation() * camera_.triangulationJacobian(p.uvd_px);
+    const Eigen::Matrix3d C = J * p.sigma_px.cwiseAbs2().asDiagonal() * J.transpose();
+    return beyond.dot(C.inverse() * beyond) < params_.inlier_chi2;
+  };
   std::vector<const ScenePoint*> visible;
-  for (const ScenePoint& p : scene.points) {
-    if (p.label == PointLabel::kStatic || p.label == PointLabel::kGround || p.repeats) continue;
-    const double depth_noise_m = 2 * p.sigma_px.z() / p.uvd_px.z() * camera_.triangulate(p.uvd_px).norm();
-    if (outline.exteriorDistance(T_body_cam * camera_.triangulate(p.uvd_px)) < depth_noise_m) visible.push_back(&p);
-  }
+  for (const ScenePoint& p : scene.points)
+    if (p.label != PointLabel::kStatic && p.label != PointLabel::kGround && !p.repeats && mayLieWithin(p)) visible.push_back(&p);
   if (static_cast<int>(visible.size()) < params_.min_points) return std::nullopt;
   ObjectObservation observation;
   observation.points = static_cast<int>(visible.size());
