@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <stdexcept>
 #include <tuple>
 
@@ -9,7 +11,7 @@ namespace motorcade {
 namespace {
 
 constexpr int kHalfWindow_px = 3;  // second moments are summed over 7x7 pixels
-constexpr int kWindowPixels = (2 * kHalfWindow_px + 1) * (2 * kHalfWindow_px + 1);
+constexpr int kWindowRows = 2 * kHalfWindow_px + 1, kWindowPixels = kWindowRows * kWindowRows;
 
 /// The last rows of something, by row number.
 template <class T>
@@ -45,10 +47,9 @@ class Gradients {
   const std::int16_t* dx(int y) const { return dx_.row(y); }
   const std::int16_t* dy(int y) const { return dy_.row(y); }
   static constexpr double kScale = 32;
+  static constexpr int kRows = kWindowRows + 1;  // the window's and the one that leaves it, zero at first
 
  private:
-  static constexpr int kRows = 2 * kHalfWindow_px + 1;
-
   void smooth(int y) {
     const std::uint8_t *above = image_.row(y - 1), *row = image_.row(y), *below = image_.row(y + 1);
     std::int16_t *column = columns_.data(), *out = smooth_.row(y);
@@ -67,15 +68,17 @@ struct ColumnMoments {
   std::vector<int> xx, xy, yy;
   explicit ColumnMoments(int width) : xx(width), xy(width), yy(width) {}
 
-  /// Adds (sign +1) or takes away (sign -1) the products of row y.
-  void accumulate(const Gradients& gradients, int y, int sign) {
+  /// Adds the products of row y and takes away those of the row that leaves the window; at first that is zero.
+  void slideTo(const Gradients& gradients, int y) {
     const std::int16_t *dx = gradients.dx(y), *dy = gradients.dy(y);
+    const int leaving = y - kWindowRows + Gradients::kRows;  // the ring has a place more than the window: no negative row at the start
+    const std::int16_t *old_dx = gradients.dx(leaving), *old_dy = gradients.dy(leaving);
     int *sum_xx = xx.data(), *sum_xy = xy.data(), *sum_yy = yy.data();
     for (int x = 0; x < static_cast<int>(xx.size()); ++x) {
-      const int gx = dx[x], gy = dy[x];
-      sum_xx[x] += sign * (gx * gx);
-      sum_xy[x] += sign * (gx * gy);
-      sum_yy[x] += sign * (gy * gy);
+      const int gx = dx[x], gy = dy[x], old_gx = old_dx[x], old_gy = old_dy[x];
+      sum_xx[x] += gx * gx - old_gx * old_gx;
+      sum_xy[x] += gx * gy - old_gx * old_gy;
+      sum_yy[x] += gy * gy - old_gy * old_gy;
     }
   }
 };
@@ -121,6 +124,18 @@ void markPeaks(const RowRing<float>& response, int y, int first, int last, float
   }
 }
 
+/// The first mark at x or after it, eight at a time; at least the row's end when there is none. Zeros follow the row.
+int nextMark(const std::vector<std::uint8_t>& marks, int x) {
+  const int end = static_cast<int>(marks.size() - sizeof(std::uint64_t));
+  for (; x < end; x += sizeof(std::uint64_t)) {
+    std::uint64_t eight;
+    std::memcpy(&eight, marks.data() + x, sizeof eight);
+    if (eight != 0) break;
+  }
+  while (x < end && !marks[static_cast<std::size_t>(x)]) ++x;
+  return x;
+}
+
 /// Standard deviation of white noise that explains the roughest part of a neighbourhood, which straight edges do not touch
 /// (the mask of Immerkaer, Fast Noise Variance Estimation, 1996).
 float grainAround(const Image& image, int x, int y) {
@@ -159,20 +174,19 @@ std::vector<Candidate> findCandidates(const Image& image, const CornerDetector::
   Gradients gradients(image);
   ColumnMoments moments(width);
   RowRing<float> response(2 * radius + 1, width);
-  std::vector<std::uint8_t> marks(width);
+  std::vector<std::uint8_t> marks(width + sizeof(std::uint64_t), 0);
   const int first_row = border - radius, end_row = height - border + radius;
-  for (int y = first_row - kHalfWindow_px; y < first_row + kHalfWindow_px; ++y)
-    gradients.advanceTo(y), moments.accumulate(gradients, y, +1);
+  for (int y = first_row - kHalfWindow_px; y < first_row + kHalfWindow_px; ++y) gradients.advanceTo(y), moments.slideTo(gradients, y);
   for (int y = first_row; y < end_row; ++y) {
     gradients.advanceTo(y + kHalfWindow_px);
-    moments.accumulate(gradients, y + kHalfWindow_px, +1);
+    moments.slideTo(gradients, y + kHalfWindow_px);
     smallerEigenvalues(moments, border - radius, width - border + radius, response.row(y));
-    moments.accumulate(gradients, y - kHalfWindow_px, -1);
     const int centre = y - radius;
     if (centre < border) continue;
     markPeaks(response, centre, border, width - border, threshold, marks.data());
     for (int x = border; x < width - border; ++x) {
-      if (!marks[x] || !isMaximumWithin(response, x, centre, radius)) continue;
+      x = nextMark(marks, x);
+      if (x >= width - border || !isMaximumWithin(response, x, centre, radius)) continue;
       const auto score = static_cast<float>(std::sqrt(response.row(centre)[x] / kMomentScale));
       if (score < params.min_score_over_grain * grainAround(image, x, centre)) continue;
       candidates.push_back(

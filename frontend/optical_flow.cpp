@@ -10,6 +10,7 @@
 
 #include "frontend/image_pyramid.hpp"
 #include "frontend/parallel_items.hpp"
+#include "frontend/point_grid.hpp"
 #include "frontend/sift_features.hpp"
 
 namespace motorcade {
@@ -78,19 +79,27 @@ class PointFollower {
   }
   int coarsest() const { return static_cast<int>(from_.levels.size()) - 1; }
 
-  /// Position in the new image, the better of all guesses at `level` refined to full size; checked backwards.
-  std::optional<AlignedPatch> follow(const FlowTrack& point, std::span<const Shift> guesses, int level) const {
-    const auto start = bestGuess(point, guesses, level);
+  /// How the point looks at a level of the pyramid.
+  std::optional<PatchTemplate> patchAt(const FlowTrack& point, int level) const {
+    return makeTemplate(from_.levels[static_cast<std::size_t>(level)], toLevel(point.u_px, level), toLevel(point.v_px, level),
+                        params_.patch.window_px, PatchDeformation::kScale);
+  }
+
+  /// Position in the new image, the better of all guesses at `level` (where the point looks like `patch`) refined to full size; checked
+  /// backwards.
+  std::optional<AlignedPatch> follow(const FlowTrack& point, const std::optional<PatchTemplate>& patch, std::span<const Shift> guesses,
+                                     int level) const {
+    const auto start = bestGuess(point, patch, guesses, level);
     if (!start) return std::nullopt;
     return refine(point, *start, level - 1);
   }
 
  private:
-  std::optional<Shift> bestGuess(const FlowTrack& point, std::span<const Shift> guesses, int level) const {
+  std::optional<Shift> bestGuess(const FlowTrack& point, const std::optional<PatchTemplate>& patch, std::span<const Shift> guesses,
+                                 int level) const {
+    if (!patch) return guesses.front();
     const auto i = static_cast<std::size_t>(level);
     const float u = toLevel(point.u_px, level), v = toLevel(point.v_px, level), scale = static_cast<float>(1 << level);
-    const auto patch = makeTemplate(from_.levels[i], u, v, params_.patch.window_px, PatchDeformation::kScale);
-    if (!patch) return guesses.front();
     std::optional<Shift> best;
     float best_ncc = 0;
     for (const Shift& guess : guesses) {
@@ -164,56 +173,96 @@ class Signature {
 /// The corners of a frame, to look up where a point of the frame before may have gone.
 class CornerLookup {
  public:
-  explicit CornerLookup(const Features& features) {
-    by_row_.reserve(features.corners.size());
+  explicit CornerLookup(const Features& features)
+      : grid_(features.corners, features.left.levels.front().width(), features.left.levels.front().height(),
+              [](const Corner& c) { return Eigen::Vector2f(c.u_px, c.v_px); }) {
+    entries_.reserve(features.corners.size());
     for (const Corner& corner : features.corners)
-      by_row_.push_back({corner.u_px, corner.v_px, Signature(features.left, corner.u_px, corner.v_px)});
-    std::ranges::stable_sort(by_row_, {}, &Entry::v_px);
+      entries_.push_back({{corner.u_px, corner.v_px}, Signature(features.left, corner.u_px, corner.v_px)});
   }
   /// Adds the shifts to the two corners within the bounds that look most like the point and differ by less than `max_difference` per pixel.
   void addSimilar(const ImagePyramid& from, const FlowTrack& point, const ShiftBounds& bounds, double max_difference,
                   Guesses& guesses) const {
     const Signature signature(from, point.u_px, point.v_px);
-    const int limit = static_cast<int>(max_difference * Signature::kPixels);
-    std::array<std::pair<int, Shift>, 2> best{{{limit, {}}, {limit, {}}}};
-    for (auto entry = std::ranges::lower_bound(by_row_, point.v_px + bounds.min_dv_px, {}, &Entry::v_px); entry != by_row_.end(); ++entry) {
-      const float du = entry->u_px - point.u_px, dv = entry->v_px - point.v_px;
-      if (dv > bounds.max_dv_px) break;
-      if (!bounds.hold(du, dv)) continue;
-      const int distance = signature.distance(entry->signature);
-      if (distance >= best[1].first) continue;
-      best[1] = {distance, {du, dv}};
-      if (distance < best[0].first) std::swap(best[0], best[1]);
+    const Eigen::Vector2f here(point.u_px, point.v_px);
+    const std::pair none(static_cast<int>(max_difference * Signature::kPixels), -1);
+    std::array best{none, none};  // the smallest difference first, of equal ones the first corner
+    const Eigen::Vector2f first(bounds.min_du_px, bounds.min_dv_px), last(bounds.max_du_px, bounds.max_dv_px);
+    grid_.forEachNear(here + first, here + last, [&](int i) {
+      const Entry& entry = entries_[static_cast<std::size_t>(i)];
+      const Eigen::Vector2f shift = entry.uv_px - here;
+      if (!bounds.hold(shift.x(), shift.y())) return;
+      const std::pair candidate(signature.distance(entry.signature), i);
+      if (candidate.first >= none.first || candidate >= best[1]) return;
+      best[1] = candidate;
+      if (best[1] < best[0]) std::swap(best[0], best[1]);
+    });
+    for (const auto& [distance, i] : best) {
+      if (i < 0) continue;
+      const Eigen::Vector2f shift = entries_[static_cast<std::size_t>(i)].uv_px - here;
+      guesses.add({shift.x(), shift.y()});
     }
-    for (const auto& [distance, shift] : best)
-      if (distance < limit) guesses.add(shift);
   }
 
  private:
   struct Entry {
-    float u_px, v_px;
+    Eigen::Vector2f uv_px;
     Signature signature;
   };
-  std::vector<Entry> by_row_;
+  PointGrid grid_;
+  std::vector<Entry> entries_;
 };
 
 float middle(float a, float b, float c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
 
-/// Median of the shifts of the three tracks nearest to a point, among those that have moved.
-std::optional<Shift> shiftOfNeighbours(const FlowTrack& point, const std::vector<const Track*>& moved) {
-  std::array<std::pair<float, const Track*>, 3> nearest;
-  nearest.fill({std::numeric_limits<float>::max(), nullptr});
-  for (const Track* track : moved) {
-    const float du = track->seen.u_px - track->shift.du_px - point.u_px, dv = track->seen.v_px - track->shift.dv_px - point.v_px;
-    const float distance = du * du + dv * dv;
-    if (distance >= nearest.back().first) continue;
-    nearest.back() = {distance, track};
-    for (std::size_t i = nearest.size() - 1; i > 0 && nearest[i].first < nearest[i - 1].first; --i) std::swap(nearest[i], nearest[i - 1]);
+/// The tracks that have moved, to look up how the neighbours of a point in the frame before moved.
+class MovedTracks {
+ public:
+  MovedTracks(const std::vector<Track>& tracks, const Image& image)
+      : grid_(collect(tracks), image.width(), image.height(), [](const Eigen::Vector2f& place) { return place; }) {}
+
+  /// Median of the shifts of the three tracks that were nearest to a point.
+  std::optional<Shift> shiftAround(const FlowTrack& point) const {
+    if (moved_.size() < 3) return std::nullopt;
+    const Eigen::Vector2f here(point.u_px, point.v_px);
+    for (float reach_px = 1.5F * PointGrid::kCell_px;; reach_px *= 2) {
+      const auto nearest = nearestThree(here, reach_px);
+      if (nearest.back().first > reach_px * reach_px && reach_px < grid_.extent_px())
+        continue;  // there may be nearer ones beyond the reach
+      const Shift &a = shift(nearest[0].second), &b = shift(nearest[1].second), &c = shift(nearest[2].second);
+      return Shift{middle(a.du_px, b.du_px, c.du_px), middle(a.dv_px, b.dv_px, c.dv_px)};
+    }
   }
-  if (!nearest.back().second) return std::nullopt;
-  const Shift &a = nearest[0].second->shift, &b = nearest[1].second->shift, &c = nearest[2].second->shift;
-  return Shift{middle(a.du_px, b.du_px, c.du_px), middle(a.dv_px, b.dv_px, c.dv_px)};
-}
+
+ private:
+  using Neighbour = std::pair<float, int>;  // squared distance and number of the track; of equal distances the older track is nearer
+
+  const std::vector<Eigen::Vector2f>& collect(const std::vector<Track>& tracks) {
+    for (const Track& track : tracks) {
+      if (!track.moved) continue;
+      moved_.push_back(&track);
+      places_.emplace_back(track.seen.u_px - track.shift.du_px, track.seen.v_px - track.shift.dv_px);
+    }
+    return places_;
+  }
+  std::array<Neighbour, 3> nearestThree(const Eigen::Vector2f& here, float reach_px) const {
+    std::array<Neighbour, 3> nearest;
+    nearest.fill({std::numeric_limits<float>::max(), -1});
+    const Eigen::Vector2f reach(reach_px, reach_px);
+    grid_.forEachNear(here - reach, here + reach, [&](int i) {
+      const Neighbour candidate((places_[static_cast<std::size_t>(i)] - here).squaredNorm(), i);
+      if (candidate >= nearest.back()) return;
+      nearest.back() = candidate;
+      for (std::size_t k = nearest.size() - 1; k > 0 && nearest[k] < nearest[k - 1]; --k) std::swap(nearest[k], nearest[k - 1]);
+    });
+    return nearest;
+  }
+  const Shift& shift(int i) const { return moved_[static_cast<std::size_t>(i)]->shift; }
+
+  std::vector<const Track*> moved_;
+  std::vector<Eigen::Vector2f> places_;  // in the frame before
+  PointGrid grid_;
+};
 
 /// From rest to somewhat more than the neighbours' shift; anywhere when there are no neighbours.
 ShiftBounds boundsAround(const std::optional<Shift>& neighbours, const Params& params) {
@@ -280,36 +329,32 @@ void OpticalFlowTracker::State::followMoving(const PointFollower& follower, cons
   forEachItem(tracks.size(), [&](std::size_t i) {
     Track& track = tracks[i];
     if (track.seen.age < 2) return;
-    const auto found = follower.follow(track.seen, {&track.shift, 1}, level);
+    const auto found = follower.follow(track.seen, follower.patchAt(track.seen, level), {&track.shift, 1}, level);
     if (found) moveTo(track, *found, now);
   });
 }
 
 /// New tracks, and those that their own velocity misled: guesses come from neighbours that moved and from corners that look alike.
 void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const Features& now) {
-  std::vector<const Track*> moved;
+  const MovedTracks moved(tracks, now.left.levels.front());
   std::vector<Track*> still;
-  moved.reserve(tracks.size());
-  for (Track& track : tracks) {
-    if (track.moved)
-      moved.push_back(&track);
-    else
-      still.push_back(&track);
-  }
+  for (Track& track : tracks)
+    if (!track.moved) still.push_back(&track);
   const CornerLookup corners(now);
   const int level = std::min(params.young_level, follower.coarsest());
   forEachItem(still.size(), [&](std::size_t i) {
     Track& track = *still[i];
-    const auto neighbours = shiftOfNeighbours(track.seen, moved);
+    const auto neighbours = moved.shiftAround(track.seen);
     Guesses guesses;
     guesses.add(neighbours.value_or(Shift{}));
     const ShiftBounds near = boundsAround(neighbours, params);
     corners.addSimilar(previous->left, track.seen, near, kMaxGrey, guesses);
-    auto found = follower.follow(track.seen, guesses.all(), level);
+    const auto patch = follower.patchAt(track.seen, level);
+    auto found = follower.follow(track.seen, patch, guesses.all(), level);
     if (!found) {
       Guesses far;
       corners.addSimilar(previous->left, track.seen, widened(near, params), params.far_max_difference, far);
-      if (far.count > 0) found = follower.follow(track.seen, far.all(), level);
+      if (far.count > 0) found = follower.follow(track.seen, patch, far.all(), level);
     }
     if (found) moveTo(track, *found, now.left.levels.front());
   });

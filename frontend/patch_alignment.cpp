@@ -4,14 +4,11 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
-#ifdef __AVX2__
-#include <immintrin.h>
-#endif
 
 #include <Eigen/LU>
 
 #include "frontend/image_pyramid.hpp"
+#include "frontend/patch_sampling.hpp"
 #include "frontend/window_differences.hpp"
 
 namespace motorcade {
@@ -19,126 +16,63 @@ namespace {
 
 constexpr int kStride = PatchTemplate::kStride;
 constexpr int kMaxShearShift_px = 4;  // of a patch's first and last row against its middle
-constexpr int kBlockRows = kMaxPatchWindow_px + 3;
-constexpr int kBlockStride = 48;
-static_assert(kMaxPatchWindow_px + 2 * kMaxShearShift_px + 4 + kStride + 1 <= kBlockStride);
+static_assert(kStride == kWordLanes && kMaxPatchWindow_px + 2 <= kWordLanes && kMaxPatchWindow_px + 3 <= kBlockRows);
+static_assert(kMaxPatchWindow_px + 2 * kMaxShearShift_px + 2 + 24 <= kBlockStride);
 
-// Vectors of the compilers' own kind; GCC 12 turns their widening of bytes into scalar code, hence the intrinsics.
-using Lanes = float __attribute__((vector_size(32)));
+// What the words of the planes and of the other image's samples count: their products' sums over the largest window fit 32 bits.
+constexpr int kAppearanceShift = 2, kSampleShift = 3;  // from samples
+constexpr float kAppearanceUnit = 1.0F / 16, kGradientUnit = 1.0F / 16, kMomentUnit = 1.0F / 4, kOtherUnit = 1.0F / 8;
 
-#ifdef __AVX2__
-inline Lanes pixels(const std::uint8_t* p) {
-  return Lanes(_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)))));
+/// Gray levels that a word of each derivative counts.
+Eigen::Vector3f descentUnits(PatchDeformation deformation) {
+  return {kGradientUnit, deformation == PatchDeformation::kScale ? kGradientUnit : kMomentUnit, kMomentUnit};
 }
-/// p[columns[i]] for columns below 16.
-inline Lanes pixelsAt(const std::uint8_t* p, const std::uint8_t* columns) {
-  const __m128i row = _mm_loadu_si128(reinterpret_cast<const __m128i*>(p));
-  const __m128i picked = _mm_shuffle_epi8(row, _mm_loadl_epi64(reinterpret_cast<const __m128i*>(columns)));
-  return Lanes(_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(picked)));
-}
-#else
-inline Lanes pixels(const std::uint8_t* p) {
-  Lanes lanes;
-  for (int i = 0; i < 8; ++i) lanes[i] = p[i];
-  return lanes;
-}
-inline Lanes pixelsAt(const std::uint8_t* p, const std::uint8_t* columns) {
-  Lanes lanes;
-  for (int i = 0; i < 8; ++i) lanes[i] = p[columns[i]];
-  return lanes;
-}
-#endif
-
-inline Lanes floats(const float* p) {
-  Lanes lanes;
-  std::memcpy(&lanes, p, sizeof lanes);
-  return lanes;
-}
-
-inline float total(const Lanes& x) { return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7])); }
-
-/// A rectangle of pixels with room to read beyond its right edge: in the image itself, or copied with the border repeated.
-class Block {
- public:
-  Block(const Image& image, int x, int y, int columns, int rows) {
-    if (x >= 0 && y >= 0 && x + columns <= image.width() && y + rows <= image.height()) {
-      origin_ = image.row(y) + x;
-      stride_ = image.stride();
-      return;
-    }
-    assert(rows <= kBlockRows && columns <= kBlockStride);
-    for (int r = 0; r < rows; ++r) {
-      const std::uint8_t* row = image.row(std::clamp(y + r, 0, image.height() - 1));
-      for (int c = 0; c < kBlockStride; ++c) copy_[r * kBlockStride + c] = row[std::clamp(x + c, 0, image.width() - 1)];
-    }
-    origin_ = copy_.data();
-    stride_ = kBlockStride;
-  }
-  const std::uint8_t* row(int r) const { return origin_ + r * stride_; }
-
- private:
-  const std::uint8_t* origin_;
-  std::ptrdiff_t stride_;
-  std::array<std::uint8_t, kBlockRows * kBlockStride + 32> copy_;  // not filled unless needed
-};
 
 bool inside(const Image& image, float u_px, float v_px) {
   return u_px >= 0 && v_px >= 0 && u_px <= static_cast<float>(image.width() - 1) && v_px <= static_cast<float>(image.height() - 1);
 }
 
-/// Bilinear samples of a square around (u, v), `kStride` apart; what follows the last column is unspecified but finite.
-void sampleSquare(const Image& image, float u_px, float v_px, int side_px, float* out) {
+/// `words` divided by 2^shift, rounded.
+Words reduced(const Words& words, int shift) {
+  return (words + static_cast<std::int16_t>(1 << (shift - 1))) >> static_cast<std::int16_t>(shift);
+}
+
+/// Ones inside the window, zeros to its right.
+Words windowMask(int window_px) {
+  constexpr Words kColumns{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  return kColumns < allWords(window_px);  // minus one: all bits set
+}
+
+using Square = std::array<Words, kMaxPatchWindow_px + 2>;
+
+/// Samples of a square around (u, v), the column as on the grid.
+void sampleSquare(const Image& image, const GridPlace& u, float v_px, int side_px, Square& out) {
   const int half = side_px / 2;
-  const float left = u_px - static_cast<float>(half), top = v_px - static_cast<float>(half);
-  const int x = static_cast<int>(std::floor(left)), y = static_cast<int>(std::floor(top));
-  const float fx = left - static_cast<float>(x), fy = top - static_cast<float>(y);
-  const Block block(image, x, y, side_px + 1, side_px + 1);
+  const RowPlace top(v_px - static_cast<float>(half));
+  const Block block(image, u.pixel - half, top.pixel, side_px + 1, side_px + 1);
+  const SampleColumns columns(u.fraction);
+  const Words fraction = allWords(top.fraction);
+  Words upper = columns(block.row(0));
   for (int r = 0; r < side_px; ++r) {
-    const std::uint8_t *p = block.row(r), *q = block.row(r + 1);
-    for (int c = 0; c < kStride; c += 8) {
-      const Lanes upper = pixels(p + c) * (1 - fx) + pixels(p + c + 1) * fx;
-      const Lanes lower = pixels(q + c) * (1 - fx) + pixels(q + c + 1) * fx;
-      const Lanes value = upper * (1 - fy) + lower * fy;
-      std::memcpy(out + r * kStride + c, &value, sizeof value);
-    }
+    const Words lower = columns(block.row(r + 1));
+    out[static_cast<std::size_t>(r)] = betweenRows(upper, lower, fraction);
+    upper = lower;
   }
 }
 
-/// Where eight neighbouring samples of a row lie that are not a pixel apart.
-struct SampleColumns {
-  int first = 0;                                           // pixel
-  alignas(8) std::array<std::uint8_t, 8> left{}, right{};  // pixels beside each sample, from the first on
-  Lanes weight{};                                          // of the right one
-};
-
 /// The same with samples 1 / scale px apart; the scale is at least `kMinTemplateScale`.
-void sampleScaledSquare(const Image& image, float u_px, float v_px, int side_px, float scale, float* out) {
+void sampleScaledSquare(const Image& image, const GridPlace& u, float v_px, int side_px, float scale, Square& out) {
   const int half = side_px / 2;
+  const float spacing_px = 1 / scale;
   const auto last_u = static_cast<float>(image.width() - 1), last_v = static_cast<float>(image.height() - 1);
-  std::array<SampleColumns, kStride / 8> columns;
-  for (int c = 0; c < kStride; ++c) {
-    SampleColumns& group = columns[static_cast<std::size_t>(c / 8)];
-    const auto lane = static_cast<std::size_t>(c % 8);
-    const float u = std::clamp(u_px + static_cast<float>(c - half) / scale, 0.0F, last_u);
-    const int x = std::min(static_cast<int>(u), image.width() - 2);
-    if (lane == 0) group.first = x;
-    group.left[lane] = static_cast<std::uint8_t>(x - group.first);
-    group.right[lane] = static_cast<std::uint8_t>(x + 1 - group.first);
-    group.weight[c % 8] = u - static_cast<float>(x);
-  }
+  std::array<float, kWordLanes> places_px;
+  for (int c = 0; c < kWordLanes; ++c)
+    places_px[static_cast<std::size_t>(c)] = std::clamp(u.px() + static_cast<float>(c - half) * spacing_px, 0.0F, last_u);
+  const SampleColumns columns(places_px, image.width() - 1);
   for (int r = 0; r < side_px; ++r) {
-    const float v = std::clamp(v_px + static_cast<float>(r - half) / scale, 0.0F, last_v);
-    const int y = std::min(static_cast<int>(v), image.height() - 2);
-    const float fy = v - static_cast<float>(y);
-    for (int c = 0; c < kStride; c += 8) {
-      const SampleColumns& group = columns[static_cast<std::size_t>(c / 8)];
-      const std::uint8_t *p = image.row(y) + group.first, *q = image.row(y + 1) + group.first;
-      const Lanes p_left = pixelsAt(p, group.left.data()), q_left = pixelsAt(q, group.left.data());
-      const Lanes upper = p_left + group.weight * (pixelsAt(p, group.right.data()) - p_left);
-      const Lanes lower = q_left + group.weight * (pixelsAt(q, group.right.data()) - q_left);
-      const Lanes value = upper + fy * (lower - upper);
-      std::memcpy(out + r * kStride + c, &value, sizeof value);
-    }
+    const RowPlace v(std::clamp(v_px + static_cast<float>(r - half) * spacing_px, 0.0F, last_v));
+    const int below = std::min(v.pixel + 1, image.height() - 1);
+    out[static_cast<std::size_t>(r)] = betweenRows(columns(image.row(v.pixel)), columns(image.row(below)), allWords(v.fraction));
   }
 }
 
@@ -149,151 +83,156 @@ struct Moments {
   float variation = 0;      // sum((J - mean)^2)
 };
 
-struct MomentLanes {
-  Lanes appearance{}, d0{}, d1{}, d2{}, sum{}, squares{};
+/// Gathers the moments row by row; the other image's samples are taken relative to the template's mean.
+class MomentSums {
+ public:
+  explicit MomentSums(const PatchTemplate& patch) : patch_(patch), mask_(windowMask(patch.window_px)), mean_(allWords(patch.mean)) {}
 
-  void add(const PatchTemplate& patch, int offset, const Lanes& inside_window, const Lanes& j) {
-    appearance += floats(patch.appearance.data() + offset) * j;
-    d0 += floats(patch.descent[0].data() + offset) * j;
-    d1 += floats(patch.descent[1].data() + offset) * j;
-    d2 += floats(patch.descent[2].data() + offset) * j;
-    const Lanes inner = j * inside_window;
-    sum += inner;
-    squares += inner * j;
+  void add(int row, const Words& samples) {
+    const Words j = reduced(samples - mean_, kSampleShift), inner = j & mask_;
+    const auto plane = [&](const PatchTemplate::Plane& words) { return loadWords(words.data() + row * kStride); };
+    appearance_ += products(plane(patch_.appearance), j);
+    d0_ += products(plane(patch_.descent[0]), j);
+    d1_ += products(plane(patch_.descent[1]), j);
+    d2_ += products(plane(patch_.descent[2]), j);
+    sum_ += products(inner, allWords(1));
+    squares_ += products(inner, inner);
   }
 
-  Moments moments(int pixels_in_window) const {
-    const float s = total(sum);
-    return {total(appearance), {total(d0), total(d1), total(d2)}, total(squares) - s * s / static_cast<float>(pixels_in_window)};
+  Moments moments() const {
+    const auto [appearance, d0, d1, d2] = totals(appearance_, d0_, d1_, d2_);
+    const auto [sum, squares, unused0, unused1] = totals(sum_, squares_, sum_, squares_);
+    const std::int64_t pixels = patch_.window_px * patch_.window_px;
+    const float total = static_cast<float>(sum) * kOtherUnit;
+    Moments moments;
+    moments.appearance = patch_.appearance_unit * static_cast<float>(appearance) - patch_.appearance_mean * total;
+    moments.descent =
+        patch_.descent_units.cwiseProduct(Eigen::Vector3f(static_cast<float>(d0), static_cast<float>(d1), static_cast<float>(d2))) -
+        patch_.descent_mean * total - patch_.descent_along * moments.appearance;
+    moments.variation =
+        static_cast<float>(pixels * squares - std::int64_t{sum} * sum) * (kOtherUnit * kOtherUnit / static_cast<float>(pixels));
+    return moments;
   }
+
+ private:
+  const PatchTemplate& patch_;
+  Words mask_, mean_;
+  WordSums appearance_{}, d0_{}, d1_{}, d2_{}, sum_{}, squares_{};
 };
 
-std::array<Lanes, 2> windowMask(int window_px) {
-  std::array<Lanes, 2> mask{};
-  for (int c = 0; c < window_px; ++c) mask[static_cast<std::size_t>(c / 8)][c % 8] = 1;
-  return mask;
-}
-
-/// Moments of the patch at (u, v). Intensities are taken relative to the template's mean, which changes no moment but keeps digits.
-Moments momentsAt(const PatchTemplate& patch, const Image& image, float u_px, float v_px) {
+/// Moments of the patch at (u, v).
+[[gnu::always_inline]] inline Moments momentsAt(const PatchTemplate& patch, const Image& image, const GridPlace& u, float v_px) {
   const int window = patch.window_px, half = window / 2;
-  const float top = v_px - static_cast<float>(half), left = u_px - static_cast<float>(half);
-  const int y = static_cast<int>(std::floor(top)), x = static_cast<int>(std::floor(left));
-  const Block block(image, x, y, window + 1, window + 1);
-  const float fx = left - static_cast<float>(x), fy = top - static_cast<float>(y);
-  const auto mask = windowMask(window);
-  const auto between = [&](const std::uint8_t* p) {
-    const Lanes here = pixels(p);
-    return here + fx * (pixels(p + 1) - here);
-  };
-  std::array<Lanes, 2> upper{between(block.row(0)) - patch.mean, between(block.row(0) + 8) - patch.mean};
-  MomentLanes lanes;
+  const RowPlace top(v_px - static_cast<float>(half));
+  const Block block(image, u.pixel - half, top.pixel, window + 1, window + 1);
+  const SampleColumns columns(u.fraction);
+  const Words fraction = allWords(top.fraction);
+  MomentSums sums(patch);
+  Words upper = columns(block.row(0));
   for (int r = 0; r < window; ++r) {
-    for (int c = 0; c < kStride; c += 8) {
-      const auto group = static_cast<std::size_t>(c / 8);
-      const Lanes lower = between(block.row(r + 1) + c) - patch.mean;
-      lanes.add(patch, r * kStride + c, mask[group], upper[group] + fy * (lower - upper[group]));
-      upper[group] = lower;
-    }
+    const Words lower = columns(block.row(r + 1));
+    sums.add(r, betweenRows(upper, lower, fraction));
+    upper = lower;
   }
-  return lanes.moments(window * window);
+  return sums.moments();
 }
 
 /// The same with the rows shifted by `shear` px per row.
-Moments momentsAt(const PatchTemplate& patch, const Image& image, float u_px, float v_px, float shear) {
+Moments momentsAt(const PatchTemplate& patch, const Image& image, const GridPlace& u, float v_px, float shear) {
   const int window = patch.window_px, half = window / 2;
-  const float top = v_px - static_cast<float>(half), left = u_px - static_cast<float>(half);
-  const float reach = std::abs(shear) * static_cast<float>(half);
-  const int y = static_cast<int>(std::floor(top)), x = static_cast<int>(std::floor(left - reach));
-  const int end = static_cast<int>(std::floor(left + reach)) + window + 1;
-  const Block block(image, x, y, end - x, window + 1);
-  const float fy = top - static_cast<float>(y);
-  const auto mask = windowMask(window);
-  MomentLanes lanes;
+  const float left = u.px() - static_cast<float>(half), reach = std::abs(shear) * static_cast<float>(half);
+  const RowPlace top(v_px - static_cast<float>(half));
+  const int x = static_cast<int>(std::floor(left - reach)), end = static_cast<int>(std::floor(left + reach)) + window + 2;
+  const Block block(image, x, top.pixel, end - x, window + 1);
+  const Words fraction = allWords(top.fraction);
+  MomentSums sums(patch);
   for (int r = 0; r < window; ++r) {
-    const float row_left = left + shear * static_cast<float>(r - half) - static_cast<float>(x);
-    const int column = static_cast<int>(row_left);
-    const float fx = row_left - static_cast<float>(column);
-    const float w00 = (1 - fx) * (1 - fy), w01 = fx * (1 - fy), w10 = (1 - fx) * fy, w11 = fx * fy;
-    const std::uint8_t *p = block.row(r) + column, *q = block.row(r + 1) + column;
-    for (int c = 0; c < kStride; c += 8) {
-      const Lanes j = pixels(p + c) * w00 + pixels(p + c + 1) * w01 + pixels(q + c) * w10 + pixels(q + c + 1) * w11 - patch.mean;
-      lanes.add(patch, r * kStride + c, mask[static_cast<std::size_t>(c / 8)], j);
-    }
+    const GridPlace row_left(left + shear * static_cast<float>(r - half) - static_cast<float>(x));
+    const SampleColumns columns(row_left.fraction);
+    sums.add(r, betweenRows(columns(block.row(r) + row_left.pixel), columns(block.row(r + 1) + row_left.pixel), fraction));
   }
-  return lanes.moments(window * window);
+  return sums.moments();
 }
 
-using Square = std::array<float, kStride*(kMaxPatchWindow_px + 3)>;  // lanes beyond the window read into one row more
-
-void store(PatchTemplate::Plane& plane, int offset, const Lanes& lanes) { std::memcpy(plane.data() + offset, &lanes, sizeof lanes); }
-
-/// Calls f(offset in a plane, the same pixel in a square with a border of one, mask, row and column from the middle) for eight pixels at a
-/// time.
-template <class Function>
-void forEachLanes(int window_px, const Function& f) {
-  const auto mask = windowMask(window_px);
-  const Lanes ramp{0, 1, 2, 3, 4, 5, 6, 7};
-  const int half = window_px / 2;
-  for (int r = 0; r < window_px; ++r)
-    for (int c = 0; c < kStride; c += 8)
-      f(r * kStride + c, (r + 1) * kStride + c + 1, mask[static_cast<std::size_t>(c / 8)], static_cast<float>(r - half),
-        ramp + static_cast<float>(c - half));
+/// Mean of the window inside a square with a border of one, in samples.
+int meanSample(const Square& square, int window_px) {
+  const Words mask = windowMask(window_px);
+  WordSums sums{};
+  for (int r = 1; r <= window_px; ++r) sums += products(afterFirst(square[static_cast<std::size_t>(r)]) & mask, allWords(1));
+  const int pixels = window_px * window_px;
+  return (totals(sums, sums, sums, sums)[0] + pixels / 2) / pixels;
 }
 
-/// Fills appearance, mean and norm.
-void setAppearance(PatchTemplate& patch, const Square& square) {
-  Lanes sums{}, squares{};
-  forEachLanes(patch.window_px, [&](int, int s, const Lanes& mask, float, const Lanes&) { sums += floats(square.data() + s) * mask; });
-  patch.mean = total(sums) / static_cast<float>(patch.window_px * patch.window_px);
-  forEachLanes(patch.window_px, [&](int i, int s, const Lanes& mask, float, const Lanes&) {
-    const Lanes value = (floats(square.data() + s) - patch.mean) * mask;
-    squares += value * value;
-    store(patch.appearance, i, value);
-  });
-  patch.norm = std::sqrt(total(squares));
-  const float scale = patch.norm > 0 ? 1 / patch.norm : 0;
-  for (int i = 0; i < patch.window_px * kStride; i += 8) store(patch.appearance, i, floats(patch.appearance.data() + i) * scale);
-}
+/// Sums over the window of a template's planes and of their products.
+struct TemplateSums {
+  WordSums appearance{}, d0{}, d1{}, d2{};
+  WordSums appearance_squares{}, appearance_d0{}, appearance_d1{}, appearance_d2{};
+  WordSums d00{}, d01{}, d02{}, d11{}, d12{}, d22{};
 
-/// Fills the derivatives by the parameters.
-void setDescent(PatchTemplate& patch, const Square& square, PatchDeformation deformation) {
+  void add(const Words& a, const Words& x, const Words& y, const Words& z) {
+    const Words one = allWords(1);
+    appearance += products(a, one), d0 += products(x, one), d1 += products(y, one), d2 += products(z, one);
+    appearance_squares += products(a, a), appearance_d0 += products(a, x), appearance_d1 += products(a, y), appearance_d2 += products(a, z);
+    d00 += products(x, x), d01 += products(x, y), d02 += products(x, z);
+    d11 += products(y, y), d12 += products(y, z), d22 += products(z, z);
+  }
+};
+
+/// Fills the planes from the samples.
+TemplateSums fillPlanes(PatchTemplate& patch, const Square& square, PatchDeformation deformation) {
+  const int window = patch.window_px, half = window / 2;
   const bool scale = deformation == PatchDeformation::kScale;
-  forEachLanes(patch.window_px, [&](int i, int offset, const Lanes& mask, float y, const Lanes& x) {
-    const float* s = square.data() + offset;
-    const Lanes du = (floats(s + 1) - floats(s - 1)) * (0.5F * mask);
-    const Lanes dv = (floats(s + kStride) - floats(s - kStride)) * (0.5F * mask);
-    store(patch.descent[0], i, du);
-    store(patch.descent[1], i, scale ? dv : du * y);
-    store(patch.descent[2], i, scale ? du * x + dv * y : du * x);
-  });
+  const Words mask = windowMask(window), mean = allWords(patch.mean);
+  constexpr int kMomentShift = 10;  // from differences of samples times pixels to `kMomentUnit`
+  constexpr Words kColumns{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const Words columns = (kColumns - static_cast<std::int16_t>(half)) << static_cast<std::int16_t>(kMomentShift);
+  TemplateSums sums;
+  Words above = afterFirst(square[0]), here = afterFirst(square[1]);
+  for (int r = 0; r < window; ++r) {
+    const auto row = static_cast<std::size_t>(r);
+    const Words& samples = square[row + 1];
+    const Words below = afterFirst(square[row + 2]), rows = allWords((r - half) * (1 << kMomentShift));
+    const Words du = (afterSecond(samples) - samples) & mask, dv = (below - above) & mask;  // of samples two pixels apart
+    const Words a = reduced(here - mean, kAppearanceShift) & mask, d0 = reduced(du, 3);
+    const Words d1 = scale ? reduced(dv, 3) : scaled(du, rows);
+    const Words d2 = scale ? scaled(du, columns) + scaled(dv, rows) : scaled(du, columns);
+    storeWords(patch.appearance.data() + r * kStride, a);
+    storeWords(patch.descent[0].data() + r * kStride, d0);
+    storeWords(patch.descent[1].data() + r * kStride, d1);
+    storeWords(patch.descent[2].data() + r * kStride, d2);
+    sums.add(a, d0, d1, d2);
+    above = here;
+    here = below;
+  }
+  return sums;
 }
 
-/// Takes the mean and the component along the appearance out of a derivative: a change of bias or gain is no motion.
-void orthogonalize(const PatchTemplate& patch, PatchTemplate::Plane& plane) {
-  Lanes sums{}, alongs{};
-  for (int i = 0; i < patch.window_px * kStride; i += 8) {
-    const Lanes d = floats(plane.data() + i);
-    sums += d;
-    alongs += d * floats(patch.appearance.data() + i);
-  }
-  const float mean = total(sums) / static_cast<float>(patch.window_px * patch.window_px), along = total(alongs);
-  forEachLanes(patch.window_px, [&](int i, int, const Lanes& mask, float, const Lanes&) {
-    store(plane, i, floats(plane.data() + i) - mask * mean - along * floats(patch.appearance.data() + i));
-  });
-}
+/// Completes a template from the sums over its planes: takes the mean out of the appearance, and the mean and the component along the
+/// appearance out of the derivatives (a change of bias or gain is no motion). Returns the sums of products of the latter.
+Eigen::Matrix3f orthogonalize(PatchTemplate& patch, const TemplateSums& sums, PatchDeformation deformation) {
+  const auto plain = totals(sums.appearance, sums.d0, sums.d1, sums.d2);
+  const auto along = totals(sums.appearance_squares, sums.appearance_d0, sums.appearance_d1, sums.appearance_d2);
+  const auto first = totals(sums.d00, sums.d01, sums.d02, sums.d11), last = totals(sums.d12, sums.d22, sums.d12, sums.d22);
+  const auto asFloat = [](std::int32_t x) { return static_cast<float>(x); };
+  const float pixels = asFloat(patch.window_px * patch.window_px);
+  const Eigen::Vector3f units = descentUnits(deformation);
+  const Eigen::Vector3f sum_d = units.cwiseProduct(Eigen::Vector3f(asFloat(plain[1]), asFloat(plain[2]), asFloat(plain[3])));
+  const Eigen::Vector3f sum_ad =
+      kAppearanceUnit * units.cwiseProduct(Eigen::Vector3f(asFloat(along[1]), asFloat(along[2]), asFloat(along[3])));
+  Eigen::Matrix3f sum_dd;
+  sum_dd << asFloat(first[0]), asFloat(first[1]), asFloat(first[2]), asFloat(first[1]), asFloat(first[3]), asFloat(last[0]),
+      asFloat(first[2]), asFloat(last[0]), asFloat(last[1]);
+  sum_dd = units.asDiagonal() * sum_dd * units.asDiagonal();
 
-Eigen::Matrix3f gram(const PatchTemplate& patch) {
-  Eigen::Matrix3f result;
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t b = 0; b <= a; ++b) {
-      Lanes lanes{};
-      for (int i = 0; i < patch.window_px * kStride; i += 8)
-        lanes += floats(patch.descent[a].data() + i) * floats(patch.descent[b].data() + i);
-      result(static_cast<int>(a), static_cast<int>(b)) = result(static_cast<int>(b), static_cast<int>(a)) = total(lanes);
-    }
-  }
-  return result;
+  const float mean = kAppearanceUnit * asFloat(plain[0]) / pixels;
+  patch.norm = std::sqrt(std::max(0.0F, kAppearanceUnit * kAppearanceUnit * asFloat(along[0]) - mean * mean * pixels));
+  const float scale = patch.norm > 0 ? 1 / patch.norm : 0;
+  patch.appearance_unit = scale * kAppearanceUnit * kOtherUnit;
+  patch.appearance_mean = scale * mean;
+  patch.descent_units = units * kOtherUnit;
+  patch.descent_mean = sum_d / pixels;
+  patch.descent_along = scale * (sum_ad - mean * sum_d);
+  return sum_dd - sum_d * patch.descent_mean.transpose() - patch.descent_along * patch.descent_along.transpose();
 }
 
 /// Information of a deformation whose standard deviation is `sigma`, for the noise that 8-bit images have at least (3 gray levels).
@@ -326,20 +265,18 @@ std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float 
   assert(window_px % 2 == 1 && window_px <= kMaxPatchWindow_px);
   std::optional<PatchTemplate> patch;  // the only object returned, so that it is never copied
   if (!inside(image, u_px, v_px) || scale < kMinTemplateScale) return patch;
-  alignas(32) Square square;
+  const GridPlace u(u_px);
+  Square square;
   if (scale == 1) {
-    sampleSquare(image, u_px, v_px, window_px + 2, square.data());
+    sampleSquare(image, u, v_px, window_px + 2, square);
   } else {
-    sampleScaledSquare(image, u_px, v_px, window_px + 2, scale, square.data());
+    sampleScaledSquare(image, u, v_px, window_px + 2, scale, square);
   }
-  std::fill_n(square.begin() + (window_px + 2) * kStride, kStride, 0.0F);
   patch.emplace();
   patch->window_px = window_px;
-  setAppearance(*patch, square);
-  setDescent(*patch, square, deformation);
-  for (auto& plane : patch->descent) orthogonalize(*patch, plane);
-
-  Eigen::Matrix3f hessian = gram(*patch);
+  patch->off_grid_px = u_px - u.px();
+  patch->mean = meanSample(square, window_px);
+  Eigen::Matrix3f hessian = orthogonalize(*patch, fillPlanes(*patch, square, deformation), deformation);
   bool textured = false;
   if (deformation == PatchDeformation::kScale) {
     patch->prior = {0, 0, priorInformation(kScaleSigma)};
@@ -357,21 +294,23 @@ std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float 
 
 std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& image, float u_guess_px, float v_guess_px,
                                        const PatchParams& params) {
+  const auto max_shift_px2 = static_cast<float>(params.max_shift_px * params.max_shift_px);
   float u = u_guess_px, v = v_guess_px;
   for (int iteration = 0; iteration < params.max_iterations; ++iteration) {
     if (!inside(image, u, v)) return std::nullopt;
-    const Moments moments = momentsAt(patch, image, u, v);
+    const GridPlace u_grid(u);
+    const Moments moments = momentsAt(patch, image, u_grid, v);
     if (moments.appearance <= 0) return std::nullopt;
     Eigen::Vector3f step = patch.inverse_hessian * moments.descent * (patch.norm / moments.appearance);
     step *= std::min(1.0F, kMaxStep_px / step.head<2>().norm());
-    u -= step.x();
+    u = u_grid.px() - step.x();
     v -= step.y();
-    if (std::hypot(u - u_guess_px, v - v_guess_px) > params.max_shift_px) return std::nullopt;
+    if ((u - u_guess_px) * (u - u_guess_px) + (v - v_guess_px) * (v - v_guess_px) > max_shift_px2) return std::nullopt;
     if (step.head<2>().squaredNorm() > params.max_step_px * params.max_step_px) continue;
     const float ncc = explainedCorrelation(patch, moments);
     if (ncc < params.min_ncc) return std::nullopt;
     const float sigma = std::max(shiftSigma(patch, moments, ncc, 0), shiftSigma(patch, moments, ncc, 1));
-    return AlignedPatch{u, v, ncc, -step[2], std::hypot(sigma, static_cast<float>(params.sigma_floor_px))};
+    return AlignedPatch{u + patch.off_grid_px, v, ncc, -step[2], std::hypot(sigma, static_cast<float>(params.sigma_floor_px))};
   }
   return std::nullopt;
 }
@@ -392,12 +331,6 @@ std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, float u_px, flo
     v = fromLevel(aligned->v_px, level);
   }
   return aligned;
-}
-
-float correlation(const PatchTemplate& patch, const Image& image, float u_px, float v_px) {
-  if (!inside(image, u_px, v_px)) return -1;
-  const Moments moments = momentsAt(patch, image, u_px, v_px);
-  return moments.variation > 0 ? moments.appearance / std::sqrt(moments.variation) : -1;
 }
 
 namespace {
@@ -435,21 +368,23 @@ std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right
   const float first_guess = u_right;
   for (int iteration = 0; iteration < params.max_iterations; ++iteration) {
     if (!inside(right, u_right, v)) return std::nullopt;
-    Moments moments = momentsAt(*patch, right, u_right, v, slope);
+    const GridPlace u_grid(u_right);
+    const Moments moments = momentsAt(*patch, right, u_grid, v, slope);
     if (moments.appearance <= 0) return std::nullopt;
     const float gain = moments.appearance / patch->norm;
     const Eigen::Vector3f pull(0, gain * patch->prior[1] * slope, 0);
     Eigen::Vector3f step = patch->inverse_hessian * (moments.descent + pull) / gain;
     step[0] = std::clamp(step[0], -kMaxStep_px, kMaxStep_px);
-    u_right -= step[0];
+    u_right = u_grid.px() - step[0];
     slope = std::clamp(slope - step[1], -max_slope, max_slope);
     if (std::abs(u_right - first_guess) > kMaxShift_px) return std::nullopt;
     if (std::abs(step[0]) > kConverged_px && iteration + 1 < params.max_iterations) continue;
 
     const float ncc = explainedCorrelation(*patch, moments);
     const float sigma = std::hypot(shiftSigma(*patch, moments, ncc, 0), static_cast<float>(params.sigma_floor_px));
-    if (ncc < params.min_ncc || sigma > params.max_sigma_px || u - u_right <= 0) return std::nullopt;
-    return StereoMatch{u - u_right, sigma};
+    const float disparity_px = u - patch->off_grid_px - u_right;
+    if (ncc < params.min_ncc || sigma > params.max_sigma_px || disparity_px <= 0) return std::nullopt;
+    return StereoMatch{disparity_px, sigma};
   }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -29,15 +30,21 @@ enum class PatchDeformation { kScale, kSlope };
 /// A patch with what its alignment needs: its appearance a = (I - mean) / |I - mean| and the derivatives D of I by the parameters
 /// (kScale: u, v, log scale; kSlope: u, u per row, u per column), made orthogonal to 1 and a. For the raw intensities J of another image
 /// the Gauss-Newton step is H^-1 sum(D J) / gain with H = sum(D D') + prior, whatever the gain and bias of J.
+/// The planes are kept in integers, before norm, mean and orthogonality, which the sums over them are given afterwards.
 struct PatchTemplate {
   PatchTemplate() {}  // leaves the planes as they are: they are filled at once
   static constexpr int kStride = 16;
-  using Plane = std::array<float, kStride * kMaxPatchWindow_px>;
+  using Plane = std::array<std::int16_t, kStride * kMaxPatchWindow_px>;  // zero to the right of the window
   alignas(32) Plane appearance;
   alignas(32) std::array<Plane, 3> descent;
   int window_px = 0;
-  float mean = 0, norm = 0;  // of I
-  Eigen::Vector3f prior;     // information of the deformations' prior around zero
+  int mean = 0;           // of the samples in the window, 1/64 gray level
+  float norm = 0;         // of I - mean
+  float off_grid_px = 0;  // where the point lies, to the right of the grid's place at which it was sampled
+  // sum(a J) = unit * sum(appearance J) - mean * sum(J), and the same for sum(D J), less what lies along a.
+  float appearance_unit = 0, appearance_mean = 0;
+  Eigen::Vector3f descent_units, descent_mean, descent_along;
+  Eigen::Vector3f prior;  // information of the deformations' prior around zero
   Eigen::Matrix3f inverse_hessian;
 };
 
@@ -63,9 +70,6 @@ std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& 
 /// The same from coarse to fine: follows the point (u, v) of `from` into `to`, both in full-size pixels, from `first_level` down to 0.
 std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, float u_px, float v_px, const ImagePyramid& to, float u_guess_px,
                                        float v_guess_px, int first_level, const PatchParams& params);
-
-/// Normalised cross-correlation of the template, not deformed, with `image` at a position; -1 outside the image.
-float correlation(const PatchTemplate& patch, const Image& image, float u_px, float v_px);
 
 struct DisparityParams {
   int window_px = 11;

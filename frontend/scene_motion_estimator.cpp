@@ -5,6 +5,7 @@
 
 #include "frontend/geometric_constraints.hpp"
 #include "frontend/parallel_items.hpp"
+#include "frontend/point_grid.hpp"
 
 namespace motorcade {
 
@@ -89,11 +90,13 @@ std::vector<SceneMotionEstimator::Sighted> SceneMotionEstimator::closeCircle(con
     const bool known = track != tracks_.end() && track->point == f.point;
     sighted.push_back({.flow = f, .track = known ? &*track : nullptr, .disparity = std::nullopt});
   }
+  const PointGrid corners(stereo.features->corners, camera_.width_px, camera_.height_px,
+                          [](const Corner& c) { return Eigen::Vector2f(c.u_px, c.v_px); });
   const SE3 predicted_T_now_previous = predicted_T_previous_now.inverse();
   forEachItem(sighted.size(), [&](std::size_t i) {
     Sighted& s = sighted[i];
-    s.disparity =
-        s.track ? verifyInRightImage(*stereo.features, s.flow, *s.track, predicted_T_now_previous) : firstDisparity(stereo, s.flow);
+    s.disparity = s.track ? verifyInRightImage(*stereo.features, s.flow, *s.track, predicted_T_now_previous)
+                          : firstDisparity(stereo, corners, s.flow);
     if (s.disparity) s.disparity->disparity_px += static_cast<float>(disparity_offset_.offset_px());
     if (s.disparity && !(s.disparity->disparity_px > 0)) s.disparity.reset();
   });
@@ -102,21 +105,22 @@ std::vector<SceneMotionEstimator::Sighted> SceneMotionEstimator::closeCircle(con
 }
 
 /// Stereo matching gives it where the track was born; where it failed there, a matched corner close by tells where to look.
-std::optional<StereoMatch> SceneMotionEstimator::firstDisparity(const StereoMatches& stereo, const FlowTrack& flow) const {
+std::optional<StereoMatch> SceneMotionEstimator::firstDisparity(const StereoMatches& stereo, const PointGrid& corners,
+                                                                const FlowTrack& flow) const {
   if (flow.corner >= 0 && stereo.of_corner[static_cast<std::size_t>(flow.corner)])
     return stereo.of_corner[static_cast<std::size_t>(flow.corner)];
-  const StereoMatch* nearest = nullptr;
-  double nearest_px = params_.neighbour_px;
-  for (std::size_t i = 0; i < stereo.of_corner.size(); ++i) {
-    const Corner& c = stereo.features->corners[i];
-    const double distance_px = std::max(std::abs(c.u_px - flow.u_px), std::abs(c.v_px - flow.v_px));
-    if (!stereo.of_corner[i] || distance_px >= nearest_px) continue;
-    nearest = &*stereo.of_corner[i];
-    nearest_px = distance_px;
-  }
-  if (!nearest) return std::nullopt;
+  const Eigen::Vector2f here(flow.u_px, flow.v_px), reach = Eigen::Vector2f::Constant(static_cast<float>(params_.neighbour_px));
+  std::pair nearest(reach.x(), -1);  // distance and number of a corner; of equal distances the first corner counts
+  corners.forEachNear(here - reach, here + reach, [&](int i) {
+    if (!stereo.of_corner[static_cast<std::size_t>(i)]) return;
+    const Corner& c = stereo.features->corners[static_cast<std::size_t>(i)];
+    const std::pair candidate((Eigen::Vector2f(c.u_px, c.v_px) - here).cwiseAbs().maxCoeff(), i);
+    if (candidate < nearest) nearest = candidate;
+  });
+  if (nearest.second < 0) return std::nullopt;
+  const double disparity_px = stereo.of_corner[static_cast<std::size_t>(nearest.second)]->disparity_px;
   const ImagePyramid &left = stereo.features->left, &right = stereo.features->right;
-  return refineDisparity(left.levels.front(), right.levels.front(), flow.u_px, flow.v_px, nearest->disparity_px, params_.disparity);
+  return refineDisparity(left.levels.front(), right.levels.front(), flow.u_px, flow.v_px, disparity_px, params_.disparity);
 }
 
 /// The disparity lies between that of a point at rest and that of a point which moves along with the camera; where nothing is found there,

@@ -11,6 +11,7 @@
 #include "frontend/messages.hpp"
 #include "frontend/motion_segmenter.hpp"
 #include "frontend/patch_alignment.hpp"
+#include "frontend/point_grid.hpp"
 #include "frontend/point_history.hpp"
 #include "frontend/repeated_texture.hpp"
 #include "frontend/scene_flow.hpp"
@@ -56,7 +57,7 @@ class SceneMotionEstimator {
   };
 
   std::vector<Sighted> closeCircle(const StereoMatches& stereo, const OpticalFlow& flow, const SE3& predicted_T_previous_now) const;
-  std::optional<StereoMatch> firstDisparity(const StereoMatches& stereo, const FlowTrack& flow) const;
+  std::optional<StereoMatch> firstDisparity(const StereoMatches& stereo, const PointGrid& corners, const FlowTrack& flow) const;
   std::optional<StereoMatch> verifyInRightImage(const Features& features, const FlowTrack& flow, const PointTrack& track,
                                                 const SE3& predicted_T_now_previous) const;
   PoseObservation observe(const Sighted& sighted) const;

@@ -18,15 +18,22 @@ namespace {
 
 using Costs = std::array<std::uint16_t, kMaxWindowCosts>;
 
+std::uint16_t smallest(std::span<const std::uint16_t> costs) {
+  std::uint16_t result = UINT16_MAX;
+  for (const std::uint16_t cost : costs) result = std::min(result, cost);  // in vector code, which min_element is not
+  return result;
+}
+
 /// Best window of a search; empty when another place, not a neighbour of the best, is nearly as good.
 std::optional<int> uniqueMinimum(std::span<const std::uint16_t> costs, double max_ratio) {
-  const int best = static_cast<int>(std::ranges::min_element(costs) - costs.begin());
-  constexpr int kNeighbours_px = 2;
-  int elsewhere = INT32_MAX;
-  for (int i = 0; i < static_cast<int>(costs.size()); ++i)
-    if (std::abs(i - best) > kNeighbours_px) elsewhere = std::min<int>(elsewhere, costs[static_cast<std::size_t>(i)]);
-  if (costs[static_cast<std::size_t>(best)] > max_ratio * elsewhere) return std::nullopt;
-  return best;
+  constexpr std::size_t kNeighbours_px = 2;
+  const std::uint16_t least = smallest(costs);
+  const auto best = static_cast<std::size_t>(std::ranges::find(costs, least) - costs.begin());
+  const auto before = costs.first(best - std::min(best, kNeighbours_px));
+  const auto after = costs.subspan(std::min(best + kNeighbours_px + 1, costs.size()));
+  const bool alone = before.empty() && after.empty();
+  if (!alone && least > max_ratio * std::min(smallest(before), smallest(after))) return std::nullopt;
+  return static_cast<int>(best);
 }
 
 /// Column in `other`, between first_u and last_u, whose window looks most like the one at (u, v) of `image`.

@@ -14,9 +14,9 @@ class StereoMatcher {
   struct Params {
     double min_disparity_px = 0.5;
     int max_disparity_px = 192;
-    int search_columns = 9, search_rows = 5;     // window of the search, odd
-    double max_uniqueness_ratio = 0.9;         // best sum of differences over the best elsewhere
-    int max_round_trip_px = 1;                 // disagreement of left-to-right and right-to-left, at half size
+    int search_columns = 9, search_rows = 5;  // window of the search, odd
+    double max_uniqueness_ratio = 0.9;        // best sum of differences over the best elsewhere
+    int max_round_trip_px = 1;                // disagreement of left-to-right and right-to-left, at half size
     DisparityParams refinement;
     double sift_max_row_px = 1.5;
     double sift_max_ratio = 0.9;

@@ -4,34 +4,30 @@
 #include <array>
 #include <cassert>
 #include <cstring>
-#ifdef __AVX2__
-#include <immintrin.h>
-#endif
+
+#include "frontend/word_lanes.hpp"
 
 namespace motorcade {
 namespace {
 
-// Vectors of the compilers' own kind; GCC 12 turns their widening of bytes into scalar code, hence the intrinsics.
-using Words = std::int16_t __attribute__((vector_size(32)));
-constexpr int kWordLanes = 16;
-using WordFloats = float __attribute__((vector_size(4 * kWordLanes)));
+/// The pixels of one window, row by row.
+struct Window {
+  std::array<std::int16_t, kMaxWindowPixels> pixels;
+  int sum = 0;
+};
 
-#ifdef __AVX2__
-inline Words wordPixels(const std::uint8_t* p) { return Words(_mm256_cvtepu8_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)))); }
-inline Words magnitude(const Words& x) { return Words(_mm256_abs_epi16(__m256i(x))); }
-#else
-inline Words wordPixels(const std::uint8_t* p) {
-  Words words;
-  for (int i = 0; i < kWordLanes; ++i) words[i] = p[i];
-  return words;
-}
-inline Words magnitude(const Words& x) { return x < 0 ? -x : x; }
-#endif
-
-inline Words words(const std::int16_t* p) {
-  Words words;
-  std::memcpy(&words, p, sizeof words);
-  return words;
+/// Sums of sixteen neighbouring windows' pixels, the first at `from`.
+Words windowSums(const std::uint8_t* from, std::ptrdiff_t stride, WindowSize window) {
+  // Of each column first, over 32 columns: reads up to 31 bytes past a window's first pixel, the next row or the room after the last.
+  alignas(32) std::array<std::int16_t, 2 * kWordLanes> columns;
+  for (int c = 0; c < 2 * kWordLanes; c += kWordLanes) {
+    Words sum{};
+    for (int r = 0; r < window.rows; ++r) sum += wordPixels(from + r * stride + c);
+    storeWords(columns.data() + c, sum);
+  }
+  Words sums{};
+  for (int c = 0; c < window.columns; ++c) sums += loadWords(columns.data() + c);
+  return sums;
 }
 
 }  // namespace
@@ -40,34 +36,22 @@ void windowDifferences(const Image& image, int u, int v, const Image& other, int
                        std::span<std::uint16_t> costs) {
   assert(fits(window));
   const int half_columns = window.columns / 2, half_rows = window.rows / 2, count = static_cast<int>(costs.size());
-  const float per_pixel = 1 / static_cast<float>(window.columns * window.rows);
-  const std::uint8_t* own = image.row(v - half_rows) + u - half_columns;
-  // Their pixels as words, row by row, and the columns' sums: what sixteen neighbouring windows read.
-  constexpr int kReadColumns = 2 * kWordLanes;
-  alignas(32) std::array<std::int16_t, kReadColumns * kMaxWindowRows> theirs;
-  alignas(32) std::array<std::int16_t, kReadColumns> column_sums;
-  int own_sum = 0;
-  for (int r = 0; r < window.rows; ++r)
-    for (int c = 0; c < window.columns; ++c) own_sum += own[r * image.stride() + c];
+  const Words per_pixel = allWords(std::min((1 << 15) / (window.columns * window.rows), INT16_MAX));
+  Window own;
+  for (int r = 0, i = 0; r < window.rows; ++r) {
+    const std::uint8_t* row = image.row(v - half_rows + r) + u - half_columns;
+    for (int c = 0; c < window.columns; ++c) own.sum += own.pixels[static_cast<std::size_t>(i++)] = row[c];
+  }
   for (int first = 0; first < count; first += kWordLanes) {
-    // Reads up to 31 bytes past a window's first pixel: the next row, or the room that each image has after its last.
     const std::uint8_t* from = other.row(other_v - half_rows) + other_u - half_columns + first;
-    for (int c = 0; c < kReadColumns; c += kWordLanes) {
-      Words sum{};
-      for (int r = 0; r < window.rows; ++r) {
-        const Words pixel_words = wordPixels(from + r * other.stride() + c);
-        std::memcpy(theirs.data() + r * kReadColumns + c, &pixel_words, sizeof pixel_words);
-        sum += pixel_words;
-      }
-      std::memcpy(column_sums.data() + c, &sum, sizeof sum);
-    }
-    Words brighter = Words{} - static_cast<std::int16_t>(own_sum);  // sum of their pixels minus ours
-    for (int c = 0; c < window.columns; ++c) brighter += words(column_sums.data() + c);
-    const Words offset = __builtin_convertvector(__builtin_convertvector(brighter, WordFloats) * per_pixel, Words);
+    const Words offset = scaled(windowSums(from, other.stride(), window) - static_cast<std::int16_t>(own.sum), per_pixel);
     Words cost{};
-    for (int r = 0; r < window.rows; ++r)
+    for (int r = 0, i = 0; r < window.rows; ++r) {
+      const std::uint8_t* row = from + r * other.stride();
+#pragma GCC unroll 4
       for (int c = 0; c < window.columns; ++c)
-        cost += magnitude(words(theirs.data() + r * kReadColumns + c) - offset - static_cast<std::int16_t>(own[r * image.stride() + c]));
+        cost += magnitude(wordPixels(row + c) - (offset + own.pixels[static_cast<std::size_t>(i++)]));
+    }
     std::memcpy(costs.data() + first, &cost, static_cast<std::size_t>(std::min(kWordLanes, count - first)) * sizeof(std::uint16_t));
   }
 }

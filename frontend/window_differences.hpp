@@ -18,8 +18,8 @@ constexpr bool fits(WindowSize window) {
   return window.columns <= kMaxWindowColumns && window.rows <= kMaxWindowRows && window.columns * window.rows <= kMaxWindowPixels;
 }
 
-/// Sums of absolute differences, means removed, between the window around (u, v) of `image` and those around (other_u + i, other_v) of
-/// `other`, i < costs.size() <= kMaxWindowCosts. All windows lie inside their images.
+/// Sums of absolute differences, means removed to a whole gray level, between the window around (u, v) of `image` and those around (other_u
+/// + i, other_v) of `other`, i < costs.size() <= kMaxWindowCosts. All windows lie inside their images.
 void windowDifferences(const Image& image, int u, int v, const Image& other, int other_u, int other_v, WindowSize window,
                        std::span<std::uint16_t> costs);
 

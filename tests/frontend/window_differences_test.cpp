@@ -18,7 +18,8 @@ TEST(WindowDifferences, MatchTheirDefinition) {
     const auto difference = [&](int k) { return b.at(12 + i + k % 11 - 5, 21 + k / 11 - 3) - a.at(40 + k % 11 - 5, 20 + k / 11 - 3); };
     int brighter = 0, sum = 0;
     for (int k = 0; k < 77; ++k) brighter += difference(k);
-    for (int k = 0; k < 77; ++k) sum += std::abs(difference(k) - brighter / 77);
+    const int offset = (brighter * (32768 / 77) + 16384) >> 15;  // rounded
+    for (int k = 0; k < 77; ++k) sum += std::abs(difference(k) - offset);
     EXPECT_EQ(costs[static_cast<std::size_t>(i)], sum);
   }
 }

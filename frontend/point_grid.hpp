@@ -1,0 +1,52 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace motorcade {
+
+/// Finds points of an image by their place. Points outside the image count as those of its border.
+class PointGrid {
+ public:
+  static constexpr int kCell_px = 32;
+
+  /// `place_px(item)` tells where an item lies.
+  template <class Items, class Place>
+  PointGrid(const Items& items, int width, int height, const Place& place_px)
+      : columns_(width / kCell_px + 1),
+        rows_(height / kCell_px + 1),
+        ends_(static_cast<std::size_t>(columns_) * rows_ + 1, 0),
+        points_(items.size()) {
+    for (const auto& item : items) ++ends_[cellOf(place_px(item)) + 1];
+    for (std::size_t i = 1; i < ends_.size(); ++i) ends_[i] += ends_[i - 1];
+    std::vector<int> next(ends_.begin(), ends_.end() - 1);
+    int number = 0;
+    for (const auto& item : items) points_[static_cast<std::size_t>(next[cellOf(place_px(item))]++)] = number++;
+  }
+
+  /// Calls f(index of a point) for all points in a rectangle, and for some around it.
+  template <class Function>
+  void forEachNear(const Eigen::Vector2f& min_px, const Eigen::Vector2f& max_px, const Function& f) const {
+    const int first = column(min_px.x()), last = column(max_px.x());
+    for (int y = row(min_px.y()); y <= row(max_px.y()); ++y) {
+      const auto line = static_cast<std::size_t>(y) * columns_;
+      for (int i = ends_[line + first]; i < ends_[line + last + 1]; ++i) f(points_[static_cast<std::size_t>(i)]);
+    }
+  }
+  /// Half the side of a square around any point of the image that holds all points.
+  float extent_px() const { return kCell_px * static_cast<float>(std::max(columns_, rows_)); }
+
+ private:
+  int column(float u_px) const { return std::clamp(static_cast<int>(u_px / kCell_px), 0, columns_ - 1); }
+  int row(float v_px) const { return std::clamp(static_cast<int>(v_px / kCell_px), 0, rows_ - 1); }
+  std::size_t cellOf(const Eigen::Vector2f& p) const { return static_cast<std::size_t>(row(p.y())) * columns_ + column(p.x()); }
+
+  int columns_, rows_;
+  std::vector<int> ends_;    // of each cell's points, after that of the cell before
+  std::vector<int> points_;  // cell by cell
+};
+
+}  // namespace motorcade

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
+/// Vectors of sixteen 16-bit integers, of the compilers' own kind: arithmetic is element by element. What that lacks (or GCC 12 turns into
+/// scalar code) is here, with the same values in the portable build.
+namespace motorcade {
+
+inline constexpr int kWordLanes = 16;
+using Words = std::int16_t __attribute__((vector_size(2 * kWordLanes)));
+using WordSums = std::int32_t __attribute__((vector_size(2 * kWordLanes)));  // one for two words
+
+inline Words loadWords(const std::int16_t* p) {
+  Words words;
+  std::memcpy(&words, p, sizeof words);
+  return words;
+}
+inline void storeWords(std::int16_t* p, const Words& words) { std::memcpy(p, &words, sizeof words); }
+inline Words allWords(int value) { return Words{} + static_cast<std::int16_t>(value); }
+
+#ifdef __AVX2__
+inline Words wordPixels(const std::uint8_t* p) { return Words(_mm256_cvtepu8_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)))); }
+inline Words magnitude(const Words& x) { return Words(_mm256_abs_epi16(__m256i(x))); }
+/// Products of the words, added in pairs.
+inline WordSums products(const Words& a, const Words& b) { return WordSums(_mm256_madd_epi16(__m256i(a), __m256i(b))); }
+/// a b / 2^15, rounded.
+inline Words scaled(const Words& a, const Words& b) { return Words(_mm256_mulhrs_epi16(__m256i(a), __m256i(b))); }
+/// The words moved down by one or two places; zeros follow.
+inline Words afterFirst(const Words& x) {
+  const __m256i upper = _mm256_permute2x128_si256(__m256i(x), __m256i(x), 0x81);
+  return Words(_mm256_alignr_epi8(upper, __m256i(x), 2));
+}
+inline Words afterSecond(const Words& x) {
+  const __m256i upper = _mm256_permute2x128_si256(__m256i(x), __m256i(x), 0x81);
+  return Words(_mm256_alignr_epi8(upper, __m256i(x), 4));
+}
+inline std::array<std::int32_t, 4> totals(const WordSums& a, const WordSums& b, const WordSums& c, const WordSums& d) {
+  const __m256i pairs = _mm256_hadd_epi32(_mm256_hadd_epi32(__m256i(a), __m256i(b)), _mm256_hadd_epi32(__m256i(c), __m256i(d)));
+  std::array<std::int32_t, 4> result;
+  const __m128i sums = _mm_add_epi32(_mm256_castsi256_si128(pairs), _mm256_extracti128_si256(pairs, 1));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(result.data()), sums);
+  return result;
+}
+#else
+inline Words wordPixels(const std::uint8_t* p) {
+  Words words;
+  for (int i = 0; i < kWordLanes; ++i) words[i] = p[i];
+  return words;
+}
+inline Words magnitude(const Words& x) { return x < 0 ? -x : x; }
+inline WordSums products(const Words& a, const Words& b) {
+  WordSums sums;
+  for (int i = 0; i < kWordLanes / 2; ++i) sums[i] = a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1];
+  return sums;
+}
+inline Words scaled(const Words& a, const Words& b) {
+  Words words;
+  for (int i = 0; i < kWordLanes; ++i) words[i] = static_cast<std::int16_t>((a[i] * b[i] + (1 << 14)) >> 15);
+  return words;
+}
+inline Words afterFirst(const Words& x) {
+  Words words{};
+  for (int i = 0; i + 1 < kWordLanes; ++i) words[i] = x[i + 1];
+  return words;
+}
+inline Words afterSecond(const Words& x) { return afterFirst(afterFirst(x)); }
+inline std::array<std::int32_t, 4> totals(const WordSums& a, const WordSums& b, const WordSums& c, const WordSums& d) {
+  std::array<std::int32_t, 4> result{};
+  for (int i = 0; i < kWordLanes / 2; ++i) result[0] += a[i], result[1] += b[i], result[2] += c[i], result[3] += d[i];
+  return result;
+}
+#endif
+
+}  // namespace motorcade
