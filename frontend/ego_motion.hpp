@@ -40,15 +40,14 @@ class EgoMotionEstimator {
     double vote_depth_m = 40.0;         // beyond it the floor is not told apart by depth
     double max_acceleration_mps2 = 20;  // of the camera, jitter of its times included
     double surprise_penalty = 0.3;      // votes, as a share of all, against a motion beyond it
-    int trusted_steady_frames = 10;     // after which the penalty counts in full
+    int trusted_steady_frames = 3;      // after which the penalty counts in full
     PoseFitParams fit;
   };
   EgoMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
   /// `observations` hold points in the previous camera's frame, `known_movers` whether they moved in the one before it.
-  /// The predicted motion is scored first, and what a vehicle cannot do after it must win by more. Random samples are drawn from a generator
-  /// seeded with `seed` (the frame number).
-  /// Empty when too few points agree on any motion.
+  /// The predicted motion is scored first, and what a vehicle cannot do after it must win by more. Random samples are drawn from a
+  /// generator seeded with `seed` (the frame number). Empty when too few points agree on any motion.
   std::optional<EgoMotion> operator()(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
                                       const PredictedMotion& predicted, std::uint64_t seed) const;
 

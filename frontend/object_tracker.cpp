@@ -33,12 +33,15 @@ bool within(const TrackedObject& one, const SE3& T_other_one, const TrackedObjec
   return static_cast<double>(inside) > kMost * static_cast<double>(one.points.size());
 }
 
+double diagonal_px(const Box& box) { return std::hypot(box.right_px - box.left_px, box.bottom_px - box.top_px); }
+
 /// A few points that seem to lie behind a vehicle with many, and within its outline, are the vehicle's own with wrong disparities.
 bool looksThrough(const ObjectObservation& few, const std::vector<ObjectObservation>& objects) {
-  constexpr double kMargin = 0.1;  // of the outline's width and height
-  constexpr int kMany = 5;
+  constexpr double kMargin = 0.25, kMaxMargin_px = 30;  // of the outline's width and height
+  constexpr int kMany = 3;
   return std::ranges::any_of(objects, [&](const ObjectObservation& o) {
-    const double du = kMargin * (o.box.right_px - o.box.left_px), dv = kMargin * (o.box.bottom_px - o.box.top_px);
+    const double du = std::min(kMaxMargin_px, kMargin * (o.box.right_px - o.box.left_px));
+    const double dv = std::min(kMaxMargin_px, kMargin * (o.box.bottom_px - o.box.top_px));
     return o.frame == few.frame && o.points >= kMany * few.points && o.T_cam_body.translation().z() < few.T_cam_body.translation().z() &&
            o.box.left_px - du < few.box.left_px && few.box.right_px < o.box.right_px + du && o.box.top_px - dv < few.box.top_px &&
            few.box.bottom_px < o.box.bottom_px + dv;
@@ -104,9 +107,9 @@ void ObjectTracker::record(TrackedObject& object, ObjectObservation observation,
     measurements.objects.push_back(std::move(observation));
     return;
   }
-  const bool hidden = looksThrough(observation, measurements.objects);
+  const bool doubtful = looksThrough(observation, measurements.objects) || diagonal_px(observation.box) < params_.confirm_extent_px;
   object.backlog.push_back(std::move(observation));
-  if (hidden) return;
+  if (doubtful) return;
   const double travelled_m = (object.kinematics.pose().translation() - object.birthplace_world).norm();
   const double speed = object.kinematics.speed_mps();
   const bool moves = speed > params_.confirm_speed_mps && speed > params_.confirm_significance * object.kinematics.speedSigma_mps();

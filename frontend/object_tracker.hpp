@@ -26,6 +26,7 @@ class ObjectTracker {
     double confirm_travel_m = 0.5;      // ... its way since birth ...
     double confirm_extent_m = 0.3;      // ... and the span of its points
     double max_presence_sigma_m = 1.5;  // while its place is known so well, points within its outline show that an object is there
+    double confirm_extent_px = 20;      // in the image too: points whose patches overlap are one measurement
     int look_back_frames = 12;          // before its birth in which a confirmed object is looked for among the points followed then
     int max_tentative_misses = 1;
     int max_coasted_frames = 5;          // rows in state `predicted`

@@ -230,6 +230,7 @@ void addTracking(std::vector<Parameter>& table, ObjectTracker::Params& p) {
       .add("confirm_significance", p.confirm_significance, kNotNegative)
       .add("confirm_travel_m", p.confirm_travel_m, kNotNegative)
       .add("confirm_extent_m", p.confirm_extent_m, kNotNegative)
+      .add("confirm_extent_px", p.confirm_extent_px, kNotNegative)
       .add("look_back_frames", p.look_back_frames, {0, 50})
       .add("max_tentative_misses", p.max_tentative_misses, kAnyCount)
       .add("max_coasted_frames", p.max_coasted_frames, {0, 5})

@@ -176,6 +176,11 @@ TEST(ObjectTracker, WhatIsNoLargerThanAHandIsNoVehicle) {
   }
 }
 
+TEST(ObjectTracker, PointsWithinOnePatchAreNoVehicle) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed)  // 20 cm at 16 m: 9 pixels
+    EXPECT_TRUE(Drive({{.x_m = 0.5, .z_m = 16, .points = 30, .size = 0.12}}, 10, 20, seed).tracks().empty()) << "seed " << seed;
+}
+
 TEST(ObjectTracker, TwoCarsThatPassEachOtherKeepTheirIds) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const Drive drive({{.x_m = -1.8, .z_m = 20, .speed_mps = 7}, {.x_m = 1.8, .z_m = 11, .speed_mps = 11}}, 8, 40, seed);
