@@ -20,7 +20,8 @@ inline double millisecondsBetween(SteadyTime from, SteadyTime to) { return std::
 /// One stage's work on one frame; empty (start == end) where the stage did not run.
 struct StageSpan {
   SteadyTime start, end;
-  int worker = -1;  // slot of the arena that did the work
+  int worker = -1;    // slot of the arena that did the work
+  double cpu_ms = 0;  // of that worker's thread alone: what others did of the stage's parallel loops is not in it
   double duration_ms() const { return millisecondsBetween(start, end); }
 };
 

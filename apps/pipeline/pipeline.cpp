@@ -22,6 +22,7 @@
 #include "apps/pipeline/gap_filler.hpp"
 #include "core/mailbox.hpp"
 #include "core/spsc_ring.hpp"
+#include "core/thread_clock.hpp"
 
 namespace motorcade {
 namespace {
@@ -280,6 +281,7 @@ auto Pipeline::Impl::attempt(Job& job, Stage stage, const Run& run, const Rescue
   decltype(run()) message;
   span.worker = oneapi::tbb::this_task_arena::current_thread_index();
   span.start = now();
+  const double cpu_before_ms = threadCpu_ms();
   try {
     oneapi::tbb::this_task_arena::isolate([&] { message = run(); });
     if (!message) throw std::logic_error("no message came out");
@@ -293,6 +295,7 @@ auto Pipeline::Impl::attempt(Job& job, Stage stage, const Run& run, const Rescue
     log_(LogLevel::kError, "frame " + std::to_string(job.timing.frame.value) + ": " + problem);
     message = rescue();
   }
+  span.cpu_ms = threadCpu_ms() - cpu_before_ms;
   span.end = now();
   return message;
 }

@@ -121,6 +121,7 @@ void follow(const Sequence& sequence, const FrameRange& range, const PipelineCon
 }
 
 int run(const RunOptions& options) {
+  const ProcessUsage before = processUsage();
   const PipelineConfig config = configurationOf(options);
   const auto required_tracking = requiredTracking(options);
   const auto rate_hz = replayRate_hz(options, config.pipeline.policy);
@@ -137,7 +138,7 @@ int run(const RunOptions& options) {
   summary.rate_hz = rate_hz;
   summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
   follow(sequence, range, config, folder, summary);
-  measureProcess(summary);
+  summary.used = processUsage().since(before);
   folder.finish(toJson(summary));
   std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);
 

@@ -6,14 +6,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/version.h>
-#include <sys/resource.h>
 
 namespace motorcade {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double seconds(const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); }
 
 double rounded(double value) { return std::round(value * 1e6) / 1e6; }
 
@@ -55,13 +52,6 @@ double RunSummary::trackedFraction() const {
 
 double RunSummary::throughput_hz() const { return wall_s > 0 ? static_cast<double>(pipeline.processed + pipeline.rejected) / wall_s : 0; }
 
-void measureProcess(RunSummary& summary) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  summary.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  summary.peak_memory_bytes = std::int64_t{1024} * usage.ru_maxrss;
-}
-
 std::string toJson(const RunSummary& summary) {
   const PipelineSummary& pipeline = summary.pipeline;
   Json stages, queues = Json::array({toJson(summary.decoded)});
@@ -86,9 +76,11 @@ std::string toJson(const RunSummary& summary) {
             {"latency_with_decoding_ms", toJson(pipeline.latency_with_decoding)},
             {"stages_ms", stages},
             {"wall_s", rounded(summary.wall_s)},
-            {"cpu_s", rounded(summary.cpu_s)},
+            {"cpu_s", rounded(summary.used.cpu_s)},
             {"throughput_hz", rounded(summary.throughput_hz())},
-            {"peak_memory_bytes", summary.peak_memory_bytes},
+            {"peak_memory_bytes", summary.used.peak_memory_bytes},
+            {"stolen_s", rounded(summary.used.stolen_s)},
+            {"involuntary_switches", summary.used.involuntary_switches},
             {"queues", queues},
             {"solver", toJson(pipeline.solver)},
             {"versions", versions()}};
@@ -102,11 +94,12 @@ std::string shortReport(const RunSummary& summary, const std::string& folder) {
       "frames      {} received, {} processed ({} lost), {} dropped, {} rejected\n"
       "latency     p50 {:.1f} ms, p95 {:.1f} ms, p99 {:.1f} ms, max {:.1f} ms\n"
       "throughput  {:.1f} frames/s, {:.1f} ms of CPU per frame, peak memory {:.0f} MB\n"
+      "machine     {:.2f} s stolen by the hypervisor, {} involuntary context switches\n"
       "results     {}\n",
       pipeline.received, pipeline.processed, pipeline.lost, pipeline.dropped, pipeline.rejected, pipeline.latency.percentile_ms(0.5),
       pipeline.latency.percentile_ms(0.95), pipeline.latency.percentile_ms(0.99), pipeline.latency.max_ms(), summary.throughput_hz(),
-      1e3 * summary.cpu_s / static_cast<double>(std::max<std::int64_t>(1, pipeline.received)),
-      1e-6 * static_cast<double>(summary.peak_memory_bytes), folder);
+      1e3 * summary.used.cpu_s / static_cast<double>(std::max<std::int64_t>(1, pipeline.received)),
+      1e-6 * static_cast<double>(summary.used.peak_memory_bytes), summary.used.stolen_s, summary.used.involuntary_switches, folder);
 }
 
 }  // namespace motorcade

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/pipeline/pipeline.hpp"
+#include "apps/run/process_usage.hpp"
 #include "io/sequence.hpp"
 
 namespace motorcade {
@@ -18,17 +19,14 @@ struct RunSummary {
   std::optional<double> rate_hz;  // of the replay; empty for as fast as it went
   double capture_rate_hz = 0;
   std::int64_t good_frames = 0;
-  double wall_s = 0, cpu_s = 0;
-  std::int64_t peak_memory_bytes = 0;
+  double wall_s = 0;
+  ProcessUsage used;
   int signal = 0;  // that ended the run early
 
   /// Share of the received frames that have a measured ego-motion.
   double trackedFraction() const;
   double throughput_hz() const;
 };
-
-/// Fills in what the operating system knows about this process.
-void measureProcess(RunSummary& summary);
 
 std::string toJson(const RunSummary& summary);
 /// A few lines for the user.

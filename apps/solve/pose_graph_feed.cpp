@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cassert>
 
-#include "apps/solve/thread_clock.hpp"
 #include "backend/factors.hpp"
 #include "backend/relative_pose_factor.hpp"
+#include "core/thread_clock.hpp"
 
 namespace motorcade {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/solve/thread_clock.hpp"
+#include "core/thread_clock.hpp"
 
 namespace motorcade {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "apps/solve/thread_clock.hpp"
+#include "core/thread_clock.hpp"
 #include "perf/backend/batch_reference.hpp"
 #include "perf/backend/multibody_stream.hpp"
 #include "perf/backend/process_memory.hpp"
