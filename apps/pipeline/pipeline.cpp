@@ -65,6 +65,12 @@ SteadyTime now() { return std::chrono::steady_clock::now(); }
 /// Rings round their capacity up to a power of two: this much stays within the bound.
 std::size_t ringCapacity(const PipelineParams& params) { return std::bit_floor(static_cast<std::size_t>(params.frames_in_flight)); }
 
+/// In live, frames beyond those that the workers can work on would only grow old between the stages.
+std::size_t tokens(const PipelineParams& params) {
+  return static_cast<std::size_t>(params.policy == InputPolicy::kLive ? std::min(params.frames_in_flight, params.threads)
+                                                                      : params.frames_in_flight);
+}
+
 /// Uncertainty of a motion that nobody measured.
 Matrix6d unknownMotionCovariance() {
   constexpr double kSigma_m = 1.0, kSigma_rad = 0.1;
@@ -87,8 +93,11 @@ class Pipeline::Impl {
   PipelineEnd finish();
 
  private:
+  bool live() const { return params_.policy == InputPolicy::kLive; }
   void runGraph(std::promise<void>& ready);
   void pump();
+  void waitForEntrance() const;
+  void openEntrance();
   void admit(Job& job, StereoFrame frame);
   std::vector<FrameHeader> droppedBefore(FrameId frame);
 
@@ -120,8 +129,9 @@ class Pipeline::Impl {
   std::vector<Job> jobs_;
   SpscRing<Job*> free_jobs_;
   std::array<EdgeGauge, kEdges> gauges_;
-  std::size_t admitted_ = 0;  // pump only
-  SE3 last_motion_;           // motion stage only
+  std::size_t admitted_ = 0;                   // pump only
+  std::atomic<std::size_t> past_entrance_{0};  // frames that have left the motion stage, live only
+  SE3 last_motion_;                            // motion stage only
 
   // Output, publish stage only until the graph has ended.
   SpscRing<PipelineResult> results_;
@@ -141,7 +151,7 @@ Pipeline::Impl::Impl(const PipelineParams& params, Stages stages, LogCallback lo
       log_(log ? std::move(log) : [](LogLevel, const std::string&) {}),
       input_(ringCapacity(params)),
       headers_(params.policy == InputPolicy::kLive ? 4096 : 1),
-      jobs_(static_cast<std::size_t>(params.frames_in_flight)),
+      jobs_(tokens(params)),
       free_jobs_(jobs_.size()),
       results_(ringCapacity(params)),
       // One slot is reserved for the thread of `runGraph`, which works too: together they are `threads` workers.
@@ -220,11 +230,14 @@ bool Pipeline::Impl::push(StereoFrame frame) {
   if (!frame.frame.valid()) frame.frame = next_id_;
   assert(frame.frame >= next_id_);
   next_id_ = {frame.frame.value + 1};
+  if (live()) {
+    FrameHeader header{frame.frame, frame.stamp};
+    headers_.tryPush(header);
+    newest_.put(std::move(frame));
+  } else if (!input_.push(std::move(frame))) {
+    return false;
+  }
   received_.fetch_add(1, std::memory_order_relaxed);
-  if (params_.policy == InputPolicy::kReplay) return input_.push(std::move(frame));
-  FrameHeader header{frame.frame, frame.stamp};
-  headers_.tryPush(header);
-  newest_.put(std::move(frame));
   return true;
 }
 
@@ -236,11 +249,25 @@ void Pipeline::Impl::close() {
 /// Takes a token first, then a frame: so the frame is the newest one when the policy is live.
 void Pipeline::Impl::pump() {
   while (const auto job = free_jobs_.pop()) {
-    auto frame = params_.policy == InputPolicy::kLive ? newest_.take() : input_.pop();
+    if (live()) waitForEntrance();
+    auto frame = live() ? newest_.take() : input_.pop();
     if (!frame) break;
     admit(**job, std::move(*frame));
   }
   graph_->release_wait();
+}
+
+/// In live, a frame is admitted when the one before it has left the stages whose loops keep every worker busy: admitted earlier it would
+/// only slow that one down and grow old, while in the mailbox the newest frame takes its place. Each admitted frame gets that far, so the
+/// wait ends.
+void Pipeline::Impl::waitForEntrance() const {
+  for (auto past = past_entrance_.load(std::memory_order_acquire); past < admitted_; past = past_entrance_.load(std::memory_order_acquire))
+    past_entrance_.wait(past, std::memory_order_acquire);
+}
+
+void Pipeline::Impl::openEntrance() {
+  past_entrance_.fetch_add(1, std::memory_order_release);
+  past_entrance_.notify_one();
 }
 
 void Pipeline::Impl::admit(Job& job, StereoFrame frame) {
@@ -252,7 +279,7 @@ void Pipeline::Impl::admit(Job& job, StereoFrame frame) {
   job.timing.due = frame.due;
   job.timing.decode_ms = frame.decode_ms;
   if (frame.rejected()) log_(LogLevel::kWarning, "frame " + std::to_string(frame.frame.value) + " is rejected: " + frame.problem);
-  if (params_.policy == InputPolicy::kLive) job.dropped = droppedBefore(frame.frame);
+  if (live()) job.dropped = droppedBefore(frame.frame);
   job.frame = std::make_shared<const StereoFrame>(std::move(frame));
   job.sequence = admitted_++;
   gauges_[kToPrepare].enter();
@@ -351,6 +378,7 @@ void Pipeline::Impl::estimateMotion(Job& job) {
         return std::make_shared<const SceneMotion>(std::move(predicted));
       });
   last_motion_ = job.motion->T_previous_now;
+  if (live()) openEntrance();
   gauges_[kToTracking].enter();
 }
 

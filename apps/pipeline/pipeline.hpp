@@ -22,7 +22,7 @@ enum class InputPolicy {
 
 struct PipelineParams {
   int threads = 2;           // workers of the pipeline's own arena, at most one per processor
-  int frames_in_flight = 4;  // bound of every queue
+  int frames_in_flight = 4;  // bound of every queue; live: at most `threads`, so that frames do not grow old between the stages
   InputPolicy policy = InputPolicy::kReplay;
 };
 

@@ -6,6 +6,7 @@
 
 #include "io/errors.hpp"
 #include "perf/apps/long_drive.hpp"
+#include "perf/apps/overload.hpp"
 #include "perf/apps/sweep.hpp"
 
 /// Measures the whole pipeline, as `motorcade run` wires it, on the pairs of a drive.
@@ -16,6 +17,7 @@ int main(int argc, char** argv) {
   std::function<int()> action;
   motorcade::perf::addSweep(app, action);
   motorcade::perf::addLongDrive(app, action);
+  motorcade::perf::addOverload(app, action);
   try {
     app.parse(argc, argv);
     return action();

@@ -1,0 +1,152 @@
+#include <atomic>
+#include <cstdint>
+#include <latch>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/pipeline/pipeline.hpp"
+#include "tests/apps/toy_stages.hpp"
+
+/// The live policy. Stages and camera wait for each other here, so that nothing depends on anybody's speed: time is counted in pairs that
+/// the camera has delivered.
+namespace motorcade {
+namespace {
+
+using testing::ElementsAre;
+
+void waitUntilAtLeast(std::atomic<std::int64_t>& value, std::int64_t wanted) {
+  for (auto now = value.load(); now < wanted; now = value.load()) value.wait(now);
+}
+
+void raiseTo(std::atomic<std::int64_t>& value, std::int64_t wanted) {
+  value.store(wanted);
+  value.notify_all();
+}
+
+std::int64_t missing(const PipelineSummary& summary) { return summary.received - summary.processed - summary.dropped - summary.rejected; }
+
+/// Takes the rest of a run whose producer is done.
+Outcome drain(Pipeline& pipeline) { return runThrough(pipeline, {}); }
+
+class LiveOverload : public testing::TestWithParam<std::tuple<int, int>> {};
+INSTANTIATE_TEST_SUITE_P(ThreadsAndFactor, LiveOverload, testing::Combine(testing::Values(1, 2, 4), testing::Values(1, 2, 5)));
+
+/// While a frame is in work the camera delivers `factor` more: the newest of them comes next, so that a result is never older than the
+/// pairs of one processing time.
+TEST_P(LiveOverload, ProcessesTheNewestPairEachTime) {
+  const auto [threads, factor] = GetParam();
+  constexpr std::int64_t kProcessed = 40;
+  std::atomic<std::int64_t> ordered = 1, delivered = 0;  // pairs
+  ToyStages toys;
+  toys.work = [&, factor_ = factor](Stage stage, FrameId frame) {
+    if (stage != Stage::kMotion || frame.value >= (kProcessed - 1) * factor_) return;
+    raiseTo(ordered, frame.value + 1 + factor_);
+    waitUntilAtLeast(delivered, frame.value + 1 + factor_);
+  };
+  Pipeline pipeline({.threads = threads, .policy = InputPolicy::kLive}, toys.stages());
+  std::jthread camera([&, factor_ = factor] {
+    for (std::int64_t index = 0; index <= (kProcessed - 1) * factor_; ++index) {
+      waitUntilAtLeast(ordered, index + 1);
+      pipeline.push(frameAt(index));
+      raiseTo(delivered, index + 1);
+    }
+    pipeline.close();
+  });
+  std::vector<PipelineResult> results;
+  while (auto result = pipeline.next()) results.push_back(std::move(*result));
+  camera.join();
+  const PipelineEnd end = pipeline.finish();
+
+  ASSERT_EQ(results.size(), static_cast<std::size_t>(kProcessed));
+  for (std::int64_t index = 0; index < kProcessed; ++index) {
+    EXPECT_EQ(results[static_cast<std::size_t>(index)].online.frame.value, index * factor);
+    EXPECT_EQ(results[static_cast<std::size_t>(index)].dropped.size(), static_cast<std::size_t>(index == 0 ? 0 : factor - 1));
+  }
+  EXPECT_EQ(end.summary.received, (kProcessed - 1) * factor + 1);
+  EXPECT_EQ(end.summary.processed, kProcessed);
+  EXPECT_EQ(end.summary.dropped, (kProcessed - 1) * (factor - 1));
+  EXPECT_EQ(missing(end.summary), 0);
+}
+
+TEST(PipelineLive, IsFreshInTheFrameAfterAStallOfTheMotionStage) {
+  std::latch stalled(1), stall_ends(1);
+  ToyStages toys;
+  toys.work = [&](Stage stage, FrameId frame) {
+    if (stage != Stage::kMotion || frame.value != 0) return;
+    stalled.count_down();
+    stall_ends.wait();
+  };
+  Pipeline pipeline({.threads = 2, .policy = InputPolicy::kLive}, toys.stages());
+  pipeline.push(frameAt(0));
+  stalled.wait();
+  for (std::int64_t index = 1; index < 200; ++index) pipeline.push(frameAt(index));
+  stall_ends.count_down();
+  const Outcome run = drain(pipeline);
+  EXPECT_THAT(idsOf(run.results), ElementsAre(0, 199));
+  EXPECT_EQ(idsOf(run.finals), numbersTo(200));
+  EXPECT_EQ(run.summary.dropped, 198);
+  EXPECT_EQ(missing(run.summary), 0);
+}
+
+/// One frame is admitted behind the one that stalls, no more: the third is fresh.
+TEST(PipelineLive, IsFreshWithinThreeFramesAfterAStallOfTheBackEnd) {
+  std::latch stalled(1), stall_ends(1);
+  ToyStages toys;
+  toys.work = [&](Stage stage, FrameId frame) {
+    if (stage != Stage::kOptimisation || frame.value != 0) return;
+    stalled.count_down();
+    stall_ends.wait();
+  };
+  Pipeline pipeline({.threads = 4, .frames_in_flight = 2, .policy = InputPolicy::kLive}, toys.stages());
+  pipeline.push(frameAt(0));
+  stalled.wait();
+  for (std::int64_t index = 1; index < 200; ++index) pipeline.push(frameAt(index));
+  stall_ends.count_down();
+  const Outcome run = drain(pipeline);
+  ASSERT_GE(run.results.size(), 2u);
+  ASSERT_LE(run.results.size(), 3u);
+  EXPECT_EQ(run.results.back().online.frame.value, 199);
+  EXPECT_EQ(missing(run.summary), 0);
+}
+
+/// The results that wait for a consumer and the frames behind them are bounded; the camera goes on meanwhile, and the next frame is new.
+TEST(PipelineLive, NeitherBlocksTheCameraNorPilesUpWhenNobodyTakesResults) {
+  constexpr std::int64_t kFrames = 1000;
+  constexpr int kInFlight = 4;
+  ToyStages toys;
+  Pipeline pipeline({.threads = 2, .frames_in_flight = kInFlight, .policy = InputPolicy::kLive}, toys.stages());
+  for (std::int64_t index = 0; index < kFrames; ++index) pipeline.push(frameAt(index));
+  const Outcome run = drain(pipeline);
+  EXPECT_LE(run.results.size(), static_cast<std::size_t>(kInFlight + 2 + 1));  // waiting, in flight, and the newest
+  EXPECT_EQ(run.results.back().online.frame.value, kFrames - 1);
+  EXPECT_EQ(idsOf(run.finals), numbersTo(kFrames));
+  EXPECT_EQ(run.summary.received, kFrames);
+  EXPECT_EQ(missing(run.summary), 0);
+}
+
+TEST(PipelineLive, AccountsForRejectedPairsToo) {
+  ToyStages toys;
+  Pipeline pipeline({.threads = 2, .policy = InputPolicy::kLive}, toys.stages());
+  auto frames = framesFrom0To(300);
+  for (std::size_t index = 0; index < frames.size(); index += 3) frames[index].problem = "unreadable";
+  frames.back().problem = "unreadable";  // never dropped
+  const Outcome run = runThrough(pipeline, std::move(frames));
+  EXPECT_EQ(run.summary.received, 300);
+  EXPECT_GE(run.summary.rejected, 1);
+  EXPECT_EQ(missing(run.summary), 0);
+}
+
+TEST(PipelineLive, CanBeAbandonedWhileFramesWait) {
+  for (int frames = 0; frames < 20; ++frames) {
+    ToyStages toys;
+    Pipeline pipeline({.threads = 2, .policy = InputPolicy::kLive}, toys.stages());
+    for (int index = 0; index < frames; ++index) pipeline.push(frameAt(index));
+  }
+}
+
+}  // namespace
+}  // namespace motorcade

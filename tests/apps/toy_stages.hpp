@@ -1,0 +1,150 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "apps/pipeline/pipeline.hpp"
+
+/// Stages without images, and what the tests of the pipeline do with them.
+namespace motorcade {
+
+inline constexpr std::int64_t kPeriod_ns = 100'000'000;
+
+inline StereoFrame frameAt(std::int64_t index) {
+  StereoFrame frame;
+  frame.frame = {index};
+  frame.stamp = {index * kPeriod_ns};
+  return frame;
+}
+
+/// Stages that carry the frame's number through, take as long as `work` says, and move the camera by one metre per frame.
+struct ToyStages {
+  std::function<void(Stage, FrameId)> work = [](Stage, FrameId) {};
+  std::vector<std::int64_t> order_of_flow{}, order_of_motion{}, order_of_backend{};
+  double travelled_m = 0;
+  std::vector<FrameEstimate> window{};  // keeps two frames
+  bool branches_met_wrongly = false;
+
+  Stages stages() {
+    return {.prepare = [this](const StereoFramePtr& m) { return prepare(m); },
+            .stereo = [this](const FeaturesPtr& m) { return stereo(m); },
+            .flow = [this](const FeaturesPtr& m) { return flow(m); },
+            .motion = [this](const StereoMatchesPtr& s, const OpticalFlowPtr& f) { return motion(s, f); },
+            .tracking = [this](const SceneMotionPtr& m) { return tracking(m); },
+            .optimisation = [this](const FrameMeasurementsPtr& m) { return optimise(m); },
+            .finish = [this] { return std::exchange(window, {}); }};
+  }
+
+  FeaturesPtr prepare(const StereoFramePtr& frame) {
+    work(Stage::kPrepare, frame->frame);
+    Features features;
+    features.frame = frame;
+    return std::make_shared<const Features>(features);
+  }
+  StereoMatchesPtr stereo(const FeaturesPtr& features) {
+    work(Stage::kStereo, features->frame->frame);
+    return std::make_shared<const StereoMatches>(StereoMatches{features, {}});
+  }
+  OpticalFlowPtr flow(const FeaturesPtr& features) {
+    work(Stage::kFlow, features->frame->frame);
+    order_of_flow.push_back(features->frame->frame.value);
+    return std::make_shared<const OpticalFlow>(OpticalFlow{features, {}});
+  }
+  SceneMotionPtr motion(const StereoMatchesPtr& matches, const OpticalFlowPtr& flow) {
+    const StereoFrame& frame = *flow->features->frame;
+    work(Stage::kMotion, frame.frame);
+    if (matches->features != flow->features) branches_met_wrongly = true;
+    order_of_motion.push_back(frame.frame.value);
+    SceneMotion result;
+    result.frame = frame.frame;
+    result.stamp = frame.stamp;
+    result.status = frame.rejected() ? FrameStatus::kRejected : FrameStatus::kGood;
+    result.T_previous_now = SE3(Eigen::Matrix3d::Identity(), {0, 0, order_of_motion.size() > 1 ? 1.0 : 0.0});
+    return std::make_shared<const SceneMotion>(result);
+  }
+  FrameMeasurementsPtr tracking(const SceneMotionPtr& motion) {
+    work(Stage::kTracking, motion->frame);
+    FrameMeasurements result;
+    result.frame = motion->frame;
+    result.stamp = motion->stamp;
+    result.status = motion->status;
+    result.T_previous_now = motion->T_previous_now;
+    return std::make_shared<const FrameMeasurements>(result);
+  }
+  EstimatesPtr optimise(const FrameMeasurementsPtr& measurements) {
+    work(Stage::kOptimisation, measurements->frame);
+    order_of_backend.push_back(measurements->frame.value);
+    travelled_m += measurements->T_previous_now.translation().z();
+    Estimates result;
+    result.online.frame = measurements->frame;
+    result.online.stamp = measurements->stamp;
+    result.online.status = measurements->status;
+    result.online.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, travelled_m});
+    window.push_back(result.online);
+    if (window.size() > 2) {
+      result.finals.push_back(window.front());
+      window.erase(window.begin());
+    }
+    return std::make_shared<const Estimates>(result);
+  }
+};
+
+struct Outcome {
+  std::vector<PipelineResult> results;
+  std::vector<FrameEstimate> finals;
+  PipelineSummary summary;
+};
+
+/// Pushes from a second thread, takes results on this one.
+inline Outcome runThrough(Pipeline& pipeline, std::vector<StereoFrame> frames,
+                          std::chrono::milliseconds period = std::chrono::milliseconds(0)) {
+  std::jthread producer([&] {
+    for (StereoFrame& frame : frames) {
+      pipeline.push(std::move(frame));
+      if (period.count() > 0) std::this_thread::sleep_for(period);
+    }
+    pipeline.close();
+  });
+  Outcome run;
+  const auto keep = [&run](PipelineResult result) {
+    for (const FrameEstimate& estimate : result.finals) run.finals.push_back(estimate);
+    run.results.push_back(std::move(result));
+  };
+  while (auto result = pipeline.next()) keep(std::move(*result));
+  PipelineEnd end = pipeline.finish();
+  for (PipelineResult& result : end.results) keep(std::move(result));
+  for (const FrameEstimate& estimate : end.finals) run.finals.push_back(estimate);
+  run.summary = end.summary;
+  return run;
+}
+
+inline std::vector<StereoFrame> framesFrom0To(std::int64_t count) {
+  std::vector<StereoFrame> frames;
+  for (std::int64_t index = 0; index < count; ++index) frames.push_back(frameAt(index));
+  return frames;
+}
+
+inline std::vector<std::int64_t> numbersTo(std::int64_t count) {
+  std::vector<std::int64_t> numbers;
+  for (std::int64_t index = 0; index < count; ++index) numbers.push_back(index);
+  return numbers;
+}
+
+inline std::vector<std::int64_t> idsOf(const std::vector<FrameEstimate>& estimates) {
+  std::vector<std::int64_t> ids;
+  for (const FrameEstimate& estimate : estimates) ids.push_back(estimate.frame.value);
+  return ids;
+}
+
+inline std::vector<std::int64_t> idsOf(const std::vector<PipelineResult>& results) {
+  std::vector<std::int64_t> ids;
+  for (const PipelineResult& result : results) ids.push_back(result.online.frame.value);
+  return ids;
+}
+
+}  // namespace motorcade
