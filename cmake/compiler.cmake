@@ -26,7 +26,10 @@ function(motorcade_options target)
     -Wno-array-bounds)  # GCC 12 mistakes Eigen's vector loads from 3-vectors for overruns
   # Nobody reads errno after a square root or traps a floating-point exception: this lets such loops become vector code, with the same values.
   target_compile_options(${target} PRIVATE -fno-math-errno -fno-trapping-math)
-  if(NOT MOTORCADE_PORTABLE)
+  if(MOTORCADE_PORTABLE)
+    # Vectors of 32 bytes pass between functions of one file only, so that nobody depends on how.
+    target_compile_options(${target} PRIVATE -Wno-psabi)
+  else()
     # Public: Eigen's alignment and inlined kernels must agree between the library and its users.
     target_compile_options(${target} PUBLIC -march=x86-64-v3)
   endif()

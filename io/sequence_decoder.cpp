@@ -10,9 +10,10 @@
 namespace motorcade {
 
 SequenceDecoder::SequenceDecoder(Sequence sequence, FrameRange range, const Params& params)
-    : sequence_(std::move(sequence)), range_(range.within(sequence_.frames.size())), ring_(params.ahead) {
+    : sequence_(std::move(sequence)), wanted_(params.wanted), range_(range.within(sequence_.frames.size())), ring_(params.ahead) {
   thread_ = std::jthread([this] {
     for (std::size_t index = range_.begin; index < range_.end; ++index) {
+      if (!wants(index)) continue;
       if (ring_.closed() || !ring_.push(decode(index))) return;
     }
     ring_.close();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <thread>
 
@@ -16,6 +18,8 @@ class SequenceDecoder {
  public:
   struct Params {
     std::size_t ahead = 8;  // pairs, rounded up to a power of two
+    /// Asked, on the decoder's thread, before a pair is decoded; what is not wanted is left out. The last pair always comes.
+    std::function<bool(Timestamp)> wanted{};
   };
   SequenceDecoder(Sequence sequence, FrameRange range, const Params& params);
   SequenceDecoder(Sequence sequence, FrameRange range) : SequenceDecoder(std::move(sequence), range, Params{}) {}
@@ -29,6 +33,8 @@ class SequenceDecoder {
   /// Ends decoding early, from any thread; pairs already decoded still come out.
   void stop() { ring_.close(); }
 
+  FrameId first() const { return {static_cast<std::int64_t>(range_.begin)}; }
+  Timestamp stampOf(FrameId frame) const { return sequence_.stamps[static_cast<std::size_t>(frame.value)]; }
   std::size_t frameCount() const { return range_.size(); }
   /// Most pairs ever waiting. Final once `next` has returned nothing.
   std::size_t highWater() const { return ring_.highWater(); }
@@ -36,8 +42,10 @@ class SequenceDecoder {
 
  private:
   StereoFrame decode(std::size_t index);
+  bool wants(std::size_t index) const { return !wanted_ || index + 1 == range_.end || wanted_(sequence_.stamps[index]); }
 
   Sequence sequence_;
+  std::function<bool(Timestamp)> wanted_;
   FrameRange range_;
   ImagePool pool_;
   SpscRing<StereoFrame> ring_;

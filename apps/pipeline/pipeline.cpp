@@ -19,7 +19,6 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include "apps/pipeline/edge_gauge.hpp"
-#include "apps/pipeline/gap_filler.hpp"
 #include "core/mailbox.hpp"
 #include "core/spsc_ring.hpp"
 #include "core/thread_clock.hpp"
@@ -87,6 +86,7 @@ class Pipeline::Impl {
   ~Impl();
 
   bool push(StereoFrame frame);
+  void passOver(const FrameHeader& frame);
   void close();
   std::optional<PipelineResult> next() { return results_.pop(); }
   std::optional<PipelineResult> poll() { return results_.tryPop(); }
@@ -122,7 +122,7 @@ class Pipeline::Impl {
   Mailbox<StereoFrame> newest_;
   SpscRing<FrameHeader> headers_;
   std::optional<FrameHeader> header_ahead_;  // taken from `headers_`, later than the newest frame
-  std::atomic<std::int64_t> received_{0};
+  std::atomic<std::int64_t> received_{0}, passed_over_{0};
   FrameId next_id_{0};  // producer only
 
   // In flight.
@@ -239,6 +239,16 @@ bool Pipeline::Impl::push(StereoFrame frame) {
   }
   received_.fetch_add(1, std::memory_order_relaxed);
   return true;
+}
+
+void Pipeline::Impl::passOver(const FrameHeader& frame) {
+  assert(live() && frame.frame >= next_id_);
+  if (input_.closed()) return;
+  next_id_ = {frame.frame.value + 1};
+  FrameHeader header = frame;
+  headers_.tryPush(header);
+  passed_over_.fetch_add(1, std::memory_order_relaxed);
+  received_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void Pipeline::Impl::close() {
@@ -478,7 +488,7 @@ PipelineEnd Pipeline::Impl::finish() {
   for (FrameEstimate& estimate : gaps_.rest()) end.finals.push_back(std::move(estimate));
 
   summary_.received = received_.load();
-  summary_.dropped = newest_.overwritten();
+  summary_.dropped = newest_.overwritten() + passed_over_.load();
   const auto bound = static_cast<std::int64_t>(params_.frames_in_flight);
   const auto mark = [&](std::string name, std::size_t high_water) {
     summary_.queues.push_back({std::move(name), static_cast<std::int64_t>(high_water), bound});
@@ -500,6 +510,7 @@ Pipeline::Pipeline(const PipelineParams& params, Stages stages, LogCallback log)
 Pipeline::~Pipeline() = default;
 
 bool Pipeline::push(StereoFrame frame) { return impl_->push(std::move(frame)); }
+void Pipeline::passOver(const FrameHeader& frame) { impl_->passOver(frame); }
 void Pipeline::close() { impl_->close(); }
 std::optional<PipelineResult> Pipeline::next() { return impl_->next(); }
 std::optional<PipelineResult> Pipeline::poll() { return impl_->poll(); }

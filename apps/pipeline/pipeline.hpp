@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/pipeline/gap_filler.hpp"
 #include "apps/pipeline/stages.hpp"
 #include "core/frame_timing.hpp"
 #include "core/latency_histogram.hpp"
@@ -74,6 +75,8 @@ class Pipeline {
   /// Producer: false after `close`. Frames without an id are numbered; ids must increase.
   /// A frame without a due time is due when the pipeline takes it.
   bool push(StereoFrame frame);
+  /// Producer, live only, between two pushes: the camera had this frame, but it was too late to push it. It counts as received and dropped.
+  void passOver(const FrameHeader& frame);
   /// Producer: no further frame comes.
   void close();
 

@@ -19,8 +19,10 @@ bool sleepUntil(SteadyTime moment, const std::stop_token& stopped) {
 
 }  // namespace
 
-Feeder::Feeder(SequenceDecoder& decoder, Pipeline& pipeline, std::optional<double> pace)
-    : decoder_(decoder), pipeline_(pipeline), pace_(pace), thread_([this](const std::stop_token& stopped) { feed(stopped); }) {}
+Feeder::Feeder(SequenceDecoder& decoder, Pipeline& pipeline, CameraClock* clock)
+    : decoder_(decoder), pipeline_(pipeline), clock_(clock), next_(decoder.first()), thread_([this](const std::stop_token& stopped) {
+        feed(stopped);
+      }) {}
 
 void Feeder::stop() {
   thread_.request_stop();
@@ -28,21 +30,22 @@ void Feeder::stop() {
 }
 
 void Feeder::feed(const std::stop_token& stopped) {
-  SteadyTime start;
-  std::optional<Timestamp> first;
   while (auto frame = decoder_.next()) {
-    if (!first) {
-      first = frame->stamp;
-      start = std::chrono::steady_clock::now();
-    }
-    if (pace_) {
-      const std::chrono::duration<double> after(secondsBetween(*first, frame->stamp) / *pace_);
-      frame->due = start + std::chrono::duration_cast<std::chrono::nanoseconds>(after);
+    if (clock_) {
+      if (!clock_->started()) clock_->start(frame->stamp, std::chrono::steady_clock::now());
+      frame->due = clock_->due(frame->stamp);
       if (!sleepUntil(frame->due, stopped)) break;
     }
-    if (stopped.stop_requested() || !pipeline_.push(std::move(*frame))) break;
+    if (stopped.stop_requested() || !enter(std::move(*frame))) break;
   }
   pipeline_.close();
+}
+
+/// Tells first of the pairs before it that the decoder left out.
+bool Feeder::enter(StereoFrame frame) {
+  for (; next_ < frame.frame; ++next_.value) pipeline_.passOver({next_, decoder_.stampOf(next_)});
+  ++next_.value;
+  return pipeline_.push(std::move(frame));
 }
 
 }  // namespace motorcade

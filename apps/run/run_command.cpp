@@ -13,6 +13,7 @@
 
 #include "apps/pipeline/configuration.hpp"
 #include "apps/pipeline/pipeline.hpp"
+#include "apps/run/camera_clock.hpp"
 #include "apps/run/feeder.hpp"
 #include "apps/run/progress.hpp"
 #include "apps/run/run_options.hpp"
@@ -95,13 +96,17 @@ class Recorder {
 /// Runs the frames through the pipeline and writes all results but the summary.
 void follow(const Sequence& sequence, const FrameRange& range, const PipelineConfig& config, RunFolderWriter& folder, RunSummary& summary) {
   StopSignals signals;
-  SequenceDecoder decoder(sequence, range, {.ahead = std::bit_floor(static_cast<std::size_t>(config.pipeline.frames_in_flight))});
+  std::optional<CameraClock> clock;
+  if (summary.rate_hz) clock.emplace(*summary.rate_hz / summary.capture_rate_hz, 1 / summary.capture_rate_hz);
+  SequenceDecoder::Params decoding{.ahead = std::bit_floor(static_cast<std::size_t>(config.pipeline.frames_in_flight))};
+  if (clock && config.pipeline.policy == InputPolicy::kLive)  // where decoding is too slow for the camera, what is overtaken is left out
+    decoding.wanted = [&](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };
+  SequenceDecoder decoder(sequence, range, decoding);
   Pipeline pipeline(config.pipeline, makeStages(config, sequence.camera), logToSpdlog);
   const auto start = std::chrono::steady_clock::now();
   Recorder recorder(folder, range.size());
   {
-    const auto pace = summary.rate_hz ? std::optional(*summary.rate_hz / summary.capture_rate_hz) : std::nullopt;
-    Feeder feeder(decoder, pipeline, pace);
+    Feeder feeder(decoder, pipeline, clock ? &*clock : nullptr);
     const auto watch = signals.watch([&feeder] { feeder.stop(); });
     try {
       while (const auto result = pipeline.next()) recorder.record(*result);

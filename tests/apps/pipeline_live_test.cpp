@@ -140,6 +140,27 @@ TEST(PipelineLive, AccountsForRejectedPairsToo) {
   EXPECT_EQ(missing(run.summary), 0);
 }
 
+/// A reader of files that is too slow to play the camera leaves pairs out before they are decoded.
+TEST(PipelineLive, CountsPairsThatWerePassedOverAndGivesThemALine) {
+  ToyStages toys;
+  Pipeline pipeline({.threads = 2, .policy = InputPolicy::kLive}, toys.stages());
+  std::jthread camera([&] {
+    for (std::int64_t index = 0; index < 91; ++index) {
+      if (index % 10 == 0)
+        pipeline.push(frameAt(index));
+      else
+        pipeline.passOver({{index}, {index * kPeriod_ns}});
+    }
+    pipeline.close();
+  });
+  camera.join();
+  const Outcome run = drain(pipeline);
+  EXPECT_EQ(idsOf(run.finals), numbersTo(91));
+  EXPECT_EQ(run.summary.received, 91);
+  EXPECT_GE(run.summary.dropped, 81);
+  EXPECT_EQ(missing(run.summary), 0);
+}
+
 TEST(PipelineLive, CanBeAbandonedWhileFramesWait) {
   for (int frames = 0; frames < 20; ++frames) {
     ToyStages toys;
