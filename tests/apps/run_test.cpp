@@ -96,6 +96,8 @@ TEST_F(Run, WritesALinePerFrameAndACompleteSummary) {
   EXPECT_EQ(json["complete"], true);
   EXPECT_EQ(json["frames"]["received"], kFrames);
   EXPECT_EQ(json["latency_ms"]["count"], kFrames);
+  EXPECT_GE(json["stolen_s"], 0);
+  EXPECT_GE(json["involuntary_switches"], 0);
   for (const auto& queue : json["queues"]) EXPECT_LE(queue["high_water"], json["frames_in_flight"]) << queue;
 }
 

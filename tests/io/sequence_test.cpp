@@ -192,6 +192,17 @@ TEST_F(SequenceTest, DamagedOrMissizedImagesBecomeRejectedFrames) {
   EXPECT_FALSE(decoder.next()->rejected());
 }
 
+TEST_F(SequenceTest, DecoderLeavesOutWhatNobodyWantsButNeverTheLastPair) {
+  writePlain(10);
+  const Sequence sequence = openSequence(folder_.path());
+  const auto third = [&](Timestamp stamp) { return stamp == sequence.stamps[3]; };
+  SequenceDecoder decoder(sequence, {1, 8}, {.ahead = 4, .wanted = third});
+  EXPECT_EQ(decoder.next()->frame.value, 3);
+  EXPECT_EQ(decoder.next()->frame.value, 7);
+  EXPECT_FALSE(decoder.next());
+  EXPECT_EQ(decoder.stampOf({7}), sequence.stamps[7]);
+}
+
 TEST_F(SequenceTest, DecoderStopsEarly) {
   writePlain(20);
   const SequenceDecoder abandoned(openSequence(folder_.path()), {}, {.ahead = 2});
