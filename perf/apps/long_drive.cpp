@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "perf/apps/bench_options.hpp"
+#include "perf/apps/heap_use.hpp"
 #include "perf/apps/playback.hpp"
 #include "perf/backend/process_memory.hpp"
 
@@ -24,8 +25,8 @@ struct LongDriveOptions {
 class DriveTable {
  public:
   explicit DriveTable(int every) : every_(every), start_(processUsage()) {
-    std::printf("%8s | %9s %9s | %10s %10s %9s | %8s %8s | %11s %9s %11s\n", "frame", "frames/s", "CPU ms", "back-end", "share", "objects",
-                "RSS MB", "peak MB", "factors", "stolen s", "inv. switch");
+    std::printf("%8s | %9s %9s | %10s %10s %9s | %8s %8s %8s | %11s %9s %11s\n", "frame", "frames/s", "CPU ms", "back-end", "share",
+                "objects", "heap MB", "RSS MB", "peak MB", "factors", "stolen s", "inv. switch");
   }
 
   void note(const PipelineResult& result) {
@@ -40,9 +41,10 @@ class DriveTable {
   void print(const PipelineResult& result) {
     const ProcessUsage now = processUsage(), used = now.since(start_);
     const double frames = every_, cpu_ms = 1e3 * used.cpu_s / frames, backend_ms = backend_ms_ / frames;
-    std::printf("%8lld | %9.1f %9.2f | %7.2f ms %8.1f %% %9.1f | %8.0f %8.0f | %11lld %9.2f %11lld\n", static_cast<long long>(frames_),
-                1e3 * frames / millisecondsBetween(since_, result.timing.published), cpu_ms, backend_ms, 100 * backend_ms / cpu_ms,
-                objects_ / frames, static_cast<double>(residentBytes()) / kMegabyte, static_cast<double>(now.peak_memory_bytes) / kMegabyte,
+    std::printf("%8lld | %9.1f %9.2f | %7.2f ms %8.1f %% %9.1f | %8.1f %8.0f %8.0f | %11lld %9.2f %11lld\n",
+                static_cast<long long>(frames_), 1e3 * frames / millisecondsBetween(since_, result.timing.published), cpu_ms, backend_ms,
+                100 * backend_ms / cpu_ms, objects_ / frames, static_cast<double>(heapUse_bytes()) / kMegabyte,
+                static_cast<double>(residentBytes()) / kMegabyte, static_cast<double>(now.peak_memory_bytes) / kMegabyte,
                 static_cast<long long>(result.counters.factors), used.stolen_s, static_cast<long long>(used.involuntary_switches));
     std::fflush(stdout);
     start_ = now;
