@@ -18,6 +18,22 @@ function(motorcade_library folder)
   target_include_directories(motorcade_${folder} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/motorcade>)
   motorcade_options(motorcade_${folder})
+  if(folder STREQUAL core OR folder STREQUAL frontend)
+    motorcade_same_bits(motorcade_${folder})
+  endif()
+endfunction()
+
+# The front-end's choices (a hypothesis, a point at a gate) hang on last bits: round in the same way on every processor, without fusing
+# multiplications with additions and without Eigen's vectors, whose sums depend on their width. Alignment stays what it is elsewhere.
+function(motorcade_same_bits target)
+  if(MOTORCADE_PORTABLE)
+    set(alignment 16)
+  else()
+    set(alignment 32)
+  endif()
+  target_compile_options(${target} PRIVATE -ffp-contract=off)
+  target_compile_definitions(${target} PRIVATE
+    EIGEN_DONT_VECTORIZE EIGEN_MAX_ALIGN_BYTES=${alignment} EIGEN_MAX_STATIC_ALIGN_BYTES=${alignment})
 endfunction()
 
 function(motorcade_options target)
