@@ -140,7 +140,7 @@ TEST(ObjectTracker, TwoCarsSideBySideAreTwoFromTheFirstFrame) {
 TEST(ObjectTracker, AFewPointsSeenThroughAVehicleAreNoVehicle) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     const SimulatedCar truck{.x_m = 0.5, .z_m = 10, .speed_mps = 10, .points = 200};
-    const SimulatedCar speck{.x_m = 0.7, .z_m = 16, .speed_mps = 10, .points = 16, .size = 0.4};
+    const SimulatedCar speck{.x_m = 0.7, .z_m = 16, .speed_mps = 10, .points = 20, .size = 0.5};
     EXPECT_EQ(Drive({speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
     EXPECT_EQ(Drive({truck, speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
   }
