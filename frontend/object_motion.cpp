@@ -111,7 +111,7 @@ std::optional<ObjectObservation> ObjectMotionEstimator::presence(const TrackedOb
   observation.points = static_cast<int>(visible.size());
   observation.box = imageBox(visible);
   observation.T_cam_body = predicted.mean;
-  observation.encounter_covariance = predicted.information.inverse();
+  observation.encounter_covariance = weakPrior(predicted.mean).information.inverse();
   return observation;
 }
 

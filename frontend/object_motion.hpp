@@ -33,7 +33,8 @@ class ObjectMotionEstimator {
   /// prior on the pose. Empty when too few of them agree. Leaves the object as it is.
   std::optional<ObjectObservation> lookBack(const TrackedObject& object, const SceneMotion& earlier, const PosePrior& prior) const;
 
-  /// Where no points of its own were followed: the predicted pose, when enough points of unknown motion lie within its outline there.
+  /// Where no points of its own were followed: the predicted pose, when enough points of unknown motion lie within its outline there. Its
+  /// covariance is wide: the prediction is made of measurements that count already.
   std::optional<ObjectObservation> presence(const TrackedObject& object, const SceneMotion& scene, const PosePrior& predicted) const;
 
   /// Encounter of an object that is born in this frame: its body frame is where its points say, up to their noise.

@@ -116,7 +116,7 @@ TEST(ObjectMotion, PointsWithinItsOutlineShowThatAnObjectIsWhereItWasPredicted) 
   ASSERT_TRUE(o);
   EXPECT_EQ(o->points, 4);
   EXPECT_THAT(o->T_cam_body, IsNearPose(frames.T_cam_body, 0.0));
-  EXPECT_TRUE(o->encounter_covariance.isApprox(0.04 * Matrix6d::Identity(), 1e-9));  // no surer than the prediction
+  EXPECT_GE(o->encounter_covariance.diagonal().head<3>().minCoeff(), 1.0);  // it tells little that was not known
   EXPECT_LT(o->box.left_px, o->box.right_px);
   EXPECT_FALSE(o->motion);
 }
