@@ -50,15 +50,17 @@ PosePrior ObjectMotionEstimator::weakPrior(const SE3& T_cam_body) const {
 
 std::optional<ObjectMotionEstimator::Agreement> ObjectMotionEstimator::agree(const TrackedObject& object, const SceneMotion& scene,
                                                                              const PosePrior& prior) const {
-  Agreement a{.fit = {}, .seen = sightings(object, scene), .inliers = {}};
+  Agreement a{.fit = {}, .seen = sightings(object, scene), .chi2 = {}, .inliers = {}};
   if (static_cast<int>(a.seen.size()) < params_.min_points) return std::nullopt;
-  std::vector<PoseObservation> observations;
-  for (const auto& s : a.seen) observations.push_back(observe(object.points[s.body_point], *s.now));
-  auto fit = fitPose(camera_, observations, prior.mean, params_.fit, &prior);
+  std::vector<PoseObservation> observed;
+  for (const auto& s : a.seen) observed.push_back(observe(object.points[s.body_point], *s.now));
+  const PoseObservations observations(observed);
+  const auto fit = fitPose(camera_, observations, prior.mean, params_.fit, &prior);
   if (!fit) return std::nullopt;
-  a.fit = std::move(*fit);
+  a.fit = *fit;
+  a.chi2 = poseChi2(camera_, observations, fit->T_cam_a);
   for (std::size_t i = 0; i < a.seen.size(); ++i)
-    if (a.fit.chi2[i] < params_.inlier_chi2) a.inliers.push_back(a.seen[i]);
+    if (a.chi2[i] < params_.inlier_chi2) a.inliers.push_back(a.seen[i]);
   a.enough = static_cast<int>(a.inliers.size()) >= params_.min_points;
   return a;
 }
@@ -69,7 +71,7 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
   const auto agreement = agree(object, scene, prior);
   if (!agreement) return std::nullopt;
   if (!agreement->enough) {
-    dropMisfits(object, agreement->seen, agreement->fit.chi2);
+    dropMisfits(object, agreement->seen, agreement->chi2);
     return std::nullopt;
   }
   object.T_cam_body = agreement->fit.T_cam_a;
@@ -77,7 +79,7 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
   ObjectObservation observation = measureEncounter(object, agreement->inliers, object.T_cam_body);
   if (previous_scene) measureMotion(object, agreement->inliers, scene, *previous_scene, observation);
   refinePoints(object, agreement->inliers);
-  dropMisfits(object, agreement->seen, agreement->fit.chi2);
+  dropMisfits(object, agreement->seen, agreement->chi2);
   return observation;
 }
 
@@ -135,7 +137,7 @@ ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& o
     if (!split || measuresEncounter(s.now->point)) observations.push_back(observe(object.points[s.body_point], *s.now));
   }
   const PosePrior weak = weakPrior(T_cam_body);
-  const auto fit = fitPose(camera_, observations, T_cam_body, params_.fit, &weak);
+  const auto fit = fitPose(camera_, PoseObservations(observations), T_cam_body, params_.fit, &weak);
   ObjectObservation observation;
   observation.points = static_cast<int>(inliers.size());
   observation.box = imageBox(visible);
@@ -160,7 +162,7 @@ void ObjectMotionEstimator::measureMotion(const TrackedObject& object, const std
   }
   if (static_cast<int>(inliers.size()) < params_.split_points || static_cast<int>(observations.size()) < params_.min_points) return;
   const PosePrior weak = weakPrior(object.T_cam_body);
-  const auto fit = fitPose(camera_, observations, object.T_cam_body, params_.fit, &weak);
+  const auto fit = fitPose(camera_, PoseObservations(observations), object.T_cam_body, params_.fit, &weak);
   if (!fit) return;
   const Matrix6d A = fit->T_cam_a.inverse().adjoint();  // carries the odometry's perturbation to the end of the product
   observation.motion =
@@ -200,7 +202,7 @@ ObjectObservation ObjectMotionEstimator::firstSight(const TrackedObject& object,
   observation.box = imageBox(visible);
   observation.T_cam_body = object.T_cam_body;
   const PosePrior weak = weakPrior(object.T_cam_body);
-  const auto fit = fitPose(camera_, observations, object.T_cam_body, params_.fit, &weak);
+  const auto fit = fitPose(camera_, PoseObservations(observations), object.T_cam_body, params_.fit, &weak);
   observation.encounter_covariance = fit ? fit->covariance : Matrix6d(weak.information.inverse());
   return observation;
 }

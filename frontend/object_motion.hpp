@@ -51,7 +51,9 @@ class ObjectMotionEstimator {
   /// The pose that the sightings and the prior agree on, and the sightings that fit it.
   struct Agreement {
     PoseFit fit;
-    std::vector<Sighting> seen, inliers;
+    std::vector<Sighting> seen;
+    std::vector<double> chi2;  // of each that was seen
+    std::vector<Sighting> inliers;
     bool enough = false;
   };
   std::optional<Agreement> agree(const TrackedObject& object, const SceneMotion& scene, const PosePrior& prior) const;

@@ -2,66 +2,100 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
+#include <span>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
-#include "core/robust_loss.hpp"
+#include "frontend/cholesky.hpp"
+#include "frontend/stereo_view.hpp"
 
 namespace motorcade {
 namespace {
 
-/// A sighting with the relation of its camera to the newest one.
-struct Observation {
-  Eigen::Vector3d uvd_px;
-  Eigen::Vector3d variance_px2;
-  const CameraTrail::Relation* relation;
+constexpr double kConverged_chi2 = 1e-3;  // a step that gains less is the last
+
+/// Four sightings with the relation of their cameras to the newest one. Where there are fewer, the first one fills up, without weight.
+struct Observations {
+  Doubles3x3 R_then_now;
+  Doubles3 t_then_now_m;
+  Doubles dt_s;
+  Doubles3 uvd_px, variance_px2;
+  Doubles count;  // 1 or 0
 };
 
 struct Window {
-  std::array<Observation, PointTrack::kCapacity> observations;
+  static constexpr std::size_t kBlocks = (PointTrack::kCapacity + kDoubleLanes - 1) / kDoubleLanes;
+  std::array<Observations, kBlocks> observations;  // only as many as `size` needs are filled
   int size = 0;
-  auto begin() const { return observations.begin(); }
-  auto end() const { return observations.begin() + size; }
+
+  std::span<const Observations> blocks() const {
+    return {observations.begin(), (static_cast<std::size_t>(size) + kDoubleLanes - 1) / kDoubleLanes};
+  }
+  void add(const PointSighting& sighting, const CameraTrail::Relation& relation, double jitter_px2) {
+    const std::size_t lane = static_cast<std::size_t>(size) % kDoubleLanes;
+    Observations& o = observations[static_cast<std::size_t>(size) / kDoubleLanes];
+    set(o, lane, sighting, relation, jitter_px2);
+    if (lane == 0) {
+      o.count = Doubles{};
+      for (std::size_t unused = 1; unused < kDoubleLanes; ++unused) set(o, unused, sighting, relation, jitter_px2);
+    }
+    o.count[lane] = 1;
+    ++size;
+  }
+
+ private:
+  static void set(Observations& o, std::size_t lane, const PointSighting& sighting, const CameraTrail::Relation& relation,
+                  double jitter_px2) {
+    const Eigen::Matrix3d& R = relation.T_then_now.rotation();
+    setLane(o.R_then_now.x, lane, R.row(0));
+    setLane(o.R_then_now.y, lane, R.row(1));
+    setLane(o.R_then_now.z, lane, R.row(2));
+    setLane(o.t_then_now_m, lane, relation.T_then_now.translation());
+    setLane(o.uvd_px, lane, sighting.uvd_px.cast<double>());
+    setLane(o.variance_px2, lane, sighting.sigma_px.cast<double>().array().square() + jitter_px2);
+    o.dt_s[lane] = relation.dt_s;
+  }
 };
 
 Window collect(const PointTrack& track, const CameraTrail& trail, double pose_jitter_px, int observations) {
   Window window;
-  const double jitter2 = pose_jitter_px * pose_jitter_px;
   for (int i = std::max(0, track.count - observations); i < track.count; ++i) {
     const auto& s = track.sightings[static_cast<std::size_t>(i)];
-    const auto* relation = trail.find(s.step);
-    if (!relation) continue;
-    const Eigen::Array3d variance = s.sigma_px.cast<double>().array().square() + jitter2;
-    window.observations[static_cast<std::size_t>(window.size++)] = {s.uvd_px.cast<double>(), variance, relation};
+    if (const auto* relation = trail.find(s.step)) window.add(s, *relation, pose_jitter_px * pose_jitter_px);
   }
   return window;
 }
 
-/// One observation linearised at a position in the frame of now.
+/// Four observations linearised at positions in the frame of now.
 struct Linearized {
-  Eigen::Matrix3d JtWJ;
-  Eigen::Vector3d JtWr;
-  double cost;  // robust, as a chi-square value: residuals in the linear part of the loss count by it
+  SymmetricDoubles3x3 JtWJ;
+  Doubles3 JtWr;
+  Doubles cost;  // robust, as a chi-square value: residuals in the linear part of the loss count by it
 };
 
-/// `wander_m` is the standard deviation by which the point may be off the model's position at that time.
-std::optional<Linearized> linearize(const StereoCamera& camera, const Observation& o, const Eigen::Vector3d& p_now, double wander_m,
-                                    double huber_sigmas) {
-  const Eigen::Vector3d p_then = o.relation->T_then_now * p_now;
-  const auto uvd = camera.project(p_then);
-  if (!uvd) return std::nullopt;
-  const Eigen::Matrix3d J = camera.projectionJacobian(p_then) * o.relation->T_then_now.rotation();
-  Eigen::Matrix3d S = wander_m * wander_m * J * J.transpose();
-  S.diagonal() += o.variance_px2;
-  const Eigen::Matrix3d W = S.inverse();
-  const Eigen::Vector3d r = o.uvd_px - *uvd;
-  const double norm = std::sqrt(r.dot(W * r));
-  const Eigen::Matrix3d JtW = robustWeight(RobustLoss::kHuber, norm, huber_sigmas) * J.transpose() * W;
-  return Linearized{JtW * J, JtW * r, 2 * robustCost(RobustLoss::kHuber, norm, huber_sigmas)};
+/// `W_J` and `W_r` are the Jacobian and the residual times the weights.
+Linearized weigh(const Observations& o, const Doubles3x3& J, const Doubles3x3& W_J, const Doubles3& r, const Doubles3& W_r,
+                 double huber_sigmas) {
+  const HuberLoss loss = huberLoss(dot(r, W_r), huber_sigmas);
+  const Doubles weight = o.count * loss.weight;
+  return {weight * symmetricTransposeTimes(J, W_J), weight * transposeTimes(J, W_r), o.count * loss.chi2};
 }
+
+Linearized linearizeAtRest(const Observations& o, const StereoViews& view, double huber_sigmas) {
+  const Doubles one = allDoubles(1.0);
+  const Doubles3 W{one / o.variance_px2.x, one / o.variance_px2.y, one / o.variance_px2.z}, r = o.uvd_px - view.uvd_px;
+  return weigh(o, view.J, scaledRows(W, view.J), r, scaledRows(W, r), huber_sigmas);
+}
+
+/// `wander_m` is the standard deviation by which the points may be off the model's positions at their times.
+Linearized linearizeMoving(const Observations& o, const StereoViews& view, const Doubles& wander_m, double huber_sigmas) {
+  SymmetricDoubles3x3 S = (wander_m * wander_m) * symmetricTimesTranspose(view.J, view.J);
+  S.xx += o.variance_px2.x, S.yy += o.variance_px2.y, S.zz += o.variance_px2.z;
+  const SymmetricDoubles3x3 W = inverse(S);
+  const Doubles3 r = o.uvd_px - view.uvd_px;
+  return weigh(o, view.J, W * view.J, r, W * r, huber_sigmas);
+}
+
+bool allAhead(const StereoViews& view) { return total(view.ahead) == kDoubleLanes; }
 
 }  // namespace
 
@@ -70,18 +104,21 @@ std::optional<SceneFlowEstimator::StaticFit> SceneFlowEstimator::fitStatic(const
   if (window.size == 0) return std::nullopt;
   Eigen::Vector3d p = camera_.triangulate(track.newest().uvd_px.cast<double>());
   for (int iteration = 0;; ++iteration) {
-    Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    double chi2 = 0;
-    for (const auto& o : window) {
-      const auto l = linearize(camera_, o, p, 0, params_.huber_sigmas);
-      if (!l) return std::nullopt;
-      H += l->JtWJ;
-      b += l->JtWr;
-      chi2 += l->cost;
+    Linearized sum{};
+    for (const auto& o : window.blocks()) {
+      const StereoViews view = viewPoints(camera_, o.R_then_now, o.t_then_now_m, allDoubles(p));
+      if (!allAhead(view)) return std::nullopt;
+      const Linearized l = linearizeAtRest(o, view, params_.huber_sigmas);
+      sum.JtWJ += l.JtWJ, sum.JtWr += l.JtWr, sum.cost += l.cost;
     }
-    if (iteration == params_.iterations) return StaticFit{p, H.inverse(), chi2};
-    p += H.inverse() * b;
+    const Cholesky<3> H(total(sum.JtWJ));
+    if (!H.positive()) return std::nullopt;
+    const Eigen::Vector3d b = total(sum.JtWr), step = H.solve(b);
+    const double gain = b.dot(step);
+    const bool converged = gain < kConverged_chi2;
+    if (converged) return StaticFit{p + step, H.inverse(), total(sum.cost) - gain};
+    if (iteration == params_.iterations) return StaticFit{p, H.inverse(), total(sum.cost)};
+    p += step;
     if (!p.allFinite() || p.z() < StereoCamera::kMinDepth_m) return std::nullopt;
   }
 }
@@ -104,32 +141,34 @@ std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, 
   Eigen::Vector3d v = Eigen::Vector3d::Zero();
   const double prior_information = 1.0 / (params_.max_speed_mps * params_.max_speed_mps);
   for (int iteration = 0;; ++iteration) {
-    Matrix6d H = Matrix6d::Zero();
-    H.bottomRightCorner<3, 3>().diagonal().setConstant(prior_information);
+    SymmetricDoubles3x3 H_pp{}, H_pv{}, H_vv{};
+    Doubles3 b_p{}, b_v{};
+    Doubles cost{};
+    for (const auto& o : window.blocks()) {
+      const StereoViews view = viewPoints(camera_, o.R_then_now, o.t_then_now_m, allDoubles(p) + o.dt_s * allDoubles(v));
+      if (!allAhead(view)) return std::nullopt;
+      const Linearized l = linearizeMoving(o, view, (0.5 * params_.acceleration_mps2) * o.dt_s * o.dt_s, params_.huber_sigmas);
+      H_pp += l.JtWJ, H_pv += o.dt_s * l.JtWJ, H_vv += (o.dt_s * o.dt_s) * l.JtWJ;
+      b_p += l.JtWr, b_v += o.dt_s * l.JtWr;
+      cost += l.cost;
+    }
+    Matrix6d normal;
+    const Eigen::Matrix3d cross = total(H_pv);
+    normal << total(H_pp), cross, cross, total(H_vv);
+    normal.diagonal().tail<3>().array() += prior_information;
     Vector6d b;
-    b << Eigen::Vector3d::Zero(), -prior_information * v;
-    double chi2 = 0;
-    for (const auto& o : window) {
-      const double dt_s = o.relation->dt_s;
-      const auto l = linearize(camera_, o, p + dt_s * v, 0.5 * params_.acceleration_mps2 * dt_s * dt_s, params_.huber_sigmas);
-      if (!l) return std::nullopt;
-      H.topLeftCorner<3, 3>() += l->JtWJ;
-      H.topRightCorner<3, 3>() += dt_s * l->JtWJ;
-      H.bottomRightCorner<3, 3>() += dt_s * dt_s * l->JtWJ;
-      b.head<3>() += l->JtWr;
-      b.tail<3>() += dt_s * l->JtWr;
-      chi2 += l->cost;
-    }
-    H.bottomLeftCorner<3, 3>() = H.topRightCorner<3, 3>().transpose();
-    if (iteration == params_.iterations) {
+    b << total(b_p), total(b_v) - prior_information * v;
+    const Cholesky<6> H(normal);
+    if (!H.positive()) return std::nullopt;
+    const Vector6d step = H.solve(b);
+    const double gain = b.dot(step);
+    const bool converged = gain < kConverged_chi2;
+    if (converged || iteration == params_.iterations) {
+      const double chi2 = total(cost) - (converged ? gain : 0);
       if (!(chi2 < params_.max_chi2_per_dof * (3.0 * window.size - 6.0))) return std::nullopt;
-      return SceneFlow{.p_cam = p,
-                       .velocity_mps = v,
-                       .covariance = H.ldlt().solve(Matrix6d::Identity()),
-                       .moving_chi2 = chi2,
-                       .observations = window.size};
+      if (converged) p += step.head<3>(), v += step.tail<3>();
+      return SceneFlow{.p_cam = p, .velocity_mps = v, .covariance = H.inverse(), .moving_chi2 = chi2, .observations = window.size};
     }
-    const Vector6d step = H.ldlt().solve(b);
     p += step.head<3>();
     v += step.tail<3>();
     if (!step.allFinite() || p.z() < StereoCamera::kMinDepth_m) return std::nullopt;

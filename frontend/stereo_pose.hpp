@@ -8,6 +8,7 @@
 
 #include "core/se3.hpp"
 #include "core/stereo_camera.hpp"
+#include "frontend/double_lanes.hpp"
 
 namespace motorcade {
 
@@ -19,6 +20,26 @@ struct PoseObservation {
   Eigen::Vector3d sigma_px;  // independent; a huge sigma of d stands for "no disparity"
 };
 
+/// The same, laid out to be computed four at a time.
+class PoseObservations {
+ public:
+  explicit PoseObservations(std::span<const PoseObservation> observations);
+
+  /// Four of them. Where there are fewer, the first one fills up.
+  struct Block {
+    Doubles3 p_a;
+    SymmetricDoubles3x3 covariance_a;
+    Doubles3 uvd_px, variance_px2;
+    Doubles count;  // 1, or 0 for what fills up
+  };
+  std::span<const Block> blocks() const { return blocks_; }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::vector<Block> blocks_;
+  std::size_t size_;
+};
+
 /// Gaussian prior on the pose sought, right perturbation: log(mean^-1 * T) ~ N(0, information^-1).
 struct PosePrior {
   SE3 mean;
@@ -27,8 +48,7 @@ struct PosePrior {
 
 struct PoseFit {
   SE3 T_cam_a;
-  Matrix6d covariance;       // right perturbation of T_cam_a; inverse of the weighted normal matrix
-  std::vector<double> chi2;  // whitened squared residual of each observation (3 degrees of freedom); infinite behind the camera
+  Matrix6d covariance;  // right perturbation of T_cam_a; inverse of the weighted normal matrix
   double inlier_chi2_per_dof = 1;
 };
 
@@ -43,10 +63,10 @@ struct PoseFitParams {
 ///   min over T of sum rho(r' S^-1 r), r = uvd - project(T p_a), S = diag(sigma^2) + J C_a J'  (J = d project / d p_a).
 /// Weighting by S is what keeps far points, whose depth is poor, from stretching the path.
 /// Empty when the problem is singular or diverges.
-std::optional<PoseFit> fitPose(const StereoCamera& camera, std::span<const PoseObservation> observations, const SE3& initial_T_cam_a,
+std::optional<PoseFit> fitPose(const StereoCamera& camera, const PoseObservations& observations, const SE3& initial_T_cam_a,
                                const PoseFitParams& params, const PosePrior* prior = nullptr);
 
-/// Whitened squared residual of one observation under a pose; infinite behind the camera.
-double poseChi2(const StereoCamera& camera, const PoseObservation& observation, const SE3& T_cam_a);
+/// Whitened squared residuals of the observations under a pose (3 degrees of freedom); infinite behind the camera.
+std::vector<double> poseChi2(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_a);
 
 }  // namespace motorcade
