@@ -1,11 +1,15 @@
 #include "frontend/corner_detector.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
+
+#include "frontend/parallel_items.hpp"
 
 namespace motorcade {
 namespace {
@@ -161,13 +165,12 @@ bool strongerInCell(const Candidate& a, const Candidate& b) {
          std::tuple(b.cell, -b.corner.score, b.corner.v_px, b.corner.u_px);
 }
 
-/// Local maxima of the whole image, in reading order.
-std::vector<Candidate> findCandidates(const Image& image, const CornerDetector::Params& params) {
-  const int width = image.width(), height = image.height(), radius = params.min_distance_px;
-  const int border = std::max(params.border_px, kHalfWindow_px + 2 + radius);
-  std::vector<Candidate> candidates;
-  if (width <= 2 * border || height <= 2 * border) return candidates;
+int borderOf(const CornerDetector::Params& params) { return std::max(params.border_px, kHalfWindow_px + 2 + params.min_distance_px); }
 
+/// Local maxima of the rows from `first_centre` up to `end_centre`, in reading order.
+std::vector<Candidate> findCandidates(const Image& image, int first_centre, int end_centre, const CornerDetector::Params& params) {
+  const int width = image.width(), radius = params.min_distance_px, border = borderOf(params);
+  std::vector<Candidate> candidates;
   constexpr double kMomentScale = Gradients::kScale * Gradients::kScale * kWindowPixels;
   const auto threshold = static_cast<float>(params.min_score * params.min_score * kMomentScale);
   const int columns = (width + params.cell_px - 1) / params.cell_px;
@@ -175,14 +178,14 @@ std::vector<Candidate> findCandidates(const Image& image, const CornerDetector::
   ColumnMoments moments(width);
   RowRing<float> response(2 * radius + 1, width);
   std::vector<std::uint8_t> marks(width + sizeof(std::uint64_t), 0);
-  const int first_row = border - radius, end_row = height - border + radius;
+  const int first_row = first_centre - radius, end_row = end_centre + radius;
   for (int y = first_row - kHalfWindow_px; y < first_row + kHalfWindow_px; ++y) gradients.advanceTo(y), moments.slideTo(gradients, y);
   for (int y = first_row; y < end_row; ++y) {
     gradients.advanceTo(y + kHalfWindow_px);
     moments.slideTo(gradients, y + kHalfWindow_px);
     smallerEigenvalues(moments, border - radius, width - border + radius, response.row(y));
     const int centre = y - radius;
-    if (centre < border) continue;
+    if (centre < first_centre) continue;
     markPeaks(response, centre, border, width - border, threshold, marks.data());
     for (int x = border; x < width - border; ++x) {
       x = nextMark(marks, x);
@@ -193,6 +196,19 @@ std::vector<Candidate> findCandidates(const Image& image, const CornerDetector::
           {centre / params.cell_px * columns + x / params.cell_px, {static_cast<float>(x), static_cast<float>(centre), score}});
     }
   }
+  return candidates;
+}
+
+/// Local maxima of the whole image, in reading order: bands of rows side by side.
+std::vector<Candidate> findCandidates(const Image& image, const CornerDetector::Params& params) {
+  constexpr int kBands = 4;
+  const int border = borderOf(params), rows = image.height() - 2 * border;
+  if (rows <= 0 || image.width() <= 2 * border) return {};
+  const auto startOf = [&](std::size_t band) { return border + rows * static_cast<int>(band) / kBands; };
+  std::array<std::vector<Candidate>, kBands> bands;
+  forEachItem(kBands, [&](std::size_t i) { bands[i] = findCandidates(image, startOf(i), startOf(i + 1), params); }, 1);
+  std::vector<Candidate> candidates = std::move(bands.front());
+  for (std::size_t i = 1; i < kBands; ++i) candidates.insert(candidates.end(), bands[i].begin(), bands[i].end());
   return candidates;
 }
 
