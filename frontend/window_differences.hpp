@@ -10,6 +10,7 @@ namespace motorcade {
 
 struct WindowSize {
   int columns = 11, rows = 7;  // odd
+  bool operator==(const WindowSize&) const = default;
 };
 inline constexpr int kMaxWindowCosts = 512;
 inline constexpr int kMaxWindowColumns = 17, kMaxWindowRows = 15;
