@@ -239,6 +239,15 @@ Eigen::Matrix3f orthogonalize(PatchTemplate& patch, const TemplateSums& sums, Pa
 constexpr float priorInformation(float sigma) { return 9 / (sigma * sigma); }
 constexpr float kScaleSigma = 0.1F, kRowSlopeSigma = 0.3F, kColumnSlopeSigma = 0.15F;
 constexpr float kMaxStep_px = 1.5F;    // the gain comes out too small, and the step too long, while the patches do not overlap well
+/// An alignment whose steps are still as long as this at its fourth, fifth, ... iteration (the last counts for all that follow) comes to
+/// nothing, but for one in a hundred.
+constexpr std::array kLost_px{1.0F, 0.7F, 0.45F, 0.3F, 0.2F};
+constexpr int kFirstLost = 3;
+bool isLost(int iteration, float step_px2) {
+  if (iteration < kFirstLost) return false;
+  const float lost_px = kLost_px[std::min(static_cast<std::size_t>(iteration - kFirstLost), kLost_px.size() - 1)];
+  return step_px2 > lost_px * lost_px;
+}
 constexpr float kMinInformation = 60;  // of the shift: root mean square gradient of 0.7 gray levels per pixel over 11x11
 
 /// Share of the patch that template and deformation explain, as a correlation.
@@ -306,7 +315,9 @@ std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& 
     u = u_grid.px() - step.x();
     v -= step.y();
     if ((u - u_guess_px) * (u - u_guess_px) + (v - v_guess_px) * (v - v_guess_px) > max_shift_px2) return std::nullopt;
-    if (step.head<2>().squaredNorm() > params.max_step_px * params.max_step_px) continue;
+    const float step_px2 = step.head<2>().squaredNorm();
+    if (isLost(iteration, step_px2)) return std::nullopt;
+    if (step_px2 > params.max_step_px * params.max_step_px) continue;
     const float ncc = explainedCorrelation(patch, moments);
     if (ncc < params.min_ncc) return std::nullopt;
     const float sigma = std::max(shiftSigma(patch, moments, ncc, 0), shiftSigma(patch, moments, ncc, 1));
