@@ -1,54 +1,99 @@
 #include "core/image.hpp"
 
-#include <mutex>
+#include <array>
+#include <atomic>
 #include <new>
 #include <utility>
-#include <vector>
 
 namespace motorcade {
 namespace {
 
-constexpr std::size_t kAlignment = 32;
-constexpr int kTail_bytes = 32;
-
-struct AlignedDelete {
-  void operator()(std::uint8_t* p) const { ::operator delete[](p, std::align_val_t{kAlignment}); }
-};
-using Buffer = std::unique_ptr<std::uint8_t[], AlignedDelete>;
-
-Buffer makeBuffer(std::size_t bytes) { return Buffer(static_cast<std::uint8_t*>(::operator new[](bytes, std::align_val_t{kAlignment}))); }
+constexpr std::align_val_t kAlignment{64};
+constexpr std::size_t kHeader_bytes = 128;  // before the pixels: for the shared pointer's counts
+constexpr std::size_t kTail_bytes = 32;
 
 }  // namespace
 
 Image::Image(std::shared_ptr<std::uint8_t[]> buffer, int width, int height, int stride)
     : buffer_(std::move(buffer)), width_(width), height_(height), stride_(stride) {}
 
-/// Idle buffers by size. Outlives the pool while images are still in use.
-struct ImagePool::Shelf {
-  struct Idle {
-    std::size_t bytes;
-    Buffer buffer;
-  };
-  std::mutex mutex;
-  std::vector<Idle> idle;
-  std::size_t made = 0;
-
-  Buffer take(std::size_t bytes) {
-    const std::scoped_lock lock(mutex);
-    for (auto& entry : idle) {
-      if (entry.bytes != bytes) continue;
-      Buffer buffer = std::move(entry.buffer);
-      std::swap(entry, idle.back());
-      idle.pop_back();
-      return buffer;
-    }
-    ++made;
-    return makeBuffer(bytes);
+/// Idle buffers by size, behind atomic pointers: whoever swaps one out owns it, so that no thread ever waits for another. Outlives the pool
+/// while images are still in use.
+class ImagePool::Shelf {
+ public:
+  Shelf() = default;
+  Shelf(const Shelf&) = delete;
+  Shelf& operator=(const Shelf&) = delete;
+  ~Shelf() {
+    for (Row& row : rows_)
+      for (auto& place : row.places) release(place.load(std::memory_order_relaxed));
   }
 
-  void putBack(std::size_t bytes, Buffer buffer) {
-    const std::scoped_lock lock(mutex);
-    idle.push_back({bytes, std::move(buffer)});
+  std::byte* take(std::size_t bytes) {
+    if (Row* row = rowOf(bytes)) {
+      for (auto& place : row->places) {
+        if (!place.load(std::memory_order_relaxed)) continue;
+        if (std::byte* buffer = place.exchange(nullptr, std::memory_order_acquire)) return buffer;
+      }
+    }
+    made_.fetch_add(1, std::memory_order_relaxed);
+    return static_cast<std::byte*>(::operator new(bytes, kAlignment));
+  }
+
+  void putBack(std::size_t bytes, std::byte* buffer) {
+    if (Row* row = rowOf(bytes)) {
+      for (auto& place : row->places) {
+        std::byte* empty = place.load(std::memory_order_relaxed);
+        if (!empty && place.compare_exchange_strong(empty, buffer, std::memory_order_release, std::memory_order_relaxed)) return;
+      }
+    }
+    release(buffer);
+  }
+
+  std::size_t made() const { return made_.load(std::memory_order_relaxed); }
+
+ private:
+  static constexpr std::size_t kRows = 16, kPlaces = 64;  // what finds no place goes back to the heap
+  struct Row {
+    std::atomic<std::size_t> bytes{0};  // 0: nobody's yet
+    std::array<std::atomic<std::byte*>, kPlaces> places{};
+  };
+
+  Row* rowOf(std::size_t bytes) {
+    for (Row& row : rows_) {
+      std::size_t held = row.bytes.load(std::memory_order_relaxed);
+      if (held == bytes || (held == 0 && row.bytes.compare_exchange_strong(held, bytes, std::memory_order_relaxed)) || held == bytes)
+        return &row;
+    }
+    return nullptr;
+  }
+  static void release(std::byte* buffer) { ::operator delete(buffer, kAlignment); }
+
+  std::array<Row, kRows> rows_;
+  std::atomic<std::size_t> made_{0};
+};
+
+/// Lays the counts of a shared pointer into the header of the buffer that it shares. They are the last to be let go of: then the buffer is
+/// idle.
+template <class T>
+struct ImagePool::InHeader {
+  using value_type = T;
+  std::shared_ptr<Shelf> shelf;
+  std::byte* buffer;
+  std::size_t bytes;
+
+  InHeader(std::shared_ptr<Shelf> s, std::byte* b, std::size_t n) : shelf(std::move(s)), buffer(b), bytes(n) {}
+  template <class Other>
+  explicit(false) InHeader(const InHeader<Other>& other) : shelf(other.shelf), buffer(other.buffer), bytes(other.bytes) {}
+
+  T* allocate(std::size_t) const {
+    static_assert(sizeof(T) <= kHeader_bytes && alignof(T) <= static_cast<std::size_t>(kAlignment));
+    return reinterpret_cast<T*>(buffer);
+  }
+  void deallocate(T*, std::size_t) const { shelf->putBack(bytes, buffer); }
+  template <class Other>
+  bool operator==(const InHeader<Other>& other) const {
+    return buffer == other.buffer;
   }
 };
 
@@ -56,14 +101,13 @@ ImagePool::ImagePool() : shelf_(std::make_shared<Shelf>()) {}
 
 Image ImagePool::acquire(int width, int height) {
   const int stride = (width + 31) / 32 * 32;
-  const auto bytes = static_cast<std::size_t>(stride) * static_cast<std::size_t>(height) + kTail_bytes;
-  auto give_back = [shelf = shelf_, bytes](std::uint8_t* p) { shelf->putBack(bytes, Buffer(p)); };
-  return {std::shared_ptr<std::uint8_t[]>(shelf_->take(bytes).release(), std::move(give_back)), width, height, stride};
+  const auto bytes = kHeader_bytes + static_cast<std::size_t>(stride) * static_cast<std::size_t>(height) + kTail_bytes;
+  std::byte* buffer = shelf_->take(bytes);
+  const auto keep = [](std::uint8_t*) {};
+  auto* pixels = reinterpret_cast<std::uint8_t*>(buffer + kHeader_bytes);
+  return {std::shared_ptr<std::uint8_t[]>(pixels, keep, InHeader<std::uint8_t>(shelf_, buffer, bytes)), width, height, stride};
 }
 
-std::size_t ImagePool::buffersMade() const {
-  const std::scoped_lock lock(shelf_->mutex);
-  return shelf_->made;
-}
+std::size_t ImagePool::buffersMade() const { return shelf_->made(); }
 
 }  // namespace motorcade

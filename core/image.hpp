@@ -29,8 +29,8 @@ class Image {
   int width_ = 0, height_ = 0, stride_ = 0;
 };
 
-/// Hands out images and takes their buffers back when the last view is gone, so that a steady
-/// stream of frames touches no fresh memory. Safe to use from several threads.
+/// Hands out images and takes their buffers back when the last view is gone, so that a steady stream of frames touches no fresh memory.
+/// Any thread may acquire images and let go of them, without locks, and once the stream is warm without the heap.
 class ImagePool {
  public:
   ImagePool();
@@ -40,7 +40,9 @@ class ImagePool {
   std::size_t buffersMade() const;
 
  private:
-  struct Shelf;
+  class Shelf;
+  template <class T>
+  struct InHeader;
   std::shared_ptr<Shelf> shelf_;
 };
 

@@ -74,6 +74,7 @@ class Pipeline {
 
   /// Producer: false after `close`. Frames without an id are numbered; ids must increase.
   /// A frame without a due time is due when the pipeline takes it.
+  /// Under the live policy it takes no lock and, with images from an ImagePool, asks nothing of the heap.
   bool push(StereoFrame frame);
   /// Producer, live only, between two pushes: the camera had this frame, but it was too late to push it. It counts as received and dropped.
   void passOver(const FrameHeader& frame);
