@@ -2,13 +2,15 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 namespace motorcade {
 
-/// Memory for small matrices that come and go: blocks of doubles cut from large chunks, sorted by size and given out again. It grows to the
-/// largest demand so far and never asks the heap again below that. Blocks begin on a cache line.
+/// Memory for small matrices that come and go, cut from large chunks. Neighbours that come back become one block again, so that what is
+/// held follows the largest demand so far and not the largest of each size: below that the heap is hardly ever asked again. Blocks begin on
+/// a cache line.
 class BlockPool {
  public:
   /// At least `doubles` numbers, uninitialised.
@@ -21,17 +23,22 @@ class BlockPool {
 
  private:
   struct Release {
-    void operator()(double* chunk) const;
+    void operator()(std::byte* chunk) const;
   };
-  using Chunk = std::unique_ptr<double[], Release>;
+  using Chunk = std::unique_ptr<std::byte[], Release>;
+  struct Tag;   // before each block
+  struct Idle;  // in a block that is in the pool
 
-  double* cut(std::size_t doubles);
+  Idle* fitting(std::uint32_t lines);
+  Idle* addChunk(std::uint32_t lines);
+  void insert(Idle* block, std::uint32_t lines);
+  void remove(Idle* block);
 
   static constexpr int kClasses = 128;
-  std::array<std::vector<double*>, kClasses> free_;
+  std::array<Idle*, kClasses> idle_{};              // by size, each a list
+  std::array<std::uint64_t, kClasses / 64> any_{};  // a bit for each list that is not empty
   std::vector<Chunk> chunks_;
-  double* next_ = nullptr;
-  std::size_t left_ = 0, held_bytes_ = 0, used_bytes_ = 0;
+  std::size_t held_bytes_ = 0, used_bytes_ = 0;
 };
 
 }  // namespace motorcade

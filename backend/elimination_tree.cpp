@@ -12,7 +12,7 @@ std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 std::size_t panelLength(const Clique& c) { return index(c.panelStride()) * index(c.frontal_size); }
-std::size_t remainderLength(const Clique& c) { return index(c.remainderStride()) * index(c.separatorSize() + 1); }
+std::size_t remainderLength(const Clique& c) { return index(c.separatorSize()) * index(c.separatorSize() + 1) / 2; }
 
 /// With the 4 x 4 blocks on the diagonal whole, as the kernels read them.
 void clearLowerTriangle(double* matrix, int stride, int columns) {
@@ -219,7 +219,7 @@ Eigen::MatrixXd EliminationTree::marginal(std::span<const VariableId> eliminated
   eliminateFront(clique);
   const int rows = clique.separatorSize() + 1;
   const Eigen::MatrixXd result =
-      Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(clique.remainder, rows, rows, Eigen::OuterStride<>(clique.remainderStride()));
+      Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(remainder_.data(), rows, rows, Eigen::OuterStride<>(remainder_stride_));
   release(clique);
   return result;
 }
@@ -232,8 +232,11 @@ void EliminationTree::refresh(int id) {
 
 /// Gathers the front, factorises it, and holds what has no information.
 void EliminationTree::eliminateFront(Clique& clique) {
-  clearLowerTriangle(clique.panel, clique.panelStride(), clique.frontal_size);
-  clearLowerTriangle(clique.remainder, clique.remainderStride(), clique.separatorSize() + 1);
+  const int n = clique.frontal_size, rest = clique.separatorSize(), stride = clique.panelStride();
+  remainder_stride_ = (rest + 1 + 3) / 4 * 4;
+  if (const std::size_t length = index(remainder_stride_) * index(rest + 1); remainder_.size() < length) remainder_.resize(length);
+  clearLowerTriangle(clique.panel, stride, n);
+  clearLowerTriangle(remainder_.data(), remainder_stride_, rest + 1);
   int at = 0;
   for (const VariableId v : clique.variables) {
     offset_[index(v)] = at;
@@ -243,12 +246,21 @@ void EliminationTree::eliminateFront(Clique& clique) {
   for (int child = clique.first_child; child >= 0; child = cliques_[index(child)].next_sibling) addChildTo(clique, cliques_[index(child)]);
 
   clique.singular.clear();
-  const int n = clique.frontal_size, rest = clique.separatorSize(), stride = clique.panelStride();
   const double ratio = factorizePanel(clique.panel, stride, clique.size + 1, n, clique.singular);
-  subtractOuterProduct(clique.remainder, clique.remainderStride(), clique.panel + n, stride, rest + 1, n);
-  for (int i = 0; i < rest; ++i) clique.carry[i] = clique.remainder[index(i) * index(clique.remainderStride()) + index(rest)];
+  subtractOuterProduct(remainder_.data(), remainder_stride_, clique.panel + n, stride, rest + 1, n);
+  packRemainder(clique);
   if (ratio < weakest_.ratio) weakest_ = {.variable = clique.variables.front(), .ratio = ratio};
   for (const int column : clique.singular) holdSingular(clique, column);
+}
+
+void EliminationTree::packRemainder(Clique& clique) const {
+  const int rest = clique.separatorSize();
+  const double* from = remainder_.data();
+  double* to = clique.remainder;
+  for (int j = 0; j < rest; ++j, from += remainder_stride_) {
+    to = std::copy(from + j, from + rest, to);
+    clique.carry[j] = from[rest];
+  }
 }
 
 /// Keeps the x of a scalar without information where the estimate stands.
@@ -262,19 +274,20 @@ void EliminationTree::holdSingular(Clique& clique, int column) {
 }
 
 /// A column of the front's lower triangle, such that [row] is the entry.
-double* EliminationTree::column(Clique& clique, int column) const {
+double* EliminationTree::column(Clique& clique, int column) {
   const int n = clique.frontal_size;
   if (column < n) return clique.panel + index(column) * index(clique.panelStride());
-  return clique.remainder + index(column - n) * index(clique.remainderStride()) - n;
+  return remainder_.data() + index(column - n) * index(remainder_stride_) - n;
 }
 
-/// Adds the lower triangle of a small symmetric matrix whose rows are given in spans.
-void EliminationTree::addSymmetric(Clique& clique, const double* source, int stride, std::span<const RowSpan> spans) {
+/// Adds the lower triangle of a small symmetric matrix whose rows are given in spans; `source` gives its columns.
+template <class ColumnOf>
+void EliminationTree::addSymmetric(Clique& clique, const ColumnOf& source, std::span<const RowSpan> spans) {
   for (std::size_t b = 0; b < spans.size(); ++b) {
     const RowSpan columns = spans[b];
     const std::span<const RowSpan> below = spans.subspan(b + 1);
     for (int j = 0; j < columns.size; ++j) {
-      const double* from = source + index(columns.from + j) * index(stride);
+      const double* from = source(columns.from + j);
       double* to = column(clique, columns.to + j);
       addTo(to + columns.to + j, from + columns.from + j, columns.size - j);
       for (const RowSpan& rows : below) {
@@ -298,13 +311,13 @@ void EliminationTree::addFactorTo(Clique& clique, FactorId id) {
   }
   spans_.push_back({from, clique.size, 1});
   if (factor.form() == Factor::Form::kInformation) {
-    addSymmetric(clique, term.data(), static_cast<int>(term.rows()), spans_);
+    addSymmetric(clique, [&](int j) { return term.data() + j * term.rows(); }, spans_);
     return;
   }
   const int columns = static_cast<int>(term.cols()), stride = (columns + 3) / 4 * 4;
   product_.assign(index(columns) * index(stride), 0.0);
   addJacobianProduct(term.data(), static_cast<int>(term.rows()), columns, product_.data(), stride);
-  addSymmetric(clique, product_.data(), stride, spans_);
+  addSymmetric(clique, [&](int j) { return product_.data() + index(j) * index(stride); }, spans_);
 }
 
 void EliminationTree::addChildTo(Clique& clique, const Clique& child) {
@@ -320,7 +333,7 @@ void EliminationTree::addChildTo(Clique& clique, const Clique& child) {
     from += size;
   }
   splitAtFrontals(clique.frontal_size);
-  addSymmetric(clique, child.remainder, child.remainderStride(), spans_);
+  addSymmetric(clique, [&](int j) { return child.remainderColumn(j); }, spans_);
   // The right-hand side, which `carry` holds when it changed alone.
   for (const RowSpan& span : spans_)
     for (int i = 0; i < span.size; ++i) column(clique, span.to + i)[clique.size] += child.carry[span.from + i];

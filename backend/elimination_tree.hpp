@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,7 +23,7 @@ struct Clique {
   /// (size + 1) x frontal_size: columns are the rows of [R S d], so R^T above, S^T, and d^T last.
   double* panel = nullptr;
   std::vector<int> singular;  // frontal scalars without information
-  /// What elimination leaves on the separator, [H g; g^T c]: the lower triangle of H (with g^T and c below it, not kept up), and g.
+  /// What elimination leaves on the separator: H, its lower triangle packed column by column, and g.
   double *remainder = nullptr, *carry = nullptr;
   bool alive = false;
 
@@ -30,7 +31,8 @@ struct Clique {
   std::span<const VariableId> separator() const { return std::span(variables).subspan(static_cast<std::size_t>(frontals)); }
   int separatorSize() const { return size - frontal_size; }
   int panelStride() const { return (size + 1 + 3) / 4 * 4; }
-  int remainderStride() const { return (separatorSize() + 1 + 3) / 4 * 4; }
+  /// Such that [row] is the entry of the column, from the diagonal on.
+  const double* remainderColumn(int j) const { return remainder + std::ptrdiff_t{j} * (2 * separatorSize() - j - 1) / 2; }
 };
 
 /// Which variables to eliminate, in which order. The roots that result hang below `parent`, in whose clique the `boundary` lies.
@@ -114,12 +116,14 @@ class EliminationTree {
   struct RowSpan {
     int from, to, size;  // scalars from `from` of a small matrix go to `to` of the front
   };
-  void addSymmetric(Clique& clique, const double* source, int stride, std::span<const RowSpan> spans);
+  template <class ColumnOf>
+  void addSymmetric(Clique& clique, const ColumnOf& source, std::span<const RowSpan> spans);
+  void packRemainder(Clique& clique) const;
   void splitAtFrontals(int frontal_size);
   void holdSingular(Clique& clique, int column);
   void addFactorTo(Clique& clique, FactorId id);
   void addChildTo(Clique& clique, const Clique& child);
-  double* column(Clique& clique, int column) const;
+  double* column(Clique& clique, int column);
 
   const FactorGraph& graph_;
   std::vector<Clique> cliques_;
@@ -135,6 +139,9 @@ class EliminationTree {
   std::vector<int> offset_;  // per variable: first scalar in the front at hand
   std::vector<RowSpan> spans_;
   std::vector<double> product_, former_;
+  /// Of the front at hand, [H g; g^T c] on the separator, until it is packed.
+  std::vector<double, Eigen::aligned_allocator<double>> remainder_;
+  int remainder_stride_ = 0;
   std::vector<int> scalars_, term_positions_, group_clique_;
   std::vector<char> leaving_;  // per clique
 };

@@ -1,6 +1,7 @@
 #include "backend/block_pool.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <numeric>
 #include <vector>
@@ -55,30 +56,53 @@ TEST(BlockPool, GivesTheSameMemoryOutAgain) {
   const std::size_t held = pool.heldBytes(), used = pool.usedBytes();
   for (int round = 0; round < 20; ++round) {
     for (const Block& block : out) pool.give(block.data, block.doubles);
-    std::ranges::reverse(out);
+    EXPECT_EQ(pool.usedBytes(), 0U);
     for (Block& block : out) block.data = pool.take(block.doubles);
     EXPECT_EQ(pool.heldBytes(), held);
     EXPECT_EQ(pool.usedBytes(), used);
   }
-  for (const Block& block : out) pool.give(block.data, block.doubles);
-  EXPECT_EQ(pool.usedBytes(), 0U);
-  EXPECT_EQ(pool.heldBytes(), held);
 }
 
-TEST(BlockPool, ABlockServesEveryDemandOfItsSizeClass) {
+TEST(BlockPool, NeighboursThatComeBackAreOneBlockAgain) {
+  for (const auto& order : {std::array{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}) {
+    BlockPool pool;
+    std::array<double*, 3> blocks{};
+    for (double*& block : blocks) block = pool.take(100);
+    const double* end = pool.take(100);
+    for (const int i : order) pool.give(blocks[static_cast<std::size_t>(i)], 100);
+    EXPECT_EQ(pool.take(310), blocks[0]);
+    EXPECT_GT(pool.take(1), end);  // nothing is left below
+  }
+}
+
+/// What a solver does whose matrices grow and shrink: each size has its largest demand at another time.
+TEST(BlockPool, HoldsLittleMoreThanTheLargestDemand) {
   BlockPool pool;
-  double* block = pool.take(65);
-  pool.give(block, 65);
-  EXPECT_EQ(pool.take(72), block);  // as many cache lines
+  test::Noise noise(3);
+  std::vector<Block> out;
+  std::size_t demand_bytes = 0;
+  constexpr std::size_t kLargest_bytes = 20'000'000;
+  for (int i = 0; i < 60000; ++i) {
+    const std::size_t usual = 100 + static_cast<std::size_t>(i / 1000 % 10) * 500, doubles = usual / 2 + below(noise, usual);
+    if (demand_bytes + doubles * sizeof(double) > kLargest_bytes) {
+      std::swap(out[below(noise, out.size())], out.back());
+      pool.give(out.back().data, out.back().doubles);
+      demand_bytes -= out.back().doubles * sizeof(double);
+      out.pop_back();
+    } else {
+      out.push_back({pool.take(doubles), doubles});
+      demand_bytes += doubles * sizeof(double);
+    }
+  }
+  EXPECT_LT(pool.heldBytes(), kLargest_bytes / 10 * 16);  // measured: 1.31 times; 2.46 where blocks keep the sizes that they were cut to
 }
 
-TEST(BlockPool, WastesAtMostAFifthOfALargeBlock) {
-  for (std::size_t doubles = 64; doubles < 100000; doubles += 1 + doubles / 50) {
+TEST(BlockPool, WastesLessThanTwoCacheLines) {
+  for (std::size_t doubles = 0; doubles < 100000; doubles += 1 + doubles / 50) {
     BlockPool pool;
     pool.take(doubles);
     EXPECT_GE(pool.usedBytes(), doubles * sizeof(double));
-    // The 8 doubles are the cache line that the last of them begin.
-    EXPECT_LE(pool.usedBytes(), (doubles + 8) * sizeof(double) * 5 / 4) << doubles;
+    EXPECT_LT(pool.usedBytes(), doubles * sizeof(double) + 128) << doubles;
   }
 }
 
