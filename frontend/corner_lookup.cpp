@@ -3,11 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <utility>
 
 #include "frontend/image_pyramid.hpp"
+#include "frontend/word_lanes.hpp"
 
 namespace motorcade {
+namespace {
+
+using WordBytes = std::uint8_t __attribute__((vector_size(kWordLanes)));
+
+}  // namespace
 
 Signature::Signature(const ImagePyramid& pyramid, float u_px, float v_px) {
   for (int level = 0; level < 2; ++level) {
@@ -25,12 +32,18 @@ int Signature::distance(const Signature& other) const {
 }
 
 void Signature::fill(const Image& image, int x, int y, std::uint8_t* out) {
-  int sum = 0;
-  for (int r = 0; r < kSide; ++r)
-    for (int c = 0; c < kSide; ++c) sum += image.row(y + r)[x + c];
-  const int shift = 128 - sum / (kSide * kSide);
-  for (int r = 0; r < kSide; ++r)
-    for (int c = 0; c < kSide; ++c) out[r * kSide + c] = static_cast<std::uint8_t>(std::clamp(image.row(y + r)[x + c] + shift, 0, 255));
+  static_assert(2 * kSide == kWordLanes);
+  for (int r = 0; r < kSide; ++r) std::memcpy(out + r * kSide, image.row(y + r) + x, kSide);
+  std::array<Words, kSide / 2> pixels;
+  Words sums{};
+  for (int i = 0; i < kSide / 2; ++i) sums += pixels[i] = wordPixels(out + i * kWordLanes);
+  const WordSums pairs = products(sums, allWords(1));
+  const Words shift = allWords(128 - totals(pairs, pairs, pairs, pairs)[0] / (kSide * kSide)), black{}, white = allWords(255);
+  for (int i = 0; i < kSide / 2; ++i) {
+    const Words shifted = pixels[i] + shift, above = shifted < black ? black : shifted;
+    const auto bytes = __builtin_convertvector(above > white ? white : above, WordBytes);
+    std::memcpy(out + i * kWordLanes, &bytes, sizeof bytes);
+  }
 }
 
 CornerLookup::CornerLookup(const Features& features)

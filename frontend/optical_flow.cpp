@@ -51,7 +51,8 @@ class Occupancy {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         const Shift& p = cells_[index(x + dx, y + dy)];
-        if (std::hypot(p.du_px - u_px, p.dv_px - v_px) < distance_px_) return true;
+        const float du = p.du_px - u_px, dv = p.dv_px - v_px;
+        if (du * du + dv * dv < distance_px_ * distance_px_) return true;
       }
     }
     return false;
