@@ -196,13 +196,14 @@ std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sigh
 }
 
 void SceneMotionEstimator::updateTracks(const std::vector<Sighted>& sighted, const FeaturesPtr& features) {
-  std::vector<PointTrack> updated(sighted.size());
+  updated_tracks_.resize(sighted.size());
   const Image& now = features->left.levels.front();
-  forEachItem(sighted.size(), [&](std::size_t i) { updated[i] = sighted[i].disparity ? extendTrack(sighted[i], now) : *sighted[i].track; });
+  forEachItem(sighted.size(),
+              [&](std::size_t i) { updated_tracks_[i] = sighted[i].disparity ? extendTrack(sighted[i], now) : *sighted[i].track; });
   previous_features_ = features;
   const std::int64_t oldest_kept = trail_.newest().step - params_.max_missed_frames;
-  std::erase_if(updated, [&](const PointTrack& track) { return track.newest().step < oldest_kept; });
-  tracks_ = std::move(updated);
+  std::erase_if(updated_tracks_, [&](const PointTrack& track) { return track.newest().step < oldest_kept; });
+  std::swap(tracks_, updated_tracks_);
 }
 
 /// Looked for both ways: something else may hide its place at rest in one of the two images.

@@ -84,8 +84,9 @@ class SceneMotionEstimator {
   GroundPlaneEstimator ground_plane_;
   MotionSegmenter segmenter_;
 
-  std::vector<PointTrack> tracks_;  // ordered by point
-  FeaturesPtr previous_features_;   // empty at the start and after a rejected frame
+  std::vector<PointTrack> tracks_;          // ordered by point
+  std::vector<PointTrack> updated_tracks_;  // of the frame before the last; its memory serves again
+  FeaturesPtr previous_features_;           // empty at the start and after a rejected frame
   CameraTrail trail_;
   std::optional<SE3> last_motion_;  // T_previous_now of the last frame
   double last_dt_s_ = 0;
