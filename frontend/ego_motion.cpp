@@ -104,6 +104,7 @@ std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObse
   const PoseObservations all(observations);
   const auto start_chi2 = poseChi2(camera_, all, start);
   std::vector<PoseObservation> agreeing;
+  agreeing.reserve(observations.size());
   for (std::size_t i = 0; i < observations.size(); ++i)
     if (start_chi2[i] < 3 * params_.inlier_chi2) agreeing.push_back(observations[i]);
   const auto fit = fitPose(camera_, PoseObservations(agreeing), start, params_.fit);

@@ -23,9 +23,19 @@ SE3 SceneMotionEstimator::predictMotion(Timestamp stamp) const {
   return scaledMotion(*last_motion_, secondsBetween(trail_.newest().stamp, stamp) / last_dt_s_);
 }
 
+/// In the memory of one that is no longer in use.
+std::shared_ptr<SceneMotion> SceneMotionEstimator::emptyMotion() {
+  auto motion = motions_.acquire();
+  auto points = std::move(motion->points);
+  points.clear();
+  *motion = SceneMotion{};
+  motion->points = std::move(points);
+  return motion;
+}
+
 SceneMotionPtr SceneMotionEstimator::operator()(const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow) {
   const StereoFrame& frame = *stereo->features->frame;
-  auto motion = std::make_shared<SceneMotion>();
+  auto motion = emptyMotion();
   motion->frame = frame.frame;
   motion->stamp = frame.stamp;
   const SE3 predicted = trail_.empty() ? SE3{} : predictMotion(frame.stamp);
@@ -171,6 +181,8 @@ std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sigh
   std::vector<bool> known_movers;
   std::vector<bool> inliers(sighted.size(), false);
   std::vector<std::size_t> of_observation;
+  observations.reserve(sighted.size());
+  of_observation.reserve(sighted.size());
   for (std::size_t i = 0; i < sighted.size(); ++i) {
     if (!sighted[i].track || !sighted[i].disparity) continue;
     observations.push_back(observe(sighted[i]));

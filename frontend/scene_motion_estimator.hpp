@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/object_pool.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/disparity_offset.hpp"
 #include "frontend/ego_motion.hpp"
@@ -65,6 +66,7 @@ class SceneMotionEstimator {
   /// triangulated one.
   PoseObservation lastPosition(const PointTrack& track) const;
   std::vector<bool> estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted, SceneMotion& motion);
+  std::shared_ptr<SceneMotion> emptyMotion();
   void updateTracks(const std::vector<Sighted>& sighted, const FeaturesPtr& features);
   /// The track of a point whose disparity was found, with what its sightings up to now tell.
   PointTrack extendTrack(const Sighted& sighted, const Image& now) const;
@@ -84,6 +86,7 @@ class SceneMotionEstimator {
   GroundPlaneEstimator ground_plane_;
   MotionSegmenter segmenter_;
 
+  ObjectPool<SceneMotion> motions_;
   std::vector<PointTrack> tracks_;          // ordered by point
   std::vector<PointTrack> updated_tracks_;  // of the frame before the last; its memory serves again
   FeaturesPtr previous_features_;           // empty at the start and after a rejected frame
