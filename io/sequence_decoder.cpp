@@ -1,5 +1,7 @@
 #include "io/sequence_decoder.hpp"
 
+#include <sys/resource.h>
+
 #include <chrono>
 #include <exception>
 #include <utility>
@@ -8,10 +10,21 @@
 #include "io/image_file.hpp"
 
 namespace motorcade {
+namespace {
+
+/// Decoding ahead gives way to the frame that is due. On Linux the priority is the calling thread's alone; without it all works as well,
+/// only later.
+void giveWay() {
+  constexpr int kLeastUrgent = 19;
+  setpriority(PRIO_PROCESS, 0, kLeastUrgent);
+}
+
+}  // namespace
 
 SequenceDecoder::SequenceDecoder(Sequence sequence, FrameRange range, const Params& params)
     : sequence_(std::move(sequence)), wanted_(params.wanted), range_(range.within(sequence_.frames.size())), ring_(params.ahead) {
   thread_ = std::jthread([this] {
+    giveWay();
     for (std::size_t index = range_.begin; index < range_.end; ++index) {
       if (!wants(index)) continue;
       if (ring_.closed() || !ring_.push(decode(index))) return;
