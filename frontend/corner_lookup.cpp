@@ -49,9 +49,12 @@ void Signature::fill(const Image& image, int x, int y, std::uint8_t* out) {
 CornerLookup::CornerLookup(const Features& features)
     : grid_(features.corners, features.left.levels.front().width(), features.left.levels.front().height(),
             [](const Corner& c) { return Eigen::Vector2f(c.u_px, c.v_px); }) {
-  entries_.reserve(features.corners.size());
-  for (const Corner& corner : features.corners)
-    entries_.push_back({{corner.u_px, corner.v_px}, Signature(features.left, corner.u_px, corner.v_px)});
+  places_.reserve(features.corners.size());
+  signatures_.reserve(features.corners.size());
+  for (const Corner& corner : features.corners) {
+    places_.emplace_back(corner.u_px, corner.v_px);
+    signatures_.emplace_back(features.left, corner.u_px, corner.v_px);
+  }
 }
 
 void CornerLookup::addSimilar(const ImagePyramid& from, const FlowTrack& point, const ShiftBounds& bounds, double max_difference,
@@ -62,17 +65,16 @@ void CornerLookup::addSimilar(const ImagePyramid& from, const FlowTrack& point, 
   std::array best{none, none};  // the smallest difference first, of equal ones the first corner
   const Eigen::Vector2f first(bounds.min_du_px, bounds.min_dv_px), last(bounds.max_du_px, bounds.max_dv_px);
   grid_.forEachNear(here + first, here + last, [&](int i) {
-    const Entry& entry = entries_[static_cast<std::size_t>(i)];
-    const Eigen::Vector2f shift = entry.uv_px - here;
+    const Eigen::Vector2f shift = places_[static_cast<std::size_t>(i)] - here;
     if (!bounds.hold(shift.x(), shift.y())) return;
-    const std::pair candidate(signature.distance(entry.signature), i);
+    const std::pair candidate(signature.distance(signatures_[static_cast<std::size_t>(i)]), i);
     if (candidate.first >= none.first || candidate >= best[1]) return;
     best[1] = candidate;
     if (best[1] < best[0]) std::swap(best[0], best[1]);
   });
   for (const auto& [distance, i] : best) {
     if (i < 0) continue;
-    const Eigen::Vector2f shift = entries_[static_cast<std::size_t>(i)].uv_px - here;
+    const Eigen::Vector2f shift = places_[static_cast<std::size_t>(i)] - here;
     guesses.add({shift.x(), shift.y()});
   }
 }

@@ -53,12 +53,9 @@ class CornerLookup {
                   Guesses& guesses) const;
 
  private:
-  struct Entry {
-    Eigen::Vector2f uv_px;
-    Signature signature;
-  };
   PointGrid grid_;
-  std::vector<Entry> entries_;
+  std::vector<Eigen::Vector2f> places_;  // of each corner
+  std::vector<Signature> signatures_;
 };
 
 }  // namespace motorcade

@@ -11,7 +11,11 @@
 namespace motorcade {
 namespace {
 
-double tolerance_m(const GroundCandidate& c, double inlier_m) { return std::hypot(inlier_m, c.height_sigma_m); }
+/// A point that may lie on the road.
+struct LowPoint {
+  Eigen::Vector3d p_cam;
+  double tolerance_m;  // of its height above the plane
+};
 
 std::optional<GroundPlane> planeThrough(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   Eigen::Vector3d normal = (b - a).cross(c - a);
@@ -23,10 +27,10 @@ std::optional<GroundPlane> planeThrough(const Eigen::Vector3d& a, const Eigen::V
 
 /// Truncated quadratic score: the larger the better. Planes with many points above them lie too low and are no roads:
 /// a point below a plane (seen through it) counts against it.
-double support(std::span<const GroundCandidate> points, const GroundPlane& plane, double inlier_m) {
+double support(const std::vector<LowPoint>& points, const GroundPlane& plane) {
   double sum = 0;
   for (const auto& c : points) {
-    const double x = plane.heightOf_m(c.p_cam) / tolerance_m(c, inlier_m);
+    const double x = plane.heightOf_m(c.p_cam) / c.tolerance_m;
     if (std::abs(x) < 3) sum += 1 - x * x / 9;
     if (x < -4) sum -= 0.5;
   }
@@ -34,12 +38,12 @@ double support(std::span<const GroundCandidate> points, const GroundPlane& plane
 }
 
 /// Weighted least squares of y = (height - n_x x - n_z z) / n_y over the points near a plane.
-std::optional<GroundPlane> refine(std::span<const GroundCandidate> points, const GroundPlane& start, double inlier_m, int min_inliers) {
+std::optional<GroundPlane> refine(const std::vector<LowPoint>& points, const GroundPlane& start, int min_inliers) {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   int inliers = 0;
   for (const auto& c : points) {
-    const double tolerance = tolerance_m(c, inlier_m), x = start.heightOf_m(c.p_cam) / tolerance;
+    const double tolerance = c.tolerance_m, x = start.heightOf_m(c.p_cam) / tolerance;
     if (std::abs(x) > 2.5) continue;
     const Eigen::Vector3d row(c.p_cam.x(), c.p_cam.z(), 1);
     H += row * row.transpose() / (tolerance * tolerance);
@@ -63,27 +67,27 @@ bool GroundPlaneEstimator::plausible(const GroundPlane& plane) const {
 }
 
 GroundPlane GroundPlaneEstimator::operator()(std::span<const GroundCandidate> points, std::uint64_t seed) {
-  std::vector<GroundCandidate> low;
+  std::vector<LowPoint> low;
   for (const auto& c : points) {
     const bool near = c.p_cam.z() < params_.max_depth_m && std::abs(c.p_cam.x()) < params_.max_side_m;
-    if (near && c.p_cam.y() > 0.5 * params_.min_height_m) low.push_back(c);
+    if (near && c.p_cam.y() > 0.5 * params_.min_height_m) low.push_back({c.p_cam, std::hypot(params_.inlier_m, c.height_sigma_m)});
   }
   if (static_cast<int>(low.size()) < params_.min_inliers) return plane_;
 
   GroundPlane best = plane_;
-  double best_support = support(low, best, params_.inlier_m);
+  double best_support = support(low, best);
   std::mt19937_64 random(seed);
   std::uniform_int_distribution<std::size_t> pick(0, low.size() - 1);
   for (int k = 0; k < params_.hypotheses; ++k) {
     const auto plane = planeThrough(low[pick(random)].p_cam, low[pick(random)].p_cam, low[pick(random)].p_cam);
     if (!plane || !plausible(*plane)) continue;
-    const double s = support(low, *plane, params_.inlier_m);
+    const double s = support(low, *plane);
     if (s > best_support) {
       best_support = s;
       best = *plane;
     }
   }
-  const auto refined = refine(low, best, params_.inlier_m, params_.min_inliers);
+  const auto refined = refine(low, best, params_.min_inliers);
   if (!refined || !plausible(*refined)) return plane_;
   const double m = params_.memory;
   plane_.normal_cam = (m * plane_.normal_cam + (1 - m) * refined->normal_cam).normalized();
