@@ -5,6 +5,8 @@
 #include <new>
 #include <utility>
 
+#include "core/idle_places.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -17,8 +19,7 @@ constexpr std::size_t kTail_bytes = 32;
 Image::Image(std::shared_ptr<std::uint8_t[]> buffer, int width, int height, int stride)
     : buffer_(std::move(buffer)), width_(width), height_(height), stride_(stride) {}
 
-/// Idle buffers by size, behind atomic pointers: whoever swaps one out owns it, so that no thread ever waits for another. Outlives the pool
-/// while images are still in use.
+/// Idle buffers by size. Outlives the pool while images are still in use.
 class ImagePool::Shelf {
  public:
   Shelf() = default;
@@ -26,37 +27,27 @@ class ImagePool::Shelf {
   Shelf& operator=(const Shelf&) = delete;
   ~Shelf() {
     for (Row& row : rows_)
-      for (auto& place : row.places) release(place.load(std::memory_order_relaxed));
+      while (std::byte* buffer = row.idle.take()) release(buffer);
   }
 
   std::byte* take(std::size_t bytes) {
-    if (Row* row = rowOf(bytes)) {
-      for (auto& place : row->places) {
-        if (!place.load(std::memory_order_relaxed)) continue;
-        if (std::byte* buffer = place.exchange(nullptr, std::memory_order_acquire)) return buffer;
-      }
-    }
+    Row* row = rowOf(bytes);
+    if (std::byte* buffer = row ? row->idle.take() : nullptr) return buffer;
     made_.fetch_add(1, std::memory_order_relaxed);
     return static_cast<std::byte*>(::operator new(bytes, kAlignment));
   }
 
   void putBack(std::size_t bytes, std::byte* buffer) {
-    if (Row* row = rowOf(bytes)) {
-      for (auto& place : row->places) {
-        std::byte* empty = place.load(std::memory_order_relaxed);
-        if (!empty && place.compare_exchange_strong(empty, buffer, std::memory_order_release, std::memory_order_relaxed)) return;
-      }
-    }
-    release(buffer);
+    Row* row = rowOf(bytes);
+    if (!row || !row->idle.putBack(buffer)) release(buffer);
   }
 
   std::size_t made() const { return made_.load(std::memory_order_relaxed); }
 
  private:
-  static constexpr std::size_t kRows = 16, kPlaces = 64;  // what finds no place goes back to the heap
   struct Row {
     std::atomic<std::size_t> bytes{0};  // 0: nobody's yet
-    std::array<std::atomic<std::byte*>, kPlaces> places{};
+    IdlePlaces<std::byte> idle;         // what finds no place goes back to the heap
   };
 
   Row* rowOf(std::size_t bytes) {
@@ -69,7 +60,7 @@ class ImagePool::Shelf {
   }
   static void release(std::byte* buffer) { ::operator delete(buffer, kAlignment); }
 
-  std::array<Row, kRows> rows_;
+  std::array<Row, 16> rows_;
   std::atomic<std::size_t> made_{0};
 };
 
