@@ -34,7 +34,7 @@ bool inside(const Image& image, float u_px, float v_px) {
 
 /// `words` divided by 2^shift, rounded.
 Words reduced(const Words& words, int shift) {
-  return (words + static_cast<std::int16_t>(1 << (shift - 1))) >> static_cast<std::int16_t>(shift);
+  return (words + allWords(1 << (shift - 1))) >> static_cast<std::int16_t>(shift);
 }
 
 /// Ones inside the window, zeros to its right.
