@@ -15,6 +15,17 @@ namespace motorcade {
 inline constexpr int kSampleLevels = 64;                  // of a sample per gray level; a column's place is held to 1/64 px as well
 inline constexpr int kBlockRows = 16, kBlockStride = 48;  // of the largest rectangle that may lie across a border
 
+/// True from the middle of the first pixel to that of the last one.
+inline bool inside(const Image& image, float u_px, float v_px) {
+  return u_px >= 0 && v_px >= 0 && u_px <= static_cast<float>(image.width() - 1) && v_px <= static_cast<float>(image.height() - 1);
+}
+
+/// Ones inside the window, zeros to its right.
+inline Words windowMask(int window_px) {
+  constexpr Words kColumns{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  return kColumns < allWords(window_px);  // minus one: all bits set
+}
+
 /// A column's place in 1/64 px.
 struct GridPlace {
   explicit GridPlace(float px) {

@@ -76,4 +76,9 @@ inline std::array<std::int32_t, 4> totals(const WordSums& a, const WordSums& b, 
 }
 #endif
 
+/// `words` divided by 2^shift, rounded.
+inline Words reduced(const Words& words, int shift) {
+  return (words + allWords(1 << (shift - 1))) >> static_cast<std::int16_t>(shift);
+}
+
 }  // namespace motorcade

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <optional>
 
 #include "core/messages.hpp"
 #include "core/timestamp.hpp"
