@@ -1,8 +1,5 @@
 #include <atomic>
-#include <cstddef>
-#include <cstdlib>
 #include <mutex>
-#include <new>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -12,9 +9,10 @@
 
 #include "core/image.hpp"
 #include "tests/apps/toy_stages.hpp"
+#include "tests/support/replaced_heap.hpp"
 
-/// Counts what a thread asks of the heap and of mutexes while `counting`: through operator new and delete, and, by the linker's --wrap,
-/// through the C functions. This test is a program of its own, so that the replacements reach no other.
+/// Counts what a thread asks of the heap and of mutexes while `counting`. This test is a program of its own, so that the replacements reach
+/// no other.
 namespace {
 
 // Volatile: compilers take it that allocating changes no variable of the program.
@@ -27,58 +25,16 @@ void countHeapCall() {
 
 }  // namespace
 
-extern "C" {
-void* __real_malloc(std::size_t size);
-void* __real_calloc(std::size_t number, std::size_t size);
-void* __real_realloc(void* block, std::size_t size);
-void* __real_aligned_alloc(std::size_t alignment, std::size_t size);
-int __real_posix_memalign(void** block, std::size_t alignment, std::size_t size);
-void __real_free(void* block);
-int __real_pthread_mutex_lock(pthread_mutex_t* mutex);
+void heapTaken() { countHeapCall(); }
+void heapGiven() { countHeapCall(); }
 
-void* __wrap_malloc(std::size_t size) {
-  countHeapCall();
-  return __real_malloc(size);
-}
-void* __wrap_calloc(std::size_t number, std::size_t size) {
-  countHeapCall();
-  return __real_calloc(number, size);
-}
-void* __wrap_realloc(void* block, std::size_t size) {
-  countHeapCall();
-  return __real_realloc(block, size);
-}
-void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size) {
-  countHeapCall();
-  return __real_aligned_alloc(alignment, size);
-}
-int __wrap_posix_memalign(void** block, std::size_t alignment, std::size_t size) {
-  countHeapCall();
-  return __real_posix_memalign(block, alignment, size);
-}
-void __wrap_free(void* block) {
-  if (block) countHeapCall();
-  __real_free(block);
-}
+extern "C" {
+int __real_pthread_mutex_lock(pthread_mutex_t* mutex);
 int __wrap_pthread_mutex_lock(pthread_mutex_t* mutex) {
   if (counting) locks = locks + 1;
   return __real_pthread_mutex_lock(mutex);
 }
 }
-
-void* operator new(std::size_t size) {
-  if (void* block = std::malloc(size)) return block;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  const auto line = static_cast<std::size_t>(alignment);
-  if (void* block = std::aligned_alloc(line, (size + line - 1) / line * line)) return block;
-  throw std::bad_alloc();
-}
-void operator delete(void* block) noexcept { std::free(block); }
-void operator delete(void* block, std::size_t) noexcept { std::free(block); }
-void operator delete(void* block, std::align_val_t) noexcept { std::free(block); }
-void operator delete(void* block, std::size_t, std::align_val_t) noexcept { std::free(block); }
 
 namespace motorcade {
 namespace {

@@ -1,13 +1,9 @@
-#include <cstddef>
-#include <cstdlib>
-#include <new>
-
 #include <gtest/gtest.h>
 
 #include "tests/backend/random_graphs.hpp"
+#include "tests/support/replaced_heap.hpp"
 
-/// Counts what the program takes from the heap while `counting`: through operator new, and, by the linker's --wrap, through the C functions
-/// that Eigen calls. This test is a program of its own, so that the replacements reach no other.
+/// Counts what the program takes from the heap while `counting`, also through the C functions that Eigen calls. This test is a program of its own, so that the replacements reach no other.
 namespace {
 
 // Volatile: compilers take it that allocating changes no variable of the program.
@@ -20,48 +16,8 @@ void count() {
 
 }  // namespace
 
-extern "C" {
-void* __real_malloc(std::size_t size);
-void* __real_calloc(std::size_t number, std::size_t size);
-void* __real_realloc(void* block, std::size_t size);
-void* __real_aligned_alloc(std::size_t alignment, std::size_t size);
-int __real_posix_memalign(void** block, std::size_t alignment, std::size_t size);
-
-void* __wrap_malloc(std::size_t size) {
-  count();
-  return __real_malloc(size);
-}
-void* __wrap_calloc(std::size_t number, std::size_t size) {
-  count();
-  return __real_calloc(number, size);
-}
-void* __wrap_realloc(void* block, std::size_t size) {
-  count();
-  return __real_realloc(block, size);
-}
-void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size) {
-  count();
-  return __real_aligned_alloc(alignment, size);
-}
-int __wrap_posix_memalign(void** block, std::size_t alignment, std::size_t size) {
-  count();
-  return __real_posix_memalign(block, alignment, size);
-}
-}
-
-void* operator new(std::size_t size) {
-  if (void* block = std::malloc(size)) return block;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  const auto line = static_cast<std::size_t>(alignment);
-  if (void* block = std::aligned_alloc(line, (size + line - 1) / line * line)) return block;
-  throw std::bad_alloc();
-}
-void operator delete(void* block) noexcept { std::free(block); }
-void operator delete(void* block, std::size_t) noexcept { std::free(block); }
-void operator delete(void* block, std::align_val_t) noexcept { std::free(block); }
-void operator delete(void* block, std::size_t, std::align_val_t) noexcept { std::free(block); }
+void heapTaken() { count(); }
+void heapGiven() {}
 
 namespace motorcade {
 namespace {
