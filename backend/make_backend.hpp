@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "backend/backend.hpp"
-#include "backend/filter_backend.hpp"
-#include "backend/optimizer.hpp"
+#include "backend/filter/filter_backend.hpp"
+#include "backend/smoother/optimizer.hpp"
 
 namespace motorcade {
 

@@ -6,11 +6,11 @@
 
 #include "apps/pipeline/pipeline.hpp"
 #include "backend/make_backend.hpp"
-#include "frontend/feature_preparation.hpp"
-#include "frontend/object_tracker.hpp"
-#include "frontend/optical_flow.hpp"
-#include "frontend/scene_motion_estimator.hpp"
-#include "frontend/stereo_matcher.hpp"
+#include "frontend/features/feature_preparation.hpp"
+#include "frontend/tracking/object_tracker.hpp"
+#include "frontend/matching/optical_flow.hpp"
+#include "frontend/segmentation/scene_motion_estimator.hpp"
+#include "frontend/matching/stereo_matcher.hpp"
 
 namespace motorcade {
 

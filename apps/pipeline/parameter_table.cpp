@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "apps/pipeline/configuration.hpp"
-#include "frontend/window_differences.hpp"
+#include "frontend/image/window_differences.hpp"
 
 namespace motorcade {
 namespace {

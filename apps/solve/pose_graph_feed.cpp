@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "backend/factors.hpp"
-#include "backend/relative_pose_factor.hpp"
+#include "backend/smoother/factors.hpp"
+#include "backend/graph/relative_pose_factor.hpp"
 #include "core/thread_clock.hpp"
 
 namespace motorcade {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/solve/pose_graph_index.hpp"
-#include "backend/incremental_solver.hpp"
+#include "backend/solver/incremental_solver.hpp"
 
 namespace motorcade {
 

@@ -9,7 +9,7 @@
 #include "perf/apps/bench_options.hpp"
 #include "perf/apps/heap_use.hpp"
 #include "perf/apps/playback.hpp"
-#include "perf/backend/process_memory.hpp"
+#include "perf/support/process_memory.hpp"
 
 namespace motorcade::perf {
 namespace {

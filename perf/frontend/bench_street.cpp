@@ -3,7 +3,7 @@
 #include <map>
 #include <memory>
 
-#include "frontend/feature_preparation.hpp"
+#include "frontend/features/feature_preparation.hpp"
 #include "tests/frontend/texture.hpp"
 
 namespace motorcade::perf {

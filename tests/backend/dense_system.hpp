@@ -7,7 +7,7 @@
 
 #include <Eigen/Dense>
 
-#include "backend/incremental_solver.hpp"
+#include "backend/solver/incremental_solver.hpp"
 #include "tests/support/noise.hpp"
 
 namespace motorcade::test {

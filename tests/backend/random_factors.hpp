@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "backend/factors.hpp"
-#include "backend/relative_pose_factor.hpp"
+#include "backend/smoother/factors.hpp"
+#include "backend/graph/relative_pose_factor.hpp"
 #include "tests/support/noise.hpp"
 
 /// Seeded measurements between variables of every kind that a solver may hold.

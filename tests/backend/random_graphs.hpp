@@ -3,8 +3,8 @@
 #include <random>
 #include <vector>
 
-#include "backend/factors.hpp"
-#include "backend/incremental_solver.hpp"
+#include "backend/smoother/factors.hpp"
+#include "backend/solver/incremental_solver.hpp"
 
 namespace motorcade::test {
 

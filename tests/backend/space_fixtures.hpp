@@ -4,8 +4,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "backend/factors.hpp"
-#include "backend/relative_pose_factor.hpp"
+#include "backend/smoother/factors.hpp"
+#include "backend/graph/relative_pose_factor.hpp"
 #include "tests/backend/random_graphs.hpp"
 
 /// Graphs over each kind of variable, with the same words.

@@ -2,7 +2,7 @@
 
 #include <Eigen/Dense>
 
-#include "backend/elimination_tree.hpp"
+#include "backend/elimination/elimination_tree.hpp"
 #include "tests/backend/dense_system.hpp"
 
 /// The linear system [H g; g^T *] in the coordinates of a graph, in a dense system's order of variables, from two sides. The last corner,

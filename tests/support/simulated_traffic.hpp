@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "frontend/messages.hpp"
-#include "frontend/motion_segmenter.hpp"
-#include "frontend/point_history.hpp"
-#include "frontend/scene_flow.hpp"
+#include "frontend/segmentation/motion_segmenter.hpp"
+#include "frontend/motion/point_history.hpp"
+#include "frontend/motion/scene_flow.hpp"
 #include "tests/support/stereo_views.hpp"
 
 namespace motorcade::test {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/stereo_camera.hpp"
-#include "frontend/stereo_pose.hpp"
+#include "frontend/geometry/stereo_pose.hpp"
 #include "tests/support/noise.hpp"
 
 namespace motorcade::test {

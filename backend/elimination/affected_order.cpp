@@ -1,0 +1,65 @@
+#include "backend/elimination/affected_order.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace motorcade {
+namespace {
+
+std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+constexpr int kBands = 5;  // at distances 0, 1, 2 to 3, 4 to 7, 8 to 15; what is farther away comes first
+constexpr int kFarthest = (1 << (kBands - 1)) - 1;
+
+}  // namespace
+
+std::span<const VariableId> AffectedOrder::operator()(std::span<const VariableId> variables, std::span<const FactorId> factors,
+                                                      std::span<const int> orphans, std::span<const VariableId> touched) {
+  variables_ = variables;
+  column_of_.resize(graph_.slots(), 0);
+  for (std::size_t i = 0; i < variables.size(); ++i) column_of_[index(variables[i])] = static_cast<int>(i);
+  bandByDistance(touched);
+  ordering_.begin(static_cast<int>(variables.size()));
+  for (const FactorId f : factors) addRow(graph_.factor(f).variables());
+  for (const int orphan : orphans) addRow(tree_[orphan].separator());
+  order_.clear();
+  for (const int column : ordering_.order(group_)) order_.push_back(variables[index(column)]);
+  return order_;
+}
+
+/// Breadth first from the touched variables through the whole graph, until all variables at hand are reached.
+void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
+  const int last = static_cast<int>(variables_.size()) - 1;  // CCOLAMD wants groups below the number of columns
+  group_.assign(variables_.size(), 0);
+  ++search_;
+  reached_in_search_.resize(graph_.slots(), 0);
+  distance_.resize(graph_.slots());
+  queue_.clear();
+  std::size_t missing = variables_.size();
+  const auto reach = [&](VariableId v, int distance) {
+    if (reached_in_search_[index(v)] == search_) return;
+    reached_in_search_[index(v)] = search_;
+    distance_[index(v)] = distance;
+    queue_.push_back(v);
+    const auto column = index(column_of_[index(v)]);
+    if (column >= variables_.size() || variables_[column] != v) return;
+    group_[column] = std::min(kBands - static_cast<int>(std::bit_width(static_cast<unsigned>(distance))), last);
+    --missing;
+  };
+  for (const VariableId v : touched) reach(v, 0);
+  for (std::size_t i = 0; i < queue_.size() && missing > 0; ++i) {
+    const int distance = distance_[index(queue_[i])];
+    if (distance == kFarthest) break;
+    for (const FactorId f : graph_[queue_[i]].factors)
+      for (const VariableId neighbour : graph_.factor(f).variables()) reach(neighbour, distance + 1);
+  }
+}
+
+void AffectedOrder::addRow(std::span<const VariableId> variables) {
+  row_.clear();
+  for (const VariableId v : variables) row_.push_back(column_of_[index(v)]);
+  ordering_.addRow(row_);
+}
+
+}  // namespace motorcade

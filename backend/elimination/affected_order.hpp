@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "backend/elimination/elimination_tree.hpp"
+#include "backend/graph/factor_graph.hpp"
+#include "backend/elimination/ordering.hpp"
+
+namespace motorcade {
+
+/// Orders the variables that an update eliminates anew: with little fill, and the nearer to the newest measurements, the later.
+///
+/// The next measurements will touch variables near those that were touched now (a vehicle drives on, and meets the neighbours of the places
+/// that it met). What stands near the root is cheap to touch, so the order goes by bands of distance in the factor graph, each twice as wide
+/// as the one before; within a band, CCOLAMD orders for little fill.
+class AffectedOrder {
+ public:
+  AffectedOrder(const FactorGraph& graph, const EliminationTree& tree) : graph_(graph), tree_(tree) {}
+
+  /// `factors` and the separators of `orphans` are the terms over the `variables`. The result lasts until the next call.
+  std::span<const VariableId> operator()(std::span<const VariableId> variables, std::span<const FactorId> factors, std::span<const int> orphans,
+                                         std::span<const VariableId> touched);
+
+ private:
+  void bandByDistance(std::span<const VariableId> touched);
+  void addRow(std::span<const VariableId> variables);
+
+  const FactorGraph& graph_;
+  const EliminationTree& tree_;
+  Ordering ordering_;
+  std::span<const VariableId> variables_;
+  std::vector<VariableId> order_;
+  std::vector<int> column_of_;  // per variable; stale for those not at hand
+  std::vector<int> row_, group_;
+  std::vector<VariableId> queue_;
+  std::vector<int> distance_;                     // per variable: in the search at hand, if it was reached
+  std::vector<std::uint32_t> reached_in_search_;  // per variable
+  std::uint32_t search_ = 0;
+};
+
+}  // namespace motorcade

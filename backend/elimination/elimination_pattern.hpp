@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "backend/graph/variable.hpp"
+
+namespace motorcade {
+
+/// The symbolic part of an elimination: which variables each clique of the result holds. Positions count the variables in their elimination
+/// order, then the boundary.
+class EliminationPattern {
+ public:
+  struct Group {
+    int begin = 0, size = 0;  // in `positions()`, ascending: frontals first
+    int frontals = 0;
+    int parent = -1;  // group
+  };
+
+  /// `boundary` positions follow the `count` eliminated ones.
+  void begin(int count, int boundary);
+  /// A term over these positions, the smallest of which is eliminated here. Terms are numbered as they come.
+  void addTerm(std::span<const int> positions);
+  /// `scalars`: size of the variable at each position, boundary included.
+  void analyze(std::span<const int> scalars);
+
+  const std::vector<Group>& groups() const { return groups_; }  // parents before children
+  std::span<const int> positions(const Group& group) const { return {positions_.data() + group.begin, static_cast<std::size_t>(group.size)}; }
+  int groupOf(int position) const { return group_of_[static_cast<std::size_t>(position)]; }
+  int groupOfTerm(int term) const { return groupOf(first_of_term_[static_cast<std::size_t>(term)]); }
+
+ private:
+  void mergeColumns();
+  void formGroups(std::span<const int> scalars);
+
+  int count_ = 0, total_ = 0;
+  std::vector<int> first_of_term_, term_entries_, term_begin_;
+  std::vector<int> terms_head_, terms_next_;      // per column: terms whose first position it is
+  std::vector<int> children_head_, children_next_;  // per column: columns whose parent it is
+  std::vector<int> column_begin_, column_entries_, parent_, stamp_;
+  std::vector<Group> groups_;
+  std::vector<int> group_of_, group_scalars_, group_next_, last_in_group_, positions_;
+};
+
+}  // namespace motorcade

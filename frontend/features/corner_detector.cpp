@@ -1,0 +1,254 @@
+#include "frontend/features/corner_detector.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "frontend/parallel_items.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr int kHalfWindow_px = 3;  // second moments are summed over 7x7 pixels
+constexpr int kWindowRows = 2 * kHalfWindow_px + 1, kWindowPixels = kWindowRows * kWindowRows;
+
+/// The last rows of something, by row number.
+template <class T>
+class RowRing {
+ public:
+  RowRing(int rows, int width) : rows_(rows), width_(width), values_(static_cast<std::size_t>(rows) * width) {}
+  T* row(int y) { return values_.data() + static_cast<std::size_t>(y % rows_) * width_; }
+  const T* row(int y) const { return values_.data() + static_cast<std::size_t>(y % rows_) * width_; }
+
+ private:
+  int rows_, width_;
+  std::vector<T> values_;
+};
+
+/// Gradients of the image smoothed by the binomial 3x3 filter, 32 times as large, row after row. Smoothing keeps the grain of dark
+/// images from passing for corners.
+class Gradients {
+ public:
+  explicit Gradients(const Image& image)
+      : image_(image), columns_(image.width()), smooth_(3, image.width()), dx_(kRows, image.width()), dy_(kRows, image.width()) {}
+
+  /// Makes row y; rows are made in order, and the last `kRows` are kept.
+  void advanceTo(int y) {
+    for (int next = smoothed_to_ < 0 ? y - 1 : smoothed_to_ + 1; next <= y + 1; ++next) smooth(next);
+    smoothed_to_ = y + 1;
+    const std::int16_t *above = smooth_.row(y - 1), *row = smooth_.row(y), *below = smooth_.row(y + 1);
+    std::int16_t *dx = dx_.row(y), *dy = dy_.row(y);
+    for (int x = 2; x < image_.width() - 2; ++x) {
+      dx[x] = static_cast<std::int16_t>(row[x + 1] - row[x - 1]);
+      dy[x] = static_cast<std::int16_t>(below[x] - above[x]);
+    }
+  }
+  const std::int16_t* dx(int y) const { return dx_.row(y); }
+  const std::int16_t* dy(int y) const { return dy_.row(y); }
+  static constexpr double kScale = 32;
+  static constexpr int kRows = kWindowRows + 1;  // the window's and the one that leaves it, zero at first
+
+ private:
+  void smooth(int y) {
+    const std::uint8_t *above = image_.row(y - 1), *row = image_.row(y), *below = image_.row(y + 1);
+    std::int16_t *column = columns_.data(), *out = smooth_.row(y);
+    for (int x = 0; x < image_.width(); ++x) column[x] = static_cast<std::int16_t>(above[x] + 2 * row[x] + below[x]);
+    for (int x = 1; x < image_.width() - 1; ++x) out[x] = static_cast<std::int16_t>(column[x - 1] + 2 * column[x] + column[x + 1]);
+  }
+
+  const Image& image_;
+  std::vector<std::int16_t> columns_;
+  RowRing<std::int16_t> smooth_, dx_, dy_;
+  int smoothed_to_ = -1;
+};
+
+/// Column sums of the products of gradients over the window's rows, which slide down the image.
+struct ColumnMoments {
+  std::vector<int> xx, xy, yy;
+  explicit ColumnMoments(int width) : xx(width), xy(width), yy(width) {}
+
+  /// Adds the products of row y and takes away those of the row that leaves the window; at first that is zero.
+  void slideTo(const Gradients& gradients, int y) {
+    const std::int16_t *dx = gradients.dx(y), *dy = gradients.dy(y);
+    const int leaving = y - kWindowRows + Gradients::kRows;  // the ring has a place more than the window: no negative row at the start
+    const std::int16_t *old_dx = gradients.dx(leaving), *old_dy = gradients.dy(leaving);
+    int *sum_xx = xx.data(), *sum_xy = xy.data(), *sum_yy = yy.data();
+    for (int x = 0; x < static_cast<int>(xx.size()); ++x) {
+      const int gx = dx[x], gy = dy[x], old_gx = old_dx[x], old_gy = old_dy[x];
+      sum_xx[x] += gx * gx - old_gx * old_gx;
+      sum_xy[x] += gx * gy - old_gx * old_gy;
+      sum_yy[x] += gy * gy - old_gy * old_gy;
+    }
+  }
+};
+
+int windowSum(const int* columns) {
+  int sum = 0;
+  for (int k = -kHalfWindow_px; k <= kHalfWindow_px; ++k) sum += columns[k];
+  return sum;
+}
+
+/// Smaller eigenvalue of the second moments along a row.
+void smallerEigenvalues(const ColumnMoments& moments, int first, int last, float* out) {
+  const int *xx = moments.xx.data(), *xy = moments.xy.data(), *yy = moments.yy.data();
+  for (int x = first; x < last; ++x) {
+    const auto a = static_cast<float>(windowSum(xx + x)), b = static_cast<float>(windowSum(xy + x)),
+               c = static_cast<float>(windowSum(yy + x));
+    out[x] = 0.5F * (a + c - std::sqrt((a - c) * (a - c) + 4 * b * b));
+  }
+}
+
+/// True for the first of equal maxima in reading order.
+bool isMaximumWithin(const RowRing<float>& response, int x, int y, int radius) {
+  const float value = response.row(y)[x];
+  for (int dy = -radius; dy <= radius; ++dy) {
+    const float* row = response.row(y + dy) + x;
+    for (int dx = -radius; dx <= radius; ++dx) {
+      const bool earlier = dy < 0 || (dy == 0 && dx < 0);
+      if (row[dx] > value || (earlier && row[dx] == value)) return false;
+    }
+  }
+  return true;
+}
+
+/// Marks pixels of row y above the threshold that no direct neighbour exceeds: a cheap filter, in vector code.
+void markPeaks(const RowRing<float>& response, int y, int first, int last, float threshold, std::uint8_t* marks) {
+  const float *above = response.row(y - 1), *row = response.row(y), *below = response.row(y + 1);
+  for (int x = first; x < last; ++x) {
+    const float beside = std::max(row[x - 1], row[x + 1]);
+    const float upper = std::max(std::max(above[x - 1], above[x]), above[x + 1]);
+    const float lower = std::max(std::max(below[x - 1], below[x]), below[x + 1]);
+    const float around = std::max(beside, std::max(upper, lower));
+    marks[x] = static_cast<std::uint8_t>(row[x] >= std::max(around, threshold));
+  }
+}
+
+/// The first mark at x or after it, eight at a time; at least the row's end when there is none. Zeros follow the row.
+int nextMark(const std::vector<std::uint8_t>& marks, int x) {
+  const int end = static_cast<int>(marks.size() - sizeof(std::uint64_t));
+  for (; x < end; x += sizeof(std::uint64_t)) {
+    std::uint64_t eight;
+    std::memcpy(&eight, marks.data() + x, sizeof eight);
+    if (eight != 0) break;
+  }
+  while (x < end && !marks[static_cast<std::size_t>(x)]) ++x;
+  return x;
+}
+
+/// Standard deviation of white noise that explains the roughest part of a neighbourhood, which straight edges do not touch
+/// (the mask of Immerkaer, Fast Noise Variance Estimation, 1996).
+float grainAround(const Image& image, int x, int y) {
+  int squares = 0;
+  for (int r = y - kHalfWindow_px; r <= y + kHalfWindow_px; ++r) {
+    const std::uint8_t *above = image.row(r - 1), *row = image.row(r), *below = image.row(r + 1);
+    for (int c = x - kHalfWindow_px; c <= x + kHalfWindow_px; ++c) {
+      const int rough =
+          above[c - 1] + above[c + 1] + below[c - 1] + below[c + 1] - 2 * (above[c] + row[c - 1] + row[c + 1] + below[c]) + 4 * row[c];
+      squares += rough * rough;
+    }
+  }
+  return std::sqrt(static_cast<float>(squares) / (36.0F * kWindowPixels));
+}
+
+struct Candidate {
+  int cell;
+  Corner corner;
+};
+
+bool strongerInCell(const Candidate& a, const Candidate& b) {
+  return std::tuple(a.cell, -a.corner.score, a.corner.v_px, a.corner.u_px) <
+         std::tuple(b.cell, -b.corner.score, b.corner.v_px, b.corner.u_px);
+}
+
+int borderOf(const CornerDetector::Params& params) { return std::max(params.border_px, kHalfWindow_px + 2 + params.min_distance_px); }
+
+/// Local maxima of the rows from `first_centre` up to `end_centre`, in reading order.
+std::vector<Candidate> findCandidates(const Image& image, int first_centre, int end_centre, const CornerDetector::Params& params) {
+  const int width = image.width(), radius = params.min_distance_px, border = borderOf(params);
+  std::vector<Candidate> candidates;
+  constexpr double kMomentScale = Gradients::kScale * Gradients::kScale * kWindowPixels;
+  const auto threshold = static_cast<float>(params.min_score * params.min_score * kMomentScale);
+  const int columns = (width + params.cell_px - 1) / params.cell_px;
+  Gradients gradients(image);
+  ColumnMoments moments(width);
+  RowRing<float> response(2 * radius + 1, width);
+  std::vector<std::uint8_t> marks(width + sizeof(std::uint64_t), 0);
+  const int first_row = first_centre - radius, end_row = end_centre + radius;
+  for (int y = first_row - kHalfWindow_px; y < first_row + kHalfWindow_px; ++y) gradients.advanceTo(y), moments.slideTo(gradients, y);
+  for (int y = first_row; y < end_row; ++y) {
+    gradients.advanceTo(y + kHalfWindow_px);
+    moments.slideTo(gradients, y + kHalfWindow_px);
+    smallerEigenvalues(moments, border - radius, width - border + radius, response.row(y));
+    const int centre = y - radius;
+    if (centre < first_centre) continue;
+    markPeaks(response, centre, border, width - border, threshold, marks.data());
+    for (int x = border; x < width - border; ++x) {
+      x = nextMark(marks, x);
+      if (x >= width - border || !isMaximumWithin(response, x, centre, radius)) continue;
+      const auto score = static_cast<float>(std::sqrt(response.row(centre)[x] / kMomentScale));
+      if (score < params.min_score_over_grain * grainAround(image, x, centre)) continue;
+      candidates.push_back(
+          {centre / params.cell_px * columns + x / params.cell_px, {static_cast<float>(x), static_cast<float>(centre), score}});
+    }
+  }
+  return candidates;
+}
+
+/// Local maxima of the whole image, in reading order: bands of rows side by side.
+std::vector<Candidate> findCandidates(const Image& image, const CornerDetector::Params& params) {
+  constexpr int kBands = 4;
+  const int border = borderOf(params), rows = image.height() - 2 * border;
+  if (rows <= 0 || image.width() <= 2 * border) return {};
+  const auto startOf = [&](std::size_t band) { return border + rows * static_cast<int>(band) / kBands; };
+  std::array<std::vector<Candidate>, kBands> bands;
+  forEachItem(kBands, [&](std::size_t i) { bands[i] = findCandidates(image, startOf(i), startOf(i + 1), params); }, 1);
+  std::vector<Candidate> candidates = std::move(bands.front());
+  for (std::size_t i = 1; i < kBands; ++i) candidates.insert(candidates.end(), bands[i].begin(), bands[i].end());
+  return candidates;
+}
+
+/// Lowest score that may pass in the last rank that still finds room.
+float cutOfRank(const std::vector<std::pair<int, Candidate>>& ranked, int rank, int room) {
+  std::vector<float> scores;
+  for (const auto& [r, candidate] : ranked)
+    if (r == rank) scores.push_back(candidate.corner.score);
+  std::ranges::nth_element(scores, scores.begin() + room, std::greater{});
+  return scores[room];
+}
+
+}  // namespace
+
+CornerDetector::CornerDetector(const Params& params) : params_(params) {
+  if (params.cell_px < 1 || params.max_corners < 0 || params.min_distance_px < 1 || params.min_score <= 0)
+    throw std::invalid_argument("corner detector: cell_px, min_distance_px and min_score must be positive");
+}
+
+std::vector<Corner> CornerDetector::operator()(const Image& image) const {
+  std::vector<Candidate> candidates = findCandidates(image, params_);
+  std::ranges::sort(candidates, strongerInCell);
+
+  std::vector<std::pair<int, Candidate>> ranked;  // with the rank in the cell
+  std::vector<int> of_rank(static_cast<std::size_t>(params_.max_per_cell));
+  for (int i = 0, rank = 0; i < static_cast<int>(candidates.size()); ++i) {
+    rank = i > 0 && candidates[i - 1].cell == candidates[i].cell ? rank + 1 : 0;
+    if (rank >= params_.max_per_cell) continue;
+    ranked.emplace_back(rank, candidates[i]);
+    ++of_rank[rank];
+  }
+
+  int last_rank = 0, room = params_.max_corners;
+  while (last_rank < params_.max_per_cell && of_rank[last_rank] <= room) room -= of_rank[last_rank++];
+  const float cut = last_rank < params_.max_per_cell ? cutOfRank(ranked, last_rank, room) : 0;
+  std::vector<Corner> corners;
+  corners.reserve(static_cast<std::size_t>(params_.max_corners));
+  for (const auto& [rank, candidate] : ranked)
+    if (rank < last_rank || (rank == last_rank && candidate.corner.score > cut)) corners.push_back(candidate.corner);
+  return corners;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "frontend/features/corner_detector.hpp"
+#include "frontend/messages.hpp"
+#include "frontend/features/sift_features.hpp"
+
+namespace motorcade {
+
+enum class DetectorKind { kCorners, kSift };
+
+/// Turns a stereo pair into what stereo matching and optical flow both need: pyramids and points worth following.
+/// A rejected pair gives features without images and corners. Stateless but for its buffers; safe to call from several threads.
+class FeaturePreparation {
+ public:
+  struct Params {
+    DetectorKind detector = DetectorKind::kCorners;
+    int pyramid_levels = 4;
+    CornerDetector::Params corners;
+    SiftDetector::Params sift;
+  };
+  explicit FeaturePreparation(const Params& params);
+  FeaturesPtr operator()(const StereoFramePtr& frame) const;
+
+ private:
+  Params params_;
+  CornerDetector detect_corners_;
+  SiftDetector detect_sift_;
+  mutable ImagePool pool_;  // itself safe for several threads
+};
+
+}  // namespace motorcade

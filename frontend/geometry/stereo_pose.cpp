@@ -1,0 +1,156 @@
+#include "frontend/geometry/stereo_pose.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "frontend/geometry/cholesky.hpp"
+#include "frontend/geometry/stereo_view.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kIterationsWithOutliers = 2;  // Huber alone, before observations beyond the gate are left out
+
+void setLane(PoseObservations::Block& block, std::size_t lane, const PoseObservation& o) {
+  setLane(block.p_a, lane, o.p_a);
+  setLane(block.uvd_px, lane, o.uvd_px);
+  setLane(block.variance_px2, lane, o.sigma_px.cwiseAbs2());
+  SymmetricDoubles3x3& C = block.covariance_a;
+  C.xx[lane] = o.covariance_a(0, 0), C.xy[lane] = o.covariance_a(0, 1), C.xz[lane] = o.covariance_a(0, 2);
+  C.yy[lane] = o.covariance_a(1, 1), C.yz[lane] = o.covariance_a(1, 2), C.zz[lane] = o.covariance_a(2, 2);
+}
+
+/// A pose, the same in all lanes.
+struct PoseLanes {
+  explicit PoseLanes(const SE3& T) : R(allDoubles(T.rotation())), t_m(allDoubles(T.translation())) {}
+  Doubles3x3 R;
+  Doubles3 t_m;
+};
+
+/// Residuals of four observations, their Jacobians by the point, and the weights S^-1.
+struct Linearized {
+  StereoViews view;
+  Doubles3 residual_px, weighted_residual;
+  SymmetricDoubles3x3 information;
+  Doubles chi2() const { return dot(residual_px, weighted_residual); }
+};
+
+Linearized linearize(const StereoCamera& camera, const PoseObservations::Block& o, const PoseLanes& T_cam_a) {
+  Linearized l;
+  l.view = viewPoints(camera, T_cam_a.R, T_cam_a.t_m, o.p_a);
+  const Doubles3x3& J = l.view.J;
+  SymmetricDoubles3x3 S = symmetricTimesTranspose({o.covariance_a * J.x, o.covariance_a * J.y, o.covariance_a * J.z}, J);
+  S.xx += o.variance_px2.x, S.yy += o.variance_px2.y, S.zz += o.variance_px2.z;
+  l.information = inverse(S);
+  l.residual_px = o.uvd_px - l.view.uvd_px;
+  l.weighted_residual = l.information * l.residual_px;
+  return l;
+}
+
+struct NormalEquations {
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d b = Vector6d::Zero();
+  double inlier_chi2 = 0;
+  int inliers = 0;
+};
+
+/// The same in lanes, by translation (t) and rotation (r) of the perturbation.
+struct LaneEquations {
+  SymmetricDoubles3x3 H_tt{}, H_rr{};
+  Doubles3x3 H_tr{};
+  Doubles3 b_t{}, b_r{};
+  Doubles chi2{}, inliers{};
+
+  void add(const PoseObservations::Block& o, const Linearized& l, double gate, double huber_sigmas) {
+    const Doubles chi2_px = l.chi2();
+    const Doubles counts = chi2_px < allDoubles(gate) ? o.count * l.view.ahead : Doubles{};
+    const Doubles weight = huberLoss(chi2_px, huber_sigmas).weight * counts;
+    const Doubles3x3& J_t = l.view.J;
+    const Doubles3x3 J_r{cross(o.p_a, J_t.x), cross(o.p_a, J_t.y), cross(o.p_a, J_t.z)};  // rows of -J_t hat(p_a)
+    const Doubles3x3 W_t = weight * (l.information * J_t), W_r = weight * (l.information * J_r);
+    const Doubles3 r = weight * l.weighted_residual;
+    H_tt += symmetricTransposeTimes(J_t, W_t);
+    H_rr += symmetricTransposeTimes(J_r, W_r);
+    H_tr += transposeTimes(J_t, W_r);
+    b_t += transposeTimes(J_t, r);
+    b_r += transposeTimes(J_r, r);
+    chi2 += counts * weight * chi2_px;
+    inliers += counts;
+  }
+  NormalEquations sum() const {
+    NormalEquations n;
+    const Eigen::Matrix3d tr = total(H_tr);
+    n.H << total(H_tt), tr, tr.transpose(), total(H_rr);
+    n.b << total(b_t), total(b_r);
+    n.inlier_chi2 = total(chi2);
+    n.inliers = static_cast<int>(total(inliers));
+    return n;
+  }
+};
+
+void add(NormalEquations& n, const PosePrior& prior, const SE3& T) {
+  const Vector6d e = (prior.mean.inverse() * T).log();
+  const Matrix6d Jr = rightJacobianInverseSE3(e);
+  n.H.noalias() += Jr.transpose() * prior.information * Jr;
+  n.b.noalias() -= Jr.transpose() * prior.information * e;
+}
+
+NormalEquations accumulate(const StereoCamera& camera, const PoseObservations& observations, const SE3& T, const PoseFitParams& params,
+                           double gate, const PosePrior* prior) {
+  const PoseLanes pose(T);
+  LaneEquations lanes;
+  for (const auto& o : observations.blocks()) lanes.add(o, linearize(camera, o, pose), gate, params.huber_sigmas);
+  NormalEquations n = lanes.sum();
+  if (prior) add(n, *prior, T);
+  return n;
+}
+
+}  // namespace
+
+PoseObservations::PoseObservations(std::span<const PoseObservation> observations) : size_(observations.size()) {
+  blocks_.resize((size_ + kDoubleLanes - 1) / kDoubleLanes);
+  for (std::size_t i = 0; i < blocks_.size() * kDoubleLanes; ++i) {
+    Block& block = blocks_[i / kDoubleLanes];
+    const std::size_t lane = i % kDoubleLanes;
+    setLane(block, lane, observations[i < size_ ? i : i - lane]);
+    block.count[lane] = i < size_ ? 1 : 0;
+  }
+}
+
+std::optional<PoseFit> fitPose(const StereoCamera& camera, const PoseObservations& observations, const SE3& initial_T_cam_a,
+                               const PoseFitParams& params, const PosePrior* prior) {
+  SE3 T = initial_T_cam_a;
+  NormalEquations n;
+  for (int iteration = 0; iteration < params.max_iterations; ++iteration) {
+    const double gate = iteration < kIterationsWithOutliers ? kInfinity : params.outlier_chi2;
+    n = accumulate(camera, observations, T, params, gate, prior);
+    if (!prior && n.inliers < 3) return std::nullopt;
+    const Cholesky<6> solver(n.H);
+    if (!solver.positive()) return std::nullopt;
+    const Vector6d step = solver.solve(n.b);
+    if (!step.allFinite() || step.norm() > 100) return std::nullopt;
+    T = T * SE3::exp(step);
+    if (iteration >= kIterationsWithOutliers && step.norm() < params.min_step) break;
+  }
+  PoseFit fit{.T_cam_a = T.normalized(), .covariance = Cholesky<6>(n.H).inverse()};
+  if (n.inliers > 2) fit.inlier_chi2_per_dof = n.inlier_chi2 / (3.0 * n.inliers - 6.0);
+  return fit;
+}
+
+std::vector<double> poseChi2(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_a) {
+  const PoseLanes pose(T_cam_a);
+  std::vector<double> chi2;
+  chi2.reserve(observations.blocks().size() * kDoubleLanes);
+  for (const auto& o : observations.blocks()) {
+    const Linearized l = linearize(camera, o, pose);
+    const Doubles all = l.chi2();
+    for (std::size_t lane = 0; lane < kDoubleLanes; ++lane) chi2.push_back(l.view.ahead[lane] > 0 ? all[lane] : kInfinity);
+  }
+  chi2.resize(observations.size());
+  return chi2;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/stereo_camera.hpp"
+#include "frontend/geometry/double_lanes.hpp"
+
+namespace motorcade {
+
+/// How the stereo camera sees four points, which may be known in frames of their own.
+struct StereoViews {
+  Doubles3 uvd_px;
+  Doubles3x3 J;   // d (u, v, d) / d (point in its own frame) [px/m]
+  Doubles ahead;  // 1, or 0 for a point closer than the camera sees; the rest has no meaning then
+};
+
+/// `R_cam_a` and `t_cam_a_m` take the points `p_a_m` to the camera.
+inline StereoViews viewPoints(const StereoCamera& camera, const Doubles3x3& R_cam_a, const Doubles3& t_cam_a_m, const Doubles3& p_a_m) {
+  const Doubles3 p = R_cam_a * p_a_m + t_cam_a_m;
+  const auto is_ahead = p.z >= StereoCamera::kMinDepth_m;
+  const Doubles one = allDoubles(1.0), iz = one / (is_ahead ? p.z : one);
+  const Doubles x = camera.fx_px * iz, y = camera.fy_px * iz, d = camera.baseline_m * x;
+  const Doubles u = x * p.x, v = y * p.y;
+  return {{u + camera.cx_px, v + camera.cy_px, d},
+          {x * R_cam_a.x - (u * iz) * R_cam_a.z, y * R_cam_a.y - (v * iz) * R_cam_a.z, (-d * iz) * R_cam_a.z},
+          is_ahead ? one : Doubles{}};
+}
+
+/// Huber's loss of whitened squared residuals.
+struct HuberLoss {
+  Doubles weight;  // rho'(r) / r
+  Doubles chi2;    // 2 rho(r): the squared residual itself in the quadratic part
+};
+inline HuberLoss huberLoss(const Doubles& chi2, double huber_sigmas) {
+  const Doubles k = allDoubles(huber_sigmas), norm = squareRoots(chi2);
+  const auto quadratic = norm <= k;
+  return {quadratic ? allDoubles(1.0) : k / norm, quadratic ? chi2 : 2 * k * norm - k * k};
+}
+
+}  // namespace motorcade

@@ -1,0 +1,180 @@
+#include "frontend/image/patch_template.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "frontend/image/patch_sampling.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr int kStride = PatchTemplate::kStride;
+constexpr float kOtherUnit = PatchTemplate::kOtherUnit;
+static_assert(kStride == kWordLanes && kMaxPatchWindow_px + 2 <= kWordLanes && kMaxPatchWindow_px + 3 <= kBlockRows);
+
+// What the words of the planes count: with the other image's, their products' sums over the largest window fit 32 bits.
+constexpr int kAppearanceShift = 2;  // from samples
+constexpr float kAppearanceUnit = 1.0F / 16, kGradientUnit = 1.0F / 16, kMomentUnit = 1.0F / 4;
+
+/// Gray levels that a word of each derivative counts.
+Eigen::Vector3f descentUnits(PatchDeformation deformation) {
+  return {kGradientUnit, deformation == PatchDeformation::kScale ? kGradientUnit : kMomentUnit, kMomentUnit};
+}
+
+using Square = std::array<Words, kMaxPatchWindow_px + 2>;
+
+/// Samples of a square around (u, v), the column as on the grid.
+void sampleSquare(const Image& image, const GridPlace& u, float v_px, int side_px, Square& out) {
+  const int half = side_px / 2;
+  const RowPlace top(v_px - static_cast<float>(half));
+  const Block block(image, u.pixel - half, top.pixel, side_px + 1, side_px + 1);
+  const SampleColumns columns(u.fraction);
+  const Words fraction = allWords(top.fraction);
+  Words upper = columns(block.row(0));
+  for (int r = 0; r < side_px; ++r) {
+    const Words lower = columns(block.row(r + 1));
+    out[static_cast<std::size_t>(r)] = betweenRows(upper, lower, fraction);
+    upper = lower;
+  }
+}
+
+/// The same with samples 1 / scale px apart; the scale is at least `kMinTemplateScale`.
+void sampleScaledSquare(const Image& image, const GridPlace& u, float v_px, int side_px, float scale, Square& out) {
+  const int half = side_px / 2;
+  const float spacing_px = 1 / scale;
+  const auto last_u = static_cast<float>(image.width() - 1), last_v = static_cast<float>(image.height() - 1);
+  std::array<float, kWordLanes> places_px;
+  for (int c = 0; c < kWordLanes; ++c)
+    places_px[static_cast<std::size_t>(c)] = std::clamp(u.px() + static_cast<float>(c - half) * spacing_px, 0.0F, last_u);
+  const SampleColumns columns(places_px, image.width() - 1);
+  for (int r = 0; r < side_px; ++r) {
+    const RowPlace v(std::clamp(v_px + static_cast<float>(r - half) * spacing_px, 0.0F, last_v));
+    const int below = std::min(v.pixel + 1, image.height() - 1);
+    out[static_cast<std::size_t>(r)] = betweenRows(columns(image.row(v.pixel)), columns(image.row(below)), allWords(v.fraction));
+  }
+}
+
+/// Mean of the window inside a square with a border of one, in samples.
+int meanSample(const Square& square, int window_px) {
+  const Words mask = windowMask(window_px);
+  WordSums sums{};
+  for (int r = 1; r <= window_px; ++r) sums += products(afterFirst(square[static_cast<std::size_t>(r)]) & mask, allWords(1));
+  const int pixels = window_px * window_px;
+  return (totals(sums, sums, sums, sums)[0] + pixels / 2) / pixels;
+}
+
+/// Sums over the window of a template's planes and of their products.
+struct TemplateSums {
+  WordSums appearance{}, d0{}, d1{}, d2{};
+  WordSums appearance_squares{}, appearance_d0{}, appearance_d1{}, appearance_d2{};
+  WordSums d00{}, d01{}, d02{}, d11{}, d12{}, d22{};
+
+  void add(const Words& a, const Words& x, const Words& y, const Words& z) {
+    const Words one = allWords(1);
+    appearance += products(a, one), d0 += products(x, one), d1 += products(y, one), d2 += products(z, one);
+    appearance_squares += products(a, a), appearance_d0 += products(a, x), appearance_d1 += products(a, y), appearance_d2 += products(a, z);
+    d00 += products(x, x), d01 += products(x, y), d02 += products(x, z);
+    d11 += products(y, y), d12 += products(y, z), d22 += products(z, z);
+  }
+};
+
+/// Fills the planes from the samples.
+TemplateSums fillPlanes(PatchTemplate& patch, const Square& square, PatchDeformation deformation) {
+  const int window = patch.window_px, half = window / 2;
+  const bool scale = deformation == PatchDeformation::kScale;
+  const Words mask = windowMask(window), mean = allWords(patch.mean);
+  constexpr int kMomentShift = 10;  // from differences of samples times pixels to `kMomentUnit`
+  constexpr Words kColumns{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const Words columns = (kColumns - static_cast<std::int16_t>(half)) << static_cast<std::int16_t>(kMomentShift);
+  TemplateSums sums;
+  Words above = afterFirst(square[0]), here = afterFirst(square[1]);
+  for (int r = 0; r < window; ++r) {
+    const auto row = static_cast<std::size_t>(r);
+    const Words& samples = square[row + 1];
+    const Words below = afterFirst(square[row + 2]), rows = allWords((r - half) * (1 << kMomentShift));
+    const Words du = (afterSecond(samples) - samples) & mask, dv = (below - above) & mask;  // of samples two pixels apart
+    const Words a = reduced(here - mean, kAppearanceShift) & mask, d0 = reduced(du, 3);
+    const Words d1 = scale ? reduced(dv, 3) : scaled(du, rows);
+    const Words d2 = scale ? scaled(du, columns) + scaled(dv, rows) : scaled(du, columns);
+    storeWords(patch.appearance.data() + r * kStride, a);
+    storeWords(patch.descent[0].data() + r * kStride, d0);
+    storeWords(patch.descent[1].data() + r * kStride, d1);
+    storeWords(patch.descent[2].data() + r * kStride, d2);
+    sums.add(a, d0, d1, d2);
+    above = here;
+    here = below;
+  }
+  return sums;
+}
+
+/// Completes a template from the sums over its planes: takes the mean out of the appearance, and the mean and the component along the
+/// appearance out of the derivatives (a change of bias or gain is no motion). Returns the sums of products of the latter.
+Eigen::Matrix3f orthogonalize(PatchTemplate& patch, const TemplateSums& sums, PatchDeformation deformation) {
+  const auto plain = totals(sums.appearance, sums.d0, sums.d1, sums.d2);
+  const auto along = totals(sums.appearance_squares, sums.appearance_d0, sums.appearance_d1, sums.appearance_d2);
+  const auto first = totals(sums.d00, sums.d01, sums.d02, sums.d11), last = totals(sums.d12, sums.d22, sums.d12, sums.d22);
+  const auto asFloat = [](std::int32_t x) { return static_cast<float>(x); };
+  const float pixels = asFloat(patch.window_px * patch.window_px);
+  const Eigen::Vector3f units = descentUnits(deformation);
+  const Eigen::Vector3f sum_d = units.cwiseProduct(Eigen::Vector3f(asFloat(plain[1]), asFloat(plain[2]), asFloat(plain[3])));
+  const Eigen::Vector3f sum_ad =
+      kAppearanceUnit * units.cwiseProduct(Eigen::Vector3f(asFloat(along[1]), asFloat(along[2]), asFloat(along[3])));
+  Eigen::Matrix3f sum_dd;
+  sum_dd << asFloat(first[0]), asFloat(first[1]), asFloat(first[2]), asFloat(first[1]), asFloat(first[3]), asFloat(last[0]),
+      asFloat(first[2]), asFloat(last[0]), asFloat(last[1]);
+  sum_dd = units.asDiagonal() * sum_dd * units.asDiagonal();
+
+  const float mean = kAppearanceUnit * asFloat(plain[0]) / pixels;
+  patch.norm = std::sqrt(std::max(0.0F, kAppearanceUnit * kAppearanceUnit * asFloat(along[0]) - mean * mean * pixels));
+  const float scale = patch.norm > 0 ? 1 / patch.norm : 0;
+  patch.appearance_unit = scale * kAppearanceUnit * kOtherUnit;
+  patch.appearance_mean = scale * mean;
+  patch.descent_units = units * kOtherUnit;
+  patch.descent_mean = sum_d / pixels;
+  patch.descent_along = scale * (sum_ad - mean * sum_d);
+  return sum_dd - sum_d * patch.descent_mean.transpose() - patch.descent_along * patch.descent_along.transpose();
+}
+
+/// Information of a deformation whose standard deviation is `sigma`, for the noise that 8-bit images have at least (3 gray levels).
+constexpr float priorInformation(float sigma) { return 9 / (sigma * sigma); }
+constexpr float kScaleSigma = 0.1F, kRowSlopeSigma = 0.3F, kColumnSlopeSigma = 0.15F;
+constexpr float kMinInformation = 60;  // of the shift: root mean square gradient of 0.7 gray levels per pixel over 11x11
+
+}  // namespace
+
+std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px, PatchDeformation deformation,
+                                          float scale) {
+  assert(window_px % 2 == 1 && window_px <= kMaxPatchWindow_px);
+  std::optional<PatchTemplate> patch;  // the only object returned, so that it is never copied
+  if (!inside(image, u_px, v_px) || scale < kMinTemplateScale) return patch;
+  const GridPlace u(u_px);
+  Square square;
+  if (scale == 1) {
+    sampleSquare(image, u, v_px, window_px + 2, square);
+  } else {
+    sampleScaledSquare(image, u, v_px, window_px + 2, scale, square);
+  }
+  patch.emplace();
+  patch->window_px = window_px;
+  patch->off_grid_px = u_px - u.px();
+  patch->mean = meanSample(square, window_px);
+  Eigen::Matrix3f hessian = orthogonalize(*patch, fillPlanes(*patch, square, deformation), deformation);
+  bool textured = false;
+  if (deformation == PatchDeformation::kScale) {
+    patch->prior = {0, 0, priorInformation(kScaleSigma)};
+    const Eigen::Matrix2f shift = hessian.topLeftCorner<2, 2>();
+    textured = shift.determinant() > kMinInformation * shift.trace();
+  } else {
+    patch->prior = {0, priorInformation(kRowSlopeSigma), priorInformation(kColumnSlopeSigma)};
+    textured = hessian(0, 0) > kMinInformation;
+  }
+  hessian.diagonal() += patch->prior;
+  patch->inverse_hessian = hessian.inverse();
+  if (!textured) patch.reset();
+  return patch;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/se3.hpp"
+#include "core/stereo_camera.hpp"
+#include "frontend/geometry/stereo_pose.hpp"
+
+namespace motorcade {
+
+/// The camera's motion between two frames from points that were triangulated before and are seen now.
+struct EgoMotion {
+  SE3 T_previous_now;
+  Matrix6d covariance;        // right perturbation of T_previous_now
+  std::vector<bool> inliers;  // one per observation
+  int inlier_count = 0;
+  bool steady = false;  // as a vehicle can have moved after what was predicted
+};
+
+/// What the frames before tell of the camera's motion.
+struct PredictedMotion {
+  SE3 T_previous_now;
+  double dt_s = 0;        // from the previous frame to now
+  int steady_frames = 0;  // in a row that moved as the frame before them did; 0: no motion is known
+};
+
+/// RANSAC over three points, then covariance-weighted refinement over all inliers. Stateless.
+class EgoMotionEstimator {
+ public:
+  struct Params {
+    int max_hypotheses = 80;
+    int scored_points = 300;    // per hypothesis, spread evenly over the observations
+    double inlier_chi2 = 12.0;  // 3 degrees of freedom: 99 % is 11.3
+    int min_inliers = 12;
+    double known_mover_weight = 0.1;    // vote of a point that moved in the previous frame
+    double vote_cell_m = 4.0;           // edge of the floor's cells, each with one vote
+    double vote_depth_m = 40.0;         // beyond it the floor is not told apart by depth
+    double max_acceleration_mps2 = 20;  // of the camera, jitter of its times included
+    double surprise_penalty = 0.3;      // votes, as a share of all, against a motion beyond it
+    int trusted_steady_frames = 3;      // after which the penalty counts in full
+    PoseFitParams fit;
+  };
+  EgoMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
+
+  /// `observations` hold points in the previous camera's frame, `known_movers` whether they moved in the one before it.
+  /// The predicted motion is scored first, and what a vehicle cannot do after it must win by more. Random samples are drawn from a
+  /// generator seeded with `seed` (the frame number). Empty when too few points agree on any motion.
+  std::optional<EgoMotion> operator()(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
+                                      const PredictedMotion& predicted, std::uint64_t seed) const;
+
+ private:
+  std::vector<double> votes(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers) const;
+  bool follows(const SE3& T_now_previous, const PredictedMotion& predicted) const;
+  SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers, const PredictedMotion& predicted,
+                     std::uint64_t seed) const;
+
+  Params params_;
+  StereoCamera camera_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,137 @@
+#include "frontend/segmentation/motion_segmenter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "frontend/segmentation/motion_graph.hpp"
+
+namespace motorcade {
+namespace {
+
+Eigen::Matrix3d velocityCovariance(const ScenePoint& p) { return p.flow->covariance.bottomRightCorner<3, 3>(); }
+Eigen::Matrix3d positionCovariance(const ScenePoint& p) { return p.flow->covariance.topLeftCorner<3, 3>(); }
+
+const ScenePoint& at(const std::vector<ScenePoint>& points, int i) { return points[static_cast<std::size_t>(i)]; }
+
+struct PooledVelocity {
+  Eigen::Vector3d velocity_mps;
+  Eigen::Matrix3d covariance;
+};
+
+/// Information-weighted mean velocity of the members, with a starting point that outliers cannot move: the component-wise median.
+PooledVelocity poolVelocities(const std::vector<int>& members, const std::vector<ScenePoint>& points, double max_chi2) {
+  Eigen::Vector3d velocity;
+  std::vector<double> values(members.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(members.begin(), members.end(), values.begin(), [&](int i) { return at(points, i).flow->velocity_mps[axis]; });
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    velocity[axis] = *middle;
+  }
+  Eigen::Matrix3d information = Eigen::Matrix3d::Identity() * 1e-6;
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    information = Eigen::Matrix3d::Identity() * 1e-6;
+    Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
+    for (const int i : members) {
+      const Eigen::Matrix3d W = velocityCovariance(at(points, i)).inverse();
+      const Eigen::Vector3d difference = at(points, i).flow->velocity_mps - velocity;
+      const double chi2 = difference.dot(W * difference), weight = chi2 < max_chi2 ? 1.0 : max_chi2 / chi2;
+      information += weight * W;
+      weighted += weight * W * at(points, i).flow->velocity_mps;
+    }
+    velocity = information.inverse() * weighted;
+  }
+  return {velocity, information.inverse()};
+}
+
+}  // namespace
+
+bool MotionSegmenter::isVertex(const ScenePoint& point) const {
+  if (!point.flow || point.repeats || point.label == PointLabel::kGround) return false;
+  return std::sqrt(velocityCovariance(point).trace()) < params_.max_speed_sigma_mps;
+}
+
+bool MotionSegmenter::belongTogether(const ScenePoint& a, const ScenePoint& b) const {
+  const Eigen::Vector3d dv = a.flow->velocity_mps - b.flow->velocity_mps, dp = a.flow->p_cam - b.flow->p_cam;
+  const double distance = dp.norm(),
+               tolerance_mps = params_.speed_tolerance_mps + params_.max_turn_rate_radps * std::min(distance, params_.max_gap_m);
+  Eigen::Matrix3d C = velocityCovariance(a) + velocityCovariance(b);
+  C.diagonal().array() += tolerance_mps * tolerance_mps;
+  if (dv.dot(C.inverse() * dv) > params_.max_flow_chi2) return false;
+  if (distance < params_.max_gap_m) return true;
+  const Eigen::Vector3d direction = dp / distance;
+  const double sigma_m = std::sqrt(direction.dot((positionCovariance(a) + positionCovariance(b)) * direction));
+  return distance < params_.max_gap_m + 2 * sigma_m;
+}
+
+std::vector<Segment> MotionSegmenter::operator()(std::vector<ScenePoint>& points, const std::vector<bool>& violates_geometry,
+                                                 const GroundPlane& ground) const {
+  std::vector<int> vertices;
+  std::vector<Eigen::Vector2d> pixels;
+  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+    if (!isVertex(at(points, i))) continue;
+    vertices.push_back(i);
+    pixels.emplace_back(at(points, i).uvd_px.head<2>());
+  }
+  const auto together = [&](int a, int b) {
+    const int i = vertices[static_cast<std::size_t>(a)], j = vertices[static_cast<std::size_t>(b)];
+    if (violates_geometry[static_cast<std::size_t>(i)] != violates_geometry[static_cast<std::size_t>(j)]) return false;
+    return belongTogether(at(points, i), at(points, j));
+  };
+  std::vector<Segment> segments;
+  for (auto& component : cutDelaunayComponents(pixels, together)) {
+    for (int& i : component) i = vertices[static_cast<std::size_t>(i)];
+    Segment segment = describe(std::move(component), points, ground);
+    for (const int i : segment.points) points[static_cast<std::size_t>(i)].label = segment.label;
+    if (segment.label != PointLabel::kStatic) segments.push_back(std::move(segment));
+  }
+  return segments;
+}
+
+Segment MotionSegmenter::describe(std::vector<int> members, const std::vector<ScenePoint>& points, const GroundPlane& ground) const {
+  Segment segment;
+  segment.points = std::move(members);
+  for (const int i : segment.points) segment.centroid_cam += at(points, i).flow->p_cam / static_cast<double>(segment.points.size());
+  const auto pooled = poolVelocities(segment.points, points, params_.max_flow_chi2);
+  segment.velocity_mps = pooled.velocity_mps;
+  segment.velocity_covariance = pooled.covariance + systematicCovariance(segment.centroid_cam);
+  segment.label = decide(segment, points, ground);
+  return segment;
+}
+
+Eigen::Matrix3d MotionSegmenter::systematicCovariance(const Eigen::Vector3d& p_cam) const {
+  const auto square = [](double x) { return x * x; };
+  const double z = p_cam.z(), range2 = p_cam.squaredNorm();
+  const Eigen::Vector3d ray = p_cam / std::sqrt(range2);
+  const double across = square(params_.systematic_speed_mps) + range2 * square(params_.systematic_angle_radps);
+  const double along = square(params_.systematic_disparity_pxps * z * z / (camera_.fx_px * camera_.baseline_m));
+  return across * Eigen::Matrix3d::Identity() + along * ray * ray.transpose();
+}
+
+PointLabel MotionSegmenter::decide(const Segment& segment, const std::vector<ScenePoint>& points, const GroundPlane& ground) const {
+  if (static_cast<int>(segment.points.size()) < params_.min_points) return PointLabel::kUnknown;
+  const Eigen::Vector3d& v = segment.velocity_mps;
+  const double significance = std::sqrt(v.dot(segment.velocity_covariance.inverse() * v));
+  const double speed_sigma = std::sqrt(segment.velocity_covariance.trace());
+  if (significance < params_.min_significance || v.norm() < params_.min_speed_mps)
+    return speed_sigma < params_.certain_static_sigma_mps ? PointLabel::kStatic : PointLabel::kUnknown;
+
+  Eigen::AlignedBox3d box;
+  double lowest_m = std::numeric_limits<double>::infinity();
+  for (const int i : segment.points) {
+    box.extend(at(points, i).flow->p_cam);
+    lowest_m = std::min(lowest_m, ground.heightOf_m(at(points, i).flow->p_cam));
+  }
+  const double depth_noise_m = 2 * std::sqrt(positionCovariance(at(points, segment.points.front())).trace());
+  const double vertical_mps = std::abs(v.dot(ground.normal_cam));
+  const double vertical_sigma = std::sqrt(ground.normal_cam.dot(segment.velocity_covariance * ground.normal_cam));
+  const bool like_a_vehicle = box.diagonal().norm() < params_.max_extent_m + depth_noise_m && lowest_m < params_.max_height_m &&
+                              vertical_mps < params_.max_vertical_ratio * v.norm() + 2 * vertical_sigma;
+  return like_a_vehicle ? PointLabel::kMoving : PointLabel::kUnknown;
+}
+
+}  // namespace motorcade

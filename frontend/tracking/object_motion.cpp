@@ -1,0 +1,210 @@
+#include "frontend/tracking/object_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace motorcade {
+namespace {
+
+/// Points are dealt to the encounter and to the motion by their id, so that a point keeps its side for life:
+/// the two factors then share no measurement and may be counted as independent.
+bool measuresEncounter(PointId point) { return point.value % 2 == 0; }
+
+Box imageBox(const std::vector<const ScenePoint*>& points) {
+  Box box{1e9, 1e9, -1e9, -1e9};
+  for (const auto* p : points) {
+    box.left_px = std::min(box.left_px, p->uvd_px.x());
+    box.right_px = std::max(box.right_px, p->uvd_px.x());
+    box.top_px = std::min(box.top_px, p->uvd_px.y());
+    box.bottom_px = std::max(box.bottom_px, p->uvd_px.y());
+  }
+  return box;
+}
+
+}  // namespace
+
+const ScenePoint* findPoint(const SceneMotion& scene, PointId point) {
+  const auto at =
+      std::lower_bound(scene.points.begin(), scene.points.end(), point, [](const ScenePoint& p, PointId id) { return p.point < id; });
+  return at != scene.points.end() && at->point == point ? &*at : nullptr;
+}
+
+std::vector<ObjectMotionEstimator::Sighting> ObjectMotionEstimator::sightings(const TrackedObject& object, const SceneMotion& scene) const {
+  std::vector<Sighting> seen;
+  for (std::size_t i = 0; i < object.points.size(); ++i)
+    if (const auto* now = findPoint(scene, object.points[i].point)) seen.push_back({i, now});
+  return seen;
+}
+
+PoseObservation ObjectMotionEstimator::observe(const BodyPoint& point, const ScenePoint& now) const {
+  return {point.p_body, point.covariance, now.uvd_px, now.sigma_px};
+}
+
+PosePrior ObjectMotionEstimator::weakPrior(const SE3& T_cam_body) const {
+  Vector6d sigma;
+  sigma << Eigen::Vector3d::Constant(params_.weak_position_m), params_.weak_tilt_rad, params_.weak_tilt_rad, params_.weak_yaw_rad;
+  return {T_cam_body, sigma.cwiseAbs2().cwiseInverse().asDiagonal()};
+}
+
+std::optional<ObjectMotionEstimator::Agreement> ObjectMotionEstimator::agree(const TrackedObject& object, const SceneMotion& scene,
+                                                                             const PosePrior& prior) const {
+  Agreement a{.fit = {}, .seen = sightings(object, scene), .chi2 = {}, .inliers = {}};
+  if (static_cast<int>(a.seen.size()) < params_.min_points) return std::nullopt;
+  std::vector<PoseObservation> observed;
+  for (const auto& s : a.seen) observed.push_back(observe(object.points[s.body_point], *s.now));
+  const PoseObservations observations(observed);
+  const auto fit = fitPose(camera_, observations, prior.mean, params_.fit, &prior);
+  if (!fit) return std::nullopt;
+  a.fit = *fit;
+  a.chi2 = poseChi2(camera_, observations, fit->T_cam_a);
+  for (std::size_t i = 0; i < a.seen.size(); ++i)
+    if (a.chi2[i] < params_.inlier_chi2) a.inliers.push_back(a.seen[i]);
+  a.enough = static_cast<int>(a.inliers.size()) >= params_.min_points;
+  return a;
+}
+
+std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& object, const SceneMotion& scene,
+                                                               const SceneMotion* previous_scene, const SE3& T_world_cam) const {
+  const PosePrior prior{T_world_cam.inverse() * object.kinematics.pose(), object.kinematics.poseCovariance().inverse()};
+  const auto agreement = agree(object, scene, prior);
+  if (!agreement) return std::nullopt;
+  if (!agreement->enough) {
+    dropMisfits(object, agreement->seen, agreement->chi2);
+    return std::nullopt;
+  }
+  object.T_cam_body = agreement->fit.T_cam_a;
+  object.kinematics.acceptPose((T_world_cam * object.T_cam_body).normalized(), agreement->fit.covariance);
+  ObjectObservation observation = measureEncounter(object, agreement->inliers, object.T_cam_body);
+  if (previous_scene) measureMotion(object, agreement->inliers, scene, *previous_scene, observation);
+  refinePoints(object, agreement->inliers);
+  dropMisfits(object, agreement->seen, agreement->chi2);
+  return observation;
+}
+
+std::optional<ObjectObservation> ObjectMotionEstimator::lookBack(const TrackedObject& object, const SceneMotion& earlier,
+                                                                 const PosePrior& prior) const {
+  const auto agreement = agree(object, earlier, prior);
+  if (!agreement || !agreement->enough) return std::nullopt;
+  return measureEncounter(object, agreement->inliers, agreement->fit.T_cam_a);
+}
+
+std::optional<ObjectObservation> ObjectMotionEstimator::presence(const TrackedObject& object, const SceneMotion& scene,
+                                                                 const PosePrior& predicted) const {
+  const auto origin = camera_.project(predicted.mean.translation());
+  if (!origin || !camera_.inLeftImage(origin->x(), origin->y())) return std::nullopt;
+  Eigen::AlignedBox3d outline = object.core(SE3{});
+  outline.min().array() -= params_.presence_margin_m;
+  outline.max().array() += params_.presence_margin_m;
+  const SE3 T_body_cam = predicted.mean.inverse();
+  const auto mayLieWithin = [&](const ScenePoint& p) {
+    const Eigen::Vector3d p_body = T_body_cam * camera_.triangulate(p.uvd_px);
+    const Eigen::Vector3d beyond = p_body - p_body.cwiseMax(outline.min()).cwiseMin(outline.max());
+    const Eigen::Matrix3d J = T_body_cam.rotation() * camera_.triangulationJacobian(p.uvd_px);
+    const Eigen::Matrix3d C = J * p.sigma_px.cwiseAbs2().asDiagonal() * J.transpose();
+    return beyond.dot(C.inverse() * beyond) < params_.inlier_chi2;
+  };
+  std::vector<const ScenePoint*> visible;
+  for (const ScenePoint& p : scene.points)
+    if (p.label != PointLabel::kStatic && p.label != PointLabel::kGround && !p.repeats && mayLieWithin(p)) visible.push_back(&p);
+  if (static_cast<int>(visible.size()) < params_.min_points) return std::nullopt;
+  ObjectObservation observation;
+  observation.points = static_cast<int>(visible.size());
+  observation.box = imageBox(visible);
+  observation.T_cam_body = predicted.mean;
+  observation.encounter_covariance = weakPrior(predicted.mean).information.inverse();
+  return observation;
+}
+
+void ObjectMotionEstimator::dropMisfits(TrackedObject& object, const std::vector<Sighting>& seen, const std::vector<double>& chi2) const {
+  std::vector<BodyPoint> kept;  // a point that was not seen is gone: its id never comes back
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    BodyPoint p = object.points[seen[i].body_point];
+    p.misfits = chi2[i] < params_.inlier_chi2 ? 0 : p.misfits + 1;
+    if (p.misfits < params_.max_misfits) kept.push_back(p);
+  }
+  object.points = std::move(kept);
+}
+
+ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& object, const std::vector<Sighting>& inliers,
+                                                          const SE3& T_cam_body) const {
+  const bool split = static_cast<int>(inliers.size()) >= params_.split_points;
+  std::vector<PoseObservation> observations;
+  std::vector<const ScenePoint*> visible;
+  for (const auto& s : inliers) {
+    visible.push_back(s.now);
+    if (!split || measuresEncounter(s.now->point)) observations.push_back(observe(object.points[s.body_point], *s.now));
+  }
+  const PosePrior weak = weakPrior(T_cam_body);
+  const auto fit = fitPose(camera_, PoseObservations(observations), T_cam_body, params_.fit, &weak);
+  ObjectObservation observation;
+  observation.points = static_cast<int>(inliers.size());
+  observation.box = imageBox(visible);
+  observation.T_cam_body = fit ? fit->T_cam_a : T_cam_body;
+  observation.encounter_covariance = fit ? fit->covariance : Matrix6d(weak.information.inverse());
+  return observation;
+}
+
+/// The motion since the frame before, from points that the encounter did not use. With b the body as it stood then and X = T_cam_b
+/// its pose as these points' motion carries it into the camera of now: z_{i-1}^-1 z_i = T_cam_body(before)^-1 * T_previous_now * X.
+void ObjectMotionEstimator::measureMotion(const TrackedObject& object, const std::vector<Sighting>& inliers, const SceneMotion& scene,
+                                          const SceneMotion& previous_scene, ObjectObservation& observation) const {
+  if (!object.seen_before.valid() || object.seen_before != previous_scene.frame) return;
+  const SE3 T_body_cam_before = object.T_cam_body_before.inverse();
+  std::vector<PoseObservation> observations;
+  for (const auto& s : inliers) {
+    const auto* before = measuresEncounter(s.now->point) ? nullptr : findPoint(previous_scene, s.now->point);
+    if (!before) continue;
+    const Eigen::Matrix3d J = T_body_cam_before.rotation() * camera_.triangulationJacobian(before->uvd_px);
+    observations.push_back({T_body_cam_before * camera_.triangulate(before->uvd_px),
+                            J * before->sigma_px.cwiseAbs2().asDiagonal() * J.transpose(), s.now->uvd_px, s.now->sigma_px});
+  }
+  if (static_cast<int>(inliers.size()) < params_.split_points || static_cast<int>(observations.size()) < params_.min_points) return;
+  const PosePrior weak = weakPrior(object.T_cam_body);
+  const auto fit = fitPose(camera_, PoseObservations(observations), object.T_cam_body, params_.fit, &weak);
+  if (!fit) return;
+  const Matrix6d A = fit->T_cam_a.inverse().adjoint();  // carries the odometry's perturbation to the end of the product
+  observation.motion =
+      ObjectObservation::Motion{previous_scene.frame, (T_body_cam_before * scene.T_previous_now * fit->T_cam_a).normalized(),
+                                fit->covariance + A * scene.odometry_covariance * A.transpose()};
+}
+
+/// One Kalman step per point, the pose taken as known.
+void ObjectMotionEstimator::refinePoints(TrackedObject& object, const std::vector<Sighting>& inliers) const {
+  for (const auto& s : inliers) {
+    BodyPoint& p = object.points[s.body_point];
+    const Eigen::Vector3d p_cam = object.T_cam_body * p.p_body;
+    const auto predicted = camera_.project(p_cam);
+    if (!predicted) continue;
+    const Eigen::Matrix3d J = camera_.projectionJacobian(p_cam) * object.T_cam_body.rotation();
+    Eigen::Matrix3d S = J * p.covariance * J.transpose();
+    S.diagonal() += s.now->sigma_px.cwiseAbs2();
+    const Eigen::Matrix3d K = p.covariance * J.transpose() * S.inverse();
+    p.p_body += K * (s.now->uvd_px - *predicted);
+    const Eigen::Matrix3d C = p.covariance - K * J * p.covariance;
+    p.covariance = 0.5 * (C + C.transpose());
+  }
+}
+
+ObjectObservation ObjectMotionEstimator::firstSight(const TrackedObject& object, const SceneMotion& scene) const {
+  const auto seen = sightings(object, scene);
+  std::vector<PoseObservation> observations;
+  std::vector<const ScenePoint*> visible;
+  for (const auto& s : seen) {
+    visible.push_back(s.now);
+    PoseObservation o = observe(object.points[s.body_point], *s.now);
+    o.covariance_a.setZero();  // the points were put into the body frame from these very sightings
+    observations.push_back(o);
+  }
+  ObjectObservation observation;
+  observation.points = static_cast<int>(seen.size());
+  observation.box = imageBox(visible);
+  observation.T_cam_body = object.T_cam_body;
+  const PosePrior weak = weakPrior(object.T_cam_body);
+  const auto fit = fitPose(camera_, PoseObservations(observations), object.T_cam_body, params_.fit, &weak);
+  observation.encounter_covariance = fit ? fit->covariance : Matrix6d(weak.information.inverse());
+  return observation;
+}
+
+}  // namespace motorcade

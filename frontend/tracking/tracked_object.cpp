@@ -1,0 +1,79 @@
+#include "frontend/tracking/tracked_object.hpp"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+namespace motorcade {
+
+const BodyPoint* TrackedObject::find(PointId point) const {
+  const auto at = std::lower_bound(points.begin(), points.end(), point, [](const BodyPoint& p, PointId id) { return p.point < id; });
+  return at != points.end() && at->point == point ? &*at : nullptr;
+}
+
+void TrackedObject::adopt(const std::vector<BodyPoint>& more) {
+  points.insert(points.end(), more.begin(), more.end());
+  std::sort(points.begin(), points.end(), [](const BodyPoint& a, const BodyPoint& b) { return a.point < b.point; });
+}
+
+Eigen::AlignedBox3d TrackedObject::extent(double margin_m) const {
+  Eigen::AlignedBox3d box(Eigen::Vector3d::Zero());
+  for (const auto& p : points) box.extend(p.p_body);
+  box.min().array() -= margin_m;
+  box.max().array() += margin_m;
+  return box;
+}
+
+Eigen::AlignedBox3d TrackedObject::core(const SE3& T, double left_out) const {
+  Eigen::AlignedBox3d box;
+  const auto strays = static_cast<std::size_t>(left_out * static_cast<double>(points.empty() ? 0 : points.size() - 1));
+  std::vector<double> values(points.size());
+  for (int axis = 0; axis < 3 && !points.empty(); ++axis) {
+    std::transform(points.begin(), points.end(), values.begin(), [&](const BodyPoint& p) { return (T * p.p_body)[axis]; });
+    std::sort(values.begin(), values.end());
+    box.min()[axis] = values[strays];
+    box.max()[axis] = values[values.size() - 1 - strays];
+  }
+  return box;
+}
+
+Eigen::Vector3d TrackedObject::middle() const {
+  const Eigen::AlignedBox3d half = core(SE3{}, 0.5);
+  return half.isEmpty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(half.center());
+}
+
+Eigen::Vector3d TrackedObject::velocityAt_mps(const Eigen::Vector3d& p_body) const {
+  const Vector6d& twist = kinematics.twist();
+  return kinematics.pose().rotation() * (twist.head<3>() + twist.tail<3>().cross(p_body));
+}
+
+double TrackedObject::velocityChi2(const SceneFlow& flow, const SE3& T_world_cam) const {
+  constexpr double kModelVariance_m2ps2 = 0.25;
+  const Eigen::Matrix3d &R = T_world_cam.rotation(), &R_body = kinematics.pose().rotation();
+  const Eigen::Vector3d difference = R * flow.velocity_mps - velocityAt_mps(T_cam_body.inverse() * flow.p_cam);
+  const Eigen::Matrix3d S = R * flow.covariance.bottomRightCorner<3, 3>() * R.transpose() +
+                            R_body * kinematics.velocityCovariance() * R_body.transpose() +
+                            kModelVariance_m2ps2 * Eigen::Matrix3d::Identity();
+  return difference.dot(S.inverse() * difference);
+}
+
+void TrackedObject::changeBodyFrame(const SE3& T_body_new) {
+  const SE3 T_new_body = T_body_new.inverse();
+  const Matrix6d A = T_new_body.adjoint();
+  kinematics.changeBodyFrame(T_body_new);
+  T_cam_body = T_cam_body * T_body_new;
+  T_cam_body_before = T_cam_body_before * T_body_new;
+  for (auto& p : points) {
+    p.p_body = T_new_body * p.p_body;
+    p.covariance = T_new_body.rotation() * p.covariance * T_new_body.rotation().transpose();
+  }
+  for (auto& o : backlog) {
+    o.T_cam_body = o.T_cam_body * T_body_new;
+    o.encounter_covariance = A * o.encounter_covariance * A.transpose();
+    if (!o.motion) continue;
+    o.motion->T_before_now = T_new_body * o.motion->T_before_now * T_body_new;
+    o.motion->covariance = A * o.motion->covariance * A.transpose();
+  }
+}
+
+}  // namespace motorcade

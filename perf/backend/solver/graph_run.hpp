@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "apps/solve/pose_graph_feed.hpp"
+#include "perf/backend/solver/quantiles.hpp"
+
+namespace motorcade::perf {
+
+/// What it took to solve a pose graph, an update per pose or frame.
+struct GraphRun {
+  std::size_t poses = 0, edges = 0, problems = 0;                       // in the solution; that updates reported
+  std::vector<double> cpu_ms, eliminated_scalars, substituted_scalars;  // per update
+  double chi2 = 0;
+  std::size_t held_bytes = 0;
+
+  /// The lowest chi2 that Gauss-Newton reaches from the incremental solution and, all at once, from odometry.
+  double optimum = 0;
+  bool reached_from_odometry = false;  // also from there
+};
+GraphRun runGraph(const PoseGraph& graph, const IncrementalSolver::Params& params);
+
+/// How the solver takes edges to poses of long ago, which bend everything in between.
+struct ClosureRun {
+  std::size_t first_update = 0;                      // with such an edge
+  std::optional<std::size_t> updates_until_settled;  // after the first: chi2 within 0.1 % of the optimum of what is there by then
+  std::size_t unsettled_updates = 0;                 // from the first on
+  double worst_excess_percent = 0;
+};
+/// The first update with an edge to a pose more than 50 frames back; empty where there is none, or the graph has no frames.
+std::optional<std::size_t> firstClosure(const PoseGraph& graph);
+ClosureRun runClosures(const PoseGraph& graph, const IncrementalSolver::Params& params, std::size_t first_update);
+
+}  // namespace motorcade::perf

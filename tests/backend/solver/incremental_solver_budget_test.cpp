@@ -1,0 +1,217 @@
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "backend/solver/incremental_solver.hpp"
+#include "tests/backend/dense_system.hpp"
+#include "tests/backend/random_graphs.hpp"
+
+/// How the solver spreads its work over updates: by a budget, or on a schedule.
+namespace motorcade {
+namespace {
+
+using test::DenseSystem;
+using test::differenceFromBatch;
+using test::kExact;
+using test::MultibodyGraph;
+
+/// Scalars of the cliques from where the factors enter up to the root, and of the variables that are not in the tree yet.
+std::int64_t scalarsThatNewFactorsAskFor(const IncrementalSolver& solver, const std::vector<FactorId>& before) {
+  std::set<int> cliques;
+  std::set<VariableId> fresh;
+  for (const FactorId f : solver.graph().factors()) {
+    if (std::ranges::binary_search(before, f)) continue;
+    for (const VariableId v : solver.graph().factor(f).variables()) {
+      if (solver.tree().cliqueOf(v) < 0) fresh.insert(v);
+      for (int c = solver.tree().cliqueOf(v); c >= 0; c = solver.tree()[c].parent) cliques.insert(c);
+    }
+  }
+  std::int64_t scalars = 0;
+  for (const int c : cliques) scalars += solver.tree()[c].frontal_size;
+  for (const VariableId v : fresh) scalars += solver.graph().sizeOf(v);
+  return scalars;
+}
+
+IncrementalSolver::Params withBudget(std::int64_t scalars) {
+  IncrementalSolver::Params params = kExact;
+  // Not zero: rounding would keep something stale for ever.
+  params.mismatch_tolerance = 1e-10;
+  params.jacobian_drift_sigmas = 1e-7;
+  params.relinearize_rad = 1e-6;
+  params.budget_scalars = scalars;
+  return params;
+}
+
+constexpr double kTol = 1e-6;  // m and rad: what turns by 1e-6 rad is not relinearised
+
+/// What is saved at any time is less than a variable costs, which is less than all of them.
+std::int64_t mostSaved(const IncrementalSolver& solver) {
+  std::int64_t scalars = 0;
+  for (const VariableId v : solver.graph().variables()) scalars += solver.graph().sizeOf(v);
+  return scalars;
+}
+
+/// Quiet updates until nothing is put off and nothing moves; the number of variables that are still put off.
+int finishOverQuietUpdates(IncrementalSolver& solver, std::int64_t budget) {
+  std::int64_t eliminated = 0;
+  for (int i = 0; i < 400; ++i) {
+    const auto& report = solver.update();
+    eliminated += report.eliminated_scalars;
+    EXPECT_LE(eliminated, mostSaved(solver) + budget * (i + 1));
+    if (report.deferred_variables == 0 && report.largest_change < 1e-11) return 0;
+  }
+  return solver.update().deferred_variables;
+}
+
+TEST(IncrementalSolverBudget, EliminatesNoMoreThanTheNewFactorsAskForAndTheBudget) {
+  for (const std::int64_t budget : {1, 60, 300, 1000}) {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      IncrementalSolver solver(withBudget(budget));
+      MultibodyGraph graph(solver, seed, 2);
+      std::int64_t eliminated_beyond = 0;
+      for (int i = 0; i < 40; ++i) {
+        const auto before = solver.graph().factors();
+        graph.addFrame();
+        const auto asked = scalarsThatNewFactorsAskFor(solver, before);
+        const auto& report = solver.update();
+        eliminated_beyond += report.eliminated_scalars - asked;
+        EXPECT_LE(report.eliminated_scalars, asked + budget + mostSaved(solver));
+        EXPECT_LE(eliminated_beyond, budget * (i + 1)) << "budget " << budget << ", seed " << seed << ", frame " << i;
+        EXPECT_GE(report.eliminated_scalars, 6);
+      }
+    }
+  }
+}
+
+TEST(IncrementalSolverBudget, PutsOffMarginalPriorsToo) {
+  for (const std::int64_t budget : {1, 60, 1000, 100000}) {
+    IncrementalSolver solver(withBudget(budget));
+    MultibodyGraph graph(solver, 1, 2);
+    for (int i = 0; i < 40; ++i) {
+      graph.addFrame();
+      solver.update();
+      if (i >= 10) solver.retire(graph.takeOldest());
+    }
+    solver.converge(50, 1e-11);
+    EXPECT_LT(differenceFromBatch(solver), 1e-8) << "budget " << budget;
+  }
+}
+
+TEST(IncrementalSolverBudget, WorkThatIsPutOffIsDoneInQuietUpdates) {
+  // A budget that holds the dearest variable: an object's anchor, with a factor in each frame.
+  constexpr std::int64_t kBudget = 1500;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    IncrementalSolver solver(withBudget(kBudget));
+    MultibodyGraph graph(solver, seed, 2);
+    int most_deferred = 0;
+    for (int i = 0; i < 20; ++i) {
+      graph.addFrame();
+      most_deferred = std::max(most_deferred, solver.update().deferred_variables);
+    }
+    EXPECT_GT(most_deferred, 0);
+    EXPECT_LE(most_deferred, solver.counters().variables);
+    EXPECT_EQ(finishOverQuietUpdates(solver, kBudget), 0);
+    EXPECT_LT(differenceFromBatch(solver), kTol) << "seed " << seed;
+  }
+}
+
+/// The variable that costs more than the whole budget is an object's anchor, with a factor in each of
+/// twenty frames; all variables together have 372 scalars.
+TEST(IncrementalSolverBudget, ABudgetBelowTheWholeGetsThereToo) {
+  constexpr std::int64_t kBudget = 300;
+  IncrementalSolver solver(withBudget(kBudget));
+  MultibodyGraph graph(solver, 1, 2);
+  for (int i = 0; i < 20; ++i) {
+    graph.addFrame();
+    solver.update();
+  }
+  EXPECT_EQ(finishOverQuietUpdates(solver, kBudget), 0);
+  EXPECT_LT(differenceFromBatch(solver), kTol);
+}
+
+TEST(IncrementalSolverBudget, ATimeNextToZeroPutsOffAllButTheNewMeasurement) {
+  IncrementalSolver::Params params = withBudget(0);
+  params.budget_ms = 1e-9;
+  IncrementalSolver solver(params);
+  MultibodyGraph graph(solver, 1, 2);
+  for (int i = 0; i < 20; ++i) {
+    const auto before = solver.graph().factors();
+    graph.addFrame();
+    const auto asked = scalarsThatNewFactorsAskFor(solver, before);
+    const auto& report = solver.update();
+    if (i == 0) continue;  // no pace yet
+    EXPECT_EQ(report.eliminated_scalars, asked);
+    EXPECT_GT(report.deferred_variables, 0);
+  }
+}
+
+TEST(IncrementalSolverBudget, ANewMeasurementIsNeverPutOff) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    IncrementalSolver solver(withBudget(1));
+    MultibodyGraph graph(solver, seed, 2);
+    for (int i = 0; i < 15; ++i) {
+      graph.addFrame();
+      solver.update();
+    }
+    // The camera's newest pose is measured to a millimetre, 0.1 m from where it stands.
+    const VariableId newest = graph.camera().back();
+    const SE3 measured = solver.pose(newest) * SE3(Eigen::Matrix3d::Identity(), {0.1, 0, 0});
+    solver.addFactor(std::make_unique<PriorFactor>(std::array{newest}, PriorModel{measured}, test::isotropicNoise(1e-3, 1e-4)));
+    solver.update();
+    EXPECT_LT((solver.pose(newest).translation() - measured.translation()).norm(), 5e-3) << "seed " << seed;
+    const auto covariance = solver.jointCovariance(std::array{newest});
+    ASSERT_TRUE(covariance);
+    EXPECT_LT(std::sqrt(covariance->diagonal().head<3>().maxCoeff()), 1.01e-3);
+  }
+}
+
+TEST(IncrementalSolverEveryN, ReachesTheBatchSolutionInItsBatchSteps) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    IncrementalSolver::Params params = kExact;
+    params.policy = IncrementalSolver::Policy::kEveryN;
+    params.batch_every_updates = 4;
+    IncrementalSolver solver(params);
+    MultibodyGraph graph(solver, seed, 2);
+    for (int i = 0; i < 30; ++i) {
+      graph.addFrame();
+      solver.update();
+      if (i >= 15) solver.retire(graph.takeOldest());
+    }
+    for (int i = 0; i < 4 * 12; ++i) solver.update();
+    EXPECT_LT(differenceFromBatch(solver), 1e-8) << "seed " << seed;
+  }
+}
+
+TEST(IncrementalSolverEveryN, KeepsItsLinearModelsBetweenBatchSteps) {
+  IncrementalSolver::Params params = kExact;
+  params.policy = IncrementalSolver::Policy::kEveryN;
+  params.batch_every_updates = 1000;
+  IncrementalSolver solver(params);
+  MultibodyGraph graph(solver, 1, 2);
+  for (int i = 0; i < 20; ++i) {
+    graph.addFrame();
+    const auto& report = solver.update();
+    EXPECT_EQ(report.relinearized_variables + report.relinearized_factors + report.corrected_factors, 0);
+  }
+  // What is left is the minimum of the linear models: the gradient of their sum vanishes at x.
+  const DenseSystem dense(solver.graph());
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(dense.size()), scale = gradient;
+  for (const FactorId f : solver.graph().factors()) {
+    std::vector<double> x;
+    for (const VariableId v : solver.graph().factor(f).variables()) {
+      const auto& coordinates = solver.graph()[v].x;
+      x.insert(x.end(), coordinates.begin(), coordinates.begin() + solver.graph().sizeOf(v));
+    }
+    const auto term = solver.graph().term(f);
+    const auto n = static_cast<Eigen::Index>(x.size());
+    const auto at = dense.entries(solver.graph().factor(f).variables());
+    const Eigen::VectorXd r = term.leftCols(n) * Eigen::Map<Eigen::VectorXd>(x.data(), n) + term.col(n);
+    gradient(at) += term.leftCols(n).transpose() * r;
+    scale(at) += term.leftCols(n).cwiseAbs().transpose() * r.cwiseAbs();
+  }
+  EXPECT_LT((gradient.array() / (scale.array() + 1)).abs().maxCoeff(), 1e-8);
+}
+
+}  // namespace
+}  // namespace motorcade

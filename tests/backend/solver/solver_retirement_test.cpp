@@ -1,0 +1,133 @@
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "backend/solver/incremental_solver.hpp"
+#include "tests/backend/dense_system.hpp"
+#include "tests/backend/random_graphs.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::differenceFromBatch;
+using test::kExact;
+using test::MultibodyGraph;
+using test::settle;
+
+constexpr std::size_t kWindow = 12;
+
+/// Largest sizes over some frames.
+struct Sizes {
+  std::int64_t eliminated_scalars = 0;
+  std::size_t used_bytes = 0, held_bytes = 0, variable_slots = 0, factor_slots = 0, cliques = 0, variables = 0, factors = 0;
+
+  void include(const IncrementalSolver& solver, const IncrementalSolver::Report& report) {
+    eliminated_scalars = std::max(eliminated_scalars, report.eliminated_scalars);
+    used_bytes = std::max(used_bytes, solver.tree().usedBytes());
+    held_bytes = std::max(held_bytes, solver.heldBytes());
+    variable_slots = std::max(variable_slots, solver.graph().slots());
+    factor_slots = std::max(factor_slots, solver.graph().factorSlots());
+    cliques = std::max(cliques, solver.tree().slots());
+    variables = std::max(variables, solver.graph().variableCount());
+    factors = std::max(factors, solver.graph().factorCount());
+  }
+};
+
+/// A car comes into view and leaves it every thirty frames.
+void changeTraffic(IncrementalSolver& solver, MultibodyGraph& graph, int frame) {
+  if (frame % 30 == 0) graph.startObject();
+  if (frame % 30 == 20 && graph.objects().size() > 2) {
+    const auto gone = graph.takeObject(0);
+    if (frame % 60 == 20)
+      solver.retire(gone);
+    else
+      solver.drop(gone);
+  }
+}
+
+Sizes drive(IncrementalSolver& solver, MultibodyGraph& graph, int from, int to) {
+  Sizes sizes;
+  for (int i = from; i < to; ++i) {
+    graph.addFrame();
+    sizes.include(solver, solver.update());
+    if (graph.camera().size() > kWindow) solver.retire(graph.takeOldest());
+    changeTraffic(solver, graph, i);
+  }
+  return sizes;
+}
+
+TEST(SolverRetirement, ADriveOfTwoThousandFramesCostsNoMoreThanItsWindowAndEndsAtTheBatchSolution) {
+  IncrementalSolver solver({});
+  MultibodyGraph graph(solver, 1, 1);
+  drive(solver, graph, 1, 100);
+  const Sizes early = drive(solver, graph, 100, 500), late = drive(solver, graph, 500, 2000);
+  // Window, newest frame, and three objects with their anchors.
+  const std::size_t most_variables = (kWindow + 1) * 4 + 3;
+  EXPECT_LE(late.variables, most_variables);
+  EXPECT_EQ(late.variable_slots, early.variable_slots);
+  EXPECT_LE(late.factors, early.factors + early.factors / 4);
+  EXPECT_LE(late.factor_slots, early.factor_slots + early.factor_slots / 4);
+  EXPECT_LE(late.cliques, early.cliques + early.cliques / 4);
+  EXPECT_LE(late.used_bytes, early.used_bytes + early.used_bytes / 4);
+  EXPECT_LE(late.held_bytes, early.held_bytes + early.held_bytes / 4);
+  EXPECT_LE(late.eliminated_scalars, 2 * 6 * static_cast<std::int64_t>(most_variables));  // everything, in both iterations
+
+  solver.converge(50, 1e-11);
+  EXPECT_LT(differenceFromBatch(solver, 1e-3), 1e-7);  // at coordinates of some hundred metres
+}
+
+/// Where a variable lies in the tree, or in which company it leaves, makes no difference to those that stay.
+TEST(SolverRetirement, AnyVariablesMayLeaveWithoutChangingTheOthers) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    IncrementalSolver solver(kExact);
+    MultibodyGraph graph(solver, seed, 2);
+    for (int i = 0; i < 10; ++i) {
+      graph.addFrame();
+      solver.update();
+    }
+    settle(solver);
+    auto variables = solver.graph().variables();
+    std::vector<VariableId> leaving;
+    for (std::size_t i = 0; i < 1 + seed; ++i) {
+      const std::size_t k = graph.random().below(variables.size());
+      leaving.push_back(variables[k]);
+      variables.erase(variables.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+    std::vector<Value> before;
+    for (const VariableId v : variables) before.push_back(solver.estimate(v));
+    const auto covariance = solver.jointCovariance(variables);
+    solver.retire(leaving);
+    settle(solver);
+    EXPECT_EQ(solver.graph().variables(), variables);
+    EXPECT_EQ(solver.counters().retired_variables, static_cast<std::int64_t>(leaving.size()));
+    for (std::size_t i = 0; i < variables.size(); ++i)
+      EXPECT_LT(local(before[i], solver.estimate(variables[i])).norm(), 1e-8) << "seed " << seed;
+    const auto after = solver.jointCovariance(variables);
+    ASSERT_TRUE(covariance && after);
+    EXPECT_LT((*after - *covariance).cwiseAbs().maxCoeff(), 1e-8 * covariance->cwiseAbs().maxCoeff()) << "seed " << seed;
+  }
+}
+
+/// Ids are given out again at once: nothing that was noted about the one that left may fall on the one that comes.
+TEST(SolverRetirement, NewOnesMayTakeTheIdsOfThoseThatLeft) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    IncrementalSolver solver(
+        {.mismatch_tolerance = 1e-6, .jacobian_drift_sigmas = 1e9, .relinearize_rad = 1e9, .iterations_per_update = 1});
+    MultibodyGraph graph(solver, seed, 2);
+    for (int i = 0; i < 8; ++i) {
+      graph.addFrame();
+      solver.update();
+    }
+    solver.retire(graph.takeOldest());
+    // More new variables than have left, on the factor ids that became free.
+    graph.startObject();
+    graph.addFrame();
+    graph.addFrame();
+    solver.update();
+    solver.converge(50, 1e-11);
+    EXPECT_LT(differenceFromBatch(solver, 1e-3), 1e-8) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace motorcade

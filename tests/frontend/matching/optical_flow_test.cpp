@@ -1,0 +1,164 @@
+#include "frontend/matching/optical_flow.hpp"
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "frontend/features/feature_preparation.hpp"
+#include "tests/frontend/texture.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr int kWidth = 480, kHeight = 240;
+const StereoCamera kCamera{721.5, 721.5, 240, 120, 0.54, kWidth, kHeight};
+
+/// A texture that moves by (du, dv) per frame, seen with changing exposure.
+class MovingWall {
+ public:
+  MovingWall(double du_px, double dv_px) : du_px_(du_px), dv_px_(dv_px) {}
+  FeaturesPtr at(int frame) const {
+    const auto gray = [&](double x, double y) { return texture_(x - frame * du_px_, y - frame * dv_px_); };
+    const test::Exposure exposure{.gain = 1 - 0.02 * frame, .bias = 2.0 * frame, .noise = 2, .seed = static_cast<unsigned>(frame)};
+    const Image image = test::render(kWidth, kHeight, gray, exposure);
+    return prepare_(test::stereoFrame(frame, image, image));
+  }
+  Eigen::Vector2d velocity_px() const { return {du_px_, dv_px_}; }
+
+ private:
+  test::Texture texture_{61, 7, 60};
+  double du_px_, dv_px_;
+  FeaturePreparation prepare_{{}};
+};
+
+struct Birth {
+  Eigen::Vector2d uv_px;
+  int frame;
+};
+
+TEST(OpticalFlowTracker, DoesNotWalkAwayOverManyFrames) {
+  const MovingWall wall(3.31, -1.27);
+  OpticalFlowTracker track({}, kCamera);
+  std::map<PointId, Birth> births;
+  std::map<int, std::pair<double, int>> squares_at_age;
+  for (int frame = 0; frame <= 12; ++frame) {
+    const auto flow = track(wall.at(frame));
+    for (const FlowTrack& point : flow->tracks) {
+      const Eigen::Vector2d uv_px(point.u_px, point.v_px);
+      if (point.age == 1) births.emplace(point.point, Birth{uv_px, frame});
+      const Birth& birth = births.at(point.point);
+      EXPECT_EQ(point.age, frame - birth.frame + 1);
+      const Eigen::Vector2d error_px = uv_px - birth.uv_px - (frame - birth.frame) * wall.velocity_px();
+      auto& [squares, count] = squares_at_age[point.age];
+      squares += error_px.squaredNorm() / 2;
+      ++count;
+    }
+  }
+  for (const int age : {2, 5, 8, 12}) {
+    const auto [squares, count] = squares_at_age.at(age);
+    EXPECT_GE(count, 100);
+    EXPECT_LT(std::sqrt(squares / count), age <= 6 ? 0.1 : 0.14) << age;  // the anchor of a second keyframe adds its error
+  }
+}
+
+TEST(OpticalFlowTracker, FollowsLargeMotionFromTheFirstFrame) {
+  const MovingWall wall(-62.4, 11.7);
+  OpticalFlowTracker track({}, kCamera);
+  track(wall.at(0));
+  const auto first = track(wall.at(1));
+  const auto followed = std::ranges::count_if(first->tracks, [](const FlowTrack& point) { return point.age == 2; });
+  EXPECT_GE(followed, 100);
+}
+
+/// A block of another texture that moves to the right across a wall at rest.
+TEST(OpticalFlowTracker, FollowsWhatCrossesAStandingScene) {
+  constexpr double kSpeed_px = 45;
+  const test::Texture wall(61, 7, 60), vehicle(62, 7, 60);
+  const FeaturePreparation prepare{{}};
+  OpticalFlowTracker track({}, kCamera);
+  const auto left_px = [&](int frame) { return 100 + frame * kSpeed_px; };
+  const auto at = [&](int frame) {
+    const auto gray = [&](double x, double y) {
+      const bool on_vehicle = x > left_px(frame) && x < left_px(frame) + 140 && y > 80 && y < 160;
+      return on_vehicle ? vehicle(x - left_px(frame), y) : wall(x, y);
+    };
+    const Image image = test::render(kWidth, kHeight, gray, {.noise = 2, .seed = static_cast<unsigned>(frame)});
+    return track(prepare(test::stereoFrame(frame, image, image)));
+  };
+  const auto before = at(0), now = at(1);
+  int crossing = 0;
+  for (const FlowTrack& point : now->tracks) {
+    if (point.age < 2 || point.u_px < left_px(1) + 8 || point.u_px > left_px(1) + 132 || point.v_px < 88 || point.v_px > 152) continue;
+    const auto then = std::ranges::find(before->tracks, point.point, &FlowTrack::point);
+    ASSERT_NE(then, before->tracks.end());
+    crossing += std::abs(point.u_px - then->u_px - kSpeed_px) < 1;
+  }
+  EXPECT_GE(crossing, 10);
+}
+
+TEST(OpticalFlowTracker, OrdersTracksByIdsThatAreNeverUsedTwice) {
+  const MovingWall wall(9.3, 2.2);
+  OpticalFlowTracker track({}, kCamera);
+  std::set<PointId> ended, alive;
+  for (int frame = 0; frame < 6; ++frame) {
+    const auto features = wall.at(frame);
+    const auto flow = track(features);
+    std::set<PointId> now;
+    for (std::size_t i = 0; i < flow->tracks.size(); ++i) {
+      const FlowTrack& point = flow->tracks[i];
+      EXPECT_TRUE(i == 0 || flow->tracks[i - 1].point < point.point);
+      EXPECT_FALSE(ended.contains(point.point));
+      EXPECT_EQ(point.age == 1, point.corner >= 0);
+      EXPECT_EQ(point.age == 1, !alive.contains(point.point));
+      EXPECT_TRUE(point.corner < 0 || point.u_px == features->corners[static_cast<std::size_t>(point.corner)].u_px);
+      now.insert(point.point);
+    }
+    for (const PointId point : alive)
+      if (!now.contains(point)) ended.insert(point);
+    alive = now;
+  }
+  EXPECT_FALSE(ended.empty());
+}
+
+TEST(OpticalFlowTracker, KeepsTracksApartAndSpread) {
+  const MovingWall wall(5.5, 0.4);
+  OpticalFlowTracker::Params params;
+  params.max_tracks = 150;
+  OpticalFlowTracker track(params, kCamera);
+  for (int frame = 0; frame < 4; ++frame) {
+    const auto flow = track(wall.at(frame));
+    EXPECT_LE(flow->tracks.size(), 150U);
+    std::set<std::pair<int, int>> cells;
+    for (std::size_t i = 0; i < flow->tracks.size(); ++i) {
+      const FlowTrack& a = flow->tracks[i];
+      cells.emplace(static_cast<int>(a.u_px) / params.cell_px, static_cast<int>(a.v_px) / params.cell_px);
+      for (std::size_t j = 0; j < i; ++j)
+        EXPECT_GE(std::hypot(a.u_px - flow->tracks[j].u_px, a.v_px - flow->tracks[j].v_px), 0.99 * params.min_distance_px);
+    }
+    EXPECT_GE(cells.size(), 45U);  // of 50
+  }
+}
+
+TEST(OpticalFlowTracker, StartsAgainAfterARejectedFrame) {
+  const MovingWall wall(3, 0);
+  OpticalFlowTracker track({}, kCamera);
+  const auto before = track(wall.at(0));
+  EXPECT_TRUE(track(FeaturePreparation({})(test::rejectedFrame(1)))->tracks.empty());
+  const auto after = track(wall.at(2));
+  ASSERT_FALSE(after->tracks.empty());
+  EXPECT_GT(after->tracks.front().point, before->tracks.back().point);
+  EXPECT_TRUE(std::ranges::all_of(after->tracks, [](const FlowTrack& point) { return point.age == 1; }));
+}
+
+TEST(OpticalFlowTracker, StartsAgainWhenTheImageSizeChanges) {
+  const Image small = test::render(200, 120, test::Texture(62));
+  OpticalFlowTracker track({}, kCamera);
+  track(MovingWall(1, 0).at(0));
+  const auto flow = track(FeaturePreparation({})(test::stereoFrame(1, small, small)));
+  EXPECT_TRUE(std::ranges::all_of(flow->tracks, [](const FlowTrack& point) { return point.age == 1; }));
+}
+
+}  // namespace
+}  // namespace motorcade

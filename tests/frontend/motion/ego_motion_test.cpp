@@ -1,0 +1,134 @@
+#include "frontend/motion/ego_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/matchers.hpp"
+#include "tests/support/stereo_views.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::kRig;
+using test::Noise;
+
+/// A street of which a share moves as one: a truck beside us.
+struct Street {
+  std::vector<PoseObservation> observations;
+  std::vector<bool> moves;
+};
+
+std::vector<bool> nothingKnown(const Street& s) { return std::vector<bool>(s.moves.size(), false); }
+
+SE3 trueMotion() {
+  Vector6d xi;
+  xi << 0.02, 0, 1.0, 0, 0.015, 0;
+  return SE3::exp(xi);  // T_previous_now
+}
+
+enum class Movers { kTruckBesideUs, kEverywhere };
+
+Street street(int at_rest, int moving, std::uint64_t seed, const SE3& T_previous_now = trueMotion(),
+              Movers movers = Movers::kTruckBesideUs) {
+  const Eigen::Vector3d step_m(0.15, 0, 0.9);  // of the movers: about our own way, as in traffic
+  Noise noise(seed);
+  Street s;
+  while (static_cast<int>(s.observations.size()) < at_rest + moving) {
+    const bool moves = static_cast<int>(s.observations.size()) >= at_rest;
+    const bool of_truck = moves && movers == Movers::kTruckBesideUs;
+    const Eigen::Vector3d before = of_truck ? noise.inBox({1, -1.5, 9}, {5, 1.2, 16}) : test::streetPoint(noise, 6, 35);
+    const Eigen::Vector3d now = T_previous_now.inverse() * (moves ? Eigen::Vector3d(before + step_m) : before);
+    const auto o = test::lookTwice(before, now, noise);
+    if (!o) continue;
+    s.observations.push_back(*o);
+    s.moves.push_back(moves);
+  }
+  return s;
+}
+
+/// The right motion up to its own covariance, and the right inliers.
+void expectTrueMotion(const std::optional<EgoMotion>& ego, const Street& s, std::uint64_t seed) {
+  ASSERT_TRUE(ego) << "seed " << seed;
+  const Vector6d error = (trueMotion().inverse() * ego->T_previous_now).log();
+  EXPECT_LT(test::nees(error, ego->covariance), 30) << "seed " << seed;  // chi2(6) is below it but for 4 in 100,000
+  int right = 0;
+  for (std::size_t i = 0; i < s.moves.size(); ++i) right += ego->inliers[i] != s.moves[i];
+  EXPECT_GT(right, 0.95 * static_cast<double>(s.moves.size())) << "seed " << seed;  // 1 % of those at rest lie beyond the gate
+}
+
+TEST(EgoMotion, SurvivesSixtyPercentMoversKnownFromBefore) {
+  const EgoMotionEstimator estimate({}, kRig);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Street s = street(80, 120, seed);
+    expectTrueMotion(estimate(s.observations, s.moves, {SE3{}}, seed), s, seed);
+  }
+}
+
+TEST(EgoMotion, SurvivesFortyPercentMoversThatNobodyKnows) {
+  const EgoMotionEstimator estimate({}, kRig);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Street s = street(120, 80, 100 + seed);
+    expectTrueMotion(estimate(s.observations, nothingKnown(s), {SE3{}}, seed), s, seed);
+  }
+}
+
+TEST(EgoMotion, CovarianceIsThatOfTheErrors) {
+  constexpr int kSeeds = 300;
+  Vector6d xi;
+  xi << 1.5, 0, 3, 0, 0, 1;  // a camera that rolls by a radian: with little rotation, perturbing either side of the motion is the same
+  const SE3 T_previous_now = SE3::exp(xi);
+  const EgoMotionEstimator estimate({}, kRig);
+  double mean = 0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const Street s = street(100, 0, static_cast<std::uint64_t>(200 + seed), T_previous_now);
+    const auto ego = estimate(s.observations, s.moves, {T_previous_now}, static_cast<std::uint64_t>(seed));
+    ASSERT_TRUE(ego);
+    const Vector6d error = (T_previous_now.inverse() * ego->T_previous_now).log();
+    mean += test::nees(error, ego->covariance) / kSeeds;
+  }
+  EXPECT_NEAR(mean, 6, test::meanChi2Spread(6, kSeeds));
+}
+
+TEST(EgoMotion, TooFewPointsGiveNone) {
+  const EgoMotionEstimator estimate({}, kRig);
+  const Street few = street(11, 0, 1);
+  EXPECT_FALSE(estimate(few.observations, few.moves, {trueMotion()}, 1));
+  EXPECT_FALSE(estimate({}, {}, {trueMotion()}, 1));
+  Street scattered = street(30, 0, 2);  // enough points, of which hardly any agree
+  Noise noise(3);
+  for (auto& o : scattered.observations) o.uvd_px += noise.inBox({-60, -40, -5}, {60, 40, 5});
+  EXPECT_FALSE(estimate(scattered.observations, scattered.moves, {trueMotion()}, 1));
+}
+
+TEST(EgoMotion, EqualSeedsGiveEqualResults) {
+  const EgoMotionEstimator estimate({}, kRig);
+  const Street s = street(120, 80, 5);
+  const auto first = estimate(s.observations, nothingKnown(s), {SE3{}}, 9);
+  const auto second = estimate(s.observations, nothingKnown(s), {SE3{}}, 9);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->T_previous_now.translation(), second->T_previous_now.translation());  // to the last bit
+  EXPECT_EQ(first->T_previous_now.rotation(), second->T_previous_now.rotation());
+  EXPECT_EQ(first->inliers, second->inliers);
+}
+
+TEST(EgoMotion, TheWorldIsLargerThanTheVehiclesThatFillTheView) {
+  const EgoMotionEstimator estimate({}, kRig);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Street s = street(150, 250, seed);
+    expectTrueMotion(estimate(s.observations, nothingKnown(s), {SE3{}}, seed), s, seed);
+  }
+}
+
+TEST(EgoMotion, ASteadyMotionIsNotGivenUpForOneThatNoVehicleCanMake) {
+  const EgoMotionEstimator estimate({}, kRig);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const SE3 expected = SE3::exp(2.0 * trueMotion().log());  // much faster than the movers
+    const Street s = street(100, 150, seed, expected, Movers::kEverywhere);
+    const auto ego = estimate(s.observations, nothingKnown(s), {expected, 0.1, 10}, seed);
+    ASSERT_TRUE(ego) << "seed " << seed;
+    EXPECT_TRUE(ego->steady);
+    EXPECT_LT((ego->T_previous_now.translation() - expected.translation()).norm(), 0.1) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace motorcade

@@ -1,0 +1,60 @@
+#include "frontend/segmentation/geometric_constraints.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/stereo_views.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::kRig;
+
+const Eigen::Vector3d kSigma_px(0.3, 0.3, 0.3);
+const SE3 kT_now_then(Eigen::Matrix3d::Identity(), {0, 0, -3});  // 3 m straight ahead
+
+std::optional<GeometricResidual> residual(const Eigen::Vector3d& p_then, const Eigen::Vector3d& step_m,
+                                          const SE3& T_now_then = kT_now_then) {
+  const Eigen::Vector2d now = kRig.project(T_now_then * Eigen::Vector3d(p_then + step_m))->head<2>();
+  return geometricResidual(kRig, *kRig.project(p_then), kSigma_px, now, kSigma_px.x(), T_now_then);
+}
+
+TEST(GeometricConstraints, APointAtRestKeepsBoth) {
+  test::Noise noise(1);
+  for (int i = 0; i < 100; ++i) {
+    Eigen::Vector3d p = test::streetPoint(noise, 6, 50);
+    p.x() += p.x() < 0 ? -1 : 1;  // away from the epipole, where no line exists
+    const SE3 motion(expSO3({0.001, 0.03, 0}), {0.1, 0, -3});
+    const auto r = residual(p, {0, 0, 0}, motion);
+    ASSERT_TRUE(r);
+    EXPECT_LT(r->epipolar_sigmas, 1e-6);  // rounding
+    EXPECT_EQ(r->flow_bound_px, 0);
+  }
+}
+
+TEST(GeometricConstraints, ASidewaysMoverLeavesTheEpipolarLine) {
+  const auto r = residual({0.2, 2, 15}, {0.5, 0, 0});  // the line points down, the mover goes right by 0.5 m: 30 px at 12 m
+  ASSERT_TRUE(r);
+  EXPECT_GT(r->epipolar_sigmas, 20);
+}
+
+TEST(GeometricConstraints, AMoverAlongTheLineExceedsTheFlowBoundOnly) {
+  // It drives along our own direction: seen from a camera that goes straight it stays in the plane of its epipolar line.
+  for (const double step_m : {-3.0, 3.0}) {
+    const auto r = residual({4, 1.5, 15}, {0, 0, step_m});
+    ASSERT_TRUE(r);
+    EXPECT_LT(r->epipolar_sigmas, 1e-6);
+    EXPECT_GT(r->flow_bound_px, 5);  // at rest it flows by 48 px, oncoming by 128, at our own speed not at all
+  }
+}
+
+TEST(GeometricConstraints, PureRotationHasNoEpipolarLine) {
+  EXPECT_FALSE(residual({4, 1, 15}, {0, 0, 0}, SE3(expSO3({0, 0.05, 0}), {0, 0, 0})));
+}
+
+TEST(GeometricConstraints, APointThatWePassedHasNone) {
+  const Eigen::Vector3d p(0.5, 0.2, 2);
+  EXPECT_FALSE(geometricResidual(kRig, *kRig.project(p), kSigma_px, {600, 180}, 0.3, kT_now_then));
+}
+
+}  // namespace
+}  // namespace motorcade

@@ -1,0 +1,49 @@
+#include "frontend/segmentation/repeated_texture.hpp"
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace motorcade {
+namespace {
+
+constexpr int kWidth = 200, kHeight = 60;
+
+/// Smooth random columns and rows; the pattern comes back every `period` columns.
+Image texture(int period) {
+  std::mt19937 random(3);
+  std::vector<int> tile(static_cast<std::size_t>(period * kHeight));
+  for (auto& v : tile) v = static_cast<int>(random() % 200) + 20;
+  ImagePool pool;
+  Image image = pool.acquire(kWidth, kHeight);
+  const auto at = [&](int x, int y) { return tile[static_cast<std::size_t>(y * period + x % period)]; };
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {  // a 2x2 mean, so that the patches have slopes to descend
+      const int below = std::min(y + 1, kHeight - 1);
+      image.mutableRow(y)[x] = static_cast<std::uint8_t>((at(x, y) + at(x + 1, y) + at(x, below) + at(x + 1, below)) / 4);
+    }
+  }
+  return image;
+}
+
+const Eigen::Vector2d kFollowed{80, 30}, kOnePeriodOn{112, 30};
+
+TEST(RepeatedTexture, FindsAFencePostWhereItsNeighbourStood) {
+  const Image fence = texture(32);
+  EXPECT_TRUE(isFoundAtRestToo(fence, kFollowed, fence, kOnePeriodOn + Eigen::Vector2d(1, -1), kFollowed, 1.0, {}));
+}
+
+TEST(RepeatedTexture, FindsNothingWhereAVehicleHidesOtherThings) {
+  const Image street = texture(kWidth);
+  EXPECT_FALSE(isFoundAtRestToo(street, kFollowed, street, kOnePeriodOn, kFollowed, 1.0, {}));
+}
+
+TEST(RepeatedTexture, SaysNothingWhereBothPlacesAreOne) {
+  const Image street = texture(kWidth);
+  EXPECT_FALSE(isFoundAtRestToo(street, kFollowed, street, kFollowed + Eigen::Vector2d(3, 0), kFollowed, 1.0, {}));
+}
+
+}  // namespace
+}  // namespace motorcade
