@@ -37,7 +37,8 @@ int perform(const std::function<int()>& action) {
 int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("motorcade"));
   spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
-  CLI::App app("Follows a car's own path and the moving vehicles around it, from one stereo camera, in real time.", "motorcade");
+  CLI::App app("Follows a car's own path and the moving vehicles around it, from one stereo camera, in real time.",
+               "motorcade");
   app.set_version_flag("--version", MOTORCADE_VERSION);
   app.require_subcommand(1);
   std::function<int()> action;

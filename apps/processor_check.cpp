@@ -2,8 +2,8 @@
 
 #include <unistd.h>
 
-/// Stops with a clear message, instead of an illegal instruction, on a processor that the rest of the program is not built for.
-/// Compiled for any x86-64 and run before every other initialiser.
+/// Stops with a clear message, instead of an illegal instruction, on a processor that the rest of the program is not
+/// built for. Compiled for any x86-64 and run before every other initializer.
 namespace {
 
 [[gnu::constructor(101)]] void checkProcessor() {

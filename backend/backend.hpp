@@ -14,7 +14,8 @@ class Backend {
   Backend& operator=(const Backend&) = delete;
   virtual ~Backend() = default;
 
-  /// The newest frame's estimate, and those that left the window. Numerical trouble shows in the result; nothing is thrown.
+  /// The newest frame's estimate, and those that left the window. Numerical trouble shows in the result; nothing is
+  /// thrown.
   virtual EstimatesPtr operator()(const FrameMeasurementsPtr& measurements) = 0;
 
   /// Final estimates of the frames still in the window, oldest first. No further frame may follow.

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The Hungarian method by shortest augmenting paths (Jonker and Volgenant, Computing 38, 1987): rows enter one at a time,
-/// each by the cheapest path of reassignments; the dual prices keep all reduced costs non-negative.
+/// The Hungarian method by shortest augmenting paths (Jonker and Volgenant, Computing 38, 1987): rows enter one at a
+/// time, each by the cheapest path of reassignments; the dual prices keep all reduced costs non-negative.
 class AugmentingPaths {
  public:
   AugmentingPaths(const Eigen::MatrixXd& cost, double forbidden)
@@ -26,8 +26,8 @@ class AugmentingPaths {
     for (int row = 0; row < cost_.rows(); ++row) enter(row);
     std::vector<int> column_of(static_cast<std::size_t>(cost_.rows()), -1);
     for (int column = 0; column < cost_.cols(); ++column) {
-      const int row = row_of_[static_cast<std::size_t>(column)];
-      if (row >= 0) column_of[static_cast<std::size_t>(row)] = column;
+      const int row = row_of_[column];
+      if (row >= 0) column_of[row] = column;
     }
     return column_of;
   }
@@ -51,14 +51,14 @@ class AugmentingPaths {
       relax(row, column, reached, settled, distance, came_from);
       column = nearest(distance, settled);
       assert(column >= 0);  // the row's own column is always within reach
-      settled[static_cast<std::size_t>(column)] = true;
-      reached = distance[static_cast<std::size_t>(column)];
-      row = row_of_[static_cast<std::size_t>(column)];
+      settled[column] = true;
+      reached = distance[column];
+      row = row_of_[column];
     } while (row >= 0);
     updatePrices(new_row, reached, settled, distance);
-    for (; column >= 0; column = came_from[static_cast<std::size_t>(column)]) {
-      const int before = came_from[static_cast<std::size_t>(column)];
-      row_of_[static_cast<std::size_t>(column)] = before < 0 ? new_row : row_of_[static_cast<std::size_t>(before)];
+    for (; column >= 0; column = came_from[column]) {
+      const int before = came_from[column];
+      row_of_[column] = before < 0 ? new_row : row_of_[before];
     }
   }
 
@@ -67,7 +67,7 @@ class AugmentingPaths {
     for (int next = 0; next < columns_; ++next) {
       const auto j = static_cast<std::size_t>(next);
       if (settled[j]) continue;
-      const double through = reached + costOf(row, next) - row_price_[static_cast<std::size_t>(row)] - column_price_[j];
+      const double through = reached + costOf(row, next) - row_price_[row] - column_price_[j];
       if (through < distance[j]) {
         distance[j] = through;
         came_from[j] = column;
@@ -79,17 +79,18 @@ class AugmentingPaths {
     int best = -1;
     for (int column = 0; column < columns_; ++column) {
       const auto j = static_cast<std::size_t>(column);
-      if (!settled[j] && distance[j] < kInfinity && (best < 0 || distance[j] < distance[static_cast<std::size_t>(best)])) best = column;
+      if (!settled[j] && distance[j] < kInfinity && (best < 0 || distance[j] < distance[best])) best = column;
     }
     return best;
   }
 
-  void updatePrices(int new_row, double reached, const std::vector<bool>& settled, const std::vector<double>& distance) {
-    row_price_[static_cast<std::size_t>(new_row)] += reached;
+  void updatePrices(int new_row, double reached, const std::vector<bool>& settled,
+                    const std::vector<double>& distance) {
+    row_price_[new_row] += reached;
     for (std::size_t j = 0; j < settled.size(); ++j) {
       if (!settled[j]) continue;
       column_price_[j] -= reached - distance[j];
-      if (row_of_[j] >= 0) row_price_[static_cast<std::size_t>(row_of_[j])] += reached - distance[j];
+      if (row_of_[j] >= 0) row_price_[row_of_[j]] += reached - distance[j];
     }
   }
 

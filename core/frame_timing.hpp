@@ -11,11 +11,14 @@
 namespace motorcade {
 
 /// The pipeline's stages, in the order of the data.
-enum class Stage { kPrepare, kStereo, kFlow, kMotion, kTracking, kOptimisation };
+enum class Stage { kPrepare, kStereo, kFlow, kMotion, kTracking, kOptimization };
 inline constexpr std::size_t kStageCount = 6;
-inline constexpr std::array<std::string_view, kStageCount> kStageNames{"prepare", "stereo", "flow", "motion", "tracking", "optimisation"};
+inline constexpr std::array<std::string_view, kStageCount> kStageNames{"prepare", "stereo",   "flow",
+                                                                       "motion",  "tracking", "optimization"};
 
-inline double millisecondsBetween(SteadyTime from, SteadyTime to) { return std::chrono::duration<double, std::milli>(to - from).count(); }
+inline double millisecondsBetween(SteadyTime from, SteadyTime to) {
+  return std::chrono::duration<double, std::milli>(to - from).count();
+}
 
 /// One stage's work on one frame; empty (start == end) where the stage did not run.
 struct StageSpan {

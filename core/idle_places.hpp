@@ -5,8 +5,8 @@
 
 namespace motorcade {
 
-/// Keeps what is idle behind atomic pointers: whoever swaps one out owns it, so that no thread ever waits for another. What is still there
-/// at the end is nobody's business here: its owner takes it out.
+/// Keeps what is idle behind atomic pointers: whoever swaps one out owns it, so that no thread ever waits for another.
+/// What is still there at the end is nobody's business here: its owner takes it out.
 template <class T>
 class IdlePlaces {
  public:
@@ -22,7 +22,8 @@ class IdlePlaces {
   bool putBack(T* idle) {
     for (auto& place : places_) {
       T* empty = place.load(std::memory_order_relaxed);
-      if (!empty && place.compare_exchange_strong(empty, idle, std::memory_order_release, std::memory_order_relaxed)) return true;
+      if (!empty && place.compare_exchange_strong(empty, idle, std::memory_order_release, std::memory_order_relaxed))
+        return true;
     }
     return false;
   }

@@ -53,7 +53,8 @@ class ImagePool::Shelf {
   Row* rowOf(std::size_t bytes) {
     for (Row& row : rows_) {
       std::size_t held = row.bytes.load(std::memory_order_relaxed);
-      if (held == bytes || (held == 0 && row.bytes.compare_exchange_strong(held, bytes, std::memory_order_relaxed)) || held == bytes)
+      if (held == bytes || (held == 0 && row.bytes.compare_exchange_strong(held, bytes, std::memory_order_relaxed)) ||
+          held == bytes)
         return &row;
     }
     return nullptr;
@@ -64,8 +65,8 @@ class ImagePool::Shelf {
   std::atomic<std::size_t> made_{0};
 };
 
-/// Lays the counts of a shared pointer into the header of the buffer that it shares. They are the last to be let go of: then the buffer is
-/// idle.
+/// Lays the counts of a shared pointer into the header of the buffer that it shares. They are the last to be let go of:
+/// then the buffer is idle.
 template <class T>
 struct ImagePool::InHeader {
   using value_type = T;
@@ -75,7 +76,8 @@ struct ImagePool::InHeader {
 
   InHeader(std::shared_ptr<Shelf> s, std::byte* b, std::size_t n) : shelf(std::move(s)), buffer(b), bytes(n) {}
   template <class Other>
-  explicit(false) InHeader(const InHeader<Other>& other) : shelf(other.shelf), buffer(other.buffer), bytes(other.bytes) {}
+  explicit(false) InHeader(const InHeader<Other>& other)
+      : shelf(other.shelf), buffer(other.buffer), bytes(other.bytes) {}
 
   T* allocate(std::size_t) const {
     static_assert(sizeof(T) <= kHeader_bytes && alignof(T) <= static_cast<std::size_t>(kAlignment));
@@ -96,7 +98,8 @@ Image ImagePool::acquire(int width, int height) {
   std::byte* buffer = shelf_->take(bytes);
   const auto keep = [](std::uint8_t*) {};
   auto* pixels = reinterpret_cast<std::uint8_t*>(buffer + kHeader_bytes);
-  return {std::shared_ptr<std::uint8_t[]>(pixels, keep, InHeader<std::uint8_t>(shelf_, buffer, bytes)), width, height, stride};
+  return {std::shared_ptr<std::uint8_t[]>(pixels, keep, InHeader<std::uint8_t>(shelf_, buffer, bytes)), width, height,
+          stride};
 }
 
 std::size_t ImagePool::buffersMade() const { return shelf_->made(); }

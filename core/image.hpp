@@ -29,8 +29,9 @@ class Image {
   int width_ = 0, height_ = 0, stride_ = 0;
 };
 
-/// Hands out images and takes their buffers back when the last view is gone, so that a steady stream of frames touches no fresh memory.
-/// Any thread may acquire images and let go of them, without locks, and once the stream is warm without the heap.
+/// Hands out images and takes their buffers back when the last view is gone, so that a steady stream of frames touches
+/// no fresh memory. Any thread may acquire images and let go of them, without locks, and once the stream is warm
+/// without the heap.
 class ImagePool {
  public:
   ImagePool();

@@ -6,8 +6,8 @@
 
 namespace motorcade {
 
-/// Durations in fixed memory, however long the run: logarithmic octaves of microseconds, each cut into 32 equal buckets,
-/// so that a percentile is at most 1/32 too high. One thread adds; read it when that thread has ended.
+/// Durations in fixed memory, however long the run: logarithmic octaves of microseconds, each cut into 32 equal
+/// buckets, so that a percentile is at most 1/32 too high. One thread adds; read it when that thread has ended.
 class LatencyHistogram {
  public:
   void add(double duration_ms);
@@ -15,7 +15,8 @@ class LatencyHistogram {
   std::int64_t count() const { return count_; }
   double mean_ms() const;
   double max_ms() const { return max_ms_; }
-  /// Smallest bucket bound that `fraction` (0 to 1) of the durations do not exceed, never above the maximum; 0 when empty.
+  /// Smallest bucket bound that `fraction` (0 to 1) of the durations do not exceed, never above the maximum; 0 when
+  /// empty.
   double percentile_ms(double fraction) const;
 
  private:

@@ -66,8 +66,9 @@ class Mailbox {
   static constexpr std::uint32_t kSlot = 3, kFresh = 4;
   static constexpr std::size_t kCacheLine = 64;
   std::array<T, 3> slots_{};
-  alignas(kCacheLine) std::atomic<std::uint32_t> middle_{1};  // slot that nobody owns, and whether it holds an unread value
-  alignas(kCacheLine) std::size_t back_ = 0;                  // producer only
+  alignas(kCacheLine) std::atomic<std::uint32_t> middle_{
+      1};                                     // slot that nobody owns, and whether it holds an unread value
+  alignas(kCacheLine) std::size_t back_ = 0;  // producer only
   std::atomic<std::int64_t> overwritten_{0};
   alignas(kCacheLine) std::size_t front_ = 2;  // consumer only
   alignas(kCacheLine) std::atomic<std::uint32_t> events_{0};

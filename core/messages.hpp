@@ -72,11 +72,12 @@ struct FrameMeasurements {
   FrameId frame;
   Timestamp stamp;
   FrameStatus status = FrameStatus::kGood;
-  /// Ego-motion T_cam(previous)_cam(now); predicted, with a wide covariance, unless the status is kGood. Identity in the first frame.
+  /// Ego-motion T_cam(previous)_cam(now); predicted, with a wide covariance, unless the status is kGood. Identity in
+  /// the first frame.
   SE3 T_previous_now;
   Matrix6d odometry_covariance = Matrix6d::Identity();
-  /// Objects of this frame. An object that was confirmed now brings its earlier observations along, oldest first, before its own of this
-  /// frame.
+  /// Objects of this frame. An object that was confirmed now brings its earlier observations along, oldest first,
+  /// before its own of this frame.
   std::vector<ObjectObservation> objects;
   /// Tracks that ended: nothing will be observed of them any more.
   std::vector<TrackId> ended;
@@ -95,7 +96,8 @@ struct ObjectEstimate {
   std::optional<Matrix6d> covariance;  // of T_cam_body of the same frame
 };
 
-/// The camera and the objects in one frame: *online* when it is published with the newest frame, *final* when it leaves the window.
+/// The camera and the objects in one frame: *online* when it is published with the newest frame, *final* when it leaves
+/// the window.
 struct FrameEstimate {
   FrameId frame;
   Timestamp stamp;

@@ -6,8 +6,9 @@
 
 namespace motorcade {
 
-/// Hands out objects and takes them back when their last pointer is gone, as they are: what they hold on the heap serves again. Any thread
-/// may acquire objects and let go of them, without locks. The objects outlive the pool while somebody holds them.
+/// Hands out objects and takes them back when their last pointer is gone, as they are: what they hold on the heap
+/// serves again. Any thread may acquire objects and let go of them, without locks. The objects outlive the pool while
+/// somebody holds them.
 template <class T>
 class ObjectPool {
  public:

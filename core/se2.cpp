@@ -18,7 +18,8 @@ struct LeftJacobian {
 
 }  // namespace
 
-SE2::SE2(double angle_rad, const Eigen::Vector2d& translation_m) : angle_rad_(wrapped(angle_rad)), translation_(translation_m) {}
+SE2::SE2(double angle_rad, const Eigen::Vector2d& translation_m)
+    : angle_rad_(wrapped(angle_rad)), translation_(translation_m) {}
 
 SE2 SE2::exp(const Eigen::Vector3d& xi) {
   const LeftJacobian V(xi[2]);
@@ -28,8 +29,8 @@ SE2 SE2::exp(const Eigen::Vector3d& xi) {
 Eigen::Vector3d SE2::log() const {
   const LeftJacobian V(angle_rad_);
   const double determinant = V.a * V.a + V.b * V.b;
-  return {(V.a * translation_.x() + V.b * translation_.y()) / determinant, (V.a * translation_.y() - V.b * translation_.x()) / determinant,
-          angle_rad_};
+  return {(V.a * translation_.x() + V.b * translation_.y()) / determinant,
+          (V.a * translation_.y() - V.b * translation_.x()) / determinant, angle_rad_};
 }
 
 Eigen::Matrix2d SE2::rotation() const {
@@ -50,7 +51,8 @@ Eigen::Matrix3d SE2::adjoint() const {
 }
 
 Eigen::Matrix3d rightJacobianInverseSE2(const Eigen::Vector3d& xi) {
-  // As a power series in ad: Jr^-1 = I + ad / 2 + (1 - h) / phi^2 ad^2 with h = (phi / 2) cot(phi / 2); ad^3 = -phi^2 ad.
+  // As a power series in ad: Jr^-1 = I + ad / 2 + (1 - h) / phi^2 ad^2 with h = (phi / 2) cot(phi / 2); ad^3 = -phi^2
+  // ad.
   const double phi = xi[2], half = phi / 2;
   const double s = std::abs(phi) < 1e-3 ? 1.0 / 12 + phi * phi / 720 : (1 - half / std::tan(half)) / (phi * phi);
   Eigen::Matrix3d ad;

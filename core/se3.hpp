@@ -19,7 +19,8 @@ Eigen::Vector3d logSO3(const Eigen::Matrix3d& rotation);
 class SE3 {
  public:
   SE3() : rotation_(Eigen::Matrix3d::Identity()), translation_(Eigen::Vector3d::Zero()) {}
-  SE3(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_m) : rotation_(rotation), translation_(translation_m) {}
+  SE3(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_m)
+      : rotation_(rotation), translation_(translation_m) {}
 
   /// Exponential and logarithm of SE(3) (Barfoot, State Estimation for Robotics, 2017, section 7.1).
   static SE3 exp(const Vector6d& xi);
@@ -29,7 +30,9 @@ class SE3 {
   const Eigen::Vector3d& translation() const { return translation_; }
 
   SE3 inverse() const { return {rotation_.transpose(), -(rotation_.transpose() * translation_)}; }
-  SE3 operator*(const SE3& other) const { return {rotation_ * other.rotation_, rotation_ * other.translation_ + translation_}; }
+  SE3 operator*(const SE3& other) const {
+    return {rotation_ * other.rotation_, rotation_ * other.translation_ + translation_};
+  }
   Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return rotation_ * p + translation_; }
 
   /// The same motion with the rotation put back onto SO(3); call it where many products are chained.

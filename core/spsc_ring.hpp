@@ -13,12 +13,15 @@
 namespace motorcade {
 
 /// Bounded lock-free queue from one producer thread to one consumer thread.
-/// Each side may wait for the other; `close` (from any thread) ends every wait. What was pushed before can still be popped.
+/// Each side may wait for the other; `close` (from any thread) ends every wait. What was pushed before can still be
+/// popped.
 template <class T>
 class SpscRing {
  public:
   /// `capacity` is rounded up to a power of two.
-  explicit SpscRing(std::size_t capacity) : slots_(std::bit_ceil(capacity)), mask_(slots_.size() - 1) { assert(capacity > 0); }
+  explicit SpscRing(std::size_t capacity) : slots_(std::bit_ceil(capacity)), mask_(slots_.size() - 1) {
+    assert(capacity > 0);
+  }
 
   std::size_t capacity() const { return slots_.size(); }
 

@@ -7,7 +7,8 @@ namespace motorcade {
 std::optional<Eigen::Vector3d> StereoCamera::project(const Eigen::Vector3d& p_cam) const {
   if (p_cam.z() < kMinDepth_m) return std::nullopt;
   const double inverse_z = 1.0 / p_cam.z();
-  return Eigen::Vector3d{fx_px * p_cam.x() * inverse_z + cx_px, fy_px * p_cam.y() * inverse_z + cy_px, fx_px * baseline_m * inverse_z};
+  return Eigen::Vector3d{fx_px * p_cam.x() * inverse_z + cx_px, fy_px * p_cam.y() * inverse_z + cy_px,
+                         fx_px * baseline_m * inverse_z};
 }
 
 Eigen::Matrix3d StereoCamera::projectionJacobian(const Eigen::Vector3d& p_cam) const {

@@ -26,7 +26,8 @@ struct StereoCamera {
   Eigen::Matrix3d triangulationJacobian(const Eigen::Vector3d& uvd_px) const;
 
   bool inLeftImage(double u_px, double v_px, double border_px = 0) const {
-    return u_px >= border_px && v_px >= border_px && u_px <= width_px - 1 - border_px && v_px <= height_px - 1 - border_px;
+    return u_px >= border_px && v_px >= border_px && u_px <= width_px - 1 - border_px &&
+           v_px <= height_px - 1 - border_px;
   }
 
   static constexpr double kMinDepth_m = 0.1;

@@ -9,7 +9,8 @@
 
 #include "core/messages.hpp"
 
-/// The messages between the stages of the front-end, in the order in which they arise. Pixels are of the full-size left image.
+/// The messages between the stages of the front-end, in the order in which they arise. Pixels are of the full-size left
+/// image.
 namespace motorcade {
 
 /// An image at full, half, quarter, ... size. Pixel (x, y) of level k lies over (2^k x + (2^k - 1)/2, ...) of level 0.
@@ -50,18 +51,19 @@ struct StereoMatches {
 using StereoMatchesPtr = std::shared_ptr<const StereoMatches>;
 
 /// A scene point in this frame's left image.
-struct FlowTrack {
+struct FlowObservation {
   PointId point;
   float u_px = 0, v_px = 0;
   float sigma_px = 0;  // of each coordinate
   int age = 1;         // frames in which it was seen so far, this one included
-  int corner = -1;     // of `Features::corners`, where the track was born in this frame; -1 when it came from the frame before
+  int corner =
+      -1;  // of `Features::corners`, where the track was born in this frame; -1 when it came from the frame before
 };
 
 /// Tracks ordered by point id: those followed from the previous frame and those born here.
 struct OpticalFlow {
   FeaturesPtr features;
-  std::vector<FlowTrack> tracks;
+  std::vector<FlowObservation> observations;
 };
 using OpticalFlowPtr = std::shared_ptr<const OpticalFlow>;
 

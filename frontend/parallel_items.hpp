@@ -7,15 +7,16 @@
 
 namespace motorcade {
 
-/// Calls `work(i)` for every i below `count`, on whatever threads the arena has to spare, at least `grain` on one thread in a row. The items
-/// must not depend on each other.
-/// Isolated: while a stage waits for its own items here, its thread does not start on another frame.
+/// Calls `work(i)` for every i below `count`, on whatever threads the arena has to spare, at least `grain` on one
+/// thread in a row. The items must not depend on each other. Isolated: while a stage waits for its own items here, its
+/// thread does not start on another frame.
 template <class Work>
 void forEachItem(std::size_t count, const Work& work, std::size_t grain = 16) {
   tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const tbb::blocked_range<std::size_t>& range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
-    });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
+                      });
   });
 }
 

@@ -30,22 +30,26 @@ std::map<std::string, Values> readKeys(const std::filesystem::path& file) {
 }
 
 /// The first of several spellings that the file knows; its values must be `count` many.
-const Values* find(const std::map<std::string, Values>& keys, const std::vector<std::string>& spellings, std::size_t count,
-                   const std::filesystem::path& file) {
+const Values* find(const std::map<std::string, Values>& keys, const std::vector<std::string>& spellings,
+                   std::size_t count, const std::filesystem::path& file) {
   for (const auto& spelling : spellings) {
     const auto found = keys.find(spelling);
     if (found == keys.end()) continue;
     if (found->second.size() != count) {
-      throw InputError(file.string() + ": key " + spelling + " has " + std::to_string(found->second.size()) + " numbers, " +
-                       std::to_string(count) + " are needed");
+      throw InputError(file.string() + ": key " + spelling + " has " + std::to_string(found->second.size()) +
+                       " numbers, " + std::to_string(count) + " are needed");
     }
     return &found->second;
   }
   return nullptr;
 }
 
-Eigen::Matrix<double, 3, 4> matrix34(const Values& v) { return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(v.data()); }
-Eigen::Matrix3d matrix33(const Values& v) { return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(v.data()); }
+Eigen::Matrix<double, 3, 4> matrix34(const Values& v) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(v.data());
+}
+Eigen::Matrix3d matrix33(const Values& v) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(v.data());
+}
 SE3 rigid(const Values& v) {
   const auto m = matrix34(v);
   return SE3(m.leftCols<3>(), m.col(3)).normalized();
@@ -76,7 +80,8 @@ StereoCamera Calibration::stereoCamera(CameraPair pair) const {
   if (!(P_left(0, 0) > 0) || !(P_left(1, 1) > 0)) throw InputError(name + ": the focal lengths must be positive");
   const double tolerance_px = 1e-3 * P_left(0, 0);
   if ((P_left.leftCols<3>() - P_right.leftCols<3>()).cwiseAbs().maxCoeff() > tolerance_px) {
-    throw InputError(name + " and P" + std::to_string(left + 1) + " differ in their left 3x3 part: the pair is not rectified");
+    throw InputError(name + " and P" + std::to_string(left + 1) +
+                     " differ in their left 3x3 part: the pair is not rectified");
   }
   const StereoCamera camera{.fx_px = P_left(0, 0),
                             .fy_px = P_left(1, 1),
@@ -94,7 +99,8 @@ SE3 Calibration::T_left_cam0(CameraPair pair) const {
   if (pair == CameraPair::kGray || !P[2]) return {};
   const Eigen::Vector3d p = P[2]->col(3);  // P2 = K * [I | t]
   const double t_z = p.z();
-  return {Eigen::Matrix3d::Identity(), {(p.x() - (*P[2])(0, 2) * t_z) / (*P[2])(0, 0), (p.y() - (*P[2])(1, 2) * t_z) / (*P[2])(1, 1), t_z}};
+  return {Eigen::Matrix3d::Identity(),
+          {(p.x() - (*P[2])(0, 2) * t_z) / (*P[2])(0, 0), (p.y() - (*P[2])(1, 2) * t_z) / (*P[2])(1, 1), t_z}};
 }
 
 std::optional<SE3> Calibration::T_cam0_imu() const {

@@ -11,8 +11,8 @@
 
 namespace motorcade {
 
-/// Which two of KITTI's four cameras a sequence uses: 0 and 1 are gray, 2 and 3 colour.
-enum class CameraPair { kGray, kColour };
+/// Which two of KITTI's four cameras a sequence uses: 0 and 1 are gray, 2 and 3 color.
+enum class CameraPair { kGray, kColor };
 
 /// The content of a KITTI calibration, whatever its spelling. What the file does not tell is empty.
 struct Calibration {
@@ -34,7 +34,8 @@ struct Calibration {
 /// Reads `calib.txt` of the plain, tracking and odometry layouts, in both spellings of its keys.
 Calibration readCalibration(const std::filesystem::path& file);
 
-/// Reads `calib_cam_to_cam.txt` and, where they are there, `calib_velo_to_cam.txt` and `calib_imu_to_velo.txt` of a raw date folder.
+/// Reads `calib_cam_to_cam.txt` and, where they are there, `calib_velo_to_cam.txt` and `calib_imu_to_velo.txt` of a raw
+/// date folder.
 Calibration readRawCalibration(const std::filesystem::path& date_folder);
 
 }  // namespace motorcade

@@ -42,8 +42,9 @@ std::vector<SE3> mercatorPoses(const std::vector<OxtsPacket>& packets) {
     const Eigen::Vector3d place_m{scale_m * p.longitude_deg * kRadPerDeg,
                                   scale_m * std::log(std::tan((90 + p.latitude_deg) * kRadPerDeg / 2)), p.altitude_m};
     using Eigen::AngleAxisd, Eigen::Vector3d;
-    const Eigen::Quaterniond attitude =
-        AngleAxisd(p.yaw_rad, Vector3d::UnitZ()) * AngleAxisd(p.pitch_rad, Vector3d::UnitY()) * AngleAxisd(p.roll_rad, Vector3d::UnitX());
+    const Eigen::Quaterniond attitude = AngleAxisd(p.yaw_rad, Vector3d::UnitZ()) *
+                                        AngleAxisd(p.pitch_rad, Vector3d::UnitY()) *
+                                        AngleAxisd(p.roll_rad, Vector3d::UnitX());
     poses.push_back({attitude.toRotationMatrix(), place_m});
   }
   return poses;
@@ -60,7 +61,8 @@ SE3 poseAt(Timestamp stamp, const std::vector<SE3>& poses, const std::vector<Tim
 }
 
 std::vector<SE3> interpolated(const std::vector<SE3>& poses, const Sequence::Truth& truth) {
-  const auto packet_stamps = readTimestamps(truth.oxts_timestamps), image_stamps = readTimestamps(truth.image_timestamps);
+  const auto packet_stamps = readTimestamps(truth.oxts_timestamps),
+             image_stamps = readTimestamps(truth.image_timestamps);
   if (packet_stamps.size() != poses.size()) {
     throw InputError(truth.oxts_timestamps.string() + ": has " + std::to_string(packet_stamps.size()) + " times for " +
                      std::to_string(poses.size()) + " packets");
@@ -70,7 +72,8 @@ std::vector<SE3> interpolated(const std::vector<SE3>& poses, const Sequence::Tru
   return result;
 }
 
-/// T_world_cam = C B P_0^-1 P_k B^-1 C^-1, with B the left gray camera from the inertial unit and C the pair's left camera from it.
+/// T_world_cam = C B P_0^-1 P_k B^-1 C^-1, with B the left gray camera from the inertial unit and C the pair's left
+/// camera from it.
 std::optional<CameraTruth> truthFromOxts(const Sequence& sequence, OxtsTimes times) {
   const auto T_cam0_imu = sequence.calibration.T_cam0_imu();
   if (sequence.truth.oxts.empty() || !T_cam0_imu) return std::nullopt;
@@ -79,23 +82,26 @@ std::optional<CameraTruth> truthFromOxts(const Sequence& sequence, OxtsTimes tim
   const bool interpolate = times == OxtsTimes::kInterpolated && both_times && poses.size() >= 2;
   if (interpolate) poses = interpolated(poses, sequence.truth);
   if (poses.size() < sequence.frames.size()) {
-    throw InputError(sequence.truth.oxts.string() + ": tells of " + std::to_string(poses.size()) + " frames, there are " +
-                     std::to_string(sequence.frames.size()) + " images");
+    throw InputError(sequence.truth.oxts.string() + ": tells of " + std::to_string(poses.size()) +
+                     " frames, there are " + std::to_string(sequence.frames.size()) + " images");
   }
-  CameraTruth truth{.T_world_cam = {},
-                    .source = sequence.truth.oxts.filename().string() + (interpolate ? " (interpolated)" : " (uninterpolated)")};
+  CameraTruth truth{
+      .T_world_cam = {},
+      .source = sequence.truth.oxts.filename().string() + (interpolate ? " (interpolated)" : " (uninterpolated)")};
   const SE3 T_cam_imu = sequence.calibration.T_left_cam0(sequence.pair) * *T_cam0_imu;
   const SE3 T_world_mercator = T_cam_imu * poses.front().inverse();
   const SE3 T_imu_cam = T_cam_imu.inverse();
-  for (std::size_t i = 0; i < sequence.frames.size(); ++i) truth.T_world_cam.push_back(T_world_mercator * poses[i] * T_imu_cam);
+  for (std::size_t i = 0; i < sequence.frames.size(); ++i)
+    truth.T_world_cam.push_back(T_world_mercator * poses[i] * T_imu_cam);
   return truth;
 }
 
 CameraTruth truthFromPoses(const Sequence& sequence) {
-  CameraTruth truth{.T_world_cam = readKittiPoses(sequence.truth.poses), .source = sequence.truth.poses.filename().string()};
+  CameraTruth truth{.T_world_cam = readKittiPoses(sequence.truth.poses),
+                    .source = sequence.truth.poses.filename().string()};
   if (truth.T_world_cam.size() < sequence.frames.size()) {
-    throw InputError(sequence.truth.poses.string() + ": has " + std::to_string(truth.T_world_cam.size()) + " poses for " +
-                     std::to_string(sequence.frames.size()) + " images");
+    throw InputError(sequence.truth.poses.string() + ": has " + std::to_string(truth.T_world_cam.size()) +
+                     " poses for " + std::to_string(sequence.frames.size()) + " images");
   }
   const SE3 T_left_cam0 = sequence.calibration.T_left_cam0(sequence.pair);
   for (auto& pose : truth.T_world_cam) pose = T_left_cam0 * pose * T_left_cam0.inverse();
@@ -108,8 +114,8 @@ SE3 boxPose(const Label& label) {
 
 using PoseByFrameAndId = std::map<std::pair<std::int64_t, std::int64_t>, SE3>;
 
-/// Rendered sequences give poses of objects with x ahead, y left, z up, in the world of the left gray camera; a box frame has y down and z
-/// left.
+/// Rendered sequences give poses of objects with x ahead, y left, z up, in the world of the left gray camera; a box
+/// frame has y down and z left.
 PoseByFrameAndId readObjectPoses(const fs::path& file) {
   PoseByFrameAndId poses;
   if (file.empty()) return poses;

@@ -8,7 +8,8 @@
 #include "io/labels.hpp"
 #include "io/sequence.hpp"
 
-/// The truth of a sequence, in its own conventions turned into ours: `world` is the first left camera of the images' pair.
+/// The truth of a sequence, in its own conventions turned into ours: `world` is the first left camera of the images'
+/// pair.
 namespace motorcade {
 
 /// How oxts packets and images are brought together. The two are up to 5 ms apart.
@@ -28,15 +29,16 @@ struct CameraTruth {
   std::vector<SE3> T_world_cam;  // one per frame
   std::string source;            // for reports: which file, in what form
 };
-/// From `poses.txt` where it is there, else, or when the uninterpolated form is asked for, from oxts. Empty when there is neither.
+/// From `poses.txt` where it is there, else, or when the uninterpolated form is asked for, from oxts. Empty when there
+/// is neither.
 std::optional<CameraTruth> readCameraTruth(const Sequence& sequence, OxtsTimes times = OxtsTimes::kInterpolated);
 
-/// A labelled object in one frame.
+/// A labeled object in one frame.
 struct ObjectTruth {
   FrameId frame;
   std::int64_t id = -1;
   std::string type;
-  SE3 T_world_object;  // KITTI's box frame: origin at the centre of the bottom face, x along the length, y down
+  SE3 T_world_object;  // KITTI's box frame: origin at the center of the bottom face, x along the length, y down
   SE3 T_cam_object;    // the same from the frame's camera
   Box box;
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  // height, width, length

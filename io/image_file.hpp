@@ -19,7 +19,7 @@ struct ImageSize {
   std::string text() const { return std::to_string(width) + "x" + std::to_string(height); }
 };
 
-/// Colour image, three bytes per pixel, rows without gaps.
+/// Color image, three bytes per pixel, rows without gaps.
 struct RgbImage {
   int width = 0, height = 0;
   std::vector<std::uint8_t> pixels;
@@ -44,7 +44,7 @@ ImageFormat imageFormat(const std::filesystem::path& file);
 /// From the header alone. Refuses sizes below 16 or above 16384 in either direction.
 ImageSize readImageSize(const std::filesystem::path& file);
 
-/// Any PNG, JPEG or PGM as 8-bit gray; colour is weighted as in BT.601, 16 bits lose the lower byte.
+/// Any PNG, JPEG or PGM as 8-bit gray; color is weighted as in BT.601, 16 bits lose the lower byte.
 Image readImage(const std::filesystem::path& file, ImagePool& pool);
 /// A gray PNG of 16 bits; one of 8 bits is widened without scaling.
 Gray16Image readPng16(const std::filesystem::path& file);

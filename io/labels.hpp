@@ -18,7 +18,7 @@ struct Label {
   int occluded = 0;      // 0 visible, 1 partly, 2 largely occluded, 3 unknown
   Box box;
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();      // height, width, length
-  Eigen::Vector3d location_m = Eigen::Vector3d::Zero();  // centre of the bottom face, in the rectified left gray camera
+  Eigen::Vector3d location_m = Eigen::Vector3d::Zero();  // center of the bottom face, in the rectified left gray camera
   double rotation_y_rad = 0;                             // about the camera's y axis
 
   bool dontCare() const { return type == "DontCare"; }

@@ -28,7 +28,9 @@ LineFile::~LineFile() {
 }
 
 LineFile::LineFile(LineFile&& other) noexcept
-    : file_(std::move(other.file_)), buffer_(std::move(other.buffer_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+    : file_(std::move(other.file_)),
+      buffer_(std::move(other.buffer_)),
+      descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 void LineFile::writeLine(std::string_view line) {
   buffer_.assign(line);
@@ -38,7 +40,8 @@ void LineFile::writeLine(std::string_view line) {
     const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail(file_, "cannot be written");
-    rest.remove_prefix(static_cast<std::size_t>(written));  // a disk that is almost full takes a part, and refuses the next
+    rest.remove_prefix(
+        static_cast<std::size_t>(written));  // a disk that is almost full takes a part, and refuses the next
   }
 }
 

@@ -6,7 +6,8 @@
 
 namespace motorcade {
 
-/// Appends `value` with `decimals` digits after the point; the same bytes for the same value on every machine and locale.
+/// Appends `value` with `decimals` digits after the point; the same bytes for the same value on every machine and
+/// locale.
 inline void appendFixed(std::string& text, double value, int decimals) {
   char buffer[400];
   const auto end = std::to_chars(buffer, buffer + sizeof(buffer), value + 0.0, std::chars_format::fixed, decimals).ptr;
@@ -16,7 +17,8 @@ inline void appendFixed(std::string& text, double value, int decimals) {
 /// The same in scientific form, as KITTI prints its poses.
 inline void appendScientific(std::string& text, double value, int decimals) {
   char buffer[64];
-  const auto end = std::to_chars(buffer, buffer + sizeof(buffer), value + 0.0, std::chars_format::scientific, decimals).ptr;
+  const auto end =
+      std::to_chars(buffer, buffer + sizeof(buffer), value + 0.0, std::chars_format::scientific, decimals).ptr;
   text.append(buffer, end);
 }
 

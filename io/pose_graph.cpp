@@ -104,7 +104,8 @@ class Reader {
 
   std::int64_t idOf(std::string_view word) const;
   void report(Kind kind, std::int64_t pose, const std::string& detail) {
-    graph_.problems.push_back({kind, line_, "pose " + std::to_string(pose), "line " + std::to_string(line_) + ": " + detail, {pose}});
+    graph_.problems.push_back(
+        {kind, line_, "pose " + std::to_string(pose), "line " + std::to_string(line_) + ": " + detail, {pose}});
   }
   void report(Kind kind, std::int64_t from, std::int64_t to, const std::string& detail) {
     const std::string name = "edge from pose " + std::to_string(from) + " to pose " + std::to_string(to);
@@ -149,7 +150,8 @@ void Reader::readLine(std::string_view tag, std::string_view rest) {
   if (tag == "FRAME") return readIds(tag, rest, graph_.frame_ends);
   for (const TagFormat& format : kFormats)
     if (tag == format.tag) return readElement(format, rest);
-  fail("unknown tag " + shown(tag) + ": remove the line, or write it as one of VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT, " +
+  fail("unknown tag " + shown(tag) +
+       ": remove the line, or write it as one of VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT, " +
        "EDGE_SE3:QUAT, FIX, FRAME");
 }
 
@@ -169,7 +171,8 @@ void Reader::readElement(const TagFormat& format, std::string_view rest) {
     graph_.planar = format.planar;
   }
   if (format.planar != graph_.planar) {
-    fail(std::string(format.tag) + " after " + std::string(tag_of_space_) + ": a graph is in the plane or in space; make them two files");
+    fail(std::string(format.tag) + " after " + std::string(tag_of_space_) +
+         ": a graph is in the plane or in space; make them two files");
   }
   const std::string_view text = rest;
   std::array<std::int64_t, 2> ids{};
@@ -186,24 +189,28 @@ void Reader::readElement(const TagFormat& format, std::string_view rest) {
     }
   }
   if (count != format.ids + needed) {
-    fail(std::string(format.tag) + " is followed by " + std::to_string(count) + " fields; give it " + std::to_string(format.ids + needed) +
-         ": " + (format.ids == 1 ? "an id and " : "two ids, ") + std::to_string(format.pose_numbers) + " numbers of the " +
+    fail(std::string(format.tag) + " is followed by " + std::to_string(count) + " fields; give it " +
+         std::to_string(format.ids + needed) + ": " + (format.ids == 1 ? "an id and " : "two ids, ") +
+         std::to_string(format.pose_numbers) + " numbers of the " +
          (format.ids == 1 ? "pose"
-                          : "measurement and " + std::to_string(format.information_numbers) + " of the information's upper triangle"));
+                          : "measurement and " + std::to_string(format.information_numbers) +
+                                " of the information's upper triangle"));
   }
   graph_.poses.insert(graph_.poses.end(), ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(format.ids));
   const std::span<const double> all(numbers.data(), needed);
   if (format.ids == 1) return addVertex(ids[0], all);
   const auto [same, is_new] = line_of_edge_.emplace(text, line_);
   if (!is_new) {
-    report(Kind::kRepeatedEdge, ids[0], ids[1], "says the same as line " + std::to_string(same->second) + "; both count");
+    report(Kind::kRepeatedEdge, ids[0], ids[1],
+           "says the same as line " + std::to_string(same->second) + "; both count");
   }
   addEdge(ids[0], ids[1], all.first(format.pose_numbers), all.subspan(format.pose_numbers));
 }
 
 void Reader::addVertex(std::int64_t id, std::span<const double> numbers) {
   const auto [first, is_new] = line_of_vertex_.emplace(id, line_);
-  if (!is_new) return report(Kind::kDuplicateVertex, id, "is given again; line " + std::to_string(first->second) + " is kept");
+  if (!is_new)
+    return report(Kind::kDuplicateVertex, id, "is given again; line " + std::to_string(first->second) + " is kept");
   if (!allUsable(numbers)) {
     report(Kind::kNotFinite, id, "its value is not finite or too large; left out");
     graph_.vertices.push_back({id, graph_.planar ? PoseGraph::Pose(SE2{}) : PoseGraph::Pose(SE3{})});
@@ -212,9 +219,12 @@ void Reader::addVertex(std::int64_t id, std::span<const double> numbers) {
   graph_.vertices.push_back({id, poseOf(numbers)});
 }
 
-void Reader::addEdge(std::int64_t from, std::int64_t to, std::span<const double> pose, std::span<const double> information) {
-  if (!allUsable(pose)) return report(Kind::kNotFinite, from, to, "the measurement is not finite or too large; left out");
-  if (!allUsable(information)) return report(Kind::kNotFinite, from, to, "the information is not finite or too large; left out");
+void Reader::addEdge(std::int64_t from, std::int64_t to, std::span<const double> pose,
+                     std::span<const double> information) {
+  if (!allUsable(pose))
+    return report(Kind::kNotFinite, from, to, "the measurement is not finite or too large; left out");
+  if (!allUsable(information))
+    return report(Kind::kNotFinite, from, to, "the information is not finite or too large; left out");
   const PoseGraph::Edge edge{from, to, line_, poseOf(pose), informationOf(information, graph_.planar ? 3 : 6)};
   if (from == to) return report(Kind::kSelfEdge, from, to, "joins a pose to itself; left out");
   if (edge.information.llt().info() != Eigen::Success) {
@@ -234,7 +244,8 @@ PoseGraph::Pose Reader::poseOf(std::span<const double> numbers) const {
 std::int64_t Reader::idOf(std::string_view word) const {
   std::int64_t id = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), id);
-  if (error != std::errc() || end != word.data() + word.size()) fail(shown(word) + " stands where an id belongs; ids are whole numbers");
+  if (error != std::errc() || end != word.data() + word.size())
+    fail(shown(word) + " stands where an id belongs; ids are whole numbers");
   if (id < 0) fail("the id " + std::string(word) + " is negative; number the poses from 0");
   return id;
 }
@@ -248,7 +259,8 @@ void append(std::string& text, double value) {
 
 void append(std::string& text, const PoseGraph::Pose& pose) {
   if (const auto* planar = std::get_if<SE2>(&pose)) {
-    for (const double value : {planar->translation().x(), planar->translation().y(), planar->angle_rad()}) append(text, value);
+    for (const double value : {planar->translation().x(), planar->translation().y(), planar->angle_rad()})
+      append(text, value);
     return;
   }
   const SE3& T = std::get<SE3>(pose);
@@ -262,7 +274,8 @@ void append(std::string& text, const PoseGraph::Edge& edge, std::string_view tag
   text.append(tag).append(" ").append(std::to_string(edge.from)).append(" ").append(std::to_string(edge.to));
   append(text, edge.measured);
   for (Eigen::Index row = 0; row < edge.information.rows(); ++row)
-    for (Eigen::Index column = row; column < edge.information.cols(); ++column) append(text, edge.information(row, column));
+    for (Eigen::Index column = row; column < edge.information.cols(); ++column)
+      append(text, edge.information(row, column));
   text += '\n';
 }
 

@@ -12,7 +12,8 @@
 
 namespace motorcade {
 
-/// A pose graph as g2o files state it: poses in the plane or poses in space, never both, and measured motions between them.
+/// A pose graph as g2o files state it: poses in the plane or poses in space, never both, and measured motions between
+/// them.
 struct PoseGraph {
   using Pose = std::variant<SE3, SE2>;
   /// 3x3 in the plane, 6x6 in space, translation first; positive definite. Without a heap allocation.
@@ -49,9 +50,9 @@ struct PoseGraph {
 
 std::string_view nameOf(PoseGraph::Problem::Kind kind);
 
-/// Reads VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT, EDGE_SE3:QUAT, FIX and FRAME lines. Throws an InputError that names file, line and mend for
-/// what is not written as g2o. Edges that are not finite, have no positive definite information or join a pose to itself are left out, of
-/// vertices of one id the first is kept: these become problems.
+/// Reads VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT, EDGE_SE3:QUAT, FIX and FRAME lines. Throws an InputError that names
+/// file, line and mend for what is not written as g2o. Edges that are not finite, have no positive definite information
+/// or join a pose to itself are left out, of vertices of one id the first is kept: these become problems.
 PoseGraph readPoseGraph(const std::filesystem::path& file);
 
 /// Numbers are written with all their digits. Throws OutputError.

@@ -14,19 +14,24 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kObjectsHeader =
-    "frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,right,bottom";
+    "frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,right,"
+    "bottom";
 constexpr std::string_view kCovariancesHeaderStart = "frame,track_id";
-constexpr std::array kStatuses = {FrameStatus::kGood, FrameStatus::kLost, FrameStatus::kRejected, FrameStatus::kDropped};
+constexpr std::array kStatuses = {FrameStatus::kGood, FrameStatus::kLost, FrameStatus::kRejected,
+                                  FrameStatus::kDropped};
 constexpr std::array kStates = {ObjectState::kMoving, ObjectState::kStopped, ObjectState::kPredicted};
 
 fs::path preparedFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder)) {
-    throw OutputError(folder.string() + ": cannot be made a folder: " + (error ? error.message() : "a file of this name is there"));
+    throw OutputError(folder.string() +
+                      ": cannot be made a folder: " + (error ? error.message() : "a file of this name is there"));
   }
   fs::remove(folder / "summary.json", error);
-  if (error) throw OutputError((folder / "summary.json").string() + ": an earlier summary cannot be removed: " + error.message());
+  if (error)
+    throw OutputError((folder / "summary.json").string() +
+                      ": an earlier summary cannot be removed: " + error.message());
   return folder;
 }
 
@@ -50,7 +55,8 @@ std::string objectLine(FrameId frame, const ObjectEstimate& object) {
   add(object.speed_sigma_mps, 4);
   line += ',';
   appendInteger(line, object.points);
-  for (const double edge_px : {object.box.left_px, object.box.top_px, object.box.right_px, object.box.bottom_px}) add(edge_px, 2);
+  for (const double edge_px : {object.box.left_px, object.box.top_px, object.box.right_px, object.box.bottom_px})
+    add(edge_px, 2);
   return line;
 }
 
@@ -72,7 +78,8 @@ std::string covarianceLine(FrameId frame, TrackId track, const Matrix6d& covaria
 std::string covariancesHeader() {
   std::string header(kCovariancesHeaderStart);
   for (int row = 0; row < 6; ++row)
-    for (int column = row; column < 6; ++column) header.append(",c").append(std::to_string(row)).append(std::to_string(column));
+    for (int column = row; column < 6; ++column)
+      header.append(",c").append(std::to_string(row)).append(std::to_string(column));
   return header;
 }
 
@@ -128,15 +135,16 @@ std::vector<TextLine> readTable(const fs::path& file, std::string_view header_st
   auto lines = readLines(file, LastLine::kDropIfCut);
   if (lines.empty()) return lines;
   if (!lines.front().text.starts_with(header_start)) {
-    throw InputError(file.string() + ", line " + std::to_string(lines.front().number) + ": the header must begin with " +
-                     std::string(header_start));
+    throw InputError(file.string() + ", line " + std::to_string(lines.front().number) +
+                     ": the header must begin with " + std::string(header_start));
   }
   lines.erase(lines.begin());
   return lines;
 }
 
 template <class Value, std::size_t N>
-Value byName(FieldReader& fields, std::string_view what, const std::array<Value, N>& values, std::string_view (*name)(Value)) {
+Value byName(FieldReader& fields, std::string_view what, const std::array<Value, N>& values,
+             std::string_view (*name)(Value)) {
   const std::string_view word = fields.word(what);
   const auto found = std::ranges::find(values, word, name);
   if (found == values.end()) fields.fail("'" + std::string(word) + "' is no " + std::string(what));
@@ -266,7 +274,8 @@ RunFolderWriter::RunFolderWriter(const fs::path& folder)
 void RunFolderWriter::writeConfig(std::string_view toml) { writeAtOnce(folder_ / "effective_config.toml", toml); }
 
 void RunFolderWriter::writeOnline(const FrameEstimate& estimate) {
-  if (estimate.camera_covariance) covariances_.writeLine(covarianceLine(estimate.frame, {}, *estimate.camera_covariance));
+  if (estimate.camera_covariance)
+    covariances_.writeLine(covarianceLine(estimate.frame, {}, *estimate.camera_covariance));
   for (const auto& object : estimate.objects) {
     if (object.covariance) covariances_.writeLine(covarianceLine(estimate.frame, object.track, *object.covariance));
   }
@@ -291,8 +300,8 @@ void RunFolderWriter::finish(std::string_view summary_json) {
   // A metadata event closes the array without a comma, so that strict JSON readers accept a complete trace.
   trace_.writeLine(R"({"name":"process_name","ph":"M","pid":1,"tid":0,"args":{"name":"motorcade"}})");
   trace_.writeLine("]");
-  for (LineFile* file :
-       {&online_.kitti, &online_.tum, &online_.objects, &final_.kitti, &final_.tum, &final_.objects, &covariances_, &frames_, &trace_}) {
+  for (LineFile* file : {&online_.kitti, &online_.tum, &online_.objects, &final_.kitti, &final_.tum, &final_.objects,
+                         &covariances_, &frames_, &trace_}) {
     file->close();
   }
   writeAtOnce(folder_ / "summary.json", summary_json);

@@ -77,7 +77,8 @@ struct RunFolder {
   bool complete() const { return !summary_json.empty(); }
 };
 
-/// Reads a run folder; throws InputError naming file and line. A line that was cut off when the run was killed is left out.
+/// Reads a run folder; throws InputError naming file and line. A line that was cut off when the run was killed is left
+/// out.
 RunFolder readRunFolder(const std::filesystem::path& folder);
 
 }  // namespace motorcade

@@ -20,9 +20,10 @@ struct PairNames {
   const char *left, *right;
   CameraPair pair;
 };
-constexpr std::array kPairs = {PairNames{"image_0", "image_1", CameraPair::kGray}, PairNames{"image_00", "image_01", CameraPair::kGray},
-                               PairNames{"left", "right", CameraPair::kGray}, PairNames{"image_2", "image_3", CameraPair::kColour},
-                               PairNames{"image_02", "image_03", CameraPair::kColour}};
+constexpr std::array kPairs = {
+    PairNames{"image_0", "image_1", CameraPair::kGray}, PairNames{"image_00", "image_01", CameraPair::kGray},
+    PairNames{"left", "right", CameraPair::kGray}, PairNames{"image_2", "image_3", CameraPair::kColor},
+    PairNames{"image_02", "image_03", CameraPair::kColor}};
 
 fs::path ifExists(const fs::path& file) { return fs::exists(file) ? file : fs::path(); }
 
@@ -31,7 +32,8 @@ std::vector<fs::path> listImages(const fs::path& folder) {
   std::vector<fs::path> images;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (!entry.is_regular_file() || entry.path().filename().string().starts_with('.')) continue;
-    if (hasImageName(entry.path()) || imageFormat(entry.path()) != ImageFormat::kUnknown) images.push_back(entry.path());
+    if (hasImageName(entry.path()) || imageFormat(entry.path()) != ImageFormat::kUnknown)
+      images.push_back(entry.path());
   }
   std::ranges::sort(images);
   return images;
@@ -52,8 +54,9 @@ std::vector<FramePaths> pairImages(const fs::path& left_folder, const fs::path& 
   if (right.empty()) throw InputError(right_folder.string() + ": holds no PNG, JPEG or PGM image");
   if (left.size() != right.size()) {
     auto alone = left.size() > right.size() ? withoutPartner(left, right) : withoutPartner(right, left);
-    throw InputError(left_folder.string() + " holds " + std::to_string(left.size()) + " images, " + right_folder.string() + " holds " +
-                     std::to_string(right.size()) + (alone ? ": " + alone->string() + " has no partner" : "") +
+    throw InputError(left_folder.string() + " holds " + std::to_string(left.size()) + " images, " +
+                     right_folder.string() + " holds " + std::to_string(right.size()) +
+                     (alone ? ": " + alone->string() + " has no partner" : "") +
                      "; every left image needs a right one");
   }
   const bool by_name = left.front().stem() == right.front().stem() || left.back().stem() == right.back().stem();
@@ -83,8 +86,9 @@ void setImageSize(Sequence& sequence) {
   if (!left) readImageSize(sequence.frames.front().left);  // throws, and says why
   if (!right) readImageSize(sequence.frames.front().right);
   if (*left != *right) {
-    throw InputError(sequence.frames.front().left.string() + " has " + left->text() + " pixels, " + sequence.frames.front().right.string() +
-                     " has " + right->text() + ": a rectified pair has equal sizes");
+    throw InputError(sequence.frames.front().left.string() + " has " + left->text() + " pixels, " +
+                     sequence.frames.front().right.string() + " has " + right->text() +
+                     ": a rectified pair has equal sizes");
   }
   sequence.camera.width_px = left->width;
   sequence.camera.height_px = left->height;
@@ -107,7 +111,8 @@ void setStamps(Sequence& sequence, const fs::path& times_file, double fps_hz) {
 }
 
 /// What is common to all layouts once the folders are known.
-void finish(Sequence& sequence, const fs::path& left, const fs::path& right, const fs::path& times_file, double fps_hz) {
+void finish(Sequence& sequence, const fs::path& left, const fs::path& right, const fs::path& times_file,
+            double fps_hz) {
   sequence.frames = pairImages(left, right);
   sequence.camera = sequence.calibration.stereoCamera(sequence.pair);
   setImageSize(sequence);
@@ -144,9 +149,11 @@ std::optional<Sequence> openTracking(const fs::path& folder, double fps_hz) {
       if (name.empty() || !fs::is_directory(left) || !fs::is_directory(right)) continue;
       const fs::path text = name.string() + ".txt";
       Sequence sequence{.folder = folder, .layout = "tracking", .pair = names.pair};
-      sequence.calibration = readCalibration(neededFile(root / "calib" / text, "a tracking sequence needs its calibration"));
-      sequence.truth = {
-          .poses = ifExists(root / "poses" / text), .labels = ifExists(root / "label_02" / text), .oxts = ifExists(root / "oxts" / text)};
+      sequence.calibration =
+          readCalibration(neededFile(root / "calib" / text, "a tracking sequence needs its calibration"));
+      sequence.truth = {.poses = ifExists(root / "poses" / text),
+                        .labels = ifExists(root / "label_02" / text),
+                        .oxts = ifExists(root / "oxts" / text)};
       finish(sequence, left, right, ifExists(root / "times" / text), fps_hz);
       return sequence;
     }
@@ -159,9 +166,10 @@ std::optional<Sequence> openPlain(const fs::path& folder, double fps_hz) {
     const fs::path left = folder / names.left, right = folder / names.right;
     if (!fs::is_directory(left) || !fs::is_directory(right)) continue;
     Sequence sequence{.folder = folder, .layout = "plain", .pair = names.pair};
-    sequence.calibration = readCalibration(neededFile(folder / "calib.txt", "write the lines P0 and P1 of KITTI's calibration into it"));
+    sequence.calibration =
+        readCalibration(neededFile(folder / "calib.txt", "write the lines P0 and P1 of KITTI's calibration into it"));
     const bool any_pair = std::string_view(names.left) == "left";  // such folders may give either pair of keys
-    if (any_pair && !sequence.calibration.P[0]) sequence.pair = CameraPair::kColour;
+    if (any_pair && !sequence.calibration.P[0]) sequence.pair = CameraPair::kColor;
     fs::path poses = ifExists(folder / "poses.txt");
     if (poses.empty()) {
       poses = ifExists(folder.parent_path().parent_path() / "poses" / (folder.filename().string() + ".txt"));
@@ -183,7 +191,9 @@ std::optional<Sequence> openPlain(const fs::path& folder, double fps_hz) {
 
 FrameRange parseFrameRange(std::string_view text) {
   const auto colon = text.find(':');
-  const auto bad = [&] { return UsageError("--frames " + std::string(text) + ": write A:B, the first frame and the one after the last"); };
+  const auto bad = [&] {
+    return UsageError("--frames " + std::string(text) + ": write A:B, the first frame and the one after the last");
+  };
   if (colon == std::string_view::npos) throw bad();
   const auto parse = [&](std::string_view part, std::size_t when_empty) {
     if (part.empty()) return when_empty;
@@ -211,7 +221,8 @@ Sequence openSequence(const fs::path& given, double fps_hz) {
   }
   if (!fs::exists(folder)) throw InputError(given.string() + ": does not exist");
   throw InputError(given.string() +
-                   ": holds no stereo sequence; two folders image_0 + image_1, image_2 + image_3, image_02 + image_03 or left + right "
+                   ": holds no stereo sequence; two folders image_0 + image_1, image_2 + image_3, image_02 + image_03 "
+                   "or left + right "
                    "with a calib.txt beside them, or a KITTI tracking, odometry or raw folder, are understood");
 }
 

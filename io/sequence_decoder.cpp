@@ -1,10 +1,10 @@
 #include "io/sequence_decoder.hpp"
 
-#include <sys/resource.h>
-
 #include <chrono>
 #include <exception>
 #include <utility>
+
+#include <sys/resource.h>
 
 #include "io/errors.hpp"
 #include "io/image_file.hpp"
@@ -12,8 +12,8 @@
 namespace motorcade {
 namespace {
 
-/// Decoding ahead gives way to the frame that is due. On Linux the priority is the calling thread's alone; without it all works as well,
-/// only later.
+/// Decoding ahead gives way to the frame that is due. On Linux the priority is the calling thread's alone; without it
+/// all works as well, only later.
 void giveWay() {
   constexpr int kLeastUrgent = 19;
   setpriority(PRIO_PROCESS, 0, kLeastUrgent);
@@ -22,7 +22,10 @@ void giveWay() {
 }  // namespace
 
 SequenceDecoder::SequenceDecoder(Sequence sequence, FrameRange range, const Params& params)
-    : sequence_(std::move(sequence)), wanted_(params.wanted), range_(range.within(sequence_.frames.size())), ring_(params.ahead) {
+    : sequence_(std::move(sequence)),
+      wanted_(params.wanted),
+      range_(range.within(sequence_.frames.size())),
+      ring_(params.ahead) {
   thread_ = std::jthread([this] {
     giveWay();
     for (std::size_t index = range_.begin; index < range_.end; ++index) {
@@ -44,7 +47,8 @@ StereoFrame SequenceDecoder::decode(std::size_t index) {
   const auto read = [&](const std::filesystem::path& file) {
     Image image = readImage(file, pool_);
     const ImageSize size{image.width(), image.height()};
-    if (size != expected) throw InputError(file.string() + ": has " + size.text() + " pixels, the sequence has " + expected.text());
+    if (size != expected)
+      throw InputError(file.string() + ": has " + size.text() + " pixels, the sequence has " + expected.text());
     return image;
   };
   try {

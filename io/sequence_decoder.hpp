@@ -13,12 +13,14 @@
 namespace motorcade {
 
 /// Decodes a sequence's images on a thread of its own, a bounded number of pairs ahead of whoever takes them.
-/// Takes frames from one thread only. A pair that cannot be read, or has the wrong size, comes out with its `problem` told and no images.
+/// Takes frames from one thread only. A pair that cannot be read, or has the wrong size, comes out with its `problem`
+/// told and no images.
 class SequenceDecoder {
  public:
   struct Params {
     std::size_t ahead = 8;  // pairs, rounded up to a power of two
-    /// Asked, on the decoder's thread, before a pair is decoded; what is not wanted is left out. The last pair always comes.
+    /// Asked, on the decoder's thread, before a pair is decoded; what is not wanted is left out. The last pair always
+    /// comes.
     std::function<bool(Timestamp)> wanted{};
   };
   SequenceDecoder(Sequence sequence, FrameRange range, const Params& params);
@@ -28,13 +30,14 @@ class SequenceDecoder {
   SequenceDecoder(const SequenceDecoder&) = delete;
   SequenceDecoder& operator=(const SequenceDecoder&) = delete;
 
-  /// The next pair, numbered by its place in the sequence, without a due time; waits for it. Empty after the last or after `stop`.
+  /// The next pair, numbered by its place in the sequence, without a due time; waits for it. Empty after the last or
+  /// after `stop`.
   std::optional<StereoFrame> next() { return ring_.pop(); }
   /// Ends decoding early, from any thread; pairs already decoded still come out.
   void stop() { ring_.close(); }
 
   FrameId first() const { return {static_cast<std::int64_t>(range_.begin)}; }
-  Timestamp stampOf(FrameId frame) const { return sequence_.stamps[static_cast<std::size_t>(frame.value)]; }
+  Timestamp stampOf(FrameId frame) const { return sequence_.stamps[frame.value]; }
   std::size_t frameCount() const { return range_.size(); }
   /// Most pairs ever waiting. Final once `next` has returned nothing.
   std::size_t highWater() const { return ring_.highWater(); }
@@ -42,7 +45,9 @@ class SequenceDecoder {
 
  private:
   StereoFrame decode(std::size_t index);
-  bool wants(std::size_t index) const { return !wanted_ || index + 1 == range_.end || wanted_(sequence_.stamps[index]); }
+  bool wants(std::size_t index) const {
+    return !wanted_ || index + 1 == range_.end || wanted_(sequence_.stamps[index]);
+  }
 
   Sequence sequence_;
   std::function<bool(Timestamp)> wanted_;

@@ -19,7 +19,8 @@ std::string readWhole(const std::filesystem::path& file, std::size_t limit_bytes
   if (!in) throw InputError(file.string() + ": cannot be opened: " + std::strerror(errno));
   const auto size = std::filesystem::file_size(file, error);
   if (!error && size > limit_bytes) {
-    throw InputError(file.string() + ": is too large (" + std::to_string(size) + " bytes, at most " + std::to_string(limit_bytes) + ")");
+    throw InputError(file.string() + ": is too large (" + std::to_string(size) + " bytes, at most " +
+                     std::to_string(limit_bytes) + ")");
   }
   std::string content(error ? 0 : size, '\0');
   in.read(content.data(), static_cast<std::streamsize>(content.size()));
@@ -94,7 +95,8 @@ SE3 FieldReader::pose(std::string_view what) {
     for (int column = 0; column < 4; ++column) m(row, column) = number(what);
   const Eigen::Matrix3d rotation = m.leftCols<3>();
   constexpr double kMaxDeviation = 1e-3;  // files with few digits are accepted, matrices that are no rotation are not
-  if ((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kMaxDeviation || rotation.determinant() < 0) {
+  if ((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kMaxDeviation ||
+      rotation.determinant() < 0) {
     fail(std::string(what) + " holds no rotation matrix");
   }
   return SE3(rotation, m.col(3)).normalized();

@@ -31,7 +31,8 @@ std::optional<std::int64_t> plainSeconds_ns(std::string_view text) {
 
 std::optional<std::int64_t> dateTime_ns(const std::string& text) {
   int year = 0, month = 0, day = 0, hour = 0, minute = 0, used = 0;
-  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%*1[ T]%2d:%2d:%n", &year, &month, &day, &hour, &minute, &used) != 5 || used == 0)
+  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%*1[ T]%2d:%2d:%n", &year, &month, &day, &hour, &minute, &used) != 5 ||
+      used == 0)
     return std::nullopt;
   const auto seconds_ns = plainSeconds_ns(std::string_view(text).substr(static_cast<std::size_t>(used)));
   const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),

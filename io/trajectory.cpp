@@ -28,8 +28,8 @@ std::string tumLine(Timestamp stamp, const SE3& T_world_cam) {
   line += std::to_string(magnitude_ns / kSecond_ns) + '.' + std::string(9 - fraction.size(), '0') + fraction;
   Eigen::Quaterniond q(T_world_cam.rotation());
   if (q.w() < 0) q.coeffs() = -q.coeffs();
-  for (const double value :
-       {T_world_cam.translation().x(), T_world_cam.translation().y(), T_world_cam.translation().z(), q.x(), q.y(), q.z(), q.w()}) {
+  for (const double value : {T_world_cam.translation().x(), T_world_cam.translation().y(),
+                             T_world_cam.translation().z(), q.x(), q.y(), q.z(), q.w()}) {
     line += ' ';
     appendFixed(line, value, 9);
   }

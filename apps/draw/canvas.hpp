@@ -10,30 +10,32 @@
 
 namespace motorcade {
 
-struct Colour {
+struct Color {
   int red = 0, green = 0, blue = 0;
 };
 
-/// A colour image to draw on, anti-aliased. Coordinates are pixels, whole numbers at pixel centres; what lies outside is cut.
+/// A color image to draw on, anti-aliased. Coordinates are pixels, whole numbers at pixel centers; what lies outside is
+/// cut.
 class Canvas {
  public:
-  Canvas(int width, int height, Colour background);
+  Canvas(int width, int height, Color background);
   /// A gray image as background.
   explicit Canvas(const Image& image);
 
   int width() const { return image_.width; }
   int height() const { return image_.height; }
 
-  void line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Colour colour, double width, double opacity = 1);
-  void polyline(const std::vector<Eigen::Vector2d>& points, Colour colour, double width, double opacity = 1);
+  void line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Color color, double width, double opacity = 1);
+  void polyline(const std::vector<Eigen::Vector2d>& points, Color color, double width, double opacity = 1);
   /// Every second piece of `dash` pixels along the way.
-  void dashedPolyline(const std::vector<Eigen::Vector2d>& points, Colour colour, double width, double dash, double opacity = 1);
-  void arrow(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Colour colour, double width);
+  void dashedPolyline(const std::vector<Eigen::Vector2d>& points, Color color, double width, double dash,
+                      double opacity = 1);
+  void arrow(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Color color, double width);
   /// Convex, corners in either order.
-  void fillPolygon(const std::vector<Eigen::Vector2d>& corners, Colour colour, double opacity = 1);
-  void outline(const std::vector<Eigen::Vector2d>& corners, Colour colour, double width, double opacity = 1);
+  void fillPolygon(const std::vector<Eigen::Vector2d>& corners, Color color, double opacity = 1);
+  void outline(const std::vector<Eigen::Vector2d>& corners, Color color, double width, double opacity = 1);
   /// Printable ASCII; `at` is the upper left corner, `scale` the size of a font pixel.
-  void text(const Eigen::Vector2d& at, std::string_view text, Colour colour, int scale = 2);
+  void text(const Eigen::Vector2d& at, std::string_view text, Color color, int scale = 2);
   static int textWidth(std::string_view text, int scale = 2);
   static int textHeight(int scale = 2);
 
@@ -42,7 +44,7 @@ class Canvas {
   const RgbImage& image() const { return image_; }
 
  private:
-  void blend(int x, int y, Colour colour, double opacity);
+  void blend(int x, int y, Color color, double opacity);
 
   RgbImage image_;
 };

@@ -18,7 +18,7 @@ namespace {
 void addTruth(DrawnRun& drawn, const Sequence& sequence) {
   const auto camera = readCameraTruth(sequence);
   if (!camera || drawn.first_frame >= std::ssize(camera->T_world_cam)) return;
-  const SE3 T_run_world = camera->T_world_cam[static_cast<std::size_t>(drawn.first_frame)].inverse();
+  const SE3 T_run_world = camera->T_world_cam[drawn.first_frame].inverse();
   for (std::size_t i = 0; i < drawn.T_world_cam.size(); ++i) {
     const std::size_t frame = static_cast<std::size_t>(drawn.first_frame) + i;
     if (frame < camera->T_world_cam.size()) drawn.T_world_cam_true.push_back(T_run_world * camera->T_world_cam[frame]);
@@ -38,7 +38,8 @@ DrawnRun drawnRun(const RunFolder& run, const Sequence& sequence) {
   // A run that was killed has few final poses: what was published online tells more then.
   const RunFolder::Tracks& tracks = run.final.camera.size() >= run.online.camera.size() ? run.final : run.online;
   drawn.T_world_cam = tracks.camera;
-  const std::size_t available = sequence.frames.size() - std::min(sequence.frames.size(), static_cast<std::size_t>(run.first_frame));
+  const std::size_t available =
+      sequence.frames.size() - std::min(sequence.frames.size(), static_cast<std::size_t>(run.first_frame));
   if (drawn.T_world_cam.size() > available) drawn.T_world_cam.resize(available);
   for (std::size_t i = 0; i < drawn.T_world_cam.size(); ++i) {
     drawn.stamps.push_back(sequence.stamps[static_cast<std::size_t>(run.first_frame) + i]);
@@ -89,8 +90,11 @@ void addDrawCommand(CLI::App& app, std::function<int()>& action) {
   command->add_option("--sequence", options->sequence, "The sequence that was run")->required();
   command->add_option("--out", options->out, "Folder for the pictures")->required();
   command->add_option("--frames", *frames, "Frames A:B of the sequence");
-  command->add_option("--every", options->every, "Draw every Nth frame")->check(CLI::PositiveNumber)->capture_default_str();
-  command->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]")->capture_default_str();
+  command->add_option("--every", options->every, "Draw every Nth frame")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]")
+      ->capture_default_str();
   command->callback([options, frames, &action] {
     action = [options, frames] {
       options->frames = parseFrameRange(*frames);

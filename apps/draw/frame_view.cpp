@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-constexpr Colour kBackground{17, 21, 27}, kGrid{38, 45, 54}, kDimText{120, 132, 146}, kText{222, 228, 235}, kTruth{235, 235, 235},
-    kCamera{255, 255, 255};
+constexpr Color kBackground{17, 21, 27}, kGrid{38, 45, 54}, kDimText{120, 132, 146}, kText{222, 228, 235},
+    kTruth{235, 235, 235}, kCamera{255, 255, 255};
 
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
@@ -56,50 +56,54 @@ std::vector<Vector2d> projected(const std::vector<Vector3d>& points_cam, const S
   return pixels;
 }
 
-void drawBox(Canvas& canvas, const ObjectEstimate& object, Colour colour) {
+void drawBox(Canvas& canvas, const ObjectEstimate& object, Color color) {
   const Box& b = object.box;
-  const std::vector<Vector2d> corners{{b.left_px, b.top_px}, {b.right_px, b.top_px}, {b.right_px, b.bottom_px}, {b.left_px, b.bottom_px}};
-  canvas.fillPolygon(corners, colour, 0.14);
+  const std::vector<Vector2d> corners{
+      {b.left_px, b.top_px}, {b.right_px, b.top_px}, {b.right_px, b.bottom_px}, {b.left_px, b.bottom_px}};
+  canvas.fillPolygon(corners, color, 0.14);
   if (object.state != ObjectState::kPredicted) {
-    canvas.outline(corners, colour, 2.5);
+    canvas.outline(corners, color, 2.5);
     return;
   }
   std::vector<Vector2d> ring = corners;
   ring.push_back(corners.front());
-  canvas.dashedPolyline(ring, colour, 2, 6);
+  canvas.dashedPolyline(ring, color, 2, 6);
 }
 
-void drawTag(Canvas& canvas, const Vector2d& corner, const std::string& text, Colour colour) {
+void drawTag(Canvas& canvas, const Vector2d& corner, const std::string& text, Color color) {
   constexpr int kPad = 3;
   const int width = Canvas::textWidth(text), height = 14;
   Vector2d at(std::clamp(corner.x(), kPad + 0.0, std::max(kPad + 0.0, canvas.width() - width - 2.0 * kPad)),
               std::max(kPad + 1.0, corner.y() - height - 2 * kPad));
   const Vector2d least = at - Vector2d(kPad, kPad), most = at + Vector2d(width + kPad - 1, height + kPad - 1);
-  canvas.fillPolygon({least, {most.x(), least.y()}, most, {least.x(), most.y()}}, colour, 0.92);
+  canvas.fillPolygon({least, {most.x(), least.y()}, most, {least.x(), most.y()}}, color, 0.92);
   canvas.text(at, text, {12, 14, 18});
 }
 
 void drawObjectInImage(Canvas& canvas, const DrawnRun& run, std::size_t frame, const ObjectEstimate& object) {
-  const Colour colour = trackColour(object.track);
+  const Color color = trackColor(object.track);
   const SE3 T_cam_world = run.T_world_cam[frame].inverse();
   std::vector<Vector3d> way_cam;
   for (const auto& p_world : wayOf(run, object.track, frame)) way_cam.push_back(T_cam_world * p_world);
-  canvas.polyline(projected(way_cam, run.camera), colour, 2, 0.75);
+  canvas.polyline(projected(way_cam, run.camera), color, 2, 0.75);
   if (object.state == ObjectState::kMoving) {
     const Vector3d p_world = object.T_world_body.translation();
-    const auto ends = projected({T_cam_world * p_world, T_cam_world * (p_world + object.velocity_world_mps)}, run.camera);
-    if (ends.size() == 2) canvas.arrow(ends[0], ends[1], colour, 3);
+    const auto ends =
+        projected({T_cam_world * p_world, T_cam_world * (p_world + object.velocity_world_mps)}, run.camera);
+    if (ends.size() == 2) canvas.arrow(ends[0], ends[1], color, 3);
   }
-  drawBox(canvas, object, colour);
+  drawBox(canvas, object, color);
 }
 
 // ---- from above ----
 
-/// Metres ahead and to the right of the camera to pixels: the camera heads right, at a quarter of the width.
+/// Meters ahead and to the right of the camera to pixels: the camera heads right, at a quarter of the width.
 struct TopMap {
   int width, height;
   double px_per_m;
-  Vector2d operator()(const Vector3d& p_cam) const { return {0.26 * width + px_per_m * p_cam.z(), 0.5 * height + px_per_m * p_cam.x()}; }
+  Vector2d operator()(const Vector3d& p_cam) const {
+    return {0.26 * width + px_per_m * p_cam.z(), 0.5 * height + px_per_m * p_cam.x()};
+  }
 };
 
 void drawGrid(Canvas& canvas, const TopMap& map) {
@@ -118,18 +122,21 @@ std::vector<Vector2d> mapped(const std::vector<Vector3d>& points_world, const SE
   return points;
 }
 
-/// A car's outline on the ground, its centre at the pose's origin.
-std::vector<Vector2d> footprint(const SE3& T_cam_box, const Vector3d& across, double length_m, double width_m, const TopMap& map) {
+/// A car's outline on the ground, its center at the pose's origin.
+std::vector<Vector2d> footprint(const SE3& T_cam_box, const Vector3d& across, double length_m, double width_m,
+                                const TopMap& map) {
   std::vector<Vector2d> corners;
   for (const auto& [ahead, aside] : {std::pair(1, 1), std::pair(1, -1), std::pair(-1, -1), std::pair(-1, 1)}) {
-    corners.push_back(map(T_cam_box * (Vector3d::UnitX() * (0.5 * ahead * length_m) + across * (0.5 * aside * width_m))));
+    corners.push_back(
+        map(T_cam_box * (Vector3d::UnitX() * (0.5 * ahead * length_m) + across * (0.5 * aside * width_m))));
   }
   return corners;
 }
 
 void drawCameraFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame, const TopMap& map) {
   const double half_width = 0.5 * run.camera.width_px / run.camera.fx_px, far_m = 60;
-  canvas.fillPolygon({map({0, 0, 0}), map({half_width * far_m, 0, far_m}), map({-half_width * far_m, 0, far_m})}, {120, 150, 190}, 0.09);
+  canvas.fillPolygon({map({0, 0, 0}), map({half_width * far_m, 0, far_m}), map({-half_width * far_m, 0, far_m})},
+                     {120, 150, 190}, 0.09);
   const auto path = [&](const std::vector<SE3>& poses) {
     std::vector<Vector3d> way;
     for (std::size_t i = 0; i <= frame; ++i) way.push_back(poses[i].translation());
@@ -153,22 +160,25 @@ void drawTruthFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame, 
         if (object.id == truth.id) way.push_back(object.T_world_object.translation());
     }
     canvas.dashedPolyline(mapped(way, T_cam_world, map), kTruth, 1.2, 6, 0.7);
-    canvas.outline(footprint(T_cam_world * truth.T_world_object, Vector3d::UnitZ(), truth.size_m.z(), truth.size_m.y(), map), kTruth, 1.2,
-                   0.7);
+    canvas.outline(
+        footprint(T_cam_world * truth.T_world_object, Vector3d::UnitZ(), truth.size_m.z(), truth.size_m.y(), map),
+        kTruth, 1.2, 0.7);
   }
 }
 
-void drawObjectFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame, const ObjectEstimate& object, const TopMap& map) {
-  const Colour colour = trackColour(object.track);
+void drawObjectFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame, const ObjectEstimate& object,
+                         const TopMap& map) {
+  const Color color = trackColor(object.track);
   const SE3 T_cam_world = run.T_world_cam[frame].inverse();
-  canvas.polyline(mapped(wayOf(run, object.track, frame), T_cam_world, map), colour, 2.5);
+  canvas.polyline(mapped(wayOf(run, object.track, frame), T_cam_world, map), color, 2.5);
   constexpr double kLength_m = 4.2, kWidth_m = 1.8;  // of a usual car: the run does not measure sizes
   const SE3 T_cam_body = T_cam_world * object.T_world_body;
   const double opacity = object.state == ObjectState::kPredicted ? 0.35 : 0.9;
-  canvas.fillPolygon(footprint(T_cam_body, Vector3d::UnitY(), kLength_m, kWidth_m, map), colour, opacity);
+  canvas.fillPolygon(footprint(T_cam_body, Vector3d::UnitY(), kLength_m, kWidth_m, map), color, opacity);
   const Vector3d p_world = object.T_world_body.translation();
-  canvas.arrow(map(T_cam_world * p_world), map(T_cam_world * (p_world + object.velocity_world_mps)), colour, 2.5);
-  canvas.text(map(T_cam_body.translation()) + Vector2d(-8, 14), format("#%lld", static_cast<long long>(object.track.value)), colour);
+  canvas.arrow(map(T_cam_world * p_world), map(T_cam_world * (p_world + object.velocity_world_mps)), color, 2.5);
+  canvas.text(map(T_cam_body.translation()) + Vector2d(-8, 14),
+              format("#%lld", static_cast<long long>(object.track.value)), color);
 }
 
 /// The ways of objects that were followed once and are no more.
@@ -180,16 +190,19 @@ void drawEarlierTracks(Canvas& canvas, const DrawnRun& run, std::size_t frame, c
   }
   for (const auto& object : objectsAt(run, frame)) earlier.erase(object.track);
   for (const TrackId track : earlier) {
-    canvas.polyline(mapped(wayOf(run, track, frame), run.T_world_cam[frame].inverse(), map), trackColour(track), 2, 0.4);
+    canvas.polyline(mapped(wayOf(run, track, frame), run.T_world_cam[frame].inverse(), map), trackColor(track), 2, 0.4);
   }
 }
 
 void drawLegend(Canvas& canvas, const DrawnRun& run, std::size_t frame) {
-  canvas.text({12, 10}, format("frame %lld", static_cast<long long>(run.first_frame + static_cast<std::int64_t>(frame))), kText);
+  canvas.text({12, 10},
+              format("frame %lld", static_cast<long long>(run.first_frame + static_cast<std::int64_t>(frame))), kText);
   canvas.text({12, 32}, format("camera %.1f m/s", cameraSpeed_mps(run, frame)), kText);
   const auto objects = objectsAt(run, frame);
-  canvas.text({12, 54}, format("%d moving", static_cast<int>(std::ranges::count(objects, ObjectState::kMoving, &ObjectEstimate::state))),
-              kText);
+  canvas.text(
+      {12, 54},
+      format("%d moving", static_cast<int>(std::ranges::count(objects, ObjectState::kMoving, &ObjectEstimate::state))),
+      kText);
   const double right = canvas.width() - 172.0;
   canvas.line({right, 17}, {right + 40, 17}, kCamera, 3);
   canvas.text({right + 50, 10}, "estimate", kDimText);
@@ -200,18 +213,18 @@ void drawLegend(Canvas& canvas, const DrawnRun& run, std::size_t frame) {
 
 }  // namespace
 
-Colour trackColour(TrackId track) {
-  constexpr std::array<Colour, 10> kColours{{{255, 176, 32},
-                                             {64, 196, 255},
-                                             {124, 220, 92},
-                                             {255, 105, 140},
-                                             {186, 138, 255},
-                                             {255, 224, 82},
-                                             {64, 224, 190},
-                                             {255, 138, 80},
-                                             {140, 170, 255},
-                                             {230, 130, 230}}};
-  return kColours[static_cast<std::size_t>(std::max<std::int64_t>(track.value, 0)) % kColours.size()];
+Color trackColor(TrackId track) {
+  constexpr std::array<Color, 10> kColors{{{255, 176, 32},
+                                           {64, 196, 255},
+                                           {124, 220, 92},
+                                           {255, 105, 140},
+                                           {186, 138, 255},
+                                           {255, 224, 82},
+                                           {64, 224, 190},
+                                           {255, 138, 80},
+                                           {140, 170, 255},
+                                           {230, 130, 230}}};
+  return kColors[static_cast<std::size_t>(std::max<std::int64_t>(track.value, 0)) % kColors.size()];
 }
 
 Canvas drawImageView(const Image& left, const DrawnRun& run, std::size_t frame) {
@@ -220,9 +233,9 @@ Canvas drawImageView(const Image& left, const DrawnRun& run, std::size_t frame) 
   for (const auto& object : objects) drawObjectInImage(canvas, run, frame, object);
   for (const auto& object : objects) {  // tags last, over all boxes
     const double range_m = (run.T_world_cam[frame].inverse() * object.T_world_body.translation()).norm();
-    const auto text =
-        format("#%lld %.1f m/s %.0f m", static_cast<long long>(object.track.value), object.velocity_world_mps.norm(), range_m);
-    drawTag(canvas, {object.box.left_px + 2, object.box.top_px}, text, trackColour(object.track));
+    const auto text = format("#%lld %.1f m/s %.0f m", static_cast<long long>(object.track.value),
+                             object.velocity_world_mps.norm(), range_m);
+    drawTag(canvas, {object.box.left_px + 2, object.box.top_px}, text, trackColor(object.track));
   }
   return canvas;
 }

@@ -22,10 +22,11 @@ struct DrawnRun {
   std::map<std::int64_t, std::vector<ObjectTruth>> true_objects;
 };
 
-/// Each track its colour, the same in every picture.
-Colour trackColour(TrackId track);
+/// Each track its color, the same in every picture.
+Color trackColor(TrackId track);
 
-/// The left image with a box, a name, speed and distance, the way behind and an arrow of one second's motion for every object.
+/// The left image with a box, a name, speed and distance, the way behind and an arrow of one second's motion for every
+/// object.
 Canvas drawImageView(const Image& left, const DrawnRun& run, std::size_t frame);
 
 /// The scene from above, the camera heading right: the ways so far of camera and objects, with the truth dashed.

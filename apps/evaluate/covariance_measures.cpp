@@ -32,18 +32,22 @@ CovarianceErrors averaged(CovarianceErrors errors) {
 
 }  // namespace
 
-CovarianceErrors cameraCovarianceErrors(const std::vector<ComparedFrame>& frames, const std::vector<RunFolder::CovarianceRow>& rows) {
+CovarianceErrors cameraCovarianceErrors(const std::vector<ComparedFrame>& frames,
+                                        const std::vector<RunFolder::CovarianceRow>& rows) {
   CovarianceErrors errors;
   for (const auto& row : rows) {
     const std::int64_t now = frames.empty() ? -1 : row.frame.value - frames.front().frame.value;
-    if (row.track.valid() || row.frame.value % kEveryFrames != 0 || now < kCameraSpan || now >= std::ssize(frames)) continue;
-    const auto &to = frames[static_cast<std::size_t>(now)], &from = frames[static_cast<std::size_t>(now - kCameraSpan)];
-    add(errors, from.T_world_cam.inverse() * to.T_world_cam, from.T_world_cam_true.inverse() * to.T_world_cam_true, row.covariance);
+    if (row.track.valid() || row.frame.value % kEveryFrames != 0 || now < kCameraSpan || now >= std::ssize(frames))
+      continue;
+    const auto &to = frames[now], &from = frames[now - kCameraSpan];
+    add(errors, from.T_world_cam.inverse() * to.T_world_cam, from.T_world_cam_true.inverse() * to.T_world_cam_true,
+        row.covariance);
   }
   return averaged(errors);
 }
 
-CovarianceErrors objectCovarianceErrors(const std::vector<ComparedFrame>& frames, const std::vector<RunFolder::CovarianceRow>& rows) {
+CovarianceErrors objectCovarianceErrors(const std::vector<ComparedFrame>& frames,
+                                        const std::vector<RunFolder::CovarianceRow>& rows) {
   struct Track {
     std::vector<SE3> bodies, boxes;  // seen from the camera
     std::vector<FrameId> frames;
@@ -51,10 +55,10 @@ CovarianceErrors objectCovarianceErrors(const std::vector<ComparedFrame>& frames
   std::map<TrackId, Track> tracks;
   for (const auto& frame : frames) {
     for (const auto& row : frame.rows) {
-      if (row.object < 0 || !frame.objects[static_cast<std::size_t>(row.object)].ever_moves) continue;
+      if (row.object < 0 || !frame.objects[row.object].ever_moves) continue;
       Track& track = tracks[row.row.object.track];
       track.bodies.push_back(frame.T_world_cam.inverse() * row.row.object.T_world_body);
-      track.boxes.push_back(frame.objects[static_cast<std::size_t>(row.object)].truth.T_cam_object);
+      track.boxes.push_back(frame.objects[row.object].truth.T_cam_object);
       track.frames.push_back(frame.frame);
     }
   }
@@ -66,7 +70,8 @@ CovarianceErrors objectCovarianceErrors(const std::vector<ComparedFrame>& frames
     const SE3 T_box_body = bodyOffset(track.bodies, track.boxes).inverse();
     for (std::size_t i = 0; i < track.frames.size(); ++i) {
       const auto covariance = covariances.find({id, track.frames[i]});
-      if (covariance != covariances.end()) add(errors, track.bodies[i], track.boxes[i] * T_box_body, covariance->second);
+      if (covariance != covariances.end())
+        add(errors, track.bodies[i], track.boxes[i] * T_box_body, covariance->second);
     }
   }
   return averaged(errors);

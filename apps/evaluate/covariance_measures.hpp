@@ -9,13 +9,16 @@ namespace motorcade {
 /// Whether errors are as large as the covariances say: over every fifth frame, 6 degrees of freedom each.
 struct CovarianceErrors {
   int samples = 0;
-  double mean_nees = 0;    // normalised estimation error squared; 6 when consistent
+  double mean_nees = 0;    // normalized estimation error squared; 6 when consistent
   double coverage_95 = 0;  // share inside the 95 % region
 };
 
 /// The camera's motion over the last ten frames.
-CovarianceErrors cameraCovarianceErrors(const std::vector<ComparedFrame>& frames, const std::vector<RunFolder::CovarianceRow>& rows);
-/// Objects relative to the camera of the same frame, with each track's constant offset between body and box frame taken out.
-CovarianceErrors objectCovarianceErrors(const std::vector<ComparedFrame>& frames, const std::vector<RunFolder::CovarianceRow>& rows);
+CovarianceErrors cameraCovarianceErrors(const std::vector<ComparedFrame>& frames,
+                                        const std::vector<RunFolder::CovarianceRow>& rows);
+/// Objects relative to the camera of the same frame, with each track's constant offset between body and box frame taken
+/// out.
+CovarianceErrors objectCovarianceErrors(const std::vector<ComparedFrame>& frames,
+                                        const std::vector<RunFolder::CovarianceRow>& rows);
 
 }  // namespace motorcade

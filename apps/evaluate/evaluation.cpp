@@ -30,7 +30,9 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
 
 CameraTruth neededTruth(const Sequence& sequence, bool uninterpolated) {
   auto truth = readCameraTruth(sequence, uninterpolated ? OxtsTimes::kUninterpolated : OxtsTimes::kInterpolated);
-  if (!truth) throw InputError(sequence.folder.string() + ": has no ground truth; poses.txt or oxts with their calibration are needed");
+  if (!truth)
+    throw InputError(sequence.folder.string() +
+                     ": has no ground truth; poses.txt or oxts with their calibration are needed");
   return *std::move(truth);
 }
 
@@ -72,7 +74,8 @@ void countFrames(Evaluation& evaluation, const RunFolder& run) {
     evaluation.lost += frame.status == FrameStatus::kLost;
     evaluation.rejected += frame.status == FrameStatus::kRejected;
     evaluation.dropped += frame.status == FrameStatus::kDropped;
-    if (frame.status == FrameStatus::kGood || frame.status == FrameStatus::kLost) evaluation.latency_ms.push_back(frame.latency_ms);
+    if (frame.status == FrameStatus::kGood || frame.status == FrameStatus::kLost)
+      evaluation.latency_ms.push_back(frame.latency_ms);
   }
   std::ranges::sort(evaluation.latency_ms);
 }
@@ -86,7 +89,8 @@ std::string truthRow(const TrueObject& object) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 4; ++j) {
       row += ',';
-      appendFixed(row, j < 3 ? object.truth.T_world_object.rotation()(i, j) : object.truth.T_world_object.translation()[i], 9);
+      appendFixed(
+          row, j < 3 ? object.truth.T_world_object.rotation()(i, j) : object.truth.T_world_object.translation()[i], 9);
     }
   }
   return row;
@@ -119,7 +123,8 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   evaluation.camera_covariance = cameraCovarianceErrors(online, run.covariances);
   evaluation.object_covariance = objectCovarianceErrors(online, run.covariances);
   if (!options.baseline.empty()) {
-    const auto poses = baselinePoses(options.baseline, run.first_frame, run.final.camera.size(), sequence.frames.size());
+    const auto poses =
+        baselinePoses(options.baseline, run.first_frame, run.final.camera.size(), sequence.frames.size());
     compareCameras(evaluation, evaluateFrames(compare({poses, {}}, run.first_frame)));
   }
   if (!options.baseline_run.empty()) {
@@ -145,7 +150,7 @@ void exportTruth(const std::filesystem::path& folder, const Sequence& sequence, 
   for (const auto& [frame, objects] : describeObjects(*truths, sequence.stamps)) {
     for (const auto& object : objects) {
       table.writeLine(truthRow(object));
-      tum[object.truth.id].push_back(tumLine(sequence.stamps[static_cast<std::size_t>(frame.value)], object.truth.T_world_object));
+      tum[object.truth.id].push_back(tumLine(sequence.stamps[frame.value], object.truth.T_world_object));
     }
   }
   table.close();

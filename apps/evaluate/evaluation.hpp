@@ -52,13 +52,15 @@ struct Evaluation {
   std::vector<double> latency_ms;  // sorted
 };
 
-/// Measures a run against the truth of its sequence. Throws InputError where one of them cannot be read or there is no truth.
+/// Measures a run against the truth of its sequence. Throws InputError where one of them cannot be read or there is no
+/// truth.
 Evaluation evaluateRun(const EvaluateOptions& options);
 
 /// The same for camera poses alone, frame i of the sequence in line i.
-KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequence, OxtsTimes times = OxtsTimes::kInterpolated);
+KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequence,
+                             OxtsTimes times = OxtsTimes::kInterpolated);
 
-/// Writes `camera_truth.txt`, `objects_truth.csv` and an `object_ID.tum` for every labelled object.
+/// Writes `camera_truth.txt`, `objects_truth.csv` and an `object_ID.tum` for every labeled object.
 void exportTruth(const std::filesystem::path& folder, const Sequence& sequence, const CameraTruth& camera,
                  const std::optional<ObjectTruths>& truths);
 

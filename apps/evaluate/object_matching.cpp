@@ -21,15 +21,17 @@ bool isCounted(const ObjectTruth& truth) {
 /// Fills in the motion of one label's track, its frames in order.
 void describeTrack(const std::vector<TrueObject*>& track, const std::vector<Timestamp>& stamps) {
   const auto place = [&](std::size_t i) { return track[i]->truth.T_world_object.translation(); };
-  const auto stamp = [&](std::size_t i) { return stamps[static_cast<std::size_t>(track[i]->truth.frame.value)]; };
-  const double way_m = (place(track.size() - 1) - place(0)).norm(), time_s = secondsBetween(stamp(0), stamp(track.size() - 1));
+  const auto stamp = [&](std::size_t i) { return stamps[track[i]->truth.frame.value]; };
+  const double way_m = (place(track.size() - 1) - place(0)).norm(),
+               time_s = secondsBetween(stamp(0), stamp(track.size() - 1));
   const bool travels = way_m > kMovingDistance_m && way_m > kMovingSpeed_mps * time_s;
   int visible = 0;
   bool ever_moves = false;
   for (std::size_t i = 0; i < track.size(); ++i) {
     std::size_t from = i, to = i;
     while (from > 0 && track[i]->truth.frame.value - track[from - 1]->truth.frame.value <= kSpeedFrames) --from;
-    while (to + 1 < track.size() && track[to + 1]->truth.frame.value - track[i]->truth.frame.value <= kSpeedFrames) ++to;
+    while (to + 1 < track.size() && track[to + 1]->truth.frame.value - track[i]->truth.frame.value <= kSpeedFrames)
+      ++to;
     TrueObject& object = *track[i];
     const double span_s = secondsBetween(stamp(from), stamp(to));
     object.speed_mps = span_s > 0 ? (place(to) - place(from)).norm() / span_s : 0;
@@ -54,7 +56,8 @@ double overlapArea(const Box& a, const Box& b) {
 }
 
 bool mostlyInside(const Box& box, const Box& area) {
-  return overlapArea(box, area) >= 0.5 * (box.right_px - box.left_px) * (box.bottom_px - box.top_px) && overlapArea(box, area) > 0;
+  return overlapArea(box, area) >= 0.5 * (box.right_px - box.left_px) * (box.bottom_px - box.top_px) &&
+         overlapArea(box, area) > 0;
 }
 
 void matchRows(ComparedFrame& frame) {
@@ -75,15 +78,18 @@ void matchRows(ComparedFrame& frame) {
     row.object = columns[i];
     if (row.object < 0) continue;
     row.distance_m = cost_m(static_cast<Eigen::Index>(i), row.object);
-    row.gate_m = gateOf_m(frame.objects[static_cast<std::size_t>(row.object)].truth);
+    row.gate_m = gateOf_m(frame.objects[row.object].truth);
   }
 }
 
 }  // namespace
 
-double TrueObject::range_m() const { return std::hypot(truth.T_cam_object.translation().x(), truth.T_cam_object.translation().z()); }
+double TrueObject::range_m() const {
+  return std::hypot(truth.T_cam_object.translation().x(), truth.T_cam_object.translation().z());
+}
 
-std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths, const std::vector<Timestamp>& stamps) {
+std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths,
+                                                           const std::vector<Timestamp>& stamps) {
   std::map<FrameId, std::vector<TrueObject>> frames;
   for (const auto& truth : truths.objects) {
     TrueObject object;
@@ -97,20 +103,21 @@ std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& t
   return frames;
 }
 
-std::vector<ComparedFrame> compareFrames(const RunFolder::Tracks& tracks, std::int64_t first_frame, const CameraTruth& camera,
-                                         const ObjectTruths* truths, const std::vector<Timestamp>& stamps) {
+std::vector<ComparedFrame> compareFrames(const RunFolder::Tracks& tracks, std::int64_t first_frame,
+                                         const CameraTruth& camera, const ObjectTruths* truths,
+                                         const std::vector<Timestamp>& stamps) {
   std::map<FrameId, std::vector<TrueObject>> objects;
   if (truths) objects = describeObjects(*truths, stamps);
   std::vector<ComparedFrame> frames;
-  const auto count =
-      static_cast<std::size_t>(std::clamp<std::int64_t>(std::ssize(camera.T_world_cam) - first_frame, 0, std::ssize(tracks.camera)));
+  const auto count = static_cast<std::size_t>(
+      std::clamp<std::int64_t>(std::ssize(camera.T_world_cam) - first_frame, 0, std::ssize(tracks.camera)));
   if (count == 0) return frames;
-  const SE3 T_run_world = camera.T_world_cam[static_cast<std::size_t>(first_frame)].inverse();
+  const SE3 T_run_world = camera.T_world_cam[first_frame].inverse();
   for (std::size_t i = 0; i < count; ++i) {
     ComparedFrame frame;
     frame.frame.value = first_frame + static_cast<std::int64_t>(i);
     frame.T_world_cam = tracks.camera[i];
-    frame.T_world_cam_true = T_run_world * camera.T_world_cam[static_cast<std::size_t>(frame.frame.value)];
+    frame.T_world_cam_true = T_run_world * camera.T_world_cam[frame.frame.value];
     frame.objects = objects[frame.frame];
     for (auto& object : frame.objects) object.truth.T_world_object = T_run_world * object.truth.T_world_object;
     frames.push_back(std::move(frame));
@@ -120,14 +127,14 @@ std::vector<ComparedFrame> compareFrames(const RunFolder::Tracks& tracks, std::i
     if (index < 0 || index >= std::ssize(frames)) continue;
     MatchedRow matched;
     matched.row = row;
-    frames[static_cast<std::size_t>(index)].rows.push_back(std::move(matched));
+    frames[index].rows.push_back(std::move(matched));
   }
   for (auto& frame : frames) matchRows(frame);
   if (!truths) return frames;
   for (const auto& ignored : truths->ignored) {
     const std::int64_t index = ignored.frame.value - first_frame;
     if (index < 0 || index >= std::ssize(frames)) continue;
-    for (auto& row : frames[static_cast<std::size_t>(index)].rows) {
+    for (auto& row : frames[index].rows) {
       if (row.object < 0 && mostlyInside(row.row.object.box, ignored.box)) row.in_ignored_area = true;
     }
   }

@@ -40,12 +40,14 @@ struct ComparedFrame {
 };
 
 /// Labels with their motion, from all frames of the sequence. `stamps` are the frames' times.
-std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths, const std::vector<Timestamp>& stamps);
+std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths,
+                                                           const std::vector<Timestamp>& stamps);
 
 /// Every frame that has a camera pose in `tracks` and in `camera`, with its rows matched one to one to labels: as many
-/// as possible within the gate max(3 m, half the length + 0.08 z), then the least total distance on the ground as seen from the camera.
-/// Without labels the frames have no objects.
-std::vector<ComparedFrame> compareFrames(const RunFolder::Tracks& tracks, std::int64_t first_frame, const CameraTruth& camera,
-                                         const ObjectTruths* truths, const std::vector<Timestamp>& stamps);
+/// as possible within the gate max(3 m, half the length + 0.08 z), then the least total distance on the ground as seen
+/// from the camera. Without labels the frames have no objects.
+std::vector<ComparedFrame> compareFrames(const RunFolder::Tracks& tracks, std::int64_t first_frame,
+                                         const CameraTruth& camera, const ObjectTruths* truths,
+                                         const std::vector<Timestamp>& stamps);
 
 }  // namespace motorcade

@@ -25,7 +25,7 @@ std::vector<Pair> askedPairs(const std::vector<ComparedFrame>& frames) {
   for (const auto& frame : frames) {
     for (const auto& row : frame.rows) {
       if (row.object < 0 || !row.reported()) continue;
-      const TrueObject& object = frame.objects[static_cast<std::size_t>(row.object)];
+      const TrueObject& object = frame.objects[row.object];
       if (asked(object)) pairs.push_back({&frame, &object, &row});
     }
   }
@@ -45,7 +45,8 @@ std::pair<std::vector<Pair>, int> longestTrack(const std::vector<Pair>& pairs) {
   std::map<TrackId, std::vector<Pair>> tracks;
   for (const auto& pair : pairs) tracks[pair.row->row.object.track].push_back(pair);
   const auto longest = std::ranges::max_element(tracks, {}, [](const auto& track) { return track.second.size(); });
-  return longest == tracks.end() ? std::pair(std::vector<Pair>(), 0) : std::pair(longest->second, static_cast<int>(tracks.size()));
+  return longest == tracks.end() ? std::pair(std::vector<Pair>(), 0)
+                                 : std::pair(longest->second, static_cast<int>(tracks.size()));
 }
 
 std::optional<TrajectoryErrors> bodyTrajectoryErrors(const std::vector<Pair>& pairs) {
@@ -111,9 +112,9 @@ void setHota(DetectionErrors& errors, const HotaSums& sums) {
 void countRows(const ComparedFrame& frame, DetectionErrors& errors) {
   for (const auto& row : frame.rows) {
     ++errors.rows;
-    if (row.object >= 0 && frame.objects[static_cast<std::size_t>(row.object)].ever_moves) continue;
+    if (row.object >= 0 && frame.objects[row.object].ever_moves) continue;
     ++errors.false_rows;
-    errors.false_rows_unlabelled += row.object < 0;
+    errors.false_rows_unlabeled += row.object < 0;
     errors.false_rows_in_ignored += row.in_ignored_area;
   }
 }
@@ -128,7 +129,8 @@ void countLabels(const ComparedFrame& frame, DetectionErrors& errors) {
     const bool is_found = found.contains(static_cast<int>(j)), near = object.range_m() <= kNear_m;
     count(near ? errors.within_30m : errors.from_30_to_50m, is_found);
     constexpr int kFirstFrames = 4;
-    if (object.visible_before >= kFirstFrames) count(near ? errors.within_30m_from_fifth : errors.from_30_to_50m_from_fifth, is_found);
+    if (object.visible_before >= kFirstFrames)
+      count(near ? errors.within_30m_from_fifth : errors.from_30_to_50m_from_fifth, is_found);
   }
 }
 
@@ -139,7 +141,7 @@ void addToHota(const ComparedFrame& frame, HotaSums& sums) {
     ++sums.label_frames[object.truth.id];
   }
   for (const auto& row : frame.rows) {
-    const TrueObject* object = row.object < 0 ? nullptr : &frame.objects[static_cast<std::size_t>(row.object)];
+    const TrueObject* object = row.object < 0 ? nullptr : &frame.objects[row.object];
     const bool of_interest = object && asked(*object) && object->range_m() <= kFar_m;
     if (object && object->ever_moves && !of_interest) continue;  // neither right nor wrong
     ++sums.rows;
@@ -199,7 +201,7 @@ std::vector<ObjectErrors> objectErrors(const std::vector<ComparedFrame>& frames)
       ObjectErrors& errors = by_label[object.truth.id];
       errors.label = object.truth.id;
       errors.type = object.truth.type;
-      ++errors.labelled_frames;
+      ++errors.labeled_frames;
     }
   }
   std::map<std::int64_t, std::vector<Pair>> pairs;

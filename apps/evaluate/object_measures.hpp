@@ -24,10 +24,11 @@ struct ObjectErrors {
   std::int64_t label = -1;
   std::string type;
   TrackId track;
-  int labelled_frames = 0;  // counted and moving
+  int labeled_frames = 0;   // counted and moving
   int followed_frames = 0;  // by any track
   int tracks = 0;
-  std::optional<TrajectoryErrors> trajectory;  // of the body's origin, SE(3) aligned; "first pose" holds the body frame at the first match
+  std::optional<TrajectoryErrors>
+      trajectory;  // of the body's origin, SE(3) aligned; "first pose" holds the body frame at the first match
   MotionErrors motion;
 };
 
@@ -40,7 +41,7 @@ struct DetectionErrors {
   DetectionCounts within_30m, from_30_to_50m;
   DetectionCounts within_30m_from_fifth, from_30_to_50m_from_fifth;  // from the label's fifth visible frame on
   int rows = 0, false_rows = 0;
-  int false_rows_unlabelled = 0;  // on no label
+  int false_rows_unlabeled = 0;   // on no label
   int false_rows_in_ignored = 0;  // of these, mostly in an area that the labels leave open
   int id_switches = 0;
   double mota = 0, hota = 0, det_a = 0, ass_a = 0;

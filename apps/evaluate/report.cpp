@@ -10,7 +10,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json jsonOf(const Statistics& s) { return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"max", s.max}, {"count", s.count}}; }
+Json jsonOf(const Statistics& s) {
+  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"max", s.max}, {"count", s.count}};
+}
 
 Json jsonOf(const std::optional<TrajectoryErrors>& errors) {
   if (!errors) return nullptr;
@@ -28,7 +30,9 @@ Json jsonOf(const MotionErrors& errors) {
           {"speed_coverage_95", errors.speed_coverage}};
 }
 
-Json jsonOf(const DetectionCounts& counts) { return {{"labels", counts.labels}, {"found", counts.found}, {"recall", counts.recall()}}; }
+Json jsonOf(const DetectionCounts& counts) {
+  return {{"labels", counts.labels}, {"found", counts.found}, {"recall", counts.recall()}};
+}
 
 Json jsonOf(const DetectionErrors& errors) {
   return {{"within_30m", jsonOf(errors.within_30m)},
@@ -37,7 +41,7 @@ Json jsonOf(const DetectionErrors& errors) {
           {"from_30_to_50m_from_fifth_frame", jsonOf(errors.from_30_to_50m_from_fifth)},
           {"rows", errors.rows},
           {"false_rows", errors.false_rows},
-          {"false_rows_unlabelled", errors.false_rows_unlabelled},
+          {"false_rows_unlabeled", errors.false_rows_unlabeled},
           {"false_rows_in_dont_care", errors.false_rows_in_ignored},
           {"id_switches", errors.id_switches},
           {"mota", errors.mota},
@@ -50,7 +54,7 @@ Json jsonOf(const ObjectErrors& object) {
   return {{"label", object.label},
           {"type", object.type},
           {"track_id", object.track.value},
-          {"labelled_frames", object.labelled_frames},
+          {"labeled_frames", object.labeled_frames},
           {"followed_frames", object.followed_frames},
           {"tracks", object.tracks},
           {"trajectory", jsonOf(object.trajectory)},
@@ -90,32 +94,39 @@ double quantile(const std::vector<double>& sorted, double part) {
 void printHead(std::string& text, const Evaluation& e) {
   print(text, "run       %s%s\n", e.run.c_str(), e.complete ? "" : "  (did not complete)");
   print(text, "sequence  %s\n", e.sequence.c_str());
-  print(text, "frames    %zu from frame %lld; lost %d, rejected %d, dropped %d\n", e.frames_run, static_cast<long long>(e.first_frame),
-        e.lost, e.rejected, e.dropped);
-  print(text, "truth     camera from %s%s%s\n", e.camera_source.c_str(), e.object_source.empty() ? "" : ", objects from ",
-        e.object_source.c_str());
+  print(text, "frames    %zu from frame %lld; lost %d, rejected %d, dropped %d\n", e.frames_run,
+        static_cast<long long>(e.first_frame), e.lost, e.rejected, e.dropped);
+  print(text, "truth     camera from %s%s%s\n", e.camera_source.c_str(),
+        e.object_source.empty() ? "" : ", objects from ", e.object_source.c_str());
 }
 
 void printCameraLine(std::string& text, const char* kind, const std::optional<TrajectoryErrors>& errors) {
   if (!errors) return print(text, "  %-8s too few poses\n", kind);
-  print(text, "  %-8s %7.3f %7.3f %7.3f  %9.3f  %6.2f %%  %7.4f / %6.4f  %7.4f / %6.4f  %7.3f\n", kind, errors->ate_m.rmse,
-        errors->ate_m.mean, errors->ate_m.median, errors->ate_first_pose_m.rmse, errors->end_percent, errors->rpe_m.rmse,
-        errors->rpe_m.median, errors->rpe_deg.rmse, errors->rpe_deg.median, errors->are_deg.mean);
+  print(text, "  %-8s %7.3f %7.3f %7.3f  %9.3f  %6.2f %%  %7.4f / %6.4f  %7.4f / %6.4f  %7.3f\n", kind,
+        errors->ate_m.rmse, errors->ate_m.mean, errors->ate_m.median, errors->ate_first_pose_m.rmse,
+        errors->end_percent, errors->rpe_m.rmse, errors->rpe_m.median, errors->rpe_deg.rmse, errors->rpe_deg.median,
+        errors->are_deg.mean);
 }
 
 void printCamera(std::string& text, const Evaluation& e) {
-  print(text, "\ncamera     ATE m, SE(3) aligned    ATE first  end error  RPE_t m            RPE_r deg         ARE deg\n");
-  print(text, "              rmse    mean  median  pose rmse                rmse / median     rmse / median     mean\n");
+  print(text,
+        "\ncamera     ATE m, SE(3) aligned    ATE first  end error  RPE_t m            RPE_r deg         ARE deg\n");
+  print(text,
+        "              rmse    mean  median  pose rmse                rmse / median     rmse / median     mean\n");
   printCameraLine(text, "final", e.final.camera);
   printCameraLine(text, "online", e.online.camera);
 }
 
 void printObjects(std::string& text, const KindEvaluation& kind) {
-  print(text, "\nmoving objects (final)   frames     ids  ATE m, SE(3) aligned    ATE body   ME_t m         ME_r deg       speed m/s\n");
-  print(text, "  label  type             followed        rmse    mean  median  fixed rmse  mean / rmse    mean / rmse    rmse    bias\n");
+  print(text,
+        "\nmoving objects (final)   frames     ids  ATE m, SE(3) aligned    ATE body   ME_t m         ME_r deg       "
+        "speed m/s\n");
+  print(text,
+        "  label  type             followed        rmse    mean  median  fixed rmse  mean / rmse    mean / rmse    "
+        "rmse    bias\n");
   for (const auto& object : kind.objects) {
-    print(text, "  %-6lld %-14s %5d/%-5d %4d", static_cast<long long>(object.label), object.type.c_str(), object.followed_frames,
-          object.labelled_frames, object.tracks);
+    print(text, "  %-6lld %-14s %5d/%-5d %4d", static_cast<long long>(object.label), object.type.c_str(),
+          object.followed_frames, object.labeled_frames, object.tracks);
     if (!object.trajectory) {
       text += '\n';
       continue;
@@ -123,26 +134,28 @@ void printObjects(std::string& text, const KindEvaluation& kind) {
     const TrajectoryErrors& t = *object.trajectory;
     const MotionErrors& m = object.motion;
     print(text, "  %7.3f %7.3f %7.3f  %10.3f", t.ate_m.rmse, t.ate_m.mean, t.ate_m.median, t.ate_first_pose_m.rmse);
-    print(text, "  %5.3f / %5.3f  %5.2f / %5.2f  %5.2f  %+6.2f\n", m.me_m.mean, m.me_m.rmse, m.me_deg.mean, m.me_deg.rmse, m.speed_mps.rmse,
-          m.speed_bias_mps);
+    print(text, "  %5.3f / %5.3f  %5.2f / %5.2f  %5.2f  %+6.2f\n", m.me_m.mean, m.me_m.rmse, m.me_deg.mean,
+          m.me_deg.rmse, m.speed_mps.rmse, m.speed_bias_mps);
   }
 }
 
 void printDetectionLine(std::string& text, const char* kind, const KindEvaluation& k, bool from_fifth) {
   const auto& near = from_fifth ? k.detection.within_30m_from_fifth : k.detection.within_30m;
   const auto& far = from_fifth ? k.detection.from_30_to_50m_from_fifth : k.detection.from_30_to_50m;
-  print(text, "  %-8s %5.1f %% (%d/%d)  %5.1f %% (%d/%d)", kind, 100 * near.recall(), near.found, near.labels, 100 * far.recall(),
-        far.found, far.labels);
+  print(text, "  %-8s %5.1f %% (%d/%d)  %5.1f %% (%d/%d)", kind, 100 * near.recall(), near.found, near.labels,
+        100 * far.recall(), far.found, far.labels);
   print(text, "  %d of %d", k.detection.false_rows, k.detection.rows);
   if (k.detection.false_rows > 0)
-    print(text, " (%d unlabelled, %d in DontCare)", k.detection.false_rows_unlabelled, k.detection.false_rows_in_ignored);
-  print(text, "  %d  %.3f  %.3f  %.3f / %.3f  %.2f / %.2f  %.2f\n", k.detection.id_switches, k.detection.mota, k.detection.hota,
-        k.motion.me_m.mean, k.motion.me_m.rmse, k.motion.me_deg.mean, k.motion.me_deg.rmse, k.motion.speed_mps.rmse);
+    print(text, " (%d unlabeled, %d in DontCare)", k.detection.false_rows_unlabeled, k.detection.false_rows_in_ignored);
+  print(text, "  %d  %.3f  %.3f  %.3f / %.3f  %.2f / %.2f  %.2f\n", k.detection.id_switches, k.detection.mota,
+        k.detection.hota, k.motion.me_m.mean, k.motion.me_m.rmse, k.motion.me_deg.mean, k.motion.me_deg.rmse,
+        k.motion.speed_mps.rmse);
 }
 
 void printDetection(std::string& text, const Evaluation& e) {
   print(text,
-        "\ndetection: recall to 30 m, 30-50 m, false rows, id switches, MOTA, HOTA, ME_t m mean / rmse, ME_r deg mean / rmse, speed rmse "
+        "\ndetection: recall to 30 m, 30-50 m, false rows, id switches, MOTA, HOTA, ME_t m mean / rmse, ME_r deg mean "
+        "/ rmse, speed rmse "
         "m/s\n");
   printDetectionLine(text, "final", e.final, false);
   printDetectionLine(text, "online", e.online, true);
@@ -150,18 +163,20 @@ void printDetection(std::string& text, const Evaluation& e) {
 }
 
 void printRest(std::string& text, const Evaluation& e) {
-  for (const auto& [name, errors] : {std::pair("camera", &e.camera_covariance), std::pair("objects", &e.object_covariance)}) {
+  for (const auto& [name, errors] :
+       {std::pair("camera", &e.camera_covariance), std::pair("objects", &e.object_covariance)}) {
     if (errors->samples == 0) continue;
-    print(text, "\ncovariance of %s: %.1f %% inside the 95 %% region, mean NEES %.2f (6 is consistent), %d samples", name,
-          100 * errors->coverage_95, errors->mean_nees, errors->samples);
+    print(text, "\ncovariance of %s: %.1f %% inside the 95 %% region, mean NEES %.2f (6 is consistent), %d samples",
+          name, 100 * errors->coverage_95, errors->mean_nees, errors->samples);
   }
   if (e.camera_covariance.samples + e.object_covariance.samples > 0) text += '\n';
   if (!e.against_baseline.empty()) print(text, "\nagainst the baseline: (ATE_baseline - ATE_ours) / ATE_baseline\n");
   for (const auto& r : e.against_baseline)
-    print(text, "  %-12s %6.3f m against %6.3f m: %+5.1f %%\n", r.what.c_str(), r.ours_m, r.baseline_m, 100 * r.relative());
+    print(text, "  %-12s %6.3f m against %6.3f m: %+5.1f %%\n", r.what.c_str(), r.ours_m, r.baseline_m,
+          100 * r.relative());
   if (e.latency_ms.empty()) return;
-  print(text, "\nlatency from image to result, ms: p50 %.1f, p95 %.1f, p99 %.1f, max %.1f\n", quantile(e.latency_ms, 0.5),
-        quantile(e.latency_ms, 0.95), quantile(e.latency_ms, 0.99), e.latency_ms.back());
+  print(text, "\nlatency from image to result, ms: p50 %.1f, p95 %.1f, p99 %.1f, max %.1f\n",
+        quantile(e.latency_ms, 0.5), quantile(e.latency_ms, 0.95), quantile(e.latency_ms, 0.99), e.latency_ms.back());
 }
 
 }  // namespace
@@ -199,8 +214,10 @@ std::string jsonOf(const Evaluation& e) {
                  {"max", quantile(e.latency_ms, 1)}}}};
   json["baseline"] = Json::array();
   for (const auto& r : e.against_baseline) {
-    json["baseline"].push_back(
-        {{"what", r.what}, {"ate_ours_m", r.ours_m}, {"ate_baseline_m", r.baseline_m}, {"relative_error", r.relative()}});
+    json["baseline"].push_back({{"what", r.what},
+                                {"ate_ours_m", r.ours_m},
+                                {"ate_baseline_m", r.baseline_m},
+                                {"relative_error", r.relative()}});
   }
   return json.dump(2);
 }

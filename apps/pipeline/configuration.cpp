@@ -24,7 +24,9 @@ struct Place {
   std::string text() const { return line > 0 ? file + ", line " + std::to_string(line) : file; }
 };
 
-[[noreturn]] void fail(const Place& place, const std::string& message) { throw UsageError(place.text() + ": " + message); }
+[[noreturn]] void fail(const Place& place, const std::string& message) {
+  throw UsageError(place.text() + ": " + message);
+}
 
 /// Levenshtein's distance: how many letters to change, to add or to take away.
 std::size_t editDistance(std::string_view a, std::string_view b) {
@@ -42,14 +44,14 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// A key of the right name in another section is nearer than a misspelt one.
-std::string nearestKey(const std::vector<Parameter>& table, const std::string& key) {
+/// A key of the right name in another section is nearer than a misspelled one.
+std::string nearestKey(const std::vector<ConfigurationKey>& table, const std::string& key) {
   const std::string name = key.substr(key.find_last_of('.') + 1);
-  const auto distance = [&](const Parameter& p) { return p.name == name ? 0 : editDistance(key, p.key()); };
+  const auto distance = [&](const ConfigurationKey& known) {
+    return known.parameter.name == name ? 0 : editDistance(key, known.key());
+  };
   return std::ranges::min_element(table, {}, distance)->key();
 }
-
-bool inRange(const Parameter& parameter, double value) { return value >= parameter.least && value <= parameter.most; }
 
 /// Sets one parameter; false when the value is of the wrong type or out of range.
 struct Assign {
@@ -58,13 +60,13 @@ struct Assign {
 
   bool operator()(int* target) const {
     const auto value = node.value_exact<std::int64_t>();
-    if (!value || !std::in_range<int>(*value) || !inRange(parameter, static_cast<double>(*value))) return false;
+    if (!value || !std::in_range<int>(*value) || !parameter.accepts(static_cast<double>(*value))) return false;
     *target = static_cast<int>(*value);
     return true;
   }
   bool operator()(double* target) const {
     const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-    if (!value || !inRange(parameter, *value)) return false;
+    if (!value || !parameter.accepts(*value)) return false;
     *target = *value;
     return true;
   }
@@ -88,16 +90,20 @@ std::string nodeText(const toml::node& node) {
   return text.str();
 }
 
-void applyValue(const std::vector<Parameter>& table, std::string key, const toml::node& node, const Place& place) {
+void applyValue(const std::vector<ConfigurationKey>& table, std::string key, const toml::node& node,
+                const Place& place) {
   if (key == "backend") key = "backend.kind";
-  const auto parameter = std::ranges::find(table, key, &Parameter::key);
-  if (parameter == table.end()) fail(place, "unknown key '" + key + "'; did you mean '" + nearestKey(table, key) + "'?");
-  if (std::visit(Assign{*parameter, node}, parameter->value)) return;
-  const bool whole = std::holds_alternative<int*>(parameter->value);
-  fail(place, "'" + key + "' is " + nodeText(node) + "; write " + (whole ? "a whole number, " : "") + parameter->allowed());
+  const auto known = std::ranges::find(table, key, &ConfigurationKey::key);
+  if (known == table.end()) fail(place, "unknown key '" + key + "'; did you mean '" + nearestKey(table, key) + "'?");
+  const Parameter& parameter = known->parameter;
+  if (std::visit(Assign{parameter, node}, parameter.value)) return;
+  const bool whole = std::holds_alternative<int*>(parameter.value);
+  fail(place,
+       "'" + key + "' is " + nodeText(node) + "; write " + (whole ? "a whole number, " : "") + parameter.allowed());
 }
 
-void applyTable(const std::vector<Parameter>& table, const toml::table& values, const std::string& prefix, const std::string& file) {
+void applyTable(const std::vector<ConfigurationKey>& table, const toml::table& values, const std::string& prefix,
+                const std::string& file) {
   for (const auto& [name, node] : values) {
     const std::string key = prefix + std::string(name.str());
     if (const toml::table* section = node.as_table())
@@ -157,19 +163,21 @@ void applyAssignment(PipelineConfig& config, const std::string& assignment) {
   const std::string text = assignment.substr(equals + 1);
   auto parsed = value(text);
   if (!parsed) parsed = value('"' + text + '"');
-  if (!parsed || parsed->size() != 1) throw UsageError(name + ": the value is neither a number, true, false nor a name");
+  if (!parsed || parsed->size() != 1)
+    throw UsageError(name + ": the value is neither a number, true, false nor a name");
   applyValue(table, key, *parsed->get("value"), {name});
 }
 
 std::string toToml(const PipelineConfig& config) {
   PipelineConfig copy = config;  // the table binds to members that may be set
   std::string text, section;
-  for (const Parameter& parameter : parameterTable(copy)) {
-    if (parameter.section != section) {
-      text += (text.empty() ? "[" : "\n[") + parameter.section + "]\n";
-      section = parameter.section;
+  for (const auto& [key_section, parameter] : parameterTable(copy)) {
+    if (key_section != section) {
+      text += (text.empty() ? "[" : "\n[") + key_section + "]\n";
+      section = key_section;
     }
-    text += parameter.name + " = " + std::visit(ToToml{}, parameter.value) + "  # " + parameter.allowed() + "\n";
+    text += "# " + parameter.gain + "; " + parameter.allowed() + "\n";
+    text += parameter.name + " = " + std::visit(ToToml{}, parameter.value) + "\n";
   }
   return text;
 }

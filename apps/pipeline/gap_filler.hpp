@@ -14,8 +14,9 @@ struct FrameHeader {
   Timestamp stamp;
 };
 
-/// Gives a pose to the frames that the back-end never saw, so that every input frame has its line in the results: predicted at
-/// constant velocity when published, interpolated between its neighbours in the final trajectory. Call it in frame order.
+/// Gives a pose to the frames that the back-end never saw, so that every input frame has its line in the results:
+/// predicted at constant velocity when published, interpolated between its neighbors in the final trajectory. Call it
+/// in frame order.
 class GapFiller {
  public:
   /// Estimates of frames that came after the last published one and were not processed.

@@ -52,22 +52,26 @@ enum Edge : std::size_t {
   kStereoToMotion,
   kFlowToMotion,
   kToTracking,
-  kToOptimisation,
+  kToOptimization,
   kToPublish,
   kEdges
 };
-constexpr std::array<const char*, kEdges> kEdgeNames{"admit>prepare", "prepare>stereo",  "prepare>flow",          "stereo>motion",
-                                                     "flow>motion",   "motion>tracking", "tracking>optimisation", "optimisation>publish"};
+constexpr std::array<const char*, kEdges> kEdgeNames{"admit>prepare",         "prepare>stereo",      "prepare>flow",
+                                                     "stereo>motion",         "flow>motion",         "motion>tracking",
+                                                     "tracking>optimization", "optimization>publish"};
 
 SteadyTime now() { return std::chrono::steady_clock::now(); }
 
 /// Rings round their capacity up to a power of two: this much stays within the bound.
-std::size_t ringCapacity(const PipelineParams& params) { return std::bit_floor(static_cast<std::size_t>(params.frames_in_flight)); }
+std::size_t ringCapacity(const PipelineParams& params) {
+  return std::bit_floor(static_cast<std::size_t>(params.frames_in_flight));
+}
 
 /// In live, frames beyond those that the workers can work on would only grow old between the stages.
 std::size_t tokens(const PipelineParams& params) {
-  return static_cast<std::size_t>(params.policy == InputPolicy::kLive ? std::min(params.frames_in_flight, params.threads)
-                                                                      : params.frames_in_flight);
+  return static_cast<std::size_t>(params.policy == InputPolicy::kLive
+                                      ? std::min(params.frames_in_flight, params.threads)
+                                      : params.frames_in_flight);
 }
 
 /// Uncertainty of a motion that nobody measured.
@@ -106,7 +110,7 @@ class Pipeline::Impl {
   void follow(Job& job);
   void estimateMotion(Job& job);
   void track(Job& job);
-  void optimise(Job& job);
+  void optimize(Job& job);
   void publish(Job& job);
   template <class Run, class Rescue>
   auto attempt(Job& job, Stage stage, const Run& run, const Rescue& rescue);
@@ -170,8 +174,9 @@ Pipeline::Impl::~Impl() {
   results_.close();
 }
 
-/// The wiring: stateless stages `unlimited`, stages with memory `serial` behind a sequencer (a serial node may start its next
-/// message before it has handed on the last one). Stays in the graph until the pump has let go of it and all frames are out.
+/// The wiring: stateless stages `unlimited`, stages with memory `serial` behind a sequencer (a serial node may start
+/// its next message before it has handed on the last one). Stays in the graph until the pump has let go of it and all
+/// frames are out.
 void Pipeline::Impl::runGraph(std::promise<void>& ready) {
   const auto sequence = [](const Job* job) { return job->sequence; };
   const auto stage = [this](void (Impl::*work)(Job&)) {
@@ -196,8 +201,8 @@ void Pipeline::Impl::runGraph(std::promise<void>& ready) {
   });
   InOrder tracking_order(graph, sequence);
   Node tracking(graph, flow::serial, stage(&Impl::track));
-  InOrder optimisation_order(graph, sequence);
-  Node optimisation(graph, flow::serial, stage(&Impl::optimise));
+  InOrder optimization_order(graph, sequence);
+  Node optimization(graph, flow::serial, stage(&Impl::optimize));
   InOrder publish_order(graph, sequence);
   flow::function_node<Job*, flow::continue_msg> publish(graph, flow::serial, [this](Job* job) { this->publish(*job); });
 
@@ -210,9 +215,9 @@ void Pipeline::Impl::runGraph(std::promise<void>& ready) {
   flow::make_edge(motion_order, motion);
   flow::make_edge(motion, tracking_order);
   flow::make_edge(tracking_order, tracking);
-  flow::make_edge(tracking, optimisation_order);
-  flow::make_edge(optimisation_order, optimisation);
-  flow::make_edge(optimisation, publish_order);
+  flow::make_edge(tracking, optimization_order);
+  flow::make_edge(optimization_order, optimization);
+  flow::make_edge(optimization, publish_order);
   flow::make_edge(publish_order, publish);
 
   first_node_ = &prepare;
@@ -223,7 +228,8 @@ void Pipeline::Impl::runGraph(std::promise<void>& ready) {
   results_.close();
 }
 
-// ---- Input -------------------------------------------------------------------------------------------------------------------
+// ---- Input
+// -------------------------------------------------------------------------------------------------------------------
 
 bool Pipeline::Impl::push(StereoFrame frame) {
   if (input_.closed()) return false;
@@ -267,11 +273,12 @@ void Pipeline::Impl::pump() {
   graph_->release_wait();
 }
 
-/// In live, a frame is admitted when the one before it has left the stages whose loops keep every worker busy: admitted earlier it would
-/// only slow that one down and grow old, while in the mailbox the newest frame takes its place. Each admitted frame gets that far, so the
-/// wait ends.
+/// In live, a frame is admitted when the one before it has left the stages whose loops keep every worker busy: admitted
+/// earlier it would only slow that one down and grow old, while in the mailbox the newest frame takes its place. Each
+/// admitted frame gets that far, so the wait ends.
 void Pipeline::Impl::waitForEntrance() const {
-  for (auto past = past_entrance_.load(std::memory_order_acquire); past < admitted_; past = past_entrance_.load(std::memory_order_acquire))
+  for (auto past = past_entrance_.load(std::memory_order_acquire); past < admitted_;
+       past = past_entrance_.load(std::memory_order_acquire))
     past_entrance_.wait(past, std::memory_order_acquire);
 }
 
@@ -288,7 +295,8 @@ void Pipeline::Impl::admit(Job& job, StereoFrame frame) {
   job.timing.stamp = frame.stamp;
   job.timing.due = frame.due;
   job.timing.decode_ms = frame.decode_ms;
-  if (frame.rejected()) log_(LogLevel::kWarning, "frame " + std::to_string(frame.frame.value) + " is rejected: " + frame.problem);
+  if (frame.rejected())
+    log_(LogLevel::kWarning, "frame " + std::to_string(frame.frame.value) + " is rejected: " + frame.problem);
   if (live()) job.dropped = droppedBefore(frame.frame);
   job.frame = std::make_shared<const StereoFrame>(std::move(frame));
   job.sequence = admitted_++;
@@ -306,10 +314,11 @@ std::vector<FrameHeader> Pipeline::Impl::droppedBefore(FrameId frame) {
   }
 }
 
-// ---- Stages ------------------------------------------------------------------------------------------------------------------
+// ---- Stages
+// ------------------------------------------------------------------------------------------------------------------
 
-/// The pipeline's frame boundary: runs a stage, and when it throws makes do with what `rescue` gives. Isolated, so that a
-/// stage that waits for its own parallel loop does not begin with a later frame meanwhile.
+/// The pipeline's frame boundary: runs a stage, and when it throws makes do with what `rescue` gives. Isolated, so that
+/// a stage that waits for its own parallel loop does not begin with a later frame meanwhile.
 template <class Run, class Rescue>
 auto Pipeline::Impl::attempt(Job& job, Stage stage, const Run& run, const Rescue& rescue) {
   const auto index = static_cast<std::size_t>(stage);
@@ -342,8 +351,12 @@ void Pipeline::Impl::prepare(Job& job) {
   job.features = attempt(
       job, Stage::kPrepare, [&] { return stages_.prepare(job.frame); },
       [&] {
-        StereoFrame rejected{
-            .frame = job.frame->frame, .stamp = job.frame->stamp, .due = job.frame->due, .left = {}, .right = {}, .problem = {}};
+        StereoFrame rejected{.frame = job.frame->frame,
+                             .stamp = job.frame->stamp,
+                             .due = job.frame->due,
+                             .left = {},
+                             .right = {},
+                             .problem = {}};
         rejected.problem = job.problems[static_cast<std::size_t>(Stage::kPrepare)];
         Features features;
         features.frame = std::make_shared<const StereoFrame>(std::move(rejected));
@@ -369,7 +382,7 @@ void Pipeline::Impl::follow(Job& job) {
   gauges_[kToFlow].leave();
   job.flow = attempt(
       job, Stage::kFlow, [&] { return stages_.flow(job.features); },
-      [&] { return std::make_shared<const OpticalFlow>(OpticalFlow{.features = job.features, .tracks = {}}); });
+      [&] { return std::make_shared<const OpticalFlow>(OpticalFlow{.features = job.features, .observations = {}}); });
   gauges_[kFlowToMotion].enter();
 }
 
@@ -405,13 +418,13 @@ void Pipeline::Impl::track(Job& job) {
         camera_only.odometry_covariance = job.motion->odometry_covariance;
         return std::make_shared<const FrameMeasurements>(std::move(camera_only));
       });
-  gauges_[kToOptimisation].enter();
+  gauges_[kToOptimization].enter();
 }
 
-void Pipeline::Impl::optimise(Job& job) {
-  gauges_[kToOptimisation].leave();
+void Pipeline::Impl::optimize(Job& job) {
+  gauges_[kToOptimization].leave();
   job.estimates = attempt(
-      job, Stage::kOptimisation, [&] { return stages_.optimisation(job.measurements); },
+      job, Stage::kOptimization, [&] { return stages_.optimization(job.measurements); },
       [&] {
         Estimates lost;  // without a pose: `publish` knows the last one and predicts it
         lost.online.frame = job.timing.frame;
@@ -424,13 +437,14 @@ void Pipeline::Impl::optimise(Job& job) {
   gauges_[kToPublish].enter();
 }
 
-// ---- Output ------------------------------------------------------------------------------------------------------------------
+// ---- Output
+// ------------------------------------------------------------------------------------------------------------------
 
 /// Copies the facts, hands them to the consumer and gives the token back.
 void Pipeline::Impl::publish(Job& job) {
   gauges_[kToPublish].leave();
   PipelineResult result;
-  const bool seen_by_backend = job.problems[static_cast<std::size_t>(Stage::kOptimisation)].empty();
+  const bool seen_by_backend = job.problems[static_cast<std::size_t>(Stage::kOptimization)].empty();
   result.dropped = gaps_.fill(job.dropped, FrameStatus::kDropped);
   result.online = job.estimates->online;
   if (!seen_by_backend) result.online.T_world_cam = gaps_.predict(job.timing.stamp);
@@ -457,7 +471,8 @@ void Pipeline::Impl::count(const Job& job, const PipelineResult& result) {
   if (status == FrameStatus::kLost) ++summary_.lost;
   summary_.latency.add(job.timing.latency_ms());
   summary_.latency_with_decoding.add(job.timing.latency_ms() + job.timing.decode_ms);
-  for (std::size_t stage = 0; stage < kStageCount; ++stage) summary_.stages[stage].add(job.timing.stages[stage].duration_ms());
+  for (std::size_t stage = 0; stage < kStageCount; ++stage)
+    summary_.stages[stage].add(job.timing.stages[stage].duration_ms());
   if (result.problem.empty() || result.counters.updates > 0) summary_.solver = result.counters;
 }
 
@@ -494,19 +509,18 @@ PipelineEnd Pipeline::Impl::finish() {
     summary_.queues.push_back({std::move(name), static_cast<std::int64_t>(high_water), bound});
   };
   mark("input>admit", input_.highWater());
-  for (std::size_t edge = 0; edge < kEdges; ++edge) mark(kEdgeNames[edge], static_cast<std::size_t>(gauges_[edge].highWater()));
+  for (std::size_t edge = 0; edge < kEdges; ++edge)
+    mark(kEdgeNames[edge], static_cast<std::size_t>(gauges_[edge].highWater()));
   mark("publish>output", results_.highWater());
   end.summary = summary_;
   return end;
 }
 
-// ---- The interface -----------------------------------------------------------------------------------------------------------
+// ---- The interface
+// -----------------------------------------------------------------------------------------------------------
 
-Pipeline::Pipeline(const PipelineParams& params, Stages stages, LogCallback log) {
-  if (params.threads < 1 || params.frames_in_flight < 1)
-    throw std::invalid_argument("a pipeline needs at least one thread and one frame in flight");
-  impl_ = std::make_unique<Impl>(params, std::move(stages), std::move(log));
-}
+Pipeline::Pipeline(const PipelineParams& params, Stages stages, LogCallback log)
+    : impl_(std::make_unique<Impl>(requireValid(params), std::move(stages), std::move(log))) {}
 Pipeline::~Pipeline() = default;
 
 bool Pipeline::push(StereoFrame frame) { return impl_->push(std::move(frame)); }

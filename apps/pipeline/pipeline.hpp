@@ -9,23 +9,13 @@
 #include <vector>
 
 #include "apps/pipeline/gap_filler.hpp"
+#include "apps/pipeline/pipeline_params.hpp"
 #include "apps/pipeline/stages.hpp"
 #include "core/frame_timing.hpp"
 #include "core/latency_histogram.hpp"
 #include "core/messages.hpp"
 
 namespace motorcade {
-
-enum class InputPolicy {
-  kReplay,  // nothing is dropped: the producer waits when the pipeline is behind
-  kLive,    // the newest pair wins: the producer never waits, pairs that nobody took are dropped
-};
-
-struct PipelineParams {
-  int threads = 2;           // workers of the pipeline's own arena, at most one per processor
-  int frames_in_flight = 4;  // bound of every queue; live: at most `threads`, so that frames do not grow old between the stages
-  InputPolicy policy = InputPolicy::kReplay;
-};
 
 enum class LogLevel { kInfo, kWarning, kError };
 /// Called from the pipeline's threads, several at once.
@@ -63,9 +53,9 @@ struct PipelineEnd {
   PipelineSummary summary;
 };
 
-/// The stages of a run, wired as a flow graph that works on several frames at once. Results do not depend on the number of
-/// threads, nor, in replay, on anybody's pace. One producer thread pushes, one consumer thread takes results; they may be the
-/// same thread only under the live policy or when it takes all results before it pushes again.
+/// The stages of a run, wired as a flow graph that works on several frames at once. Results do not depend on the number
+/// of threads, nor, in replay, on anybody's pace. One producer thread pushes, one consumer thread takes results; they
+/// may be the same thread only under the live policy or when it takes all results before it pushes again.
 class Pipeline {
  public:
   Pipeline(const PipelineParams& params, Stages stages, LogCallback log = {});
@@ -76,7 +66,8 @@ class Pipeline {
   /// A frame without a due time is due when the pipeline takes it.
   /// Under the live policy it takes no lock and, with images from an ImagePool, asks nothing of the heap.
   bool push(StereoFrame frame);
-  /// Producer, live only, between two pushes: the camera had this frame, but it was too late to push it. It counts as received and dropped.
+  /// Producer, live only, between two pushes: the camera had this frame, but it was too late to push it. It counts as
+  /// received and dropped.
   void passOver(const FrameHeader& frame);
   /// Producer: no further frame comes.
   void close();
@@ -85,7 +76,8 @@ class Pipeline {
   std::optional<PipelineResult> next();
   /// Consumer: the next result if there is one already.
   std::optional<PipelineResult> poll();
-  /// Consumer: closes the input, waits for the frames in flight and ends the run. Call it once, with no `push` under way.
+  /// Consumer: closes the input, waits for the frames in flight and ends the run. Call it once, with no `push` under
+  /// way.
   PipelineEnd finish();
 
  private:

@@ -2,9 +2,17 @@
 
 #include <memory>
 
-#include "apps/pipeline/configuration.hpp"
+#include "apps/pipeline/pipeline_config.hpp"
 
 namespace motorcade {
+namespace {
+
+std::unique_ptr<Backend> makeBackend(const BackendParams& params) {
+  if (params.kind == BackendKind::kFilter) return std::make_unique<FilterBackend>(params.filter);
+  return std::make_unique<Optimizer>(params.smoother);
+}
+
+}  // namespace
 
 /// The stages live behind shared pointers, because a std::function copies what it holds.
 Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
@@ -17,9 +25,10 @@ Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
   return {.prepare = [prepare](const StereoFramePtr& frame) { return (*prepare)(frame); },
           .stereo = [stereo](const FeaturesPtr& features) { return (*stereo)(features); },
           .flow = [flow](const FeaturesPtr& features) { return (*flow)(features); },
-          .motion = [motion](const StereoMatchesPtr& matches, const OpticalFlowPtr& tracks) { return (*motion)(matches, tracks); },
+          .motion = [motion](const StereoMatchesPtr& matches,
+                             const OpticalFlowPtr& tracks) { return (*motion)(matches, tracks); },
           .tracking = [tracking](const SceneMotionPtr& scene) { return (*tracking)(scene); },
-          .optimisation = [backend](const FrameMeasurementsPtr& measurements) { return (*backend)(measurements); },
+          .optimization = [backend](const FrameMeasurementsPtr& measurements) { return (*backend)(measurements); },
           .finish = [backend] { return backend->finish(); }};
 }
 

@@ -11,8 +11,8 @@ namespace motorcade {
 
 struct PipelineConfig;
 
-/// What the flow graph wires together, so that it can be tested with toy stages. `prepare` and `stereo` are called for several
-/// frames at once; the others one frame at a time, in order. `finish` is called once, after the last frame.
+/// What the flow graph wires together, so that it can be tested with toy stages. `prepare` and `stereo` are called for
+/// several frames at once; the others one frame at a time, in order. `finish` is called once, after the last frame.
 /// Each call gives one message; a stage that throws costs its frame, not the run.
 struct Stages {
   std::function<FeaturesPtr(const StereoFramePtr&)> prepare;
@@ -20,11 +20,12 @@ struct Stages {
   std::function<OpticalFlowPtr(const FeaturesPtr&)> flow;
   std::function<SceneMotionPtr(const StereoMatchesPtr&, const OpticalFlowPtr&)> motion;
   std::function<FrameMeasurementsPtr(const SceneMotionPtr&)> tracking;
-  std::function<EstimatesPtr(const FrameMeasurementsPtr&)> optimisation;
+  std::function<EstimatesPtr(const FrameMeasurementsPtr&)> optimization;
   std::function<std::vector<FrameEstimate>()> finish;
 };
 
-/// The real stages, for a camera whose images have the size that it says. Throws std::invalid_argument on a bad parameter.
+/// The real stages, for a camera whose images have the size that it says. Throws std::invalid_argument on a bad
+/// parameter.
 Stages makeStages(const PipelineConfig& config, const StereoCamera& camera);
 
 }  // namespace motorcade

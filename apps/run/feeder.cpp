@@ -20,9 +20,11 @@ bool sleepUntil(SteadyTime moment, const std::stop_token& stopped) {
 }  // namespace
 
 Feeder::Feeder(SequenceDecoder& decoder, Pipeline& pipeline, CameraClock* clock)
-    : decoder_(decoder), pipeline_(pipeline), clock_(clock), next_(decoder.first()), thread_([this](const std::stop_token& stopped) {
-        feed(stopped);
-      }) {}
+    : decoder_(decoder),
+      pipeline_(pipeline),
+      clock_(clock),
+      next_(decoder.first()),
+      thread_([this](const std::stop_token& stopped) { feed(stopped); }) {}
 
 void Feeder::stop() {
   thread_.request_stop();

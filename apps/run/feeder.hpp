@@ -8,11 +8,12 @@
 
 namespace motorcade {
 
-/// Plays a decoded sequence into the pipeline on a thread of its own, then closes it. With a clock, each pair enters when it is due;
-/// without, as soon as there is room.
+/// Plays a decoded sequence into the pipeline on a thread of its own, then closes it. With a clock, each pair enters
+/// when it is due; without, as soon as there is room.
 class Feeder {
  public:
-  /// `clock` may be null; it is started with the first pair. Only under the live policy may the decoder leave pairs out.
+  /// `clock` may be null; it is started with the first pair. Only under the live policy may the decoder leave pairs
+  /// out.
   Feeder(SequenceDecoder& decoder, Pipeline& pipeline, CameraClock* clock);
   ~Feeder() { stop(); }
 

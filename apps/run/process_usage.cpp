@@ -9,7 +9,9 @@
 namespace motorcade {
 namespace {
 
-double seconds(const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); }
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
 
 /// The first line of /proc/stat: cpu user nice system idle iowait irq softirq steal ..., in clock ticks.
 double stolen_s() {

@@ -6,8 +6,8 @@ namespace motorcade {
 
 /// What this process has used, and what others took from it: all that can spoil a measurement of time.
 struct ProcessUsage {
-  double cpu_s = 0;                       // of all threads, user and system
-  double stolen_s = 0;                    // by the hypervisor, summed over the machine's processors; 0 where the system does not tell
+  double cpu_s = 0;     // of all threads, user and system
+  double stolen_s = 0;  // by the hypervisor, summed over the machine's processors; 0 where the system does not tell
   std::int64_t involuntary_switches = 0;  // a thread had more to do, but its processor went to somebody else
   std::int64_t peak_memory_bytes = 0;     // resident
 

@@ -16,7 +16,10 @@ constexpr auto kLinePeriod = std::chrono::seconds(3);
 }  // namespace
 
 Progress::Progress(std::size_t frames)
-    : frames_(frames), terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()), next_(terminal_ ? start_ : start_ + kLinePeriod) {}
+    : frames_(frames),
+      terminal_(isatty(STDERR_FILENO) == 1),
+      start_(Clock::now()),
+      next_(terminal_ ? start_ : start_ + kLinePeriod) {}
 
 Progress::~Progress() {
   if (line_open_) std::fputc('\n', stderr);
@@ -27,7 +30,8 @@ void Progress::show(std::size_t done, double latency_ms) {
   if (now < next_ && !(terminal_ && done == frames_)) return;
   next_ = now + (terminal_ ? Clock::duration(kBarPeriod) : Clock::duration(kLinePeriod));
   const double rate_hz = static_cast<double>(done) / std::chrono::duration<double>(now - start_).count();
-  const auto text = fmt::format("frame {} of {}, {:.1f} frames/s, latency {:.1f} ms", done, frames_, rate_hz, latency_ms);
+  const auto text =
+      fmt::format("frame {} of {}, {:.1f} frames/s, latency {:.1f} ms", done, frames_, rate_hz, latency_ms);
   if (!terminal_) {
     spdlog::info(text);
     return;

@@ -5,7 +5,8 @@
 
 namespace motorcade {
 
-/// Shows how far a run is: a bar on a terminal, a plain line every few seconds otherwise. Writes to the standard error output.
+/// Shows how far a run is: a bar on a terminal, a plain line every few seconds otherwise. Writes to the standard error
+/// output.
 class Progress {
  public:
   explicit Progress(std::size_t frames);

@@ -41,11 +41,13 @@ void logToSpdlog(LogLevel level, const std::string& text) {
 /// Mean rate of the selected frames.
 double captureRate_hz(const Sequence& sequence, const FrameRange& range, double fallback_hz) {
   if (range.size() < 2) return fallback_hz;
-  return static_cast<double>(range.size() - 1) / secondsBetween(sequence.stamps[range.begin], sequence.stamps[range.end - 1]);
+  return static_cast<double>(range.size() - 1) /
+         secondsBetween(sequence.stamps[range.begin], sequence.stamps[range.end - 1]);
 }
 
 FrameRange selectedFrames(const RunOptions& options, const Sequence& sequence) {
-  const FrameRange range = (options.frames.empty() ? FrameRange{} : parseFrameRange(options.frames)).within(sequence.frames.size());
+  const FrameRange range =
+      (options.frames.empty() ? FrameRange{} : parseFrameRange(options.frames)).within(sequence.frames.size());
   if (range.size() == 0)
     throw UsageError("--frames " + options.frames + ": the sequence has " + std::to_string(sequence.frames.size()) +
                      " frames, none of these");
@@ -54,8 +56,9 @@ FrameRange selectedFrames(const RunOptions& options, const Sequence& sequence) {
 
 void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) {
   const StereoCamera& camera = sequence.camera;
-  spdlog::info("{}: {} layout, {} of {} frames, {} x {} px, baseline {:.4f} m", sequence.folder.string(), sequence.layout, range.size(),
-               sequence.frames.size(), camera.width_px, camera.height_px, camera.baseline_m);
+  spdlog::info("{}: {} layout, {} of {} frames, {} x {} px, baseline {:.4f} m", sequence.folder.string(),
+               sequence.layout, range.size(), sequence.frames.size(), camera.width_px, camera.height_px,
+               camera.baseline_m);
   if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
 }
 
@@ -94,12 +97,14 @@ class Recorder {
 };
 
 /// Runs the frames through the pipeline and writes all results but the summary.
-void follow(const Sequence& sequence, const FrameRange& range, const PipelineConfig& config, RunFolderWriter& folder, RunSummary& summary) {
+void follow(const Sequence& sequence, const FrameRange& range, const PipelineConfig& config, RunFolderWriter& folder,
+            RunSummary& summary) {
   StopSignals signals;
   std::optional<CameraClock> clock;
   if (summary.rate_hz) clock.emplace(*summary.rate_hz / summary.capture_rate_hz, 1 / summary.capture_rate_hz);
   SequenceDecoder::Params decoding{.ahead = std::bit_floor(static_cast<std::size_t>(config.pipeline.frames_in_flight))};
-  if (clock && config.pipeline.policy == InputPolicy::kLive)  // where decoding is too slow for the camera, what is overtaken is left out
+  if (clock && config.pipeline.policy ==
+                   InputPolicy::kLive)  // where decoding is too slow for the camera, what is overtaken is left out
     decoding.wanted = [&](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };
   SequenceDecoder decoder(sequence, range, decoding);
   Pipeline pipeline(config.pipeline, makeStages(config, sequence.camera), logToSpdlog);
@@ -121,7 +126,8 @@ void follow(const Sequence& sequence, const FrameRange& range, const PipelineCon
   summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   summary.pipeline = end.summary;
   summary.good_frames = recorder.goodFrames();
-  summary.decoded = {"decode>input", static_cast<std::int64_t>(decoder.highWater()), static_cast<std::int64_t>(decoder.capacity())};
+  summary.decoded = {"decode>input", static_cast<std::int64_t>(decoder.highWater()),
+                     static_cast<std::int64_t>(decoder.capacity())};
   summary.signal = signals.received();
 }
 
@@ -149,7 +155,8 @@ int run(const RunOptions& options) {
 
   if (summary.signal != 0) return kExitSignal + summary.signal;
   if (required_tracking && summary.trackedFraction() < *required_tracking) {
-    spdlog::error("{:.4f} of the frames are tracked, --require asks for {:.4f}", summary.trackedFraction(), *required_tracking);
+    spdlog::error("{:.4f} of the frames are tracked, --require asks for {:.4f}", summary.trackedFraction(),
+                  *required_tracking);
     return kExitUntracked;
   }
   return 0;
@@ -160,18 +167,23 @@ int run(const RunOptions& options) {
 void addRunCommand(CLI::App& app, std::function<int()>& action) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Follow the camera and the moving vehicles through a stereo sequence");
-  command->add_option("SEQUENCE", options->sequence, "Folder of a plain, KITTI tracking, odometry or raw sequence")->required();
+  command->add_option("SEQUENCE", options->sequence, "Folder of a plain, KITTI tracking, odometry or raw sequence")
+      ->required();
   command->add_option("--out", options->out, "Folder for the results")->required();
   command->add_option("--rate", options->rate, "Pace of the replay in pairs per second, or max (the default)");
   command->add_option("--fps", options->fps_hz, "Capture rate of a sequence without times [Hz]")
       ->check(CLI::Range(0.001, 100'000.0))
       ->capture_default_str();
-  command->add_flag("--live", options->live, "Behave like a camera that does not wait: the newest pair wins, others are dropped");
+  command->add_flag("--live", options->live,
+                    "Behave like a camera that does not wait: the newest pair wins, others are dropped");
   command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
   command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
-  command->add_option("--config", options->config, "Parameters; see effective_config.toml of any run")->type_name("FILE.toml");
-  command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")->type_name("KEY=VALUE");
-  command->add_option("--require", options->require, "Exit with 5 when fewer frames are tracked")->type_name("tracked=FRACTION");
+  command->add_option("--config", options->config, "Parameters; see effective_config.toml of any run")
+      ->type_name("FILE.toml");
+  command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")
+      ->type_name("KEY=VALUE");
+  command->add_option("--require", options->require, "Exit with 5 when fewer frames are tracked")
+      ->type_name("tracked=FRACTION");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

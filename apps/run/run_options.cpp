@@ -25,7 +25,9 @@ PipelineConfig configurationOf(const RunOptions& options) {
   if (options.threads) applyAssignment(config, "pipeline.threads=" + std::to_string(*options.threads));
   if (options.live) config.pipeline.policy = InputPolicy::kLive;
   if (config.backend.smoother.budget_ms > 0 && config.pipeline.policy != InputPolicy::kLive)
-    throw UsageError("backend.budget_ms: a budget in milliseconds would make replay irreproducible; use backend.budget_scalars, or --live");
+    throw UsageError(
+        "backend.budget_ms: a budget in milliseconds would make replay irreproducible; use backend.budget_scalars, or "
+        "--live");
   return config;
 }
 
@@ -36,7 +38,8 @@ std::optional<double> replayRate_hz(const RunOptions& options, InputPolicy polic
     return std::nullopt;
   }
   const auto rate_hz = parseNumber(options.rate);
-  if (!rate_hz || *rate_hz <= 0) throw UsageError("--rate " + options.rate + ": write max or a positive number of pairs per second");
+  if (!rate_hz || *rate_hz <= 0)
+    throw UsageError("--rate " + options.rate + ": write max or a positive number of pairs per second");
   return rate_hz;
 }
 

@@ -34,7 +34,9 @@ Json toJson(const SolverCounters& solver) {
           {"chi2", solver.chi2}};
 }
 
-Json toJson(const QueueMark& queue) { return {{"name", queue.name}, {"high_water", queue.high_water}, {"bound", queue.bound}}; }
+Json toJson(const QueueMark& queue) {
+  return {{"name", queue.name}, {"high_water", queue.high_water}, {"bound", queue.bound}};
+}
 
 Json versions() {
   return {{"motorcade", MOTORCADE_VERSION},
@@ -50,12 +52,15 @@ double RunSummary::trackedFraction() const {
   return pipeline.received > 0 ? static_cast<double>(good_frames) / static_cast<double>(pipeline.received) : 0;
 }
 
-double RunSummary::throughput_hz() const { return wall_s > 0 ? static_cast<double>(pipeline.processed + pipeline.rejected) / wall_s : 0; }
+double RunSummary::throughput_hz() const {
+  return wall_s > 0 ? static_cast<double>(pipeline.processed + pipeline.rejected) / wall_s : 0;
+}
 
 std::string toJson(const RunSummary& summary) {
   const PipelineSummary& pipeline = summary.pipeline;
   Json stages, queues = Json::array({toJson(summary.decoded)});
-  for (std::size_t stage = 0; stage < kStageCount; ++stage) stages[std::string(kStageNames[stage])] = toJson(pipeline.stages[stage]);
+  for (std::size_t stage = 0; stage < kStageCount; ++stage)
+    stages[std::string(kStageNames[stage])] = toJson(pipeline.stages[stage]);
   for (const QueueMark& queue : pipeline.queues) queues.push_back(toJson(queue));
   Json json{{"complete", summary.signal == 0},
             {"sequence", summary.sequence},
@@ -98,11 +103,13 @@ std::string shortReport(const RunSummary& summary, const std::string& folder) {
       "throughput  {:.1f} frames/s, {:.1f} ms of CPU per frame, peak memory {:.0f} MB\n"
       "machine     {:.2f} s stolen by the hypervisor, {} involuntary context switches\n"
       "results     {}\n",
-      pipeline.received, pipeline.processed, pipeline.lost, pipeline.dropped, pipeline.rejected, pipeline.latency.percentile_ms(0.5),
-      pipeline.latency.percentile_ms(0.95), pipeline.latency.percentile_ms(0.99), pipeline.latency.max_ms(), decoded.percentile_ms(0.50),
-      decoded.percentile_ms(0.95), decoded.percentile_ms(0.99), decoded.max_ms(), summary.throughput_hz(),
+      pipeline.received, pipeline.processed, pipeline.lost, pipeline.dropped, pipeline.rejected,
+      pipeline.latency.percentile_ms(0.5), pipeline.latency.percentile_ms(0.95), pipeline.latency.percentile_ms(0.99),
+      pipeline.latency.max_ms(), decoded.percentile_ms(0.50), decoded.percentile_ms(0.95), decoded.percentile_ms(0.99),
+      decoded.max_ms(), summary.throughput_hz(),
       1e3 * summary.used.cpu_s / static_cast<double>(std::max<std::int64_t>(1, pipeline.received)),
-      1e-6 * static_cast<double>(summary.used.peak_memory_bytes), summary.used.stolen_s, summary.used.involuntary_switches, folder);
+      1e-6 * static_cast<double>(summary.used.peak_memory_bytes), summary.used.stolen_s,
+      summary.used.involuntary_switches, folder);
 }
 
 }  // namespace motorcade

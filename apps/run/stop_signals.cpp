@@ -31,7 +31,8 @@ std::jthread StopSignals::watch(std::function<void()> stop) {
     stop();
     const auto repeated_until = std::chrono::steady_clock::now() + 1s;
     while (!ended.stop_requested() && std::chrono::steady_clock::now() < repeated_until) next(50ms);
-    if (!ended.stop_requested()) pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // from now on a signal has its usual end here
+    if (!ended.stop_requested())
+      pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // from now on a signal has its usual end here
     while (!ended.stop_requested()) std::this_thread::sleep_for(50ms);
   });
 }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "backend/smoother/factors.hpp"
 #include "backend/graph/relative_pose_factor.hpp"
+#include "backend/smoother/factors.hpp"
 #include "core/thread_clock.hpp"
 
 namespace motorcade {
@@ -30,7 +30,8 @@ std::vector<std::size_t> updateEnds(const PoseGraph& graph, const PoseGraphIndex
 std::unique_ptr<Factor> gaugeOf(VariableId v, bool planar) {
   const double weight = 1 / kGaugeSigma;
   if (planar) return std::make_unique<PriorFactorSE2>(v, SE2{}, Eigen::Matrix3d::Identity() * weight * weight);
-  return std::make_unique<PriorFactor>(std::array{v}, PriorModel{}, PoseNoise{.sqrt_information = Matrix6d::Identity() * weight});
+  return std::make_unique<PriorFactor>(std::array{v}, PriorModel{},
+                                       PoseNoise{.sqrt_information = Matrix6d::Identity() * weight});
 }
 
 std::unique_ptr<Factor> factorOf(const PoseGraph::Edge& edge, VariableId from, VariableId to) {
@@ -53,7 +54,7 @@ PoseGraphFeed::PoseGraphFeed(const PoseGraph& graph, const IncrementalSolver::Pa
       update_ends_(updateEnds(graph, index_, pace)),
       variable_(index_.size()),
       waits_(index_.size(), 0) {
-  while (gauge_pose_ < index_.size() && index_.neighbours(gauge_pose_).empty()) ++gauge_pose_;
+  while (gauge_pose_ < index_.size() && index_.neighbors(gauge_pose_).empty()) ++gauge_pose_;
   if (gauge_pose_ == index_.size()) gauge_pose_ = 0;
 }
 
@@ -80,30 +81,30 @@ void PoseGraphFeed::feedPose(std::size_t pose, Update& update) {
 }
 
 /// By odometry where there is any, else by the first edge in the file to a pose that is there.
-std::optional<PoseGraphFeed::Neighbour> PoseGraphFeed::joinedTo(std::size_t pose) const {
-  std::optional<Neighbour> first;
-  for (const Neighbour& neighbour : index_.neighbours(pose)) {
-    if (!present(neighbour.pose)) continue;
-    if (index_.id(neighbour.pose) == index_.id(pose) - 1) return neighbour;
-    if (!first) first = neighbour;
+std::optional<PoseGraphFeed::Neighbor> PoseGraphFeed::joinedTo(std::size_t pose) const {
+  std::optional<Neighbor> first;
+  for (const Neighbor& neighbor : index_.neighbors(pose)) {
+    if (!present(neighbor.pose)) continue;
+    if (index_.id(neighbor.pose) == index_.id(pose) - 1) return neighbor;
+    if (!first) first = neighbor;
   }
   return first;
 }
 
 /// Breadth first: a pose that waited is placed over as few edges as possible.
-void PoseGraphFeed::addWithWaiting(std::size_t pose, const Neighbour& joint, Update& update) {
+void PoseGraphFeed::addWithWaiting(std::size_t pose, const Neighbor& joint, Update& update) {
   struct Joining {
     std::size_t pose;
-    Neighbour joint;
+    Neighbor joint;
   };
   std::vector<Joining> queue{{pose, joint}};
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const Joining joining = queue[i];
     add(joining.pose, moved(solver_.estimate(variable_[joining.joint.pose]), joining.joint, joining.pose), update);
-    for (const Neighbour& neighbour : index_.neighbours(joining.pose)) {
-      if (waits_[neighbour.pose] == 0) continue;
-      waits_[neighbour.pose] = 0;
-      queue.push_back({neighbour.pose, {joining.pose, neighbour.edge}});
+    for (const Neighbor& neighbor : index_.neighbors(joining.pose)) {
+      if (waits_[neighbor.pose] == 0) continue;
+      waits_[neighbor.pose] = 0;
+      queue.push_back({neighbor.pose, {joining.pose, neighbor.edge}});
     }
   }
   if (queue.size() == 1) return;
@@ -118,21 +119,21 @@ void PoseGraphFeed::add(std::size_t pose, const Value& initial, Update& update) 
   assert(static_cast<std::size_t>(variable_[pose].value) == pose_of_variable_.size());
   pose_of_variable_.push_back(pose);
   ++update.poses;
-  for (const Neighbour& neighbour : index_.neighbours(pose)) {
-    if (!present(neighbour.pose)) continue;
-    const auto& edge = graph_.edges[neighbour.edge];
+  for (const Neighbor& neighbor : index_.neighbors(pose)) {
+    if (!present(neighbor.pose)) continue;
+    const auto& edge = graph_.edges[neighbor.edge];
     const bool forward = edge.to == index_.id(pose);
-    const VariableId other = variable_[neighbour.pose];
+    const VariableId other = variable_[neighbor.pose];
     if (!solver_.addFactor(factorOf(edge, forward ? other : variable_[pose], forward ? variable_[pose] : other))) {
-      refused_edges_.push_back(neighbour.edge);
+      refused_edges_.push_back(neighbor.edge);
       continue;
     }
     ++edge_count_, ++update.edges;
   }
 }
 
-/// From a pose at `start` over an edge to its neighbour.
-Value PoseGraphFeed::moved(const Value& start, const Neighbour& from, std::size_t to) const {
+/// From a pose at `start` over an edge to its neighbor.
+Value PoseGraphFeed::moved(const Value& start, const Neighbor& from, std::size_t to) const {
   const auto& edge = graph_.edges[from.edge];
   const bool forward = edge.to == index_.id(to);
   if (const auto* pose = std::get_if<SE2>(&start)) {
@@ -153,12 +154,12 @@ double PoseGraphFeed::chi2() const {
   double sum = 0;
   Eigen::VectorXd r(graph_.planar ? 3 : 6);
   for (std::size_t pose = 0; pose < fed_; ++pose) {
-    for (const Neighbour& neighbour : index_.neighbours(pose)) {
-      const auto& edge = graph_.edges[neighbour.edge];
-      if (edge.from != index_.id(pose) || !present(pose) || !present(neighbour.pose)) continue;
-      if (std::ranges::find(refused_edges_, neighbour.edge) != refused_edges_.end()) continue;
-      const Value from = solver_.estimate(variable_[pose]), to = solver_.estimate(variable_[neighbour.pose]);
-      factorOf(edge, variable_[pose], variable_[neighbour.pose])->residual(std::array{&from, &to}, r);
+    for (const Neighbor& neighbor : index_.neighbors(pose)) {
+      const auto& edge = graph_.edges[neighbor.edge];
+      if (edge.from != index_.id(pose) || !present(pose) || !present(neighbor.pose)) continue;
+      if (std::ranges::find(refused_edges_, neighbor.edge) != refused_edges_.end()) continue;
+      const Value from = solver_.estimate(variable_[pose]), to = solver_.estimate(variable_[neighbor.pose]);
+      factorOf(edge, variable_[pose], variable_[neighbor.pose])->residual(std::array{&from, &to}, r);
       sum += r.squaredNorm();
     }
   }
@@ -200,10 +201,10 @@ std::vector<PoseGraph::Vertex> PoseGraphFeed::placedPart(std::size_t first, std:
   for (std::size_t i = 0; i < part.size(); ++i) {
     const auto [pose, value] = part[i];
     vertices.push_back({index_.id(pose), poseIn(value)});
-    for (const Neighbour& neighbour : index_.neighbours(pose)) {
-      if (waits_[neighbour.pose] == 0 || placed[neighbour.pose] != 0) continue;
-      placed[neighbour.pose] = 1;
-      part.emplace_back(neighbour.pose, moved(value, {pose, neighbour.edge}, neighbour.pose));
+    for (const Neighbor& neighbor : index_.neighbors(pose)) {
+      if (waits_[neighbor.pose] == 0 || placed[neighbor.pose] != 0) continue;
+      placed[neighbor.pose] = 1;
+      part.emplace_back(neighbor.pose, moved(value, {pose, neighbor.edge}, neighbor.pose));
     }
   }
   return vertices;

@@ -9,9 +9,10 @@
 
 namespace motorcade {
 
-/// Feeds a pose graph to the incremental solver in the order of the poses' ids, as if it were being driven: a pose comes with all edges to
-/// poses that are there already and starts where odometry puts it, whatever vertices the file lists. The first pose that has an edge is
-/// held at the identity by a tight prior. A pose that no edge joins yet waits; it enters with all that waited for it once an edge does.
+/// Feeds a pose graph to the incremental solver in the order of the poses' ids, as if it were being driven: a pose
+/// comes with all edges to poses that are there already and starts where odometry puts it, whatever vertices the file
+/// lists. The first pose that has an edge is held at the identity by a tight prior. A pose that no edge joins yet
+/// waits; it enters with all that waited for it once an edge does.
 class PoseGraphFeed {
  public:
   enum class Pace {
@@ -43,7 +44,7 @@ class PoseGraphFeed {
 
   /// Empty while the pose is not in the solver.
   std::optional<VariableId> variableOf(std::int64_t pose_id) const;
-  std::int64_t poseOf(VariableId v) const { return index_.id(pose_of_variable_[static_cast<std::size_t>(v.value)]); }
+  std::int64_t poseOf(VariableId v) const { return index_.id(pose_of_variable_[v.value]); }
 
   std::size_t poseCount() const { return pose_of_variable_.size(); }  // in the solver
   std::size_t edgeCount() const { return edge_count_; }               // in the solver
@@ -59,13 +60,13 @@ class PoseGraphFeed {
   std::vector<PoseGraph::Vertex> vertices() const;
 
  private:
-  using Neighbour = PoseGraphIndex::Neighbour;
+  using Neighbor = PoseGraphIndex::Neighbor;
 
   void feedPose(std::size_t pose, Update& update);
-  std::optional<Neighbour> joinedTo(std::size_t pose) const;
-  void addWithWaiting(std::size_t pose, const Neighbour& joint, Update& update);
+  std::optional<Neighbor> joinedTo(std::size_t pose) const;
+  void addWithWaiting(std::size_t pose, const Neighbor& joint, Update& update);
   void add(std::size_t pose, const Value& initial, Update& update);
-  Value moved(const Value& start, const Neighbour& from, std::size_t to) const;
+  Value moved(const Value& start, const Neighbor& from, std::size_t to) const;
   bool present(std::size_t pose) const { return variable_[pose].valid(); }
   std::vector<PoseGraph::Vertex> placedPart(std::size_t first, std::vector<char>& placed) const;
 

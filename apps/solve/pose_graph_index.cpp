@@ -5,7 +5,7 @@
 namespace motorcade {
 
 PoseGraphIndex::PoseGraphIndex(const PoseGraph& graph)
-    : graph_(graph), neighbours_(2 * graph.edges.size()), first_(graph.poses.size() + 1, 0) {
+    : graph_(graph), neighbors_(2 * graph.edges.size()), first_(graph.poses.size() + 1, 0) {
   std::vector<std::pair<std::size_t, std::size_t>> ends;
   ends.reserve(graph.edges.size());
   for (const auto& edge : graph.edges) ends.emplace_back(at(edge.from), at(edge.to));
@@ -14,8 +14,8 @@ PoseGraphIndex::PoseGraphIndex(const PoseGraph& graph)
   std::vector<std::size_t> next(first_.begin(), first_.end());
   for (std::size_t edge = 0; edge < ends.size(); ++edge) {
     const auto& [from, to] = ends[edge];
-    neighbours_[next[from]++] = {to, edge};
-    neighbours_[next[to]++] = {from, edge};
+    neighbors_[next[from]++] = {to, edge};
+    neighbors_[next[to]++] = {from, edge};
   }
 }
 

@@ -15,12 +15,12 @@ class PoseGraphIndex {
   explicit PoseGraphIndex(const PoseGraph& graph);
 
   /// The pose at one edge's other end.
-  struct Neighbour {
+  struct Neighbor {
     std::size_t pose, edge;
   };
   /// In the order of the file.
-  std::span<const Neighbour> neighbours(std::size_t pose) const {
-    return std::span(neighbours_).subspan(first_[pose], first_[pose + 1] - first_[pose]);
+  std::span<const Neighbor> neighbors(std::size_t pose) const {
+    return std::span(neighbors_).subspan(first_[pose], first_[pose + 1] - first_[pose]);
   }
 
   std::size_t size() const { return graph_.poses.size(); }
@@ -32,8 +32,8 @@ class PoseGraphIndex {
 
  private:
   const PoseGraph& graph_;
-  std::vector<Neighbour> neighbours_;  // those of each pose together
-  std::vector<std::size_t> first_;     // per pose
+  std::vector<Neighbor> neighbors_;  // those of each pose together
+  std::vector<std::size_t> first_;   // per pose
 };
 
 }  // namespace motorcade

@@ -25,11 +25,14 @@ std::string namesOf(const std::vector<std::int64_t>& ids) {
 }
 
 /// What the solver itself found, each once.
-void addSolverProblems(const IncrementalSolver::Report& report, const PoseGraphFeed& feed, std::vector<SolveProblem>& problems) {
+void addSolverProblems(const IncrementalSolver::Report& report, const PoseGraphFeed& feed,
+                       std::vector<SolveProblem>& problems) {
   const auto nameOf = [&](VariableId v) { return namesOf({feed.poseOf(v)}); };
   for (const SolverProblem& found : report.problems) {
     if (found.kind == SolverProblem::Kind::kNotFinite) continue;  // is told with the edge and its line
-    SolveProblem problem{std::string(motorcade::nameOf(found.kind)), nameOf(found.variable), describe(found, feed.solver().graph(), nameOf),
+    SolveProblem problem{std::string(motorcade::nameOf(found.kind)),
+                         nameOf(found.variable),
+                         describe(found, feed.solver().graph(), nameOf),
                          {feed.poseOf(found.variable)}};
     const auto same = [&](const SolveProblem& p) { return p.kind == problem.kind && p.name == problem.name; };
     if (std::ranges::none_of(problems, same)) problems.push_back(std::move(problem));
@@ -49,15 +52,18 @@ void addEdgeProblems(const PoseGraph& graph, const PoseGraphFeed& feed, std::vec
 void addPoseProblems(const PoseGraph& graph, const PoseGraphFeed& feed, std::vector<SolveProblem>& problems) {
   const std::string gauge = namesOf({feed.gaugePose()});
   for (const std::int64_t id : graph.fixed)
-    if (id != feed.gaugePose()) problems.push_back({"fix_not_applied", namesOf({id}), "FIX is not applied: " + gauge + " is held", {id}});
+    if (id != feed.gaugePose())
+      problems.push_back({"fix_not_applied", namesOf({id}), "FIX is not applied: " + gauge + " is held", {id}});
   for (const auto& late : feed.lateJoins()) {
-    problems.push_back({"joined_late", namesOf(late.waited),
-                        "no edge to an earlier pose: waited until pose " + std::to_string(late.joining) + " joined them to the rest",
-                        late.waited});
+    problems.push_back(
+        {"joined_late", namesOf(late.waited),
+         "no edge to an earlier pose: waited until pose " + std::to_string(late.joining) + " joined them to the rest",
+         late.waited});
   }
   for (const auto& part : feed.disconnectedParts()) {
     problems.push_back({"disconnected_part", namesOf(part),
-                        "disconnected part: no edge joins it to " + gauge + "; not optimised, and not counted in chi2", part});
+                        "disconnected part: no edge joins it to " + gauge + "; not optimized, and not counted in chi2",
+                        part});
   }
 }
 
@@ -69,7 +75,8 @@ Solution solutionOf(const PoseGraph& graph, const PoseGraphFeed& feed, Solution&
   addEdgeProblems(graph, feed, solution.problems);
   addPoseProblems(graph, feed, solution.problems);
   if (!std::isfinite(solution.chi2))
-    solution.problems.push_back({"not_finite", "solution", "the estimates overflow: a measurement or its information is too large", {}});
+    solution.problems.push_back(
+        {"not_finite", "solution", "the estimates overflow: a measurement or its information is too large", {}});
   return std::move(solution);
 }
 
@@ -118,8 +125,10 @@ Solution solveAtOnce(const PoseGraph& graph, const IncrementalSolver::Params& pa
   PoseGraphFeed driven(graph, params);
   feedAll(driven, second);
   if (!converge(driven, second)) {
-    second.problems.push_back(
-        {"not_converged", "solution", "Gauss-Newton moved on after " + std::to_string(kMaxIterations) + " iterations", {}});
+    second.problems.push_back({"not_converged",
+                               "solution",
+                               "Gauss-Newton moved on after " + std::to_string(kMaxIterations) + " iterations",
+                               {}});
   }
   return solutionOf(graph, driven, std::move(second));
 }

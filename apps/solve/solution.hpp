@@ -28,7 +28,8 @@ struct Solution {
 /// Smooths the graph as it comes, an update per pose or frame.
 Solution solveIncrementally(const PoseGraph& graph, const IncrementalSolver::Params& params);
 
-/// Gauss-Newton on the whole graph until nothing moves, from odometry; where that does not get there, from the incremental solution.
+/// Gauss-Newton on the whole graph until nothing moves, from odometry; where that does not get there, from the
+/// incremental solution.
 Solution solveAtOnce(const PoseGraph& graph, const IncrementalSolver::Params& params);
 
 }  // namespace motorcade

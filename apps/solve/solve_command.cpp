@@ -41,15 +41,18 @@ int runSolve(const SolveOptions& options) {
 
 void addSolveCommand(CLI::App& app, std::function<int()>& action) {
   const auto options = std::make_shared<SolveOptions>();
-  CLI::App* command = app.add_subcommand("solve", "Smooth a pose graph in g2o form incrementally, one update per new pose");
+  CLI::App* command =
+      app.add_subcommand("solve", "Smooth a pose graph in g2o form incrementally, one update per new pose");
   command->add_option("graph", options->graph, "g2o file, of poses in the plane or in space")->required();
-  command->add_option("--out", options->out, "g2o file for the optimised graph");
+  command->add_option("--out", options->out, "g2o file for the optimized graph");
   command->add_option("--json", options->json, "File for times, chi2 and problems as JSON");
-  command->add_option("--policy", options->policy, "fluid: relinearise what is off; every: a batch step every N updates")
+  command
+      ->add_option("--policy", options->policy, "fluid: relinearize what is off; every: a batch step every N updates")
       ->check(CLI::IsMember({"fluid", "every"}))
       ->capture_default_str();
   command->add_option("--every", options->batch_every_updates, "N of --policy every")->check(CLI::PositiveNumber);
-  command->add_option("--budget", options->budget_scalars, "Scalars eliminated per update beyond what new edges ask for")
+  command
+      ->add_option("--budget", options->budget_scalars, "Scalars eliminated per update beyond what new edges ask for")
       ->check(CLI::PositiveNumber);
   command->add_flag("--batch", options->at_once, "The batch solution: everything at once, until it converges");
   command->add_flag("--updates", options->every_update, "Write the times of every update to the JSON file too");

@@ -32,8 +32,8 @@ std::string textOf(const Solution& solution) {
                 "%zu poses, %zu edges, %zu updates\n"
                 "chi2 %.6f\n"
                 "CPU time: total %.3f s; per update median %.3f ms, p99 %.3f ms, max %.3f ms\n",
-                solution.poses, solution.edges, solution.update_ms.size(), solution.chi2, 1e-3 * solution.total_ms, times.median_ms,
-                times.p99_ms, times.max_ms);
+                solution.poses, solution.edges, solution.update_ms.size(), solution.chi2, 1e-3 * solution.total_ms,
+                times.median_ms, times.p99_ms, times.max_ms);
   std::string text = head;
   if (!solution.problems.empty()) text += std::to_string(solution.problems.size()) + " problems\n";
   for (const auto& problem : solution.problems) text += "  " + problem.name + ": " + problem.detail + "\n";
@@ -42,9 +42,10 @@ std::string textOf(const Solution& solution) {
 
 std::string jsonOf(const Solution& solution, const SolveOptions& options) {
   const Times times = timesOf(solution.update_ms);
-  nlohmann::ordered_json json = {{"graph", options.graph.string()},      {"poses", solution.poses}, {"edges", solution.edges},
-                                 {"updates", solution.update_ms.size()}, {"chi2", solution.chi2},   {"total_s", 1e-3 * solution.total_ms},
-                                 {"median_ms", times.median_ms},         {"p99_ms", times.p99_ms},  {"max_ms", times.max_ms}};
+  nlohmann::ordered_json json = {
+      {"graph", options.graph.string()},      {"poses", solution.poses}, {"edges", solution.edges},
+      {"updates", solution.update_ms.size()}, {"chi2", solution.chi2},   {"total_s", 1e-3 * solution.total_ms},
+      {"median_ms", times.median_ms},         {"p99_ms", times.p99_ms},  {"max_ms", times.max_ms}};
   json["problems"] = nlohmann::ordered_json::array();
   for (const auto& p : solution.problems)
     json["problems"].push_back({{"kind", p.kind}, {"name", p.name}, {"detail", p.detail}, {"poses", p.poses}});

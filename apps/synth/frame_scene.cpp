@@ -5,7 +5,9 @@
 namespace motorcade::synth {
 namespace {
 
-Vec3 toFloat(const Eigen::Vector3d& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())}; }
+Vec3 toFloat(const Eigen::Vector3d& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
 
 constexpr float kWheelRadius_m = 0.33F;
 
@@ -22,13 +24,15 @@ FrameScene::FrameScene(const Scene& scene, int frame, bool with_movers) : scene_
     for (const auto& mover : scene.movers) {
       const auto& trajectory = mover.trajectory;
       const double driven = std::abs(trajectory.arc_m(t_s) - trajectory.start_m);
-      place(mover.model, trajectory.T_map_body(t_s), mover.id, trajectory.speedAt_mps(t_s) > 0.05, driven / kWheelRadius_m);
+      place(mover.model, trajectory.T_map_body(t_s), mover.id, trajectory.speedAt_mps(t_s) > 0.05,
+            driven / kWheelRadius_m);
     }
   for (std::uint32_t i = 0; i < placed_.size(); ++i)
     for (std::uint32_t k = 0; k < placed_[i].model->parts.size(); ++k) items_.push_back({i, k});
 }
 
-void FrameScene::place(std::shared_ptr<const Model> model, const SE3& T_map_body, int id, bool moving, double wheel_angle_rad) {
+void FrameScene::place(std::shared_ptr<const Model> model, const SE3& T_map_body, int id, bool moving,
+                       double wheel_angle_rad) {
   const auto& R = T_map_body.rotation();
   Placed placed;
   placed.model = std::move(model);
@@ -44,8 +48,9 @@ void FrameScene::place(std::shared_ptr<const Model> model, const SE3& T_map_body
 bool FrameScene::meets(const Placed& placed, const Vec3& direction) {
   const Vec3 o = placed.rotation.transposed(placed.translation * -1), d = placed.rotation.transposed(direction);
   const auto& parts = placed.model->parts;
-  return std::any_of(parts.begin(), parts.end(),
-                     [&](const Primitive& part) { return intersect(part, placed.model->cuts.data(), o, d, 1e-3F, 1e9F).has_value(); });
+  return std::any_of(parts.begin(), parts.end(), [&](const Primitive& part) {
+    return intersect(part, placed.model->cuts.data(), o, d, 1e-3F, 1e9F).has_value();
+  });
 }
 
 }  // namespace motorcade::synth

@@ -17,8 +17,8 @@ struct Ground::View {
     float sum = 0;
     for (int i = 0; i < taps; ++i) {
       const float shift = length * ((static_cast<float>(i) + 0.5F) / static_cast<float>(taps) - 0.5F);
-      sum += fractal2(px + shift * x, py + shift * y, spacing, octaves, gain, std::max(width, 0.8F * length / static_cast<float>(taps)),
-                      seed + salt);
+      sum += fractal2(px + shift * x, py + shift * y, spacing, octaves, gain,
+                      std::max(width, 0.8F * length / static_cast<float>(taps)), seed + salt);
     }
     return sum / static_cast<float>(taps);
   }
@@ -32,26 +32,30 @@ Ground::Ground(const FrameScene& frame)
 
 std::optional<Ground::Hit> Ground::hit(const Vec3& origin, const Vec3& direction, float t_max) const {
   if (direction.z > -kLevel) return std::nullopt;
-  const float high_t = (kKerb_m - camera_z_m_ - origin.z) / direction.z, low_t = farthest(origin, direction);
+  const float high_t = (kCurb_m - camera_z_m_ - origin.z) / direction.z, low_t = farthest(origin, direction);
   if (high_t >= t_max) return std::nullopt;
   const auto locate = [&](float t) {
     const Vec3 p = origin + direction * t;
     return scene_->roads.locate(camera_x_m_ + static_cast<double>(p.x), camera_y_m_ + static_cast<double>(p.y));
   };
-  const auto at = [&](float t, const Vec3& normal, const RoadPosition& where, bool kerb) {
+  const auto at = [&](float t, const Vec3& normal, const RoadPosition& where, bool curb) {
     const Vec3 p = origin + direction * t;
-    return Hit{t, normal, where, {static_cast<float>(camera_x_m_) + p.x, static_cast<float>(camera_y_m_) + p.y, camera_z_m_ + p.z}, kerb};
+    return Hit{t,
+               normal,
+               where,
+               {static_cast<float>(camera_x_m_) + p.x, static_cast<float>(camera_y_m_) + p.y, camera_z_m_ + p.z},
+               curb};
   };
   const auto onRoad = [&](const RoadPosition& where) {
     return low_t < t_max ? std::optional(at(low_t, {0, 0, 1}, where, false)) : std::nullopt;
   };
   const auto low = locate(low_t);
-  // Too far from the kerb to have been beyond it one kerb higher.
+  // Too far from the curb to have been beyond it one curb higher.
   if (low.outside_m < -(low_t - high_t) * std::hypot(direction.x, direction.y)) return onRoad(low);
   const auto high = locate(high_t);
   if (high.outside_m >= 0) return at(high_t, {0, 0, 1}, high, false);
   if (low.outside_m <= 0) return onRoad(low);
-  // Between the two planes the ray runs into the face of the kerb.
+  // Between the two planes the ray runs into the face of the curb.
   float before = high_t, after = low_t, inside_m = high.outside_m, outside_m = low.outside_m;
   RoadPosition where = low;
   float t = after;
@@ -77,28 +81,35 @@ float Ground::asphalt(const Hit& hit, const View& view) const {
     const float from = 1 + 3 * unit(mix(bits)), to = from + 1.2F + 3.4F * unit(mix(bits + 1));
     const float u = s - column * length, v = d - row * width;
     const float patch = inside(u, from, to, view.along_road) * inside(v, 0.15F, width - 0.1F, view.across_road);
-    const float core = inside(u, from + 0.05F, to - 0.05F, view.along_road) * inside(v, 0.2F, width - 0.15F, view.across_road);
+    const float core =
+        inside(u, from + 0.05F, to - 0.05F, view.along_road) * inside(v, 0.2F, width - 0.15F, view.across_road);
     tone = lerp(tone, lerp(0.07F, (bits & 16U) != 0 ? 0.105F : 0.215F, core / std::fmax(patch, 1e-3F)), patch);
   }
   const float cracks = view.texture(x, y, 2.1F, 3, 0.5F, 40);
-  tone *= 1 - 0.55F * saturate(1 - std::abs(cracks) / (0.025F + 0.5F * view.width)) * saturate(0.06F / (0.01F + view.width));
+  tone *= 1 - 0.55F * saturate(1 - std::abs(cracks) / (0.025F + 0.5F * view.width)) *
+                  saturate(0.06F / (0.01F + view.width));
   const float lid_s = s - 23 * std::floor(s / 23) - 11,
               lid_d = hit.where.left_m - (hashOf(static_cast<int>(s / 23), 0, view.seed) % 2 == 0 ? 1.2F : -2.1F);
   const float lid = inside(std::hypot(lid_s, lid_d), -1, 0.34F, view.length);
-  tone = lerp(tone, 0.10F + 0.16F * pulses(lid_s, 0.11F, 0.05F, view.along_road) * pulses(lid_d + 9, 0.11F, 0.06F, view.across_road), lid);
+  tone = lerp(
+      tone,
+      0.10F + 0.16F * pulses(lid_s, 0.11F, 0.05F, view.along_road) * pulses(lid_d + 9, 0.11F, 0.06F, view.across_road),
+      lid);
   const float wear = view.texture(x, y, 3.7F, 4, 0.7F, 10), grain = view.texture(x, y, 0.22F, 5, 0.86F, 20);
   return tone * std::fmax(0.25F, 1 + 0.20F * wear + 0.50F * grain);
 }
 
 /// Coverage by lane paint.
 float Ground::paint(const Hit& hit, const View& view) const {
-  const Road& road = scene_->roads.roads()[static_cast<std::size_t>(hit.where.road)];
+  const Road& road = scene_->roads.roads()[hit.where.road];
   if (hit.where.next_outside_m < 1.0F) return 0;  // a junction
   float coverage = 0;
   for (const auto& line : road.lines) {
-    const auto centre = static_cast<float>(line.left_m), half = 0.5F * static_cast<float>(line.width_m);
-    const float across = inside(hit.where.left_m, centre - half, centre + half, view.across_road);
-    if (across > 0) coverage = std::fmax(coverage, across * (line.dashed ? pulses(hit.where.along_m, 9, 3.4F, view.along_road) : 1.0F));
+    const auto center = static_cast<float>(line.left_m), half = 0.5F * static_cast<float>(line.width_m);
+    const float across = inside(hit.where.left_m, center - half, center + half, view.across_road);
+    if (across > 0)
+      coverage =
+          std::fmax(coverage, across * (line.dashed ? pulses(hit.where.along_m, 9, 3.4F, view.along_road) : 1.0F));
   }
   if (coverage <= 0) return 0;
   const float worn = view.texture(hit.position_map.x, hit.position_map.y, 0.35F, 5, 0.8F, 30);
@@ -107,7 +118,7 @@ float Ground::paint(const Hit& hit, const View& view) const {
 
 float Ground::beside(const Hit& hit, const View& view) const {
   const float x = hit.position_map.x, y = hit.position_map.y;
-  if (hit.kerb_face || hit.where.outside_m < 0.16F) {
+  if (hit.curb_face || hit.where.outside_m < 0.16F) {
     const float joint = pulses(hit.where.along_m, 1, 0.02F, view.along_road);
     return 0.34F * (1 - 0.6F * joint) * (1 + 0.3F * view.texture(x, y, 0.5F, 5, 0.75F, 50));
   }
@@ -118,22 +129,27 @@ float Ground::beside(const Hit& hit, const View& view) const {
   const float size = 0.55F;
   const float column = std::floor(hit.where.along_m / size), row = std::floor(hit.where.outside_m / size);
   const float shade = unit(hashOf(static_cast<int>(column), static_cast<int>(row), view.seed + 70)) - 0.5F;
-  const float joint =
-      std::fmax(pulses(hit.where.along_m, size, 0.022F, view.along_road), pulses(hit.where.outside_m, size, 0.022F, view.across_road));
+  const float joint = std::fmax(pulses(hit.where.along_m, size, 0.022F, view.along_road),
+                                pulses(hit.where.outside_m, size, 0.022F, view.across_road));
   const float dirt = view.texture(x, y, 1.8F, 6, 0.74F, 80);
   return 0.27F * (1 + 0.5F * shade * visible(size, view.along_road) - 0.5F * joint) * (1 + 0.32F * dirt);
 }
 
 float Ground::reflectance(const Hit& hit, const Vec3& direction, float pixel) const {
   const float flat = std::hypot(direction.x, direction.y), width = hit.t * pixel;
-  View view{direction.x / flat, direction.y / flat, width * std::hypot(flat, direction.z) / std::fmax(-direction.z, 1e-3F), width, 0, 0,
+  View view{direction.x / flat,
+            direction.y / flat,
+            width * std::hypot(flat, direction.z) / std::fmax(-direction.z, 1e-3F),
+            width,
+            0,
+            0,
             scene_->seed * 101U};
-  if (hit.kerb_face) view.length = 2 * width;
+  if (hit.curb_face) view.length = 2 * width;
   const float cosine = std::abs(view.x * hit.where.along_x + view.y * hit.where.along_y),
               sine = std::sqrt(std::fmax(0.0F, 1 - cosine * cosine));
   view.along_road = view.length * cosine + width * sine;
   view.across_road = view.length * sine + width * cosine;
-  if (hit.kerb_face || hit.where.outside_m > 0) return beside(hit, view);
+  if (hit.curb_face || hit.where.outside_m > 0) return beside(hit, view);
   return lerp(asphalt(hit, view), 0.62F, paint(hit, view));
 }
 

@@ -6,10 +6,10 @@
 
 namespace motorcade::synth {
 
-/// Road, kerb and what lies beyond: asphalt at z = 0, everything off the roads one kerb higher.
+/// Road, curb and what lies beyond: asphalt at z = 0, everything off the roads one curb higher.
 class Ground {
  public:
-  static constexpr float kKerb_m = 0.12F;
+  static constexpr float kCurb_m = 0.12F;
 
   explicit Ground(const FrameScene& frame);
 
@@ -18,7 +18,7 @@ class Ground {
     Vec3 normal;
     RoadPosition where;
     Vec3 position_map;
-    bool kerb_face = false;
+    bool curb_face = false;
   };
   /// No ray meets the ground later than where it crosses the road's plane.
   float farthest(const Vec3& origin, const Vec3& direction) const {

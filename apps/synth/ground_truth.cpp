@@ -13,7 +13,8 @@ Eigen::Vector3d toDouble(const Vec3& v) { return {v.x, v.y, v.z}; }
 struct ImageBox {
   double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
   void include(const Eigen::Vector3d& p_cam, const StereoCamera& camera) {
-    const double u = camera.fx_px * p_cam.x() / p_cam.z() + camera.cx_px, v = camera.fy_px * p_cam.y() / p_cam.z() + camera.cy_px;
+    const double u = camera.fx_px * p_cam.x() / p_cam.z() + camera.cx_px,
+                 v = camera.fy_px * p_cam.y() / p_cam.z() + camera.cy_px;
     left = std::min(left, u);
     right = std::max(right, u);
     top = std::min(top, v);
@@ -65,19 +66,22 @@ double truncationOf(const Model& model, const SE3& T_cam_body, const StereoCamer
 struct Coverage {
   int visible = 0, alone = 0, visible_on_grid = 0;
 };
-Coverage coverageOf(const FrameScene& frame, const Placed& placed, const StereoCamera& camera, const Rendering& left, const Label& label) {
+Coverage coverageOf(const FrameScene& frame, const Placed& placed, const StereoCamera& camera, const Rendering& left,
+                    const Label& label) {
   const auto& R = frame.T_map_cam().rotation();
   const auto x0 = static_cast<int>(std::ceil(label.left_px)), x1 = static_cast<int>(std::floor(label.right_px));
   const auto y0 = static_cast<int>(std::ceil(label.top_px)), y1 = static_cast<int>(std::floor(label.bottom_px));
-  const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(std::max(0, x1 - x0)) * std::max(0, y1 - y0)) / 60));
+  const int step =
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(std::max(0, x1 - x0)) * std::max(0, y1 - y0)) / 60));
   Coverage count;
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x) {
-      const bool seen =
-          left.object[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) + static_cast<std::size_t>(x)] == placed.id;
+      const bool seen = left.object[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) +
+                                    static_cast<std::size_t>(x)] == placed.id;
       count.visible += seen ? 1 : 0;
       if ((x - x0) % step != 0 || (y - y0) % step != 0) continue;
-      const Eigen::Vector3d d = R * Eigen::Vector3d((x - camera.cx_px) / camera.fx_px, (y - camera.cy_px) / camera.fy_px, 1);
+      const Eigen::Vector3d d =
+          R * Eigen::Vector3d((x - camera.cx_px) / camera.fx_px, (y - camera.cy_px) / camera.fy_px, 1);
       const Vec3 direction{static_cast<float>(d.x()), static_cast<float>(d.y()), static_cast<float>(d.z())};
       if (!seen && !FrameScene::meets(placed, direction)) continue;
       ++count.alone;
@@ -86,8 +90,8 @@ Coverage coverageOf(const FrameScene& frame, const Placed& placed, const StereoC
   return count;
 }
 
-std::optional<Label> labelOf(const FrameScene& frame, const Placed& placed, const StereoCamera& camera, const Rendering& left,
-                             int min_pixels) {
+std::optional<Label> labelOf(const FrameScene& frame, const Placed& placed, const StereoCamera& camera,
+                             const Rendering& left, int min_pixels) {
   const SE3 T_cam_body = frame.T_map_cam().inverse() * placed.T_map_body;
   const Model& model = *placed.model;
   if (T_cam_body.translation().z() < -0.5 * model.length_m) return std::nullopt;
@@ -111,13 +115,15 @@ std::optional<Label> labelOf(const FrameScene& frame, const Placed& placed, cons
   label.location_cam = T_cam_body.translation();
   const Eigen::Vector3d ahead = T_cam_body.rotation().col(0);
   label.rotation_y_rad = std::atan2(-ahead.z(), ahead.x());
-  label.alpha_rad = std::remainder(label.rotation_y_rad - std::atan2(label.location_cam.x(), label.location_cam.z()), 2 * M_PI);
+  label.alpha_rad =
+      std::remainder(label.rotation_y_rad - std::atan2(label.location_cam.x(), label.location_cam.z()), 2 * M_PI);
   return label;
 }
 
 }  // namespace
 
-std::vector<Label> labelsOf(const FrameScene& frame, const StereoCamera& camera, const Rendering& left, int min_pixels) {
+std::vector<Label> labelsOf(const FrameScene& frame, const StereoCamera& camera, const Rendering& left,
+                            int min_pixels) {
   std::vector<Label> labels;
   for (const auto& placed : frame.placed())
     if (placed.id >= 0)
@@ -128,9 +134,10 @@ std::vector<Label> labelsOf(const FrameScene& frame, const StereoCamera& camera,
 
 std::string labelLine(int frame, const Label& l) {
   std::array<char, 400> text{};
-  std::snprintf(text.data(), text.size(), "%d %d %s %.2f %d %.6f %.2f %.2f %.2f %.2f %.4f %.4f %.4f %.6f %.6f %.6f %.6f", frame, l.id,
-                l.type.c_str(), l.truncated, l.occluded, l.alpha_rad, l.left_px, l.top_px, l.right_px, l.bottom_px, l.height_m, l.width_m,
-                l.length_m, l.location_cam.x(), l.location_cam.y(), l.location_cam.z(), l.rotation_y_rad);
+  std::snprintf(
+      text.data(), text.size(), "%d %d %s %.2f %d %.6f %.2f %.2f %.2f %.2f %.4f %.4f %.4f %.6f %.6f %.6f %.6f", frame,
+      l.id, l.type.c_str(), l.truncated, l.occluded, l.alpha_rad, l.left_px, l.top_px, l.right_px, l.bottom_px,
+      l.height_m, l.width_m, l.length_m, l.location_cam.x(), l.location_cam.y(), l.location_cam.z(), l.rotation_y_rad);
   return text.data();
 }
 

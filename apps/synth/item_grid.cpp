@@ -6,7 +6,8 @@ template <class Visit>
 void ItemGrid::forCells(const Covered& item, const Visit& visit) const {
   const int x0 = column(item.left), x1 = column(item.right), y1 = row(item.bottom);
   for (int y = row(item.top); y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x) visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x));
+    for (int x = x0; x <= x1; ++x)
+      visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x));
 }
 
 ItemGrid::ItemGrid(std::vector<Covered> items, const Area& area, float cell)
@@ -14,8 +15,9 @@ ItemGrid::ItemGrid(std::vector<Covered> items, const Area& area, float cell)
       per_unit_(1 / cell),
       columns_(std::max(1, static_cast<int>(std::ceil((area.right - area.left) / cell)))),
       rows_(std::max(1, static_cast<int>(std::ceil((area.bottom - area.top) / cell)))) {
-  std::erase_if(items,
-                [&](const Covered& i) { return i.right < area.left || i.left > area.right || i.bottom < area.top || i.top > area.bottom; });
+  std::erase_if(items, [&](const Covered& i) {
+    return i.right < area.left || i.left > area.right || i.bottom < area.top || i.top > area.bottom;
+  });
   std::stable_sort(items.begin(), items.end(), [](const Covered& a, const Covered& b) { return a.near < b.near; });
   std::vector<std::uint32_t> filled(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   for (const auto& item : items) forCells(item, [&](std::size_t c) { ++filled[c]; });

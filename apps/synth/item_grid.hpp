@@ -10,8 +10,8 @@
 
 namespace motorcade::synth {
 
-/// What an item covers of a family of rays that all cross one plane (from one eye, or side by side): a rectangle of the plane, and a range
-/// along the rays.
+/// What an item covers of a family of rays that all cross one plane (from one eye, or side by side): a rectangle of the
+/// plane, and a range along the rays.
 struct Covered {
   float left = 1e30F, top = 1e30F, right = -1e30F, bottom = -1e30F;
   float near = 1e30F, far = -1e30F;
@@ -27,8 +27,9 @@ struct Covered {
   }
 };
 
-/// Items by where they cover the plane of a family of rays: square cells with a list each, near items first, four tested at once. What no
-/// point of the plane between `lo` and `hi` meets shall be left out; points outside are served too, but slower.
+/// Items by where they cover the plane of a family of rays: square cells with a list each, near items first, four
+/// tested at once. What no point of the plane between `lo` and `hi` meets shall be left out; points outside are served
+/// too, but slower.
 class ItemGrid {
  public:
   struct Area {
@@ -36,11 +37,12 @@ class ItemGrid {
   };
   ItemGrid(std::vector<Covered> items, const Area& area, float cell);
 
-  /// Calls `visit(item, limit)` for the items that cover the ray through (x, y) between `from` and `limit`, near ones first.
-  /// `visit` returns the new limit; one below `from` ends the search.
+  /// Calls `visit(item, limit)` for the items that cover the ray through (x, y) between `from` and `limit`, near ones
+  /// first. `visit` returns the new limit; one below `from` ends the search.
   template <class Visit>
   void traverse(float x, float y, float from, float limit, const Visit& visit) const {
-    const std::size_t cell = static_cast<std::size_t>(row(y)) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column(x));
+    const std::size_t cell =
+        static_cast<std::size_t>(row(y)) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column(x));
     for (std::uint32_t g = first_[cell]; g < first_[cell + 1]; ++g) {
       const Group& group = groups_[g];
       if (group.near[0] >= limit) return;
@@ -67,8 +69,12 @@ class ItemGrid {
       return _mm_movemask_ps(_mm_and_ps(_mm_and_ps(across, down), _mm_cmpgt_ps(load(far), _mm_set1_ps(from))));
     }
   };
-  int column(float x) const { return static_cast<int>(std::clamp((x - area_.left) * per_unit_, 0.0F, static_cast<float>(columns_ - 1))); }
-  int row(float y) const { return static_cast<int>(std::clamp((y - area_.top) * per_unit_, 0.0F, static_cast<float>(rows_ - 1))); }
+  int column(float x) const {
+    return static_cast<int>(std::clamp((x - area_.left) * per_unit_, 0.0F, static_cast<float>(columns_ - 1)));
+  }
+  int row(float y) const {
+    return static_cast<int>(std::clamp((y - area_.top) * per_unit_, 0.0F, static_cast<float>(rows_ - 1)));
+  }
   template <class Visit>
   void forCells(const Covered& item, const Visit& visit) const;
 

@@ -48,12 +48,15 @@ template <int N>
   h ^= h >> 15;
   h *= 0x846ca68bU;
   h ^= h >> 16;
-  return __builtin_convertvector(reinterpret_cast<typename Lanes<N>::Int>(h >> 8), typename Lanes<N>::Float) * 0x1p-23F - 1.0F;
+  return __builtin_convertvector(reinterpret_cast<typename Lanes<N>::Int>(h >> 8), typename Lanes<N>::Float) *
+             0x1p-23F -
+         1.0F;
 }
 
 /// noise2 with another point and seed in each lane.
 template <int N>
-[[gnu::always_inline]] inline typename Lanes<N>::Float planeNoise(const Cell<N>& x, const Cell<N>& y, const typename Lanes<N>::Bits& seed) {
+[[gnu::always_inline]] inline typename Lanes<N>::Float planeNoise(const Cell<N>& x, const Cell<N>& y,
+                                                                  const typename Lanes<N>::Bits& seed) {
   const typename Lanes<N>::Bits x0 = x.cell * kX, y0 = y.cell * kY + seed * kSeed;
   return between(between(value<N>(x0 ^ y0), value<N>((x0 + kX) ^ y0), x.blend),
                  between(value<N>(x0 ^ (y0 + kY)), value<N>((x0 + kX) ^ (y0 + kY)), x.blend), y.blend);
@@ -64,7 +67,9 @@ struct Fractal {
   float spacing, gain, footprint;
   int octaves;
   std::uint32_t seed;
-  bool reaches(int octave) const { return octaves > octave && visible(spacing / static_cast<float>(1 << octave), footprint) > 0; }
+  bool reaches(int octave) const {
+    return octaves > octave && visible(spacing / static_cast<float>(1 << octave), footprint) > 0;
+  }
 };
 
 /// One octave in each lane.
@@ -103,13 +108,15 @@ struct Octaves {
 template <int N>
 [[gnu::noinline]] float sum2(const Fractal& f, float x, float y) {
   const Octaves<N> octaves(f);
-  return octaves.sum(planeNoise<N>(cellOf<N>(x * octaves.per_spacing), cellOf<N>(y * octaves.per_spacing), octaves.seed));
+  return octaves.sum(
+      planeNoise<N>(cellOf<N>(x * octaves.per_spacing), cellOf<N>(y * octaves.per_spacing), octaves.seed));
 }
 
 template <int N>
 [[gnu::noinline]] float sum3(const Fractal& f, float x, float y, float z) {
   const Octaves<N> octaves(f);
-  const Cell<N> cx = cellOf<N>(x * octaves.per_spacing), cy = cellOf<N>(y * octaves.per_spacing), cz = cellOf<N>(z * octaves.per_spacing);
+  const Cell<N> cx = cellOf<N>(x * octaves.per_spacing), cy = cellOf<N>(y * octaves.per_spacing),
+                cz = cellOf<N>(z * octaves.per_spacing);
   const typename Lanes<N>::Bits below = octaves.seed + cz.cell * kZ;
   return octaves.sum(between(planeNoise<N>(cx, cy, below), planeNoise<N>(cx, cy, below + kZ), cz.blend));
 }
@@ -134,10 +141,11 @@ float noise3(float x, float y, float z, std::uint32_t seed) {
   const auto bits = [](float whole) { return static_cast<std::uint32_t>(static_cast<int>(whole)); };
   const std::uint32_t x0 = bits(fx) * kX, y0 = bits(fy) * kY + (seed + bits(fz) * kZ) * kSeed, up = kZ * kSeed;
   const std::uint32_t x1 = x0 + kX, y1 = y0 + kY;
-  const Lanes<8>::Float v =
-      value<8>(Lanes<8>::Bits{x0, x1, x0, x1, x0, x1, x0, x1} ^ Lanes<8>::Bits{y0, y0, y1, y1, y0 + up, y0 + up, y1 + up, y1 + up});
+  const Lanes<8>::Float v = value<8>(Lanes<8>::Bits{x0, x1, x0, x1, x0, x1, x0, x1} ^
+                                     Lanes<8>::Bits{y0, y0, y1, y1, y0 + up, y0 + up, y1 + up, y1 + up});
   const float tx = fade(x - fx), ty = fade(y - fy), tz = fade(z - fz);
-  return lerp(lerp(lerp(v[0], v[1], tx), lerp(v[2], v[3], tx), ty), lerp(lerp(v[4], v[5], tx), lerp(v[6], v[7], tx), ty), tz);
+  return lerp(lerp(lerp(v[0], v[1], tx), lerp(v[2], v[3], tx), ty),
+              lerp(lerp(v[4], v[5], tx), lerp(v[6], v[7], tx), ty), tz);
 }
 
 float fractal2(float x, float y, float spacing, int octaves, float gain, float footprint, std::uint32_t seed) {

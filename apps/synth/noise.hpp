@@ -3,7 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
-/// Band-limited procedural signals. Each takes the footprint of the pixel on the surface [m] and leaves out what is finer.
+/// Band-limited procedural signals. Each takes the footprint of the pixel on the surface [m] and leaves out what is
+/// finer.
 namespace motorcade::synth {
 
 inline std::uint32_t mix(std::uint32_t x) {
@@ -14,7 +15,8 @@ inline std::uint32_t mix(std::uint32_t x) {
   return x ^ (x >> 16);
 }
 inline std::uint32_t hashOf(int x, int y, std::uint32_t seed) {
-  return mix(static_cast<std::uint32_t>(x) * 0x9e3779b1U ^ (static_cast<std::uint32_t>(y) * 0x85ebca77U + seed * 0xc2b2ae3dU));
+  return mix(static_cast<std::uint32_t>(x) * 0x9e3779b1U ^
+             (static_cast<std::uint32_t>(y) * 0x85ebca77U + seed * 0xc2b2ae3dU));
 }
 inline std::uint32_t hashOf(int x, int y, int z, std::uint32_t seed) {
   return hashOf(x, y, seed + static_cast<std::uint32_t>(z) * 0x27d4eb2fU);
@@ -39,10 +41,12 @@ float noise2(float x, float y, std::uint32_t seed);
 float noise3(float x, float y, float z, std::uint32_t seed);
 
 /// Weight of a lattice noise with `spacing`: none below 1.2 footprints, all above 2.4.
-inline float visible(float spacing, float footprint) { return saturate((spacing - 1.2F * footprint) / (1.2F * footprint + 1e-9F)); }
+inline float visible(float spacing, float footprint) {
+  return saturate((spacing - 1.2F * footprint) / (1.2F * footprint + 1e-9F));
+}
 
-/// Sum of `octaves` noises from `spacing` downwards, each half as wide and `gain` times as strong; octaves too fine for the footprint fade
-/// out.
+/// Sum of `octaves` noises from `spacing` downwards, each half as wide and `gain` times as strong; octaves too fine for
+/// the footprint fade out.
 float fractal2(float x, float y, float spacing, int octaves, float gain, float footprint, std::uint32_t seed);
 float fractal3(float x, float y, float z, float spacing, int octaves, float gain, float footprint, std::uint32_t seed);
 

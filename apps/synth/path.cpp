@@ -52,7 +52,8 @@ double Profile::integral(double to) const {
   return sum + knots_.back().value * std::max(0.0, to - knots_.back().at);
 }
 
-Path::Path(const Eigen::Vector2d& start, double heading_rad, const std::vector<Piece>& pieces, bool closed) : closed_(closed) {
+Path::Path(const Eigen::Vector2d& start, double heading_rad, const std::vector<Piece>& pieces, bool closed)
+    : closed_(closed) {
   for (const auto& piece : pieces) length_m_ += piece.length_m;
   const auto steps = static_cast<std::size_t>(std::ceil(length_m_ / kStep_m));
   step_m_ = length_m_ / static_cast<double>(steps);
@@ -71,9 +72,10 @@ Path::Path(const Eigen::Vector2d& start, double heading_rad, const std::vector<P
     samples_.push_back(point);
   }
   if (!closed_) return;
-  // Spread what the integration misses (micrometres) over the lap.
+  // Spread what the integration misses (micrometers) over the lap.
   const Eigen::Vector2d gap = samples_.front().position - samples_.back().position;
-  for (std::size_t i = 0; i <= steps; ++i) samples_[i].position += gap * (static_cast<double>(i) / static_cast<double>(steps));
+  for (std::size_t i = 0; i <= steps; ++i)
+    samples_[i].position += gap * (static_cast<double>(i) / static_cast<double>(steps));
 }
 
 Path::Point Path::at(double s_m) const {
@@ -87,10 +89,12 @@ Path::Point Path::at(double s_m) const {
   const Point &a = samples_[i], &b = samples_[i + 1];
   const double t = inside_m / step_m_ - static_cast<double>(i), h = step_m_;
   // Cubic Hermite in position and heading.
-  const double h00 = (1 + 2 * t) * (1 - t) * (1 - t), h10 = t * (1 - t) * (1 - t), h01 = t * t * (3 - 2 * t), h11 = t * t * (t - 1);
+  const double h00 = (1 + 2 * t) * (1 - t) * (1 - t), h10 = t * (1 - t) * (1 - t), h01 = t * t * (3 - 2 * t),
+               h11 = t * t * (t - 1);
   Point point;
   point.position = h00 * a.position + h10 * h * a.along() + h01 * b.position + h11 * h * b.along();
-  point.heading_rad = h00 * a.heading_rad + h10 * h * a.curvature_per_m + h01 * b.heading_rad + h11 * h * b.curvature_per_m;
+  point.heading_rad =
+      h00 * a.heading_rad + h10 * h * a.curvature_per_m + h01 * b.heading_rad + h11 * h * b.curvature_per_m;
   point.curvature_per_m = a.curvature_per_m + t * (b.curvature_per_m - a.curvature_per_m);
   point.heading_rad += turns * (samples_.back().heading_rad - samples_.front().heading_rad);
   point.position += (s_m - inside_m) * point.along();

@@ -12,7 +12,8 @@ class Profile {
   struct Knot {
     double at, value;
   };
-  Profile(double constant = 0) : knots_{{0, constant}} {}         // NOLINT(google-explicit-constructor): a constant is a profile
+  Profile(double constant = 0)
+      : knots_{{0, constant}} {}  // NOLINT(google-explicit-constructor): a constant is a profile
   Profile(std::vector<Knot> knots) : knots_(std::move(knots)) {}  // NOLINT(google-explicit-constructor)
 
   double operator()(double at) const;
@@ -24,8 +25,8 @@ class Profile {
   std::vector<Knot> knots_;
 };
 
-/// A smooth plane curve by arc length: straights and arcs whose curvature eases over a few metres. Straight beyond its ends
-/// unless closed, where it repeats.
+/// A smooth plane curve by arc length: straights and arcs whose curvature eases over a few meters. Straight beyond its
+/// ends unless closed, where it repeats.
 class Path {
  public:
   struct Piece {

@@ -15,7 +15,8 @@ Vec3 axisVector(int axis, float sign) {
 }
 
 /// Clips the ray against slabs and cuts; the last plane entered gives the normal.
-std::optional<SurfaceHit> intersectBlock(const Primitive& part, const Cut* cuts, const Vec3& o, const Vec3& d, float t_min, float t_max) {
+std::optional<SurfaceHit> intersectBlock(const Primitive& part, const Cut* cuts, const Vec3& o, const Vec3& d,
+                                         float t_min, float t_max) {
   float enter = -1e30F, leave = t_max;
   Vec3 normal;
   for (int axis = 0; axis < 3; ++axis) {
@@ -50,16 +51,18 @@ std::optional<SurfaceHit> intersectBlock(const Primitive& part, const Cut* cuts,
 /// A crown has holes between its twigs and leaves, more of them towards its rim.
 bool leafAt(const Vec3& p, const Vec3& unit_position, const Vec3& unit_direction, std::uint32_t seed) {
   const float facing = std::abs(dot(unit_position, unit_direction)) / norm(unit_direction);
-  const float fine = noise3(p.x * 7.3F, p.y * 7.3F, p.z * 7.3F, seed + 1), coarse = noise3(p.x * 2.7F, p.y * 2.7F, p.z * 2.7F, seed);
+  const float fine = noise3(p.x * 7.3F, p.y * 7.3F, p.z * 7.3F, seed + 1),
+              coarse = noise3(p.x * 2.7F, p.y * 2.7F, p.z * 2.7F, seed);
   return 0.8F * coarse + 0.8F * fine > 0.42F - 0.75F * facing;
 }
 
-std::optional<SurfaceHit> intersectEllipsoid(const Primitive& part, const Vec3& o, const Vec3& d, float t_min, float t_max) {
-  const Vec3 centre = (part.lo + part.hi) * 0.5F, radii = (part.hi - part.lo) * 0.5F;
+std::optional<SurfaceHit> intersectEllipsoid(const Primitive& part, const Vec3& o, const Vec3& d, float t_min,
+                                             float t_max) {
+  const Vec3 center = (part.lo + part.hi) * 0.5F, radii = (part.hi - part.lo) * 0.5F;
   const Vec3 scale{1 / radii.x, 1 / radii.y, 1 / radii.z};
-  const Vec3 so = (o - centre) * scale, sd = d * scale;
+  const Vec3 so = (o - center) * scale, sd = d * scale;
   const float a = dot(sd, sd), b = dot(so, sd);
-  // Distance of the centre from the ray first: b^2 - a c cancels badly for far spheres.
+  // Distance of the center from the ray first: b^2 - a c cancels badly for far spheres.
   const Vec3 nearest = so - sd * (b / a);
   const float rest = 1 - dot(nearest, nearest);
   if (rest < 0) return std::nullopt;
@@ -68,16 +71,17 @@ std::optional<SurfaceHit> intersectEllipsoid(const Primitive& part, const Vec3& 
     if (t <= t_min || t >= t_max) continue;
     const Vec3 p = o + d * t;
     if (part.material == Material::kLeaves && !leafAt(p, so + sd * t, sd, part.seed)) continue;
-    const Vec3 normal = normalized((p - centre) * scale * scale);
+    const Vec3 normal = normalized((p - center) * scale * scale);
     return SurfaceHit{t, dot(normal, d) > 0 ? normal * -1 : normal};
   }
   return std::nullopt;
 }
 
-std::optional<SurfaceHit> intersectCylinder(const Primitive& part, const Vec3& o, const Vec3& d, float t_min, float t_max) {
+std::optional<SurfaceHit> intersectCylinder(const Primitive& part, const Vec3& o, const Vec3& d, float t_min,
+                                            float t_max) {
   const int k = part.axis, i = (k + 1) % 3, j = (k + 2) % 3;
-  const Vec3 centre = (part.lo + part.hi) * 0.5F, radii = (part.hi - part.lo) * 0.5F;
-  const float oi = (o[i] - centre[i]) / radii[i], oj = (o[j] - centre[j]) / radii[j];
+  const Vec3 center = (part.lo + part.hi) * 0.5F, radii = (part.hi - part.lo) * 0.5F;
+  const float oi = (o[i] - center[i]) / radii[i], oj = (o[j] - center[j]) / radii[j];
   const float di = d[i] / radii[i], dj = d[j] / radii[j];
   const float a = std::max(di * di + dj * dj, 1e-20F), b = oi * di + oj * dj;
   const float ni = oi - di * (b / a), nj = oj - dj * (b / a);
@@ -99,10 +103,14 @@ std::optional<SurfaceHit> intersectCylinder(const Primitive& part, const Vec3& o
 
 /// Where three planes meet, if they do.
 std::optional<Vec3> corner(const Cut& a, const Cut& b, const Cut& c) {
-  const auto cross = [](const Vec3& u, const Vec3& v) { return Vec3{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x}; };
+  const auto cross = [](const Vec3& u, const Vec3& v) {
+    return Vec3{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+  };
   const float det = dot(a.normal, cross(b.normal, c.normal));
   if (std::abs(det) < 1e-5F) return std::nullopt;
-  return (cross(b.normal, c.normal) * a.offset + cross(c.normal, a.normal) * b.offset + cross(a.normal, b.normal) * c.offset) * (1 / det);
+  return (cross(b.normal, c.normal) * a.offset + cross(c.normal, a.normal) * b.offset +
+          cross(a.normal, b.normal) * c.offset) *
+         (1 / det);
 }
 
 std::vector<Vec3> blockCorners(const Primitive& part, const Cut* cuts) {
@@ -117,7 +125,8 @@ std::vector<Vec3> blockCorners(const Primitive& part, const Cut* cuts) {
       for (std::size_t k = j + 1; k < planes.size(); ++k) {
         const auto p = corner(planes[i], planes[j], planes[k]);
         if (!p) continue;
-        const bool outside = std::any_of(planes.begin(), planes.end(), [&](const Cut& c) { return dot(c.normal, *p) > c.offset + 1e-4F; });
+        const bool outside = std::any_of(planes.begin(), planes.end(),
+                                         [&](const Cut& c) { return dot(c.normal, *p) > c.offset + 1e-4F; });
         if (!outside) corners.push_back(*p);
       }
   return corners;
@@ -144,15 +153,17 @@ Primitive& Model::add(Material material, const Vec3& lo, const Vec3& hi, float t
   return parts.emplace_back(part);
 }
 
-Primitive& Model::addCylinder(Material material, int axis, const Vec3& lo, const Vec3& hi, float tone, std::uint32_t seed) {
+Primitive& Model::addCylinder(Material material, int axis, const Vec3& lo, const Vec3& hi, float tone,
+                              std::uint32_t seed) {
   Primitive& part = add(material, lo, hi, tone, seed);
   part.shape = Shape::kCylinder;
   part.axis = static_cast<std::uint8_t>(axis);
   return part;
 }
 
-Primitive& Model::addEllipsoid(Material material, const Vec3& centre, const Vec3& radii, float tone, std::uint32_t seed) {
-  Primitive& part = add(material, centre - radii, centre + radii, tone, seed);
+Primitive& Model::addEllipsoid(Material material, const Vec3& center, const Vec3& radii, float tone,
+                               std::uint32_t seed) {
+  Primitive& part = add(material, center - radii, center + radii, tone, seed);
   part.shape = Shape::kEllipsoid;
   return part;
 }
@@ -163,8 +174,8 @@ void Model::cutLast(const Vec3& normal, const Vec3& point) {
   ++parts.back().cuts;
 }
 
-std::optional<SurfaceHit> intersect(const Primitive& part, const Cut* cuts, const Vec3& origin, const Vec3& direction, float t_min,
-                                    float t_max) {
+std::optional<SurfaceHit> intersect(const Primitive& part, const Cut* cuts, const Vec3& origin, const Vec3& direction,
+                                    float t_min, float t_max) {
   switch (part.shape) {
     case Shape::kBlock:
       return intersectBlock(part, cuts, origin, direction, t_min, t_max);
@@ -179,12 +190,12 @@ std::optional<SurfaceHit> intersect(const Primitive& part, const Cut* cuts, cons
 std::vector<Vec3> hullPoints(const Primitive& part, const Cut* cuts) {
   if (part.shape == Shape::kBlock) return blockCorners(part, cuts);
   std::vector<Vec3> points;
-  const Vec3 centre = (part.lo + part.hi) * 0.5F, radii = (part.hi - part.lo) * 0.5F;
+  const Vec3 center = (part.lo + part.hi) * 0.5F, radii = (part.hi - part.lo) * 0.5F;
   const int k = part.axis, i = (k + 1) % 3, j = (k + 2) % 3;
   if (part.shape == Shape::kCylinder) {
     for (int n = 0; n < kCirclePoints; ++n)
       for (const float side : {-1.0F, 1.0F}) {
-        Vec3 p = centre;
+        Vec3 p = center;
         p[i] += circlePoint(n)[0] * radii[i];
         p[j] += circlePoint(n)[1] * radii[j];
         p[k] += side * radii[k];
@@ -195,7 +206,8 @@ std::vector<Vec3> hullPoints(const Primitive& part, const Cut* cuts) {
   for (int ring = 0; ring <= kCirclePoints / 2; ++ring)
     for (int n = 0; n < kCirclePoints; ++n) {
       const float latitude = std::numbers::pi_v<float> * 2 * static_cast<float>(ring) / kCirclePoints;
-      points.push_back(centre + radii * Vec3{circlePoint(n)[0] * std::sin(latitude), circlePoint(n)[1] * std::sin(latitude),
+      points.push_back(center + radii * Vec3{circlePoint(n)[0] * std::sin(latitude),
+                                             circlePoint(n)[1] * std::sin(latitude),
                                              std::cos(latitude) * circlePoint(0)[0]});
     }
   return points;

@@ -13,7 +13,7 @@ enum class Material : std::uint8_t {
   kPaint,
   kCabin,
   kGlass,
-  kTyre,
+  kTire,
   kPlastic,
   kChrome,
   kHeadLamp,
@@ -41,19 +41,19 @@ struct Cut {
   float offset = 0;
 };
 
-/// A solid inscribed in the box [lo, hi] of its model's frame: the box itself less its model's cuts [first_cut, first_cut + cuts),
-/// a capped elliptic cylinder along `axis`, or an ellipsoid.
+/// A solid inscribed in the box [lo, hi] of its model's frame: the box itself less its model's cuts [first_cut,
+/// first_cut + cuts), a capped elliptic cylinder along `axis`, or an ellipsoid.
 struct Primitive {
   Shape shape = Shape::kBlock;
   Material material = Material::kConcrete;
   std::uint8_t axis = 2, cuts = 0;
   std::uint16_t first_cut = 0;
   Vec3 lo, hi;
-  float tone = 0.5F;  // reflectance of its main colour
+  float tone = 0.5F;  // reflectance of its main color
   std::uint32_t seed = 0;
 };
 
-/// A rigid thing of several parts: x ahead, y left, z up, origin on the ground below its centre.
+/// A rigid thing of several parts: x ahead, y left, z up, origin on the ground below its center.
 struct Model {
   std::vector<Primitive> parts;
   std::vector<Cut> cuts;
@@ -61,8 +61,9 @@ struct Model {
   std::string kitti_type;  // as in KITTI's labels; empty for what is not a vehicle
 
   Primitive& add(Material material, const Vec3& lo, const Vec3& hi, float tone, std::uint32_t seed = 0);
-  Primitive& addCylinder(Material material, int axis, const Vec3& lo, const Vec3& hi, float tone, std::uint32_t seed = 0);
-  Primitive& addEllipsoid(Material material, const Vec3& centre, const Vec3& radii, float tone, std::uint32_t seed = 0);
+  Primitive& addCylinder(Material material, int axis, const Vec3& lo, const Vec3& hi, float tone,
+                         std::uint32_t seed = 0);
+  Primitive& addEllipsoid(Material material, const Vec3& center, const Vec3& radii, float tone, std::uint32_t seed = 0);
   /// Cuts the block that was added last by the plane through `point`; what `normal` points to goes away.
   void cutLast(const Vec3& normal, const Vec3& point);
 };
@@ -73,8 +74,8 @@ struct SurfaceHit {
 };
 
 /// First intersection of the ray with a part in (t_min, t_max), all in the model's frame.
-std::optional<SurfaceHit> intersect(const Primitive& part, const Cut* cuts, const Vec3& origin, const Vec3& direction, float t_min,
-                                    float t_max);
+std::optional<SurfaceHit> intersect(const Primitive& part, const Cut* cuts, const Vec3& origin, const Vec3& direction,
+                                    float t_min, float t_max);
 
 /// Points on the part whose convex hull holds it: tight for blocks, within 1 % of the radius for round parts.
 std::vector<Vec3> hullPoints(const Primitive& part, const Cut* cuts);

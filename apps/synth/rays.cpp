@@ -7,8 +7,10 @@ namespace {
 
 constexpr float kNear_m = 0.05F;  // nothing comes closer to the eye
 
-Vec3 cross(const Vec3& a, const Vec3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-Vec3 centreOf(const Primitive& part) { return (part.lo + part.hi) * 0.5F; }
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Vec3 centerOf(const Primitive& part) { return (part.lo + part.hi) * 0.5F; }
 Vec3 halfOf(const Primitive& part) { return (part.hi - part.lo) * 0.5F; }
 
 /// Names the face: which way the normal points, roughly.
@@ -17,8 +19,8 @@ std::uint32_t faceOf(const Vec3& n) {
   return step(n.x) + 5 * step(n.y) + 25 * step(n.z);
 }
 
-/// The numbers u for which the plane x = u z touches the ellipsoid with centre (x, z) and second moments xx, xz, zz, half their difference
-/// and their middle: (x - u z)^2 = xx - 2 u xz + u^2 zz.
+/// The numbers u for which the plane x = u z touches the ellipsoid with center (x, z) and second moments xx, xz, zz,
+/// half their difference and their middle: (x - u z)^2 = xx - 2 u xz + u^2 zz.
 struct Tangents {
   float middle, half;
 };
@@ -47,12 +49,15 @@ EyeRays::EyeRays(const FrameScene& frame, const StereoCamera& camera, Eye eye)
       pixel_x_(static_cast<float>(1 / camera.fx_px)),
       pixel_y_(static_cast<float>(1 / camera.fy_px)) {
   const auto& R = frame.T_map_cam().rotation();
-  const auto column = [&](int i) { return Vec3{static_cast<float>(R(0, i)), static_cast<float>(R(1, i)), static_cast<float>(R(2, i))}; };
+  const auto column = [&](int i) {
+    return Vec3{static_cast<float>(R(0, i)), static_cast<float>(R(1, i)), static_cast<float>(R(2, i))};
+  };
   right_ = column(0);
   down_ = column(1);
   ahead_ = column(2);
   if (eye == Eye::kRight) origin_ = right_ * static_cast<float>(camera.baseline_m);
-  for (const auto& placed : frame.placed()) origins_body_.push_back(placed.rotation.transposed(origin_ - placed.translation));
+  for (const auto& placed : frame.placed())
+    origins_body_.push_back(placed.rotation.transposed(origin_ - placed.translation));
   std::vector<Covered> all;
   for (std::uint32_t i = 0; i < frame.items().size(); ++i) {
     const Covered covered = coveredBy(i);
@@ -77,12 +82,15 @@ Covered EyeRays::coveredBy(std::uint32_t item) const {
 Covered EyeRays::coveredByBox(const Primitive& part, const Placed& placed) const {
   std::array<Vec3, 8> corners;
   for (unsigned i = 0; i < 8; ++i) {
-    const Vec3 p{(i & 1U) != 0 ? part.hi.x : part.lo.x, (i & 2U) != 0 ? part.hi.y : part.lo.y, (i & 4U) != 0 ? part.hi.z : part.lo.z};
+    const Vec3 p{(i & 1U) != 0 ? part.hi.x : part.lo.x, (i & 2U) != 0 ? part.hi.y : part.lo.y,
+                 (i & 4U) != 0 ? part.hi.z : part.lo.z};
     const Vec3 q = placed.rotation * p + placed.translation - origin_;
     corners[i] = {dot(q, right_), dot(q, down_), dot(q, ahead_)};
   }
   Covered covered;
-  const auto include = [&](const Vec3& p) { covered.include(p.x / (p.z * pixel_x_) + cx_px_, p.y / (p.z * pixel_y_) + cy_px_, p.z); };
+  const auto include = [&](const Vec3& p) {
+    covered.include(p.x / (p.z * pixel_x_) + cx_px_, p.y / (p.z * pixel_y_) + cy_px_, p.z);
+  };
   for (unsigned i = 0; i < 8; ++i) {
     if (corners[i].z >= kNear_m) include(corners[i]);
     for (const unsigned bit : {1U, 2U, 4U}) {
@@ -98,7 +106,7 @@ Covered EyeRays::coveredByBox(const Primitive& part, const Placed& placed) const
 }
 
 std::optional<Covered> EyeRays::coveredByEllipsoid(const Primitive& part, const Placed& placed) const {
-  const Vec3 q = placed.rotation * centreOf(part) + placed.translation - origin_, half = halfOf(part);
+  const Vec3 q = placed.rotation * centerOf(part) + placed.translation - origin_, half = halfOf(part);
   const auto axis = [&](const Vec3& a) { return placed.rotation.transposed(a) * half; };
   const Vec3 x = axis(right_), y = axis(down_), z = axis(ahead_);
   const float depth = dot(q, ahead_), reach = norm(z);
@@ -107,8 +115,8 @@ std::optional<Covered> EyeRays::coveredByEllipsoid(const Primitive& part, const 
                  down = tangents(dot(q, down_), depth, dot(y, y), dot(y, z), dot(z, z));
   Covered covered;
   for (const float side : {-1.0F, 1.0F})
-    covered.include((across.middle + side * across.half) / pixel_x_ + cx_px_, (down.middle + side * down.half) / pixel_y_ + cy_px_,
-                    depth + side * reach);
+    covered.include((across.middle + side * across.half) / pixel_x_ + cx_px_,
+                    (down.middle + side * down.half) / pixel_y_ + cy_px_, depth + side * reach);
   return covered;
 }
 
@@ -122,7 +130,8 @@ std::optional<RayHit> EyeRays::firstHit(float u_px, float v_px, const Vec3& dire
     const auto hit = intersect(part, placed.model->cuts.data(), o, d, 1e-3F, limit);
     if (!hit) return limit;
     const bool round = part.shape != Shape::kBlock;
-    best = RayHit{hit->t, &placed, &part, item * 128U + (round ? 0U : faceOf(hit->normal)), hit->normal, o + d * hit->t};
+    best =
+        RayHit{hit->t, &placed, &part, item * 128U + (round ? 0U : faceOf(hit->normal)), hit->normal, o + d * hit->t};
     return hit->t;
   });
   return best;
@@ -140,13 +149,14 @@ ParallelRays::ParallelRays(const FrameScene& frame, const Vec3& direction) : fra
     bounds.include(all.back().right, all.back().bottom, all.back().far);
   }
   constexpr float kCell_m = 1;
-  if (!all.empty()) grid_.emplace(std::move(all), ItemGrid::Area{bounds.left, bounds.top, bounds.right, bounds.bottom}, kCell_m);
+  if (!all.empty())
+    grid_.emplace(std::move(all), ItemGrid::Area{bounds.left, bounds.top, bounds.right, bounds.bottom}, kCell_m);
 }
 
 Covered ParallelRays::coveredBy(std::uint32_t item) const {
   const Placed& placed = frame_.placedOf(item);
   const Primitive& part = frame_.partOf(item);
-  const Vec3 centre = placed.rotation * centreOf(part) + placed.translation, half = halfOf(part);
+  const Vec3 center = placed.rotation * centerOf(part) + placed.translation, half = halfOf(part);
   const auto reach = [&](const Vec3& axis) {
     const Vec3 a = placed.rotation.transposed(axis) * half;
     return part.shape == Shape::kEllipsoid ? norm(a) : std::abs(a.x) + std::abs(a.y) + std::abs(a.z);
@@ -154,7 +164,7 @@ Covered ParallelRays::coveredBy(std::uint32_t item) const {
   const float x = reach(right_), y = reach(down_), z = reach(direction_);
   Covered covered;
   for (const float side : {-1.0F, 1.0F})
-    covered.include(dot(centre, right_) + side * x, dot(centre, down_) + side * y, dot(centre, direction_) + side * z);
+    covered.include(dot(center, right_) + side * x, dot(center, down_) + side * y, dot(center, direction_) + side * z);
   covered = widened(covered, 1e-3F);
   covered.item = item;
   return covered;

@@ -43,7 +43,8 @@ struct Sample {
   Exposure exposure;
 };
 
-constexpr std::uint32_t kSkySurface = 0xffffffffU, kRoadSurface = 0xfffffffeU, kKerbSurface = 0xfffffffdU, kBesideSurface = 0xfffffffcU;
+constexpr std::uint32_t kSkySurface = 0xffffffffU, kRoadSurface = 0xfffffffeU, kCurbSurface = 0xfffffffdU,
+                        kBesideSurface = 0xfffffffcU;
 
 /// Casts rays of one eye into one frame.
 class RayCaster {
@@ -56,23 +57,26 @@ class RayCaster {
         upwards_(frame, {0, 0, 1}),
         pixel_(static_cast<float>(1 / camera.fx_px)) {}
 
-  /// `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel. An exposure that is known already, from the
-  /// pixel and its neighbours, saves the rays towards the light.
+  /// `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel. An exposure that is known
+  /// already, from the pixel and its neighbors, saves the rays towards the light.
   Sample cast(float u_px, float v_px, float sharpness, const std::optional<Exposure>& known) const {
     const Vec3 d = rays_.direction(u_px, v_px);
     const float pixel = pixel_ / sharpness;
     const auto hit = rays_.firstHit(u_px, v_px, d, std::min(kFar_m, ground_.farthest(rays_.origin(), d)));
     const auto ground = ground_.hit(rays_.origin(), d, hit ? hit->t : kFar_m);
     if (ground) {
-      const std::uint32_t surface = ground->kerb_face ? kKerbSurface : ground->where.outside_m < 0 ? kRoadSurface : kBesideSurface;
+      const std::uint32_t surface = ground->curb_face             ? kCurbSurface
+                                    : ground->where.outside_m < 0 ? kRoadSurface
+                                                                  : kBesideSurface;
       const Exposure exposure = known ? *known : exposureOf(*ground, d);
       return {haze(shade(*ground, d, pixel, exposure), ground->t), ground->t, surface, -1, exposure};
     }
     if (hit) {
       const Vec3 normal = hit->placed->rotation * hit->normal_body;
-      const Exposure exposure = known ? *known : Exposure{sunny(rays_.origin() + d * hit->t + normal * 2e-3F, normal), false};
-      return {haze(shade(*hit, normal, d, pixel, exposure), hit->t), hit->t, hit->surface, static_cast<std::int16_t>(hit->placed->id),
-              exposure};
+      const Exposure exposure =
+          known ? *known : Exposure{sunny(rays_.origin() + d * hit->t + normal * 2e-3F, normal), false};
+      return {haze(shade(*hit, normal, d, pixel, exposure), hit->t), hit->t, hit->surface,
+              static_cast<std::int16_t>(hit->placed->id), exposure};
     }
     return {skyRadiance(normalized(d), pixel, frame_.scene().seed), 0, kSkySurface, -1, {}};
   }
@@ -82,8 +86,8 @@ class RayCaster {
     return dot(normal, frame_.scene().sun) > 0 && !to_sun_.occluded(position, 60);
   }
 
-  /// Under a car little of the sky is seen. The rays start on the ground itself, which is no obstacle, so that tyres shade where they
-  /// stand.
+  /// Under a car little of the sky is seen. The rays start on the ground itself, which is no obstacle, so that tires
+  /// shade where they stand.
   Exposure exposureOf(const Ground::Hit& hit, const Vec3& d) const {
     const Vec3 position = rays_.origin() + d * hit.t;
     const bool sun = sunny(position, hit.normal);
@@ -101,8 +105,12 @@ class RayCaster {
     const Vec3 view = normalized(d);
     const float slant = std::fmax(0.15F, std::abs(dot(normal, view)));
     // Geometric mean of the footprint's two sides; steep views are supersampled anyway.
-    const SurfacePoint point{
-        hit.part, placed.model.get(), hit.position_body, hit.normal_body, hit.t * pixel / std::sqrt(slant), placed.wheel_angle_rad};
+    const SurfacePoint point{hit.part,
+                             placed.model.get(),
+                             hit.position_body,
+                             hit.normal_body,
+                             hit.t * pixel / std::sqrt(slant),
+                             placed.wheel_angle_rad};
     const Reflectance r = reflectanceOf(point);
     float light = r.diffuse * lit(normal, exposure) + r.glow;
     if (r.mirror > 0) {
@@ -129,8 +137,8 @@ class RayCaster {
 /// Gray level of linear light: a camera's square-root-like response.
 float response(float light) { return 255 * std::sqrt(saturate(light * 0.98F)); }
 
-/// Rays in a pixel besides the one through its centre: point symmetric, so that no pixel leans to a side. The first two serve alone where
-/// only the texture changes.
+/// Rays in a pixel besides the one through its center: point symmetric, so that no pixel leans to a side. The first two
+/// serve alone where only the texture changes.
 constexpr std::array<std::array<float, 2>, 4> kSpread{{{-0.4F, -0.2F}, {0.4F, 0.2F}, {-0.2F, 0.4F}, {0.2F, -0.4F}}};
 
 /// Sum of four uniform numbers: near enough to a Gaussian.
@@ -161,31 +169,32 @@ Sensor sensorOf(const FrameScene& frame, Eye eye, const RenderOptions& options) 
   return {different ? 1.02F : 1.0F, different ? -1.5F : 0.0F, options.noise_levels, seed};
 }
 
-/// What a pixel needs besides the ray through its centre.
+/// What a pixel needs besides the ray through its center.
 struct Refinement {
   std::size_t rays = 0;
-  std::optional<Exposure> exposure;  // where the neighbours have it too
+  std::optional<Exposure> exposure;  // where the neighbors have it too
 };
 
-/// Compares a pixel with its neighbours: most rays where the surface or its shadow changes, some where the light does.
+/// Compares a pixel with its neighbors: most rays where the surface or its shadow changes, some where the light does.
 Refinement refinementOf(const std::vector<Sample>& samples, int width, int height, int x, int y) {
-  constexpr float kContrast = 11, kGroundContrast = 30;  // the ground's grain is filtered already: only shadows and paint count
+  constexpr float kContrast = 11,
+                  kGroundContrast = 30;  // the ground's grain is filtered already: only shadows and paint count
   const auto at = [&](int i, int j) -> const Sample& {
     return samples[static_cast<std::size_t>(std::clamp(j, 0, height - 1)) * static_cast<std::size_t>(width) +
                    static_cast<std::size_t>(std::clamp(i, 0, width - 1))];
   };
-  const Sample& centre = at(x, y);
-  const bool ground = centre.surface == kRoadSurface || centre.surface == kBesideSurface;
-  const float level = response(centre.light), contrast = ground ? kGroundContrast : kContrast;
+  const Sample& center = at(x, y);
+  const bool ground = center.surface == kRoadSurface || center.surface == kBesideSurface;
+  const float level = response(center.light), contrast = ground ? kGroundContrast : kContrast;
   bool same_surface = true, same_exposure = true, same_light = true;
   for (const auto [dx, dy] : {std::array{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
     const Sample& other = at(x + dx, y + dy);
-    same_surface = same_surface && other.surface == centre.surface;
-    same_exposure = same_exposure && other.exposure == centre.exposure;
+    same_surface = same_surface && other.surface == center.surface;
+    same_exposure = same_exposure && other.exposure == center.exposure;
     same_light = same_light && std::abs(response(other.light) - level) <= contrast;
   }
   Refinement refinement;
-  if (same_exposure) refinement.exposure = centre.exposure;
+  if (same_exposure) refinement.exposure = center.exposure;
   if (!same_surface || (!same_light && (ground || !same_exposure)))
     refinement.rays = kSpread.size();
   else if (!same_light)
@@ -194,13 +203,14 @@ Refinement refinementOf(const std::vector<Sample>& samples, int width, int heigh
 }
 
 /// Mean light of a pixel, by the rays through it.
-float lightOf(const RayCaster& caster, const Sample& centre, const Refinement& refinement, int x, int y) {
+float lightOf(const RayCaster& caster, const Sample& center, const Refinement& refinement, int x, int y) {
   const auto rays = static_cast<float>(refinement.rays + 1);
-  float light = saturate(centre.light);
+  float light = saturate(center.light);
   for (std::size_t i = 0; i < refinement.rays; ++i) {
     const auto [du, dv] = kSpread[i];
-    light +=
-        saturate(caster.cast(static_cast<float>(x) + du, static_cast<float>(y) + dv, rays > 3 ? 1.6F : 1.3F, refinement.exposure).light);
+    light += saturate(
+        caster.cast(static_cast<float>(x) + du, static_cast<float>(y) + dv, rays > 3 ? 1.6F : 1.3F, refinement.exposure)
+            .light);
   }
   return light / rays;
 }
@@ -215,17 +225,19 @@ Rendering render(const FrameScene& frame, const StereoCamera& camera, Eye eye, c
   const RayCaster caster(frame, camera, eye);
   std::vector<Sample> samples(index(0, height));
   parallelRows(height, options.threads, [&](int y) {
-    for (int x = 0; x < width; ++x) samples[index(x, y)] = caster.cast(static_cast<float>(x), static_cast<float>(y), 1, {});
+    for (int x = 0; x < width; ++x)
+      samples[index(x, y)] = caster.cast(static_cast<float>(x), static_cast<float>(y), 1, {});
   });
-  Rendering out{ImagePool().acquire(width, height), std::vector<float>(samples.size()), std::vector<std::int16_t>(samples.size())};
+  Rendering out{ImagePool().acquire(width, height), std::vector<float>(samples.size()),
+                std::vector<std::int16_t>(samples.size())};
   const Sensor sensor = sensorOf(frame, eye, options);
   parallelRows(height, options.threads, [&](int y) {
     for (int x = 0; x < width; ++x) {
-      const Sample& centre = samples[index(x, y)];
-      const float light = lightOf(caster, centre, refinementOf(samples, width, height, x, y), x, y);
+      const Sample& center = samples[index(x, y)];
+      const float light = lightOf(caster, center, refinementOf(samples, width, height, x, y), x, y);
       out.image.mutableRow(y)[x] = sensor.read(response(light), x, y);
-      out.depth_m[index(x, y)] = centre.depth_m;
-      out.object[index(x, y)] = centre.object;
+      out.depth_m[index(x, y)] = center.depth_m;
+      out.object[index(x, y)] = center.object;
     }
   });
   return out;
@@ -233,8 +245,13 @@ Rendering render(const FrameScene& frame, const StereoCamera& camera, Eye eye, c
 
 StereoCamera kittiCamera(int width_px, int height_px) {
   const double scale = width_px / 1242.0;
-  return {721.5377 * scale, 721.5377 * scale, (609.5593 + 0.5) * scale - 0.5, (172.854 + 0.5) * height_px / 375.0 - 0.5, 0.5371657,
-          width_px,         height_px};
+  return {721.5377 * scale,
+          721.5377 * scale,
+          (609.5593 + 0.5) * scale - 0.5,
+          (172.854 + 0.5) * height_px / 375.0 - 0.5,
+          0.5371657,
+          width_px,
+          height_px};
 }
 
 }  // namespace motorcade::synth

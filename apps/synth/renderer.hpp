@@ -10,7 +10,7 @@
 
 namespace motorcade::synth {
 
-/// An eye's picture, and what lies exactly behind the centre of each pixel.
+/// An eye's picture, and what lies exactly behind the center of each pixel.
 struct Rendering {
   Image image;
   std::vector<float> depth_m;        // 0 for the sky

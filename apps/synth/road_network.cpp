@@ -14,12 +14,13 @@ struct Foot {
 };
 
 /// The foot on the circle that osculates the path at a sample, moved on to the sample that is nearest to it.
-Foot footOnPath(const Path& path, double step_m, int sample, const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& along) {
+Foot footOnPath(const Path& path, double step_m, int sample, const Eigen::Vector2d& p,
+                const std::vector<Eigen::Vector2d>& along) {
   Foot foot{0, 0, sample};
   const int last = static_cast<int>(path.samples().size()) - 1;
   for (int i = 0; i < 8; ++i) {
-    const auto& point = path.samples()[static_cast<std::size_t>(foot.sample)];
-    const Eigen::Vector2d& direction = along[static_cast<std::size_t>(foot.sample)];
+    const auto& point = path.samples()[foot.sample];
+    const Eigen::Vector2d& direction = along[foot.sample];
     const Eigen::Vector2d offset = p - point.position;
     const double ahead = offset.dot(direction), left = direction.x() * offset.y() - direction.y() * offset.x();
     foot.s_m = ahead;
@@ -56,15 +57,18 @@ RoadNetwork::RoadNetwork(std::vector<Road> roads) : roads_(std::move(roads)), al
   const int reach = static_cast<int>(kReach_m / kCell_m);
   for (int r = 0; r < static_cast<int>(roads_.size()); ++r) {
     std::fill(nearest.begin(), nearest.end(), std::numeric_limits<double>::max());
-    const auto& samples = roads_[static_cast<std::size_t>(r)].path->samples();
-    for (const auto& point : samples) along_[static_cast<std::size_t>(r)].push_back(point.along());
+    const auto& samples = roads_[r].path->samples();
+    for (const auto& point : samples) along_[r].push_back(point.along());
     for (int i = 0; i < static_cast<int>(samples.size()); i += 2) {
-      const Eigen::Vector2d& p = samples[static_cast<std::size_t>(i)].position;
-      const int column = static_cast<int>((p.x() - origin_x_m_) / kCell_m), row = static_cast<int>((p.y() - origin_y_m_) / kCell_m);
+      const Eigen::Vector2d& p = samples[i].position;
+      const int column = static_cast<int>((p.x() - origin_x_m_) / kCell_m),
+                row = static_cast<int>((p.y() - origin_y_m_) / kCell_m);
       for (int y = std::max(0, row - reach); y <= std::min(rows_ - 1, row + reach); ++y)
         for (int x = std::max(0, column - reach); x <= std::min(columns_ - 1, column + reach); ++x) {
-          const auto index = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
-          const double d2 = (p - Eigen::Vector2d(origin_x_m_ + (x + 0.5) * kCell_m, origin_y_m_ + (y + 0.5) * kCell_m)).squaredNorm();
+          const auto index =
+              static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
+          const double d2 =
+              (p - Eigen::Vector2d(origin_x_m_ + (x + 0.5) * kCell_m, origin_y_m_ + (y + 0.5) * kCell_m)).squaredNorm();
           if (d2 >= nearest[index]) continue;
           if (nearest[index] == std::numeric_limits<double>::max()) cells_[index].push_back({r, i});
           cells_[index].back().sample = i;
@@ -82,17 +86,18 @@ RoadPosition RoadNetwork::locate(double x_m, double y_m) const {
   const Eigen::Vector2d p(x_m, y_m);
   for (const auto& candidate :
        cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)]) {
-    const Road& road = roads_[static_cast<std::size_t>(candidate.road)];
+    const Road& road = roads_[candidate.road];
     const double step = road.path->length_m() / static_cast<double>(road.path->samples().size() - 1);
-    const auto& along = along_[static_cast<std::size_t>(candidate.road)];
+    const auto& along = along_[candidate.road];
     const Foot foot = footOnPath(*road.path, step, candidate.sample, p, along);
-    const double past = road.path->closed() ? -1e9 : std::max(-foot.s_m, foot.s_m - road.path->length_m());  // beyond an end
+    const double past =
+        road.path->closed() ? -1e9 : std::max(-foot.s_m, foot.s_m - road.path->length_m());  // beyond an end
     const auto outside = static_cast<float>(std::max(std::abs(foot.left_m) - road.half_width_m, past));
     if (outside >= best.outside_m) {
       best.next_outside_m = std::min(best.next_outside_m, outside);
       continue;
     }
-    const Eigen::Vector2d& direction = along[static_cast<std::size_t>(foot.sample)];
+    const Eigen::Vector2d& direction = along[foot.sample];
     best = {candidate.road, static_cast<float>(foot.s_m),      static_cast<float>(foot.left_m),  outside,
             best.outside_m, static_cast<float>(direction.x()), static_cast<float>(direction.y())};
   }

@@ -22,8 +22,8 @@ struct Road {
 struct RoadPosition {
   int road = -1;                   // the road it is deepest inside of or nearest to; -1 far from all
   float along_m = 0;               // arc length on that road
-  float left_m = 0;                // offset from its centre line
-  float outside_m = 1e3F;          // signed distance from the kerb: negative on the asphalt
+  float left_m = 0;                // offset from its center line
+  float outside_m = 1e3F;          // signed distance from the curb: negative on the asphalt
   float next_outside_m = 1e3F;     // the same for the second nearest road
   float along_x = 1, along_y = 0;  // direction of the road
 };
@@ -41,7 +41,7 @@ class RoadNetwork {
   struct Candidate {
     int road, sample;
   };
-  static constexpr double kCell_m = 4, kReach_m = 36;  // reach: how far from a road's centre line positions are known
+  static constexpr double kCell_m = 4, kReach_m = 36;  // reach: how far from a road's center line positions are known
 
   std::vector<Road> roads_;
   std::vector<std::vector<Eigen::Vector2d>> along_;  // direction at each sample of each road's path

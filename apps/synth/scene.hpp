@@ -33,7 +33,7 @@ struct Scene {
   int frames = 60;
   double frame_s = 0.1;
   int lap_frames = 0;             // the scene repeats after this many frames; 0: never
-  bool meadow = false;            // grass beyond the kerb instead of paving
+  bool meadow = false;            // grass beyond the curb instead of paving
   Vec3 sun{0.45F, 0.35F, 0.82F};  // unit vector towards the sun
   RoadNetwork roads;
   std::vector<Fixture> fixtures;

@@ -17,28 +17,31 @@ double vary(Random& random, double mean, double share) { return mean * (1 + shar
 SceneBuilder::SceneBuilder(std::string name, std::uint32_t seed) : random(mix(seed * 7919U + 13U)) {
   scene.name = std::move(name);
   scene.seed = seed;
-  const float height = random.uniform(0.70F, 0.95F), azimuth = random.uniform(0.5F, 2.6F) * (random.chance(0.5F) ? 1.0F : -1.0F);
+  const float height = random.uniform(0.70F, 0.95F),
+              azimuth = random.uniform(0.5F, 2.6F) * (random.chance(0.5F) ? 1.0F : -1.0F);
   scene.sun = {std::cos(height) * std::cos(azimuth), std::cos(height) * std::sin(azimuth), std::sin(height)};
 }
 
 void SceneBuilder::addMover(VehicleKind kind, Trajectory trajectory) {
-  scene.movers.push_back({std::make_shared<const Model>(makeVehicle(kind, random.bits())), std::move(trajectory), next_id_++});
+  scene.movers.push_back(
+      {std::make_shared<const Model>(makeVehicle(kind, random.bits())), std::move(trajectory), next_id_++});
 }
 
 void SceneBuilder::addParked(VehicleKind kind, int road, double along_m, double left_m, bool backwards) {
-  const auto point = scene.roads.roads()[static_cast<std::size_t>(road)].path->at(along_m);
+  const auto point = scene.roads.roads()[road].path->at(along_m);
   const Eigen::Vector2d p = point.position + left_m * point.left();
   const double heading = point.heading_rad + (backwards ? std::numbers::pi : 0) + random.uniform(-0.02F, 0.02F);
-  scene.fixtures.push_back(
-      {std::make_shared<const Model>(makeVehicle(kind, random.bits())), SE3(expSO3({0, 0, heading}), {p.x(), p.y(), 0}), next_id_++});
+  scene.fixtures.push_back({std::make_shared<const Model>(makeVehicle(kind, random.bits())),
+                            SE3(expSO3({0, 0, heading}), {p.x(), p.y(), 0}), next_id_++});
 }
 
 void SceneBuilder::place(Model model, int road, double along_m, double left_m, double turn_rad, double margin_m) {
-  const auto point = scene.roads.roads()[static_cast<std::size_t>(road)].path->at(along_m);
+  const auto point = scene.roads.roads()[road].path->at(along_m);
   const Eigen::Vector2d p = point.position + left_m * point.left();
   Vec3 reach;
   for (const auto& part : model.parts) reach = max(reach, max(part.hi, part.lo * -1));
-  // Large things: corners and middles of the footprint stay off all roads. Crowns of trees and arms of lamps may hang over.
+  // Large things: corners and middles of the footprint stay off all roads. Crowns of trees and arms of lamps may hang
+  // over.
   const double heading = point.heading_rad + turn_rad, c = std::cos(heading), s = std::sin(heading);
   for (const double x : {-1.0, -0.5, 0.0, 0.5, 1.0})
     for (const double y : {-1.0, 0.0, 1.0}) {
@@ -46,11 +49,12 @@ void SceneBuilder::place(Model model, int road, double along_m, double left_m, d
       const auto where = scene.roads.locate(p.x() + c * dx - s * dy, p.y() + s * dx + c * dy);
       if (where.road >= 0 && where.outside_m < margin_m) return;
     }
-  scene.fixtures.push_back({std::make_shared<const Model>(std::move(model)), SE3(expSO3({0, 0, heading}), {p.x(), p.y(), 0})});
+  scene.fixtures.push_back(
+      {std::make_shared<const Model>(std::move(model)), SE3(expSO3({0, 0, heading}), {p.x(), p.y(), 0})});
 }
 
 void SceneBuilder::placeWall(int road, const Dressing& d, double side) {
-  const double half = scene.roads.roads()[static_cast<std::size_t>(road)].half_width_m;
+  const double half = scene.roads.roads()[road].half_width_m;
   for (double s = d.from_m; s < d.to_m;) {
     const float length = random.uniform(9, 19);
     const double middle = s + 0.5 * length;
@@ -60,12 +64,14 @@ void SceneBuilder::placeWall(int road, const Dressing& d, double side) {
       const double setback = random.uniform(0, 2.5F);
       place(makeBuilding(length - 0.4F, depth, height, random.bits()), road, middle,
             side * (half + d.clear_m + setback + 0.5 * depth + 0.9), 0, 2.5);
-      if (setback > 1 && random.chance(0.6F)) place(makeFence(length - 2, random.bits()), road, middle, side * (half + d.clear_m), 0, 1.5);
+      if (setback > 1 && random.chance(0.6F))
+        place(makeFence(length - 2, random.bits()), road, middle, side * (half + d.clear_m), 0, 1.5);
     } else if (random.chance(0.5F)) {
-      place(makeHedge(length - 0.5F, random.uniform(1.2F, 2.6F), random.bits()), road, middle, side * (half + d.clear_m + 0.6), 0, 1.5);
+      place(makeHedge(length - 0.5F, random.uniform(1.2F, 2.6F), random.bits()), road, middle,
+            side * (half + d.clear_m + 0.6), 0, 1.5);
       for (const double back : {5.0, 9.0})
-        place(makeTree(random.uniform(6, 10), random.bits()), road, middle + random.uniform(-4, 4), side * (half + d.clear_m + back), 0,
-              1.9);
+        place(makeTree(random.uniform(6, 10), random.bits()), road, middle + random.uniform(-4, 4),
+              side * (half + d.clear_m + back), 0, 1.9);
     } else {
       place(makeFence(length - 1, random.bits()), road, middle, side * (half + d.clear_m + 0.3), 0, 1.5);
       place(makeBush(length - 3, random.bits()), road, middle, side * (half + d.clear_m + 2.2), 0, 1.5);
@@ -76,25 +82,31 @@ void SceneBuilder::placeWall(int road, const Dressing& d, double side) {
 }
 
 void SceneBuilder::placePavement(int road, const Dressing& d, double side) {
-  const double half = scene.roads.roads()[static_cast<std::size_t>(road)].half_width_m;
+  const double half = scene.roads.roads()[road].half_width_m;
   for (double s = d.from_m + random.uniform(0, 6); s < d.to_m; s += random.uniform(7, 13)) {
     if (d.trees && random.chance(0.6F))
-      place(makeTree(random.uniform(5.5F, 8.5F), random.bits()), road, s, side * (half + 1.1), random.uniform(0, 6), 0.4);
-    if (random.chance(0.35F)) place(makeTrafficSign(random.bits()), road, s + 2.5, side * (half + 0.7), side < 0 ? 0.15 : 3.3, 0.3);
+      place(makeTree(random.uniform(5.5F, 8.5F), random.bits()), road, s, side * (half + 1.1), random.uniform(0, 6),
+            0.4);
+    if (random.chance(0.35F))
+      place(makeTrafficSign(random.bits()), road, s + 2.5, side * (half + 0.7), side < 0 ? 0.15 : 3.3, 0.3);
     if (!d.rural && random.chance(0.7F))
-      place(makeStreetClutter(random.bits()), road, s + 4, side * (half + d.clear_m - 0.9), random.uniform(-0.2F, 0.2F), 0.5);
+      place(makeStreetClutter(random.bits()), road, s + 4, side * (half + d.clear_m - 0.9), random.uniform(-0.2F, 0.2F),
+            0.5);
   }
   for (double s = d.from_m + 11; s < d.to_m; s += 28)
-    place(makeLampPost(random.bits()), road, s + (side > 0 ? 14 : 0), side * (half + 0.6), side < 0 ? std::numbers::pi : 0, 0.3);
+    place(makeLampPost(random.bits()), road, s + (side > 0 ? 14 : 0), side * (half + 0.6),
+          side < 0 ? std::numbers::pi : 0, 0.3);
   if (d.rural)
-    for (double s = d.from_m; s < d.to_m; s += 12) place(makeGuardRail(12, random.bits()), road, s + 6, side * (half + 0.6), 0, 0.3);
+    for (double s = d.from_m; s < d.to_m; s += 12)
+      place(makeGuardRail(12, random.bits()), road, s + 6, side * (half + 0.6), 0, 0.3);
   for (double s = d.from_m + 4; s < d.to_m; s += 7) {
     if (!random.chance(static_cast<float>(d.parked_share))) continue;
     const double left = side * (half - 1.05), along = s + random.uniform(-0.8F, 0.8F);
-    const auto point = scene.roads.roads()[static_cast<std::size_t>(road)].path->at(along);
+    const auto point = scene.roads.roads()[road].path->at(along);
     const Eigen::Vector2d p = point.position + left * point.left();
     const auto where = scene.roads.locate(p.x(), p.y());
-    if (where.next_outside_m < 7 || std::abs(point.curvature_per_m) > 0.02) continue;  // not in a junction or a tight bend
+    if (where.next_outside_m < 7 || std::abs(point.curvature_per_m) > 0.02)
+      continue;  // not in a junction or a tight bend
     addParked(random.chance(0.15F) ? VehicleKind::kVan : VehicleKind::kCar, road, along, left, side > 0);
   }
 }

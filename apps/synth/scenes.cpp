@@ -50,9 +50,10 @@ void buildOvertake(SceneBuilder& b) {
   b.setRoads({oneWay(path, 3, 2.3)});
   const double v = vary(b.random, 11, 0.04), start = 60;
   b.setEgo(drive(path, start, v, 0));
-  b.addMover(VehicleKind::kCar, drive(path, start - 0.5 + b.random.uniform(-0.5F, 0.5F), Profile({{0, v + 5.5}, {2.8, v + 7.5}}), kLane_m));
-  b.addMover(VehicleKind::kCar,
-             drive(path, start - 4.5 + b.random.uniform(-0.5F, 0.5F), Profile({{0, v + 7.5}, {2.8, v + 8.5}}), -kLane_m));
+  b.addMover(VehicleKind::kCar, drive(path, start - 0.5 + b.random.uniform(-0.5F, 0.5F),
+                                      Profile({{0, v + 5.5}, {2.8, v + 7.5}}), kLane_m));
+  b.addMover(VehicleKind::kCar, drive(path, start - 4.5 + b.random.uniform(-0.5F, 0.5F),
+                                      Profile({{0, v + 7.5}, {2.8, v + 8.5}}), -kLane_m));
   b.dress(0, {.from_m = 20, .to_m = 240, .parked_share = 0.35});
 }
 
@@ -84,8 +85,10 @@ void buildHighway(SceneBuilder& b) {
     const double jitter = b.random.uniform(-1, 1);
     Profile left(car.lane * kLane_m);
     if (car.ahead_m == 38) left = Profile({{150, 0}, {230, kLane_m}});  // changes lane
-    b.addMover(car.kind, drive(path, start + car.ahead_m + jitter,
-                               Profile({{0, v + car.speed_change}, {12, v + car.late_change}, {21, v + car.speed_change}}), left));
+    b.addMover(
+        car.kind,
+        drive(path, start + car.ahead_m + jitter,
+              Profile({{0, v + car.speed_change}, {12, v + car.late_change}, {21, v + car.speed_change}}), left));
   }
   b.dress(0, {.from_m = 0, .to_m = 900, .clear_m = 5, .rural = true});
 }
@@ -101,7 +104,8 @@ void buildUrban(SceneBuilder& b) {
   const auto turn = makePath(-60, -1.75, 0, {{straight_m, 0}, {arc_m, 0.5 * std::numbers::pi}, {200, 0}});
   const double v = vary(b.random, 9, 0.03);
   b.setEgo(drive(turn, 60, Profile({{0, v}, {2, v}, {5, 6.4}, {7.5, 6.4}, {10, v}}), 0));
-  b.addMover(VehicleKind::kCar, drive(turn, 60 + 15, Profile({{0, v + 0.4}, {1.2, v + 0.4}, {4, 6.8}, {6.5, 6.8}, {9, v + 1}}), 0));
+  b.addMover(VehicleKind::kCar,
+             drive(turn, 60 + 15, Profile({{0, v + 0.4}, {1.2, v + 0.4}, {4, 6.8}, {6.5, 6.8}, {9, v + 1}}), 0));
   b.addMover(VehicleKind::kCar, drive(main_street, 60 + 62, vary(b.random, 10, 0.05), 1.75, true));
   b.addMover(VehicleKind::kVan, drive(main_street, 60 + 82, vary(b.random, 10, 0.05), 1.75, true));
   // These two wait for those who turn.
@@ -151,7 +155,8 @@ void buildStopAndGo(SceneBuilder& b) {
   b.setRoads({street(path)});
   b.setEgo(drive(path, 50, Profile({{0, 8}, {1.2, 8}, {4.4, 0}, {6.8, 0}, {10, 8}}), -1.75));
   b.addMover(VehicleKind::kCar, drive(path, 50 + 13, Profile({{0, 8}, {0.6, 8}, {3.6, 0}, {5.8, 0}, {9, 8.5}}), -1.75));
-  b.addMover(VehicleKind::kCar, drive(path, 50 + 22, Profile({{0, 8}, {0.3, 8}, {3.2, 0}, {5.2, 0}, {8.5, 8.5}}), -1.75));
+  b.addMover(VehicleKind::kCar,
+             drive(path, 50 + 22, Profile({{0, 8}, {0.3, 8}, {3.2, 0}, {5.2, 0}, {8.5, 8.5}}), -1.75));
   b.addMover(VehicleKind::kCar, drive(path, 50 + 75, vary(b.random, 9, 0.05), 1.75, true));
   b.addMover(VehicleKind::kVan, drive(path, 50 + 130, vary(b.random, 9, 0.05), 1.75, true));
   b.dress(0, {.from_m = 20, .to_m = 250, .parked_share = 0.4});
@@ -163,7 +168,8 @@ void buildConvoy(SceneBuilder& b) {
   const double v = vary(b.random, 12, 0.03), start = 60;
   b.setEgo(drive(path, start, v, 0));
   const auto beside = [&](VehicleKind kind, double ahead_m, double lane, double change, double later) {
-    b.addMover(kind, drive(path, start + ahead_m, Profile({{0, v + change}, {3, v + later}, {6, v + change}}), lane * (kLane_m - 0.25)));
+    b.addMover(kind, drive(path, start + ahead_m, Profile({{0, v + change}, {3, v + later}, {6, v + change}}),
+                           lane * (kLane_m - 0.25)));
   };
   beside(VehicleKind::kTruck, 19.0, 0, 0.2, -0.3);
   beside(VehicleKind::kTruck, 9.5, 1, 0.6, -0.5);
@@ -175,11 +181,20 @@ void buildConvoy(SceneBuilder& b) {
 }
 
 void buildCircuit(SceneBuilder& b) {
-  // A rounded rectangle, driven anticlockwise, starting in the middle of a straight.
+  // A rounded rectangle, driven counterclockwise, starting in the middle of a straight.
   constexpr double kRadius_m = 20, kLong_m = 120, kShort_m = 60;
   const Path::Piece corner{0.5 * std::numbers::pi * kRadius_m, 0.5 * std::numbers::pi};
-  const auto path = makePath(
-      0, 0, 0, {{0.5 * kLong_m, 0}, corner, {kShort_m, 0}, corner, {kLong_m, 0}, corner, {kShort_m, 0}, corner, {0.5 * kLong_m, 0}}, true);
+  const auto path = makePath(0, 0, 0,
+                             {{0.5 * kLong_m, 0},
+                              corner,
+                              {kShort_m, 0},
+                              corner,
+                              {kLong_m, 0},
+                              corner,
+                              {kShort_m, 0},
+                              corner,
+                              {0.5 * kLong_m, 0}},
+                             true);
   b.setRoads({street(path)});
   b.scene.lap_frames = 600;
   b.scene.frames = 600;

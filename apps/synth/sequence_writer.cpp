@@ -30,12 +30,12 @@ void makeFolders(const fs::path& folder) {
   }
 }
 
-/// The gray pair as P0 and P1; P2 and P3 repeat it for readers that ask for the colour pair.
+/// The gray pair as P0 and P1; P2 and P3 repeat it for readers that ask for the color pair.
 void writeCalibration(const fs::path& file, const StereoCamera& c) {
   std::string text;
   for (int i = 0; i < 4; ++i)
-    text += format("P%d: %.9g 0 %.9g %.9g 0 %.9g %.9g 0 0 0 1 0\n", i, c.fx_px, c.cx_px, i % 2 == 0 ? 0.0 : -c.fx_px * c.baseline_m,
-                   c.fy_px, c.cy_px);
+    text += format("P%d: %.9g 0 %.9g %.9g 0 %.9g %.9g 0 0 0 1 0\n", i, c.fx_px, c.cx_px,
+                   i % 2 == 0 ? 0.0 : -c.fx_px * c.baseline_m, c.fy_px, c.cy_px);
   text += "R0_rect: 1 0 0 0 1 0 0 0 1\n";
   text += "Tr_velo_to_cam: 0 -1 0 0 0 0 -1 0 1 0 0 0\n";
   text += "Tr_imu_to_velo: 1 0 0 0 0 1 0 0 0 0 1 0\n";
@@ -57,14 +57,19 @@ Image instanceMask(const Rendering& left, const StereoCamera& camera) {
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x)
       mask.mutableRow(y)[x] = static_cast<std::uint8_t>(
-          left.object[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) + static_cast<std::size_t>(x)] + 1);
+          left.object[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) +
+                      static_cast<std::size_t>(x)] +
+          1);
   return mask;
 }
 
 /// The text files, a line or more per frame.
 struct Tables {
   explicit Tables(const fs::path& folder)
-      : times(folder / "times.txt"), poses(folder / "poses.txt"), labels(folder / "label_02.txt"), objects(folder / "object_poses.txt") {}
+      : times(folder / "times.txt"),
+        poses(folder / "poses.txt"),
+        labels(folder / "label_02.txt"),
+        objects(folder / "object_poses.txt") {}
   LineFile times, poses, labels, objects;
 
   void add(const FrameScene& frame, const SE3& T_world_map, const std::vector<Label>& seen) {

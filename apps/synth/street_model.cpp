@@ -18,12 +18,12 @@ Model makeBuilding(float length_m, float depth_m, float height_m, std::uint32_t 
     m.cutLast({0, -3.0F, y}, {0, -y - 0.3F, height_m + 0.3F});
     m.add(Material::kBrick, {0.3F * x, -0.8F, height_m}, {0.3F * x + 0.7F, 0, height_m + 3.9F}, 0.25F, seed + 2);
   }
-  for (float storey = 4; storey < height_m - 2 && random.chance(0.8F); storey += 3.1F)  // balconies
+  for (float story = 4; story < height_m - 2 && random.chance(0.8F); story += 3.1F)  // balconies
     for (float at = -x + 2.5F; at < x - 2.5F; at += 4.5F)
       for (const float side : {-1.0F, 1.0F})
         if (random.chance(0.5F))
-          m.add(Material::kWood, {at, side * y, storey}, {at + 2.2F, side * (y + 0.9F), storey + 0.95F}, random.uniform(0.2F, 0.6F),
-                random.bits());
+          m.add(Material::kWood, {at, side * y, story}, {at + 2.2F, side * (y + 0.9F), story + 0.95F},
+                random.uniform(0.2F, 0.6F), random.bits());
   return m;
 }
 
@@ -37,8 +37,9 @@ Model makeTree(float height_m, std::uint32_t seed) {
   for (int i = 0; i < blobs; ++i) {
     const float angle = 2 * std::numbers::pi_v<float> * (static_cast<float>(i) + random.uniform(0, 0.6F)) / blobs;
     const float out = i == 0 ? 0 : random.uniform(0.35F, 0.7F) * crown, size = crown * random.uniform(0.36F, 0.58F);
-    const Vec3 centre{out * std::cos(angle), out * std::sin(angle), height_m - crown * random.uniform(0.45F, 1.05F)};
-    m.addEllipsoid(Material::kLeaves, centre, {size, size, 0.8F * size}, tone * random.uniform(0.8F, 1.3F), random.bits());
+    const Vec3 center{out * std::cos(angle), out * std::sin(angle), height_m - crown * random.uniform(0.45F, 1.05F)};
+    m.addEllipsoid(Material::kLeaves, center, {size, size, 0.8F * size}, tone * random.uniform(0.8F, 1.3F),
+                   random.bits());
   }
   return m;
 }
@@ -48,8 +49,8 @@ Model makeBush(float length_m, std::uint32_t seed) {
   Random random(seed);
   for (float x = -0.5F * length_m; x < 0.5F * length_m; x += 0.9F) {
     const float r = random.uniform(0.6F, 1.1F);
-    m.addEllipsoid(Material::kLeaves, {x, random.uniform(-0.3F, 0.3F), 0.7F * r}, {r, 0.8F * r, r}, random.uniform(0.09F, 0.24F),
-                   random.bits());
+    m.addEllipsoid(Material::kLeaves, {x, random.uniform(-0.3F, 0.3F), 0.7F * r}, {r, 0.8F * r, r},
+                   random.uniform(0.09F, 0.24F), random.bits());
   }
   return m;
 }
@@ -70,7 +71,8 @@ Model makeFence(float length_m, std::uint32_t seed) {
     m.add(Material::kWood, {-x, -0.03F, 0}, {x, 0.03F, 1.5F}, tone, seed);
   } else {
     for (const float z : {0.35F, 1.05F}) m.add(Material::kMetal, {-x, -0.02F, z}, {x, 0.02F, z + 0.06F}, tone, seed);
-    for (float at = -x; at < x; at += 0.3F) m.add(Material::kMetal, {at, -0.015F, 0}, {at + 0.03F, 0.015F, 1.25F}, tone, seed);
+    for (float at = -x; at < x; at += 0.3F)
+      m.add(Material::kMetal, {at, -0.015F, 0}, {at + 0.03F, 0.015F, 1.25F}, tone, seed);
   }
   for (float at = -x; at <= x + 0.01F; at += 0.5F * length_m)
     m.add(Material::kConcrete, {at - 0.08F, -0.08F, 0}, {at + 0.08F, 0.08F, 1.65F}, 0.45F, seed + 1);
@@ -102,8 +104,10 @@ Model makeGuardRail(float length_m, std::uint32_t seed) {
   const float x = 0.5F * length_m;
   m.add(Material::kMetal, {-x, -0.04F, 0.45F}, {x, 0.04F, 0.58F}, 0.42F, seed);
   m.add(Material::kMetal, {-x, -0.04F, 0.63F}, {x, 0.04F, 0.76F}, 0.48F, seed + 1);
-  for (float at = -x; at < x; at += 2) m.add(Material::kMetal, {at, -0.05F, 0}, {at + 0.12F, 0.05F, 0.8F}, 0.25F, seed + 2);
-  for (float at = -x + 1; at < x; at += 12) m.add(Material::kSign, {at - 0.02F, -0.1F, 0.8F}, {at + 0.02F, 0.1F, 1.1F}, 0.8F, seed + 3);
+  for (float at = -x; at < x; at += 2)
+    m.add(Material::kMetal, {at, -0.05F, 0}, {at + 0.12F, 0.05F, 0.8F}, 0.25F, seed + 2);
+  for (float at = -x + 1; at < x; at += 12)
+    m.add(Material::kSign, {at - 0.02F, -0.1F, 0.8F}, {at + 0.02F, 0.1F, 1.1F}, 0.8F, seed + 3);
   return m;
 }
 
@@ -112,7 +116,8 @@ Model makeStreetClutter(std::uint32_t seed) {
   Random random(seed);
   switch (random.bits() % 4) {
     case 0:  // bin
-      m.addCylinder(Material::kPlastic, 2, {-0.25F, -0.25F, 0}, {0.25F, 0.25F, 0.95F}, random.uniform(0.05F, 0.4F), seed);
+      m.addCylinder(Material::kPlastic, 2, {-0.25F, -0.25F, 0}, {0.25F, 0.25F, 0.95F}, random.uniform(0.05F, 0.4F),
+                    seed);
       m.add(Material::kSign, {-0.26F, -0.12F, 0.4F}, {-0.2F, 0.12F, 0.7F}, 0.7F, seed);
       break;
     case 1:  // switch box
@@ -135,9 +140,11 @@ Model makeStreetClutter(std::uint32_t seed) {
 Model makeGantry(float span_m, std::uint32_t seed) {
   Model m;
   const float y = 0.5F * span_m;
-  for (const float side : {-y, y}) m.add(Material::kMetal, {-0.2F, side - 0.2F, 0}, {0.2F, side + 0.2F, 7.2F}, 0.4F, seed);
+  for (const float side : {-y, y})
+    m.add(Material::kMetal, {-0.2F, side - 0.2F, 0}, {0.2F, side + 0.2F, 7.2F}, 0.4F, seed);
   m.add(Material::kMetal, {-0.15F, -y, 6.5F}, {0.15F, y, 7.1F}, 0.38F, seed);
-  for (float at = -y + 1.5F; at + 4 < y; at += 5.5F) m.add(Material::kSign, {-0.3F, at, 5.3F}, {-0.2F, at + 4, 7.9F}, 0.14F, seed + 1);
+  for (float at = -y + 1.5F; at + 4 < y; at += 5.5F)
+    m.add(Material::kSign, {-0.3F, at, 5.3F}, {-0.2F, at + 4, 7.9F}, 0.14F, seed + 1);
   return m;
 }
 

@@ -26,7 +26,8 @@ StereoCamera cameraOfSize(const std::string& size) {
   int width = 0, height = 0;
   char rest = 0;
   if (size.empty()) return synth::kittiCamera();
-  if (std::sscanf(size.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 64 || height < 32 || width > 8192 || height > 8192)
+  if (std::sscanf(size.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 64 || height < 32 || width > 8192 ||
+      height > 8192)
     throw CLI::ValidationError("--size", "expected WIDTHxHEIGHT from 64x32 to 8192x8192, got '" + size + "'");
   return synth::kittiCamera(width, height);
 }
@@ -37,7 +38,8 @@ void reportProgress(int done, int frames, std::chrono::steady_clock::time_point&
   const bool terminal = isatty(STDERR_FILENO) == 1;
   if (!terminal && done < frames && now - last < std::chrono::seconds(10)) return;
   last = now;
-  std::fprintf(stderr, terminal ? "\rframe %d of %d%s" : "frame %d of %d%s", done, frames, !terminal || done == frames ? "\n" : "");
+  std::fprintf(stderr, terminal ? "\rframe %d of %d%s" : "frame %d of %d%s", done, frames,
+               !terminal || done == frames ? "\n" : "");
 }
 
 int synthesize(const Arguments& arguments, const StereoCamera& camera) {
@@ -46,7 +48,8 @@ int synthesize(const Arguments& arguments, const StereoCamera& camera) {
   options.frames = arguments.frames;
   options.with_movers = !arguments.without_movers;
   options.camera = camera;
-  options.render.threads = arguments.threads > 0 ? arguments.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  options.render.threads =
+      arguments.threads > 0 ? arguments.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const auto start = std::chrono::steady_clock::now();
   int frames = 0;
   options.progress = [&, last = start](int done, int of) mutable {
@@ -55,8 +58,8 @@ int synthesize(const Arguments& arguments, const StereoCamera& camera) {
   };
   synth::writeSequence(scene, arguments.out, options);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::printf("%s: %d stereo pairs of scene '%s' in %.1f s (%.2f per second)\n", arguments.out.c_str(), frames, scene.name.c_str(), seconds,
-              frames / seconds);
+  std::printf("%s: %d stereo pairs of scene '%s' in %.1f s (%.2f per second)\n", arguments.out.c_str(), frames,
+              scene.name.c_str(), seconds, frames / seconds);
   return 0;
 }
 
@@ -66,11 +69,16 @@ void addSynthCommand(CLI::App& app, std::function<int()>& action) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("synth", "Render a stereo sequence with exact ground truth");
   command->add_option("OUT", arguments->out, "folder to write")->required();
-  command->add_option("--scene", arguments->scene, "which scene")->required()->check(CLI::IsMember(synth::sceneNames()));
-  command->add_option("--frames", arguments->frames, "number of frames; the scene's own length when absent")->check(CLI::PositiveNumber);
-  command->add_option("--seed", arguments->seed, "changes textures, colours, placement and, slightly, speeds")->capture_default_str();
+  command->add_option("--scene", arguments->scene, "which scene")
+      ->required()
+      ->check(CLI::IsMember(synth::sceneNames()));
+  command->add_option("--frames", arguments->frames, "number of frames; the scene's own length when absent")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--seed", arguments->seed, "changes textures, colors, placement and, slightly, speeds")
+      ->capture_default_str();
   command->add_option("--size", arguments->size, "image size as WIDTHxHEIGHT; 1242x375 when absent");
-  command->add_option("--threads", arguments->threads, "rendering threads; all processors when absent")->check(CLI::PositiveNumber);
+  command->add_option("--threads", arguments->threads, "rendering threads; all processors when absent")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--without-movers", arguments->without_movers, "the same scene without its moving vehicles");
   command->callback([arguments, &action] {
     const StereoCamera camera = cameraOfSize(arguments->size);

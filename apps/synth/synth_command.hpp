@@ -6,7 +6,8 @@
 
 namespace motorcade {
 
-/// Registers `synth OUT --scene NAME`; when it is parsed, sets `action` to what the program shall do, which returns the exit code.
+/// Registers `synth OUT --scene NAME`; when it is parsed, sets `action` to what the program shall do, which returns the
+/// exit code.
 void addSynthCommand(CLI::App& app, std::function<int()>& action);
 
 }  // namespace motorcade

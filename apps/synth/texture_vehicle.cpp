@@ -7,7 +7,9 @@ namespace motorcade::synth {
 namespace {
 
 /// A thin line at `at`.
-float line(float x, float at, float width, float footprint) { return inside(x, at - 0.5F * width, at + 0.5F * width, footprint); }
+float line(float x, float at, float width, float footprint) {
+  return inside(x, at - 0.5F * width, at + 0.5F * width, footprint);
+}
 
 /// Glyphs: a grid of cells that hold strokes chosen by a hash; 1 on ink.
 float writing(float u, float v, float cell_width, float cell_height, float footprint, std::uint32_t seed) {
@@ -27,18 +29,19 @@ float writing(float u, float v, float cell_width, float cell_height, float footp
   return ink;
 }
 
-/// Distance from the nearest wheel's centre, in the side view.
+/// Distance from the nearest wheel's center, in the side view.
 float wheelDistance(const Model& model, const Vec3& p) {
   float nearest = 1e9F;
   for (const auto& part : model.parts) {
-    if (part.material != Material::kTyre) continue;
+    if (part.material != Material::kTire) continue;
     const Vec3 c = (part.lo + part.hi) * 0.5F;
     nearest = std::fmin(nearest, std::hypot(p.x - c.x, p.z - c.z) - 0.5F * (part.hi.z - part.lo.z));
   }
   return nearest;
 }
 
-/// Body panels: door gaps, sills, wheel arches, a crease that catches light, grime from below and reflections of the street.
+/// Body panels: door gaps, sills, wheel arches, a crease that catches light, grime from below and reflections of the
+/// street.
 Reflectance paint(const SurfacePoint& s) {
   const Vec3& p = s.position;
   const float f = s.footprint_m, length = s.part->hi.x - s.part->lo.x;
@@ -59,7 +62,8 @@ Reflectance paint(const SurfacePoint& s) {
     dark = std::fmax(dark, 0.7F * line(std::abs(p.x), 0.27F * length, 0.014F, f));
   }
   const float sheen = fractal3(p.x, p.y, p.z * 1.7F, 0.42F, 5, 0.72F, f, s.part->seed);
-  const float grime = saturate((0.5F - p.z) * 2) * (0.35F + 0.5F * fractal3(p.x, p.y, p.z, 0.12F, 3, 0.7F, f, s.part->seed + 9));
+  const float grime =
+      saturate((0.5F - p.z) * 2) * (0.35F + 0.5F * fractal3(p.x, p.y, p.z, 0.12F, 3, 0.7F, f, s.part->seed + 9));
   tone = lerp(tone * (1 + 0.42F * sheen) + 0.06F * std::fmax(0.0F, sheen), 0.16F, saturate(grime));
   return {tone * (1 - dark), 0.10F * (1 - dark), 0};
 }
@@ -73,7 +77,8 @@ Reflectance cabin(const SurfacePoint& s) {
   float glass = inside(v, 0.12F, 0.86F, fv);
   if (std::abs(s.normal.y) > 0.7F) {
     const float u = (p.x - lo.x) / (hi.x - lo.x), fu = f / (hi.x - lo.x), lean = 0.22F * v;
-    const float panes = inside(u, 0.10F + 0.5F * lean, 0.25F, fu) + inside(u, 0.28F, 0.515F, fu) + inside(u, 0.545F, 0.90F - lean, fu);
+    const float panes =
+        inside(u, 0.10F + 0.5F * lean, 0.25F, fu) + inside(u, 0.28F, 0.515F, fu) + inside(u, 0.545F, 0.90F - lean, fu);
     glass *= saturate(panes);
   } else {
     const float half = 0.5F * (hi.y - lo.y) * (0.86F - 0.14F * v);
@@ -83,7 +88,8 @@ Reflectance cabin(const SurfacePoint& s) {
   // Seats, headrests and the far windows show through the glass as fixed shapes; stickers and heating wires lie on it.
   float inner = 0.035F + 0.05F * saturate(fractal3(p.x, p.y, p.z, 0.30F, 3, 0.7F, f, s.part->seed + 3) * 1.5F);
   if (std::abs(s.normal.x) > 0.5F) {
-    for (const float at : {-0.36F, 0.36F}) inner = lerp(inner, 0.015F, inside(p.y, at - 0.14F, at + 0.14F, f) * inside(v, 0.2F, 0.68F, fv));
+    for (const float at : {-0.36F, 0.36F})
+      inner = lerp(inner, 0.015F, inside(p.y, at - 0.14F, at + 0.14F, f) * inside(v, 0.2F, 0.68F, fv));
     inner += 0.30F * inside(p.y, 0.44F, 0.53F, f) * inside(v, 0.18F, 0.36F, fv) * unit(mix(s.part->seed));
     inner += 0.02F * pulses(p.z, 0.045F, 0.008F, f);
   } else {
@@ -119,14 +125,16 @@ Reflectance lamp(const SurfacePoint& s, bool rear) {
     return {0.13F + 0.5F * reverse + 0.22F * bulb - 0.06F * line(v, 0.55F, 0.06F, fv), 0.08F, 0.02F * bulb};
   }
   const float bulb = inside(std::hypot(inner - 0.5F, (v - 0.5F) * 0.6F), 0, 0.24F, fu);
-  return {0.55F - 0.35F * inside(v, 0.02F, 0.14F, fv) + 0.3F * bulb - 0.25F * line(inner, 0.25F, 0.08F, fu), 0.12F, 0.1F * bulb};
+  return {0.55F - 0.35F * inside(v, 0.02F, 0.14F, fv) + 0.3F * bulb - 0.25F * line(inner, 0.25F, 0.08F, fu), 0.12F,
+          0.1F * bulb};
 }
 
 Reflectance plate(const SurfacePoint& s) {
   const float f = s.footprint_m, y = s.position.y - s.part->lo.y, z = s.position.z - s.part->lo.z;
   const float width = s.part->hi.y - s.part->lo.y, height = s.part->hi.z - s.part->lo.z;
   const float field = inside(y, 0.03F, width - 0.03F, f) * inside(z, 0.018F, height - 0.018F, f);
-  return {0.75F - 0.68F * field * writing(y - 0.03F, z - 0.018F, 0.062F, height - 0.036F, f, s.part->seed | 0x80000U), 0.02F, 0};
+  return {0.75F - 0.68F * field * writing(y - 0.03F, z - 0.018F, 0.062F, height - 0.036F, f, s.part->seed | 0x80000U),
+          0.02F, 0};
 }
 
 /// A lorry's box: panel joints, rivets, a painted band with large writing, stains.
@@ -137,17 +145,20 @@ Reflectance cargo(const SurfacePoint& s) {
   const float stains = fractal2(u, v * 0.6F, 0.8F, 5, 0.65F, f, s.part->seed);
   float tone = s.part->tone * (1 + 0.16F * stains);
   const float band = inside(v, 0.30F * height, 0.74F * height, f);
-  const float ink =
-      writing(u, v - 0.32F * height, 0.30F * height, 0.40F * height, f, s.part->seed + 5) * inside(v, 0.34F * height, 0.70F * height, f);
+  const float ink = writing(u, v - 0.32F * height, 0.30F * height, 0.40F * height, f, s.part->seed + 5) *
+                    inside(v, 0.34F * height, 0.70F * height, f);
   const bool light = s.part->tone > 0.35F;
   tone = lerp(tone, light ? 0.14F : 0.55F, band * (side ? 0.75F : 0.5F));
   tone = lerp(tone, light ? 0.72F : 0.08F, ink);
   tone = lerp(tone, light ? 0.10F : 0.6F,
-              writing(u, v - 0.80F * height, 0.16F, 0.11F * height, f, s.part->seed + 8) * inside(v, 0.8F * height, 0.91F * height, f));
+              writing(u, v - 0.80F * height, 0.16F, 0.11F * height, f, s.part->seed + 8) *
+                  inside(v, 0.8F * height, 0.91F * height, f));
   tone = lerp(tone, light ? 0.12F : 0.5F,
-              writing(u, v - 0.10F * height, 0.11F, 0.09F * height, f, s.part->seed + 7) * inside(v, 0.1F * height, 0.19F * height, f));
+              writing(u, v - 0.10F * height, 0.11F, 0.09F * height, f, s.part->seed + 7) *
+                  inside(v, 0.1F * height, 0.19F * height, f));
   tone *= 1 - 0.6F * pulses(u + 0.006F, side ? 1.22F : 0.5F * (hi.y - lo.y), 0.018F, f);
-  tone *= 1 - 0.45F * pulses(u, 0.15F, 0.022F, f) * std::fmax(line(v, 0.05F, 0.025F, f), line(v, height - 0.05F, 0.025F, f));
+  tone *= 1 - 0.45F * pulses(u, 0.15F, 0.022F, f) *
+                  std::fmax(line(v, 0.05F, 0.025F, f), line(v, height - 0.05F, 0.025F, f));
   if (!side)
     tone *= 1 - 0.6F * std::fmax(line(std::abs(p.y), 0.25F, 0.03F, f),
                                  line(v, 0.3F * height, 0.03F, f) * inside(std::abs(p.y), 0.1F, 0.45F, f));
@@ -162,7 +173,7 @@ Reflectance vehicleReflectance(const SurfacePoint& s) {
       return paint(s);
     case Material::kCabin:
       return cabin(s);
-    case Material::kTyre:
+    case Material::kTire:
       return wheel(s);
     case Material::kHeadLamp:
       return lamp(s, false);
@@ -179,7 +190,8 @@ Reflectance vehicleReflectance(const SurfacePoint& s) {
     case Material::kGrille:
       return {0.22F - 0.19F * pulses(s.position.z, 0.045F, 0.026F, s.footprint_m), 0.03F, 0};
     default:
-      return {s.part->tone * (1 + 0.25F * fractal3(s.position.x, s.position.y, s.position.z, 0.2F, 4, 0.7F, s.footprint_m, s.part->seed)),
+      return {s.part->tone * (1 + 0.25F * fractal3(s.position.x, s.position.y, s.position.z, 0.2F, 4, 0.7F,
+                                                   s.footprint_m, s.part->seed)),
               0.02F, 0};
   }
 }

@@ -45,7 +45,8 @@ SE3 Trajectory::T_map_body(double t_s) const {
   const double driven = distance_m(t_s), left = left_m(driven), slope = left_m.slope(driven) * (backwards ? -1 : 1);
   const Path::Point point = path->at(arc_m(t_s));
   const Eigen::Vector2d position = point.position + left * point.left();
-  const double heading = point.heading_rad + std::atan2(slope, 1 - point.curvature_per_m * left) + (backwards ? std::numbers::pi : 0);
+  const double heading =
+      point.heading_rad + std::atan2(slope, 1 - point.curvature_per_m * left) + (backwards ? std::numbers::pi : 0);
   return {expSO3(Eigen::Vector3d(0, 0, heading)), Eigen::Vector3d(position.x(), position.y(), 0)};
 }
 

@@ -7,8 +7,8 @@
 
 namespace motorcade::synth {
 
-/// How a vehicle drives: along a path, at a speed and a lateral offset that ease between knots. Twice continuously differentiable.
-/// The frame `map` is the scene's: z up, ground at z = 0.
+/// How a vehicle drives: along a path, at a speed and a lateral offset that ease between knots. Twice continuously
+/// differentiable. The frame `map` is the scene's: z up, ground at z = 0.
 struct Trajectory {
   std::shared_ptr<const Path> path;
   double start_m = 0;      // arc length at time 0
@@ -22,7 +22,7 @@ struct Trajectory {
   /// Arc length on the path.
   double arc_m(double t_s) const;
   double speedAt_mps(double t_s) const;
-  /// Pose of the vehicle's footprint centre: x ahead, y left, z up.
+  /// Pose of the vehicle's footprint center: x ahead, y left, z up.
   SE3 T_map_body(double t_s) const;
 };
 

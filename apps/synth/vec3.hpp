@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-/// Single precision vectors for the ray caster: coordinates are relative to the camera, so floats hold to a few micrometres.
+/// Single precision vectors for the ray caster: coordinates are relative to the camera, so floats hold to a few
+/// micrometers.
 namespace motorcade::synth {
 
 struct Vec3 {

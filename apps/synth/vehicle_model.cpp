@@ -3,7 +3,7 @@
 namespace motorcade::synth {
 namespace {
 
-/// Measures and colours shared by the parts.
+/// Measures and colors shared by the parts.
 struct Shape3 {
   float length, width, height;
   float paint;
@@ -17,8 +17,8 @@ void addWheels(Model& model, const Shape3& s, float radius, std::initializer_lis
   for (const float x : axles)
     for (const float y : {-1.0F, 1.0F}) {
       const float outer = y * s.side(), inner = y * (s.side() - 0.21F);
-      model.addCylinder(Material::kTyre, 1, {x - radius, std::min(outer, inner), 0}, {x + radius, std::max(outer, inner), 2 * radius}, rim,
-                        s.seed);
+      model.addCylinder(Material::kTire, 1, {x - radius, std::min(outer, inner), 0},
+                        {x + radius, std::max(outer, inner), 2 * radius}, rim, s.seed);
     }
 }
 
@@ -30,8 +30,8 @@ void addPair(Model& model, Material material, const Vec3& lo, const Vec3& hi, fl
 
 void addFront(Model& m, const Shape3& s, float lamp_z) {
   const float x = s.front(), y = s.side();
-  m.add(Material::kPlastic, {x - 0.25F, -y + 0.10F, 0.26F}, {x, y - 0.10F, 0.46F}, unit(mix(s.seed)) < 0.5F ? 0.07F : 0.8F * s.paint,
-        s.seed);
+  m.add(Material::kPlastic, {x - 0.25F, -y + 0.10F, 0.26F}, {x, y - 0.10F, 0.46F},
+        unit(mix(s.seed)) < 0.5F ? 0.07F : 0.8F * s.paint, s.seed);
   m.cutLast({1, 0.7F, 0}, {x, y - 0.32F, 0});
   m.cutLast({1, -0.7F, 0}, {x, -y + 0.32F, 0});
   addPair(m, Material::kHeadLamp, {x - 0.30F, y - 0.50F, lamp_z}, {x - 0.03F, y - 0.07F, lamp_z + 0.17F}, 0.6F, s.seed);
@@ -43,24 +43,26 @@ void addFront(Model& m, const Shape3& s, float lamp_z) {
 
 void addRear(Model& m, const Shape3& s, float lamp_z, float lamp_height) {
   const float x = -s.front(), y = s.side();
-  m.add(Material::kPlastic, {x, -y + 0.06F, 0.30F}, {x + 0.25F, y - 0.06F, 0.52F}, unit(mix(s.seed + 1)) < 0.4F ? 0.08F : 0.75F * s.paint,
-        s.seed + 2);
+  m.add(Material::kPlastic, {x, -y + 0.06F, 0.30F}, {x + 0.25F, y - 0.06F, 0.52F},
+        unit(mix(s.seed + 1)) < 0.4F ? 0.08F : 0.75F * s.paint, s.seed + 2);
   m.cutLast({-1, 0.7F, 0}, {x, y - 0.22F, 0});
   m.cutLast({-1, -0.7F, 0}, {x, -y + 0.22F, 0});
-  addPair(m, Material::kTailLamp, {x + 0.03F, y - 0.42F, lamp_z}, {x + 0.35F, y - 0.04F, lamp_z + lamp_height}, 0.15F, s.seed);
+  addPair(m, Material::kTailLamp, {x + 0.03F, y - 0.42F, lamp_z}, {x + 0.35F, y - 0.04F, lamp_z + lamp_height}, 0.15F,
+          s.seed);
   const float plate_z = (s.seed & 8U) != 0 ? 0.36F : 0.64F;
   m.add(Material::kPlate, {x - 0.004F, -0.26F, plate_z}, {x + 0.05F, 0.26F, plate_z + 0.115F}, 0.8F, s.seed + 1);
   m.add(Material::kChrome, {x + 0.035F, -0.32F, plate_z + 0.15F}, {x + 0.08F, 0.32F, plate_z + 0.185F}, 0.6F);
   m.addEllipsoid(Material::kChrome, {x + 0.05F, 0, plate_z + 0.26F}, {0.022F, 0.055F, 0.055F}, 0.6F);
   m.addCylinder(Material::kChrome, 0, {x - 0.03F, -y + 0.32F, 0.22F}, {x + 0.3F, -y + 0.40F, 0.30F}, 0.3F);
   addPair(m, Material::kTailLamp, {x - 0.006F, y - 0.40F, 0.36F}, {x + 0.02F, y - 0.24F, 0.41F}, 0.15F, s.seed);
-  m.add(Material::kPlate, {x + 0.036F, 0.33F, plate_z + 0.21F}, {x + 0.08F, 0.60F, plate_z + 0.27F}, 0.6F, s.seed + 5);  // the model's name
+  m.add(Material::kPlate, {x + 0.036F, 0.33F, plate_z + 0.21F}, {x + 0.08F, 0.60F, plate_z + 0.27F}, 0.6F,
+        s.seed + 5);  // the model's name
 }
 
 void addSides(Model& m, const Shape3& s, float mirror_x, float belt_z) {
   const float y = s.side() - 0.03F;
-  addPair(m, Material::kPaint, {mirror_x - 0.10F, y - 0.02F, belt_z + 0.03F}, {mirror_x + 0.08F, y + 0.16F, belt_z + 0.17F}, 0.8F * s.paint,
-          s.seed + 3);
+  addPair(m, Material::kPaint, {mirror_x - 0.10F, y - 0.02F, belt_z + 0.03F},
+          {mirror_x + 0.08F, y + 0.16F, belt_z + 0.17F}, 0.8F * s.paint, s.seed + 3);
   for (const float x : {-0.17F * s.length, 0.06F * s.length})
     addPair(m, Material::kChrome, {x, y, belt_z - 0.11F}, {x + 0.17F, y + 0.025F, belt_z - 0.07F}, 0.4F, s.seed);
   addPair(m, Material::kPlastic, {-0.27F * s.length, y, 0.24F}, {0.26F * s.length, y + 0.022F, 0.33F}, 0.06F, s.seed);
@@ -89,14 +91,17 @@ Model makeCar(const Shape3& s) {
   addRear(m, s, estate ? 0.70F : 0.66F, estate ? 0.24F : 0.16F);
   addSides(m, s, x - bonnet - 0.25F, belt);
   addWheels(m, s, 0.32F, {-0.30F * s.length, 0.31F * s.length});
-  m.add(Material::kTailLamp, {back + (estate ? 0.19F : 0.35F), -0.16F, s.height - 0.10F}, {back + 0.5F, 0.16F, s.height - 0.06F}, 0.15F,
-        s.seed);
+  m.add(Material::kTailLamp, {back + (estate ? 0.19F : 0.35F), -0.16F, s.height - 0.10F},
+        {back + 0.5F, 0.16F, s.height - 0.06F}, 0.15F, s.seed);
   if (estate)
-    addPair(m, Material::kChrome, {back + 0.35F, y - 0.28F, s.height - 0.01F}, {0.3F, y - 0.24F, s.height + 0.045F}, 0.4F, s.seed);
+    addPair(m, Material::kChrome, {back + 0.35F, y - 0.28F, s.height - 0.01F}, {0.3F, y - 0.24F, s.height + 0.045F},
+            0.4F, s.seed);
   if (random.chance(0.5F))
-    m.addCylinder(Material::kPlastic, 2, {back + 0.8F, -0.012F, s.height - 0.02F}, {back + 0.824F, 0.012F, s.height + 0.22F}, 0.03F);
+    m.addCylinder(Material::kPlastic, 2, {back + 0.8F, -0.012F, s.height - 0.02F},
+                  {back + 0.824F, 0.012F, s.height + 0.22F}, 0.03F);
   if (random.chance(0.6F))
-    m.add(Material::kSign, {-x + 0.034F, -0.66F, belt - 0.20F}, {-x + 0.06F, -0.44F, belt - 0.06F}, 0.75F, s.seed + 4);  // a sticker
+    m.add(Material::kSign, {-x + 0.034F, -0.66F, belt - 0.20F}, {-x + 0.06F, -0.44F, belt - 0.06F}, 0.75F,
+          s.seed + 4);  // a sticker
   return m;
 }
 
@@ -113,7 +118,8 @@ Model makeVan(const Shape3& s) {
   m.cutLast({0.80F, 0, 0.60F}, {x - 0.55F, 0, 1.10F});
   addFront(m, s, 0.66F);
   addRear(m, s, 0.75F, 0.42F);
-  addPair(m, Material::kGlass, {-x + 0.03F, 0.10F, s.height - 0.85F}, {-x + 0.06F, y - 0.22F, s.height - 0.30F}, 0.05F, s.seed);
+  addPair(m, Material::kGlass, {-x + 0.03F, 0.10F, s.height - 0.85F}, {-x + 0.06F, y - 0.22F, s.height - 0.30F}, 0.05F,
+          s.seed);
   addPair(m, Material::kPlastic, {x - 1.05F, y - 0.02F, 1.10F}, {x - 0.90F, y + 0.20F, 1.42F}, 0.05F, s.seed);
   addPair(m, Material::kPlastic, {-0.3F * s.length, y, 0.40F}, {0.2F * s.length, y + 0.022F, 0.52F}, 0.06F, s.seed);
   addWheels(m, s, 0.35F, {-0.30F * s.length, 0.32F * s.length});
@@ -127,7 +133,8 @@ Model makeTruck(const Shape3& s) {
   m.add(Material::kCargo, {-x + 0.05F, -y, 1.0F}, {x - 2.0F, y, s.height}, s.paint, s.seed);
   m.add(Material::kPlastic, {-x + 0.15F, -0.45F, 0.55F}, {x - 0.4F, 0.45F, 1.0F}, 0.06F, s.seed);
   m.add(Material::kPaint, {x - 1.85F, -y + 0.06F, 0.42F}, {x - 0.02F, y - 0.06F, 1.5F}, 0.6F, s.seed + 1);
-  m.add(Material::kCabin, {x - 1.85F, -y + 0.06F, 1.5F}, {x - 0.02F, y - 0.06F, std::min(2.85F, s.height - 0.1F)}, 0.6F, s.seed + 1);
+  m.add(Material::kCabin, {x - 1.85F, -y + 0.06F, 1.5F}, {x - 0.02F, y - 0.06F, std::min(2.85F, s.height - 0.1F)}, 0.6F,
+        s.seed + 1);
   m.cutLast({0.97F, 0, 0.2F}, {x - 0.02F, 0, 1.6F});
   addFront(m, s, 0.62F);
   addRear(m, s, 0.60F, 0.16F);
@@ -162,15 +169,18 @@ Model makeVehicle(VehicleKind kind, std::uint32_t seed) {
   Model model;
   switch (kind) {
     case VehicleKind::kCar:
-      model = makeCar({random.uniform(4.0F, 4.6F), random.uniform(1.70F, 1.84F), random.uniform(1.42F, 1.56F), paint, seed});
+      model = makeCar(
+          {random.uniform(4.0F, 4.6F), random.uniform(1.70F, 1.84F), random.uniform(1.42F, 1.56F), paint, seed});
       model.kitti_type = "Car";
       break;
     case VehicleKind::kVan:
-      model = makeVan({random.uniform(4.9F, 5.6F), random.uniform(1.90F, 2.02F), random.uniform(2.0F, 2.4F), paint, seed});
+      model =
+          makeVan({random.uniform(4.9F, 5.6F), random.uniform(1.90F, 2.02F), random.uniform(2.0F, 2.4F), paint, seed});
       model.kitti_type = "Van";
       break;
     case VehicleKind::kTruck:
-      model = makeTruck({random.uniform(7.5F, 9.0F), random.uniform(2.40F, 2.52F), random.uniform(3.4F, 3.8F), paint, seed});
+      model = makeTruck(
+          {random.uniform(7.5F, 9.0F), random.uniform(2.40F, 2.52F), random.uniform(3.4F, 3.8F), paint, seed});
       model.kitti_type = "Truck";
       break;
   }

@@ -6,25 +6,23 @@
 namespace motorcade {
 namespace {
 
-std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 constexpr int kBands = 5;  // at distances 0, 1, 2 to 3, 4 to 7, 8 to 15; what is farther away comes first
 constexpr int kFarthest = (1 << (kBands - 1)) - 1;
 
 }  // namespace
 
-std::span<const VariableId> AffectedOrder::operator()(std::span<const VariableId> variables, std::span<const FactorId> factors,
-                                                      std::span<const int> orphans, std::span<const VariableId> touched) {
+std::span<const VariableId> AffectedOrder::operator()(std::span<const VariableId> variables,
+                                                      std::span<const FactorId> factors, std::span<const int> orphans,
+                                                      std::span<const VariableId> touched) {
   variables_ = variables;
   column_of_.resize(graph_.slots(), 0);
-  for (std::size_t i = 0; i < variables.size(); ++i) column_of_[index(variables[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < variables.size(); ++i) column_of_[variables[i].value] = static_cast<int>(i);
   bandByDistance(touched);
   ordering_.begin(static_cast<int>(variables.size()));
   for (const FactorId f : factors) addRow(graph_.factor(f).variables());
   for (const int orphan : orphans) addRow(tree_[orphan].separator());
   order_.clear();
-  for (const int column : ordering_.order(group_)) order_.push_back(variables[index(column)]);
+  for (const int column : ordering_.order(group_)) order_.push_back(variables[column]);
   return order_;
 }
 
@@ -38,27 +36,27 @@ void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
   queue_.clear();
   std::size_t missing = variables_.size();
   const auto reach = [&](VariableId v, int distance) {
-    if (reached_in_search_[index(v)] == search_) return;
-    reached_in_search_[index(v)] = search_;
-    distance_[index(v)] = distance;
+    if (reached_in_search_[v.value] == search_) return;
+    reached_in_search_[v.value] = search_;
+    distance_[v.value] = distance;
     queue_.push_back(v);
-    const auto column = index(column_of_[index(v)]);
+    const auto column = static_cast<std::size_t>(column_of_[v.value]);
     if (column >= variables_.size() || variables_[column] != v) return;
     group_[column] = std::min(kBands - static_cast<int>(std::bit_width(static_cast<unsigned>(distance))), last);
     --missing;
   };
   for (const VariableId v : touched) reach(v, 0);
   for (std::size_t i = 0; i < queue_.size() && missing > 0; ++i) {
-    const int distance = distance_[index(queue_[i])];
+    const int distance = distance_[queue_[i].value];
     if (distance == kFarthest) break;
     for (const FactorId f : graph_[queue_[i]].factors)
-      for (const VariableId neighbour : graph_.factor(f).variables()) reach(neighbour, distance + 1);
+      for (const VariableId neighbor : graph_.factor(f).variables()) reach(neighbor, distance + 1);
   }
 }
 
 void AffectedOrder::addRow(std::span<const VariableId> variables) {
   row_.clear();
-  for (const VariableId v : variables) row_.push_back(column_of_[index(v)]);
+  for (const VariableId v : variables) row_.push_back(column_of_[v.value]);
   ordering_.addRow(row_);
 }
 

@@ -4,23 +4,25 @@
 #include <vector>
 
 #include "backend/elimination/elimination_tree.hpp"
-#include "backend/graph/factor_graph.hpp"
 #include "backend/elimination/ordering.hpp"
+#include "backend/graph/factor_graph.hpp"
 
 namespace motorcade {
 
-/// Orders the variables that an update eliminates anew: with little fill, and the nearer to the newest measurements, the later.
+/// Orders the variables that an update eliminates anew: with little fill, and the nearer to the newest measurements,
+/// the later.
 ///
-/// The next measurements will touch variables near those that were touched now (a vehicle drives on, and meets the neighbours of the places
-/// that it met). What stands near the root is cheap to touch, so the order goes by bands of distance in the factor graph, each twice as wide
-/// as the one before; within a band, CCOLAMD orders for little fill.
+/// The next measurements will touch variables near those that were touched now (a vehicle drives on, and meets the
+/// neighbors of the places that it met). What stands near the root is cheap to touch, so the order goes by bands of
+/// distance in the factor graph, each twice as wide as the one before; within a band, CCOLAMD orders for little fill.
 class AffectedOrder {
  public:
   AffectedOrder(const FactorGraph& graph, const EliminationTree& tree) : graph_(graph), tree_(tree) {}
 
-  /// `factors` and the separators of `orphans` are the terms over the `variables`. The result lasts until the next call.
-  std::span<const VariableId> operator()(std::span<const VariableId> variables, std::span<const FactorId> factors, std::span<const int> orphans,
-                                         std::span<const VariableId> touched);
+  /// `factors` and the separators of `orphans` are the terms over the `variables`. The result lasts until the next
+  /// call.
+  std::span<const VariableId> operator()(std::span<const VariableId> variables, std::span<const FactorId> factors,
+                                         std::span<const int> orphans, std::span<const VariableId> touched);
 
  private:
   void bandByDistance(std::span<const VariableId> touched);

@@ -12,8 +12,9 @@ typedef double Vec __attribute__((vector_size(32)));
 typedef double UnalignedVec __attribute__((vector_size(32), may_alias, aligned(8)));
 
 constexpr int kLanes = 4;
-constexpr int kTileVecs = 3;   // 12 x 4 tiles: 12 sums, 3 vectors of A and one of B fill the 16 registers
-constexpr int kMaxDepth = 48;  // columns that an outer product takes at once: what stays in the first-level caches of data and pages
+constexpr int kTileVecs = 3;  // 12 x 4 tiles: 12 sums, 3 vectors of A and one of B fill the 16 registers
+constexpr int kMaxDepth =
+    48;  // columns that an outer product takes at once: what stays in the first-level caches of data and pages
 
 Vec load(const double* from) { return *reinterpret_cast<const UnalignedVec*>(from); }
 void store(double* to, Vec value) { *reinterpret_cast<UnalignedVec*>(to) = value; }
@@ -44,11 +45,12 @@ template <int kMax, class F>
   f.template operator()<kMax>();
 }
 
-/// Walks down `vecs` vectors of rows in tiles: `f.template operator()<height>(first)`. Four are two and two, as one alone makes the sums
-/// wait for each other.
+/// Walks down `vecs` vectors of rows in tiles: `f.template operator()<height>(first)`. Four are two and two, as one
+/// alone makes the sums wait for each other.
 template <class F>
 [[gnu::always_inline]] inline void forTiles(int first, int vecs, const F& f) {
-  for (; vecs > kTileVecs + 1 || vecs == kTileVecs; vecs -= kTileVecs, first += kTileVecs) f.template operator()<kTileVecs>(first);
+  for (; vecs > kTileVecs + 1 || vecs == kTileVecs; vecs -= kTileVecs, first += kTileVecs)
+    f.template operator()<kTileVecs>(first);
   for (; vecs >= 2; vecs -= 2, first += 2) f.template operator()<2>(first);
   if (vecs == 1) f.template operator()<1>(first);
 }
@@ -97,8 +99,8 @@ struct Triangle {
   double inverse[N]{};        // of the diagonal; zero where singular
   double largest_growth = 1;  // of a diagonal entry over its pivot
 
-  /// Right-looking elimination of the tile whose first N rows are the triangle. The pivot's reciprocal updates the remaining columns while
-  /// its root is still being taken.
+  /// Right-looking elimination of the tile whose first N rows are the triangle. The pivot's reciprocal updates the
+  /// remaining columns while its root is still being taken.
   template <int V>
   [[gnu::always_inline]] void factorize(Tile<V, N>& tile, const double (&diagonal)[N]) {
 #pragma GCC unroll 4
@@ -151,8 +153,8 @@ struct Triangle {
   }
 };
 
-/// Eliminates N columns from `first` on: left-looking, each tile takes all updates by earlier columns at once. Returns the largest ratio of
-/// a diagonal entry to its pivot, at least 1.
+/// Eliminates N columns from `first` on: left-looking, each tile takes all updates by earlier columns at once. Returns
+/// the largest ratio of a diagonal entry to its pivot, at least 1.
 template <int N>
 double factorizeColumns(double* panel, int ld, int rows, int first, std::vector<int>& singular) {
   double* const columns = panel + first * ld;
@@ -232,7 +234,8 @@ template <int K>
 void addProduct(const double* jacobian, int stride, int cols, double* h, int ldh) {
   int i = 0;
   for (; i + kLanes <= cols; i += kLanes) addRowsOfProduct<K, kLanes>(jacobian, stride, i, h, ldh);
-  if (i < cols) withConstant<kLanes - 1>(cols - i, [&]<int kCount>() { addRowsOfProduct<K, kCount>(jacobian, stride, i, h, ldh); });
+  if (i < cols)
+    withConstant<kLanes - 1>(cols - i, [&]<int kCount>() { addRowsOfProduct<K, kCount>(jacobian, stride, i, h, ldh); });
 }
 
 /// sums[c] += m(:, c)^T x over n rows.
@@ -252,7 +255,8 @@ template <int N>
 
 /// N scalars from `first` on, when those after them are solved.
 template <int N>
-void backSubstituteColumns(const double* panel, int ld, int rows, int columns, int first, const double* x_separator, double* x_frontal) {
+void backSubstituteColumns(const double* panel, int ld, int rows, int columns, int first, const double* x_separator,
+                           double* x_frontal) {
   const double* const L = panel + first * ld;
   double sums[N];
   double inverse[N];
@@ -325,14 +329,17 @@ void addJacobianProduct(const double* jacobian, int rows, int cols, double* h, i
 void backSubstitute(const double* panel, int ld, int rows, int columns, const double* x_separator, double* x_frontal) {
   // The odd columns come last, that is first in the panel, so that the solved scalars are whole vectors.
   for (int end = columns; end > 0; end -= kLanes) {
-    withConstant<kLanes>(std::min(end, kLanes),
-                         [&]<int N>() { backSubstituteColumns<N>(panel, ld, rows, columns, end - N, x_separator, x_frontal); });
+    withConstant<kLanes>(std::min(end, kLanes), [&]<int N>() {
+      backSubstituteColumns<N>(panel, ld, rows, columns, end - N, x_separator, x_frontal);
+    });
   }
 }
 
-void forwardSubstitute(double* panel, int ld, int rows, int columns, std::span<const int> singular, double* g, double& c) {
+void forwardSubstitute(double* panel, int ld, int rows, int columns, std::span<const int> singular, double* g,
+                       double& c) {
   for (int first = 0; first < columns; first += kLanes) {
-    withConstant<kLanes>(std::min(columns - first, kLanes), [&]<int N>() { forwardSubstituteColumns<N>(panel, ld, rows, first, g); });
+    withConstant<kLanes>(std::min(columns - first, kLanes),
+                         [&]<int N>() { forwardSubstituteColumns<N>(panel, ld, rows, first, g); });
   }
   for (const int k : singular) g[k] = 0;  // it has touched nothing: its column is zero below the pivot
   for (int k = 0; k < columns; ++k) {

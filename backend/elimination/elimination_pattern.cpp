@@ -6,12 +6,10 @@
 namespace motorcade {
 namespace {
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
-/// A column joins its parent's clique although that adds zeros to it when both are small or the zeros are few: small fronts cost more in
-/// overhead than in arithmetic.
-constexpr int kSmallClique = 16;     // scalars
-constexpr double kZeroShare = 0.1;   // of the clique's scalars
+/// A column joins its parent's clique although that adds zeros to it when both are small or the zeros are few: small
+/// fronts cost more in overhead than in arithmetic.
+constexpr int kSmallClique = 16;    // scalars
+constexpr double kZeroShare = 0.1;  // of the clique's scalars
 
 }  // namespace
 
@@ -22,14 +20,14 @@ void EliminationPattern::begin(int count, int boundary) {
   term_entries_.clear();
   term_begin_.assign(1, 0);
   terms_next_.clear();
-  terms_head_.assign(index(count), -1);
+  terms_head_.assign(count, -1);
 }
 
 void EliminationPattern::addTerm(std::span<const int> positions) {
   const int first = *std::ranges::min_element(positions);
   assert(first < count_);
-  terms_next_.push_back(terms_head_[index(first)]);
-  terms_head_[index(first)] = static_cast<int>(first_of_term_.size());
+  terms_next_.push_back(terms_head_[first]);
+  terms_head_[first] = static_cast<int>(first_of_term_.size());
   first_of_term_.push_back(first);
   term_entries_.insert(term_entries_.end(), positions.begin(), positions.end());
   term_begin_.push_back(static_cast<int>(term_entries_.size()));
@@ -42,32 +40,32 @@ void EliminationPattern::analyze(std::span<const int> scalars) {
 
 /// The column structures: each is the union of its terms and of what the columns below it leave over.
 void EliminationPattern::mergeColumns() {
-  children_head_.assign(index(count_), -1);
-  children_next_.assign(index(count_), -1);
-  parent_.assign(index(count_), -1);
-  stamp_.assign(index(total_), -1);
+  children_head_.assign(count_, -1);
+  children_next_.assign(count_, -1);
+  parent_.assign(count_, -1);
+  stamp_.assign(total_, -1);
   column_begin_.assign(1, 0);
   column_entries_.clear();
   for (int j = 0; j < count_; ++j) {
     const auto begin = static_cast<std::ptrdiff_t>(column_entries_.size());
-    stamp_[index(j)] = j;
+    stamp_[j] = j;
     const auto take = [&](int position) {
-      if (stamp_[index(position)] == j) return;
-      stamp_[index(position)] = j;
+      if (stamp_[position] == j) return;
+      stamp_[position] = j;
       column_entries_.push_back(position);
     };
-    for (int t = terms_head_[index(j)]; t >= 0; t = terms_next_[index(t)])
-      for (int e = term_begin_[index(t)]; e < term_begin_[index(t) + 1]; ++e) take(term_entries_[index(e)]);
-    for (int child = children_head_[index(j)]; child >= 0; child = children_next_[index(child)])
-      for (int e = column_begin_[index(child)]; e < column_begin_[index(child) + 1]; ++e) take(column_entries_[index(e)]);
+    for (int t = terms_head_[j]; t >= 0; t = terms_next_[t])
+      for (int e = term_begin_[t]; e < term_begin_[t + 1]; ++e) take(term_entries_[e]);
+    for (int child = children_head_[j]; child >= 0; child = children_next_[child])
+      for (int e = column_begin_[child]; e < column_begin_[child + 1]; ++e) take(column_entries_[e]);
     std::sort(column_entries_.begin() + begin, column_entries_.end());
     column_begin_.push_back(static_cast<int>(column_entries_.size()));
     if (static_cast<std::size_t>(begin) == column_entries_.size()) continue;
-    const int parent = column_entries_[static_cast<std::size_t>(begin)];
+    const int parent = column_entries_[begin];
     if (parent >= count_) continue;
-    parent_[index(j)] = parent;
-    children_next_[index(j)] = children_head_[index(parent)];
-    children_head_[index(parent)] = j;
+    parent_[j] = parent;
+    children_next_[j] = children_head_[parent];
+    children_head_[parent] = j;
   }
 }
 
@@ -76,25 +74,25 @@ void EliminationPattern::formGroups(std::span<const int> scalars) {
   groups_.clear();
   group_scalars_.clear();
   last_in_group_.clear();
-  group_of_.assign(index(count_), -1);
-  group_next_.assign(index(count_), -1);  // from a frontal to the one eliminated after it
+  group_of_.assign(count_, -1);
+  group_next_.assign(count_, -1);  // from a frontal to the one eliminated after it
   for (int j = count_ - 1; j >= 0; --j) {
     int size = 0;  // scalars of the separator
-    for (int e = column_begin_[index(j)]; e < column_begin_[index(j) + 1]; ++e) size += scalars[index(column_entries_[index(e)])];
-    const int own = scalars[index(j)];
-    const int above = parent_[index(j)] < 0 ? -1 : group_of_[index(parent_[index(j)])];
+    for (int e = column_begin_[j]; e < column_begin_[j + 1]; ++e) size += scalars[column_entries_[e]];
+    const int own = scalars[j];
+    const int above = parent_[j] < 0 ? -1 : group_of_[parent_[j]];
     if (above >= 0) {
-      const int all = group_scalars_[index(above)], zeros = all - size;
+      const int all = group_scalars_[above], zeros = all - size;
       if (zeros == 0 || all + own <= kSmallClique || zeros <= kZeroShare * all) {
-        group_of_[index(j)] = above;
-        group_next_[index(j)] = last_in_group_[index(above)];
-        last_in_group_[index(above)] = j;
-        group_scalars_[index(above)] += own;
-        ++groups_[index(above)].frontals;
+        group_of_[j] = above;
+        group_next_[j] = last_in_group_[above];
+        last_in_group_[above] = j;
+        group_scalars_[above] += own;
+        ++groups_[above].frontals;
         continue;
       }
     }
-    group_of_[index(j)] = static_cast<int>(groups_.size());
+    group_of_[j] = static_cast<int>(groups_.size());
     last_in_group_.push_back(j);
     group_scalars_.push_back(own + size);
     // `begin` holds the column that states the separator until the positions are written.
@@ -105,9 +103,9 @@ void EliminationPattern::formGroups(std::span<const int> scalars) {
     Group& group = groups_[g];
     const int top = group.begin;
     group.begin = static_cast<int>(positions_.size());
-    for (int j = last_in_group_[g]; j >= 0; j = group_next_[index(j)]) positions_.push_back(j);
-    positions_.insert(positions_.end(), column_entries_.begin() + column_begin_[index(top)],
-                      column_entries_.begin() + column_begin_[index(top) + 1]);
+    for (int j = last_in_group_[g]; j >= 0; j = group_next_[j]) positions_.push_back(j);
+    positions_.insert(positions_.end(), column_entries_.begin() + column_begin_[top],
+                      column_entries_.begin() + column_begin_[top + 1]);
     group.size = static_cast<int>(positions_.size()) - group.begin;
   }
 }

@@ -7,8 +7,8 @@
 
 namespace motorcade {
 
-/// The symbolic part of an elimination: which variables each clique of the result holds. Positions count the variables in their elimination
-/// order, then the boundary.
+/// The symbolic part of an elimination: which variables each clique of the result holds. Positions count the variables
+/// in their elimination order, then the boundary.
 class EliminationPattern {
  public:
   struct Group {
@@ -25,9 +25,11 @@ class EliminationPattern {
   void analyze(std::span<const int> scalars);
 
   const std::vector<Group>& groups() const { return groups_; }  // parents before children
-  std::span<const int> positions(const Group& group) const { return {positions_.data() + group.begin, static_cast<std::size_t>(group.size)}; }
-  int groupOf(int position) const { return group_of_[static_cast<std::size_t>(position)]; }
-  int groupOfTerm(int term) const { return groupOf(first_of_term_[static_cast<std::size_t>(term)]); }
+  std::span<const int> positions(const Group& group) const {
+    return {positions_.data() + group.begin, static_cast<std::size_t>(group.size)};
+  }
+  int groupOf(int position) const { return group_of_[position]; }
+  int groupOfTerm(int term) const { return groupOf(first_of_term_[term]); }
 
  private:
   void mergeColumns();
@@ -35,7 +37,7 @@ class EliminationPattern {
 
   int count_ = 0, total_ = 0;
   std::vector<int> first_of_term_, term_entries_, term_begin_;
-  std::vector<int> terms_head_, terms_next_;      // per column: terms whose first position it is
+  std::vector<int> terms_head_, terms_next_;        // per column: terms whose first position it is
   std::vector<int> children_head_, children_next_;  // per column: columns whose parent it is
   std::vector<int> column_begin_, column_entries_, parent_, stamp_;
   std::vector<Group> groups_;

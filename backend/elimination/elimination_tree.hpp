@@ -5,14 +5,14 @@
 #include <span>
 #include <vector>
 
-#include "backend/graph/block_pool.hpp"
 #include "backend/elimination/elimination_pattern.hpp"
+#include "backend/graph/block_pool.hpp"
 #include "backend/graph/factor_graph.hpp"
 
 namespace motorcade {
 
-/// A group of variables that are eliminated together: p(frontals | separator) in square-root form. Matrices are column-major, their leading
-/// dimensions padded to a multiple of 4.
+/// A group of variables that are eliminated together: p(frontals | separator) in square-root form. Matrices are
+/// column-major, their leading dimensions padded to a multiple of 4.
 struct Clique {
   int parent = -1, first_child = -1, next_sibling = -1, previous_sibling = -1;
   std::vector<VariableId> variables;  // frontals, then the separator
@@ -27,19 +27,26 @@ struct Clique {
   double *remainder = nullptr, *carry = nullptr;
   bool alive = false;
 
-  std::span<const VariableId> frontalVariables() const { return {variables.data(), static_cast<std::size_t>(frontals)}; }
-  std::span<const VariableId> separator() const { return std::span(variables).subspan(static_cast<std::size_t>(frontals)); }
+  std::span<const VariableId> frontalVariables() const {
+    return {variables.data(), static_cast<std::size_t>(frontals)};
+  }
+  std::span<const VariableId> separator() const {
+    return std::span(variables).subspan(static_cast<std::size_t>(frontals));
+  }
   int separatorSize() const { return size - frontal_size; }
   int panelStride() const { return (size + 1 + 3) / 4 * 4; }
   /// Such that [row] is the entry of the column, from the diagonal on.
-  const double* remainderColumn(int j) const { return remainder + std::ptrdiff_t{j} * (2 * separatorSize() - j - 1) / 2; }
+  const double* remainderColumn(int j) const {
+    return remainder + std::ptrdiff_t{j} * (2 * separatorSize() - j - 1) / 2;
+  }
 };
 
-/// Which variables to eliminate, in which order. The roots that result hang below `parent`, in whose clique the `boundary` lies.
+/// Which variables to eliminate, in which order. The roots that result hang below `parent`, in whose clique the
+/// `boundary` lies.
 struct Elimination {
   std::span<const VariableId> order, boundary;
   std::span<const FactorId> factors;  // each with a variable in `order`, all in `order` and `boundary`
-  std::span<const int> orphans;       // cliques whose separators lie in `order` and `boundary`, with a variable in `order`
+  std::span<const int> orphans;  // cliques whose separators lie in `order` and `boundary`, with a variable in `order`
   int parent = -1;
   bool renumber = true;  // false: the variables keep their places in the order of the whole
 };
@@ -50,13 +57,13 @@ struct SingularScalar {
   int component = 0;
 };
 
-/// R as a tree of cliques (the Bayes tree of Kaess et al. 2012): new information touches only the cliques from where it enters up to the
-/// root. Works on the factors' linear models in `graph`.
+/// R as a tree of cliques (the Bayes tree of Kaess et al. 2012): new information touches only the cliques from where it
+/// enters up to the root. Works on the factors' linear models in `graph`.
 class EliminationTree {
  public:
   explicit EliminationTree(const FactorGraph& graph) : graph_(graph) {}
 
-  const Clique& operator[](int clique) const { return cliques_[static_cast<std::size_t>(clique)]; }
+  const Clique& operator[](int clique) const { return cliques_[clique]; }
   /// The clique that has the variable among its frontals, -1 if none.
   int cliqueOf(VariableId v) const;
   /// The clique that a factor belongs to.
@@ -81,14 +88,16 @@ class EliminationTree {
   void eliminate(const Elimination& problem, std::vector<int>& created);
   /// Eliminates a clique anew, after its children: the linear models of its factors or what its children carry changed.
   void refresh(int clique);
-  /// Adds `change` to the right-hand side of a clique's front, and what that leaves on the separator to `parent_change` (empty: nowhere), in the rows of the
-  /// parent's front.
+  /// Adds `change` to the right-hand side of a clique's front, and what that leaves on the separator to `parent_change`
+  /// (empty: nowhere), in the rows of the parent's front.
   void shiftRightHandSide(int clique, std::span<double> change, std::span<double> parent_change);
 
-  /// [H g; g^T c], lower triangle, that factors leave on `separator` when `eliminated` are eliminated from them alone; the tree stays.
-  Eigen::MatrixXd marginal(std::span<const VariableId> eliminated, std::span<const VariableId> separator, std::span<const FactorId> factors);
+  /// [H g; g^T c], lower triangle, that factors leave on `separator` when `eliminated` are eliminated from them alone;
+  /// the tree stays.
+  Eigen::MatrixXd marginal(std::span<const VariableId> eliminated, std::span<const VariableId> separator,
+                           std::span<const FactorId> factors);
 
-  void addFactor(int owner, FactorId factor) { cliques_[static_cast<std::size_t>(owner)].factors.push_back(factor); }
+  void addFactor(int owner, FactorId factor) { cliques_[owner].factors.push_back(factor); }
   void removeFactor(int owner, FactorId factor);
   /// Hangs an orphan below a clique that holds its whole separator.
   void attach(int orphan, int parent);

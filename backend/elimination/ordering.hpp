@@ -5,8 +5,8 @@
 
 namespace motorcade {
 
-/// An elimination order with little fill for the columns of a sparse matrix: constrained column approximate minimum degree (CCOLAMD).
-/// Add rows, then order. Keeps its memory for the next time.
+/// An elimination order with little fill for the columns of a sparse matrix: constrained column approximate minimum
+/// degree (CCOLAMD). Add rows, then order. Keeps its memory for the next time.
 class Ordering {
  public:
   void begin(int columns);

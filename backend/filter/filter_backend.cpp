@@ -13,8 +13,9 @@ constexpr int kCovarianceFrames = 10;
 constexpr std::size_t kKeptFrames = 64;  // past camera poses, for observations from before a confirmation
 
 ObjectFilter::Params filterParams(const FilterBackend::Params& params) {
-  return {.acceleration = {params.acceleration_along_mps2, params.acceleration_sideways_mps2, params.acceleration_vertical_mps2,
-                           params.acceleration_yaw_radps2, params.acceleration_tilt_radps2},
+  return {.acceleration = {params.acceleration_along_mps2, params.acceleration_sideways_mps2,
+                           params.acceleration_vertical_mps2, params.acceleration_yaw_radps2,
+                           params.acceleration_tilt_radps2},
           .initial_speed_sigma_mps = params.initial_speed_sigma_mps,
           .initial_turn_rate_sigma_radps = params.initial_turn_rate_sigma_radps,
           .adapt_process_noise = params.adapt_process_noise,
@@ -40,7 +41,8 @@ struct FilterBackend::State {
 
   void addCamera(const FrameMeasurements& m) {
     const SE3 T_previous_now = isFinite(m.T_previous_now) ? m.T_previous_now : SE3{};
-    const SE3 T_world_cam = cameras.empty() ? SE3{} : (cameras.rbegin()->second.T_world_cam * T_previous_now).normalized();
+    const SE3 T_world_cam =
+        cameras.empty() ? SE3{} : (cameras.rbegin()->second.T_world_cam * T_previous_now).normalized();
     cameras[m.frame] = {m.stamp, T_world_cam, T_previous_now, m.odometry_covariance};
     if (cameras.size() > kKeptFrames) cameras.erase(cameras.begin());
   }
@@ -64,7 +66,8 @@ struct FilterBackend::State {
     const auto filter = filters.find(seen.track);
     if (filter == filters.end()) {
       if (seen.encounter_covariance.allFinite())
-        filters.emplace(seen.track, ObjectFilter(params, camera->second.stamp, T_world_body, seen.encounter_covariance));
+        filters.emplace(seen.track,
+                        ObjectFilter(params, camera->second.stamp, T_world_body, seen.encounter_covariance));
       return;
     }
     filter->second.predict(camera->second.stamp);
@@ -88,7 +91,9 @@ struct FilterBackend::State {
   }
 };
 
-FilterBackend::FilterBackend(const Params& params) : state_(std::make_unique<State>()) { state_->params = filterParams(params); }
+FilterBackend::FilterBackend(const Params& params) : state_(std::make_unique<State>()) {
+  state_->params = filterParams(params);
+}
 FilterBackend::~FilterBackend() = default;
 
 EstimatesPtr FilterBackend::operator()(const FrameMeasurementsPtr& measurements) {
@@ -104,7 +109,8 @@ EstimatesPtr FilterBackend::operator()(const FrameMeasurementsPtr& measurements)
                       .counters = {}};
   for (const ObjectObservation& seen : m.objects) {
     state_->observe(seen);
-    if (seen.frame == m.frame && state_->filters.contains(seen.track)) estimates.online.objects.push_back(state_->read(seen));
+    if (seen.frame == m.frame && state_->filters.contains(seen.track))
+      estimates.online.objects.push_back(state_->read(seen));
   }
   std::ranges::sort(estimates.online.objects, {}, &ObjectEstimate::track);
   for (const TrackId track : m.ended) state_->filters.erase(track);

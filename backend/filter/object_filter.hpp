@@ -5,8 +5,8 @@
 
 namespace motorcade {
 
-/// Extended Kalman filter of one object: pose in the world and twist in the body's axes, constant but for white noise on acceleration.
-/// The error state is (xi of the pose, right perturbation; change of the twist).
+/// Extended Kalman filter of one object: pose in the world and twist in the body's axes, constant but for white noise
+/// on acceleration. The error state is (xi of the pose, right perturbation; change of the twist).
 class ObjectFilter {
  public:
   struct Params {
@@ -20,8 +20,8 @@ class ObjectFilter {
   ObjectFilter(const Params& params, Timestamp stamp, const SE3& T_world_body, const Matrix6d& covariance);
 
   void predict(Timestamp stamp);
-  /// Returns the innovation's normalised square per dimension, before any robust weight; empty, and nothing changes, when the measurement
-  /// is unusable.
+  /// Returns the innovation's normalized square per dimension, before any robust weight; empty, and nothing changes,
+  /// when the measurement is unusable.
   std::optional<double> correct(const SE3& T_world_body, const Matrix6d& covariance);
 
   const SE3& pose() const { return T_world_body_; }

@@ -21,8 +21,8 @@ std::size_t sizeClass(std::uint32_t lines) {
 
 }  // namespace
 
-/// Lies in the 16 bytes before a block's first line, which are the last ones of the block below it. Behind a chunk's last block lies the
-/// tag of an empty one that is never idle.
+/// Lies in the 16 bytes before a block's first line, which are the last ones of the block below it. Behind a chunk's
+/// last block lies the tag of an empty one that is never idle.
 struct BlockPool::Tag {
   std::uint32_t lines = 0, lines_below = 0;  // of this block and of the one below it; 0: it is the first
   std::uint64_t idle = 0;
@@ -35,13 +35,16 @@ struct BlockPool::Idle {
   Tag& tag() { return *std::launder(reinterpret_cast<Tag*>(begin() - sizeof(Tag))); }
   Idle* above() { return reinterpret_cast<Idle*>(begin() + tag().lines * kLine_bytes); }
   Idle* below() { return reinterpret_cast<Idle*>(begin() - tag().lines_below * kLine_bytes); }
-  void setTag(std::uint32_t lines, std::uint32_t lines_below, bool idle) { new (begin() - sizeof(Tag)) Tag{lines, lines_below, idle}; }
+  void setTag(std::uint32_t lines, std::uint32_t lines_below, bool idle) {
+    new (begin() - sizeof(Tag)) Tag{lines, lines_below, idle};
+  }
 };
 
 void BlockPool::Release::operator()(std::byte* chunk) const { ::operator delete(chunk, kAlignment); }
 
 double* BlockPool::take(std::size_t doubles) {
-  const auto lines = static_cast<std::uint32_t>((doubles * sizeof(double) + sizeof(Tag) + kLine_bytes - 1) / kLine_bytes);
+  const auto lines =
+      static_cast<std::uint32_t>((doubles * sizeof(double) + sizeof(Tag) + kLine_bytes - 1) / kLine_bytes);
   used_bytes_ += lines * kLine_bytes;
   Idle* block = fitting(lines);
   if (block)
@@ -79,8 +82,8 @@ void BlockPool::give(double* data, std::size_t) {
   insert(block, whole.lines);
 }
 
-/// The smallest of the first few of its class that are large enough, else the first of the next class that has any; null when there is
-/// none.
+/// The smallest of the first few of its class that are large enough, else the first of the next class that has any;
+/// null when there is none.
 BlockPool::Idle* BlockPool::fitting(std::uint32_t lines) {
   constexpr int kLooks = 16;
   const std::size_t first = sizeClass(lines);
@@ -90,7 +93,8 @@ BlockPool::Idle* BlockPool::fitting(std::uint32_t lines) {
     if (block->tag().lines >= lines && (!best || block->tag().lines < best->tag().lines)) best = block;
   if (best) return best;
   for (std::size_t c = first + 1; c < kClasses; c = (c / 64 + 1) * 64)
-    if (const std::uint64_t any = any_[c / 64] >> c % 64; any != 0) return idle_[c + static_cast<std::size_t>(std::countr_zero(any))];
+    if (const std::uint64_t any = any_[c / 64] >> c % 64; any != 0)
+      return idle_[c + static_cast<std::size_t>(std::countr_zero(any))];
   return nullptr;
 }
 

@@ -8,12 +8,12 @@
 
 namespace motorcade {
 
-/// Memory for small matrices that come and go, cut from large chunks. Neighbours that come back become one block again, so that what is
-/// held follows the largest demand so far and not the largest of each size: below that the heap is hardly ever asked again. Blocks begin on
-/// a cache line.
+/// Memory for small matrices that come and go, cut from large chunks. Neighbors that come back become one block again,
+/// so that what is held follows the largest demand so far and not the largest of each size: below that the heap is
+/// hardly ever asked again. Blocks begin on a cache line.
 class BlockPool {
  public:
-  /// At least `doubles` numbers, uninitialised.
+  /// At least `doubles` numbers, uninitialized.
   double* take(std::size_t doubles);
   /// Returns a block; `doubles` as when it was taken.
   void give(double* block, std::size_t doubles);

@@ -12,14 +12,16 @@ namespace motorcade {
 /// A term of the least-squares problem over a few variables.
 class Factor {
  public:
-  /// How `linearize` states the quadratic in the stacked deltas of the variables, in a matrix with a last column for the right-hand side.
+  /// How `linearize` states the quadratic in the stacked deltas of the variables, in a matrix with a last column for
+  /// the right-hand side.
   enum class Form {
     kJacobian,     // [J | r], whitened: cost |J delta + r|^2
     kInformation,  // lower triangle of the symmetric [H g; g^T c]: cost delta^T H delta + 2 g^T delta + c
   };
 
   /// `rows` of the matrix that `linearize` fills.
-  Factor(std::vector<VariableId> variables, Form form, int rows) : variables_(std::move(variables)), form_(form), rows_(rows) {}
+  Factor(std::vector<VariableId> variables, Form form, int rows)
+      : variables_(std::move(variables)), form_(form), rows_(rows) {}
   Factor(const Factor&) = delete;
   Factor& operator=(const Factor&) = delete;
   virtual ~Factor() = default;
@@ -28,11 +30,12 @@ class Factor {
   Form form() const { return form_; }
   int rows() const { return rows_; }
 
-  /// At `values`, one per variable in their order, under right perturbations. A robust loss weights the term (iteratively reweighted least
-  /// squares). Fills rows() x (sum of dimensions + 1).
+  /// At `values`, one per variable in their order, under right perturbations. A robust loss weights the term
+  /// (iteratively reweighted least squares). Fills rows() x (sum of dimensions + 1).
   virtual void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const = 0;
 
-  /// Of Form::kJacobian only: the last column of `linearize`, the whitened and weighted residual, without the Jacobian's cost.
+  /// Of Form::kJacobian only: the last column of `linearize`, the whitened and weighted residual, without the
+  /// Jacobian's cost.
   virtual void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const = 0;
 
  private:

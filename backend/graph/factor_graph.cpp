@@ -24,7 +24,7 @@ using Column = Eigen::Map<Eigen::VectorXd>;
 
 SmallVector step(const FactorGraph::Variable& variable) {
   SmallVector d(variable.size);
-  for (int i = 0; i < variable.size; ++i) d[i] = variable.x[static_cast<std::size_t>(i)] - variable.x_applied[static_cast<std::size_t>(i)];
+  for (int i = 0; i < variable.size; ++i) d[i] = variable.x[i] - variable.x_applied[i];
   return d;
 }
 
@@ -34,7 +34,8 @@ VariableId FactorGraph::addVariable(const Value& initial) {
   const VariableId id = takeSlot(free_variables_, variables_);
   Variable& variable = (*this)[id];
   variable.applied_estimate = variable.linearization_point = initial;
-  variable.x = variable.x_spread = variable.x_compared = variable.x_linearized = variable.x_applied = variable.information = {};
+  variable.x = variable.x_spread = variable.x_compared = variable.x_linearized = variable.x_applied =
+      variable.information = {};
   variable.size = dimension(initial);
   variable.alive = true;
   return id;
@@ -84,7 +85,8 @@ void FactorGraph::moveLinearizationPoint(VariableId id) {
 double FactorGraph::turnBetween(const Variable& variable, const Coordinates& from, const Coordinates& to) {
   if (std::holds_alternative<SmallVector>(variable.applied_estimate)) return 0;
   double squared = 0;
-  for (std::size_t i = variable.size == 3 ? 2 : 3; i < static_cast<std::size_t>(variable.size); ++i) squared += (to[i] - from[i]) * (to[i] - from[i]);
+  for (std::size_t i = variable.size == 3 ? 2 : 3; i < static_cast<std::size_t>(variable.size); ++i)
+    squared += (to[i] - from[i]) * (to[i] - from[i]);
   return std::sqrt(squared);
 }
 
@@ -128,12 +130,14 @@ void FactorGraph::turnToWorldAxes(const Factor& factor, Term term) const {
     if (const auto* pose = std::get_if<SE3>(&value)) {
       const Eigen::Matrix3d& R = pose->rotation();
       for (const Eigen::Index k : {at, at + 3}) {
-        for (Eigen::Index i = 0; i < term.rows(); ++i) term.row(i).segment<3>(k) = (term.row(i).segment<3>(k) * R.transpose()).eval();
+        for (Eigen::Index i = 0; i < term.rows(); ++i)
+          term.row(i).segment<3>(k) = (term.row(i).segment<3>(k) * R.transpose()).eval();
         if (both_sides) term.middleRows<3>(k) = (R * term.middleRows<3>(k)).eval();
       }
     } else if (const auto* planar = std::get_if<SE2>(&value)) {
       const Eigen::Matrix2d R = planar->rotation();
-      for (Eigen::Index i = 0; i < term.rows(); ++i) term.row(i).segment<2>(at) = (term.row(i).segment<2>(at) * R.transpose()).eval();
+      for (Eigen::Index i = 0; i < term.rows(); ++i)
+        term.row(i).segment<2>(at) = (term.row(i).segment<2>(at) * R.transpose()).eval();
       if (both_sides) term.middleRows<2>(at) = (R * term.middleRows<2>(at)).eval();
     }
     at += sizeOf(v);
@@ -150,7 +154,8 @@ bool FactorGraph::evaluate(const Factor& factor, Term term) {
     factor.linearize(valuesOf(factor, &Variable::applied_estimate), term);
   }
   turnToWorldAxes(factor, term);
-  return std::isfinite(term.squaredNorm());  // an infinity or NaN anywhere spoils the sum; the elimination needs the squares
+  return std::isfinite(
+      term.squaredNorm());  // an infinity or NaN anywhere spoils the sum; the elimination needs the squares
 }
 
 /// From steps to coordinates: the model's right-hand side at x = 0.
@@ -182,10 +187,9 @@ std::optional<FactorId> FactorGraph::addFactor(std::unique_ptr<const Factor> fac
     Variable& variable = (*this)[v];
     variable.factors.push_back(id);
     for (int i = 0; i < variable.size; ++i, ++at)
-      variable.information[static_cast<std::size_t>(i)] +=
-          factor->form() == Factor::Form::kJacobian ? term.col(at).squaredNorm() : term(at, at);
+      variable.information[i] += factor->form() == Factor::Form::kJacobian ? term.col(at).squaredNorm() : term(at, at);
   }
-  LinearizedFactor& slot = factors_[static_cast<std::size_t>(id.value)];
+  LinearizedFactor& slot = factors_[id.value];
   slot.term = data;
   slot.columns = columns;
   slot.drift = 0;
@@ -198,7 +202,7 @@ std::optional<FactorId> FactorGraph::addFactor(std::unique_ptr<const Factor> fac
 }
 
 void FactorGraph::removeFactor(FactorId id) {
-  auto& slot = factors_[static_cast<std::size_t>(id.value)];
+  auto& slot = factors_[id.value];
   assert(slot.factor);
   for (const VariableId v : slot.factor->variables()) std::erase((*this)[v].factors, id);
   setCost(slot, 0);
@@ -210,7 +214,7 @@ void FactorGraph::removeFactor(FactorId id) {
 }
 
 void FactorGraph::linearize(FactorId id) {
-  auto& slot = factors_[static_cast<std::size_t>(id.value)];
+  auto& slot = factors_[id.value];
   const Factor& factor = *slot.factor;
   matrix_.resize(static_cast<std::size_t>(factor.rows() * slot.columns));
   const Term fresh(matrix_.data(), factor.rows(), slot.columns);
@@ -229,7 +233,7 @@ FactorGraph::Mismatch FactorGraph::mismatch(FactorId id) {
   residual_.resize(static_cast<std::size_t>(factor.rows()));
   Column r(residual_.data(), factor.rows());
   factor.residual(valuesOf(factor, &Variable::applied_estimate), r);
-  setCost(factors_[static_cast<std::size_t>(id.value)], r.squaredNorm());
+  setCost(factors_[id.value], r.squaredNorm());
   const Column x = appliedCoordinates(factor);
   r -= model.col(x.size());
   r.noalias() -= model.leftCols(x.size()) * x;
@@ -245,7 +249,7 @@ FactorGraph::Mismatch FactorGraph::informationMismatch(FactorId id) {
   residual_.assign(static_cast<std::size_t>(n), 0.0);
   Term fresh(matrix_.data(), model.rows(), model.cols());
   if (!evaluate(factor, fresh)) return {.norm = 0, .r = residual_};
-  setCost(factors_[static_cast<std::size_t>(id.value)], costOf(factor, fresh));
+  setCost(factors_[id.value], costOf(factor, fresh));
   Column difference(residual_.data(), n);
   difference = fresh.row(n).head(n) - model.row(n).head(n);
   difference.noalias() -= model.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * appliedCoordinates(factor);
@@ -265,7 +269,8 @@ void FactorGraph::correctResidual(FactorId id, std::span<const double> r) {
 }
 
 double FactorGraph::costOf(const Factor& factor, const Term& term) {
-  return factor.form() == Factor::Form::kJacobian ? term.col(term.cols() - 1).squaredNorm() : term(term.rows() - 1, term.cols() - 1);
+  return factor.form() == Factor::Form::kJacobian ? term.col(term.cols() - 1).squaredNorm()
+                                                  : term(term.rows() - 1, term.cols() - 1);
 }
 
 void FactorGraph::setCost(LinearizedFactor& slot, double cost) {
@@ -275,7 +280,9 @@ void FactorGraph::setCost(LinearizedFactor& slot, double cost) {
   slot.cost = cost;
 }
 
-double FactorGraph::meanSquareResidual() const { return residual_count_ == 0 ? 0 : residual_cost_ / static_cast<double>(residual_count_); }
+double FactorGraph::meanSquareResidual() const {
+  return residual_count_ == 0 ? 0 : residual_cost_ / static_cast<double>(residual_count_);
+}
 
 bool FactorGraph::contains(VariableId id) const {
   return id.value >= 0 && static_cast<std::size_t>(id.value) < variables_.size() && (*this)[id].alive;

@@ -14,13 +14,14 @@ namespace motorcade {
 
 /// The variables and factors of a least-squares problem, and a linear model of each factor.
 ///
-/// Each variable has a coordinate vector x in which all linear models are stated, |J x + r|^2. Where the solver moves x, the estimate follows
-/// by the same step in the world's axes: x adds up the steps of a variable since it was added. No origin has to move when something is
-/// relinearised, so that it touches only the factors concerned, and a model whose residual alone is off can be corrected by a new
-/// right-hand side.
+/// Each variable has a coordinate vector x in which all linear models are stated, |J x + r|^2. Where the solver moves
+/// x, the estimate follows by the same step in the world's axes: x adds up the steps of a variable since it was added.
+/// No origin has to move when something is relinearized, so that it touches only the factors concerned, and a model
+/// whose residual alone is off can be corrected by a new right-hand side.
 ///
-/// All factors of a variable take their Jacobians at the same linearisation point. Otherwise the motions that no relative measurement sees
-/// (of the whole, as a rigid body) would be seen a little, differently by each factor, and the ends of long trajectories would sway.
+/// All factors of a variable take their Jacobians at the same linearization point. Otherwise the motions that no
+/// relative measurement sees (of the whole, as a rigid body) would be seen a little, differently by each factor, and
+/// the ends of long trajectories would sway.
 class FactorGraph {
  public:
   static constexpr int kMaxDimension = 6;
@@ -29,14 +30,15 @@ class FactorGraph {
   struct Variable {
     int size = 0;
     bool alive = false;
-    Coordinates x{};                  // the solution of the linear system
-    Coordinates x_spread{};           // the one that the cliques below were solved with
-    Coordinates information{};        // diagonal of J^T J of its factors as they came: what a step means in standard deviations
-    Coordinates x_compared{};         // where its factors' models were last compared with the factors
-    Coordinates x_linearized{};       // at the linearisation point
-    Coordinates x_applied{};          // at the applied estimate
-    Value applied_estimate;           // moves up to x before it is used
-    Value linearization_point;        // where the Jacobians of all its factors are taken
+    Coordinates x{};         // the solution of the linear system
+    Coordinates x_spread{};  // the one that the cliques below were solved with
+    Coordinates
+        information{};  // diagonal of J^T J of its factors as they came: what a step means in standard deviations
+    Coordinates x_compared{};    // where its factors' models were last compared with the factors
+    Coordinates x_linearized{};  // at the linearization point
+    Coordinates x_applied{};     // at the applied estimate
+    Value applied_estimate;      // moves up to x before it is used
+    Value linearization_point;   // where the Jacobians of all its factors are taken
     std::vector<FactorId> factors;
   };
   /// [J | r] or [H g; g^T c] in the coordinates, column-major.
@@ -52,18 +54,19 @@ class FactorGraph {
 
   /// Lets the estimate follow x.
   void apply(VariableId id);
-  /// A bound, in standard deviations, of how far the linear models of the variable's factors went off by its steps since they were last
-  /// compared: mismatch comes from turning and grows with turn times step. Infinite for vectors, of whose factors nothing is known.
+  /// A bound, in standard deviations, of how far the linear models of the variable's factors went off by its steps
+  /// since they were last compared: mismatch comes from turning and grows with turn times step. Infinite for vectors,
+  /// of whose factors nothing is known.
   double mismatchBound(VariableId id) const;
   void markCompared(VariableId id) { (*this)[id].x_compared = (*this)[id].x; }
-  /// Applies all x, and begins them at zero again: all models must be linearised anew.
+  /// Applies all x, and begins them at zero again: all models must be linearized anew.
   void restartCoordinates();
-  /// The Jacobians of the variable's factors are to be taken where its estimate stands: linearise them after that.
+  /// The Jacobians of the variable's factors are to be taken where its estimate stands: linearize them after that.
   void moveLinearizationPoint(VariableId id);
   /// How far the estimate has turned since [rad].
   double turnSinceLinearization(VariableId id) const;
-  /// A new linear model: the Jacobian at the linearisation points, the residual at the estimates. Keeps the former one if the new one
-  /// is not finite.
+  /// A new linear model: the Jacobian at the linearization points, the residual at the estimates. Keeps the former one
+  /// if the new one is not finite.
   void linearize(FactorId id);
   /// How far the linear model is off at the estimates, in standard deviations. The vector lasts until the next call.
   struct Mismatch {
@@ -74,14 +77,14 @@ class FactorGraph {
   /// Shifts the model's residual (for Form::kInformation its gradient) by a mismatch; the Jacobian stays.
   void correctResidual(FactorId id, std::span<const double> r);
 
-  const Variable& operator[](VariableId id) const { return variables_[static_cast<std::size_t>(id.value)]; }
-  Variable& operator[](VariableId id) { return variables_[static_cast<std::size_t>(id.value)]; }
+  const Variable& operator[](VariableId id) const { return variables_[id.value]; }
+  Variable& operator[](VariableId id) { return variables_[id.value]; }
   const Factor& factor(FactorId id) const { return *slot(id).factor; }
   Term term(FactorId id) const { return {slot(id).term, slot(id).factor->rows(), slot(id).columns}; }
 
   /// Sum of the mismatches since the Jacobian was taken.
   double drift(FactorId id) const { return slot(id).drift; }
-  void addDrift(FactorId id, double mismatch) { factors_[static_cast<std::size_t>(id.value)].drift += mismatch; }
+  void addDrift(FactorId id, double mismatch) { factors_[id.value].drift += mismatch; }
   /// Sum of the factors' squared residuals, each at the estimates when it was last looked at.
   double totalCost() const { return total_cost_; }
   /// Over the factors with residuals: the cost of a marginal prior counts everything that ever retired into it.
@@ -108,7 +111,7 @@ class FactorGraph {
     int columns = 0;
     double drift = 0, cost = 0;
   };
-  const LinearizedFactor& slot(FactorId id) const { return factors_[static_cast<std::size_t>(id.value)]; }
+  const LinearizedFactor& slot(FactorId id) const { return factors_[id.value]; }
   void apply(const Factor& factor);
   static double turnBetween(const Variable& variable, const Coordinates& from, const Coordinates& to);
   std::span<const Value* const> valuesOf(const Factor& factor, Value Variable::*member);
@@ -127,7 +130,7 @@ class FactorGraph {
   BlockPool terms_;
   double total_cost_ = 0, residual_cost_ = 0;
   std::int64_t residual_count_ = 0;
-  std::vector<const Value*> values_;           // scratch
+  std::vector<const Value*> values_;  // scratch
   // Aligned: how Eigen sums up depends on where the memory lies, and results must not.
   std::vector<double, Eigen::aligned_allocator<double>> coordinates_, residual_, matrix_;  // scratch
 };

@@ -42,8 +42,11 @@ void moveBlock(Eigen::Ref<Eigen::MatrixXd> term, Eigen::Index at, const Eigen::M
 
 }  // namespace
 
-MarginalFactor::MarginalFactor(std::vector<VariableId> variables, std::vector<Value> values, Eigen::MatrixXd information)
-    : Factor(std::move(variables), Form::kInformation, static_cast<int>(information.rows())), values_(std::move(values)), information_(std::move(information)) {
+MarginalFactor::MarginalFactor(std::vector<VariableId> variables, std::vector<Value> values,
+                               Eigen::MatrixXd information)
+    : Factor(std::move(variables), Form::kInformation, static_cast<int>(information.rows())),
+      values_(std::move(values)),
+      information_(std::move(information)) {
   information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
 }
 
@@ -68,7 +71,8 @@ void MarginalFactor::linearize(std::span<const Value* const> values, Eigen::Ref<
   at = 0;
   std::size_t k = 0;
   for (const Value& value : values_) {
-    if (const auto* pose = std::get_if<SE3>(values[k])) moveBlock<6>(term, at, stepJacobian(*pose, e.segment<3>(at + 3)));
+    if (const auto* pose = std::get_if<SE3>(values[k]))
+      moveBlock<6>(term, at, stepJacobian(*pose, e.segment<3>(at + 3)));
     if (const auto* pose = std::get_if<SE2>(values[k])) moveBlock<3>(term, at, stepJacobian(*pose));
     ++k;
     at += dimension(value);

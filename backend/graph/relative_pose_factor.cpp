@@ -24,7 +24,8 @@ double wrapped(double angle_rad) {
   return angle_rad - kTurn_rad * std::nearbyint(angle_rad / kTurn_rad);
 }
 
-/// Log(R) with what its inverse right Jacobian needs: Jr^-1 = I + [phi]_x / 2 + k [phi]_x^2, k = (1 - (t / 2) cot(t / 2)) / t^2.
+/// Log(R) with what its inverse right Jacobian needs: Jr^-1 = I + [phi]_x / 2 + k [phi]_x^2, k = (1 - (t / 2) cot(t /
+/// 2)) / t^2.
 struct RotationLog {
   Eigen::Vector3d phi_rad;
   double k;
@@ -100,7 +101,8 @@ void RelativePoseFactorSE3::residual(std::span<const Value* const> values, Eigen
   r.tail<3>().noalias() = C_ * log.phi_rad;
 }
 
-RelativePoseFactorSE2::RelativePoseFactorSE2(VariableId i, VariableId j, const SE2& Z_i_j, const Eigen::Matrix3d& information)
+RelativePoseFactorSE2::RelativePoseFactorSE2(VariableId i, VariableId j, const SE2& Z_i_j,
+                                             const Eigen::Matrix3d& information)
     : Factor({i, j}, Form::kJacobian, 3), tz_m_(Z_i_j.translation()), angle_z_rad_(Z_i_j.angle_rad()) {
   const Eigen::Matrix3d S = upperRoot<3>(information);
   A_RzT_ = S.topLeftCorner<2, 2>() * Z_i_j.rotation().transpose();

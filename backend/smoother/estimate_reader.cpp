@@ -24,7 +24,8 @@ void EstimateReader::refreshCovariances(FrameId frame) {
 }
 
 std::optional<Matrix6d> EstimateReader::cameraCovariance(FrameId frame) const {
-  const auto now = graph_.frames().find(frame), before = graph_.frames().find(FrameId{frame.value - params_.camera_covariance_frames});
+  const auto now = graph_.frames().find(frame),
+             before = graph_.frames().find(FrameId{frame.value - params_.camera_covariance_frames});
   if (before == graph_.frames().end()) return std::nullopt;
   const std::array variables{before->second.x, now->second.x};
   const auto joint = graph_.solver().jointCovariance(variables);
@@ -39,7 +40,7 @@ std::optional<Matrix6d> EstimateReader::cameraCovariance(FrameId frame) const {
 void EstimateReader::refreshObject(const ObjectTrack& track, ObjectRecord& record) const {
   const IncrementalSolver& solver = graph_.solver();
   const VariableId x = graph_.frames().at(record.seen.frame).x;
-  // The neighbour in time, for the speed.
+  // The neighbor in time, for the speed.
   const ObjectRecord* other = nullptr;
   const auto at = track.records.find(record.seen.frame);
   if (at != track.records.begin() && std::prev(at)->second.z.valid())
@@ -65,9 +66,11 @@ void EstimateReader::refreshObject(const ObjectTrack& track, ObjectRecord& recor
   const Matrix6d J_now = rightJacobianInverseSE3(step);
   Eigen::Matrix<double, 6, 12> J_step;
   J_step << J_now, -J_now * T_other_now.inverse().adjoint();
-  const Eigen::Matrix3d variance = (J_step * joint->bottomRightCorner<12, 12>() * J_step.transpose()).topLeftCorner<3, 3>();
+  const Eigen::Matrix3d variance =
+      (J_step * joint->bottomRightCorner<12, 12>() * J_step.transpose()).topLeftCorner<3, 3>();
   const double dt_s = std::abs(secondsBetween(other->stamp, record.stamp)), length_m = step.head<3>().norm();
-  const Eigen::Vector3d direction = length_m > 1e-9 ? Eigen::Vector3d(step.head<3>() / length_m) : Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d direction =
+      length_m > 1e-9 ? Eigen::Vector3d(step.head<3>() / length_m) : Eigen::Vector3d::UnitX();
   if (dt_s > 0) record.speed_sigma_mps = std::sqrt(direction.dot(variance * direction)) / dt_s;
 }
 
@@ -111,7 +114,8 @@ Eigen::Vector3d EstimateReader::velocity(const ObjectTrack& track, FrameId frame
   };
   if (now != track.records.begin()) add(std::prev(now), now);
   if (std::next(now) != track.records.end()) add(now, std::next(now));
-  if (count == 0) return graph_.solver().pose(graph_.frames().at(frame).x).rotation() * now->second.seen.velocity_cam_mps;
+  if (count == 0)
+    return graph_.solver().pose(graph_.frames().at(frame).x).rotation() * now->second.seen.velocity_cam_mps;
   return T_world_body.rotation() * sum.head<3>() / count;
 }
 

@@ -4,9 +4,10 @@
 
 /// The factors of multibody VSLAM (Reddy et al. 2016, section V; anchors after Kim et al. 2010).
 ///
-/// The paper prints the residuals of equations 3 and 4 as f(z_{i-1}, v_i) - z_{i-1} and h(z_{i'}, e) - z_{i'}: both compare a
-/// prediction with the pose it was made from. They are meant as f(z_{i-1}, v_i) - z_i and h(z_{i'}, e) - z_i, and read so here, with the
-/// difference of two poses as log(predicted^-1 * actual). A measured pose M = true * exp(n), n ~ (0, covariance) in all of them.
+/// The paper prints the residuals of equations 3 and 4 as f(z_{i-1}, v_i) - z_{i-1} and h(z_{i'}, e) - z_{i'}: both
+/// compare a prediction with the pose it was made from. They are meant as f(z_{i-1}, v_i) - z_i and h(z_{i'}, e) - z_i,
+/// and read so here, with the difference of two poses as log(predicted^-1 * actual). A measured pose M = true * exp(n),
+/// n ~ (0, covariance) in all of them.
 namespace motorcade {
 
 /// r = log(mean^-1 * T)
@@ -17,7 +18,8 @@ struct PriorModel {
 };
 using PriorFactor = PoseFactor<PriorModel, 1>;
 
-/// Odometry between successive camera poses, x_i = x_{i-1} u_i, and motion between successive object poses, z_i = z_{i-1} v_i:
+/// Odometry between successive camera poses, x_i = x_{i-1} u_i, and motion between successive object poses, z_i =
+/// z_{i-1} v_i:
 ///   r = log(motion^-1 * T_before^-1 * T_now)
 struct MotionModel {
   SE3 motion;  // T_before_now
@@ -60,13 +62,14 @@ struct AccelerationNoise {
   Vector6d density() const;
 };
 
-/// White noise on acceleration of density q makes the mean velocities of two adjacent intervals differ by q (dt1 + dt2) / 3, but such
-/// differences are correlated from one to the next (1/4); q (dt1 + dt2) / 2, independent, has the right variance over many intervals.
+/// White noise on acceleration of density q makes the mean velocities of two adjacent intervals differ by q (dt1 + dt2)
+/// / 3, but such differences are correlated from one to the next (1/4); q (dt1 + dt2) / 2, independent, has the right
+/// variance over many intervals.
 PoseNoise smoothMotionNoise(const AccelerationNoise& acceleration, double dt_before_s, double dt_after_s);
 
-/// How much wider a measurement's variance is to be taken when it is one of a series, dt apart, whose errors die out as exp(-t / time):
-/// the mean of n has (1 + rho) / (1 - rho) times the variance of the mean of n independent ones, rho = exp(-dt / time) (Priestley, Spectral
-/// analysis and time series, 1981, section 5.3.2).
+/// How much wider a measurement's variance is to be taken when it is one of a series, dt apart, whose errors die out as
+/// exp(-t / time): the mean of n has (1 + rho) / (1 - rho) times the variance of the mean of n independent ones, rho =
+/// exp(-dt / time) (Priestley, Spectral analysis and time series, 1981, section 5.3.2).
 double correlatedSeriesInflation(double dt_s, double correlation_time_s);
 
 }  // namespace motorcade

@@ -12,13 +12,15 @@ namespace motorcade {
 using ObjectPair = std::pair<std::size_t, std::size_t>;
 
 /// Nearest pairs first, no object with more than `max_partners`.
-std::vector<ObjectPair> nearestPairs(std::span<const ObjectObservation* const> observations, double max_distance_m, int max_partners);
+std::vector<ObjectPair> nearestPairs(std::span<const ObjectObservation* const> observations, double max_distance_m,
+                                     int max_partners);
 
 /// T_m_n from two poses seen by one camera, and its covariance (right perturbation) from theirs, scaled.
 struct RelativePose {
   SE3 T_m_n;
   Matrix6d covariance;
 };
-RelativePose relativePose(const ObjectObservation& m, const ObjectObservation& n, double variance_scale_m, double variance_scale_n);
+RelativePose relativePose(const ObjectObservation& m, const ObjectObservation& n, double variance_scale_m,
+                          double variance_scale_n);
 
 }  // namespace motorcade

@@ -9,8 +9,9 @@
 namespace motorcade {
 namespace {
 
-/// Poses of objects as they are published. Each sighting corrects the whole track; published as it is, a correction would look like a
-/// motion of the object. So the published pose moves as the object is found to have moved since, and corrections come in little by little.
+/// Poses of objects as they are published. Each observation corrects the whole track; published as it is, a correction
+/// would look like a motion of the object. So the published pose moves as the object is found to have moved since, and
+/// corrections come in little by little.
 class ContinuousPoses {
  public:
   explicit ContinuousPoses(double correction_s) : correction_s_(correction_s) {}
@@ -33,9 +34,11 @@ class ContinuousPoses {
     SE3 T_world_body;
   };
 
-  SE3 continued(const Published& last, const ObjectEstimate& object, const FrameEstimate& online, const TrajectoryGraph& graph) const {
+  SE3 continued(const Published& last, const ObjectEstimate& object, const FrameEstimate& online,
+                const TrajectoryGraph& graph) const {
     const ObjectTrack& track = graph.tracks().at(object.track);
-    if (!(correction_s_ > 0) || !track.records.contains(last.frame) || !graph.frames().contains(last.frame)) return object.T_world_body;
+    if (!(correction_s_ > 0) || !track.records.contains(last.frame) || !graph.frames().contains(last.frame))
+      return object.T_world_body;
     const SE3 predicted = object.T_world_body * graph.objectPose(track, last.frame).inverse() * last.T_world_body;
     const double share = 1 - std::exp(-secondsBetween(last.stamp, online.stamp) / correction_s_);
     return (predicted * SE3::exp(share * (predicted.inverse() * object.T_world_body).log())).normalized();
@@ -96,11 +99,37 @@ class Optimizer::Smoother {
   ContinuousPoses continuous_;
 };
 
-Optimizer::Optimizer(const Params& params) : smoother_(std::make_unique<Smoother>(params)) {}
+Optimizer::Optimizer(const Params& params) : smoother_(std::make_unique<Smoother>(requireValid(params))) {}
 Optimizer::~Optimizer() = default;
 
 EstimatesPtr Optimizer::operator()(const FrameMeasurementsPtr& measurements) { return smoother_->add(*measurements); }
 
 std::vector<FrameEstimate> Optimizer::finish() { return smoother_->finish(); }
+
+std::vector<Parameter> parametersOf(Optimizer::Params& params) {
+  using Policy = Optimizer::RelinearizationPolicy;
+  return {
+      numberParameter("window_frames", params.window_frames, {0, 1e6},
+                      "a frame is final when it leaves the window: longer is more exact, shorter comes earlier; 0 "
+                      "keeps everything"),
+      choiceParameter<Policy>("relinearization", params.policy, {{"every", Policy::kEveryN}, {"fluid", Policy::kFluid}},
+                              "fluid relinearizes what is off; every N updates is the paper's way"),
+      numberParameter("relinearize_every_updates", params.relinearize_every_updates, {1, 10000},
+                      "of \"every\": fewer updates are more exact, more are faster"),
+      numberParameter("budget_scalars", params.budget_scalars, {0, 1e6},
+                      "bounds the work of an update, which then costs exactness for some updates; 0 sets no bound"),
+      numberParameter("budget_ms", params.budget_ms, {0, 1000}, "the same in time, only with --live; 0 sets no bound"),
+      switchParameter("compute_covariances", params.compute_covariances, "off saves time where nobody reads them"),
+      numberParameter("online_correction_s", params.online_correction_s, {0, 10},
+                      "longer is smoother online, shorter follows corrections sooner; 0 publishes poses as estimated"),
+      switchParameter("factors.use_motion", params.use_motion, "motion of an object between successive frames"),
+      switchParameter("factors.use_smoothness", params.use_smoothness, "vehicles keep their velocity"),
+      switchParameter("factors.use_camera_encounter", params.use_camera_encounter,
+                      "poses of objects seen from the camera"),
+      switchParameter("factors.use_object_encounter", params.use_object_encounter,
+                      "poses of objects relative to each other"),
+      numberParameter("factors.object_correlation_s", params.object_correlation_s, {0, 30},
+                      "how long an error of an object's points lasts: longer is smoother, shorter follows maneuvers")};
+}
 
 }  // namespace motorcade

@@ -1,18 +1,20 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "backend/backend.hpp"
+#include "core/parameters.hpp"
 #include "core/robust_loss.hpp"
 
 namespace motorcade {
 
-/// The smoother: one pose graph for the camera and one per object, joined by anchors (Kim et al. 2010), solved incrementally.
-/// An object that the system cannot determine is dropped, and the camera goes on.
+/// The smoother: one pose graph for the camera and one per object, joined by anchors (Kim et al. 2010), solved
+/// incrementally. An object that the system cannot determine is dropped, and the camera goes on.
 class Optimizer final : public Backend {
  public:
   enum class RelinearizationPolicy {
-    kEveryN,  // reorder and relinearise everything every `relinearize_every_updates` (the paper)
+    kEveryN,  // reorder and relinearize everything every `relinearize_every_updates` (the paper)
     kFluid,   // correct the linear models that are off, in each update
   };
   struct Params {
@@ -24,11 +26,13 @@ class Optimizer final : public Backend {
     /// Losses act on whitened residual norms of six dimensions.
     RobustLoss encounter_loss = RobustLoss::kHuber, motion_loss = RobustLoss::kHuber;
     double encounter_loss_scale = 4.5, motion_loss_scale = 4.5;
-    /// Factors on the variances of the front-end's covariances: 1 takes them as they are. Odometry of successive frames reuses points, so
-    /// that its errors add up to more than their variances; 1.5 makes ten frames' motion consistent on rendered scenes.
+    /// Factors on the variances of the front-end's covariances: 1 takes them as they are. Odometry of successive frames
+    /// reuses points, so that its errors add up to more than their variances; 1.5 makes ten frames' motion consistent
+    /// on rendered scenes.
     double odometry_variance_scale = 1.5, encounter_variance_scale = 1.0, motion_variance_scale = 1.0;
-    /// An object's points measure it again and again with the errors of their places on the body: time for which an error lasts in
-    /// encounters and motions. Each counts as the share of an independent measurement that it is; 0 takes all as independent.
+    /// An object's points measure it again and again with the errors of their places on the body: time for which an
+    /// error lasts in encounters and motions. Each counts as the share of an independent measurement that it is; 0
+    /// takes all as independent.
     double object_correlation_s = 3.0;
 
     /// Gauge of the camera's and of each object's graph, and the weak prior of an anchor.
@@ -40,12 +44,13 @@ class Optimizer final : public Backend {
     double acceleration_along_mps2 = 1.5, acceleration_sideways_mps2 = 0.5, acceleration_vertical_mps2 = 0.3;
     double acceleration_yaw_radps2 = 0.07, acceleration_tilt_radps2 = 0.03;
 
-    /// Share of two camera encounters' information that goes to the encounter of the two objects, and which pairs get one.
+    /// Share of two camera encounters' information that goes to the encounter of the two objects, and which pairs get
+    /// one.
     double object_encounter_share = 0.2, object_encounter_distance_m = 15.0;
     int object_encounter_partners = 1;
 
-    /// Published online, an object's pose moves as the object does, and corrections of its whole track come in over this time: they would
-    /// look like motion. 0 publishes each pose as it is estimated.
+    /// Published online, an object's pose moves as the object does, and corrections of its whole track come in over
+    /// this time: they would look like motion. 0 publishes each pose as it is estimated.
     double online_correction_s = 0.5;
 
     RelinearizationPolicy policy = RelinearizationPolicy::kFluid;
@@ -57,7 +62,7 @@ class Optimizer final : public Backend {
     int final_iterations = 10;  // at most, in finish()
 
     int camera_covariance_frames = 10;  // the camera's covariance is relative to that many frames earlier
-    int covariance_lag_frames = 5;      // final covariances are taken that many frames later; what comes after adds little
+    int covariance_lag_frames = 5;  // final covariances are taken that many frames later; what comes after adds little
     bool compute_covariances = true;
   };
 
@@ -71,5 +76,7 @@ class Optimizer final : public Backend {
   class Smoother;
   std::unique_ptr<Smoother> smoother_;
 };
+
+std::vector<Parameter> parametersOf(Optimizer::Params& params);
 
 }  // namespace motorcade

@@ -24,7 +24,8 @@ IncrementalSolver::Params solverParams(const Optimizer::Params& params) {
           .mismatch_tolerance = params.mismatch_tolerance,
           .jacobian_drift_sigmas = params.jacobian_drift_sigmas,
           .substitution_tolerance = params.substitution_tolerance,
-          // No allowances: a window costs little, and objects that little ties down sway when only part of them is relinearised.
+          // No allowances: a window costs little, and objects that little ties down sway when only part of them is
+          // relinearized.
           .urgent_flops = std::numeric_limits<double>::infinity(),
           .polish_flops = std::numeric_limits<double>::infinity(),
           .iterations_per_update = params.iterations_per_update,
@@ -46,8 +47,8 @@ constexpr double kUsualInterval_s = 0.1;                            // between f
 
 TrajectoryGraph::TrajectoryGraph(const Optimizer::Params& params)
     : params_(params),
-      acceleration_{params.acceleration_along_mps2, params.acceleration_sideways_mps2, params.acceleration_vertical_mps2,
-                    params.acceleration_yaw_radps2, params.acceleration_tilt_radps2},
+      acceleration_{params.acceleration_along_mps2, params.acceleration_sideways_mps2,
+                    params.acceleration_vertical_mps2, params.acceleration_yaw_radps2, params.acceleration_tilt_radps2},
       series_inflation_(correlatedSeriesInflation(kUsualInterval_s, params.object_correlation_s)),
       solver_(solverParams(params)) {}
 
@@ -56,7 +57,8 @@ void TrajectoryGraph::add(const FrameMeasurements& measurements) {
   addCamera(measurements);
   std::vector<const ObjectObservation*> seen_now;
   for (const ObjectObservation& seen : measurements.objects)
-    if (seen.frame == measurements.frame && seen.state != ObjectState::kPredicted && isFinite(seen.T_cam_body)) seen_now.push_back(&seen);
+    if (seen.frame == measurements.frame && seen.state != ObjectState::kPredicted && isFinite(seen.T_cam_body))
+      seen_now.push_back(&seen);
   std::vector<ObjectPair> pairs;
   if (params_.use_object_encounter && params_.use_camera_encounter)
     pairs = nearestPairs(seen_now, params_.object_encounter_distance_m, params_.object_encounter_partners);
@@ -98,7 +100,8 @@ void TrajectoryGraph::addCamera(const FrameMeasurements& measurements) {
       noise.sqrt_information = *root;
     else
       problems_.push_back("the camera's motion or its covariance is unusable: taken as " +
-                          std::string(isFinite(measurements.T_previous_now) ? "measured" : "standing still") + ", and next to unknown");
+                          std::string(isFinite(measurements.T_previous_now) ? "measured" : "standing still") +
+                          ", and next to unknown");
     solver_.addFactor(std::make_unique<MotionFactor>(std::array{before, record.x}, MotionModel{T_previous_now}, noise));
   }
   if (!frames_.empty()) {
@@ -117,7 +120,8 @@ void TrajectoryGraph::startTrack(ObjectTrack& track, const SE3& T_world_body) {
 SE3 TrajectoryGraph::predictedPose(const ObjectTrack& track, const ObjectObservation& seen) const {
   if (seen.motion && params_.use_motion && isFinite(seen.motion->T_before_now)) {
     const auto before = track.records.find(seen.motion->since);
-    if (before != track.records.end() && before->second.z.valid()) return solver_.pose(before->second.z) * seen.motion->T_before_now;
+    if (before != track.records.end() && before->second.z.valid())
+      return solver_.pose(before->second.z) * seen.motion->T_before_now;
   }
   return solver_.pose(track.anchor).inverse() * solver_.pose(frames_.at(seen.frame).x) * seen.T_cam_body;
 }
@@ -164,44 +168,56 @@ bool TrajectoryGraph::addMotion(const ObjectTrack& track, const ObjectRecord& re
     leftOut(record.seen, "its motion, whose covariance is not positive definite,");
     return false;
   }
-  const PoseNoise noise{.sqrt_information = *root, .loss = params_.motion_loss, .loss_scale = params_.motion_loss_scale};
+  const PoseNoise noise{
+      .sqrt_information = *root, .loss = params_.motion_loss, .loss_scale = params_.motion_loss_scale};
   const std::array variables{before->second.z, record.z};
-  return solver_.addFactor(std::make_unique<MotionFactor>(variables, MotionModel{motion.T_before_now}, noise)).has_value();
+  return solver_.addFactor(std::make_unique<MotionFactor>(variables, MotionModel{motion.T_before_now}, noise))
+      .has_value();
 }
 
 bool TrajectoryGraph::addSmoothness(const ObjectTrack& track, FrameId frame) {
   // The two poses before, as far as they are in the graph.
   std::vector<const ObjectRecord*> last;
-  for (auto it = std::make_reverse_iterator(track.records.upper_bound(frame)); it != track.records.rend() && last.size() < 3; ++it)
+  for (auto it = std::make_reverse_iterator(track.records.upper_bound(frame));
+       it != track.records.rend() && last.size() < 3; ++it)
     if (it->second.z.valid()) last.push_back(&it->second);
   if (last.size() < 3) return false;
-  const double dt_before_s = secondsBetween(last[2]->stamp, last[1]->stamp), dt_after_s = secondsBetween(last[1]->stamp, last[0]->stamp);
+  const double dt_before_s = secondsBetween(last[2]->stamp, last[1]->stamp),
+               dt_after_s = secondsBetween(last[1]->stamp, last[0]->stamp);
   if (!(dt_before_s > 0) || !(dt_after_s > 0)) return false;
   const std::array variables{last[2]->z, last[1]->z, last[0]->z};
   const PoseNoise noise = smoothMotionNoise(acceleration_, dt_before_s, dt_after_s);
-  return solver_.addFactor(std::make_unique<SmoothMotionFactor>(variables, SmoothMotionModel{dt_before_s, dt_after_s}, noise)).has_value();
+  return solver_
+      .addFactor(std::make_unique<SmoothMotionFactor>(variables, SmoothMotionModel{dt_before_s, dt_after_s}, noise))
+      .has_value();
 }
 
 bool TrajectoryGraph::addCameraEncounter(const ObjectTrack& track, const ObjectRecord& record, double share) {
-  const auto root = squareRootInformation(series_inflation_ * params_.encounter_variance_scale / share * record.seen.encounter_covariance);
+  const auto root = squareRootInformation(series_inflation_ * params_.encounter_variance_scale / share *
+                                          record.seen.encounter_covariance);
   if (!root) {
     leftOut(record.seen, "its pose, whose covariance is not positive definite,");
     return false;
   }
-  const PoseNoise noise{.sqrt_information = *root, .loss = params_.encounter_loss, .loss_scale = params_.encounter_loss_scale};
+  const PoseNoise noise{
+      .sqrt_information = *root, .loss = params_.encounter_loss, .loss_scale = params_.encounter_loss_scale};
   const std::array variables{frames_.at(record.seen.frame).x, track.anchor, record.z};
-  return solver_.addFactor(std::make_unique<CameraEncounterFactor>(variables, CameraEncounterModel{record.seen.T_cam_body}, noise))
+  return solver_
+      .addFactor(
+          std::make_unique<CameraEncounterFactor>(variables, CameraEncounterModel{record.seen.T_cam_body}, noise))
       .has_value();
 }
 
-void TrajectoryGraph::addObjectEncounter(const ObjectObservation& m, const ObjectObservation& n, double share_m, double share_n) {
+void TrajectoryGraph::addObjectEncounter(const ObjectObservation& m, const ObjectObservation& n, double share_m,
+                                         double share_n) {
   const ObjectTrack &track_m = tracks_.at(m.track), &track_n = tracks_.at(n.track);
   const VariableId z_m = track_m.records.at(m.frame).z, z_n = track_n.records.at(n.frame).z;
   const double scale = series_inflation_ * params_.encounter_variance_scale;
   const RelativePose relative = relativePose(m, n, scale / share_m, scale / share_n);
   const auto root = squareRootInformation(relative.covariance);
   if (!root || !z_m.valid() || !z_n.valid()) return;
-  const PoseNoise noise{.sqrt_information = *root, .loss = params_.encounter_loss, .loss_scale = params_.encounter_loss_scale};
+  const PoseNoise noise{
+      .sqrt_information = *root, .loss = params_.encounter_loss, .loss_scale = params_.encounter_loss_scale};
   const std::array variables{track_m.anchor, z_m, track_n.anchor, z_n};
   solver_.addFactor(std::make_unique<ObjectEncounterFactor>(variables, ObjectEncounterModel{relative.T_m_n}, noise));
 }
@@ -214,8 +230,8 @@ SE3 TrajectoryGraph::objectPose(const ObjectTrack& track, FrameId frame) const {
 }
 
 void TrajectoryGraph::leftOut(const ObjectObservation& seen, const std::string& what) {
-  problems_.push_back("object " + std::to_string(seen.track.value) + ", frame " + std::to_string(seen.frame.value) + ": " + what +
-                      " is left out");
+  problems_.push_back("object " + std::to_string(seen.track.value) + ", frame " + std::to_string(seen.frame.value) +
+                      ": " + what + " is left out");
 }
 
 std::vector<VariableId> TrajectoryGraph::variablesOf(const ObjectTrack& track) const {
@@ -238,7 +254,8 @@ std::string TrajectoryGraph::nameOf(VariableId v) const {
   for (const auto& [id, track] : tracks_) {
     if (track.anchor == v) return "anchor of object " + std::to_string(id.value);
     for (const auto& [frame, record] : track.records)
-      if (record.z == v) return "pose of object " + std::to_string(id.value) + " in frame " + std::to_string(frame.value);
+      if (record.z == v)
+        return "pose of object " + std::to_string(id.value) + " in frame " + std::to_string(frame.value);
   }
   return "a variable that is gone";
 }

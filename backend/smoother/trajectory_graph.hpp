@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "backend/smoother/factors.hpp"
-#include "backend/solver/incremental_solver.hpp"
 #include "backend/smoother/optimizer.hpp"
+#include "backend/solver/incremental_solver.hpp"
 
 namespace motorcade {
 
@@ -35,18 +35,18 @@ struct ObjectTrack {
   std::map<FrameId, ObjectRecord> records;  // of the window, and the last that left it
 };
 
-/// Turns the measurements of frames into variables and factors, and remembers which is which. A pose that no factor would constrain gets a
-/// weak prior on its initial value, so that any combination of switches can be solved.
+/// Turns the measurements of frames into variables and factors, and remembers which is which. A pose that no factor
+/// would constrain gets a weak prior on its initial value, so that any combination of switches can be solved.
 class TrajectoryGraph {
  public:
   explicit TrajectoryGraph(const Optimizer::Params& params);
 
-  /// Adds a frame with its objects, and updates the solver. Measurements that are no numbers are left out, and an object that the system
-  /// cannot determine is dropped: it starts anew with its next observation.
+  /// Adds a frame with its objects, and updates the solver. Measurements that are no numbers are left out, and an
+  /// object that the system cannot determine is dropped: it starts anew with its next observation.
   void add(const FrameMeasurements& measurements);
   /// What was left out or dropped in the last `add`, in sentences about camera and objects.
   const std::vector<std::string>& problems() const { return problems_; }
-  /// Marginalises the oldest frame.
+  /// Marginalizes the oldest frame.
   void retireOldest();
   void converge();
 
@@ -62,8 +62,8 @@ class TrajectoryGraph {
  private:
   void addCamera(const FrameMeasurements& measurements);
   void addObservation(const ObjectObservation& seen, double encounter_share);
-  /// An object-object encounter is made from the same two camera encounters, not measured anew. So it takes a share of their information,
-  /// and they keep the rest: what all of them say together is no more than what was measured.
+  /// An object-object encounter is made from the same two camera encounters, not measured anew. So it takes a share of
+  /// their information, and they keep the rest: what all of them say together is no more than what was measured.
   void addObjectEncounter(const ObjectObservation& m, const ObjectObservation& n, double share_m, double share_n);
   void startTrack(ObjectTrack& track, const SE3& T_world_body);
   bool constrain(const ObjectTrack& track, const ObjectRecord& record, double encounter_share);

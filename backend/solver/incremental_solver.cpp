@@ -10,9 +10,6 @@
 namespace motorcade {
 namespace {
 
-std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 constexpr double kPaceShare = 0.1;  // of the newest update in the mean pace
 
 template <class T>
@@ -81,7 +78,8 @@ void IncrementalSolver::beginReport() {
   report_.moved.clear();
   report_.eliminated_scalars = -tree_.eliminatedScalars();
   report_.substituted_scalars = 0;
-  report_.relinearized_variables = report_.relinearized_factors = report_.corrected_factors = report_.deferred_variables = 0;
+  report_.relinearized_variables = report_.relinearized_factors = report_.corrected_factors =
+      report_.deferred_variables = 0;
   report_.largest_change = 0;
   tree_.clearFindings();
   budget_left_ = budget();
@@ -124,7 +122,8 @@ const IncrementalSolver::Report& IncrementalSolver::update() {
     for (int i = 1; i < params_.iterations_per_update && mayIterate(); ++i) step(false);
   }
   endReport();
-  if (params_.budget_ms > 0) notePace(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+  if (params_.budget_ms > 0)
+    notePace(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   return report_;
 }
 
@@ -133,7 +132,8 @@ bool IncrementalSolver::mayIterate() const {
   return !off_.empty() && (params_.iterated_scalars == 0 || report_.substituted_scalars <= params_.iterated_scalars);
 }
 
-/// One Gauss-Newton step: folds in what is new, corrects the models that are off, solves for x, and lets the estimates follow.
+/// One Gauss-Newton step: folds in what is new, corrects the models that are off, solves for x, and lets the estimates
+/// follow.
 void IncrementalSolver::step(bool fold) {
   ++step_;
   work_.resize(tree_.slots(), Work::kNone);
@@ -153,21 +153,21 @@ void IncrementalSolver::step(bool fold) {
 
 /// Marks a clique and all above it.
 void IncrementalSolver::markWork(int clique, Work work) {
-  for (int c = clique; c >= 0 && work_[index(c)] < work; c = tree_[c].parent) {
-    if (work_[index(c)] == Work::kNone) {
+  for (int c = clique; c >= 0 && work_[c] < work; c = tree_[c].parent) {
+    if (work_[c] == Work::kNone) {
       dirty_.push_back(c);
-      change_begin_[index(c)] = changes_.size();
-      if (work == Work::kShift) changes_.resize(changes_.size() + index(tree_[c].size), 0.0);
+      change_begin_[c] = changes_.size();
+      if (work == Work::kShift) changes_.resize(changes_.size() + tree_[c].size, 0.0);
     }
-    work_[index(c)] = work;
+    work_[c] = work;
   }
 }
 
 void IncrementalSolver::markTouched() {
   sortUnique(touched_);
   for (const VariableId v : touched_)
-    for (int c = tree_.cliqueOf(v); c >= 0 && work_[index(c)] != Work::kRemoved; c = tree_[c].parent) {
-      work_[index(c)] = Work::kRemoved;
+    for (int c = tree_.cliqueOf(v); c >= 0 && work_[c] != Work::kRemoved; c = tree_[c].parent) {
+      work_[c] = Work::kRemoved;
       removed_cliques_.push_back(c);
     }
 }
@@ -175,31 +175,34 @@ void IncrementalSolver::markTouched() {
 void IncrementalSolver::workThroughDirtyCliques() {
   std::ranges::sort(dirty_, {}, [&](int c) { return tree_.sequence(c); });
   for (const int c : dirty_) {
-    if (work_[index(c)] == Work::kRefresh) {
+    if (work_[c] == Work::kRefresh) {
       tree_.refresh(c);
     } else {
       const int parent = tree_[c].parent;
-      const bool passed_on = parent >= 0 && work_[index(parent)] == Work::kShift;
+      const bool passed_on = parent >= 0 && work_[parent] == Work::kShift;
       std::span<double> parent_change;
-      if (passed_on) parent_change = {changes_.data() + change_begin_[index(parent)], index(tree_[parent].size)};
-      tree_.shiftRightHandSide(c, {changes_.data() + change_begin_[index(c)], index(tree_[c].size)}, parent_change);
+      if (passed_on)
+        parent_change = {changes_.data() + change_begin_[parent], static_cast<std::size_t>(tree_[parent].size)};
+      tree_.shiftRightHandSide(c, {changes_.data() + change_begin_[c], static_cast<std::size_t>(tree_[c].size)},
+                               parent_change);
     }
   }
 }
 
 void IncrementalSolver::rebuildTop() {
   removed_.clear();
-  for (const int c : removed_cliques_) work_[index(c)] = Work::kNone;
+  for (const int c : removed_cliques_) work_[c] = Work::kNone;
   tree_.remove(removed_cliques_, removed_);
   removed_.variables.insert(removed_.variables.end(), new_variables_.begin(), new_variables_.end());
   removed_.factors.insert(removed_.factors.end(), new_factors_.begin(), new_factors_.end());
   if (removed_.variables.empty()) return;
   const bool reorder = params_.policy == Policy::kFluid;
-  const auto order = reorder ? reordered_(removed_.variables, removed_.factors, removed_.orphans, touched_) : std::span<const VariableId>(removed_.variables);
+  const auto order = reorder ? reordered_(removed_.variables, removed_.factors, removed_.orphans, touched_)
+                             : std::span<const VariableId>(removed_.variables);
   tree_.eliminate({.order = order, .boundary = {}, .factors = removed_.factors, .orphans = removed_.orphans}, created_);
   work_.resize(tree_.slots(), Work::kNone);
   change_begin_.resize(tree_.slots());
-  for (const int c : created_) work_[index(c)] = Work::kNew;
+  for (const int c : created_) work_[c] = Work::kNew;
 }
 
 /// Back-substitution from the roots downwards, as far as anything changed.
@@ -208,16 +211,17 @@ void IncrementalSolver::substitute() {
   moved_in_step_.resize(graph_.slots(), 0);
   open_.clear();
   for (const int root : tree_.roots())
-    if (work_[index(root)] != Work::kNone) open_.push_back(root);
+    if (work_[root] != Work::kNone) open_.push_back(root);
   while (!open_.empty()) {
     const int id = open_.back();
     const Clique& clique = tree_[id];
     open_.pop_back();
-    work_[index(id)] = Work::kNone;
+    work_[id] = Work::kNone;
     solve(clique);
     for (int child = clique.first_child; child >= 0; child = tree_[child].next_sibling) {
-      const bool changed = work_[index(child)] != Work::kNone ||
-                           std::ranges::any_of(tree_[child].separator(), [&](VariableId v) { return moved_in_step_[index(v)] == step_; });
+      const bool changed =
+          work_[child] != Work::kNone ||
+          std::ranges::any_of(tree_[child].separator(), [&](VariableId v) { return moved_in_step_[v.value] == step_; });
       if (changed) open_.push_back(child);
     }
   }
@@ -230,14 +234,15 @@ void IncrementalSolver::solve(const Clique& clique) {
     const auto& x = graph_[v].x;
     x_separator_.insert(x_separator_.end(), x.begin(), x.begin() + graph_.sizeOf(v));
   }
-  x_frontal_.resize(index(clique.frontal_size));
-  backSubstitute(clique.panel, clique.panelStride(), clique.size + 1, clique.frontal_size, x_separator_.data(), x_frontal_.data());
+  x_frontal_.resize(clique.frontal_size);
+  backSubstitute(clique.panel, clique.panelStride(), clique.size + 1, clique.frontal_size, x_separator_.data(),
+                 x_frontal_.data());
   report_.substituted_scalars += clique.frontal_size;
   std::size_t at = 0;
   for (const VariableId v : clique.frontalVariables()) {
     auto& variable = graph_[v];
     double change = 0, sigmas_squared = 0;
-    for (std::size_t i = 0; i < index(variable.size); ++i, ++at) {
+    for (int i = 0; i < variable.size; ++i, ++at) {
       change = std::max(change, std::abs(x_frontal_[at] - variable.x[i]));
       const double step = x_frontal_[at] - variable.x_spread[i];
       sigmas_squared = std::max(sigmas_squared, step * step * variable.information[i]);
@@ -246,18 +251,18 @@ void IncrementalSolver::solve(const Clique& clique) {
     report_.largest_change = std::max(report_.largest_change, change);
     if (sigmas_squared <= spread_sigmas_ * spread_sigmas_) continue;
     variable.x_spread = variable.x;
-    moved_in_step_[index(v)] = step_;
+    moved_in_step_[v.value] = step_;
     moved_.push_back(v);
   }
 }
 
-/// Relinearises and reorders everything.
+/// Relinearizes and reorders everything.
 void IncrementalSolver::batchStep() {
   ++step_;
   graph_.restartCoordinates();
   report_.relinearized_factors += static_cast<int>(graph_.factorCount());
   off_.clear();
-  for (const VariableId v : stale_) staleness_[index(v)] = 0;
+  for (const VariableId v : stale_) staleness_[v.value] = 0;
   stale_.clear();
   removed_cliques_.clear();
   created_.clear();
@@ -270,10 +275,12 @@ void IncrementalSolver::batchStep() {
   const std::vector<FactorId> factors = graph_.factors();
   for (const FactorId f : factors) graph_.linearize(f);
   if (variables.empty()) return;
-  tree_.eliminate({.order = reordered_(variables, factors, {}, touched_), .boundary = {}, .factors = factors, .orphans = {}}, created_);
+  tree_.eliminate(
+      {.order = reordered_(variables, factors, {}, touched_), .boundary = {}, .factors = factors, .orphans = {}},
+      created_);
   work_.resize(tree_.slots(), Work::kNone);
   change_begin_.resize(tree_.slots());
-  for (const int c : created_) work_[index(c)] = Work::kNew;
+  for (const int c : created_) work_[c] = Work::kNew;
   ++counters_.reorderings, ++counters_.batch_solves;
   spread_sigmas_ = 0;
   substitute();

@@ -4,8 +4,8 @@
 
 namespace motorcade {
 
-/// With the information H = L L^T and E the chosen columns of the identity, E^T H^-1 E = Y^T Y, Y = L^-1 E. Forward substitution meets only
-/// the cliques from the chosen variables up to the root; no back-substitution is needed.
+/// With the information H = L L^T and E the chosen columns of the identity, E^T H^-1 E = Y^T Y, Y = L^-1 E. Forward
+/// substitution meets only the cliques from the chosen variables up to the root; no back-substitution is needed.
 std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(std::span<const VariableId> variables) const {
   std::vector<int> start;
   for (const VariableId v : variables) {
@@ -19,14 +19,14 @@ std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(std::span<cons
   int rows = 0, columns = 0;
   for (const int c : path)
     for (const VariableId v : tree_[c].frontalVariables()) {
-      row[static_cast<std::size_t>(v.value)] = rows;
+      row[v.value] = rows;
       rows += graph_.sizeOf(v);
     }
   for (const VariableId v : variables) columns += graph_.sizeOf(v);
   Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(rows, columns);  // right-hand side that is left after the cliques so far
   int column = 0;
   for (const VariableId v : variables) {
-    rest.block(row[static_cast<std::size_t>(v.value)], column, graph_.sizeOf(v), graph_.sizeOf(v)).setIdentity();
+    rest.block(row[v.value], column, graph_.sizeOf(v), graph_.sizeOf(v)).setIdentity();
     column += graph_.sizeOf(v);
   }
 
@@ -35,14 +35,15 @@ std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(std::span<cons
     const Clique& clique = tree_[c];
     if (!clique.singular.empty()) return std::nullopt;
     const int n = clique.frontal_size;
-    const Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>> L(clique.panel, clique.size, n, Eigen::OuterStride<>(clique.panelStride()));
-    auto y = rest.middleRows(row[static_cast<std::size_t>(clique.variables.front().value)], n);
+    const Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>> L(clique.panel, clique.size, n,
+                                                                       Eigen::OuterStride<>(clique.panelStride()));
+    auto y = rest.middleRows(row[clique.variables.front().value], n);
     L.topRows(n).triangularView<Eigen::Lower>().solveInPlace(y);
     covariance.selfadjointView<Eigen::Lower>().rankUpdate(y.transpose());
     const Eigen::MatrixXd passed = L.bottomRows(clique.separatorSize()) * y;
     int at = 0;
     for (const VariableId v : clique.separator()) {
-      rest.middleRows(row[static_cast<std::size_t>(v.value)], graph_.sizeOf(v)) -= passed.middleRows(at, graph_.sizeOf(v));
+      rest.middleRows(row[v.value], graph_.sizeOf(v)) -= passed.middleRows(at, graph_.sizeOf(v));
       at += graph_.sizeOf(v);
     }
   }

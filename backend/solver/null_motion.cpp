@@ -9,10 +9,11 @@
 namespace motorcade {
 namespace {
 
-/// Steps below that, over the largest, are rounding. A turn of one radian that moves the ends of a graph by many kilometres is not.
+/// Steps below that, over the largest, are rounding. A turn of one radian that moves the ends of a graph by many
+/// kilometers is not.
 constexpr double kRoundingOfSteps = 1e-8;
-/// A factor sees a motion when its cost changes by more than that, over what it would change by without cancellation. Rounding leaves the
-/// square of 1e-8 of a Jacobian; an information matrix has been squared already.
+/// A factor sees a motion when its cost changes by more than that, over what it would change by without cancellation.
+/// Rounding leaves the square of 1e-8 of a Jacobian; an information matrix has been squared already.
 constexpr double kUnseenJacobian = 1e-14, kUnseenInformation = 1e-10;
 
 using Steps = std::unordered_map<VariableId, SmallVector>;
@@ -86,7 +87,7 @@ class Descent {
   double largest_ = 0;
 };
 
-/// By how much a factor's cost changes, and by how much it would if nothing cancelled.
+/// By how much a factor's cost changes, and by how much it would if nothing canceled.
 struct Change {
   double cost = 0, without_cancellation = 0;
 };
@@ -102,7 +103,8 @@ Change changeOf(const FactorGraph& graph, FactorId id, const Steps& steps) {
     at += graph.sizeOf(v);
   }
   if (factor.form() == Factor::Form::kJacobian)
-    return {(term.leftCols(n) * x).squaredNorm(), term.leftCols(n).colwise().squaredNorm().dot(x.cwiseAbs2().transpose())};
+    return {(term.leftCols(n) * x).squaredNorm(),
+            term.leftCols(n).colwise().squaredNorm().dot(x.cwiseAbs2().transpose())};
   const auto H = term.topLeftCorner(n, n);
   return {x.dot(H.selfadjointView<Eigen::Lower>() * x), H.diagonal().cwiseAbs().dot(x.cwiseAbs2())};
 }

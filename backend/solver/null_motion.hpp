@@ -11,8 +11,8 @@ struct FrontalScalar {
   int clique = 0, column = 0;
 };
 
-/// How a graph moves along what a scalar's elimination found without information: the scalar by one, those that are eliminated later not at
-/// all, those eliminated earlier so that the cost rises least.
+/// How a graph moves along what a scalar's elimination found without information: the scalar by one, those that are
+/// eliminated later not at all, those eliminated earlier so that the cost rises least.
 struct NullMotion {
   struct Step {
     VariableId variable;
@@ -28,7 +28,8 @@ struct NullMotion {
   Seen seen = Seen::kByNone;
 };
 
-/// Scalars of a clique whose pivots were found singular, or have lost against their diagonal entries by more than `ratio`.
+/// Scalars of a clique whose pivots were found singular, or have lost against their diagonal entries by more than
+/// `ratio`.
 void appendWeakScalars(const EliminationTree& tree, int clique, double ratio, std::vector<FrontalScalar>& found);
 
 /// Costs as much as the part of the tree that moves.

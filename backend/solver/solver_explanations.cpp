@@ -105,7 +105,8 @@ SolverProblem merged(const FactorGraph& graph, Kind kind, const Motions& motions
 /// What is wrong with one connected part.
 class PartProblems {
  public:
-  PartProblems(const FactorGraph& graph, std::int64_t part_variables) : graph_(graph), part_variables_(part_variables) {}
+  PartProblems(const FactorGraph& graph, std::int64_t part_variables)
+      : graph_(graph), part_variables_(part_variables) {}
 
   void add(NullMotion&& motion) { motions_.push_back(std::move(motion)); }
 
@@ -121,7 +122,8 @@ class PartProblems {
     }
     std::vector<SolverProblem> problems;
     if (!of_part.empty()) problems.push_back(merged(graph_, Kind::kMissingPrior, of_part, part_variables_));
-    for (const auto& [key, motions] : of_variables) problems.push_back(merged(graph_, key.second, motions, part_variables_));
+    for (const auto& [key, motions] : of_variables)
+      problems.push_back(merged(graph_, key.second, motions, part_variables_));
     return problems;
   }
 
@@ -173,7 +175,8 @@ std::vector<SolverProblem> findProblems(const FactorGraph& graph, const Eliminat
 
 }  // namespace
 
-void SolverExplanations::append(const FactorGraph& graph, const EliminationTree& tree, std::vector<SolverProblem>& problems) {
+void SolverExplanations::append(const FactorGraph& graph, const EliminationTree& tree,
+                                std::vector<SolverProblem>& problems) {
   if (tree.singular().empty() && tree.weakestPivot().ratio >= kWeakPivot) {
     if (!told_.empty()) forgetMended(graph, tree);
     return;
@@ -194,8 +197,8 @@ std::int64_t SolverExplanations::toldFreedoms(const SolverProblem& problem, cons
     if (told.kind != problem.kind) continue;
     // Of a part that moves as a whole it may now be another variable that is held.
     const int clique = tree.cliqueOf(told.variable);
-    const bool same_part =
-        concernsPart(problem.kind) && clique >= 0 && rootOf(tree, clique) == rootOf(tree, tree.cliqueOf(problem.variable));
+    const bool same_part = concernsPart(problem.kind) && clique >= 0 &&
+                           rootOf(tree, clique) == rootOf(tree, tree.cliqueOf(problem.variable));
     if (told.variable == problem.variable || same_part) most = std::max(most, told.freedoms);
   }
   return most;

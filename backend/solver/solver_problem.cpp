@@ -12,7 +12,9 @@ namespace {
 using Kind = SolverProblem::Kind;
 using NameOf = std::function<std::string(VariableId)>;
 
-std::string counted(std::int64_t n, const std::string& thing) { return std::to_string(n) + " " + thing + (n == 1 ? "" : "s"); }
+std::string counted(std::int64_t n, const std::string& thing) {
+  return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
+}
 
 /// "a", "a and b", "a, b and c"
 std::string listed(const std::vector<std::string>& items) {
@@ -25,7 +27,8 @@ std::string listed(const std::vector<std::string>& items) {
 }
 
 std::string axisName(const std::optional<Value>& value, Eigen::Index i) {
-  static constexpr std::array<const char*, 6> kSpace{"x", "y", "z", "rotation about x", "rotation about y", "rotation about z"};
+  static constexpr std::array<const char*, 6> kSpace{
+      "x", "y", "z", "rotation about x", "rotation about y", "rotation about z"};
   static constexpr std::array<const char*, 3> kPlane{"x", "y", "rotation"};
   const auto k = static_cast<std::size_t>(i);
   if (value && std::holds_alternative<SE3>(*value)) return kSpace[k];
@@ -55,7 +58,8 @@ std::string along(const SolverProblem& problem, const FactorGraph& graph) {
   std::optional<Value> value;
   if (graph.contains(problem.variable)) value = graph.estimate(problem.variable);
   if (problem.directions.empty()) return "somewhere";
-  if (problem.directions.size() == static_cast<std::size_t>(problem.directions.front().size())) return "in any direction";
+  if (problem.directions.size() == static_cast<std::size_t>(problem.directions.front().size()))
+    return "in any direction";
   std::vector<std::string> names;
   for (const SmallVector& direction : problem.directions) names.push_back(nameOfDirection(direction, value));
   return "along " + listed(names);
@@ -75,7 +79,8 @@ std::string touching(const SolverProblem& problem, const FactorGraph& graph, con
   if (others.empty()) return factors + (problem.factors.size() == 1 ? " touches it alone" : " touch it alone");
   std::vector<std::string> names;
   for (std::size_t i = 0; i < std::min(others.size(), kMostNames); ++i) names.push_back(name(others[i]));
-  if (others.size() > kMostNames) names.push_back(counted(static_cast<std::int64_t>(others.size() - kMostNames), "other"));
+  if (others.size() > kMostNames)
+    names.push_back(counted(static_cast<std::int64_t>(others.size() - kMostNames), "other"));
   return factors + (problem.factors.size() == 1 ? " joins it to " : " join it to ") + listed(names);
 }
 
@@ -98,7 +103,8 @@ std::string describePart(const SolverProblem& problem, const FactorGraph& graph,
            ", they can move together " + along(problem, graph) + held + "add a prior on one of them";
   }
   if (alone)
-    return variable + " is disconnected from the rest, no factor touches it" + held + "add a factor that joins it to the rest, or drop it";
+    return variable + " is disconnected from the rest, no factor touches it" + held +
+           "add a factor that joins it to the rest, or drop it";
   return "the " + counted(problem.part_variables, "variable") + " connected with " + variable +
          " are disconnected from the rest, they can move together " + along(problem, graph) + held +
          "add a factor that joins them to the rest, or a prior on one of them";
@@ -151,12 +157,14 @@ std::string describe(const SolverProblem& problem, const FactorGraph& graph, con
              "next to the rest of what its factors say, rounding eats the result; " + factors() +
              ": bring their information closer together, or add a prior";
     case Kind::kIndefinite:
-      return moving(problem, name) + (problem.moving_variables > 1 ? " have" : " has") + " negative information" + where() + factors() +
-             "; kept where it is: make the information of every factor positive semidefinite";
+      return moving(problem, name) + (problem.moving_variables > 1 ? " have" : " has") + " negative information" +
+             where() + factors() + "; kept where it is: make the information of every factor positive semidefinite";
     case Kind::kNotFinite:
-      return describeFactor(problem, name) + " is not finite, or too large to square: left out; correct its measurement or its information";
+      return describeFactor(problem, name) +
+             " is not finite, or too large to square: left out; correct its measurement or its information";
     case Kind::kUnknownVariable:
-      return describeFactor(problem, name) + " names a variable that is not in the graph: left out; add the variable first";
+      return describeFactor(problem, name) +
+             " names a variable that is not in the graph: left out; add the variable first";
     case Kind::kRepeatedVariable:
       return describeFactor(problem, name) +
              " names a variable twice: left out; join two different variables, or state it as a factor of one";

@@ -3,38 +3,35 @@
 
 #include "backend/solver/incremental_solver.hpp"
 
-/// Fluid relinearisation: which linear models are off after a step, and what the next step does about it.
+/// Fluid relinearization: which linear models are off after a step, and what the next step does about it.
 namespace motorcade {
 namespace {
 
-std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
-std::size_t index(FactorId f) { return static_cast<std::size_t>(f.value); }
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 constexpr double kComparedShare = 0.25;  // of the tolerance: below it a variable's factors need no look
-constexpr double kLeisurelyShare = 0.2;  // of the turn at which relinearisation is urgent
-constexpr double kDriftedShare = 1.0001;  // of the same: a Jacobian that drifted is urgent however little its variables turned
-constexpr double kTurnedWithShare = 0.1;  // of the worst variable's turn: those that turned more are relinearised with it
+constexpr double kLeisurelyShare = 0.2;  // of the turn at which relinearization is urgent
+constexpr double kDriftedShare =
+    1.0001;  // of the same: a Jacobian that drifted is urgent however little its variables turned
+constexpr double kTurnedWithShare =
+    0.1;  // of the worst variable's turn: those that turned more are relinearized with it
 constexpr std::size_t kWorstAtOnce = 16, kLargestRegion = 1000;
 
 }  // namespace
 
 /// Root mean square over the factors of their residuals' norms, in standard deviations: the scale of all tolerances.
-double IncrementalSolver::rmsResidual() const {
-  return std::sqrt(std::max(graph_.meanSquareResidual(), 1e-8));
-}
+double IncrementalSolver::rmsResidual() const { return std::sqrt(std::max(graph_.meanSquareResidual(), 1e-8)); }
 
 /// Finds the models that are off after the step.
 void IncrementalSolver::compareModels() {
   checked_in_step_.resize(graph_.factorSlots(), 0);
   const double tolerance = params_.mismatch_tolerance * rmsResidual();
   for (const VariableId v : moved_) {
-    if (const double turn = graph_.turnSinceLinearization(v); turn > kLeisurelyShare * params_.relinearize_rad) markStale(v, turn);
+    if (const double turn = graph_.turnSinceLinearization(v); turn > kLeisurelyShare * params_.relinearize_rad)
+      markStale(v, turn);
     if (graph_.mismatchBound(v) < kComparedShare * tolerance) continue;
     graph_.markCompared(v);
     for (const FactorId f : graph_[v].factors) {
-      if (checked_in_step_[index(f)] == step_) continue;
-      checked_in_step_[index(f)] = step_;
+      if (checked_in_step_[f.value] == step_) continue;
+      checked_in_step_[f.value] = step_;
       const double norm = graph_.mismatch(f).norm;
       if (norm > tolerance) off_.push_back({f, norm});
     }
@@ -44,12 +41,13 @@ void IncrementalSolver::compareModels() {
 /// The variable's factors want new Jacobians; `turn_rad` says how urgently.
 void IncrementalSolver::markStale(VariableId v, double turn_rad) {
   staleness_.resize(graph_.slots(), 0.0);
-  double& staleness = staleness_[index(v)];
+  double& staleness = staleness_[v.value];
   if (staleness == 0) stale_.push_back(v);
   staleness = std::max(staleness, std::max(turn_rad, 1e-12));
 }
 
-/// Puts the models right that are off: by new Jacobians where they drifted and the budget allows, by new right-hand sides elsewhere.
+/// Puts the models right that are off: by new Jacobians where they drifted and the budget allows, by new right-hand
+/// sides elsewhere.
 void IncrementalSolver::correctModels() {
   // A new factor may have taken the id of one that left.
   std::erase_if(off_, [&](const OffModel& off) { return !graph_.contains(off.factor) || isNew(off.factor); });
@@ -62,24 +60,24 @@ void IncrementalSolver::correctModels() {
   for (const FactorId f : relinearized_) graph_.linearize(f);
   report_.relinearized_factors += static_cast<int>(relinearized_.size());
   for (const OffModel& off : off_)
-    if (relinearized_in_step_[index(off.factor)] != step_) shiftResidual(off.factor);
+    if (relinearized_in_step_[off.factor.value] != step_) shiftResidual(off.factor);
   off_.clear();
 }
 
-/// First what costs nothing, as its cliques are eliminated anew in any case; then the worst, as far as the allowances reach: one for those so
-/// far off that the solution suffers, one for the others, which can wait. The budget bounds both; what an update leaves of it is saved while
-/// the worst variable costs more.
+/// First what costs nothing, as its cliques are eliminated anew in any case; then the worst, as far as the allowances
+/// reach: one for those so far off that the solution suffers, one for the others, which can wait. The budget bounds
+/// both; what an update leaves of it is saved while the worst variable costs more.
 void IncrementalSolver::relinearizeStale() {
   relinearized_in_step_.resize(graph_.factorSlots(), 0);
   for (const int c : removed_cliques_)
     for (const VariableId v : tree_[c].frontalVariables())
       if (isStale(v) && workOfRelinearizing(v).scalars == 0) relinearize(v);
   std::erase_if(stale_, [&](VariableId v) {
-    if (!graph_.contains(v)) staleness_[index(v)] = 0;  // its id may be given out again
+    if (!graph_.contains(v)) staleness_[v.value] = 0;  // its id may be given out again
     return !isStale(v);
   });
   const auto worse = [&](VariableId a, VariableId b) {
-    const double turn_a = staleness_[index(a)], turn_b = staleness_[index(b)];
+    const double turn_a = staleness_[a.value], turn_b = staleness_[b.value];
     return turn_a > turn_b || (turn_a == turn_b && a < b);
   };
   double urgent_flops = params_.urgent_flops, polish_flops = params_.polish_flops;
@@ -91,7 +89,7 @@ void IncrementalSolver::relinearizeStale() {
     for (; done < end && reach != Reach::kBeyondBudget; ++done) {
       const VariableId v = stale_[done];
       if (!isStale(v)) continue;  // twice in the list, or of the region of one before it
-      double& flops_left = staleness_[index(v)] > params_.relinearize_rad ? urgent_flops : polish_flops;
+      double& flops_left = staleness_[v.value] > params_.relinearize_rad ? urgent_flops : polish_flops;
       reach = std::max(reach, relinearizeRegion(v, flops_left));
     }
   }
@@ -99,19 +97,20 @@ void IncrementalSolver::relinearizeStale() {
   saved_scalars_ = reach == Reach::kBeyondBudget ? budget_left_ : 0;
 }
 
-/// The variable and, as new Jacobians of a part of a stiff region bias the rest of it, the connected ones that turned with it.
+/// The variable and, as new Jacobians of a part of a stiff region bias the rest of it, the connected ones that turned
+/// with it.
 IncrementalSolver::Reach IncrementalSolver::relinearizeRegion(VariableId worst, double& flops_left) {
-  const double turn_rad = kTurnedWithShare * staleness_[index(worst)];
+  const double turn_rad = kTurnedWithShare * staleness_[worst.value];
   if (const Reach reach = relinearizeWithin(worst, flops_left); reach != Reach::kWithin) return reach;
   region_.assign(1, worst);
   ++region_mark_;
   in_region_.resize(graph_.slots(), 0);
-  in_region_[index(worst)] = region_mark_;
+  in_region_[worst.value] = region_mark_;
   for (std::size_t i = 0; i < region_.size() && i < kLargestRegion; ++i)
     for (const FactorId f : graph_[region_[i]].factors)
       for (const VariableId v : graph_.factor(f).variables()) {
-        if (in_region_[index(v)] == region_mark_ || graph_.turnSinceLinearization(v) <= turn_rad) continue;
-        in_region_[index(v)] = region_mark_;
+        if (in_region_[v.value] == region_mark_ || graph_.turnSinceLinearization(v) <= turn_rad) continue;
+        in_region_[v.value] = region_mark_;
         if (relinearizeWithin(v, flops_left) == Reach::kWithin) region_.push_back(v);
       }
   return Reach::kWithin;
@@ -127,7 +126,9 @@ IncrementalSolver::Reach IncrementalSolver::relinearizeWithin(VariableId v, doub
   return Reach::kWithin;
 }
 
-bool IncrementalSolver::isStale(VariableId v) const { return index(v) < staleness_.size() && staleness_[index(v)] > 0; }
+bool IncrementalSolver::isStale(VariableId v) const {
+  return static_cast<std::size_t>(v.value) < staleness_.size() && staleness_[v.value] > 0;
+}
 
 /// What is eliminated anew for it beyond what is in any case.
 IncrementalSolver::EliminationWork IncrementalSolver::workOfRelinearizing(VariableId v) {
@@ -136,8 +137,9 @@ IncrementalSolver::EliminationWork IncrementalSolver::workOfRelinearizing(Variab
   EliminationWork work;
   for (const FactorId f : graph_[v].factors) {
     if (isNew(f)) continue;
-    for (int c = tree_.ownerOf(graph_.factor(f)); c >= 0 && work_[index(c)] < Work::kRefresh && counted_[index(c)] != count_mark_; c = tree_[c].parent) {
-      counted_[index(c)] = count_mark_;
+    for (int c = tree_.ownerOf(graph_.factor(f)); c >= 0 && work_[c] < Work::kRefresh && counted_[c] != count_mark_;
+         c = tree_[c].parent) {
+      counted_[c] = count_mark_;
       work.scalars += tree_[c].frontal_size;
       work.flops += static_cast<double>(tree_[c].frontal_size) * tree_[c].size * tree_[c].size;
     }
@@ -148,11 +150,11 @@ IncrementalSolver::EliminationWork IncrementalSolver::workOfRelinearizing(Variab
 /// Its factors get their Jacobians when the points of all variables have moved.
 void IncrementalSolver::relinearize(VariableId v) {
   graph_.moveLinearizationPoint(v);
-  if (isStale(v)) staleness_[index(v)] = 0;
+  if (isStale(v)) staleness_[v.value] = 0;
   ++report_.relinearized_variables;
   for (const FactorId f : graph_[v].factors) {
-    if (relinearized_in_step_[index(f)] == step_) continue;
-    relinearized_in_step_[index(f)] = step_;
+    if (relinearized_in_step_[f.value] == step_) continue;
+    relinearized_in_step_[f.value] = step_;
     relinearized_.push_back(f);
     if (!isNew(f)) markWork(tree_.ownerOf(graph_.factor(f)), Work::kRefresh);
   }
@@ -170,11 +172,11 @@ void IncrementalSolver::shiftResidual(FactorId id) {
   const Factor& factor = graph_.factor(id);
   const int owner = tree_.ownerOf(factor);
   markWork(owner, Work::kShift);
-  if (work_[index(owner)] != Work::kShift) return;  // is eliminated anew
+  if (work_[owner] != Work::kShift) return;  // is eliminated anew
   const auto J = graph_.term(id);
   const bool gradient = factor.form() == Factor::Form::kInformation;
   const Eigen::Map<const Eigen::VectorXd> r(mismatch.r.data(), static_cast<Eigen::Index>(mismatch.r.size()));
-  double* change = changes_.data() + change_begin_[index(owner)];
+  double* change = changes_.data() + change_begin_[owner];
   int column = 0;
   for (const VariableId v : factor.variables()) {
     int row = 0;

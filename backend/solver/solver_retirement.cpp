@@ -1,14 +1,16 @@
 #include <algorithm>
 #include <cassert>
 
-#include "backend/solver/incremental_solver.hpp"
 #include "backend/graph/marginal_factor.hpp"
+#include "backend/solver/incremental_solver.hpp"
 
-/// How variables leave the solver: marginalised when they are old, cut out when they went wrong.
+/// How variables leave the solver: marginalized when they are old, cut out when they went wrong.
 namespace motorcade {
 namespace {
 
-bool contains(std::span<const VariableId> variables, VariableId v) { return std::ranges::find(variables, v) != variables.end(); }
+bool contains(std::span<const VariableId> variables, VariableId v) {
+  return std::ranges::find(variables, v) != variables.end();
+}
 
 template <class T>
 void sortUnique(std::vector<T>& items) {
@@ -16,13 +18,15 @@ void sortUnique(std::vector<T>& items) {
   items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
-/// What the eliminated variables knew, stated in the coordinates of `neighbours`, as a prior around their present estimates.
-std::unique_ptr<MarginalFactor> marginalPrior(FactorGraph& graph, const std::vector<VariableId>& neighbours, Eigen::MatrixXd knowledge) {
+/// What the eliminated variables knew, stated in the coordinates of `neighbors`, as a prior around their present
+/// estimates.
+std::unique_ptr<MarginalFactor> marginalPrior(FactorGraph& graph, const std::vector<VariableId>& neighbors,
+                                              Eigen::MatrixXd knowledge) {
   const Eigen::Index n = knowledge.rows() - 1;
   Eigen::VectorXd x(n);
   std::vector<Value> values;
   Eigen::Index at = 0;
-  for (const VariableId v : neighbours) {
+  for (const VariableId v : neighbors) {
     graph.apply(v);
     values.push_back(graph[v].applied_estimate);
     for (std::size_t i = 0; i < static_cast<std::size_t>(graph.sizeOf(v)); ++i) x[at++] = graph[v].x_applied[i];
@@ -30,13 +34,13 @@ std::unique_ptr<MarginalFactor> marginalPrior(FactorGraph& graph, const std::vec
   const Eigen::VectorXd Hx = knowledge.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * x;
   knowledge(n, n) += x.dot(Hx) + 2 * x.dot(knowledge.row(n).head(n));
   knowledge.row(n).head(n) += Hx.transpose();
-  return std::make_unique<MarginalFactor>(neighbours, std::move(values), std::move(knowledge));
+  return std::make_unique<MarginalFactor>(neighbors, std::move(values), std::move(knowledge));
 }
 
 }  // namespace
 
-/// A connected part of the tree whose cliques hold variables that retire. Any change of order inside it leaves what it passes to its parent
-/// as it is, so that retiring costs only this part, wherever it lies.
+/// A connected part of the tree whose cliques hold variables that retire. Any change of order inside it leaves what it
+/// passes to its parent as it is, so that retiring costs only this part, wherever it lies.
 struct IncrementalSolver::RetiringPart {
   std::vector<int> cliques;
   std::vector<VariableId> boundary;
@@ -75,25 +79,27 @@ void IncrementalSolver::retirePart(const RetiringPart& part, std::span<const Var
   std::vector<VariableId> leaving, staying;
   for (const VariableId v : removed_.variables) (contains(gone, v) ? leaving : staying).push_back(v);
 
-  // The factors of those that leave, and the neighbours on whom their knowledge falls.
+  // The factors of those that leave, and the neighbors on whom their knowledge falls.
   std::vector<FactorId> factors, kept;
-  std::vector<VariableId> neighbours;
+  std::vector<VariableId> neighbors;
   for (const VariableId v : leaving) factors.insert(factors.end(), graph_[v].factors.begin(), graph_[v].factors.end());
   sortUnique(factors);
-  std::ranges::copy_if(removed_.factors, std::back_inserter(kept), [&](FactorId f) { return !std::ranges::binary_search(factors, f); });
+  std::ranges::copy_if(removed_.factors, std::back_inserter(kept),
+                       [&](FactorId f) { return !std::ranges::binary_search(factors, f); });
   for (const FactorId f : factors)
-    std::ranges::copy_if(graph_.factor(f).variables(), std::back_inserter(neighbours), [&](VariableId v) { return !contains(leaving, v); });
-  sortUnique(neighbours);
-  auto knowledge = tree_.marginal(leaving, neighbours, factors);
+    std::ranges::copy_if(graph_.factor(f).variables(), std::back_inserter(neighbors),
+                         [&](VariableId v) { return !contains(leaving, v); });
+  sortUnique(neighbors);
+  auto knowledge = tree_.marginal(leaving, neighbors, factors);
 
   for (const FactorId f : factors) graph_.removeFactor(f);
   for (const VariableId v : leaving) {
     tree_.forget(v);
     graph_.removeVariable(v);
   }
-  if (!neighbours.empty()) {
-    const auto prior = graph_.addFactor(marginalPrior(graph_, neighbours, std::move(knowledge)));
-    const bool inside = std::ranges::any_of(neighbours, [&](VariableId v) { return contains(staying, v); });
+  if (!neighbors.empty()) {
+    const auto prior = graph_.addFactor(marginalPrior(graph_, neighbors, std::move(knowledge)));
+    const bool inside = std::ranges::any_of(neighbors, [&](VariableId v) { return contains(staying, v); });
     if (prior && inside) kept.push_back(*prior);
     if (prior && !inside) tree_.addFactor(tree_.ownerOf(graph_.factor(*prior)), *prior);
   }
@@ -109,7 +115,12 @@ void IncrementalSolver::retirePart(const RetiringPart& part, std::span<const Var
   }
   if (staying.empty()) return;
   created_.clear();
-  tree_.eliminate({.order = staying, .boundary = part.boundary, .factors = kept, .orphans = orphans, .parent = part.parent, .renumber = false},
+  tree_.eliminate({.order = staying,
+                   .boundary = part.boundary,
+                   .factors = kept,
+                   .orphans = orphans,
+                   .parent = part.parent,
+                   .renumber = false},
                   created_);
 }
 
@@ -130,7 +141,8 @@ const IncrementalSolver::Report& IncrementalSolver::drop(std::span<const Variabl
   tree_.remove(all, removed_);
 
   std::vector<FactorId> kept;
-  std::ranges::copy_if(removed_.factors, std::back_inserter(kept), [&](FactorId f) { return !std::ranges::binary_search(factors, f); });
+  std::ranges::copy_if(removed_.factors, std::back_inserter(kept),
+                       [&](FactorId f) { return !std::ranges::binary_search(factors, f); });
   for (const FactorId f : factors) {
     const auto* marginal = dynamic_cast<const MarginalFactor*>(&graph_.factor(f));
     auto reduced = marginal ? marginal->without(variables) : nullptr;
@@ -145,9 +157,11 @@ const IncrementalSolver::Report& IncrementalSolver::drop(std::span<const Variabl
   }
   ++step_;
   created_.clear();
-  tree_.eliminate({.order = removed_.variables, .boundary = {}, .factors = kept, .orphans = removed_.orphans, .renumber = false}, created_);
+  tree_.eliminate(
+      {.order = removed_.variables, .boundary = {}, .factors = kept, .orphans = removed_.orphans, .renumber = false},
+      created_);
   work_.assign(tree_.slots(), Work::kNone);
-  for (const int c : created_) work_[static_cast<std::size_t>(c)] = Work::kNew;
+  for (const int c : created_) work_[c] = Work::kNew;
   substitute();
   if (params_.policy == Policy::kFluid) compareModels();
   endReport();

@@ -30,12 +30,16 @@ class RowRing {
   std::vector<T> values_;
 };
 
-/// Gradients of the image smoothed by the binomial 3x3 filter, 32 times as large, row after row. Smoothing keeps the grain of dark
-/// images from passing for corners.
+/// Gradients of the image smoothed by the binomial 3x3 filter, 32 times as large, row after row. Smoothing keeps the
+/// grain of dark images from passing for corners.
 class Gradients {
  public:
   explicit Gradients(const Image& image)
-      : image_(image), columns_(image.width()), smooth_(3, image.width()), dx_(kRows, image.width()), dy_(kRows, image.width()) {}
+      : image_(image),
+        columns_(image.width()),
+        smooth_(3, image.width()),
+        dx_(kRows, image.width()),
+        dy_(kRows, image.width()) {}
 
   /// Makes row y; rows are made in order, and the last `kRows` are kept.
   void advanceTo(int y) {
@@ -58,7 +62,8 @@ class Gradients {
     const std::uint8_t *above = image_.row(y - 1), *row = image_.row(y), *below = image_.row(y + 1);
     std::int16_t *column = columns_.data(), *out = smooth_.row(y);
     for (int x = 0; x < image_.width(); ++x) column[x] = static_cast<std::int16_t>(above[x] + 2 * row[x] + below[x]);
-    for (int x = 1; x < image_.width() - 1; ++x) out[x] = static_cast<std::int16_t>(column[x - 1] + 2 * column[x] + column[x + 1]);
+    for (int x = 1; x < image_.width() - 1; ++x)
+      out[x] = static_cast<std::int16_t>(column[x - 1] + 2 * column[x] + column[x + 1]);
   }
 
   const Image& image_;
@@ -75,7 +80,8 @@ struct ColumnMoments {
   /// Adds the products of row y and takes away those of the row that leaves the window; at first that is zero.
   void slideTo(const Gradients& gradients, int y) {
     const std::int16_t *dx = gradients.dx(y), *dy = gradients.dy(y);
-    const int leaving = y - kWindowRows + Gradients::kRows;  // the ring has a place more than the window: no negative row at the start
+    const int leaving =
+        y - kWindowRows + Gradients::kRows;  // the ring has a place more than the window: no negative row at the start
     const std::int16_t *old_dx = gradients.dx(leaving), *old_dy = gradients.dy(leaving);
     int *sum_xx = xx.data(), *sum_xy = xy.data(), *sum_yy = yy.data();
     for (int x = 0; x < static_cast<int>(xx.size()); ++x) {
@@ -116,7 +122,7 @@ bool isMaximumWithin(const RowRing<float>& response, int x, int y, int radius) {
   return true;
 }
 
-/// Marks pixels of row y above the threshold that no direct neighbour exceeds: a cheap filter, in vector code.
+/// Marks pixels of row y above the threshold that no direct neighbor exceeds: a cheap filter, in vector code.
 void markPeaks(const RowRing<float>& response, int y, int first, int last, float threshold, std::uint8_t* marks) {
   const float *above = response.row(y - 1), *row = response.row(y), *below = response.row(y + 1);
   for (int x = first; x < last; ++x) {
@@ -136,19 +142,19 @@ int nextMark(const std::vector<std::uint8_t>& marks, int x) {
     std::memcpy(&eight, marks.data() + x, sizeof eight);
     if (eight != 0) break;
   }
-  while (x < end && !marks[static_cast<std::size_t>(x)]) ++x;
+  while (x < end && !marks[x]) ++x;
   return x;
 }
 
-/// Standard deviation of white noise that explains the roughest part of a neighbourhood, which straight edges do not touch
-/// (the mask of Immerkaer, Fast Noise Variance Estimation, 1996).
+/// Standard deviation of white noise that explains the roughest part of a neighborhood, which straight edges do not
+/// touch (the mask of Immerkaer, Fast Noise Variance Estimation, 1996).
 float grainAround(const Image& image, int x, int y) {
   int squares = 0;
   for (int r = y - kHalfWindow_px; r <= y + kHalfWindow_px; ++r) {
     const std::uint8_t *above = image.row(r - 1), *row = image.row(r), *below = image.row(r + 1);
     for (int c = x - kHalfWindow_px; c <= x + kHalfWindow_px; ++c) {
-      const int rough =
-          above[c - 1] + above[c + 1] + below[c - 1] + below[c + 1] - 2 * (above[c] + row[c - 1] + row[c + 1] + below[c]) + 4 * row[c];
+      const int rough = above[c - 1] + above[c + 1] + below[c - 1] + below[c + 1] -
+                        2 * (above[c] + row[c - 1] + row[c + 1] + below[c]) + 4 * row[c];
       squares += rough * rough;
     }
   }
@@ -165,10 +171,13 @@ bool strongerInCell(const Candidate& a, const Candidate& b) {
          std::tuple(b.cell, -b.corner.score, b.corner.v_px, b.corner.u_px);
 }
 
-int borderOf(const CornerDetector::Params& params) { return std::max(params.border_px, kHalfWindow_px + 2 + params.min_distance_px); }
+int borderOf(const CornerDetector::Params& params) {
+  return std::max(params.border_px, kHalfWindow_px + 2 + params.min_distance_px);
+}
 
-/// Local maxima of the rows from `first_centre` up to `end_centre`, in reading order.
-std::vector<Candidate> findCandidates(const Image& image, int first_centre, int end_centre, const CornerDetector::Params& params) {
+/// Local maxima of the rows from `first_center` up to `end_center`, in reading order.
+std::vector<Candidate> findCandidates(const Image& image, int first_center, int end_center,
+                                      const CornerDetector::Params& params) {
   const int width = image.width(), radius = params.min_distance_px, border = borderOf(params);
   std::vector<Candidate> candidates;
   constexpr double kMomentScale = Gradients::kScale * Gradients::kScale * kWindowPixels;
@@ -178,22 +187,23 @@ std::vector<Candidate> findCandidates(const Image& image, int first_centre, int 
   ColumnMoments moments(width);
   RowRing<float> response(2 * radius + 1, width);
   std::vector<std::uint8_t> marks(width + sizeof(std::uint64_t), 0);
-  const int first_row = first_centre - radius, end_row = end_centre + radius;
-  for (int y = first_row - kHalfWindow_px; y < first_row + kHalfWindow_px; ++y) gradients.advanceTo(y), moments.slideTo(gradients, y);
+  const int first_row = first_center - radius, end_row = end_center + radius;
+  for (int y = first_row - kHalfWindow_px; y < first_row + kHalfWindow_px; ++y)
+    gradients.advanceTo(y), moments.slideTo(gradients, y);
   for (int y = first_row; y < end_row; ++y) {
     gradients.advanceTo(y + kHalfWindow_px);
     moments.slideTo(gradients, y + kHalfWindow_px);
     smallerEigenvalues(moments, border - radius, width - border + radius, response.row(y));
-    const int centre = y - radius;
-    if (centre < first_centre) continue;
-    markPeaks(response, centre, border, width - border, threshold, marks.data());
+    const int center = y - radius;
+    if (center < first_center) continue;
+    markPeaks(response, center, border, width - border, threshold, marks.data());
     for (int x = border; x < width - border; ++x) {
       x = nextMark(marks, x);
-      if (x >= width - border || !isMaximumWithin(response, x, centre, radius)) continue;
-      const auto score = static_cast<float>(std::sqrt(response.row(centre)[x] / kMomentScale));
-      if (score < params.min_score_over_grain * grainAround(image, x, centre)) continue;
-      candidates.push_back(
-          {centre / params.cell_px * columns + x / params.cell_px, {static_cast<float>(x), static_cast<float>(centre), score}});
+      if (x >= width - border || !isMaximumWithin(response, x, center, radius)) continue;
+      const auto score = static_cast<float>(std::sqrt(response.row(center)[x] / kMomentScale));
+      if (score < params.min_score_over_grain * grainAround(image, x, center)) continue;
+      candidates.push_back({center / params.cell_px * columns + x / params.cell_px,
+                            {static_cast<float>(x), static_cast<float>(center), score}});
     }
   }
   return candidates;
@@ -206,7 +216,8 @@ std::vector<Candidate> findCandidates(const Image& image, const CornerDetector::
   if (rows <= 0 || image.width() <= 2 * border) return {};
   const auto startOf = [&](std::size_t band) { return border + rows * static_cast<int>(band) / kBands; };
   std::array<std::vector<Candidate>, kBands> bands;
-  forEachItem(kBands, [&](std::size_t i) { bands[i] = findCandidates(image, startOf(i), startOf(i + 1), params); }, 1);
+  forEachItem(
+      kBands, [&](std::size_t i) { bands[i] = findCandidates(image, startOf(i), startOf(i + 1), params); }, 1);
   std::vector<Candidate> candidates = std::move(bands.front());
   for (std::size_t i = 1; i < kBands; ++i) candidates.insert(candidates.end(), bands[i].begin(), bands[i].end());
   return candidates;
@@ -223,10 +234,7 @@ float cutOfRank(const std::vector<std::pair<int, Candidate>>& ranked, int rank, 
 
 }  // namespace
 
-CornerDetector::CornerDetector(const Params& params) : params_(params) {
-  if (params.cell_px < 1 || params.max_corners < 0 || params.min_distance_px < 1 || params.min_score <= 0)
-    throw std::invalid_argument("corner detector: cell_px, min_distance_px and min_score must be positive");
-}
+CornerDetector::CornerDetector(const Params& params) : params_(requireValid(params)) {}
 
 std::vector<Corner> CornerDetector::operator()(const Image& image) const {
   std::vector<Candidate> candidates = findCandidates(image, params_);
@@ -249,6 +257,13 @@ std::vector<Corner> CornerDetector::operator()(const Image& image) const {
   for (const auto& [rank, candidate] : ranked)
     if (rank < last_rank || (rank == last_rank && candidate.corner.score > cut)) corners.push_back(candidate.corner);
   return corners;
+}
+
+std::vector<Parameter> parametersOf(CornerDetector::Params& params) {
+  return {numberParameter("max_corners", params.max_corners, {100, 20000},
+                          "more corners: more points to follow, at more cost"),
+          numberParameter("min_score", params.min_score, {0.1, 20},
+                          "lower finds corners in dim or blurred images, higher ignores noise")};
 }
 
 }  // namespace motorcade

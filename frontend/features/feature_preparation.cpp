@@ -28,4 +28,10 @@ FeaturesPtr FeaturePreparation::operator()(const StereoFramePtr& frame) const {
   return std::make_shared<const Features>(std::move(features));
 }
 
+std::vector<Parameter> parametersOf(FeaturePreparation::Params& params) {
+  return {choiceParameter<DetectorKind>("detector", params.detector,
+                                        {{"corners", DetectorKind::kCorners}, {"sift", DetectorKind::kSift}},
+                                        "corners are fast; SIFT is the paper's detector, a hundred times slower")};
+}
+
 }  // namespace motorcade

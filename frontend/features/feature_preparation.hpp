@@ -1,15 +1,19 @@
 #pragma once
 
+#include <vector>
+
+#include "core/parameters.hpp"
 #include "frontend/features/corner_detector.hpp"
-#include "frontend/messages.hpp"
 #include "frontend/features/sift_features.hpp"
+#include "frontend/messages.hpp"
 
 namespace motorcade {
 
 enum class DetectorKind { kCorners, kSift };
 
 /// Turns a stereo pair into what stereo matching and optical flow both need: pyramids and points worth following.
-/// A rejected pair gives features without images and corners. Stateless but for its buffers; safe to call from several threads.
+/// A rejected pair gives features without images and corners. Stateless but for its buffers; safe to call from several
+/// threads.
 class FeaturePreparation {
  public:
   struct Params {
@@ -27,5 +31,7 @@ class FeaturePreparation {
   SiftDetector detect_sift_;
   mutable ImagePool pool_;  // itself safe for several threads
 };
+
+std::vector<Parameter> parametersOf(FeaturePreparation::Params& params);
 
 }  // namespace motorcade

@@ -49,9 +49,11 @@ SiftPoints SiftDetector::operator()(const Image& image) const {
 
   SiftPoints points;
   for (int i = 0; i < static_cast<int>(keypoints.size()); ++i) {
-    const cv::KeyPoint& keypoint = keypoints[static_cast<std::size_t>(i)];
+    const cv::KeyPoint& keypoint = keypoints[i];
     // The same place in several orientations is one point: they come one after the other.
-    if (!points.corners.empty() && points.corners.back().u_px == keypoint.pt.x && points.corners.back().v_px == keypoint.pt.y) continue;
+    if (!points.corners.empty() && points.corners.back().u_px == keypoint.pt.x &&
+        points.corners.back().v_px == keypoint.pt.y)
+      continue;
     points.corners.push_back({keypoint.pt.x, keypoint.pt.y, keypoint.response});
     SiftDescriptor& descriptor = points.descriptors.emplace_back();
     std::copy_n(descriptors.ptr<float>(i), descriptor.size(), descriptor.begin());
@@ -60,8 +62,8 @@ SiftPoints SiftDetector::operator()(const Image& image) const {
 }
 
 std::vector<int> matchSift(const std::vector<Corner>& from, const std::vector<SiftDescriptor>& from_descriptors,
-                           const std::vector<Corner>& to, const std::vector<SiftDescriptor>& to_descriptors, const SiftSearchRegion& region,
-                           double max_ratio) {
+                           const std::vector<Corner>& to, const std::vector<SiftDescriptor>& to_descriptors,
+                           const SiftSearchRegion& region, double max_ratio) {
   std::vector<Nearest> forward(from.size()), backward(to.size());
   for (std::size_t i = 0; i < from.size(); ++i) {
     for (std::size_t j = 0; j < to.size(); ++j) {
@@ -74,11 +76,15 @@ std::vector<int> matchSift(const std::vector<Corner>& from, const std::vector<Si
   std::vector<int> match(from.size(), -1);
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Nearest& nearest = forward[i];
-    const bool mutual = nearest.index >= 0 && backward[static_cast<std::size_t>(nearest.index)].index == static_cast<int>(i);
+    const bool mutual = nearest.index >= 0 && backward[nearest.index].index == static_cast<int>(i);
     const double limit = std::min(max_ratio * max_ratio * nearest.second, kMaxDistance * kMaxDistance);
     if (mutual && nearest.distance < limit) match[i] = nearest.index;
   }
   return match;
+}
+
+std::vector<Parameter> parametersOf(SiftDetector::Params& params) {
+  return {numberParameter("max_points", params.max_points, {100, 20000}, "more points to follow, at more cost")};
 }
 
 }  // namespace motorcade

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/parameters.hpp"
 #include "frontend/messages.hpp"
 
 /// The paper's own front-end: SIFT points matched by their descriptors. An option; about 115 ms per image.
@@ -20,7 +21,7 @@ class SiftDetector {
     int max_points = 1500;
     double contrast_threshold = 0.03;
   };
-  explicit SiftDetector(const Params& params) : params_(params) {}
+  explicit SiftDetector(const Params& params) : params_(requireValid(params)) {}
   SiftPoints operator()(const Image& image) const;
 
  private:
@@ -33,10 +34,12 @@ struct SiftSearchRegion {
   double max_dv_px = 0;
 };
 
-/// For each point of `from` the index in `to` of its mutual nearest descriptor within the region, -1 when there is none.
-/// `max_ratio` bounds the distance over that of the second nearest.
+/// For each point of `from` the index in `to` of its mutual nearest descriptor within the region, -1 when there is
+/// none. `max_ratio` bounds the distance over that of the second nearest.
 std::vector<int> matchSift(const std::vector<Corner>& from, const std::vector<SiftDescriptor>& from_descriptors,
-                           const std::vector<Corner>& to, const std::vector<SiftDescriptor>& to_descriptors, const SiftSearchRegion& region,
-                           double max_ratio);
+                           const std::vector<Corner>& to, const std::vector<SiftDescriptor>& to_descriptors,
+                           const SiftSearchRegion& region, double max_ratio);
+
+std::vector<Parameter> parametersOf(SiftDetector::Params& params);
 
 }  // namespace motorcade

@@ -6,7 +6,8 @@
 
 namespace motorcade {
 
-/// H = L D L' of a small positive definite matrix, of which the lower triangle is read; loops of fixed length, which the compiler unrolls.
+/// H = L D L' of a small positive definite matrix, of which the lower triangle is read; loops of fixed length, which
+/// the compiler unrolls.
 template <int N>
 class Cholesky {
  public:

@@ -37,8 +37,8 @@ bool inCircle(const GridPoint& a, const GridPoint& b, const GridPoint& c, const 
   return lift_a * (bx * cy - by * cx) + lift_b * (cx * ay - cy * ax) + lift_c * (ax * by - ay * bx) > 0;
 }
 
-/// Edges as pairs of half-edges (Guibas, Stolfi 1985, without the dual): half-edge e and its reverse e ^ 1. The half-edges that leave a
-/// vertex form a ring, `next` counter-clockwise and `previous` clockwise.
+/// Edges as pairs of half-edges (Guibas, Stolfi 1985, without the dual): half-edge e and its reverse e ^ 1. The
+/// half-edges that leave a vertex form a ring, `next` counter-clockwise and `previous` clockwise.
 class EdgeRings {
  public:
   struct HalfEdge {
@@ -61,28 +61,27 @@ class EdgeRings {
   void remove(int e) {
     splice(e, previous(e));
     splice(e ^ 1, previous(e ^ 1));
-    edges_[index(e)].origin = edges_[index(e ^ 1)].origin = -1;
+    edges_[e].origin = edges_[e ^ 1].origin = -1;
   }
   /// Joins the rings of a and b, or cuts them apart when they are one: b follows a.
   void splice(int a, int b) {
     const int after_a = next(a), after_b = next(b);
-    edges_[index(a)].next = after_b;
-    edges_[index(b)].next = after_a;
-    edges_[index(after_b)].previous = a;
-    edges_[index(after_a)].previous = b;
+    edges_[a].next = after_b;
+    edges_[b].next = after_a;
+    edges_[after_b].previous = a;
+    edges_[after_a].previous = b;
   }
 
   int size() const { return static_cast<int>(edges_.size()); }
   bool alive(int e) const { return origin(e) >= 0; }
-  int origin(int e) const { return edges_[index(e)].origin; }
+  int origin(int e) const { return edges_[e].origin; }
   int destination(int e) const { return origin(e ^ 1); }
-  int next(int e) const { return edges_[index(e)].next; }
-  int previous(int e) const { return edges_[index(e)].previous; }
+  int next(int e) const { return edges_[e].next; }
+  int previous(int e) const { return edges_[e].previous; }
   int leftNext(int e) const { return previous(e ^ 1); }  // along the face on the left
   int rightBefore(int e) const { return next(e ^ 1); }   // towards e's end, along the face on the right
 
  private:
-  static std::size_t index(int e) { return static_cast<std::size_t>(e); }
   std::vector<HalfEdge> edges_;
 };
 
@@ -101,7 +100,7 @@ class Triangulator {
     int left, right;
   };
 
-  const GridPoint& at(int i) const { return points_[static_cast<std::size_t>(i)]; }
+  const GridPoint& at(int i) const { return points_[i]; }
   bool rightOf(int p, int e) const { return turnsLeft(p, edges_.destination(e), edges_.origin(e)); }
   bool leftOf(int p, int e) const { return turnsLeft(p, edges_.origin(e), edges_.destination(e)); }
 
@@ -126,7 +125,7 @@ class Triangulator {
     return {c ^ 1, c};
   }
 
-  /// Sews two neighbouring triangulations together from the lower common tangent up.
+  /// Sews two neighboring triangulations together from the lower common tangent up.
   Hull merge(Hull left, Hull right) {
     int inner_left = left.right, inner_right = right.left;
     for (;;) {
@@ -147,17 +146,20 @@ class Triangulator {
       const bool right_valid = rightOf(edges_.destination(candidate_right), base);
       if (!left_valid && !right_valid) return {left.left, right.right};
       const bool take_right =
-          !left_valid || (right_valid && inCircle(at(edges_.destination(candidate_left)), at(edges_.origin(candidate_left)),
-                                                  at(edges_.origin(candidate_right)), at(edges_.destination(candidate_right))));
+          !left_valid ||
+          (right_valid && inCircle(at(edges_.destination(candidate_left)), at(edges_.origin(candidate_left)),
+                                   at(edges_.origin(candidate_right)), at(edges_.destination(candidate_right))));
       base = take_right ? edges_.connect(candidate_right, base ^ 1) : edges_.connect(base ^ 1, candidate_left ^ 1);
     }
   }
 
-  /// The next edge up on the left of the seam, after those that a better triangle replaces are gone; likewise on the right.
+  /// The next edge up on the left of the seam, after those that a better triangle replaces are gone; likewise on the
+  /// right.
   int clearedLeft(int base) {
     int e = edges_.next(base ^ 1);
-    while (rightOf(edges_.destination(e), base) && inCircle(at(edges_.destination(base)), at(edges_.origin(base)),
-                                                            at(edges_.destination(e)), at(edges_.destination(edges_.next(e))))) {
+    while (rightOf(edges_.destination(e), base) &&
+           inCircle(at(edges_.destination(base)), at(edges_.origin(base)), at(edges_.destination(e)),
+                    at(edges_.destination(edges_.next(e))))) {
       const int following = edges_.next(e);
       edges_.remove(e);
       e = following;
@@ -166,8 +168,9 @@ class Triangulator {
   }
   int clearedRight(int base) {
     int e = edges_.previous(base);
-    while (rightOf(edges_.destination(e), base) && inCircle(at(edges_.destination(base)), at(edges_.origin(base)),
-                                                            at(edges_.destination(e)), at(edges_.destination(edges_.previous(e))))) {
+    while (rightOf(edges_.destination(e), base) &&
+           inCircle(at(edges_.destination(base)), at(edges_.origin(base)), at(edges_.destination(e)),
+                    at(edges_.destination(edges_.previous(e))))) {
       const int following = edges_.previous(e);
       edges_.remove(e);
       e = following;
@@ -197,7 +200,7 @@ Vertices mergeDuplicates(std::span<const Eigen::Vector2d> points_px, std::vector
       vertices.positions.push_back(position);
       vertices.point.push_back(point);
     }
-    vertex_of_point[static_cast<std::size_t>(point)] = vertices.point.back();
+    vertex_of_point[point] = vertices.point.back();
   }
   return vertices;
 }
@@ -213,7 +216,7 @@ std::array<int, 3> smallestFirst(std::array<int, 3> t) {
 DelaunayGraph delaunay(std::span<const Eigen::Vector2d> points_px) {
   DelaunayGraph graph;
   const Vertices vertices = mergeDuplicates(points_px, graph.vertex_of_point);
-  const auto point = [&](int vertex) { return vertices.point[static_cast<std::size_t>(vertex)]; };
+  const auto point = [&](int vertex) { return vertices.point[vertex]; };
   const Triangulator triangulator(vertices.positions);
   const EdgeRings& edges = triangulator.edges();
   for (int e = 0; e < edges.size(); ++e) {

@@ -10,8 +10,8 @@
 
 #include <Eigen/Core>
 
-/// Vectors of four numbers, of the compilers' own kind: arithmetic is lane by lane, so that a formula for one point, written with them, is
-/// computed for four points. The values are the same in the portable build.
+/// Vectors of four numbers, of the compilers' own kind: arithmetic is lane by lane, so that a formula for one point,
+/// written with them, is computed for four points. The values are the same in the portable build.
 namespace motorcade {
 
 inline constexpr std::size_t kDoubleLanes = 4;
@@ -38,9 +38,12 @@ struct SymmetricDoubles3x3 {
   Doubles xx, xy, xz, yy, yz, zz;
 };
 
-inline Doubles3 allDoubles(const Eigen::Vector3d& v) { return {allDoubles(v.x()), allDoubles(v.y()), allDoubles(v.z())}; }
+inline Doubles3 allDoubles(const Eigen::Vector3d& v) {
+  return {allDoubles(v.x()), allDoubles(v.y()), allDoubles(v.z())};
+}
 inline Doubles3x3 allDoubles(const Eigen::Matrix3d& m) {
-  return {allDoubles(Eigen::Vector3d(m.row(0))), allDoubles(Eigen::Vector3d(m.row(1))), allDoubles(Eigen::Vector3d(m.row(2)))};
+  return {allDoubles(Eigen::Vector3d(m.row(0))), allDoubles(Eigen::Vector3d(m.row(1))),
+          allDoubles(Eigen::Vector3d(m.row(2)))};
 }
 inline void setLane(Doubles3& lanes, std::size_t lane, const Eigen::Vector3d& v) {
   lanes.x[lane] = v.x(), lanes.y[lane] = v.y(), lanes.z[lane] = v.z();
@@ -58,13 +61,16 @@ inline Doubles3 cross(const Doubles3& a, const Doubles3& b) {
 inline Doubles3 operator*(const Doubles3x3& m, const Doubles3& v) { return {dot(m.x, v), dot(m.y, v), dot(m.z, v)}; }
 inline Doubles3 transposeTimes(const Doubles3x3& m, const Doubles3& v) { return v.x * m.x + v.y * m.y + v.z * m.z; }
 inline Doubles3x3 transposeTimes(const Doubles3x3& m, const Doubles3x3& n) {
-  return {m.x.x * n.x + m.y.x * n.y + m.z.x * n.z, m.x.y * n.x + m.y.y * n.y + m.z.y * n.z, m.x.z * n.x + m.y.z * n.y + m.z.z * n.z};
+  return {m.x.x * n.x + m.y.x * n.y + m.z.x * n.z, m.x.y * n.x + m.y.y * n.y + m.z.y * n.z,
+          m.x.z * n.x + m.y.z * n.y + m.z.z * n.z};
 }
 inline Doubles3x3& operator+=(Doubles3x3& a, const Doubles3x3& b) {
   a.x += b.x, a.y += b.y, a.z += b.z;
   return a;
 }
-inline Doubles3x3 operator*(const Doubles& scale, const Doubles3x3& m) { return {scale * m.x, scale * m.y, scale * m.z}; }
+inline Doubles3x3 operator*(const Doubles& scale, const Doubles3x3& m) {
+  return {scale * m.x, scale * m.y, scale * m.z};
+}
 
 inline SymmetricDoubles3x3 operator*(const Doubles& scale, const SymmetricDoubles3x3& m) {
   return {scale * m.xx, scale * m.xy, scale * m.xz, scale * m.yy, scale * m.yz, scale * m.zz};
@@ -74,13 +80,17 @@ inline SymmetricDoubles3x3& operator+=(SymmetricDoubles3x3& a, const SymmetricDo
   return a;
 }
 inline Doubles3 operator*(const SymmetricDoubles3x3& m, const Doubles3& v) {
-  return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z, m.xz * v.x + m.yz * v.y + m.zz * v.z};
+  return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
+          m.xz * v.x + m.yz * v.y + m.zz * v.z};
 }
 inline Doubles3x3 operator*(const SymmetricDoubles3x3& m, const Doubles3x3& n) {
-  return {m.xx * n.x + m.xy * n.y + m.xz * n.z, m.xy * n.x + m.yy * n.y + m.yz * n.z, m.xz * n.x + m.yz * n.y + m.zz * n.z};
+  return {m.xx * n.x + m.xy * n.y + m.xz * n.z, m.xy * n.x + m.yy * n.y + m.yz * n.z,
+          m.xz * n.x + m.yz * n.y + m.zz * n.z};
 }
 /// A diagonal matrix times another.
-inline Doubles3 scaledRows(const Doubles3& diagonal, const Doubles3& v) { return {diagonal.x * v.x, diagonal.y * v.y, diagonal.z * v.z}; }
+inline Doubles3 scaledRows(const Doubles3& diagonal, const Doubles3& v) {
+  return {diagonal.x * v.x, diagonal.y * v.y, diagonal.z * v.z};
+}
 inline Doubles3x3 scaledRows(const Doubles3& diagonal, const Doubles3x3& m) {
   return {diagonal.x * m.x, diagonal.y * m.y, diagonal.z * m.z};
 }

@@ -24,7 +24,7 @@ class PointGrid {
     for (std::size_t i = 1; i < ends_.size(); ++i) ends_[i] += ends_[i - 1];
     std::vector<int> next(ends_.begin(), ends_.end() - 1);
     int number = 0;
-    for (const auto& item : items) points_[static_cast<std::size_t>(next[cellOf(place_px(item))]++)] = number++;
+    for (const auto& item : items) points_[next[cellOf(place_px(item))]++] = number++;
   }
 
   /// Calls f(index of a point) for all points in a rectangle, and for some around it.
@@ -33,7 +33,7 @@ class PointGrid {
     const int first = column(min_px.x()), last = column(max_px.x());
     for (int y = row(min_px.y()); y <= row(max_px.y()); ++y) {
       const auto line = static_cast<std::size_t>(y) * columns_;
-      for (int i = ends_[line + first]; i < ends_[line + last + 1]; ++i) f(points_[static_cast<std::size_t>(i)]);
+      for (int i = ends_[line + first]; i < ends_[line + last + 1]; ++i) f(points_[i]);
     }
   }
   /// Half the side of a square around any point of the image that holds all points.
@@ -42,7 +42,9 @@ class PointGrid {
  private:
   int column(float u_px) const { return std::clamp(static_cast<int>(u_px / kCell_px), 0, columns_ - 1); }
   int row(float v_px) const { return std::clamp(static_cast<int>(v_px / kCell_px), 0, rows_ - 1); }
-  std::size_t cellOf(const Eigen::Vector2f& p) const { return static_cast<std::size_t>(row(p.y())) * columns_ + column(p.x()); }
+  std::size_t cellOf(const Eigen::Vector2f& p) const {
+    return static_cast<std::size_t>(row(p.y())) * columns_ + column(p.x());
+  }
 
   int columns_, rows_;
   std::vector<int> ends_;    // of each cell's points, after that of the cell before

@@ -42,7 +42,8 @@ Linearized linearize(const StereoCamera& camera, const PoseObservations::Block& 
   Linearized l;
   l.view = viewPoints(camera, T_cam_a.R, T_cam_a.t_m, o.p_a);
   const Doubles3x3& J = l.view.J;
-  SymmetricDoubles3x3 S = symmetricTimesTranspose({o.covariance_a * J.x, o.covariance_a * J.y, o.covariance_a * J.z}, J);
+  SymmetricDoubles3x3 S =
+      symmetricTimesTranspose({o.covariance_a * J.x, o.covariance_a * J.y, o.covariance_a * J.z}, J);
   S.xx += o.variance_px2.x, S.yy += o.variance_px2.y, S.zz += o.variance_px2.z;
   l.information = inverse(S);
   l.residual_px = o.uvd_px - l.view.uvd_px;
@@ -98,8 +99,8 @@ void add(NormalEquations& n, const PosePrior& prior, const SE3& T) {
   n.b.noalias() -= Jr.transpose() * prior.information * e;
 }
 
-NormalEquations accumulate(const StereoCamera& camera, const PoseObservations& observations, const SE3& T, const PoseFitParams& params,
-                           double gate, const PosePrior* prior) {
+NormalEquations accumulate(const StereoCamera& camera, const PoseObservations& observations, const SE3& T,
+                           const PoseFitParams& params, double gate, const PosePrior* prior) {
   const PoseLanes pose(T);
   LaneEquations lanes;
   for (const auto& o : observations.blocks()) lanes.add(o, linearize(camera, o, pose), gate, params.huber_sigmas);
@@ -120,8 +121,8 @@ PoseObservations::PoseObservations(std::span<const PoseObservation> observations
   }
 }
 
-std::optional<PoseFit> fitPose(const StereoCamera& camera, const PoseObservations& observations, const SE3& initial_T_cam_a,
-                               const PoseFitParams& params, const PosePrior* prior) {
+std::optional<PoseFit> fitPose(const StereoCamera& camera, const PoseObservations& observations,
+                               const SE3& initial_T_cam_a, const PoseFitParams& params, const PosePrior* prior) {
   SE3 T = initial_T_cam_a;
   NormalEquations n;
   for (int iteration = 0; iteration < params.max_iterations; ++iteration) {
@@ -147,7 +148,8 @@ std::vector<double> poseChi2(const StereoCamera& camera, const PoseObservations&
   for (const auto& o : observations.blocks()) {
     const Linearized l = linearize(camera, o, pose);
     const Doubles all = l.chi2();
-    for (std::size_t lane = 0; lane < kDoubleLanes; ++lane) chi2.push_back(l.view.ahead[lane] > 0 ? all[lane] : kInfinity);
+    for (std::size_t lane = 0; lane < kDoubleLanes; ++lane)
+      chi2.push_back(l.view.ahead[lane] > 0 ? all[lane] : kInfinity);
   }
   chi2.resize(observations.size());
   return chi2;

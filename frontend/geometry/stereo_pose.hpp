@@ -63,8 +63,9 @@ struct PoseFitParams {
 ///   min over T of sum rho(r' S^-1 r), r = uvd - project(T p_a), S = diag(sigma^2) + J C_a J'  (J = d project / d p_a).
 /// Weighting by S is what keeps far points, whose depth is poor, from stretching the path.
 /// Empty when the problem is singular or diverges.
-std::optional<PoseFit> fitPose(const StereoCamera& camera, const PoseObservations& observations, const SE3& initial_T_cam_a,
-                               const PoseFitParams& params, const PosePrior* prior = nullptr);
+std::optional<PoseFit> fitPose(const StereoCamera& camera, const PoseObservations& observations,
+                               const SE3& initial_T_cam_a, const PoseFitParams& params,
+                               const PosePrior* prior = nullptr);
 
 /// Whitened squared residuals of the observations under a pose (3 degrees of freedom); infinite behind the camera.
 std::vector<double> poseChi2(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_a);

@@ -13,7 +13,8 @@ struct StereoViews {
 };
 
 /// `R_cam_a` and `t_cam_a_m` take the points `p_a_m` to the camera.
-inline StereoViews viewPoints(const StereoCamera& camera, const Doubles3x3& R_cam_a, const Doubles3& t_cam_a_m, const Doubles3& p_a_m) {
+inline StereoViews viewPoints(const StereoCamera& camera, const Doubles3x3& R_cam_a, const Doubles3& t_cam_a_m,
+                              const Doubles3& p_a_m) {
   const Doubles3 p = R_cam_a * p_a_m + t_cam_a_m;
   const auto is_ahead = p.z >= StereoCamera::kMinDepth_m;
   const Doubles one = allDoubles(1.0), iz = one / (is_ahead ? p.z : one);

@@ -17,7 +17,8 @@ void halveRow(const std::uint8_t* upper, const std::uint8_t* lower, std::uint8_t
 
 Image halved(const Image& image, ImagePool& pool) {
   Image half = pool.acquire(image.width() / 2, image.height() / 2);
-  for (int y = 0; y < half.height(); ++y) halveRow(image.row(2 * y), image.row(2 * y + 1), half.mutableRow(y), half.width());
+  for (int y = 0; y < half.height(); ++y)
+    halveRow(image.row(2 * y), image.row(2 * y + 1), half.mutableRow(y), half.width());
   return half;
 }
 

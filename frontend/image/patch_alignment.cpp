@@ -28,7 +28,8 @@ struct Moments {
 /// Gathers the moments row by row; the other image's samples are taken relative to the template's mean.
 class MomentSums {
  public:
-  explicit MomentSums(const PatchTemplate& patch) : patch_(patch), mask_(windowMask(patch.window_px)), mean_(allWords(patch.mean)) {}
+  explicit MomentSums(const PatchTemplate& patch)
+      : patch_(patch), mask_(windowMask(patch.window_px)), mean_(allWords(patch.mean)) {}
 
   void add(int row, const Words& samples) {
     const Words j = reduced(samples - mean_, kSampleShift), inner = j & mask_;
@@ -48,11 +49,11 @@ class MomentSums {
     const float total = static_cast<float>(sum) * kOtherUnit;
     Moments moments;
     moments.appearance = patch_.appearance_unit * static_cast<float>(appearance) - patch_.appearance_mean * total;
-    moments.descent =
-        patch_.descent_units.cwiseProduct(Eigen::Vector3f(static_cast<float>(d0), static_cast<float>(d1), static_cast<float>(d2))) -
-        patch_.descent_mean * total - patch_.descent_along * moments.appearance;
-    moments.variation =
-        static_cast<float>(pixels * squares - std::int64_t{sum} * sum) * (kOtherUnit * kOtherUnit / static_cast<float>(pixels));
+    moments.descent = patch_.descent_units.cwiseProduct(
+                          Eigen::Vector3f(static_cast<float>(d0), static_cast<float>(d1), static_cast<float>(d2))) -
+                      patch_.descent_mean * total - patch_.descent_along * moments.appearance;
+    moments.variation = static_cast<float>(pixels * squares - std::int64_t{sum} * sum) *
+                        (kOtherUnit * kOtherUnit / static_cast<float>(pixels));
     return moments;
   }
 
@@ -63,7 +64,8 @@ class MomentSums {
 };
 
 /// Moments of the patch at (u, v).
-[[gnu::always_inline]] inline Moments momentsAt(const PatchTemplate& patch, const Image& image, const GridPlace& u, float v_px) {
+[[gnu::always_inline]] inline Moments momentsAt(const PatchTemplate& patch, const Image& image, const GridPlace& u,
+                                                float v_px) {
   const int window = patch.window_px, half = window / 2;
   const RowPlace top(v_px - static_cast<float>(half));
   const Block block(image, u.pixel - half, top.pixel, window + 1, window + 1);
@@ -84,22 +86,25 @@ Moments momentsAt(const PatchTemplate& patch, const Image& image, const GridPlac
   const int window = patch.window_px, half = window / 2;
   const float left = u.px() - static_cast<float>(half), reach = std::abs(shear) * static_cast<float>(half);
   const RowPlace top(v_px - static_cast<float>(half));
-  const int x = static_cast<int>(std::floor(left - reach)), end = static_cast<int>(std::floor(left + reach)) + window + 2;
+  const int x = static_cast<int>(std::floor(left - reach)),
+            end = static_cast<int>(std::floor(left + reach)) + window + 2;
   const Block block(image, x, top.pixel, end - x, window + 1);
   const Words fraction = allWords(top.fraction);
   MomentSums sums(patch);
   for (int r = 0; r < window; ++r) {
     const GridPlace row_left(left + shear * static_cast<float>(r - half) - static_cast<float>(x));
     const SampleColumns columns(row_left.fraction);
-    sums.add(r, betweenRows(columns(block.row(r) + row_left.pixel), columns(block.row(r + 1) + row_left.pixel), fraction));
+    sums.add(r,
+             betweenRows(columns(block.row(r) + row_left.pixel), columns(block.row(r + 1) + row_left.pixel), fraction));
   }
   return sums.moments();
 }
 
-constexpr float kMaxStep_px = 1.5F;  // the gain comes out too small, and the step too long, while the patches do not overlap well
+constexpr float kMaxStep_px =
+    1.5F;  // the gain comes out too small, and the step too long, while the patches do not overlap well
 
-/// An alignment whose steps are still as long as this at its fourth, fifth, ... iteration (the last counts for all that follow) comes to
-/// nothing, but for one in a hundred.
+/// An alignment whose steps are still as long as this at its fourth, fifth, ... iteration (the last counts for all that
+/// follow) comes to nothing, but for one in a hundred.
 constexpr std::array kLost_px{1.0F, 0.7F, 0.45F, 0.3F, 0.2F};
 constexpr int kFirstLost = 3;
 bool isLost(int iteration, float step_px2) {
@@ -115,8 +120,9 @@ float explainedCorrelation(const PatchTemplate& patch, const Moments& moments) {
   return std::sqrt(std::min(1.0F, (moments.appearance * moments.appearance + deformation) / moments.variation));
 }
 
-/// Standard deviation of the shift along parameter i, from a residual taken as white. What that leaves out (noise in the gradients of H,
-/// deformations beyond the model) is in the factor, fitted to the median error on rendered street scenes.
+/// Standard deviation of the shift along parameter i, from a residual taken as white. What that leaves out (noise in
+/// the gradients of H, deformations beyond the model) is in the factor, fitted to the median error on rendered street
+/// scenes.
 constexpr float kSigmaFactor = 1.35F;
 float shiftSigma(const PatchTemplate& patch, const Moments& moments, float ncc, int parameter) {
   const float gain = moments.appearance / patch.norm;
@@ -127,8 +133,8 @@ float shiftSigma(const PatchTemplate& patch, const Moments& moments, float ncc, 
 
 }  // namespace
 
-std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& image, float u_guess_px, float v_guess_px,
-                                       const PatchParams& params) {
+std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& image, float u_guess_px,
+                                       float v_guess_px, const PatchParams& params) {
   const auto max_shift_px2 = static_cast<float>(params.max_shift_px * params.max_shift_px);
   float u = u_guess_px, v = v_guess_px;
   for (int iteration = 0; iteration < params.max_iterations; ++iteration) {
@@ -147,18 +153,20 @@ std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& 
     const float ncc = explainedCorrelation(patch, moments);
     if (ncc < params.min_ncc) return std::nullopt;
     const float sigma = std::max(shiftSigma(patch, moments, ncc, 0), shiftSigma(patch, moments, ncc, 1));
-    return AlignedPatch{u + patch.off_grid_px, v, ncc, -step[2], std::hypot(sigma, static_cast<float>(params.sigma_floor_px))};
+    return AlignedPatch{u + patch.off_grid_px, v, ncc, -step[2],
+                        std::hypot(sigma, static_cast<float>(params.sigma_floor_px))};
   }
   return std::nullopt;
 }
 
-std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, float u_px, float v_px, const ImagePyramid& to, float u_guess_px,
-                                       float v_guess_px, int first_level, const PatchParams& params) {
+std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, float u_px, float v_px, const ImagePyramid& to,
+                                       float u_guess_px, float v_guess_px, int first_level, const PatchParams& params) {
   float u = u_guess_px, v = v_guess_px;
   std::optional<AlignedPatch> aligned;
   for (int level = first_level; level >= 0; --level) {
     const auto i = static_cast<std::size_t>(level);
-    const auto patch = makeTemplate(from.levels[i], toLevel(u_px, level), toLevel(v_px, level), params.window_px, PatchDeformation::kScale);
+    const auto patch = makeTemplate(from.levels[i], toLevel(u_px, level), toLevel(v_px, level), params.window_px,
+                                    PatchDeformation::kScale);
     if (patch) aligned = alignPatch(*patch, to.levels[i], toLevel(u, level), toLevel(v, level), params);
     if (!patch || !aligned) {
       if (level == 0) return std::nullopt;
@@ -172,10 +180,13 @@ std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, float u_px, flo
 
 namespace {
 
-/// Whole-pixel disparity with the smallest difference within the radius of the prediction; the prediction when no window fits.
-double searchAround(const Image& left, const Image& right, double u_px, double v_px, double predicted_px, double radius_px) {
+/// Whole-pixel disparity with the smallest difference within the radius of the prediction; the prediction when no
+/// window fits.
+double searchAround(const Image& left, const Image& right, double u_px, double v_px, double predicted_px,
+                    double radius_px) {
   constexpr WindowSize kWindow;
-  const int u = static_cast<int>(std::lround(u_px)), v = static_cast<int>(std::lround(v_px)), half = kWindow.columns / 2;
+  const int u = static_cast<int>(std::lround(u_px)), v = static_cast<int>(std::lround(v_px)),
+            half = kWindow.columns / 2;
   const int radius = static_cast<int>(std::ceil(radius_px));
   const int middle = static_cast<int>(std::lround(u_px - predicted_px));
   const int first = std::max(middle - radius, half), last = std::min(middle + radius, right.width() - 1 - half);
@@ -190,13 +201,14 @@ double searchAround(const Image& left, const Image& right, double u_px, double v
 
 }  // namespace
 
-std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right, double u_px, double v_px, double predicted_disparity_px,
-                                           const DisparityParams& params) {
+std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right, double u_px, double v_px,
+                                           double predicted_disparity_px, const DisparityParams& params) {
   const auto u = static_cast<float>(u_px), v = static_cast<float>(v_px);
   const auto patch = makeTemplate(left, u, v, params.window_px, PatchDeformation::kSlope);
   if (!patch) return std::nullopt;
   double start_px = predicted_disparity_px;
-  if (params.search_radius_px > 0) start_px = searchAround(left, right, u_px, v_px, predicted_disparity_px, params.search_radius_px);
+  if (params.search_radius_px > 0)
+    start_px = searchAround(left, right, u_px, v_px, predicted_disparity_px, params.search_radius_px);
 
   constexpr float kConverged_px = 0.02F, kMaxShift_px = 2;
   const int half = params.window_px / 2;

@@ -12,12 +12,13 @@
 /// Samples of an image between its pixels, a row of sixteen at a time, in integers of 1/64 gray level.
 namespace motorcade {
 
-inline constexpr int kSampleLevels = 64;                  // of a sample per gray level; a column's place is held to 1/64 px as well
+inline constexpr int kSampleLevels = 64;  // of a sample per gray level; a column's place is held to 1/64 px as well
 inline constexpr int kBlockRows = 16, kBlockStride = 48;  // of the largest rectangle that may lie across a border
 
 /// True from the middle of the first pixel to that of the last one.
 inline bool inside(const Image& image, float u_px, float v_px) {
-  return u_px >= 0 && v_px >= 0 && u_px <= static_cast<float>(image.width() - 1) && v_px <= static_cast<float>(image.height() - 1);
+  return u_px >= 0 && v_px >= 0 && u_px <= static_cast<float>(image.width() - 1) &&
+         v_px <= static_cast<float>(image.height() - 1);
 }
 
 /// Ones inside the window, zeros to its right.
@@ -45,9 +46,12 @@ struct RowPlace {
   int pixel, fraction;
 };
 
-inline Words betweenRows(const Words& upper, const Words& lower, const Words& fraction) { return upper + scaled(lower - upper, fraction); }
+inline Words betweenRows(const Words& upper, const Words& lower, const Words& fraction) {
+  return upper + scaled(lower - upper, fraction);
+}
 
-/// A rectangle of pixels with room to read 24 beyond its right edge: in the image itself, or copied with the border repeated.
+/// A rectangle of pixels with room to read 24 beyond its right edge: in the image itself, or copied with the border
+/// repeated.
 class Block {
  public:
   Block(const Image& image, int x, int y, int columns, int rows) {
@@ -65,7 +69,8 @@ class Block {
 
  private:
   [[gnu::noinline]] void copy(const Image& image, int x, int y, int rows) {
-    const int left = std::clamp(-x, 0, kBlockStride), right = std::clamp(image.width() - x, left, kBlockStride);  // columns of the image
+    const int left = std::clamp(-x, 0, kBlockStride),
+              right = std::clamp(image.width() - x, left, kBlockStride);  // columns of the image
     for (int r = 0; r < rows; ++r) {
       const std::uint8_t* row = image.row(std::clamp(y + r, 0, image.height() - 1));
       std::uint8_t* out = copy_.data() + r * kBlockStride;
@@ -81,17 +86,21 @@ class Block {
   std::array<std::uint8_t, kBlockRows * kBlockStride + 32> copy_;  // not filled unless needed
 };
 
-/// Sixteen columns to sample: of each, the pixels on its left and right, counted from the first of its group of eight, and their weights.
+/// Sixteen columns to sample: of each, the pixels on its left and right, counted from the first of its group of eight,
+/// and their weights.
 class SampleColumns {
  public:
   /// A pixel apart, the first 1/64 `fraction` behind the row's first pixel.
   explicit SampleColumns(int fraction)
-      : second_group_(kWordLanes / 2), pixels_(kNextTo), weights_(Bytes(allWords(fraction << 8 | (kSampleLevels - fraction)))) {}
+      : second_group_(kWordLanes / 2),
+        pixels_(kNextTo),
+        weights_(Bytes(allWords(fraction << 8 | (kSampleLevels - fraction)))) {}
 
-  /// At any places from left to right; those of a group of eight lie within 15 px, all between 0 and `last_px`, which is inside the image.
+  /// At any places from left to right; those of a group of eight lie within 15 px, all between 0 and `last_px`, which
+  /// is inside the image.
   SampleColumns(const std::array<float, kWordLanes>& places_px, int last_px) {
     for (int i = 0; i < kWordLanes; ++i) {
-      const int place = static_cast<int>(places_px[static_cast<std::size_t>(i)] * kSampleLevels + 0.5F);
+      const int place = static_cast<int>(places_px[i] * kSampleLevels + 0.5F);
       const int pixel = std::min(place >> 6, last_px - 1), right_weight = place - pixel * kSampleLevels;
       if (i == 0) first_group_ = pixel;
       if (i == kWordLanes / 2) second_group_ = pixel;
@@ -106,14 +115,16 @@ class SampleColumns {
   Words operator()(const std::uint8_t* row) const {
     const std::uint8_t *p = row + first_group_, *q = row + second_group_;
 #ifdef __AVX2__
-    const __m256i both = _mm256_inserti128_si256(_mm256_castsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))),
-                                                 _mm_loadu_si128(reinterpret_cast<const __m128i*>(q)), 1);
+    const __m256i both =
+        _mm256_inserti128_si256(_mm256_castsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))),
+                                _mm_loadu_si128(reinterpret_cast<const __m128i*>(q)), 1);
     return Words(_mm256_maddubs_epi16(_mm256_shuffle_epi8(both, __m256i(pixels_)), __m256i(weights_)));
 #else
     Words samples;
     for (int i = 0; i < kWordLanes; ++i) {
       const std::uint8_t* group = i < kWordLanes / 2 ? p : q;
-      samples[i] = static_cast<std::int16_t>(group[pixels_[2 * i]] * weights_[2 * i] + group[pixels_[2 * i + 1]] * weights_[2 * i + 1]);
+      samples[i] = static_cast<std::int16_t>(group[pixels_[2 * i]] * weights_[2 * i] +
+                                             group[pixels_[2 * i + 1]] * weights_[2 * i + 1]);
     }
     return samples;
 #endif
@@ -121,7 +132,8 @@ class SampleColumns {
 
  private:
   using Bytes = std::uint8_t __attribute__((vector_size(2 * kWordLanes)));
-  static constexpr Bytes kNextTo{0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8};
+  static constexpr Bytes kNextTo{0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8,
+                                 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8};
   int first_group_ = 0, second_group_ = 0;
   Bytes pixels_, weights_;
 };

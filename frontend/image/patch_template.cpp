@@ -36,7 +36,7 @@ void sampleSquare(const Image& image, const GridPlace& u, float v_px, int side_p
   Words upper = columns(block.row(0));
   for (int r = 0; r < side_px; ++r) {
     const Words lower = columns(block.row(r + 1));
-    out[static_cast<std::size_t>(r)] = betweenRows(upper, lower, fraction);
+    out[r] = betweenRows(upper, lower, fraction);
     upper = lower;
   }
 }
@@ -48,12 +48,12 @@ void sampleScaledSquare(const Image& image, const GridPlace& u, float v_px, int 
   const auto last_u = static_cast<float>(image.width() - 1), last_v = static_cast<float>(image.height() - 1);
   std::array<float, kWordLanes> places_px;
   for (int c = 0; c < kWordLanes; ++c)
-    places_px[static_cast<std::size_t>(c)] = std::clamp(u.px() + static_cast<float>(c - half) * spacing_px, 0.0F, last_u);
+    places_px[c] = std::clamp(u.px() + static_cast<float>(c - half) * spacing_px, 0.0F, last_u);
   const SampleColumns columns(places_px, image.width() - 1);
   for (int r = 0; r < side_px; ++r) {
     const RowPlace v(std::clamp(v_px + static_cast<float>(r - half) * spacing_px, 0.0F, last_v));
     const int below = std::min(v.pixel + 1, image.height() - 1);
-    out[static_cast<std::size_t>(r)] = betweenRows(columns(image.row(v.pixel)), columns(image.row(below)), allWords(v.fraction));
+    out[r] = betweenRows(columns(image.row(v.pixel)), columns(image.row(below)), allWords(v.fraction));
   }
 }
 
@@ -61,7 +61,7 @@ void sampleScaledSquare(const Image& image, const GridPlace& u, float v_px, int 
 int meanSample(const Square& square, int window_px) {
   const Words mask = windowMask(window_px);
   WordSums sums{};
-  for (int r = 1; r <= window_px; ++r) sums += products(afterFirst(square[static_cast<std::size_t>(r)]) & mask, allWords(1));
+  for (int r = 1; r <= window_px; ++r) sums += products(afterFirst(square[r]) & mask, allWords(1));
   const int pixels = window_px * window_px;
   return (totals(sums, sums, sums, sums)[0] + pixels / 2) / pixels;
 }
@@ -75,7 +75,8 @@ struct TemplateSums {
   void add(const Words& a, const Words& x, const Words& y, const Words& z) {
     const Words one = allWords(1);
     appearance += products(a, one), d0 += products(x, one), d1 += products(y, one), d2 += products(z, one);
-    appearance_squares += products(a, a), appearance_d0 += products(a, x), appearance_d1 += products(a, y), appearance_d2 += products(a, z);
+    appearance_squares += products(a, a), appearance_d0 += products(a, x), appearance_d1 += products(a, y),
+        appearance_d2 += products(a, z);
     d00 += products(x, x), d01 += products(x, y), d02 += products(x, z);
     d11 += products(y, y), d12 += products(y, z), d22 += products(z, z);
   }
@@ -95,7 +96,8 @@ TemplateSums fillPlanes(PatchTemplate& patch, const Square& square, PatchDeforma
     const auto row = static_cast<std::size_t>(r);
     const Words& samples = square[row + 1];
     const Words below = afterFirst(square[row + 2]), rows = allWords((r - half) * (1 << kMomentShift));
-    const Words du = (afterSecond(samples) - samples) & mask, dv = (below - above) & mask;  // of samples two pixels apart
+    const Words du = (afterSecond(samples) - samples) & mask,
+                dv = (below - above) & mask;  // of samples two pixels apart
     const Words a = reduced(here - mean, kAppearanceShift) & mask, d0 = reduced(du, 3);
     const Words d1 = scale ? reduced(dv, 3) : scaled(du, rows);
     const Words d2 = scale ? scaled(du, columns) + scaled(dv, rows) : scaled(du, columns);
@@ -110,21 +112,24 @@ TemplateSums fillPlanes(PatchTemplate& patch, const Square& square, PatchDeforma
   return sums;
 }
 
-/// Completes a template from the sums over its planes: takes the mean out of the appearance, and the mean and the component along the
-/// appearance out of the derivatives (a change of bias or gain is no motion). Returns the sums of products of the latter.
+/// Completes a template from the sums over its planes: takes the mean out of the appearance, and the mean and the
+/// component along the appearance out of the derivatives (a change of bias or gain is no motion). Returns the sums of
+/// products of the latter.
 Eigen::Matrix3f orthogonalize(PatchTemplate& patch, const TemplateSums& sums, PatchDeformation deformation) {
   const auto plain = totals(sums.appearance, sums.d0, sums.d1, sums.d2);
   const auto along = totals(sums.appearance_squares, sums.appearance_d0, sums.appearance_d1, sums.appearance_d2);
-  const auto first = totals(sums.d00, sums.d01, sums.d02, sums.d11), last = totals(sums.d12, sums.d22, sums.d12, sums.d22);
+  const auto first = totals(sums.d00, sums.d01, sums.d02, sums.d11),
+             last = totals(sums.d12, sums.d22, sums.d12, sums.d22);
   const auto asFloat = [](std::int32_t x) { return static_cast<float>(x); };
   const float pixels = asFloat(patch.window_px * patch.window_px);
   const Eigen::Vector3f units = descentUnits(deformation);
-  const Eigen::Vector3f sum_d = units.cwiseProduct(Eigen::Vector3f(asFloat(plain[1]), asFloat(plain[2]), asFloat(plain[3])));
+  const Eigen::Vector3f sum_d =
+      units.cwiseProduct(Eigen::Vector3f(asFloat(plain[1]), asFloat(plain[2]), asFloat(plain[3])));
   const Eigen::Vector3f sum_ad =
       kAppearanceUnit * units.cwiseProduct(Eigen::Vector3f(asFloat(along[1]), asFloat(along[2]), asFloat(along[3])));
   Eigen::Matrix3f sum_dd;
-  sum_dd << asFloat(first[0]), asFloat(first[1]), asFloat(first[2]), asFloat(first[1]), asFloat(first[3]), asFloat(last[0]),
-      asFloat(first[2]), asFloat(last[0]), asFloat(last[1]);
+  sum_dd << asFloat(first[0]), asFloat(first[1]), asFloat(first[2]), asFloat(first[1]), asFloat(first[3]),
+      asFloat(last[0]), asFloat(first[2]), asFloat(last[0]), asFloat(last[1]);
   sum_dd = units.asDiagonal() * sum_dd * units.asDiagonal();
 
   const float mean = kAppearanceUnit * asFloat(plain[0]) / pixels;
@@ -138,15 +143,17 @@ Eigen::Matrix3f orthogonalize(PatchTemplate& patch, const TemplateSums& sums, Pa
   return sum_dd - sum_d * patch.descent_mean.transpose() - patch.descent_along * patch.descent_along.transpose();
 }
 
-/// Information of a deformation whose standard deviation is `sigma`, for the noise that 8-bit images have at least (3 gray levels).
+/// Information of a deformation whose standard deviation is `sigma`, for the noise that 8-bit images have at least (3
+/// gray levels).
 constexpr float priorInformation(float sigma) { return 9 / (sigma * sigma); }
 constexpr float kScaleSigma = 0.1F, kRowSlopeSigma = 0.3F, kColumnSlopeSigma = 0.15F;
-constexpr float kMinInformation = 60;  // of the shift: root mean square gradient of 0.7 gray levels per pixel over 11x11
+constexpr float kMinInformation =
+    60;  // of the shift: root mean square gradient of 0.7 gray levels per pixel over 11x11
 
 }  // namespace
 
-std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px, PatchDeformation deformation,
-                                          float scale) {
+std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px,
+                                          PatchDeformation deformation, float scale) {
   assert(window_px % 2 == 1 && window_px <= kMaxPatchWindow_px);
   std::optional<PatchTemplate> patch;  // the only object returned, so that it is never copied
   if (!inside(image, u_px, v_px) || scale < kMinTemplateScale) return patch;

@@ -15,10 +15,11 @@ inline constexpr int kMaxPatchWindow_px = 13;
 /// How a patch may deform beside its shift: a small change of scale in time, a slope of the disparity between the eyes.
 enum class PatchDeformation { kScale, kSlope };
 
-/// A patch with what its alignment needs: its appearance a = (I - mean) / |I - mean| and the derivatives D of I by the parameters
-/// (kScale: u, v, log scale; kSlope: u, u per row, u per column), made orthogonal to 1 and a. For the raw intensities J of another image
-/// the Gauss-Newton step is H^-1 sum(D J) / gain with H = sum(D D') + prior, whatever the gain and bias of J.
-/// The planes are kept in integers, before norm, mean and orthogonality, which the sums over them are given afterwards.
+/// A patch with what its alignment needs: its appearance a = (I - mean) / |I - mean| and the derivatives D of I by the
+/// parameters (kScale: u, v, log scale; kSlope: u, u per row, u per column), made orthogonal to 1 and a. For the raw
+/// intensities J of another image the Gauss-Newton step is H^-1 sum(D J) / gain with H = sum(D D') + prior, whatever
+/// the gain and bias of J. The planes are kept in integers, before norm, mean and orthogonality, which the sums over
+/// them are given afterwards.
 struct PatchTemplate {
   PatchTemplate() {}  // leaves the planes as they are: they are filled at once
   static constexpr int kStride = 16;
@@ -39,9 +40,10 @@ struct PatchTemplate {
 
 inline constexpr float kMinTemplateScale = 0.6F;
 
-/// Empty without the texture that the shift needs, or when the point lies outside the image. With a `scale` the template shows the image
-/// that much enlarged around the point: how a point that was seen from afar looks now; empty below kMinTemplateScale.
-std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px, PatchDeformation deformation,
-                                          float scale = 1);
+/// Empty without the texture that the shift needs, or when the point lies outside the image. With a `scale` the
+/// template shows the image that much enlarged around the point: how a point that was seen from afar looks now; empty
+/// below kMinTemplateScale.
+std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px,
+                                          PatchDeformation deformation, float scale = 1);
 
 }  // namespace motorcade

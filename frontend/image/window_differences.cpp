@@ -17,18 +17,18 @@ class Differences {
   Differences(const Image& image, int u, int v, WindowSize window) : window_(window) {
     for (int r = 0, i = 0; r < rows(); ++r) {
       const std::uint8_t* row = image.row(v - rows() / 2 + r) + u - columns() / 2;
-      for (int c = 0; c < columns(); ++c) sum_ += pixels_[static_cast<std::size_t>(i++)] = row[c];
+      for (int c = 0; c < columns(); ++c) sum_ += pixels_[i++] = row[c];
     }
   }
 
-  /// Costs of sixteen neighbouring windows, the first pixel of the first at `from`.
+  /// Costs of sixteen neighboring windows, the first pixel of the first at `from`.
   Words operator()(const std::uint8_t* from, std::ptrdiff_t stride) const {
     const Words per_pixel = allWords(std::min((1 << 15) / (columns() * rows()), INT16_MAX));
     const Words offset = scaled(windowSums(from, stride) - static_cast<std::int16_t>(sum_), per_pixel);
     Words cost{};
     for (int r = 0, i = 0; r < rows(); ++r) {
       const std::uint8_t* row = from + r * stride;
-      for (int c = 0; c < columns(); ++c) cost += magnitude(wordPixels(row + c) - (offset + pixels_[static_cast<std::size_t>(i++)]));
+      for (int c = 0; c < columns(); ++c) cost += magnitude(wordPixels(row + c) - (offset + pixels_[i++]));
     }
     return cost;
   }
@@ -37,9 +37,10 @@ class Differences {
   int columns() const { return kColumns > 0 ? kColumns : window_.columns; }
   int rows() const { return kRows > 0 ? kRows : window_.rows; }
 
-  /// Sums of sixteen neighbouring windows' pixels.
+  /// Sums of sixteen neighboring windows' pixels.
   Words windowSums(const std::uint8_t* from, std::ptrdiff_t stride) const {
-    // Of each column first, over 32 columns: reads up to 31 bytes past a window's first pixel, the next row or the room after the last.
+    // Of each column first, over 32 columns: reads up to 31 bytes past a window's first pixel, the next row or the room
+    // after the last.
     alignas(32) std::array<std::int16_t, 2 * kWordLanes> sums_of_columns;
     for (int c = 0; c < 2 * kWordLanes; c += kWordLanes) {
       Words sum{};
@@ -63,14 +64,15 @@ void fillCosts(const Image& image, int u, int v, const std::uint8_t* from, std::
   const int count = static_cast<int>(costs.size());
   for (int first = 0; first < count; first += kWordLanes) {
     const Words cost = differences(from + first, stride);
-    std::memcpy(costs.data() + first, &cost, static_cast<std::size_t>(std::min(kWordLanes, count - first)) * sizeof(std::uint16_t));
+    std::memcpy(costs.data() + first, &cost,
+                static_cast<std::size_t>(std::min(kWordLanes, count - first)) * sizeof(std::uint16_t));
   }
 }
 
 }  // namespace
 
-void windowDifferences(const Image& image, int u, int v, const Image& other, int other_u, int other_v, WindowSize window,
-                       std::span<std::uint16_t> costs) {
+void windowDifferences(const Image& image, int u, int v, const Image& other, int other_u, int other_v,
+                       WindowSize window, std::span<std::uint16_t> costs) {
   assert(fits(window));
   const std::uint8_t* from = other.row(other_v - window.rows / 2) + other_u - window.columns / 2;
   const auto fill = window == WindowSize{9, 5}    ? fillCosts<9, 5>

@@ -7,8 +7,8 @@
 #include <immintrin.h>
 #endif
 
-/// Vectors of sixteen 16-bit integers, of the compilers' own kind: arithmetic is element by element. What that lacks (or GCC 12 turns into
-/// scalar code) is here, with the same values in the portable build.
+/// Vectors of sixteen 16-bit integers, of the compilers' own kind: arithmetic is element by element. What that lacks
+/// (or GCC 12 turns into scalar code) is here, with the same values in the portable build.
 namespace motorcade {
 
 inline constexpr int kWordLanes = 16;
@@ -24,7 +24,9 @@ inline void storeWords(std::int16_t* p, const Words& words) { std::memcpy(p, &wo
 inline Words allWords(int value) { return Words{} + static_cast<std::int16_t>(value); }
 
 #ifdef __AVX2__
-inline Words wordPixels(const std::uint8_t* p) { return Words(_mm256_cvtepu8_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)))); }
+inline Words wordPixels(const std::uint8_t* p) {
+  return Words(_mm256_cvtepu8_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
 inline Words magnitude(const Words& x) { return Words(_mm256_abs_epi16(__m256i(x))); }
 /// Products of the words, added in pairs.
 inline WordSums products(const Words& a, const Words& b) { return WordSums(_mm256_madd_epi16(__m256i(a), __m256i(b))); }
@@ -40,7 +42,8 @@ inline Words afterSecond(const Words& x) {
   return Words(_mm256_alignr_epi8(upper, __m256i(x), 4));
 }
 inline std::array<std::int32_t, 4> totals(const WordSums& a, const WordSums& b, const WordSums& c, const WordSums& d) {
-  const __m256i pairs = _mm256_hadd_epi32(_mm256_hadd_epi32(__m256i(a), __m256i(b)), _mm256_hadd_epi32(__m256i(c), __m256i(d)));
+  const __m256i pairs =
+      _mm256_hadd_epi32(_mm256_hadd_epi32(__m256i(a), __m256i(b)), _mm256_hadd_epi32(__m256i(c), __m256i(d)));
   std::array<std::int32_t, 4> result;
   const __m128i sums = _mm_add_epi32(_mm256_castsi256_si128(pairs), _mm256_extracti128_si256(pairs, 1));
   _mm_storeu_si128(reinterpret_cast<__m128i*>(result.data()), sums);

@@ -20,7 +20,8 @@ Signature::Signature(const ImagePyramid& pyramid, float u_px, float v_px) {
   for (int level = 0; level < 2; ++level) {
     const Image& image = pyramid.levels[std::min(static_cast<std::size_t>(level), pyramid.levels.size() - 1)];
     const int x = std::clamp(static_cast<int>(std::lround(toLevel(u_px, level))) - kSide / 2, 0, image.width() - kSide);
-    const int y = std::clamp(static_cast<int>(std::lround(toLevel(v_px, level))) - kSide / 2, 0, image.height() - kSide);
+    const int y =
+        std::clamp(static_cast<int>(std::lround(toLevel(v_px, level))) - kSide / 2, 0, image.height() - kSide);
     fill(image, x, y, values_.data() + level * kSide * kSide);
   }
 }
@@ -38,7 +39,8 @@ void Signature::fill(const Image& image, int x, int y, std::uint8_t* out) {
   Words sums{};
   for (int i = 0; i < kSide / 2; ++i) sums += pixels[i] = wordPixels(out + i * kWordLanes);
   const WordSums pairs = products(sums, allWords(1));
-  const Words shift = allWords(128 - totals(pairs, pairs, pairs, pairs)[0] / (kSide * kSide)), black{}, white = allWords(255);
+  const Words shift = allWords(128 - totals(pairs, pairs, pairs, pairs)[0] / (kSide * kSide)), black{},
+              white = allWords(255);
   for (int i = 0; i < kSide / 2; ++i) {
     const Words shifted = pixels[i] + shift, above = shifted < black ? black : shifted;
     const auto bytes = __builtin_convertvector(above > white ? white : above, WordBytes);
@@ -57,24 +59,24 @@ CornerLookup::CornerLookup(const Features& features)
   }
 }
 
-void CornerLookup::addSimilar(const ImagePyramid& from, const FlowTrack& point, const ShiftBounds& bounds, double max_difference,
-                              Guesses& guesses) const {
+void CornerLookup::addSimilar(const ImagePyramid& from, const FlowObservation& point, const ShiftBounds& bounds,
+                              double max_difference, Guesses& guesses) const {
   const Signature signature(from, point.u_px, point.v_px);
   const Eigen::Vector2f here(point.u_px, point.v_px);
   const std::pair none(static_cast<int>(max_difference * Signature::kPixels), -1);
   std::array best{none, none};  // the smallest difference first, of equal ones the first corner
   const Eigen::Vector2f first(bounds.min_du_px, bounds.min_dv_px), last(bounds.max_du_px, bounds.max_dv_px);
   grid_.forEachNear(here + first, here + last, [&](int i) {
-    const Eigen::Vector2f shift = places_[static_cast<std::size_t>(i)] - here;
+    const Eigen::Vector2f shift = places_[i] - here;
     if (!bounds.hold(shift.x(), shift.y())) return;
-    const std::pair candidate(signature.distance(signatures_[static_cast<std::size_t>(i)]), i);
+    const std::pair candidate(signature.distance(signatures_[i]), i);
     if (candidate.first >= none.first || candidate >= best[1]) return;
     best[1] = candidate;
     if (best[1] < best[0]) std::swap(best[0], best[1]);
   });
   for (const auto& [distance, i] : best) {
     if (i < 0) continue;
-    const Eigen::Vector2f shift = places_[static_cast<std::size_t>(i)] - here;
+    const Eigen::Vector2f shift = places_[i] - here;
     guesses.add({shift.x(), shift.y()});
   }
 }

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "frontend/messages.hpp"
 #include "frontend/geometry/point_grid.hpp"
+#include "frontend/messages.hpp"
 
 /// Where a point of the frame before may have gone: guesses for its alignment.
 namespace motorcade {
@@ -20,7 +20,9 @@ struct Shift {
 /// Bounds on a shift.
 struct ShiftBounds {
   float min_du_px, max_du_px, min_dv_px, max_dv_px;
-  bool hold(float du_px, float dv_px) const { return du_px >= min_du_px && du_px <= max_du_px && dv_px >= min_dv_px && dv_px <= max_dv_px; }
+  bool hold(float du_px, float dv_px) const {
+    return du_px >= min_du_px && du_px <= max_du_px && dv_px >= min_dv_px && dv_px <= max_dv_px;
+  }
 };
 
 /// Shifts worth trying for one point.
@@ -48,9 +50,10 @@ class Signature {
 class CornerLookup {
  public:
   explicit CornerLookup(const Features& features);
-  /// Adds the shifts to the two corners within the bounds that look most like the point and differ by less than `max_difference` per pixel.
-  void addSimilar(const ImagePyramid& from, const FlowTrack& point, const ShiftBounds& bounds, double max_difference,
-                  Guesses& guesses) const;
+  /// Adds the shifts to the two corners within the bounds that look most like the point and differ by less than
+  /// `max_difference` per pixel.
+  void addSimilar(const ImagePyramid& from, const FlowObservation& point, const ShiftBounds& bounds,
+                  double max_difference, Guesses& guesses) const;
 
  private:
   PointGrid grid_;

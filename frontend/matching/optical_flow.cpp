@@ -8,18 +8,18 @@
 #include <utility>
 #include <vector>
 
-#include "frontend/matching/corner_lookup.hpp"
-#include "frontend/image/image_pyramid.hpp"
-#include "frontend/parallel_items.hpp"
-#include "frontend/geometry/point_grid.hpp"
 #include "frontend/features/sift_features.hpp"
+#include "frontend/geometry/point_grid.hpp"
+#include "frontend/image/image_pyramid.hpp"
+#include "frontend/matching/corner_lookup.hpp"
+#include "frontend/parallel_items.hpp"
 
 namespace motorcade {
 namespace {
 
 using Params = OpticalFlowTracker::Params;
 
-constexpr double kMaxGrey = 255;
+constexpr double kMaxGray = 255;
 
 /// The patch that a track is held to.
 struct Keyframe {
@@ -30,7 +30,7 @@ struct Keyframe {
 };
 
 struct Track {
-  FlowTrack seen;
+  FlowObservation seen;
   Shift shift;         // since the frame before
   bool moved = false;  // in this frame; otherwise `seen` is still of the frame before
   Keyframe keyframe;
@@ -78,23 +78,23 @@ class PointFollower {
   int coarsest() const { return static_cast<int>(from_.levels.size()) - 1; }
 
   /// How the point looks at a level of the pyramid.
-  std::optional<PatchTemplate> patchAt(const FlowTrack& point, int level) const {
-    return makeTemplate(from_.levels[static_cast<std::size_t>(level)], toLevel(point.u_px, level), toLevel(point.v_px, level),
+  std::optional<PatchTemplate> patchAt(const FlowObservation& point, int level) const {
+    return makeTemplate(from_.levels[level], toLevel(point.u_px, level), toLevel(point.v_px, level),
                         params_.patch.window_px, PatchDeformation::kScale);
   }
 
-  /// Position in the new image, the better of all guesses at `level` (where the point looks like `patch`) refined to full size; checked
-  /// backwards.
-  std::optional<AlignedPatch> follow(const FlowTrack& point, const std::optional<PatchTemplate>& patch, std::span<const Shift> guesses,
-                                     int level) const {
+  /// Position in the new image, the better of all guesses at `level` (where the point looks like `patch`) refined to
+  /// full size; checked backwards.
+  std::optional<AlignedPatch> follow(const FlowObservation& point, const std::optional<PatchTemplate>& patch,
+                                     std::span<const Shift> guesses, int level) const {
     const auto start = bestGuess(point, patch, guesses, level);
     if (!start) return std::nullopt;
     return refine(point, *start, level - 1);
   }
 
  private:
-  std::optional<Shift> bestGuess(const FlowTrack& point, const std::optional<PatchTemplate>& patch, std::span<const Shift> guesses,
-                                 int level) const {
+  std::optional<Shift> bestGuess(const FlowObservation& point, const std::optional<PatchTemplate>& patch,
+                                 std::span<const Shift> guesses, int level) const {
     if (!patch) return guesses.front();
     const auto i = static_cast<std::size_t>(level);
     const float u = toLevel(point.u_px, level), v = toLevel(point.v_px, level), scale = static_cast<float>(1 << level);
@@ -109,12 +109,13 @@ class PointFollower {
     return best;
   }
 
-  std::optional<AlignedPatch> refine(const FlowTrack& point, const Shift& start, int level) const {
-    const auto forward =
-        alignPatch(from_, point.u_px, point.v_px, to_, point.u_px + start.du_px, point.v_px + start.dv_px, level, params_.patch);
+  std::optional<AlignedPatch> refine(const FlowObservation& point, const Shift& start, int level) const {
+    const auto forward = alignPatch(from_, point.u_px, point.v_px, to_, point.u_px + start.du_px,
+                                    point.v_px + start.dv_px, level, params_.patch);
     if (!forward) return std::nullopt;
     const auto back = alignPatch(to_, forward->u_px, forward->v_px, from_, point.u_px, point.v_px, 0, params_.patch);
-    if (!back || std::hypot(back->u_px - point.u_px, back->v_px - point.v_px) > params_.max_round_trip_px) return std::nullopt;
+    if (!back || std::hypot(back->u_px - point.u_px, back->v_px - point.v_px) > params_.max_round_trip_px)
+      return std::nullopt;
     return forward;
   }
 
@@ -126,14 +127,14 @@ class PointFollower {
 
 float middle(float a, float b, float c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
 
-/// The tracks that have moved, to look up how the neighbours of a point in the frame before moved.
+/// The tracks that have moved, to look up how the neighbors of a point in the frame before moved.
 class MovedTracks {
  public:
   MovedTracks(const std::vector<Track>& tracks, const Image& image)
       : grid_(collect(tracks), image.width(), image.height(), [](const Eigen::Vector2f& place) { return place; }) {}
 
   /// Median of the shifts of the three tracks that were nearest to a point.
-  std::optional<Shift> shiftAround(const FlowTrack& point) const {
+  std::optional<Shift> shiftAround(const FlowObservation& point) const {
     if (moved_.size() < 3) return std::nullopt;
     const Eigen::Vector2f here(point.u_px, point.v_px);
     for (float reach_px = 1.5F * PointGrid::kCell_px;; reach_px *= 2) {
@@ -146,7 +147,8 @@ class MovedTracks {
   }
 
  private:
-  using Neighbour = std::pair<float, int>;  // squared distance and number of the track; of equal distances the older track is nearer
+  using Neighbor =
+      std::pair<float, int>;  // squared distance and number of the track; of equal distances the older track is nearer
 
   const std::vector<Eigen::Vector2f>& collect(const std::vector<Track>& tracks) {
     for (const Track& track : tracks) {
@@ -156,31 +158,34 @@ class MovedTracks {
     }
     return places_;
   }
-  std::array<Neighbour, 3> nearestThree(const Eigen::Vector2f& here, float reach_px) const {
-    std::array<Neighbour, 3> nearest;
+  std::array<Neighbor, 3> nearestThree(const Eigen::Vector2f& here, float reach_px) const {
+    std::array<Neighbor, 3> nearest;
     nearest.fill({std::numeric_limits<float>::max(), -1});
     const Eigen::Vector2f reach(reach_px, reach_px);
     grid_.forEachNear(here - reach, here + reach, [&](int i) {
-      const Neighbour candidate((places_[static_cast<std::size_t>(i)] - here).squaredNorm(), i);
+      const Neighbor candidate((places_[i] - here).squaredNorm(), i);
       if (candidate >= nearest.back()) return;
       nearest.back() = candidate;
-      for (std::size_t k = nearest.size() - 1; k > 0 && nearest[k] < nearest[k - 1]; --k) std::swap(nearest[k], nearest[k - 1]);
+      for (std::size_t k = nearest.size() - 1; k > 0 && nearest[k] < nearest[k - 1]; --k)
+        std::swap(nearest[k], nearest[k - 1]);
     });
     return nearest;
   }
-  const Shift& shift(int i) const { return moved_[static_cast<std::size_t>(i)]->shift; }
+  const Shift& shift(int i) const { return moved_[i]->shift; }
 
   std::vector<const Track*> moved_;
   std::vector<Eigen::Vector2f> places_;  // in the frame before
   PointGrid grid_;
 };
 
-/// From rest to somewhat more than the neighbours' shift; anywhere when there are no neighbours.
-ShiftBounds boundsAround(const std::optional<Shift>& neighbours, const Params& params) {
+/// From rest to somewhat more than the neighbors' shift; anywhere when there are no neighbors.
+ShiftBounds boundsAround(const std::optional<Shift>& neighbors, const Params& params) {
   const auto reach = static_cast<float>(params.max_flow_px);
-  if (!neighbours) return {-reach, reach, -reach / 2, reach / 2};
-  const float du = 1.3F * neighbours->du_px, dv = 1.3F * neighbours->dv_px, margin = static_cast<float>(params.young_margin_px);
-  return {std::min(du, 0.0F) - margin, std::max(du, 0.0F) + margin, std::min(dv, 0.0F) - margin, std::max(dv, 0.0F) + margin};
+  if (!neighbors) return {-reach, reach, -reach / 2, reach / 2};
+  const float du = 1.3F * neighbors->du_px, dv = 1.3F * neighbors->dv_px,
+              margin = static_cast<float>(params.young_margin_px);
+  return {std::min(du, 0.0F) - margin, std::max(du, 0.0F) + margin, std::min(dv, 0.0F) - margin,
+          std::max(dv, 0.0F) + margin};
 }
 
 /// The same for a point of a vehicle that crosses or overtakes: the road is level, hence only sideways.
@@ -220,7 +225,8 @@ void OpticalFlowTracker::State::moveTo(Track& track, const AlignedPatch& found, 
     PatchParams held = params.patch;
     held.min_ncc = found.ncc - params.keyframe_max_ncc_loss;
     held.max_shift_px = params.keyframe_max_drift_px;
-    const auto patch = makeTemplate(keyframe.image, keyframe.u_px, keyframe.v_px, held.window_px, PatchDeformation::kScale, keyframe.scale);
+    const auto patch = makeTemplate(keyframe.image, keyframe.u_px, keyframe.v_px, held.window_px,
+                                    PatchDeformation::kScale, keyframe.scale);
     const auto aligned = patch ? alignPatch(*patch, now, found.u_px, found.v_px, held) : std::nullopt;
     if (aligned) {
       position = *aligned;
@@ -245,7 +251,8 @@ void OpticalFlowTracker::State::followMoving(const PointFollower& follower, cons
   });
 }
 
-/// New tracks, and those that their own velocity misled: guesses come from neighbours that moved and from corners that look alike.
+/// New tracks, and those that their own velocity misled: guesses come from neighbors that moved and from corners that
+/// look alike.
 void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const Features& now) {
   const MovedTracks moved(tracks, now.left.levels.front());
   std::vector<Track*> still;
@@ -255,11 +262,11 @@ void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const
   const int level = std::min(params.young_level, follower.coarsest());
   forEachItem(still.size(), [&](std::size_t i) {
     Track& track = *still[i];
-    const auto neighbours = moved.shiftAround(track.seen);
+    const auto neighbors = moved.shiftAround(track.seen);
     Guesses guesses;
-    guesses.add(neighbours.value_or(Shift{}));
-    const ShiftBounds near = boundsAround(neighbours, params);
-    corners.addSimilar(previous->left, track.seen, near, kMaxGrey, guesses);
+    guesses.add(neighbors.value_or(Shift{}));
+    const ShiftBounds near = boundsAround(neighbors, params);
+    corners.addSimilar(previous->left, track.seen, near, kMaxGray, guesses);
     const auto patch = follower.patchAt(track.seen, level);
     auto found = follower.follow(track.seen, patch, guesses.all(), level);
     if (!found) {
@@ -276,9 +283,10 @@ void OpticalFlowTracker::State::removeLost(const Image& now) {
   Occupancy occupancy(now.width(), now.height(), params.min_distance_px);
   const auto border = static_cast<float>(params.border_px);
   std::erase_if(tracks, [&](const Track& track) {
-    const FlowTrack& p = track.seen;
+    const FlowObservation& p = track.seen;
     if (!track.moved || std::hypot(track.shift.du_px, track.shift.dv_px) > params.max_flow_px) return true;
-    const bool inside = p.u_px >= border && p.v_px >= border && p.u_px <= static_cast<float>(now.width() - 1) - border &&
+    const bool inside = p.u_px >= border && p.v_px >= border &&
+                        p.u_px <= static_cast<float>(now.width() - 1) - border &&
                         p.v_px <= static_cast<float>(now.height() - 1) - border;
     if (!inside || occupancy.near(p.u_px, p.v_px)) return true;
     occupancy.take(p.u_px, p.v_px);
@@ -296,7 +304,7 @@ void OpticalFlowTracker::State::follow(const Features& now) {
 }
 
 void OpticalFlowTracker::State::startTrack(const Features& now, int corner) {
-  const Corner& at = now.corners[static_cast<std::size_t>(corner)];
+  const Corner& at = now.corners[corner];
   Track& track = tracks.emplace_back();
   track.seen = {{next_point++}, at.u_px, at.v_px, static_cast<float>(params.patch.sigma_floor_px), 1, corner};
   track.keyframe = {now.left.levels.front(), at.u_px, at.v_px, 0, 1};
@@ -305,7 +313,8 @@ void OpticalFlowTracker::State::startTrack(const Features& now, int corner) {
 /// Starts tracks at the strongest free corners of the cells, those with the fewest tracks first.
 void OpticalFlowTracker::State::startTracks(const Features& now) {
   const Image& image = now.left.levels.front();
-  const int columns = (image.width() + params.cell_px - 1) / params.cell_px, rows = (image.height() + params.cell_px - 1) / params.cell_px;
+  const int columns = (image.width() + params.cell_px - 1) / params.cell_px,
+            rows = (image.height() + params.cell_px - 1) / params.cell_px;
   const auto cellOf = [&](float u_px, float v_px) {
     const int cell = static_cast<int>(v_px) / params.cell_px * columns + static_cast<int>(u_px) / params.cell_px;
     return static_cast<std::size_t>(cell);
@@ -319,11 +328,11 @@ void OpticalFlowTracker::State::startTracks(const Features& now) {
 
   std::vector<int> by_score(now.corners.size());
   for (std::size_t i = 0; i < by_score.size(); ++i) by_score[i] = static_cast<int>(i);
-  std::ranges::stable_sort(by_score, std::greater{}, [&](int i) { return now.corners[static_cast<std::size_t>(i)].score; });
+  std::ranges::stable_sort(by_score, std::greater{}, [&](int i) { return now.corners[i].score; });
   for (int limit = 1; !by_score.empty(); ++limit) {
     std::erase_if(by_score, [&](int i) {
       if (static_cast<int>(tracks.size()) >= params.max_tracks) return true;
-      const Corner& corner = now.corners[static_cast<std::size_t>(i)];
+      const Corner& corner = now.corners[i];
       int& count = population[cellOf(corner.u_px, corner.v_px)];
       if (count >= limit) return false;
       if (occupancy.near(corner.u_px, corner.v_px)) return true;
@@ -340,30 +349,34 @@ void OpticalFlowTracker::State::followDescriptors(const Features& now) {
   std::vector<bool> taken(now.corners.size(), false);
   if (previous && !tracks.empty()) {
     const SiftSearchRegion region{-params.sift_max_flow_px, params.sift_max_flow_px, params.sift_max_flow_px};
-    const auto match_of = matchSift(previous->corners, previous->descriptors, now.corners, now.descriptors, region, params.sift_max_ratio);
-    std::erase_if(tracks, [&](const Track& track) { return match_of[static_cast<std::size_t>(track.descriptor)] < 0; });
+    const auto match_of = matchSift(previous->corners, previous->descriptors, now.corners, now.descriptors, region,
+                                    params.sift_max_ratio);
+    std::erase_if(tracks, [&](const Track& track) { return match_of[track.descriptor] < 0; });
     for (Track& track : tracks) {
-      track.descriptor = match_of[static_cast<std::size_t>(track.descriptor)];
-      taken[static_cast<std::size_t>(track.descriptor)] = true;
-      const Corner& at = now.corners[static_cast<std::size_t>(track.descriptor)];
-      track.seen = {track.seen.point, at.u_px, at.v_px, static_cast<float>(params.sift_sigma_px), track.seen.age + 1, -1};
+      track.descriptor = match_of[track.descriptor];
+      taken[track.descriptor] = true;
+      const Corner& at = now.corners[track.descriptor];
+      track.seen = {track.seen.point,   at.u_px, at.v_px, static_cast<float>(params.sift_sigma_px),
+                    track.seen.age + 1, -1};
     }
   }
   for (std::size_t i = 0; i < taken.size(); ++i) {
     if (taken[i]) continue;
     Track& track = tracks.emplace_back();
     track.descriptor = static_cast<int>(i);
-    track.seen = {{next_point++},     now.corners[i].u_px, now.corners[i].v_px, static_cast<float>(params.sift_sigma_px), 1,
-                  static_cast<int>(i)};
+    track.seen = {
+        {next_point++},     now.corners[i].u_px, now.corners[i].v_px, static_cast<float>(params.sift_sigma_px), 1,
+        static_cast<int>(i)};
   }
 }
 
 OpticalFlowTracker::OpticalFlowTracker(const Params& params, const StereoCamera&) : state_(std::make_unique<State>()) {
   if (params.patch.window_px % 2 == 0 || params.patch.window_px > kMaxPatchWindow_px)
-    throw std::invalid_argument("optical flow: patch.window_px must be odd and at most " + std::to_string(kMaxPatchWindow_px));
+    throw std::invalid_argument("optical flow: patch.window_px must be odd and at most " +
+                                std::to_string(kMaxPatchWindow_px));
   if (params.cell_px < 1 || params.min_distance_px <= 0)
     throw std::invalid_argument("optical flow: cell_px and min_distance_px must be positive");
-  state_->params = params;
+  state_->params = requireValid(params);
 }
 OpticalFlowTracker::OpticalFlowTracker(OpticalFlowTracker&&) noexcept = default;
 OpticalFlowTracker& OpticalFlowTracker::operator=(OpticalFlowTracker&&) noexcept = default;
@@ -384,10 +397,18 @@ OpticalFlowPtr OpticalFlowTracker::operator()(const FeaturesPtr& features) {
   }
   if (!rejected) state.previous = features;
 
-  OpticalFlow flow{.features = features, .tracks = {}};
-  flow.tracks.reserve(state.tracks.size());
-  for (const Track& track : state.tracks) flow.tracks.push_back(track.seen);
+  OpticalFlow flow{.features = features, .observations = {}};
+  flow.observations.reserve(state.tracks.size());
+  for (const Track& track : state.tracks) flow.observations.push_back(track.seen);
   return std::make_shared<const OpticalFlow>(std::move(flow));
+}
+
+std::vector<Parameter> parametersOf(OpticalFlowTracker::Params& params) {
+  return {
+      numberParameter("max_tracks", params.max_tracks, {100, 20000}, "more points are more exact, fewer are faster"),
+      numberParameter("max_flow_px", params.max_flow_px, {20, 1000}, "higher follows faster motion in the image"),
+      numberParameter("max_round_trip_px", params.max_round_trip_px, {0.1, 5},
+                      "higher keeps more points in noisy images, lower keeps better ones")};
 }
 
 }  // namespace motorcade

@@ -8,10 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "frontend/matching/half_occlusion.hpp"
-#include "frontend/image/image_pyramid.hpp"
 #include "frontend/features/sift_features.hpp"
+#include "frontend/image/image_pyramid.hpp"
 #include "frontend/image/window_differences.hpp"
+#include "frontend/matching/half_occlusion.hpp"
 
 namespace motorcade {
 namespace {
@@ -24,21 +24,21 @@ std::uint16_t smallest(std::span<const std::uint16_t> costs) {
   return result;
 }
 
-/// Best window of a search; empty when another place, not a neighbour of the best, is nearly as good.
+/// Best window of a search; empty when another place, not a neighbor of the best, is nearly as good.
 std::optional<int> uniqueMinimum(std::span<const std::uint16_t> costs, double max_ratio) {
-  constexpr std::size_t kNeighbours_px = 2;
+  constexpr std::size_t kNeighbors_px = 2;
   const std::uint16_t least = smallest(costs);
   const auto best = static_cast<std::size_t>(std::ranges::find(costs, least) - costs.begin());
-  const auto before = costs.first(best - std::min(best, kNeighbours_px));
-  const auto after = costs.subspan(std::min(best + kNeighbours_px + 1, costs.size()));
+  const auto before = costs.first(best - std::min(best, kNeighbors_px));
+  const auto after = costs.subspan(std::min(best + kNeighbors_px + 1, costs.size()));
   const bool alone = before.empty() && after.empty();
   if (!alone && least > max_ratio * std::min(smallest(before), smallest(after))) return std::nullopt;
   return static_cast<int>(best);
 }
 
 /// Column in `other`, between first_u and last_u, whose window looks most like the one at (u, v) of `image`.
-std::optional<int> searchColumns(const Image& image, int u, int v, const Image& other, int first_u, int last_u, WindowSize window,
-                                 double max_uniqueness_ratio) {
+std::optional<int> searchColumns(const Image& image, int u, int v, const Image& other, int first_u, int last_u,
+                                 WindowSize window, double max_uniqueness_ratio) {
   const int half = window.columns / 2;
   first_u = std::max(first_u, half);
   last_u = std::min(last_u, other.width() - 1 - half);
@@ -63,24 +63,27 @@ std::optional<int> searchDisparity(const Image& left, const Image& right, int u,
   if (!holds(left, u, v, window)) return std::nullopt;
   const auto u_right = searchColumns(left, u, v, right, u - max_disparity_px, u, window, params.max_uniqueness_ratio);
   if (!u_right) return std::nullopt;
-  const auto u_back = searchColumns(right, *u_right, v, left, *u_right, *u_right + max_disparity_px, window, params.max_uniqueness_ratio);
+  const auto u_back = searchColumns(right, *u_right, v, left, *u_right, *u_right + max_disparity_px, window,
+                                    params.max_uniqueness_ratio);
   if (!u_back || std::abs(*u_back - u) > params.max_round_trip_px) return std::nullopt;
   return u - *u_right;
 }
 
 /// Disparity to a whole pixel of full size: searched in the images of half size, then among the pixels around.
-std::optional<int> searchCoarseToFine(const Features& features, float u_px, float v_px, const StereoMatcher::Params& params) {
+std::optional<int> searchCoarseToFine(const Features& features, float u_px, float v_px,
+                                      const StereoMatcher::Params& params) {
   const int u = static_cast<int>(u_px), v = static_cast<int>(v_px);
   const Image &left = features.left.levels.front(), &right = features.right.levels.front();
   if (features.left.levels.size() < 2) return searchDisparity(left, right, u, v, params.max_disparity_px, params);
-  const auto half_size_px =
-      searchDisparity(features.left.levels[1], features.right.levels[1], static_cast<int>(std::lround(toLevel(u_px, 1))),
-                      static_cast<int>(std::lround(toLevel(v_px, 1))), params.max_disparity_px / 2, params);
+  const auto half_size_px = searchDisparity(
+      features.left.levels[1], features.right.levels[1], static_cast<int>(std::lround(toLevel(u_px, 1))),
+      static_cast<int>(std::lround(toLevel(v_px, 1))), params.max_disparity_px / 2, params);
   constexpr WindowSize kWindow;
   if (!half_size_px || !holds(left, u, v, kWindow)) return std::nullopt;
   const int middle = u - 2 * *half_size_px;
   constexpr int kReach_px = 3;
-  const auto u_right = searchColumns(left, u, v, right, middle - kReach_px, std::min(u, middle + kReach_px), kWindow, 1);
+  const auto u_right =
+      searchColumns(left, u, v, right, middle - kReach_px, std::min(u, middle + kReach_px), kWindow, 1);
   if (!u_right) return std::nullopt;
   return u - *u_right;
 }
@@ -100,14 +103,16 @@ std::vector<std::optional<StereoMatch>> matchCorners(const Features& features, c
   return matches;
 }
 
-std::vector<std::optional<StereoMatch>> matchDescriptors(const Features& features, const StereoMatcher::Params& params) {
-  const SiftSearchRegion region{-static_cast<double>(params.max_disparity_px), -params.min_disparity_px, params.sift_max_row_px};
-  const auto match_of =
-      matchSift(features.corners, features.descriptors, features.right_corners, features.right_descriptors, region, params.sift_max_ratio);
+std::vector<std::optional<StereoMatch>> matchDescriptors(const Features& features,
+                                                         const StereoMatcher::Params& params) {
+  const SiftSearchRegion region{-static_cast<double>(params.max_disparity_px), -params.min_disparity_px,
+                                params.sift_max_row_px};
+  const auto match_of = matchSift(features.corners, features.descriptors, features.right_corners,
+                                  features.right_descriptors, region, params.sift_max_ratio);
   std::vector<std::optional<StereoMatch>> matches(features.corners.size());
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (match_of[i] < 0) continue;
-    const float disparity_px = features.corners[i].u_px - features.right_corners[static_cast<std::size_t>(match_of[i])].u_px;
+    const float disparity_px = features.corners[i].u_px - features.right_corners[match_of[i]].u_px;
     matches[i] = StereoMatch{disparity_px, static_cast<float>(params.sift_sigma_px)};
   }
   return matches;
@@ -115,23 +120,29 @@ std::vector<std::optional<StereoMatch>> matchDescriptors(const Features& feature
 
 }  // namespace
 
-StereoMatcher::StereoMatcher(const Params& params, const StereoCamera&) : params_(params) {
-  if (params.max_disparity_px < 1 || params.max_disparity_px >= kMaxWindowCosts)
-    throw std::invalid_argument("stereo matcher: max_disparity_px must be between 1 and " + std::to_string(kMaxWindowCosts - 1));
+StereoMatcher::StereoMatcher(const Params& params, const StereoCamera&) : params_(requireValid(params)) {
   if (params.search_columns % 2 == 0 || params.search_rows % 2 == 0)
     throw std::invalid_argument("stereo matcher: search_columns and search_rows must be odd");
   if (!fits({params.search_columns, params.search_rows}))
     throw std::invalid_argument("stereo matcher: search_columns must be at most " + std::to_string(kMaxWindowColumns) +
-                                ", search_rows at most " + std::to_string(kMaxWindowRows) + ", and their product at most " +
-                                std::to_string(kMaxWindowPixels));
+                                ", search_rows at most " + std::to_string(kMaxWindowRows) +
+                                ", and their product at most " + std::to_string(kMaxWindowPixels));
 }
 
 StereoMatchesPtr StereoMatcher::operator()(const FeaturesPtr& features) const {
   StereoMatches matches{.features = features, .of_corner = {}};
   if (!features->frame->rejected())
-    matches.of_corner = features->descriptors.empty() ? matchCorners(*features, params_) : matchDescriptors(*features, params_);
+    matches.of_corner =
+        features->descriptors.empty() ? matchCorners(*features, params_) : matchDescriptors(*features, params_);
   dropHalfOccluded(features->corners, matches.of_corner);
   return std::make_shared<const StereoMatches>(std::move(matches));
+}
+
+std::vector<Parameter> parametersOf(StereoMatcher::Params& params) {
+  return {numberParameter("min_disparity_px", params.min_disparity_px, {0.1, 5},
+                          "lower keeps points that are farther away"),
+          numberParameter("max_disparity_px", params.max_disparity_px, {16, kMaxWindowCosts - 12},
+                          "higher finds points that are nearer, at more cost")};
 }
 
 }  // namespace motorcade

@@ -1,14 +1,17 @@
 #pragma once
 
+#include <vector>
+
+#include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
-#include "frontend/messages.hpp"
 #include "frontend/image/patch_alignment.hpp"
+#include "frontend/messages.hpp"
 
 namespace motorcade {
 
-/// Finds the disparity of each corner of the left image. Whole-pixel search over all disparities in images of half size, checked for
-/// uniqueness and from right to left; then among the pixels around it, and `refineDisparity`. Features with descriptors (SIFT) are matched
-/// by those instead. Stateless; safe to call from several threads.
+/// Finds the disparity of each corner of the left image. Whole-pixel search over all disparities in images of half
+/// size, checked for uniqueness and from right to left; then among the pixels around it, and `refineDisparity`.
+/// Features with descriptors (SIFT) are matched by those instead. Stateless; safe to call from several threads.
 class StereoMatcher {
  public:
   struct Params {
@@ -28,5 +31,7 @@ class StereoMatcher {
  private:
   Params params_;
 };
+
+std::vector<Parameter> parametersOf(StereoMatcher::Params& params);
 
 }  // namespace motorcade

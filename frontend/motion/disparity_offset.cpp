@@ -21,7 +21,8 @@ struct Linearized {
   Eigen::Matrix3d information;
 };
 
-std::optional<Linearized> linearize(const StereoCamera& camera, const StereoCorrespondence& c, const SE3& T_now_then, double offset_px) {
+std::optional<Linearized> linearize(const StereoCamera& camera, const StereoCorrespondence& c, const SE3& T_now_then,
+                                    double offset_px) {
   const Eigen::Vector3d offset(0, 0, offset_px), uvd_then = c.uvd_then_px + offset;
   if (uvd_then.z() <= 0) return std::nullopt;
   const Eigen::Vector3d p_then = camera.triangulate(uvd_then), p_now = T_now_then * p_then;
@@ -41,12 +42,12 @@ std::optional<Linearized> linearize(const StereoCamera& camera, const StereoCorr
 }  // namespace
 
 DisparityOffsetEstimator::DisparityOffsetEstimator(const Params& params, const StereoCamera& camera)
-    : params_(params), camera_(camera), variance_px2_(params.prior_sigma_px * params.prior_sigma_px) {}
+    : params_(requireValid(params)), camera_(camera), variance_px2_(params.prior_sigma_px * params.prior_sigma_px) {}
 
 double DisparityOffsetEstimator::sigma_px() const { return std::sqrt(variance_px2_); }
 
-std::optional<DisparityOffsetEstimator::Measurement> DisparityOffsetEstimator::measure(std::span<const StereoCorrespondence> points,
-                                                                                       const SE3& T_now_then) const {
+std::optional<DisparityOffsetEstimator::Measurement> DisparityOffsetEstimator::measure(
+    std::span<const StereoCorrespondence> points, const SE3& T_now_then) const {
   constexpr int kIterations = 4;
   SE3 T = T_now_then;
   double offset_px = 0;
@@ -89,6 +90,13 @@ double DisparityOffsetEstimator::advance() {
   const double change = std::clamp(estimate_px_ - in_use_px_, -params_.max_rate_px, params_.max_rate_px);
   in_use_px_ += change;
   return change;
+}
+
+std::vector<Parameter> parametersOf(DisparityOffsetEstimator::Params& params) {
+  return {numberParameter("prior_sigma_px", params.prior_sigma_px, {0, 5},
+                          "how far the calibration of the rig may be off; 0 trusts it"),
+          numberParameter("window_frames", params.window_frames, {2, 9},
+                          "longer windows see the offset more clearly, and less often")};
 }
 
 }  // namespace motorcade

@@ -2,9 +2,11 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
+#include "core/parameters.hpp"
 #include "core/se3.hpp"
 #include "core/stereo_camera.hpp"
 
@@ -16,8 +18,8 @@ struct StereoCorrespondence {
   Eigen::Vector3d uvd_now_px, sigma_now_px;
 };
 
-/// Calibrates the rig while it drives: a constant error of the disparities (an error of the rectification's vergence) bends far depths
-/// more than near ones, so that no single camera motion explains near and far points alike. Estimates
+/// Calibrates the rig while it drives: a constant error of the disparities (an error of the rectification's vergence)
+/// bends far depths more than near ones, so that no single camera motion explains near and far points alike. Estimates
 ///   offset = true disparity - measured disparity    [px]
 /// next to the motion between two frames, and accumulates it over the drive, starting from a prior around zero.
 /// Call in frame order: it remembers what it learned.
@@ -26,15 +28,17 @@ class DisparityOffsetEstimator {
   struct Params {
     double prior_sigma_px = 0.1;  // of a rig that was calibrated well; 0 switches the estimation off
     double max_rate_px = 0.005;   // per frame, by which the offset in use follows the estimate, so that no depth jumps
+    int window_frames = 5;        // length of the windows from which the offset is learned
     double min_motion_m = 2.0;    // of the camera between the two frames
     int min_points = 60;
     double inlier_chi2 = 9.0;  // 3 degrees of freedom
     double huber_sigmas = 2.0;
-    double variance_inflation = 3.0;  // neighbouring windows share points and their errors
+    double variance_inflation = 3.0;  // neighboring windows share points and their errors
   };
   DisparityOffsetEstimator(const Params& params, const StereoCamera& camera);
 
-  /// One window: disparities with the offset in use already added. `T_now_then` is the camera's motion as estimated so far.
+  /// One window: disparities with the offset in use already added. `T_now_then` is the camera's motion as estimated so
+  /// far.
   void learn(std::span<const StereoCorrespondence> points, const SE3& T_now_then);
 
   /// Moves the offset in use towards the estimate; returns by how much it changed.
@@ -54,5 +58,7 @@ class DisparityOffsetEstimator {
   StereoCamera camera_;
   double estimate_px_ = 0, variance_px2_ = 0, in_use_px_ = 0;
 };
+
+std::vector<Parameter> parametersOf(DisparityOffsetEstimator::Params& params);
 
 }  // namespace motorcade

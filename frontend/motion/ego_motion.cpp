@@ -28,21 +28,24 @@ double score(const StereoCamera& camera, const Voters& voters, const SE3& T_now_
 
 }  // namespace
 
-/// Of each observation. The world is larger than the vehicles in it, though these may carry most points: so what counts is the floor space
-/// that agrees. Points share the vote of their cell; those beyond `vote_depth_m` share by bearing.
-std::vector<double> EgoMotionEstimator::votes(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers) const {
+/// Of each observation. The world is larger than the vehicles in it, though these may carry most points: so what counts
+/// is the floor space that agrees. Points share the vote of their cell; those beyond `vote_depth_m` share by bearing.
+std::vector<double> EgoMotionEstimator::votes(std::span<const PoseObservation> observations,
+                                              const std::vector<bool>& known_movers) const {
   std::map<std::pair<int, int>, int> points_in;
   std::vector<int*> sharing;
   sharing.reserve(observations.size());
   for (const auto& o : observations) {
     const double scale = std::min(1.0, params_.vote_depth_m / o.p_a.z()) / params_.vote_cell_m;
-    int& points = points_in[{static_cast<int>(std::floor(scale * o.p_a.x())), static_cast<int>(std::floor(scale * o.p_a.z()))}];
+    int& points =
+        points_in[{static_cast<int>(std::floor(scale * o.p_a.x())), static_cast<int>(std::floor(scale * o.p_a.z()))}];
     ++points;
     sharing.push_back(&points);
   }
   std::vector<double> votes;
   votes.reserve(observations.size());
-  for (std::size_t i = 0; i < observations.size(); ++i) votes.push_back((known_movers[i] ? params_.known_mover_weight : 1.0) / *sharing[i]);
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    votes.push_back((known_movers[i] ? params_.known_mover_weight : 1.0) / *sharing[i]);
   return votes;
 }
 
@@ -51,8 +54,9 @@ bool EgoMotionEstimator::follows(const SE3& T_now_previous, const PredictedMotio
   return change_m < params_.max_acceleration_mps2 * predicted.dt_s * predicted.dt_s;
 }
 
-SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
-                                       const PredictedMotion& predicted, std::uint64_t seed) const {
+SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observations,
+                                       const std::vector<bool>& known_movers, const PredictedMotion& predicted,
+                                       std::uint64_t seed) const {
   const auto vote = votes(observations, known_movers);
   std::vector<PoseObservation> voting;
   std::vector<double> weights;
@@ -82,7 +86,8 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
     return observations[std::min(static_cast<std::size_t>(at - votes_up_to.begin()), observations.size() - 1)];
   };
   for (int k = 0; k < params_.max_hypotheses; ++k) {
-    if (best_score < 0.25 * worst_score && k >= params_.max_hypotheses / 4) break;  // three quarters agree: more samples gain nothing
+    if (best_score < 0.25 * worst_score && k >= params_.max_hypotheses / 4)
+      break;  // three quarters agree: more samples gain nothing
     const std::array<PoseObservation, 3> sample{pick(), pick(), pick()};
     const auto fit = fitPose(camera_, PoseObservations(sample), start, minimal);
     if (!fit) continue;
@@ -95,7 +100,8 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
   return best;
 }
 
-std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
+std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObservation> observations,
+                                                        const std::vector<bool>& known_movers,
                                                         const PredictedMotion& predicted, std::uint64_t seed) const {
   assert(observations.size() == known_movers.size());
   if (static_cast<int>(observations.size()) < params_.min_inliers) return std::nullopt;
@@ -112,7 +118,8 @@ std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObse
 
   EgoMotion ego;
   ego.T_previous_now = fit->T_cam_a.inverse();
-  // log((T exp(xi))^-1) moves the perturbation to the other side: the covariance follows by the adjoint of T_now_previous.
+  // log((T exp(xi))^-1) moves the perturbation to the other side: the covariance follows by the adjoint of
+  // T_now_previous.
   const Matrix6d A = fit->T_cam_a.adjoint();
   ego.covariance = std::max(1.0, fit->inlier_chi2_per_dof) * A * fit->covariance * A.transpose();
   ego.inliers.reserve(observations.size());
@@ -121,6 +128,16 @@ std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObse
   if (ego.inlier_count < params_.min_inliers) return std::nullopt;
   ego.steady = follows(fit->T_cam_a, predicted);
   return ego;
+}
+
+std::vector<Parameter> parametersOf(EgoMotionEstimator::Params& params) {
+  return {numberParameter("max_hypotheses", params.max_hypotheses, {10, 10000},
+                          "more find the motion among more outliers, at more cost"),
+          numberParameter("inlier_chi2", params.inlier_chi2, {4, 100}, "higher tolerates a worse calibration"),
+          numberParameter("min_inliers", params.min_inliers, {6, 200},
+                          "lower goes on in scenes with little texture, higher reports the frame as lost"),
+          numberParameter("max_acceleration_mps2", params.max_acceleration_mps2, {1, 1000},
+                          "what the vehicle can do: a motion beyond it must win by more")};
 }
 
 }  // namespace motorcade

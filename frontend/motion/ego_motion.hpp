@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/parameters.hpp"
 #include "core/se3.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/geometry/stereo_pose.hpp"
@@ -43,22 +44,26 @@ class EgoMotionEstimator {
     int trusted_steady_frames = 3;      // after which the penalty counts in full
     PoseFitParams fit;
   };
-  EgoMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
+  EgoMotionEstimator(const Params& params, const StereoCamera& camera)
+      : params_(requireValid(params)), camera_(camera) {}
 
   /// `observations` hold points in the previous camera's frame, `known_movers` whether they moved in the one before it.
-  /// The predicted motion is scored first, and what a vehicle cannot do after it must win by more. Random samples are drawn from a
-  /// generator seeded with `seed` (the frame number). Empty when too few points agree on any motion.
-  std::optional<EgoMotion> operator()(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
-                                      const PredictedMotion& predicted, std::uint64_t seed) const;
+  /// The predicted motion is scored first, and what a vehicle cannot do after it must win by more. Random samples are
+  /// drawn from a generator seeded with `seed` (the frame number). Empty when too few points agree on any motion.
+  std::optional<EgoMotion> operator()(std::span<const PoseObservation> observations,
+                                      const std::vector<bool>& known_movers, const PredictedMotion& predicted,
+                                      std::uint64_t seed) const;
 
  private:
   std::vector<double> votes(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers) const;
   bool follows(const SE3& T_now_previous, const PredictedMotion& predicted) const;
-  SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers, const PredictedMotion& predicted,
-                     std::uint64_t seed) const;
+  SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
+                     const PredictedMotion& predicted, std::uint64_t seed) const;
 
   Params params_;
   StereoCamera camera_;
 };
+
+std::vector<Parameter> parametersOf(EgoMotionEstimator::Params& params);
 
 }  // namespace motorcade

@@ -59,7 +59,9 @@ std::optional<GroundPlane> refine(const std::vector<LowPoint>& points, const Gro
 
 }  // namespace
 
-GroundPlaneEstimator::GroundPlaneEstimator(const Params& params) : params_(params) { plane_.height_m = params.initial_height_m; }
+GroundPlaneEstimator::GroundPlaneEstimator(const Params& params) : params_(requireValid(params)) {
+  plane_.height_m = params.initial_height_m;
+}
 
 bool GroundPlaneEstimator::plausible(const GroundPlane& plane) const {
   return plane.height_m > params_.min_height_m && plane.height_m < params_.max_height_m &&
@@ -70,7 +72,8 @@ GroundPlane GroundPlaneEstimator::operator()(std::span<const GroundCandidate> po
   std::vector<LowPoint> low;
   for (const auto& c : points) {
     const bool near = c.p_cam.z() < params_.max_depth_m && std::abs(c.p_cam.x()) < params_.max_side_m;
-    if (near && c.p_cam.y() > 0.5 * params_.min_height_m) low.push_back({c.p_cam, std::hypot(params_.inlier_m, c.height_sigma_m)});
+    if (near && c.p_cam.y() > 0.5 * params_.min_height_m)
+      low.push_back({c.p_cam, std::hypot(params_.inlier_m, c.height_sigma_m)});
   }
   if (static_cast<int>(low.size()) < params_.min_inliers) return plane_;
 
@@ -93,6 +96,16 @@ GroundPlane GroundPlaneEstimator::operator()(std::span<const GroundCandidate> po
   plane_.normal_cam = (m * plane_.normal_cam + (1 - m) * refined->normal_cam).normalized();
   plane_.height_m = m * plane_.height_m + (1 - m) * refined->height_m;
   return plane_;
+}
+
+std::vector<Parameter> parametersOf(GroundPlaneEstimator::Params& params) {
+  return {numberParameter("initial_height_m", params.initial_height_m, {0.3, 4},
+                          "the height of your camera, until the road is seen"),
+          numberParameter("min_height_m", params.min_height_m, {0.1, 1.5},
+                          "the lowest that the camera may be above the road"),
+          numberParameter("max_height_m", params.max_height_m, {1.5, 10}, "the highest"),
+          numberParameter("max_tilt_rad", params.max_tilt_rad, {0.02, 0.5},
+                          "how far your camera may be tilted against the road")};
 }
 
 }  // namespace motorcade

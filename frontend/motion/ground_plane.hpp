@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
 
@@ -33,7 +34,8 @@ class GroundPlaneEstimator {
   };
   explicit GroundPlaneEstimator(const Params& params);
 
-  /// Points that moved in the last frame should be left out by the caller. Keeps the last plane when too few points lie on one.
+  /// Points that moved in the last frame should be left out by the caller. Keeps the last plane when too few points lie
+  /// on one.
   GroundPlane operator()(std::span<const GroundCandidate> points, std::uint64_t seed);
 
  private:
@@ -42,5 +44,7 @@ class GroundPlaneEstimator {
   Params params_;
   GroundPlane plane_;
 };
+
+std::vector<Parameter> parametersOf(GroundPlaneEstimator::Params& params);
 
 }  // namespace motorcade

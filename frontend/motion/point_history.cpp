@@ -4,20 +4,20 @@
 
 namespace motorcade {
 
-const PointSighting* PointTrack::find(std::int64_t step) const {
+const PointObservation* PointTrack::find(std::int64_t step) const {
   for (int i = count - 1; i >= 0; --i)
-    if (sightings[static_cast<std::size_t>(i)].step == step) return &sightings[static_cast<std::size_t>(i)];
+    if (observations[i].step == step) return &observations[i];
   return nullptr;
 }
 
-void PointTrack::add(const PointSighting& sighting) {
+void PointTrack::add(const PointObservation& observation) {
   if (count == kCapacity) shorten(kCapacity - 1);
-  sightings[static_cast<std::size_t>(count++)] = sighting;
+  observations[count++] = observation;
 }
 
 void PointTrack::shorten(int keep) {
   if (keep >= count) return;
-  std::move(sightings.begin() + (count - keep), sightings.begin() + count, sightings.begin());
+  std::move(observations.begin() + (count - keep), observations.begin() + count, observations.begin());
   count = keep;
 }
 
@@ -30,12 +30,13 @@ void CameraTrail::add(Timestamp stamp, const SE3& T_previous_now) {
   if (steps_.size() > PointTrack::kCapacity) steps_.erase(steps_.begin());
   const Step& now = steps_.back();
   relations_.clear();
-  for (const auto& s : steps_) relations_.push_back({s.T_world_cam.inverse() * now.T_world_cam, secondsBetween(now.stamp, s.stamp)});
+  for (const auto& s : steps_)
+    relations_.push_back({s.T_world_cam.inverse() * now.T_world_cam, secondsBetween(now.stamp, s.stamp)});
 }
 
 const CameraTrail::Relation* CameraTrail::find(std::int64_t step) const {
   if (steps_.empty() || step < steps_.front().step || step > steps_.back().step) return nullptr;
-  return &relations_[static_cast<std::size_t>(step - steps_.front().step)];
+  return &relations_[step - steps_.front().step];
 }
 
 }  // namespace motorcade

@@ -14,35 +14,35 @@
 
 namespace motorcade {
 
-/// One sighting of a scene point in a stereo pair.
-struct PointSighting {
+/// One observation of a scene point in a stereo pair.
+struct PointObservation {
   std::int64_t step = 0;  // number of the processed frame, as counted by CameraTrail
   Eigen::Vector3f uvd_px;
   Eigen::Vector3f sigma_px;
 };
 
-/// What the front-end remembers of a scene point: its latest sightings and what was last found out about it.
+/// What the front-end remembers of a scene point: its latest observations and what was last found out about it.
 struct PointTrack {
   static constexpr int kCapacity = 10;
 
   PointId point;
-  int count = 0;                                   // sightings held, at most kCapacity
-  std::array<PointSighting, kCapacity> sightings;  // oldest first
-  std::optional<SceneFlow> flow;                   // of the newest sighting
-  std::optional<Eigen::Vector3d> p_static_cam;     // position of a point at rest, in the camera of the newest sighting
+  int count = 0;                                         // observations held, at most kCapacity
+  std::array<PointObservation, kCapacity> observations;  // oldest first
+  std::optional<SceneFlow> flow;                         // of the newest observation
+  std::optional<Eigen::Vector3d> p_static_cam;  // position of a point at rest, in the camera of the newest observation
   Eigen::Matrix3d static_covariance = Eigen::Matrix3d::Identity();
   PointLabel label = PointLabel::kUnknown;
   int repeats = 0;  // counts up with every frame in which it was found at rest as well, down with the others
 
-  const PointSighting& newest() const { return sightings[static_cast<std::size_t>(count - 1)]; }
-  /// The sighting of a frame, or null.
-  const PointSighting* find(std::int64_t step) const;
-  void add(const PointSighting& sighting);
-  /// Forgets all but the newest `keep` sightings.
+  const PointObservation& newest() const { return observations[count - 1]; }
+  /// The observation of a frame, or null.
+  const PointObservation* find(std::int64_t step) const;
+  void add(const PointObservation& observation);
+  /// Forgets all but the newest `keep` observations.
   void shorten(int keep);
 };
 
-/// The camera's recent path in the front-end's own odometry, for relating sightings of different frames.
+/// The camera's recent path in the front-end's own odometry, for relating observations of different frames.
 class CameraTrail {
  public:
   struct Step {

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kConverged_chi2 = 1e-3;  // a step that gains less is the last
 
-/// Four sightings with the relation of their cameras to the newest one. Where there are fewer, the first one fills up, without weight.
+/// Four observations with the relation of their cameras to the newest one. Where there are fewer, the first one fills
+/// up, without weight.
 struct Observations {
   Doubles3x3 R_then_now;
   Doubles3 t_then_now_m;
@@ -30,28 +31,28 @@ struct Window {
   std::span<const Observations> blocks() const {
     return {observations.begin(), (static_cast<std::size_t>(size) + kDoubleLanes - 1) / kDoubleLanes};
   }
-  void add(const PointSighting& sighting, const CameraTrail::Relation& relation, double jitter_px2) {
+  void add(const PointObservation& observation, const CameraTrail::Relation& relation, double jitter_px2) {
     const std::size_t lane = static_cast<std::size_t>(size) % kDoubleLanes;
     Observations& o = observations[static_cast<std::size_t>(size) / kDoubleLanes];
-    set(o, lane, sighting, relation, jitter_px2);
+    set(o, lane, observation, relation, jitter_px2);
     if (lane == 0) {
       o.count = Doubles{};
-      for (std::size_t unused = 1; unused < kDoubleLanes; ++unused) set(o, unused, sighting, relation, jitter_px2);
+      for (std::size_t unused = 1; unused < kDoubleLanes; ++unused) set(o, unused, observation, relation, jitter_px2);
     }
     o.count[lane] = 1;
     ++size;
   }
 
  private:
-  static void set(Observations& o, std::size_t lane, const PointSighting& sighting, const CameraTrail::Relation& relation,
-                  double jitter_px2) {
+  static void set(Observations& o, std::size_t lane, const PointObservation& observation,
+                  const CameraTrail::Relation& relation, double jitter_px2) {
     const Eigen::Matrix3d& R = relation.T_then_now.rotation();
     setLane(o.R_then_now.x, lane, R.row(0));
     setLane(o.R_then_now.y, lane, R.row(1));
     setLane(o.R_then_now.z, lane, R.row(2));
     setLane(o.t_then_now_m, lane, relation.T_then_now.translation());
-    setLane(o.uvd_px, lane, sighting.uvd_px.cast<double>());
-    setLane(o.variance_px2, lane, sighting.sigma_px.cast<double>().array().square() + jitter_px2);
+    setLane(o.uvd_px, lane, observation.uvd_px.cast<double>());
+    setLane(o.variance_px2, lane, observation.sigma_px.cast<double>().array().square() + jitter_px2);
     o.dt_s[lane] = relation.dt_s;
   }
 };
@@ -59,13 +60,13 @@ struct Window {
 Window collect(const PointTrack& track, const CameraTrail& trail, double pose_jitter_px, int observations) {
   Window window;
   for (int i = std::max(0, track.count - observations); i < track.count; ++i) {
-    const auto& s = track.sightings[static_cast<std::size_t>(i)];
+    const auto& s = track.observations[i];
     if (const auto* relation = trail.find(s.step)) window.add(s, *relation, pose_jitter_px * pose_jitter_px);
   }
   return window;
 }
 
-/// Four observations linearised at positions in the frame of now.
+/// Four observations linearized at positions in the frame of now.
 struct Linearized {
   SymmetricDoubles3x3 JtWJ;
   Doubles3 JtWr;
@@ -73,8 +74,8 @@ struct Linearized {
 };
 
 /// `W_J` and `W_r` are the Jacobian and the residual times the weights.
-Linearized weigh(const Observations& o, const Doubles3x3& J, const Doubles3x3& W_J, const Doubles3& r, const Doubles3& W_r,
-                 double huber_sigmas) {
+Linearized weigh(const Observations& o, const Doubles3x3& J, const Doubles3x3& W_J, const Doubles3& r,
+                 const Doubles3& W_r, double huber_sigmas) {
   const HuberLoss loss = huberLoss(dot(r, W_r), huber_sigmas);
   const Doubles weight = o.count * loss.weight;
   return {weight * symmetricTransposeTimes(J, W_J), weight * transposeTimes(J, W_r), o.count * loss.chi2};
@@ -87,7 +88,8 @@ Linearized linearizeAtRest(const Observations& o, const StereoViews& view, doubl
 }
 
 /// `wander_m` is the standard deviation by which the points may be off the model's positions at their times.
-Linearized linearizeMoving(const Observations& o, const StereoViews& view, const Doubles& wander_m, double huber_sigmas) {
+Linearized linearizeMoving(const Observations& o, const StereoViews& view, const Doubles& wander_m,
+                           double huber_sigmas) {
   SymmetricDoubles3x3 S = (wander_m * wander_m) * symmetricTimesTranspose(view.J, view.J);
   S.xx += o.variance_px2.x, S.yy += o.variance_px2.y, S.zz += o.variance_px2.z;
   const SymmetricDoubles3x3 W = inverse(S);
@@ -99,7 +101,8 @@ bool allAhead(const StereoViews& view) { return total(view.ahead) == kDoubleLane
 
 }  // namespace
 
-std::optional<SceneFlowEstimator::StaticFit> SceneFlowEstimator::fitStatic(const PointTrack& track, const CameraTrail& trail) const {
+std::optional<SceneFlowEstimator::StaticFit> SceneFlowEstimator::fitStatic(const PointTrack& track,
+                                                                           const CameraTrail& trail) const {
   const Window window = collect(track, trail, params_.pose_jitter_px, params_.max_observations);
   if (window.size == 0) return std::nullopt;
   Eigen::Vector3d p = camera_.triangulate(track.newest().uvd_px.cast<double>());
@@ -125,7 +128,8 @@ std::optional<SceneFlowEstimator::StaticFit> SceneFlowEstimator::fitStatic(const
 
 std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, const CameraTrail& trail,
                                                        const std::optional<StaticFit>& at_rest) const {
-  for (int n = std::min(params_.max_observations, track.count); n >= params_.min_observations; n = n > 5 ? (n + 1) / 2 : n - 1) {
+  for (int n = std::min(params_.max_observations, track.count); n >= params_.min_observations;
+       n = n > 5 ? (n + 1) / 2 : n - 1) {
     auto flow = fitMoving(track, trail, n);
     if (!flow) continue;
     flow->static_chi2 = at_rest ? at_rest->chi2 : std::numeric_limits<double>::infinity();
@@ -134,7 +138,8 @@ std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, 
   return std::nullopt;
 }
 
-std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, const CameraTrail& trail, int observations) const {
+std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, const CameraTrail& trail,
+                                                       int observations) const {
   const Window window = collect(track, trail, params_.pose_jitter_px, observations);
   if (window.size < params_.min_observations) return std::nullopt;
   Eigen::Vector3d p = camera_.triangulate(track.newest().uvd_px.cast<double>());
@@ -145,9 +150,11 @@ std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, 
     Doubles3 b_p{}, b_v{};
     Doubles cost{};
     for (const auto& o : window.blocks()) {
-      const StereoViews view = viewPoints(camera_, o.R_then_now, o.t_then_now_m, allDoubles(p) + o.dt_s * allDoubles(v));
+      const StereoViews view =
+          viewPoints(camera_, o.R_then_now, o.t_then_now_m, allDoubles(p) + o.dt_s * allDoubles(v));
       if (!allAhead(view)) return std::nullopt;
-      const Linearized l = linearizeMoving(o, view, (0.5 * params_.acceleration_mps2) * o.dt_s * o.dt_s, params_.huber_sigmas);
+      const Linearized l =
+          linearizeMoving(o, view, (0.5 * params_.acceleration_mps2) * o.dt_s * o.dt_s, params_.huber_sigmas);
       H_pp += l.JtWJ, H_pv += o.dt_s * l.JtWJ, H_vv += (o.dt_s * o.dt_s) * l.JtWJ;
       b_p += l.JtWr, b_v += o.dt_s * l.JtWr;
       cost += l.cost;
@@ -167,12 +174,21 @@ std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, 
       const double chi2 = total(cost) - (converged ? gain : 0);
       if (!(chi2 < params_.max_chi2_per_dof * (3.0 * window.size - 6.0))) return std::nullopt;
       if (converged) p += step.head<3>(), v += step.tail<3>();
-      return SceneFlow{.p_cam = p, .velocity_mps = v, .covariance = H.inverse(), .moving_chi2 = chi2, .observations = window.size};
+      return SceneFlow{
+          .p_cam = p, .velocity_mps = v, .covariance = H.inverse(), .moving_chi2 = chi2, .observations = window.size};
     }
     p += step.head<3>();
     v += step.tail<3>();
     if (!step.allFinite() || p.z() < StereoCamera::kMinDepth_m) return std::nullopt;
   }
+}
+
+std::vector<Parameter> parametersOf(SceneFlowEstimator::Params& params) {
+  return {numberParameter("max_observations", params.max_observations, {5, PointTrack::kCapacity},
+                          "more frames tell slow movers better, fewer follow maneuvers"),
+          numberParameter("min_observations", params.min_observations, {2, 5},
+                          "fewer see movers earlier, more see them surely"),
+          numberParameter("max_speed_mps", params.max_speed_mps, {10, 200}, "the fastest traffic to expect")};
 }
 
 }  // namespace motorcade

@@ -1,28 +1,33 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/motion/point_history.hpp"
 
 namespace motorcade {
 
-/// Scene flow: the motion of single points relative to the world, from their sightings over several frames.
+/// Scene flow: the motion of single points relative to the world, from their observations over several frames.
 /// Both models are fitted to the observations (u, v, d) themselves, through the camera's path, where the noise is
 /// unbiased at any range; differences of triangulated points are not. Stateless.
 class SceneFlowEstimator {
  public:
   struct Params {
-    int max_observations = 8;      // newest sightings that are used; half as many where they do not fit a constant velocity
+    int max_observations =
+        8;  // newest observations that are used; half as many where they do not fit a constant velocity
     int min_observations = 3;      // fewer tell nothing about motion
-    double pose_jitter_px = 0.15;  // image error of the camera's path, added to each sighting
+    double pose_jitter_px = 0.15;  // image error of the camera's path, added to each observation
     double max_speed_mps = 60;     // standard deviation of the velocity's prior
-    double acceleration_mps2 = 1;  // standard deviation of what the moving model leaves out: old sightings count less, where it would show
+    double acceleration_mps2 =
+        1;  // standard deviation of what the moving model leaves out: old observations count less, where it would show
     double huber_sigmas = 2.5;
     double max_chi2_per_dof = 6;  // of the moving fit: above it the track is no single rigid point
     int iterations = 3;
   };
-  SceneFlowEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
+  SceneFlowEstimator(const Params& params, const StereoCamera& camera)
+      : params_(requireValid(params)), camera_(camera) {}
 
   /// A point at rest: min over p of sum |uvd_k - project(T_k_now p)|^2. In the camera's frame of now.
   struct StaticFit {
@@ -32,10 +37,11 @@ class SceneFlowEstimator {
   };
   std::optional<StaticFit> fitStatic(const PointTrack& track, const CameraTrail& trail) const;
 
-  /// A point with constant velocity v: p_k = T_k_now (p + v dt_k + a dt_k^2 / 2), a ~ N(0, acceleration^2) as noise, over the longest
-  /// window that such a motion fits: near vehicles that brake or turn leave it within half a second. Empty with too few sightings or when
-  /// no window fits.
-  std::optional<SceneFlow> fitMoving(const PointTrack& track, const CameraTrail& trail, const std::optional<StaticFit>& at_rest) const;
+  /// A point with constant velocity v: p_k = T_k_now (p + v dt_k + a dt_k^2 / 2), a ~ N(0, acceleration^2) as noise,
+  /// over the longest window that such a motion fits: near vehicles that brake or turn leave it within half a second.
+  /// Empty with too few observations or when no window fits.
+  std::optional<SceneFlow> fitMoving(const PointTrack& track, const CameraTrail& trail,
+                                     const std::optional<StaticFit>& at_rest) const;
 
  private:
   std::optional<SceneFlow> fitMoving(const PointTrack& track, const CameraTrail& trail, int observations) const;
@@ -43,5 +49,7 @@ class SceneFlowEstimator {
   Params params_;
   StereoCamera camera_;
 };
+
+std::vector<Parameter> parametersOf(SceneFlowEstimator::Params& params);
 
 }  // namespace motorcade

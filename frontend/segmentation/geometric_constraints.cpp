@@ -9,8 +9,8 @@ namespace {
 constexpr double kMinLine_px = 0.05;  // shorter stretches of the epipolar line have no direction
 
 /// Where the point of `uv_then` with disparity d appears now.
-std::optional<Eigen::Vector2d> transfer(const StereoCamera& camera, const Eigen::Vector3d& uvd_then_px, double disparity_px,
-                                        const SE3& T_now_then) {
+std::optional<Eigen::Vector2d> transfer(const StereoCamera& camera, const Eigen::Vector3d& uvd_then_px,
+                                        double disparity_px, const SE3& T_now_then) {
   const auto uvd = camera.project(T_now_then * camera.triangulate({uvd_then_px.x(), uvd_then_px.y(), disparity_px}));
   if (!uvd) return std::nullopt;
   return uvd->head<2>();
@@ -19,9 +19,10 @@ std::optional<Eigen::Vector2d> transfer(const StereoCamera& camera, const Eigen:
 }  // namespace
 
 std::optional<GeometricResidual> geometricResidual(const StereoCamera& camera, const Eigen::Vector3d& uvd_then_px,
-                                                   const Eigen::Vector3d& sigma_then_px, const Eigen::Vector2d& uv_now_px,
-                                                   double sigma_now_px, const SE3& T_now_then, double depth_sigmas) {
-  constexpr double kNearlyInfinite_px = 0.05;  // disparity of a point some kilometres away
+                                                   const Eigen::Vector3d& sigma_then_px,
+                                                   const Eigen::Vector2d& uv_now_px, double sigma_now_px,
+                                                   const SE3& T_now_then, double depth_sigmas) {
+  constexpr double kNearlyInfinite_px = 0.05;  // disparity of a point some kilometers away
   const double spread = depth_sigmas * sigma_then_px.z();
   const auto far = transfer(camera, uvd_then_px, std::max(kNearlyInfinite_px, uvd_then_px.z() - spread), T_now_then);
   const auto near = transfer(camera, uvd_then_px, uvd_then_px.z() + spread, T_now_then);

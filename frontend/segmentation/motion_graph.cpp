@@ -24,7 +24,7 @@ class DisjointSets {
   }
 
  private:
-  int& at(int i) { return parent_[static_cast<std::size_t>(i)]; }
+  int& at(int i) { return parent_[i]; }
   std::vector<int> parent_;
 };
 
@@ -35,12 +35,12 @@ std::vector<std::vector<int>> cutDelaunayComponents(std::span<const Eigen::Vecto
   const auto n = static_cast<int>(points_px.size());
   DisjointSets sets(points_px.size());
   const DelaunayGraph graph = delaunay(points_px);
-  for (int i = 0; i < n; ++i) sets.join(i, graph.vertex_of_point[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < n; ++i) sets.join(i, graph.vertex_of_point[i]);
   for (const auto& [i, j] : graph.edges)
     if (belong_together(i, j)) sets.join(i, j);
 
   std::vector<std::vector<int>> members(points_px.size());
-  for (int i = 0; i < n; ++i) members[static_cast<std::size_t>(sets.find(i))].push_back(i);
+  for (int i = 0; i < n; ++i) members[sets.find(i)].push_back(i);
   std::erase_if(members, [](const auto& m) { return m.empty(); });
   return members;
 }

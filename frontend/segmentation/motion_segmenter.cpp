@@ -15,19 +15,21 @@ namespace {
 Eigen::Matrix3d velocityCovariance(const ScenePoint& p) { return p.flow->covariance.bottomRightCorner<3, 3>(); }
 Eigen::Matrix3d positionCovariance(const ScenePoint& p) { return p.flow->covariance.topLeftCorner<3, 3>(); }
 
-const ScenePoint& at(const std::vector<ScenePoint>& points, int i) { return points[static_cast<std::size_t>(i)]; }
+const ScenePoint& at(const std::vector<ScenePoint>& points, int i) { return points[i]; }
 
 struct PooledVelocity {
   Eigen::Vector3d velocity_mps;
   Eigen::Matrix3d covariance;
 };
 
-/// Information-weighted mean velocity of the members, with a starting point that outliers cannot move: the component-wise median.
+/// Information-weighted mean velocity of the members, with a starting point that outliers cannot move: the
+/// component-wise median.
 PooledVelocity poolVelocities(const std::vector<int>& members, const std::vector<ScenePoint>& points, double max_chi2) {
   Eigen::Vector3d velocity;
   std::vector<double> values(members.size());
   for (int axis = 0; axis < 3; ++axis) {
-    std::transform(members.begin(), members.end(), values.begin(), [&](int i) { return at(points, i).flow->velocity_mps[axis]; });
+    std::transform(members.begin(), members.end(), values.begin(),
+                   [&](int i) { return at(points, i).flow->velocity_mps[axis]; });
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     velocity[axis] = *middle;
@@ -58,7 +60,8 @@ bool MotionSegmenter::isVertex(const ScenePoint& point) const {
 bool MotionSegmenter::belongTogether(const ScenePoint& a, const ScenePoint& b) const {
   const Eigen::Vector3d dv = a.flow->velocity_mps - b.flow->velocity_mps, dp = a.flow->p_cam - b.flow->p_cam;
   const double distance = dp.norm(),
-               tolerance_mps = params_.speed_tolerance_mps + params_.max_turn_rate_radps * std::min(distance, params_.max_gap_m);
+               tolerance_mps =
+                   params_.speed_tolerance_mps + params_.max_turn_rate_radps * std::min(distance, params_.max_gap_m);
   Eigen::Matrix3d C = velocityCovariance(a) + velocityCovariance(b);
   C.diagonal().array() += tolerance_mps * tolerance_mps;
   if (dv.dot(C.inverse() * dv) > params_.max_flow_chi2) return false;
@@ -68,7 +71,8 @@ bool MotionSegmenter::belongTogether(const ScenePoint& a, const ScenePoint& b) c
   return distance < params_.max_gap_m + 2 * sigma_m;
 }
 
-std::vector<Segment> MotionSegmenter::operator()(std::vector<ScenePoint>& points, const std::vector<bool>& violates_geometry,
+std::vector<Segment> MotionSegmenter::operator()(std::vector<ScenePoint>& points,
+                                                 const std::vector<bool>& violates_geometry,
                                                  const GroundPlane& ground) const {
   std::vector<int> vertices;
   std::vector<Eigen::Vector2d> pixels;
@@ -78,24 +82,26 @@ std::vector<Segment> MotionSegmenter::operator()(std::vector<ScenePoint>& points
     pixels.emplace_back(at(points, i).uvd_px.head<2>());
   }
   const auto together = [&](int a, int b) {
-    const int i = vertices[static_cast<std::size_t>(a)], j = vertices[static_cast<std::size_t>(b)];
-    if (violates_geometry[static_cast<std::size_t>(i)] != violates_geometry[static_cast<std::size_t>(j)]) return false;
+    const int i = vertices[a], j = vertices[b];
+    if (violates_geometry[i] != violates_geometry[j]) return false;
     return belongTogether(at(points, i), at(points, j));
   };
   std::vector<Segment> segments;
   for (auto& component : cutDelaunayComponents(pixels, together)) {
-    for (int& i : component) i = vertices[static_cast<std::size_t>(i)];
+    for (int& i : component) i = vertices[i];
     Segment segment = describe(std::move(component), points, ground);
-    for (const int i : segment.points) points[static_cast<std::size_t>(i)].label = segment.label;
+    for (const int i : segment.points) points[i].label = segment.label;
     if (segment.label != PointLabel::kStatic) segments.push_back(std::move(segment));
   }
   return segments;
 }
 
-Segment MotionSegmenter::describe(std::vector<int> members, const std::vector<ScenePoint>& points, const GroundPlane& ground) const {
+Segment MotionSegmenter::describe(std::vector<int> members, const std::vector<ScenePoint>& points,
+                                  const GroundPlane& ground) const {
   Segment segment;
   segment.points = std::move(members);
-  for (const int i : segment.points) segment.centroid_cam += at(points, i).flow->p_cam / static_cast<double>(segment.points.size());
+  for (const int i : segment.points)
+    segment.centroid_cam += at(points, i).flow->p_cam / static_cast<double>(segment.points.size());
   const auto pooled = poolVelocities(segment.points, points, params_.max_flow_chi2);
   segment.velocity_mps = pooled.velocity_mps;
   segment.velocity_covariance = pooled.covariance + systematicCovariance(segment.centroid_cam);
@@ -112,7 +118,8 @@ Eigen::Matrix3d MotionSegmenter::systematicCovariance(const Eigen::Vector3d& p_c
   return across * Eigen::Matrix3d::Identity() + along * ray * ray.transpose();
 }
 
-PointLabel MotionSegmenter::decide(const Segment& segment, const std::vector<ScenePoint>& points, const GroundPlane& ground) const {
+PointLabel MotionSegmenter::decide(const Segment& segment, const std::vector<ScenePoint>& points,
+                                   const GroundPlane& ground) const {
   if (static_cast<int>(segment.points.size()) < params_.min_points) return PointLabel::kUnknown;
   const Eigen::Vector3d& v = segment.velocity_mps;
   const double significance = std::sqrt(v.dot(segment.velocity_covariance.inverse() * v));
@@ -129,9 +136,23 @@ PointLabel MotionSegmenter::decide(const Segment& segment, const std::vector<Sce
   const double depth_noise_m = 2 * std::sqrt(positionCovariance(at(points, segment.points.front())).trace());
   const double vertical_mps = std::abs(v.dot(ground.normal_cam));
   const double vertical_sigma = std::sqrt(ground.normal_cam.dot(segment.velocity_covariance * ground.normal_cam));
-  const bool like_a_vehicle = box.diagonal().norm() < params_.max_extent_m + depth_noise_m && lowest_m < params_.max_height_m &&
+  const bool like_a_vehicle = box.diagonal().norm() < params_.max_extent_m + depth_noise_m &&
+                              lowest_m < params_.max_height_m &&
                               vertical_mps < params_.max_vertical_ratio * v.norm() + 2 * vertical_sigma;
   return like_a_vehicle ? PointLabel::kMoving : PointLabel::kUnknown;
+}
+
+std::vector<Parameter> parametersOf(MotionSegmenter::Params& params) {
+  return {numberParameter("max_flow_chi2", params.max_flow_chi2, {1, 100},
+                          "lower cuts objects apart at smaller differences of their scene flow"),
+          numberParameter("max_gap_m", params.max_gap_m, {0.2, 10},
+                          "lower parts neighboring vehicles, higher joins sparse ones"),
+          numberParameter("min_points", params.min_points, {2, 30},
+                          "fewer find smaller and farther objects, more find fewer false ones"),
+          numberParameter("min_speed_mps", params.min_speed_mps, {0.1, 10}, "lower finds slower objects"),
+          numberParameter("min_significance", params.min_significance, {1, 20},
+                          "higher asks for more evidence of motion: fewer false objects, found later"),
+          numberParameter("max_extent_m", params.max_extent_m, {3, 40}, "the longest vehicle to expect")};
 }
 
 }  // namespace motorcade

@@ -4,11 +4,13 @@
 
 namespace motorcade {
 
-bool isFoundAtRestToo(const Image& now, const Eigen::Vector2d& now_px, const Image& before, const Eigen::Vector2d& at_rest_px,
-                      const Eigen::Vector2d& followed_from_px, double scale, const RepeatedTextureParams& params) {
+bool isFoundAtRestToo(const Image& now, const Eigen::Vector2d& now_px, const Image& before,
+                      const Eigen::Vector2d& at_rest_px, const Eigen::Vector2d& followed_from_px, double scale,
+                      const RepeatedTextureParams& params) {
   if ((at_rest_px - followed_from_px).norm() < params.min_separation_px) return false;
   const Eigen::Vector2f from = now_px.cast<float>(), guess = at_rest_px.cast<float>();
-  const auto patch = makeTemplate(now, from.x(), from.y(), params.window_px, PatchDeformation::kScale, static_cast<float>(scale));
+  const auto patch =
+      makeTemplate(now, from.x(), from.y(), params.window_px, PatchDeformation::kScale, static_cast<float>(scale));
   if (!patch) return false;
   PatchParams alignment;
   alignment.window_px = params.window_px;

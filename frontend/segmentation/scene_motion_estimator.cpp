@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frontend/segmentation/geometric_constraints.hpp"
-#include "frontend/parallel_items.hpp"
 #include "frontend/geometry/point_grid.hpp"
+#include "frontend/parallel_items.hpp"
+#include "frontend/segmentation/geometric_constraints.hpp"
 
 namespace motorcade {
 
 SceneMotionEstimator::SceneMotionEstimator(const Params& params, const StereoCamera& camera)
-    : params_(params),
+    : params_(requireValid(params)),
       camera_(camera),
       disparity_offset_(params.disparity_offset, camera),
       ego_motion_(params.ego_motion, camera),
@@ -70,32 +70,33 @@ SceneMotionPtr SceneMotionEstimator::operator()(const StereoMatchesPtr& stereo, 
   return motion;
 }
 
-/// Learns from points at rest that were seen at both ends of a window; the disparities remembered follow the offset in use.
+/// Learns from points at rest that were seen at both ends of a window; the disparities remembered follow the offset in
+/// use.
 void SceneMotionEstimator::calibrateDisparity() {
-  const std::int64_t now = trail_.newest().step, then = now - params_.calibration_frames;
+  const std::int64_t now = trail_.newest().step, then = now - params_.disparity_offset.window_frames;
   const auto* relation = trail_.find(then);
-  if (relation && now % params_.calibration_frames == 0) {
+  if (relation && now % params_.disparity_offset.window_frames == 0) {
     std::vector<StereoCorrespondence> points;
     for (const auto& track : tracks_) {
       if (!sightedNow(track) || !track.p_static_cam || track.label == PointLabel::kMoving) continue;
       const auto* before = track.find(then);
       if (!before) continue;
-      points.push_back({before->uvd_px.cast<double>(), before->sigma_px.cast<double>(), track.newest().uvd_px.cast<double>(),
-                        track.newest().sigma_px.cast<double>()});
+      points.push_back({before->uvd_px.cast<double>(), before->sigma_px.cast<double>(),
+                        track.newest().uvd_px.cast<double>(), track.newest().sigma_px.cast<double>()});
     }
     disparity_offset_.learn(points, relation->T_then_now.inverse());
   }
   const auto change = static_cast<float>(disparity_offset_.advance());
   for (auto& track : tracks_)
-    for (int i = 0; i < track.count; ++i) track.sightings[static_cast<std::size_t>(i)].uvd_px.z() += change;
+    for (int i = 0; i < track.count; ++i) track.observations[i].uvd_px.z() += change;
 }
 
-std::vector<SceneMotionEstimator::Sighted> SceneMotionEstimator::closeCircle(const StereoMatches& stereo, const OpticalFlow& flow,
-                                                                             const SE3& predicted_T_previous_now) const {
+std::vector<SceneMotionEstimator::Sighted> SceneMotionEstimator::closeCircle(
+    const StereoMatches& stereo, const OpticalFlow& flow, const SE3& predicted_T_previous_now) const {
   std::vector<Sighted> sighted;
-  sighted.reserve(flow.tracks.size());
+  sighted.reserve(flow.observations.size());
   auto track = tracks_.begin();
-  for (const auto& f : flow.tracks) {
+  for (const auto& f : flow.observations) {
     while (track != tracks_.end() && track->point < f.point) ++track;
     const bool known = track != tracks_.end() && track->point == f.point;
     sighted.push_back({.flow = f, .track = known ? &*track : nullptr, .disparity = std::nullopt});
@@ -114,39 +115,46 @@ std::vector<SceneMotionEstimator::Sighted> SceneMotionEstimator::closeCircle(con
   return sighted;
 }
 
-/// Stereo matching gives it where the track was born; where it failed there, a matched corner close by tells where to look.
+/// Stereo matching gives it where the track was born; where it failed there, a matched corner close by tells where to
+/// look.
 std::optional<StereoMatch> SceneMotionEstimator::firstDisparity(const StereoMatches& stereo, const PointGrid& corners,
-                                                                const FlowTrack& flow) const {
-  if (flow.corner >= 0 && stereo.of_corner[static_cast<std::size_t>(flow.corner)])
-    return stereo.of_corner[static_cast<std::size_t>(flow.corner)];
-  const Eigen::Vector2f here(flow.u_px, flow.v_px), reach = Eigen::Vector2f::Constant(static_cast<float>(params_.neighbour_px));
+                                                                const FlowObservation& flow) const {
+  if (flow.corner >= 0 && stereo.of_corner[flow.corner]) return stereo.of_corner[flow.corner];
+  const Eigen::Vector2f here(flow.u_px, flow.v_px),
+      reach = Eigen::Vector2f::Constant(static_cast<float>(params_.neighbor_px));
   std::pair nearest(reach.x(), -1);  // distance and number of a corner; of equal distances the first corner counts
   corners.forEachNear(here - reach, here + reach, [&](int i) {
-    if (!stereo.of_corner[static_cast<std::size_t>(i)]) return;
-    const Corner& c = stereo.features->corners[static_cast<std::size_t>(i)];
+    if (!stereo.of_corner[i]) return;
+    const Corner& c = stereo.features->corners[i];
     const std::pair candidate((Eigen::Vector2f(c.u_px, c.v_px) - here).cwiseAbs().maxCoeff(), i);
     if (candidate < nearest) nearest = candidate;
   });
   if (nearest.second < 0) return std::nullopt;
-  const double disparity_px = stereo.of_corner[static_cast<std::size_t>(nearest.second)]->disparity_px;
+  const double disparity_px = stereo.of_corner[nearest.second]->disparity_px;
   const ImagePyramid &left = stereo.features->left, &right = stereo.features->right;
-  return refineDisparity(left.levels.front(), right.levels.front(), flow.u_px, flow.v_px, disparity_px, params_.disparity);
+  return refineDisparity(left.levels.front(), right.levels.front(), flow.u_px, flow.v_px, disparity_px,
+                         params_.disparity);
 }
 
-/// The disparity lies between that of a point at rest and that of a point which moves along with the camera; where nothing is found there,
-/// it may be a vehicle that comes towards the camera or overtakes it, at up to the camera's own speed.
-std::optional<StereoMatch> SceneMotionEstimator::verifyInRightImage(const Features& features, const FlowTrack& flow,
-                                                                    const PointTrack& track, const SE3& predicted_T_now_previous) const {
+/// The disparity lies between that of a point at rest and that of a point which moves along with the camera; where
+/// nothing is found there, it may be a vehicle that comes towards the camera or overtakes it, at up to the camera's own
+/// speed.
+std::optional<StereoMatch> SceneMotionEstimator::verifyInRightImage(const Features& features,
+                                                                    const FlowObservation& flow,
+                                                                    const PointTrack& track,
+                                                                    const SE3& predicted_T_now_previous) const {
   const double before_px = track.newest().uvd_px.z();
   const auto at_rest = camera_.project(predicted_T_now_previous * lastPosition(track).p_a);
   const double at_rest_px = at_rest ? at_rest->z() : before_px;
-  const double middle_px = 0.5 * (at_rest_px + before_px) - disparity_offset_.offset_px(), change_px = std::abs(at_rest_px - before_px);
+  const double middle_px = 0.5 * (at_rest_px + before_px) - disparity_offset_.offset_px(),
+               change_px = std::abs(at_rest_px - before_px);
   DisparityParams search = params_.disparity;
   if (!last_motion_) search.search_radius_px += params_.unpredicted_search * before_px;
   const auto within = [&](double reach_px) {
     DisparityParams wider = search;
     wider.search_radius_px += reach_px;
-    return refineDisparity(features.left.levels.front(), features.right.levels.front(), flow.u_px, flow.v_px, middle_px, wider);
+    return refineDisparity(features.left.levels.front(), features.right.levels.front(), flow.u_px, flow.v_px, middle_px,
+                           wider);
   };
   const auto between = within(0.5 * change_px);
   return between || change_px < search.search_radius_px ? between : within(1.5 * change_px);
@@ -176,7 +184,8 @@ PoseObservation SceneMotionEstimator::observe(const Sighted& sighted) const {
   return o;
 }
 
-std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted, SceneMotion& motion) {
+std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted,
+                                                          SceneMotion& motion) {
   std::vector<PoseObservation> observations;
   std::vector<bool> known_movers;
   std::vector<bool> inliers(sighted.size(), false);
@@ -210,8 +219,9 @@ std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sigh
 void SceneMotionEstimator::updateTracks(const std::vector<Sighted>& sighted, const FeaturesPtr& features) {
   updated_tracks_.resize(sighted.size());
   const Image& now = features->left.levels.front();
-  forEachItem(sighted.size(),
-              [&](std::size_t i) { updated_tracks_[i] = sighted[i].disparity ? extendTrack(sighted[i], now) : *sighted[i].track; });
+  forEachItem(sighted.size(), [&](std::size_t i) {
+    updated_tracks_[i] = sighted[i].disparity ? extendTrack(sighted[i], now) : *sighted[i].track;
+  });
   previous_features_ = features;
   const std::int64_t oldest_kept = trail_.newest().step - params_.max_missed_frames;
   std::erase_if(updated_tracks_, [&](const PointTrack& track) { return track.newest().step < oldest_kept; });
@@ -223,13 +233,14 @@ bool SceneMotionEstimator::isFoundAtRest(const Sighted& s, const Image& now) con
   const CameraTrail::Relation* before = s.track ? trail_.find(s.track->newest().step) : nullptr;
   if (!before || !previous_features_ || s.track->newest().step + 1 != trail_.newest().step) return false;
   const Image& image_before = previous_features_->left.levels.front();
-  const Eigen::Vector3d uvd_now(s.flow.u_px, s.flow.v_px, s.disparity->disparity_px), uvd_before = s.track->newest().uvd_px.cast<double>();
-  const auto found = [&](const Eigen::Vector3d& uvd, const Image& image, const SE3& T_other_this, const Eigen::Vector3d& uvd_other,
-                         const Image& other) {
+  const Eigen::Vector3d uvd_now(s.flow.u_px, s.flow.v_px, s.disparity->disparity_px),
+      uvd_before = s.track->newest().uvd_px.cast<double>();
+  const auto found = [&](const Eigen::Vector3d& uvd, const Image& image, const SE3& T_other_this,
+                         const Eigen::Vector3d& uvd_other, const Image& other) {
     const Eigen::Vector3d p = camera_.triangulate(uvd), p_other = T_other_this * p;
     const auto at_rest = camera_.project(p_other);
-    return at_rest && isFoundAtRestToo(image, uvd.head<2>(), other, at_rest->head<2>(), uvd_other.head<2>(), p.z() / p_other.z(),
-                                       params_.repeated_texture);
+    return at_rest && isFoundAtRestToo(image, uvd.head<2>(), other, at_rest->head<2>(), uvd_other.head<2>(),
+                                       p.z() / p_other.z(), params_.repeated_texture);
   };
   return found(uvd_now, now, before->T_then_now, uvd_before, image_before) ||
          found(uvd_before, image_before, before->T_then_now.inverse(), uvd_now, now);
@@ -258,7 +269,8 @@ PointTrack SceneMotionEstimator::extendTrack(const Sighted& s, const Image& now)
   return track;
 }
 
-void SceneMotionEstimator::fillPoints(const std::vector<Sighted>& sighted, const std::vector<bool>& inliers, SceneMotion& motion) const {
+void SceneMotionEstimator::fillPoints(const std::vector<Sighted>& sighted, const std::vector<bool>& inliers,
+                                      SceneMotion& motion) const {
   motion.points.reserve(tracks_.size());
   auto track = tracks_.begin();
   for (std::size_t i = 0; i < sighted.size(); ++i) {
@@ -293,19 +305,30 @@ void SceneMotionEstimator::markGround(SceneMotion& motion, const std::vector<boo
   }
 }
 
-bool SceneMotionEstimator::sightedNow(const PointTrack& track) const { return track.newest().step == trail_.newest().step; }
+bool SceneMotionEstimator::sightedNow(const PointTrack& track) const {
+  return track.newest().step == trail_.newest().step;
+}
 
 /// Judged over the longest stretch of the track, where the epipolar line is longest.
 bool SceneMotionEstimator::violatesGeometry(const PointTrack& track) const {
   if (track.count < params_.scene_flow.min_observations) return false;
-  const auto& then = track.sightings.front();
+  const auto& then = track.observations.front();
   const auto* relation = trail_.find(then.step);
   if (!relation) return false;
   const auto& now = track.newest();
-  const auto residual = geometricResidual(camera_, then.uvd_px.cast<double>(), then.sigma_px.cast<double>(),
-                                          now.uvd_px.head<2>().cast<double>(), now.sigma_px.x(), relation->T_then_now.inverse());
+  const auto residual =
+      geometricResidual(camera_, then.uvd_px.cast<double>(), then.sigma_px.cast<double>(),
+                        now.uvd_px.head<2>().cast<double>(), now.sigma_px.x(), relation->T_then_now.inverse());
   return residual && (residual->epipolar_sigmas > params_.segmenter.epipolar_violation_sigmas ||
                       residual->flow_bound_px > params_.segmenter.flow_bound_violation_px);
+}
+
+std::vector<Parameter> parametersOf(SceneMotionEstimator::Params& params) {
+  return {numberParameter("sigma_flow_px", params.sigma_flow_px, {0.05, 2},
+                          "the floor of what the image noise of your camera does to a followed point"),
+          numberParameter("sigma_disparity_px", params.sigma_disparity_px, {0.05, 2}, "the same of a disparity"),
+          numberParameter("max_missed_frames", params.max_missed_frames, {0, PointTrack::kCapacity - 2},
+                          "higher keeps points that are hidden for some frames")};
 }
 
 }  // namespace motorcade

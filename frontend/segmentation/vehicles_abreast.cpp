@@ -15,7 +15,7 @@ struct Abreast {
   double aside_m;
 };
 
-const SceneFlow& flowOf(const SceneMotion& scene, int point) { return *scene.points[static_cast<std::size_t>(point)].flow; }
+const SceneFlow& flowOf(const SceneMotion& scene, int point) { return *scene.points[point].flow; }
 
 Segment piece(const Segment& segment, std::span<const Abreast> members, const SceneMotion& scene) {
   Segment vehicle = segment;

@@ -59,8 +59,8 @@ void ObjectKinematics::fuseVehicleModel(const Eigen::Vector3d& up_world, const P
   Eigen::Matrix<double, 6, 12> J = Eigen::Matrix<double, 6, 12>::Zero();
   const Eigen::Vector3d up_body = T_world_body_.rotation().transpose() * up_world;
   residual << -twist_[1], -twist_[2], -twist_[3], -twist_[4], -up_body.x(), -up_body.y();
-  sigma << params.slip_mps + params.slip_per_mps * std::abs(twist_[0]), params.vertical_mps, params.tilt_rate_radps, params.tilt_rate_radps,
-      params.tilt_rad, params.tilt_rad;
+  sigma << params.slip_mps + params.slip_per_mps * std::abs(twist_[0]), params.vertical_mps, params.tilt_rate_radps,
+      params.tilt_rate_radps, params.tilt_rad, params.tilt_rad;
   for (int i = 0; i < 4; ++i) J(i, 7 + i) = 1;
   J.block<2, 3>(4, 3) = hat(up_body).topRows<2>();  // (R exp(phi))' up = up_body + up_body x phi
   correct<6>(residual, J, sigma);

@@ -7,7 +7,8 @@
 namespace motorcade {
 
 /// Pose and twist of a vehicle with their joint uncertainty: a constant-twist Kalman filter on SE(3).
-/// Body axes: x along the direction of travel, y left, z up. The twist is (velocity [m/s], turn rate [rad/s]) in body axes.
+/// Body axes: x along the direction of travel, y left, z up. The twist is (velocity [m/s], turn rate [rad/s]) in body
+/// axes.
 class ObjectKinematics {
  public:
   using Matrix12d = Eigen::Matrix<double, 12, 12>;
@@ -36,7 +37,8 @@ class ObjectKinematics {
   /// Constant twist over dt, T <- T exp(twist dt); a negative dt looks back.
   void predict(double dt_s, const Params& params);
 
-  /// Takes over a pose whose estimation already used `pose()` and `poseCovariance()` as its prior; the twist follows by their correlation.
+  /// Takes over a pose whose estimation already used `pose()` and `poseCovariance()` as its prior; the twist follows by
+  /// their correlation.
   void acceptPose(const SE3& T_world_body, const Matrix6d& covariance);
 
   /// A place on the body, `p_body`, was seen at `p_world`; `sigma_m` along each axis.

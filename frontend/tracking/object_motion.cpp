@@ -26,13 +26,14 @@ Box imageBox(const std::vector<const ScenePoint*>& points) {
 }  // namespace
 
 const ScenePoint* findPoint(const SceneMotion& scene, PointId point) {
-  const auto at =
-      std::lower_bound(scene.points.begin(), scene.points.end(), point, [](const ScenePoint& p, PointId id) { return p.point < id; });
+  const auto at = std::lower_bound(scene.points.begin(), scene.points.end(), point,
+                                   [](const ScenePoint& p, PointId id) { return p.point < id; });
   return at != scene.points.end() && at->point == point ? &*at : nullptr;
 }
 
-std::vector<ObjectMotionEstimator::Sighting> ObjectMotionEstimator::sightings(const TrackedObject& object, const SceneMotion& scene) const {
-  std::vector<Sighting> seen;
+std::vector<ObjectMotionEstimator::Observation> ObjectMotionEstimator::observations(const TrackedObject& object,
+                                                                                    const SceneMotion& scene) const {
+  std::vector<Observation> seen;
   for (std::size_t i = 0; i < object.points.size(); ++i)
     if (const auto* now = findPoint(scene, object.points[i].point)) seen.push_back({i, now});
   return seen;
@@ -44,13 +45,15 @@ PoseObservation ObjectMotionEstimator::observe(const BodyPoint& point, const Sce
 
 PosePrior ObjectMotionEstimator::weakPrior(const SE3& T_cam_body) const {
   Vector6d sigma;
-  sigma << Eigen::Vector3d::Constant(params_.weak_position_m), params_.weak_tilt_rad, params_.weak_tilt_rad, params_.weak_yaw_rad;
+  sigma << Eigen::Vector3d::Constant(params_.weak_position_m), params_.weak_tilt_rad, params_.weak_tilt_rad,
+      params_.weak_yaw_rad;
   return {T_cam_body, sigma.cwiseAbs2().cwiseInverse().asDiagonal()};
 }
 
-std::optional<ObjectMotionEstimator::Agreement> ObjectMotionEstimator::agree(const TrackedObject& object, const SceneMotion& scene,
+std::optional<ObjectMotionEstimator::Agreement> ObjectMotionEstimator::agree(const TrackedObject& object,
+                                                                             const SceneMotion& scene,
                                                                              const PosePrior& prior) const {
-  Agreement a{.fit = {}, .seen = sightings(object, scene), .chi2 = {}, .inliers = {}};
+  Agreement a{.fit = {}, .seen = observations(object, scene), .chi2 = {}, .inliers = {}};
   if (static_cast<int>(a.seen.size()) < params_.min_points) return std::nullopt;
   std::vector<PoseObservation> observed;
   for (const auto& s : a.seen) observed.push_back(observe(object.points[s.body_point], *s.now));
@@ -66,7 +69,8 @@ std::optional<ObjectMotionEstimator::Agreement> ObjectMotionEstimator::agree(con
 }
 
 std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& object, const SceneMotion& scene,
-                                                               const SceneMotion* previous_scene, const SE3& T_world_cam) const {
+                                                               const SceneMotion* previous_scene,
+                                                               const SE3& T_world_cam) const {
   const PosePrior prior{T_world_cam.inverse() * object.kinematics.pose(), object.kinematics.poseCovariance().inverse()};
   const auto agreement = agree(object, scene, prior);
   if (!agreement) return std::nullopt;
@@ -83,7 +87,8 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
   return observation;
 }
 
-std::optional<ObjectObservation> ObjectMotionEstimator::lookBack(const TrackedObject& object, const SceneMotion& earlier,
+std::optional<ObjectObservation> ObjectMotionEstimator::lookBack(const TrackedObject& object,
+                                                                 const SceneMotion& earlier,
                                                                  const PosePrior& prior) const {
   const auto agreement = agree(object, earlier, prior);
   if (!agreement || !agreement->enough) return std::nullopt;
@@ -107,7 +112,8 @@ std::optional<ObjectObservation> ObjectMotionEstimator::presence(const TrackedOb
   };
   std::vector<const ScenePoint*> visible;
   for (const ScenePoint& p : scene.points)
-    if (p.label != PointLabel::kStatic && p.label != PointLabel::kGround && !p.repeats && mayLieWithin(p)) visible.push_back(&p);
+    if (p.label != PointLabel::kStatic && p.label != PointLabel::kGround && !p.repeats && mayLieWithin(p))
+      visible.push_back(&p);
   if (static_cast<int>(visible.size()) < params_.min_points) return std::nullopt;
   ObjectObservation observation;
   observation.points = static_cast<int>(visible.size());
@@ -117,7 +123,8 @@ std::optional<ObjectObservation> ObjectMotionEstimator::presence(const TrackedOb
   return observation;
 }
 
-void ObjectMotionEstimator::dropMisfits(TrackedObject& object, const std::vector<Sighting>& seen, const std::vector<double>& chi2) const {
+void ObjectMotionEstimator::dropMisfits(TrackedObject& object, const std::vector<Observation>& seen,
+                                        const std::vector<double>& chi2) const {
   std::vector<BodyPoint> kept;  // a point that was not seen is gone: its id never comes back
   for (std::size_t i = 0; i < seen.size(); ++i) {
     BodyPoint p = object.points[seen[i].body_point];
@@ -127,7 +134,8 @@ void ObjectMotionEstimator::dropMisfits(TrackedObject& object, const std::vector
   object.points = std::move(kept);
 }
 
-ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& object, const std::vector<Sighting>& inliers,
+ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& object,
+                                                          const std::vector<Observation>& inliers,
                                                           const SE3& T_cam_body) const {
   const bool split = static_cast<int>(inliers.size()) >= params_.split_points;
   std::vector<PoseObservation> observations;
@@ -146,10 +154,12 @@ ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& o
   return observation;
 }
 
-/// The motion since the frame before, from points that the encounter did not use. With b the body as it stood then and X = T_cam_b
-/// its pose as these points' motion carries it into the camera of now: z_{i-1}^-1 z_i = T_cam_body(before)^-1 * T_previous_now * X.
-void ObjectMotionEstimator::measureMotion(const TrackedObject& object, const std::vector<Sighting>& inliers, const SceneMotion& scene,
-                                          const SceneMotion& previous_scene, ObjectObservation& observation) const {
+/// The motion since the frame before, from points that the encounter did not use. With b the body as it stood then and
+/// X = T_cam_b its pose as these points' motion carries it into the camera of now: z_{i-1}^-1 z_i =
+/// T_cam_body(before)^-1 * T_previous_now * X.
+void ObjectMotionEstimator::measureMotion(const TrackedObject& object, const std::vector<Observation>& inliers,
+                                          const SceneMotion& scene, const SceneMotion& previous_scene,
+                                          ObjectObservation& observation) const {
   if (!object.seen_before.valid() || object.seen_before != previous_scene.frame) return;
   const SE3 T_body_cam_before = object.T_cam_body_before.inverse();
   std::vector<PoseObservation> observations;
@@ -158,20 +168,23 @@ void ObjectMotionEstimator::measureMotion(const TrackedObject& object, const std
     if (!before) continue;
     const Eigen::Matrix3d J = T_body_cam_before.rotation() * camera_.triangulationJacobian(before->uvd_px);
     observations.push_back({T_body_cam_before * camera_.triangulate(before->uvd_px),
-                            J * before->sigma_px.cwiseAbs2().asDiagonal() * J.transpose(), s.now->uvd_px, s.now->sigma_px});
+                            J * before->sigma_px.cwiseAbs2().asDiagonal() * J.transpose(), s.now->uvd_px,
+                            s.now->sigma_px});
   }
-  if (static_cast<int>(inliers.size()) < params_.split_points || static_cast<int>(observations.size()) < params_.min_points) return;
+  if (static_cast<int>(inliers.size()) < params_.split_points ||
+      static_cast<int>(observations.size()) < params_.min_points)
+    return;
   const PosePrior weak = weakPrior(object.T_cam_body);
   const auto fit = fitPose(camera_, PoseObservations(observations), object.T_cam_body, params_.fit, &weak);
   if (!fit) return;
   const Matrix6d A = fit->T_cam_a.inverse().adjoint();  // carries the odometry's perturbation to the end of the product
-  observation.motion =
-      ObjectObservation::Motion{previous_scene.frame, (T_body_cam_before * scene.T_previous_now * fit->T_cam_a).normalized(),
-                                fit->covariance + A * scene.odometry_covariance * A.transpose()};
+  observation.motion = ObjectObservation::Motion{previous_scene.frame,
+                                                 (T_body_cam_before * scene.T_previous_now * fit->T_cam_a).normalized(),
+                                                 fit->covariance + A * scene.odometry_covariance * A.transpose()};
 }
 
 /// One Kalman step per point, the pose taken as known.
-void ObjectMotionEstimator::refinePoints(TrackedObject& object, const std::vector<Sighting>& inliers) const {
+void ObjectMotionEstimator::refinePoints(TrackedObject& object, const std::vector<Observation>& inliers) const {
   for (const auto& s : inliers) {
     BodyPoint& p = object.points[s.body_point];
     const Eigen::Vector3d p_cam = object.T_cam_body * p.p_body;
@@ -188,13 +201,13 @@ void ObjectMotionEstimator::refinePoints(TrackedObject& object, const std::vecto
 }
 
 ObjectObservation ObjectMotionEstimator::firstSight(const TrackedObject& object, const SceneMotion& scene) const {
-  const auto seen = sightings(object, scene);
+  const auto seen = observations(object, scene);
   std::vector<PoseObservation> observations;
   std::vector<const ScenePoint*> visible;
   for (const auto& s : seen) {
     visible.push_back(s.now);
     PoseObservation o = observe(object.points[s.body_point], *s.now);
-    o.covariance_a.setZero();  // the points were put into the body frame from these very sightings
+    o.covariance_a.setZero();  // the points were put into the body frame from these very observations
     observations.push_back(o);
   }
   ObjectObservation observation;
@@ -205,6 +218,11 @@ ObjectObservation ObjectMotionEstimator::firstSight(const TrackedObject& object,
   const auto fit = fitPose(camera_, PoseObservations(observations), object.T_cam_body, params_.fit, &weak);
   observation.encounter_covariance = fit ? fit->covariance : Matrix6d(weak.information.inverse());
   return observation;
+}
+
+std::vector<Parameter> parametersOf(ObjectMotionEstimator::Params& params) {
+  return {numberParameter("min_points", params.min_points, {2, 30},
+                          "fewer follow objects farther away, more follow them more surely")};
 }
 
 }  // namespace motorcade

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/geometry/stereo_pose.hpp"
 #include "frontend/tracking/tracked_object.hpp"
@@ -18,50 +20,55 @@ class ObjectMotionEstimator {
     int split_points = 12;         // from here on, half of the points measure the encounter and half the motion
     double weak_position_m = 2.0;  // prior that only closes directions which the points leave open
     double weak_yaw_rad = 0.15, weak_tilt_rad = 0.03;
-    double presence_margin_m = 0.8;  // by which other points may lie beyond those known, and still show that the object is there
+    double presence_margin_m =
+        0.8;  // by which other points may lie beyond those known, and still show that the object is there
     PoseFitParams fit;
   };
-  ObjectMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
+  ObjectMotionEstimator(const Params& params, const StereoCamera& camera)
+      : params_(requireValid(params)), camera_(camera) {}
 
-  /// Pose from the body points seen in `scene`, with the predicted kinematics as prior; updates kinematics, points and misfits.
-  /// Empty (and the object unchanged but for misfits) when too few points agree. The result's frame, track and state are filled by the
-  /// caller.
-  std::optional<ObjectObservation> follow(TrackedObject& object, const SceneMotion& scene, const SceneMotion* previous_scene,
-                                          const SE3& T_world_cam) const;
+  /// Pose from the body points seen in `scene`, with the predicted kinematics as prior; updates kinematics, points and
+  /// misfits. Empty (and the object unchanged but for misfits) when too few points agree. The result's frame, track and
+  /// state are filled by the caller.
+  std::optional<ObjectObservation> follow(TrackedObject& object, const SceneMotion& scene,
+                                          const SceneMotion* previous_scene, const SE3& T_world_cam) const;
 
-  /// Pose in an earlier frame, when the object was not yet known but its points were already followed: from their sightings then, with a
-  /// prior on the pose. Empty when too few of them agree. Leaves the object as it is.
-  std::optional<ObjectObservation> lookBack(const TrackedObject& object, const SceneMotion& earlier, const PosePrior& prior) const;
+  /// Pose in an earlier frame, when the object was not yet known but its points were already followed: from their
+  /// observations then, with a prior on the pose. Empty when too few of them agree. Leaves the object as it is.
+  std::optional<ObjectObservation> lookBack(const TrackedObject& object, const SceneMotion& earlier,
+                                            const PosePrior& prior) const;
 
-  /// Where no points of its own were followed: the predicted pose, when enough points of unknown motion lie within its outline there. Its
-  /// covariance is wide: the prediction is made of measurements that count already.
-  std::optional<ObjectObservation> presence(const TrackedObject& object, const SceneMotion& scene, const PosePrior& predicted) const;
+  /// Where no points of its own were followed: the predicted pose, when enough points of unknown motion lie within its
+  /// outline there. Its covariance is wide: the prediction is made of measurements that count already.
+  std::optional<ObjectObservation> presence(const TrackedObject& object, const SceneMotion& scene,
+                                            const PosePrior& predicted) const;
 
   /// Encounter of an object that is born in this frame: its body frame is where its points say, up to their noise.
   ObjectObservation firstSight(const TrackedObject& object, const SceneMotion& scene) const;
 
  private:
-  struct Sighting {
+  struct Observation {
     std::size_t body_point;
     const ScenePoint* now;
   };
-  std::vector<Sighting> sightings(const TrackedObject& object, const SceneMotion& scene) const;
+  std::vector<Observation> observations(const TrackedObject& object, const SceneMotion& scene) const;
   PoseObservation observe(const BodyPoint& point, const ScenePoint& now) const;
   PosePrior weakPrior(const SE3& T_cam_body) const;
-  /// The pose that the sightings and the prior agree on, and the sightings that fit it.
+  /// The pose that the observations and the prior agree on, and the observations that fit it.
   struct Agreement {
     PoseFit fit;
-    std::vector<Sighting> seen;
+    std::vector<Observation> seen;
     std::vector<double> chi2;  // of each that was seen
-    std::vector<Sighting> inliers;
+    std::vector<Observation> inliers;
     bool enough = false;
   };
   std::optional<Agreement> agree(const TrackedObject& object, const SceneMotion& scene, const PosePrior& prior) const;
-  void dropMisfits(TrackedObject& object, const std::vector<Sighting>& seen, const std::vector<double>& chi2) const;
-  ObjectObservation measureEncounter(const TrackedObject& object, const std::vector<Sighting>& inliers, const SE3& T_cam_body) const;
-  void measureMotion(const TrackedObject& object, const std::vector<Sighting>& inliers, const SceneMotion& scene,
+  void dropMisfits(TrackedObject& object, const std::vector<Observation>& seen, const std::vector<double>& chi2) const;
+  ObjectObservation measureEncounter(const TrackedObject& object, const std::vector<Observation>& inliers,
+                                     const SE3& T_cam_body) const;
+  void measureMotion(const TrackedObject& object, const std::vector<Observation>& inliers, const SceneMotion& scene,
                      const SceneMotion& previous_scene, ObjectObservation& observation) const;
-  void refinePoints(TrackedObject& object, const std::vector<Sighting>& inliers) const;
+  void refinePoints(TrackedObject& object, const std::vector<Observation>& inliers) const;
 
   Params params_;
   StereoCamera camera_;
@@ -69,5 +76,7 @@ class ObjectMotionEstimator {
 
 /// The point of a scene by id, or null.
 const ScenePoint* findPoint(const SceneMotion& scene, PointId point);
+
+std::vector<Parameter> parametersOf(ObjectMotionEstimator::Params& params);
 
 }  // namespace motorcade

@@ -18,10 +18,14 @@ Eigen::Matrix3d travelAxes(const Eigen::Vector3d& velocity, const Eigen::Vector3
   return R;
 }
 
-double placeSigma_m(const ObjectKinematics& kinematics) { return std::sqrt(kinematics.poseCovariance().topLeftCorner<3, 3>().trace()); }
+double placeSigma_m(const ObjectKinematics& kinematics) {
+  return std::sqrt(kinematics.poseCovariance().topLeftCorner<3, 3>().trace());
+}
 double placeSigma_m(const TrackedObject& object) { return placeSigma_m(object.kinematics); }
 
-Eigen::Vector3d upInWorld(const SceneMotion& scene, const SE3& T_world_cam) { return -(T_world_cam.rotation() * scene.ground.normal_cam); }
+Eigen::Vector3d upInWorld(const SceneMotion& scene, const SE3& T_world_cam) {
+  return -(T_world_cam.rotation() * scene.ground.normal_cam);
+}
 
 /// Vehicles do not: most points of the one lie within the other.
 bool within(const TrackedObject& one, const SE3& T_other_one, const TrackedObject& other) {
@@ -29,21 +33,24 @@ bool within(const TrackedObject& one, const SE3& T_other_one, const TrackedObjec
   Eigen::AlignedBox3d box = other.core(SE3{});
   box.min().array() -= kMargin_m;
   box.max().array() += kMargin_m;
-  const auto inside = std::ranges::count_if(one.points, [&](const BodyPoint& p) { return box.contains(T_other_one * p.p_body); });
+  const auto inside =
+      std::ranges::count_if(one.points, [&](const BodyPoint& p) { return box.contains(T_other_one * p.p_body); });
   return static_cast<double>(inside) > kMost * static_cast<double>(one.points.size());
 }
 
 double diagonal_px(const Box& box) { return std::hypot(box.right_px - box.left_px, box.bottom_px - box.top_px); }
 
-/// A few points that seem to lie behind a vehicle with many, and within its outline, are the vehicle's own with wrong disparities.
+/// A few points that seem to lie behind a vehicle with many, and within its outline, are the vehicle's own with wrong
+/// disparities.
 bool looksThrough(const ObjectObservation& few, const std::vector<ObjectObservation>& objects) {
   constexpr double kMargin = 0.25, kMaxMargin_px = 30;  // of the outline's width and height
   constexpr int kMany = 3;
   return std::ranges::any_of(objects, [&](const ObjectObservation& o) {
     const double du = std::min(kMaxMargin_px, kMargin * (o.box.right_px - o.box.left_px));
     const double dv = std::min(kMaxMargin_px, kMargin * (o.box.bottom_px - o.box.top_px));
-    return o.frame == few.frame && o.points >= kMany * few.points && o.T_cam_body.translation().z() < few.T_cam_body.translation().z() &&
-           o.box.left_px - du < few.box.left_px && few.box.right_px < o.box.right_px + du && o.box.top_px - dv < few.box.top_px &&
+    return o.frame == few.frame && o.points >= kMany * few.points &&
+           o.T_cam_body.translation().z() < few.T_cam_body.translation().z() && o.box.left_px - du < few.box.left_px &&
+           few.box.right_px < o.box.right_px + du && o.box.top_px - dv < few.box.top_px &&
            few.box.bottom_px < o.box.bottom_px + dv;
   });
 }
@@ -51,7 +58,11 @@ bool looksThrough(const ObjectObservation& few, const std::vector<ObjectObservat
 }  // namespace
 
 ObjectTracker::ObjectTracker(const Params& params, const StereoCamera& camera)
-    : params_(params), camera_(camera), associate_(params.association), adopt_(params.adoption, camera), motion_(params.motion, camera) {}
+    : params_(requireValid(params)),
+      camera_(camera),
+      associate_(params.association),
+      adopt_(params.adoption, camera),
+      motion_(params.motion, camera) {}
 
 FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   auto measurements = std::make_shared<FrameMeasurements>();
@@ -70,7 +81,7 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
                    [](const ObjectObservation& a, const ObjectObservation& b) { return a.track < b.track; });
   previous_scene_ = scene;
   past_.push_back({scene, T_world_cam_});
-  if (static_cast<int>(past_.size()) > params_.look_back_frames + params_.confirm_sightings) past_.pop_front();
+  if (static_cast<int>(past_.size()) > params_.look_back_frames + params_.confirm_observations) past_.pop_front();
   return measurements;
 }
 
@@ -92,7 +103,7 @@ void ObjectTracker::follow(TrackedObject& object, const SceneMotion& scene, Fram
   object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
   object.coasted = 0;
   object.last_middle = object.middle();
-  ++object.sightings;
+  ++object.observations;
   updateState(object);
   observation->frame = scene.frame;
   observation->state = object.state;
@@ -107,18 +118,21 @@ void ObjectTracker::record(TrackedObject& object, ObjectObservation observation,
     measurements.objects.push_back(std::move(observation));
     return;
   }
-  const bool doubtful = looksThrough(observation, measurements.objects) || diagonal_px(observation.box) < params_.confirm_extent_px;
+  const bool doubtful =
+      looksThrough(observation, measurements.objects) || diagonal_px(observation.box) < params_.confirm_extent_px;
   object.backlog.push_back(std::move(observation));
   if (doubtful) return;
-  const double travelled_m = (object.kinematics.pose().translation() - object.birthplace_world).norm();
+  const double traveled_m = (object.kinematics.pose().translation() - object.birthplace_world).norm();
   const double speed = object.kinematics.speed_mps();
-  const bool moves = speed > params_.confirm_speed_mps && speed > params_.confirm_significance * object.kinematics.speedSigma_mps();
-  const bool far_enough = object.sightings >= params_.confirm_sightings && travelled_m > params_.confirm_travel_m;
-  if (far_enough && moves && object.extent(0).diagonal().norm() > params_.confirm_extent_m) confirm(object, measurements);
+  const bool moves =
+      speed > params_.confirm_speed_mps && speed > params_.confirm_significance * object.kinematics.speedSigma_mps();
+  const bool far_enough = object.observations >= params_.confirm_observations && traveled_m > params_.confirm_travel_m;
+  if (far_enough && moves && object.extent(0).diagonal().norm() > params_.confirm_extent_m)
+    confirm(object, measurements);
 }
 
-/// The direction of travel is known better now than at birth, and points that were not the body's are gone: the body's x axis is laid along
-/// the travel and its origin amid the points, once and for all.
+/// The direction of travel is known better now than at birth, and points that were not the body's are gone: the body's
+/// x axis is laid along the travel and its origin amid the points, once and for all.
 void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measurements) {
   const Eigen::Matrix3d& R = object.kinematics.pose().rotation();
   const Eigen::Matrix3d R_travel = travelAxes(object.kinematics.velocityWorld_mps(), R.col(2));
@@ -141,7 +155,8 @@ void ObjectTracker::lookBack(TrackedObject& object, Timestamp now) const {
     then.predict(secondsBetween(now, earlier->scene->stamp), params_.kinematics);
     const PosePrior prior{earlier->T_world_cam.inverse() * then.pose(), then.poseCovariance().inverse()};
     auto observation = motion_.lookBack(object, *earlier->scene, prior);
-    if (!observation && placeSigma_m(then) < params_.max_presence_sigma_m) observation = motion_.presence(object, *earlier->scene, prior);
+    if (!observation && placeSigma_m(then) < params_.max_presence_sigma_m)
+      observation = motion_.presence(object, *earlier->scene, prior);
     if (!observation) return;
     observation->frame = earlier->scene->frame;
     observation->velocity_cam_mps = earlier->T_world_cam.rotation().transpose() * then.velocityWorld_mps();
@@ -159,7 +174,8 @@ void ObjectTracker::coast(TrackedObject& object, const SceneMotion& scene, Frame
   }
   if (!object.confirmed) return;
   if (placeSigma_m(object) < params_.max_presence_sigma_m) {
-    if (auto present = motion_.presence(object, scene, {object.T_cam_body, object.kinematics.poseCovariance().inverse()})) {
+    if (auto present =
+            motion_.presence(object, scene, {object.T_cam_body, object.kinematics.poseCovariance().inverse()})) {
       present->frame = scene.frame;
       present->state = object.state;
       return record(object, std::move(*present), measurements);
@@ -198,12 +214,13 @@ void ObjectTracker::associate(const SceneMotion& scene) {
   const auto object_of = associate_(objects_, scene, T_world_cam_);
   std::vector<bool> taken(scene.points.size(), false);
   for (std::size_t i = 0; i < scene.points.size(); ++i)
-    taken[i] = std::any_of(objects_.begin(), objects_.end(), [&](const auto& o) { return o.find(scene.points[i].point) != nullptr; });
+    taken[i] = std::any_of(objects_.begin(), objects_.end(),
+                           [&](const auto& o) { return o.find(scene.points[i].point) != nullptr; });
 
   const std::size_t known = objects_.size();
   for (std::size_t s = 0; s < scene.segments.size(); ++s) {
     if (object_of[s] < 0) continue;
-    TrackedObject& object = objects_[static_cast<std::size_t>(object_of[s])];
+    TrackedObject& object = objects_[object_of[s]];
     if (object.coasted > 0 && sharedPoints(object, scene, scene.segments[s]) == 0) reappear(object, scene.segments[s]);
     adopt_(object, scene, &scene.segments[s], T_world_cam_, taken);
   }
@@ -216,7 +233,7 @@ void ObjectTracker::associate(const SceneMotion& scene) {
 void ObjectTracker::bear(const SceneMotion& scene, const Segment& segment, std::vector<bool>& taken) {
   std::vector<int> free;
   for (const int i : segment.points)
-    if (!taken[static_cast<std::size_t>(i)]) free.push_back(i);
+    if (!taken[i]) free.push_back(i);
   for (const Segment& vehicle : splitAbreast(segment, free, scene, params_.adoption.vehicle.width_m))
     if (static_cast<int>(vehicle.points.size()) >= params_.motion.min_points) bearOne(scene, vehicle, taken);
 }
@@ -224,13 +241,14 @@ void ObjectTracker::bear(const SceneMotion& scene, const Segment& segment, std::
 void ObjectTracker::bearOne(const SceneMotion& scene, const Segment& segment, std::vector<bool>& taken) {
   TrackedObject object;
   object.track = TrackId{next_track_++};
-  const Eigen::Matrix3d R_world_body = travelAxes(T_world_cam_.rotation() * segment.velocity_mps, upInWorld(scene, T_world_cam_));
+  const Eigen::Matrix3d R_world_body =
+      travelAxes(T_world_cam_.rotation() * segment.velocity_mps, upInWorld(scene, T_world_cam_));
   object.birthplace_world = T_world_cam_ * segment.centroid_cam;
   const SE3 T_world_body(R_world_body, object.birthplace_world);
   object.T_cam_body = object.T_cam_body_before = T_world_cam_.inverse() * T_world_body;
   for (const int i : segment.points) {
-    object.points.push_back(adopt_.toBody(object, scene.points[static_cast<std::size_t>(i)]));
-    taken[static_cast<std::size_t>(i)] = true;
+    object.points.push_back(adopt_.toBody(object, scene.points[i]));
+    taken[i] = true;
   }
   ObjectObservation first = motion_.firstSight(object, scene);
   first.frame = scene.frame;
@@ -241,10 +259,11 @@ void ObjectTracker::bearOne(const SceneMotion& scene, const Segment& segment, st
   twist << v_body, Eigen::Vector3d::Zero();
   ObjectKinematics::Matrix12d P = ObjectKinematics::Matrix12d::Zero();
   P.topLeftCorner<6, 6>() = first.encounter_covariance;
-  P.block<3, 3>(6, 6) = R_body_cam * segment.velocity_covariance * R_body_cam.transpose() + 0.25 * Eigen::Matrix3d::Identity();
+  P.block<3, 3>(6, 6) =
+      R_body_cam * segment.velocity_covariance * R_body_cam.transpose() + 0.25 * Eigen::Matrix3d::Identity();
   P.bottomRightCorner<3, 3>().diagonal().setConstant(params_.birth_turn_rate_radps * params_.birth_turn_rate_radps);
   object.kinematics = ObjectKinematics(T_world_body, twist, P);
-  object.sightings = 1;
+  object.observations = 1;
   object.seen_before = scene.frame;
   first.velocity_cam_mps = segment.velocity_mps;
   object.backlog.push_back(std::move(first));
@@ -272,11 +291,14 @@ void ObjectTracker::mergeTwins() {
 bool ObjectTracker::areTwins(const TrackedObject& older, const TrackedObject& younger) const {
   const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
   const Eigen::AlignedBox3d own = older.core(SE3{}), other = younger.core(T_older_younger);
-  if (older.coasted > 0 && younger.sightings > 1) return false;  // one that is seen longer than the other was lost is not the other
+  if (older.coasted > 0 && younger.observations > 1)
+    return false;  // one that is seen longer than the other was lost is not the other
   const double slack_m = std::min(params_.twin_slack_m, 2 * std::hypot(placeSigma_m(older), placeSigma_m(younger)));
   const bool one_vehicle = params_.adoption.vehicle.holds(own.merged(other), slack_m);
-  if (!one_vehicle && !within(younger, T_older_younger, older) && !within(older, T_older_younger.inverse(), younger)) return false;
-  const Eigen::Vector3d dv = older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps();
+  if (!one_vehicle && !within(younger, T_older_younger, older) && !within(older, T_older_younger.inverse(), younger))
+    return false;
+  const Eigen::Vector3d dv =
+      older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps();
   const double sigma_mps = std::hypot(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());
   return dv.norm() < params_.twin_speed_mps + (one_vehicle ? 2 * sigma_mps : 0);
 }
@@ -285,6 +307,24 @@ void ObjectTracker::bury(FrameMeasurements& measurements) {
   for (const auto& object : objects_)
     if (object.ended && object.confirmed) measurements.ended.push_back(object.track);
   std::erase_if(objects_, [](const auto& o) { return o.ended; });
+}
+
+std::vector<Parameter> parametersOf(ObjectTracker::Params& params) {
+  return {
+      numberParameter("confirm_observations", params.confirm_observations, {1, 20},
+                      "fewer report an object earlier, more surely"),
+      numberParameter("confirm_speed_mps", params.confirm_speed_mps, {0, 10}, "lower reports slower objects"),
+      numberParameter("confirm_travel_m", params.confirm_travel_m, {0, 20},
+                      "lower reports an object earlier, higher more surely"),
+      numberParameter("look_back_frames", params.look_back_frames, {0, 50},
+                      "more fill in an object's path before it was confirmed"),
+      numberParameter("max_coasted_frames", params.max_coasted_frames, {0, 5},
+                      "rows in state `predicted` while an object is not seen"),
+      numberParameter("max_lost_frames", params.max_lost_frames, {0, 100},
+                      "longer keeps the id of an object that is hidden"),
+      numberParameter("stop_speed_mps", params.stop_speed_mps, {0, 0.75},
+                      "an object that is slower for some frames is reported as stopped"),
+      numberParameter("start_speed_mps", params.start_speed_mps, {0.75, 5}, "and one that is faster as moving again")};
 }
 
 }  // namespace motorcade

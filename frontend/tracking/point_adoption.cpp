@@ -5,7 +5,8 @@ namespace motorcade {
 BodyPoint PointAdoption::toBody(const TrackedObject& object, const ScenePoint& point) const {
   const SE3 T_body_cam = object.T_cam_body.inverse();
   const Eigen::Matrix3d J = T_body_cam.rotation() * camera_.triangulationJacobian(point.uvd_px);
-  return {point.point, T_body_cam * camera_.triangulate(point.uvd_px), J * point.sigma_px.cwiseAbs2().asDiagonal() * J.transpose()};
+  return {point.point, T_body_cam * camera_.triangulate(point.uvd_px),
+          J * point.sigma_px.cwiseAbs2().asDiagonal() * J.transpose()};
 }
 
 /// Its velocity is the body's there, and not zero.
@@ -21,8 +22,8 @@ bool PointAdoption::couldBeOneBody(const Eigen::AlignedBox3d& box, double slack_
   return longest.holds(box, slack_m);
 }
 
-void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, const Segment* segment, const SE3& T_world_cam,
-                               std::vector<bool>& taken) const {
+void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, const Segment* segment,
+                               const SE3& T_world_cam, std::vector<bool>& taken) const {
   if (object.kinematics.speed_mps() < params_.min_speed_mps) return;
   const auto extent = object.extent(params_.margin_m);
   const auto known = object.extent(0);

@@ -20,14 +20,15 @@ class PointAdoption {
     double margin_m = 0.8;            // beyond the points known so far
     double depth_noise_sigmas = 2.0;  // by which the margin grows
     double max_length_m = 14.0;       // of the body: it grows to this by and by
-    VehicleSize vehicle;              // within it, points of a segment that was matched to the object need no neighbours
+    VehicleSize vehicle;              // within it, points of a segment that was matched to the object need no neighbors
     double fits_chi2 = 9.0;           // 3 degrees of freedom
     double not_static_chi2 = 16.0;
     double min_speed_mps = 1.0;  // slower objects cannot be told from the background by motion
   };
   PointAdoption(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
-  /// Adds the points of `segment` (or, without one, of the whole scene) that fit. `taken[i]` marks points of some object; kept up to date.
+  /// Adds the points of `segment` (or, without one, of the whole scene) that fit. `taken[i]` marks points of some
+  /// object; kept up to date.
   void operator()(TrackedObject& object, const SceneMotion& scene, const Segment* segment, const SE3& T_world_cam,
                   std::vector<bool>& taken) const;
 

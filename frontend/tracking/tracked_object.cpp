@@ -7,7 +7,8 @@
 namespace motorcade {
 
 const BodyPoint* TrackedObject::find(PointId point) const {
-  const auto at = std::lower_bound(points.begin(), points.end(), point, [](const BodyPoint& p, PointId id) { return p.point < id; });
+  const auto at = std::lower_bound(points.begin(), points.end(), point,
+                                   [](const BodyPoint& p, PointId id) { return p.point < id; });
   return at != points.end() && at->point == point ? &*at : nullptr;
 }
 
@@ -29,7 +30,8 @@ Eigen::AlignedBox3d TrackedObject::core(const SE3& T, double left_out) const {
   const auto strays = static_cast<std::size_t>(left_out * static_cast<double>(points.empty() ? 0 : points.size() - 1));
   std::vector<double> values(points.size());
   for (int axis = 0; axis < 3 && !points.empty(); ++axis) {
-    std::transform(points.begin(), points.end(), values.begin(), [&](const BodyPoint& p) { return (T * p.p_body)[axis]; });
+    std::transform(points.begin(), points.end(), values.begin(),
+                   [&](const BodyPoint& p) { return (T * p.p_body)[axis]; });
     std::sort(values.begin(), values.end());
     box.min()[axis] = values[strays];
     box.max()[axis] = values[values.size() - 1 - strays];

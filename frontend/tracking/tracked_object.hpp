@@ -19,8 +19,8 @@ struct BodyPoint {
   int misfits = 0;  // frames in a row in which it did not move with the body
 };
 
-/// A vehicle that the tracker follows. The body frame's origin is the middle of the points when it is confirmed, fixed to the vehicle from
-/// then on.
+/// A vehicle that the tracker follows. The body frame's origin is the middle of the points when it is confirmed, fixed
+/// to the vehicle from then on.
 struct TrackedObject {
   TrackId track;
   ObjectKinematics kinematics;  // in the front-end's own odometry world
@@ -30,7 +30,7 @@ struct TrackedObject {
   std::vector<BodyPoint> points;  // ordered by point
   ObjectState state = ObjectState::kMoving;
   bool confirmed = false;
-  int sightings = 0;
+  int observations = 0;
   int coasted = 0;  // frames in a row without a measurement
   int slow_frames = 0;
   Eigen::Vector3d last_middle = Eigen::Vector3d::Zero();  // of the points when it was seen last, in body axes
@@ -43,7 +43,8 @@ struct TrackedObject {
   void adopt(const std::vector<BodyPoint>& more);
   /// Box around the points in body axes, grown by `margin_m`.
   Eigen::AlignedBox3d extent(double margin_m) const;
-  /// Box around the points, moved by `T`, without the outermost share at each side (at most half): strays do not stretch it.
+  /// Box around the points, moved by `T`, without the outermost share at each side (at most half): strays do not
+  /// stretch it.
   Eigen::AlignedBox3d core(const SE3& T, double left_out = 0.1) const;
   /// Median of the points, axis by axis.
   Eigen::Vector3d middle() const;

@@ -88,7 +88,9 @@ HeldDrive::HeldDrive(const Sequence& drive) {
 
 std::unique_ptr<FrameSource> playHeld(const HeldDrive& drive) { return std::make_unique<HeldSource>(drive); }
 
-std::unique_ptr<FrameSource> playFromDisk(const Sequence& drive, std::size_t ahead) { return std::make_unique<DiskSource>(drive, ahead); }
+std::unique_ptr<FrameSource> playFromDisk(const Sequence& drive, std::size_t ahead) {
+  return std::make_unique<DiskSource>(drive, ahead);
+}
 
 double decodingCpu_ms(const Sequence& drive) {
   constexpr std::size_t kMostPairs = 200;

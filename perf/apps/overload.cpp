@@ -32,7 +32,9 @@ struct Capacity {
 
 enum class Stalling { kMotionStage, kConsumer };
 
-std::size_t framesIn(double seconds, double rate_hz) { return std::max<std::size_t>(20, static_cast<std::size_t>(seconds * rate_hz)); }
+std::size_t framesIn(double seconds, double rate_hz) {
+  return std::max<std::size_t>(20, static_cast<std::size_t>(seconds * rate_hz));
+}
 
 /// A drive seen by a camera `factor` times as fast: each image is shown so many times.
 HeldDrive seenFaster(const OverloadOptions& options, std::size_t frames, std::size_t factor) {
@@ -44,9 +46,11 @@ HeldDrive seenFaster(const OverloadOptions& options, std::size_t frames, std::si
   faster.stamps.clear();
   for (std::size_t index = 0; index < frames; ++index) {
     const std::int64_t now_ns = drive.stamps[index / factor].ns;
-    const std::int64_t next_ns = index / factor + 1 < drive.stamps.size() ? drive.stamps[index / factor + 1].ns : now_ns + 100'000'000;
+    const std::int64_t next_ns =
+        index / factor + 1 < drive.stamps.size() ? drive.stamps[index / factor + 1].ns : now_ns + 100'000'000;
     faster.frames.push_back(drive.frames[index / factor]);
-    faster.stamps.push_back({now_ns + (next_ns - now_ns) * static_cast<std::int64_t>(index % factor) / static_cast<std::int64_t>(factor)});
+    faster.stamps.push_back(
+        {now_ns + (next_ns - now_ns) * static_cast<std::int64_t>(index % factor) / static_cast<std::int64_t>(factor)});
   }
   return HeldDrive(faster);
 }
@@ -75,10 +79,11 @@ class OverloadBench {
   bool run() {
     measureCapacity();
     bool accounted = true;
-    std::printf("\n%-22s | %8s %9s %8s %8s | %7s %7s %7s %7s | %12s\n", "camera", "received", "processed", "dropped", "rejected", "p50 ms",
-                "p95", "p99", "max", "p99 at most");
+    std::printf("\n%-22s | %8s %9s %8s %8s | %7s %7s %7s %7s | %12s\n", "camera", "received", "processed", "dropped",
+                "rejected", "p50 ms", "p95", "p99", "max", "p99 at most");
     for (const int factor : options_.factors) accounted = overload(factor) && accounted;
-    for (const Stalling stalling : {Stalling::kMotionStage, Stalling::kConsumer}) accounted = stall(stalling) && accounted;
+    for (const Stalling stalling : {Stalling::kMotionStage, Stalling::kConsumer})
+      accounted = stall(stalling) && accounted;
     return accounted;
   }
 
@@ -88,7 +93,8 @@ class OverloadBench {
     const HeldDrive drive = seenFaster(options_, 200, 1);
     const auto fast = play(*playHeld(drive), replay, makeStages(replay, camera_));
     capacity_.rate_hz = fast.rate_hz();
-    const auto slow = play(*playHeld(drive), live_, makeStages(live_, camera_), {.rate_hz = capacity_.rate_hz / 4, .observer = {}});
+    const auto slow =
+        play(*playHeld(drive), live_, makeStages(live_, camera_), {.rate_hz = capacity_.rate_hz / 4, .observer = {}});
     const LatencyHistogram& latency = slow.summary.latency;
     capacity_.processing_ms = latency.percentile_ms(0.99);
     std::printf("%s, %d threads: %.1f frames/s as fast as it goes; alone a frame takes p50 %.1f ms, p99 %.1f ms\n",
@@ -101,7 +107,8 @@ class OverloadBench {
 
   bool overload(int factor) const {
     const double camera_hz = factor * capacity_.rate_hz;
-    const HeldDrive drive = seenFaster(options_, framesIn(options_.seconds, camera_hz), static_cast<std::size_t>(factor));
+    const HeldDrive drive =
+        seenFaster(options_, framesIn(options_.seconds, camera_hz), static_cast<std::size_t>(factor));
     const auto run = play(*playHeld(drive), live_, makeStages(live_, camera_), {.rate_hz = camera_hz, .observer = {}});
     return report(std::to_string(factor) + " x", camera_hz, run);
   }
@@ -123,12 +130,15 @@ class OverloadBench {
       latencies_ms.push_back(result.timing.latency_ms());
     };
     const auto run = play(*playHeld(drive), live_, std::move(stages), {.rate_hz = camera_hz, .observer = observer});
-    const bool accounted = report(stalling == Stalling::kConsumer ? "0.5 x, consumer stalls" : "0.5 x, motion stalls", camera_hz, run);
+    const bool accounted =
+        report(stalling == Stalling::kConsumer ? "0.5 x, consumer stalls" : "0.5 x, motion stalls", camera_hz, run);
     std::printf("    from the stall on:");
-    for (std::size_t i = 0; i < std::min<std::size_t>(latencies_ms.size(), 12); ++i) std::printf(" %.0f", latencies_ms[i]);
+    for (std::size_t i = 0; i < std::min<std::size_t>(latencies_ms.size(), 12); ++i)
+      std::printf(" %.0f", latencies_ms[i]);
     const double limit_ms = bound_ms(camera_hz);
     std::printf(" ms; %lld above %.0f ms\n",
-                static_cast<long long>(std::ranges::count_if(latencies_ms, [&](double ms) { return ms > limit_ms; })), limit_ms);
+                static_cast<long long>(std::ranges::count_if(latencies_ms, [&](double ms) { return ms > limit_ms; })),
+                limit_ms);
     return accounted;
   }
 
@@ -137,8 +147,9 @@ class OverloadBench {
     const bool accounted = summary.received == summary.processed + summary.dropped + summary.rejected;
     std::printf("%-22s | %8lld %9lld %8lld %8lld | %7.1f %7.1f %7.1f %7.1f | %12.1f%s\n", name.c_str(),
                 static_cast<long long>(summary.received), static_cast<long long>(summary.processed),
-                static_cast<long long>(summary.dropped), static_cast<long long>(summary.rejected), summary.latency.percentile_ms(0.5),
-                summary.latency.percentile_ms(0.95), summary.latency.percentile_ms(0.99), summary.latency.max_ms(), bound_ms(camera_hz),
+                static_cast<long long>(summary.dropped), static_cast<long long>(summary.rejected),
+                summary.latency.percentile_ms(0.5), summary.latency.percentile_ms(0.95),
+                summary.latency.percentile_ms(0.99), summary.latency.max_ms(), bound_ms(camera_hz),
                 accounted ? "" : "  FRAMES ARE UNACCOUNTED FOR");
     std::fflush(stdout);
     return accounted;
@@ -160,9 +171,14 @@ void addOverload(CLI::App& app, std::function<int()>& action) {
       ->delimiter(',')
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  command->add_option("--seconds", options->seconds, "Duration of each overload")->check(CLI::PositiveNumber)->capture_default_str();
-  command->add_option("--stall", options->stall_s, "Duration of the stalls [s]")->check(CLI::NonNegativeNumber)->capture_default_str();
-  command->callback([options, &action] { action = [options] { return OverloadBench(*options).run() ? 0 : kExitUnaccounted; }; });
+  command->add_option("--seconds", options->seconds, "Duration of each overload")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--stall", options->stall_s, "Duration of the stalls [s]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->callback(
+      [options, &action] { action = [options] { return OverloadBench(*options).run() ? 0 : kExitUnaccounted; }; });
 }
 
 }  // namespace motorcade::perf

@@ -8,8 +8,8 @@ class App;
 
 namespace motorcade::perf {
 
-/// Adds `pipeline_bench overload`: latency and drops of the live policy when the camera is faster than the pipeline, and after stalls.
-/// `action` becomes what to do; it gives the exit code.
+/// Adds `pipeline_bench overload`: latency and drops of the live policy when the camera is faster than the pipeline,
+/// and after stalls. `action` becomes what to do; it gives the exit code.
 void addOverload(CLI::App& app, std::function<int()>& action);
 
 }  // namespace motorcade::perf

@@ -18,10 +18,10 @@ namespace motorcade::perf {
 struct Playback {
   PipelineSummary summary;
   ResultDigests digests;
-  LatencyHistogram in_pipeline;                                     // from admission to publication, whenever the pair was due
+  LatencyHistogram in_pipeline;  // from admission to publication, whenever the pair was due
   std::array<double, kStageCount> stage_cpu_ms{}, stage_wall_ms{};  // summed over the frames
   double wall_s = 0;                                                // from the first pair to the last result
-  ProcessUsage used;                                                // of the whole process, decoding included, in that time
+  ProcessUsage used;  // of the whole process, decoding included, in that time
 
   std::int64_t frames() const { return summary.processed + summary.rejected; }
   double rate_hz() const { return static_cast<double>(frames()) / wall_s; }
@@ -30,7 +30,8 @@ struct Playback {
 };
 
 struct PlaybackOptions {
-  /// Pairs per second of a camera that does not wait for the pipeline; empty: each pair enters as soon as there is room, and is due then.
+  /// Pairs per second of a camera that does not wait for the pipeline; empty: each pair enters as soon as there is
+  /// room, and is due then.
   std::optional<double> rate_hz;
   /// Called with each result, on the thread that takes them.
   std::function<void(const PipelineResult&)> observer;

@@ -56,7 +56,8 @@ std::uint64_t digestOf(const FrameEstimate& estimate) {
     digest.add(object.velocity_world_mps);
     digest.add(object.speed_sigma_mps);
     digest.add(std::int64_t{object.points});
-    for (const double edge_px : {object.box.left_px, object.box.top_px, object.box.right_px, object.box.bottom_px}) digest.add(edge_px);
+    for (const double edge_px : {object.box.left_px, object.box.top_px, object.box.right_px, object.box.bottom_px})
+      digest.add(edge_px);
     digest.add(object.covariance);
   }
   return digest.value();

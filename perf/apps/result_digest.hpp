@@ -9,8 +9,8 @@
 
 namespace motorcade::perf {
 
-/// Fingerprints of all that a run publishes about the camera and the objects, bit by bit, one per frame: equal for equal results, in a few
-/// bytes per frame.
+/// Fingerprints of all that a run publishes about the camera and the objects, bit by bit, one per frame: equal for
+/// equal results, in a few bytes per frame.
 struct ResultDigests {
   std::vector<std::uint64_t> online, final;
 

@@ -40,15 +40,19 @@ struct Material {
   double decoding_cpu_ms = 0;
 
   explicit Material(const SweepOptions& options)
-      : drive(driveOf(options.bench)), config(configOf(options.bench)), held(drive), decoding_cpu_ms(decodingCpu_ms(drive)) {}
+      : drive(driveOf(options.bench)),
+        config(configOf(options.bench)),
+        held(drive),
+        decoding_cpu_ms(decodingCpu_ms(drive)) {}
 };
 
 Playback playOnce(const Cell& cell, const Material& material, const SweepOptions& options) {
   PipelineConfig config = material.config;
   config.pipeline.threads = cell.threads;
   config.pipeline.frames_in_flight = cell.in_flight;
-  const auto source = cell.source == "memory" ? playHeld(material.held)
-                                              : playFromDisk(material.drive, std::bit_floor(static_cast<std::size_t>(cell.in_flight)));
+  const auto source = cell.source == "memory"
+                          ? playHeld(material.held)
+                          : playFromDisk(material.drive, std::bit_floor(static_cast<std::size_t>(cell.in_flight)));
   PlaybackOptions playback;
   if (options.rate_hz > 0) playback.rate_hz = options.rate_hz;
   return play(*source, config, makeStages(config, material.drive.camera), playback);
@@ -57,19 +61,20 @@ Playback playOnce(const Cell& cell, const Material& material, const SweepOptions
 void printHead(const Material& material, const SweepOptions& options) {
   const StereoCamera& camera = material.drive.camera;
   std::printf("%s: %zu pairs of %d x %d px, the fastest of %d runs; decoding alone: %.2f ms of CPU per pair\n",
-              options.bench.sequence.c_str(), material.drive.frames.size(), camera.width_px, camera.height_px, options.repeat,
-              material.decoding_cpu_ms);
+              options.bench.sequence.c_str(), material.drive.frames.size(), camera.width_px, camera.height_px,
+              options.repeat, material.decoding_cpu_ms);
   std::printf("latency from %s to publication\n\n", options.rate_hz > 0 ? "the moment a pair is due" : "admission");
-  std::printf("%-7s %7s %9s %9s | %9s %10s | %7s %7s %7s %7s | %9s %11s\n", "images", "threads", "in flight", "frames/s", "CPU ms",
-              "less dec.", "p50 ms", "p95", "p99", "max", "stolen s", "inv. switch");
+  std::printf("%-7s %7s %9s %9s | %9s %10s | %7s %7s %7s %7s | %9s %11s\n", "images", "threads", "in flight",
+              "frames/s", "CPU ms", "less dec.", "p50 ms", "p95", "p99", "max", "stolen s", "inv. switch");
 }
 
 void print(const Cell& cell, double decoding_cpu_ms) {
   const Playback& run = cell.best;
   const double cpu_ms = run.perFrame(1e3 * run.used.cpu_s);
   const LatencyHistogram& latency = run.summary.latency;
-  std::printf("%-7s %7d %9d %9.1f | %9.2f %10.2f | %7.1f %7.1f %7.1f %7.1f | %9.2f %11lld\n", cell.source.c_str(), cell.threads,
-              cell.in_flight, run.rate_hz(), cpu_ms, cell.source == "disk" ? cpu_ms - decoding_cpu_ms : cpu_ms, latency.percentile_ms(0.5),
+  std::printf("%-7s %7d %9d %9.1f | %9.2f %10.2f | %7.1f %7.1f %7.1f %7.1f | %9.2f %11lld\n", cell.source.c_str(),
+              cell.threads, cell.in_flight, run.rate_hz(), cpu_ms,
+              cell.source == "disk" ? cpu_ms - decoding_cpu_ms : cpu_ms, latency.percentile_ms(0.5),
               latency.percentile_ms(0.95), latency.percentile_ms(0.99), latency.max_ms(), run.used.stolen_s,
               static_cast<long long>(run.used.involuntary_switches));
   std::fflush(stdout);
@@ -77,13 +82,15 @@ void print(const Cell& cell, double decoding_cpu_ms) {
 
 /// With one thread a stage's CPU time is all its work; with more, other workers help in its parallel loops.
 void printStages(const std::vector<Cell>& cells) {
-  std::printf("\nper stage, CPU ms of the thread that ran it / wall ms\n%-7s %7s %9s", "images", "threads", "in flight");
+  std::printf("\nper stage, CPU ms of the thread that ran it / wall ms\n%-7s %7s %9s", "images", "threads",
+              "in flight");
   for (const auto& name : kStageNames) std::printf(" %14s", std::string(name).c_str());
   std::printf("\n");
   for (const Cell& cell : cells) {
     std::printf("%-7s %7d %9d", cell.source.c_str(), cell.threads, cell.in_flight);
     for (std::size_t stage = 0; stage < kStageCount; ++stage)
-      std::printf("  %6.2f / %4.1f", cell.best.perFrame(cell.best.stage_cpu_ms[stage]), cell.best.perFrame(cell.best.stage_wall_ms[stage]));
+      std::printf("  %6.2f / %4.1f", cell.best.perFrame(cell.best.stage_cpu_ms[stage]),
+                  cell.best.perFrame(cell.best.stage_wall_ms[stage]));
     std::printf("\n");
   }
 }
@@ -92,8 +99,8 @@ void printStages(const std::vector<Cell>& cells) {
 bool sameResults(const Cell& cell, const ResultDigests& digests, const ResultDigests& reference) {
   const auto frame = firstDifference(digests, reference);
   if (frame)
-    std::printf("DIFFERENT results from frame %zu on: %s, %d threads, %d in flight\n", *frame, cell.source.c_str(), cell.threads,
-                cell.in_flight);
+    std::printf("DIFFERENT results from frame %zu on: %s, %d threads, %d in flight\n", *frame, cell.source.c_str(),
+                cell.threads, cell.in_flight);
   return !frame;
 }
 
@@ -119,7 +126,8 @@ int sweep(const SweepOptions& options) {
     }
   }
   printStages(cells);
-  std::printf("\nresults: %s\n", same ? "identical in all runs, camera and objects, online and final, bit by bit" : "DIFFERENT, see above");
+  std::printf("\nresults: %s\n", same ? "identical in all runs, camera and objects, online and final, bit by bit"
+                                      : "DIFFERENT, see above");
   return same ? 0 : kExitDifferent;
 }
 
@@ -144,7 +152,8 @@ void addSweep(CLI::App& app, std::function<int()>& action) {
   command->add_option("--repeat", options->repeat, "Runs of each kind, of which the fastest counts")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--rate", options->rate_hz, "Pace of the camera [Hz]; as fast as it goes when absent")->check(CLI::PositiveNumber);
+  command->add_option("--rate", options->rate_hz, "Pace of the camera [Hz]; as fast as it goes when absent")
+      ->check(CLI::PositiveNumber);
   command->callback([options, &action] { action = [options] { return sweep(*options); }; });
 }
 

@@ -20,8 +20,9 @@ FeaturesPtr pairAt(const StereoCamera& camera, int number, double growth) {
   };
   const auto seed = static_cast<unsigned>(number);
   const Image left = test::render(camera.width_px, camera.height_px, gray, {.noise = 2, .seed = 2 * seed + 1});
-  const Image right = test::render(camera.width_px, camera.height_px, [&](double x, double y) { return gray(x + disparity(y), y); },
-                                   {.noise = 2, .seed = 2 * seed + 2});
+  const Image right =
+      test::render(camera.width_px, camera.height_px, [&](double x, double y) { return gray(x + disparity(y), y); },
+                   {.noise = 2, .seed = 2 * seed + 2});
   const FeaturePreparation prepare(FeaturePreparation::Params{});
   return prepare(test::stereoFrame(number, left, right));
 }

@@ -10,8 +10,8 @@ namespace motorcade::perf {
 /// The camera of the benchmarks for images of this width, in KITTI's proportions: 1242 px wide it is KITTI's own.
 StereoCamera benchCamera(int width_px);
 
-/// Stereo pairs of a textured plane that comes nearer: two successive ones. Disparities grow from 8 px at the horizon to 68 px (at 1242 px
-/// width).
+/// Stereo pairs of a textured plane that comes nearer: two successive ones. Disparities grow from 8 px at the horizon
+/// to 68 px (at 1242 px width).
 struct BenchStreet {
   StereoCamera camera;
   FeaturesPtr before, now;

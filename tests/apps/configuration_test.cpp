@@ -1,9 +1,7 @@
 #include "apps/pipeline/configuration.hpp"
 
-#include <filesystem>
-#include <fstream>
-#include <regex>
-#include <set>
+#include <limits>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -58,11 +56,14 @@ TEST(Configuration, AcceptsTheShortFormOfTheBackendsKind) {
 TEST(Configuration, ReadsBackWhatItWrites) {
   PipelineConfig config;
   // Every parameter gets another value than its default, within its range.
-  for (const Parameter& parameter : parameterTable(config)) {
-    if (const auto* number = std::get_if<int*>(&parameter.value)) **number += **number < parameter.most ? 1 : -1;
-    if (const auto* number = std::get_if<double*>(&parameter.value)) **number *= 0.9071;
+  for (const auto& [section, parameter] : parameterTable(config)) {
+    const auto [least, most] = parameter.range;
+    if (const auto* number = std::get_if<int*>(&parameter.value)) **number += **number < most ? 1 : -1;
+    if (const auto* number = std::get_if<double*>(&parameter.value))
+      **number = std::midpoint(**number, **number < most ? most : least);
     if (const auto* flag = std::get_if<bool*>(&parameter.value)) **flag = !**flag;
-    if (const auto* choice = std::get_if<Choice>(&parameter.value)) choice->set((choice->get() + 1) % choice->names.size());
+    if (const auto* choice = std::get_if<Choice>(&parameter.value))
+      choice->set((choice->get() + 1) % choice->names.size());
   }
   const std::string text = toToml(config);
   PipelineConfig read;
@@ -73,35 +74,26 @@ TEST(Configuration, ReadsBackWhatItWrites) {
 
 TEST(Configuration, BindsEachKeyOnceWithItsDefaultInRange) {
   PipelineConfig config;
-  EXPECT_NO_THROW(applyToml(config, toToml(config), "defaults"));  // TOML itself refuses a key or section that comes twice
+  EXPECT_NO_THROW(
+      applyToml(config, toToml(config), "defaults"));  // TOML itself refuses a key or section that comes twice
 }
 
-/// The numbers and flags that the `Params` of a header declare.
-std::vector<std::string> parametersDeclaredIn(const std::filesystem::path& header) {
-  const std::regex begin(R"(\s*struct \w*Params \{)"), end(R"(\s*\};)"), member(R"(\s*(int|double|bool) [^/]*=.*)"), name(R"((\w+) =)");
-  std::vector<std::string> names;
-  bool inside = false;
-  std::ifstream file(header);
-  for (std::string line; std::getline(file, line);) {
-    if (std::regex_match(line, begin)) inside = true;
-    if (std::regex_match(line, end)) inside = false;
-    if (!inside || !std::regex_match(line, member)) continue;
-    const std::string code = line.substr(0, line.find("//"));
-    for (std::sregex_iterator found(code.begin(), code.end(), name), none; found != none; ++found) names.push_back((*found)[1]);
-  }
-  return names;
-}
-
-TEST(Configuration, KnowsEveryParameterOfEveryStage) {
+TEST(Configuration, HasFewKeysThatEachSayWhatTheyAreFor) {
   PipelineConfig config;
-  std::set<std::string> known;
-  for (const Parameter& parameter : parameterTable(config)) known.insert(parameter.name);
-  const std::filesystem::path root = MOTORCADE_SOURCE_DIR;
-  std::vector<std::filesystem::path> headers{root / "backend/optimizer.hpp", root / "backend/filter_backend.hpp"};
-  for (const auto& entry : std::filesystem::directory_iterator(root / "frontend"))
-    if (entry.path().extension() == ".hpp") headers.push_back(entry.path());
-  for (const auto& header : headers)
-    for (const std::string& name : parametersDeclaredIn(header)) EXPECT_TRUE(known.contains(name)) << header << ": " << name;
+  const auto table = parameterTable(config);
+  EXPECT_LE(table.size(), 60U);
+  for (const auto& known : table) EXPECT_GT(known.parameter.gain.size(), 10U) << known.key();
+}
+
+TEST(Configuration, NoRangeReachesInfiniteHugeOrDenormalValues) {
+  PipelineConfig config;
+  for (const auto& known : parameterTable(config)) {
+    if (!std::holds_alternative<double*>(known.parameter.value)) continue;
+    for (const double value :
+         {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+          std::numeric_limits<double>::quiet_NaN(), 1e300, -1e300, std::numeric_limits<double>::denorm_min()})
+      EXPECT_FALSE(known.parameter.accepts(value)) << known.key() << " accepts " << value;
+  }
 }
 
 TEST(Configuration, NamesFileLineAndNearestKeyOfAnUnknownOne) {
@@ -112,15 +104,18 @@ TEST(Configuration, NamesFileLineAndNearestKeyOfAnUnknownOne) {
 }
 
 TEST(Configuration, NamesTheRangeOfABadValue) {
-  EXPECT_THAT(complaintAbout("pipeline.frames_in_flight = 0"),
-              AllOf(HasSubstr("drive.toml, line 1"), HasSubstr("'pipeline.frames_in_flight' is 0"), HasSubstr("1 to 64")));
+  EXPECT_THAT(
+      complaintAbout("pipeline.frames_in_flight = 0"),
+      AllOf(HasSubstr("drive.toml, line 1"), HasSubstr("'pipeline.frames_in_flight' is 0"), HasSubstr("1 to 64")));
   EXPECT_THAT(complaintAbout("pipeline.threads = 1.5"), HasSubstr("a whole number, 1 to 64"));
   EXPECT_THAT(complaintAbout("frontend.detector = \"orb\""), HasSubstr("\"corners\" or \"sift\""));
-  EXPECT_THAT(complaintAbout("frontend.optical_flow.max_flow_px = nan"), HasSubstr("above 0"));
+  EXPECT_THAT(complaintAbout("frontend.optical_flow.max_flow_px = nan"), HasSubstr("20 to 1000"));
   EXPECT_THAT(complaintAbout("backend.factors.use_motion = 1"), HasSubstr("true or false"));
 }
 
-TEST(Configuration, NamesTheLineThatIsNoToml) { EXPECT_THAT(complaintAbout("[pipeline]\nthreads = = 2"), HasSubstr("drive.toml, line 2")); }
+TEST(Configuration, NamesTheLineThatIsNoToml) {
+  EXPECT_THAT(complaintAbout("[pipeline]\nthreads = = 2"), HasSubstr("drive.toml, line 2"));
+}
 
 TEST(Configuration, TakesSingleAssignments) {
   PipelineConfig config;

@@ -94,7 +94,12 @@ TEST(Draw, MakesAPictureOfEveryNthFrameOfTheRun) {
     }
   }
   testing::internal::CaptureStdout();
-  EXPECT_EQ(runDraw({.run = folder / "run", .sequence = folder / "drive", .out = folder / "pictures", .frames = {3, 8}, .every = 2}), 0);
+  EXPECT_EQ(runDraw({.run = folder / "run",
+                     .sequence = folder / "drive",
+                     .out = folder / "pictures",
+                     .frames = {3, 8},
+                     .every = 2}),
+            0);
   EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::HasSubstr("3 pictures"));
   for (const char* name : {"frame_000003.png", "frame_000005.png", "frame_000007.png"}) {
     EXPECT_EQ(readImageSize(folder / "pictures" / name), (ImageSize{400, 120 + 4 + 240}));

@@ -30,7 +30,8 @@ class Anchors : public testing::TestWithParam<Anchor> {};
 
 TEST_P(Anchors, MeasuresOfVisoAgreeWithPublishedOnes) {
   const Anchor& anchor = GetParam();
-  if (!std::filesystem::exists(kData / anchor.drive)) GTEST_SKIP() << "../shared/data/" << anchor.drive << " is not there";
+  if (!std::filesystem::exists(kData / anchor.drive))
+    GTEST_SKIP() << "../shared/data/" << anchor.drive << " is not there";
   const Sequence sequence = openSequence(kData / anchor.drive);
   const auto poses = readKittiPoses(kData / "viso2" / (std::string(anchor.drive) + ".txt"));
   const auto errors = evaluatePoses(poses, sequence).camera;
@@ -41,22 +42,25 @@ TEST_P(Anchors, MeasuresOfVisoAgreeWithPublishedOnes) {
   EXPECT_NEAR(errors->end_percent, anchor.end_percent, kRoundingOfTwo);
   EXPECT_NEAR(errors->rpe_m.rmse, anchor.rpe_m, kRoundingOfFour);
   EXPECT_NEAR(errors->rpe_m.median, anchor.rpe_median_m, kRoundingOfFour);
-  // The anchors take angles from the trace, which the few digits of some pose files blur; we take them from rotations put back onto SO(3).
+  // The anchors take angles from the trace, which the few digits of some pose files blur; we take them from rotations
+  // put back onto SO(3).
   EXPECT_NEAR(errors->rpe_deg.rmse, anchor.rpe_deg, 1e-4);
   EXPECT_NEAR(errors->rpe_deg.median, anchor.rpe_median_deg, 2.5e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Viso2, Anchors,
-                         testing::Values(Anchor{"kitti_tracking_0003", 0.422, 1.695, 1.48, 0.0314, 0.0228, 0.0379, 0.0305},
-                                         Anchor{"kitti_odometry_04", 0.198, 0.517, 1.18, 0.0247, 0.0180, 0.0488, 0.0356},
-                                         Anchor{"kitti_odometry_06", 0.132, 0.407, 1.04, 0.0145, 0.0131, 0.0684, 0.0397},
-                                         Anchor{"rendered_street", 0.039, 0.069, 0.22, 0.0189, 0.0155, 0.0411, 0.0375}),
-                         [](const auto& instance) { return std::string(instance.param.drive); });
+INSTANTIATE_TEST_SUITE_P(
+    Viso2, Anchors,
+    testing::Values(Anchor{"kitti_tracking_0003", 0.422, 1.695, 1.48, 0.0314, 0.0228, 0.0379, 0.0305},
+                    Anchor{"kitti_odometry_04", 0.198, 0.517, 1.18, 0.0247, 0.0180, 0.0488, 0.0356},
+                    Anchor{"kitti_odometry_06", 0.132, 0.407, 1.04, 0.0145, 0.0131, 0.0684, 0.0397},
+                    Anchor{"rendered_street", 0.039, 0.069, 0.22, 0.0189, 0.0155, 0.0411, 0.0375}),
+    [](const auto& instance) { return std::string(instance.param.drive); });
 
 TEST(UninterpolatedTruth, GivesTheLargerErrorsOfPublishedEvaluations) {
-  if (!std::filesystem::exists(kData / "kitti_tracking_0003")) GTEST_SKIP() << "../shared/data/kitti_tracking_0003 is not there";
-  const auto errors = evaluatePoses(readKittiPoses(kData / "viso2/kitti_tracking_0003.txt"), openSequence(kData / "kitti_tracking_0003"),
-                                    OxtsTimes::kUninterpolated)
+  if (!std::filesystem::exists(kData / "kitti_tracking_0003"))
+    GTEST_SKIP() << "../shared/data/kitti_tracking_0003 is not there";
+  const auto errors = evaluatePoses(readKittiPoses(kData / "viso2/kitti_tracking_0003.txt"),
+                                    openSequence(kData / "kitti_tracking_0003"), OxtsTimes::kUninterpolated)
                           .camera;
   EXPECT_NEAR(errors->ate_m.rmse, 0.424, 6e-4);
   EXPECT_NEAR(errors->rpe_m.rmse, 0.0641, 6e-5);
@@ -76,7 +80,7 @@ TEST(TrajectoryErrors, AreZeroForATrajectoryMovedAsAWholeAndKnownForADriftingOne
   EXPECT_NEAR(none->ate_first_pose_m.rmse, 0, 1e-9);
   EXPECT_NEAR(none->are_deg.max, 0, 1e-6);
   const auto drift = trajectoryErrors(longer, truth);
-  EXPECT_NEAR(drift->rpe_m.mean, 0.1, 0.01);  // a tenth of each step of about one metre
+  EXPECT_NEAR(drift->rpe_m.mean, 0.1, 0.01);  // a tenth of each step of about one meter
   EXPECT_NEAR(drift->end_percent, 10, 0.2);   // of a path that bends a little
   EXPECT_FALSE(trajectoryErrors({SE3()}, {SE3()}));
 }
@@ -99,8 +103,8 @@ class EvaluateDrive : public testing::Test {
       poses += kittiLine(camera(i)) + "\n";
       char line[256];
       for (const auto& [id, z] : {std::pair(7, 15 + 1.2 * i - i), std::pair(8, 60.0 - i)}) {
-        std::snprintf(line, sizeof(line), "%d %d Car 0 0 0 10 10 40 60 1.5 1.7 4.2 %.6f 1.6 %.6f -1.570796\n", i, id, id == 7 ? 2.0 : -4.0,
-                      z);
+        std::snprintf(line, sizeof(line), "%d %d Car 0 0 0 10 10 40 60 1.5 1.7 4.2 %.6f 1.6 %.6f -1.570796\n", i, id,
+                      id == 7 ? 2.0 : -4.0, z);
         labels += line;
       }
     }
@@ -189,7 +193,7 @@ TEST_F(EvaluateDrive, MissesSwitchesAndFalseRowsAreCounted) {
   const DetectionErrors errors = evaluateRun(options_).final.detection;
   EXPECT_EQ(errors.within_30m.found, kFrames - 8);
   EXPECT_EQ(errors.false_rows, 10);
-  EXPECT_EQ(errors.false_rows_unlabelled, 5);
+  EXPECT_EQ(errors.false_rows_unlabeled, 5);
   EXPECT_EQ(errors.id_switches, 1);
   EXPECT_NEAR(errors.mota, 1 - (8 + 10 + 1) / 30.0, 1e-12);
   EXPECT_LT(errors.hota, 0.9);

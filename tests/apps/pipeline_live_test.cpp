@@ -11,8 +11,8 @@
 #include "apps/pipeline/pipeline.hpp"
 #include "tests/apps/toy_stages.hpp"
 
-/// The live policy. Stages and camera wait for each other here, so that nothing depends on anybody's speed: time is counted in pairs that
-/// the camera has delivered.
+/// The live policy. Stages and camera wait for each other here, so that nothing depends on anybody's speed: time is
+/// counted in pairs that the camera has delivered.
 namespace motorcade {
 namespace {
 
@@ -27,16 +27,19 @@ void raiseTo(std::atomic<std::int64_t>& value, std::int64_t wanted) {
   value.notify_all();
 }
 
-std::int64_t missing(const PipelineSummary& summary) { return summary.received - summary.processed - summary.dropped - summary.rejected; }
+std::int64_t missing(const PipelineSummary& summary) {
+  return summary.received - summary.processed - summary.dropped - summary.rejected;
+}
 
 /// Takes the rest of a run whose producer is done.
 Outcome drain(Pipeline& pipeline) { return runThrough(pipeline, {}); }
 
 class LiveOverload : public testing::TestWithParam<std::tuple<int, int>> {};
-INSTANTIATE_TEST_SUITE_P(ThreadsAndFactor, LiveOverload, testing::Combine(testing::Values(1, 2, 4), testing::Values(1, 2, 5)));
+INSTANTIATE_TEST_SUITE_P(ThreadsAndFactor, LiveOverload,
+                         testing::Combine(testing::Values(1, 2, 4), testing::Values(1, 2, 5)));
 
-/// While a frame is in work the camera delivers `factor` more: the newest of them comes next, so that a result is never older than the
-/// pairs of one processing time.
+/// While a frame is in work the camera delivers `factor` more: the newest of them comes next, so that a result is never
+/// older than the pairs of one processing time.
 TEST_P(LiveOverload, ProcessesTheNewestPairEachTime) {
   const auto [threads, factor] = GetParam();
   constexpr std::int64_t kProcessed = 40;
@@ -63,8 +66,8 @@ TEST_P(LiveOverload, ProcessesTheNewestPairEachTime) {
 
   ASSERT_EQ(results.size(), static_cast<std::size_t>(kProcessed));
   for (std::int64_t index = 0; index < kProcessed; ++index) {
-    EXPECT_EQ(results[static_cast<std::size_t>(index)].online.frame.value, index * factor);
-    EXPECT_EQ(results[static_cast<std::size_t>(index)].dropped.size(), static_cast<std::size_t>(index == 0 ? 0 : factor - 1));
+    EXPECT_EQ(results[index].online.frame.value, index * factor);
+    EXPECT_EQ(results[index].dropped.size(), static_cast<std::size_t>(index == 0 ? 0 : factor - 1));
   }
   EXPECT_EQ(end.summary.received, (kProcessed - 1) * factor + 1);
   EXPECT_EQ(end.summary.processed, kProcessed);
@@ -97,7 +100,7 @@ TEST(PipelineLive, IsFreshWithinThreeFramesAfterAStallOfTheBackEnd) {
   std::latch stalled(1), stall_ends(1);
   ToyStages toys;
   toys.work = [&](Stage stage, FrameId frame) {
-    if (stage != Stage::kOptimisation || frame.value != 0) return;
+    if (stage != Stage::kOptimization || frame.value != 0) return;
     stalled.count_down();
     stall_ends.wait();
   };
@@ -113,7 +116,8 @@ TEST(PipelineLive, IsFreshWithinThreeFramesAfterAStallOfTheBackEnd) {
   EXPECT_EQ(missing(run.summary), 0);
 }
 
-/// The results that wait for a consumer and the frames behind them are bounded; the camera goes on meanwhile, and the next frame is new.
+/// The results that wait for a consumer and the frames behind them are bounded; the camera goes on meanwhile, and the
+/// next frame is new.
 TEST(PipelineLive, NeitherBlocksTheCameraNorPilesUpWhenNobodyTakesResults) {
   constexpr std::int64_t kFrames = 1000;
   constexpr int kInFlight = 4;

@@ -70,7 +70,8 @@ TEST_P(PipelineThreads, UsesNoMoreWorkersThanItWasGiven) {
 }
 
 TEST_P(PipelineThreads, SurvivesAStageThatThrows) {
-  for (const Stage broken : {Stage::kPrepare, Stage::kStereo, Stage::kFlow, Stage::kMotion, Stage::kTracking, Stage::kOptimisation}) {
+  for (const Stage broken :
+       {Stage::kPrepare, Stage::kStereo, Stage::kFlow, Stage::kMotion, Stage::kTracking, Stage::kOptimization}) {
     std::mutex mutex;
     std::vector<std::string> log;
     ToyStages toys{.work = [&](Stage stage, FrameId frame) {
@@ -90,15 +91,16 @@ TEST_P(PipelineThreads, SurvivesAStageThatThrows) {
     EXPECT_EQ(run.results[4].problem, "");
     EXPECT_EQ(run.summary.received, run.summary.processed + run.summary.rejected);
     EXPECT_EQ(run.summary.rejected, broken == Stage::kPrepare ? 2 : 0);
-    // One metre per frame, predicted or measured.
+    // One meter per frame, predicted or measured.
     EXPECT_NEAR(run.results[3].online.T_world_cam.translation().z(), 3, 1e-9);
-    EXPECT_NEAR(run.finals[3].T_world_cam.translation().z(), broken == Stage::kOptimisation ? 2.5 : 3, 1e-9);
+    EXPECT_NEAR(run.finals[3].T_world_cam.translation().z(), broken == Stage::kOptimization ? 2.5 : 3, 1e-9);
   }
 }
 
 TEST_P(PipelineThreads, GivesTheSameResultsForEveryNumberOfThreads) {
   ToyStages toys{.work = unevenWork}, reference;
-  Pipeline pipeline({.threads = GetParam()}, toys.stages()), single({.threads = 1, .frames_in_flight = 1}, reference.stages());
+  Pipeline pipeline({.threads = GetParam()}, toys.stages()),
+      single({.threads = 1, .frames_in_flight = 1}, reference.stages());
   const Outcome run = runThrough(pipeline, framesFrom0To(50)), expected = runThrough(single, framesFrom0To(50));
   for (std::size_t frame = 0; frame < 50; ++frame)
     EXPECT_EQ(run.finals[frame].T_world_cam.translation(), expected.finals[frame].T_world_cam.translation());

@@ -51,12 +51,16 @@ class Run : public testing::Test {
   }
   fs::path out(const std::string& name) const { return folder_ / name; }
   fs::path errors() const { return folder_ / "stderr"; }
-  nlohmann::json summary(const std::string& name) const { return nlohmann::json::parse(contentOf(out(name) / "summary.json")); }
+  nlohmann::json summary(const std::string& name) const {
+    return nlohmann::json::parse(contentOf(out(name) / "summary.json"));
+  }
 
   /// The measures of a run against the truth of its sequence.
   nlohmann::json evaluate(const std::string& name, const fs::path& sequence = kSequence) {
     const fs::path file = folder_ / (name + ".json");
-    EXPECT_EQ(motorcade("evaluate " + out(name).string() + " --sequence " + sequence.string() + " --json " + file.string()), 0)
+    EXPECT_EQ(
+        motorcade("evaluate " + out(name).string() + " --sequence " + sequence.string() + " --json " + file.string()),
+        0)
         << contentOf(errors());
     return nlohmann::json::parse(contentOf(file));
   }
@@ -71,7 +75,8 @@ class Run : public testing::Test {
   }
 
   void expectSame(const std::string& a, const std::string& b) {
-    for (const std::string& file : kReproducible) EXPECT_TRUE(contentOf(out(a) / file) == contentOf(out(b) / file)) << file;
+    for (const std::string& file : kReproducible)
+      EXPECT_TRUE(contentOf(out(a) / file) == contentOf(out(b) / file)) << file;
   }
 
  private:
@@ -124,8 +129,9 @@ TEST_F(Run, RunsTheOtherDetectorAndTheOtherBackend) {
   EXPECT_EQ(run("filter", "--set backend=filter --require tracked=0.9"), 0) << contentOf(errors());
 }
 
-TEST_F(Run, ReordersAndRelinearisesEveryNUpdates) {
-  ASSERT_EQ(run("every", "--set backend.relinearization=every --set backend.relinearize_every_updates=3"), 0) << contentOf(errors());
+TEST_F(Run, ReordersAndRelinearizesEveryNUpdates) {
+  ASSERT_EQ(run("every", "--set backend.relinearization=every --set backend.relinearize_every_updates=3"), 0)
+      << contentOf(errors());
   EXPECT_GT(summary("every")["solver"]["relinearizations"], 0);
   EXPECT_GT(summary("every")["solver"]["reorderings"], 0);
 }
@@ -154,7 +160,8 @@ TEST_F(Run, AccountsForEveryFrameOfALiveCameraThatIsTooFast) {
   ASSERT_EQ(run("live", "--live --rate 300 --set backend.budget_ms=1"), 0) << contentOf(errors());
   const auto frames = summary("live")["frames"];
   EXPECT_EQ(frames["received"], kFrames);
-  EXPECT_EQ(frames["received"], frames["processed"].get<int>() + frames["dropped"].get<int>() + frames["rejected"].get<int>());
+  EXPECT_EQ(frames["received"],
+            frames["processed"].get<int>() + frames["dropped"].get<int>() + frames["rejected"].get<int>());
   const RunFolder folder = readRunFolder(out("live"));
   EXPECT_EQ(folder.frames.size(), kFrames);
   EXPECT_EQ(folder.online.camera.size(), kFrames);
@@ -204,7 +211,7 @@ TEST_F(RealRun, FollowsTheCameraAndTheTwoLeadCars) {
   EXPECT_LT(measured["camera"]["rpe_r_deg"]["rmse"], 0.039);
   ASSERT_EQ(measured["objects"].size(), 2U);  // parked cars are never reported as moving
   for (const auto& object : measured["objects"]) {
-    const double share_followed = object["followed_frames"].get<double>() / object["labelled_frames"].get<double>();
+    const double share_followed = object["followed_frames"].get<double>() / object["labeled_frames"].get<double>();
     EXPECT_GT(share_followed, 0.8) << object;
   }
   EXPECT_LE(measured["detection"]["id_switches"], 1);
@@ -222,7 +229,8 @@ TEST_F(RealRun, ChangesTheObjectsWhenAKindOfFactorIsSwitchedOff) {
   ASSERT_EQ(run("all", "--frames 0:40", drive_), 0) << contentOf(errors());
   const std::string objects = contentOf(out("all") / "objects_final.csv");
   for (const std::string kind : {"motion", "smoothness", "camera_encounter", "object_encounter"}) {
-    ASSERT_EQ(run(kind, "--frames 0:40 --set backend.factors.use_" + kind + "=false", drive_), 0) << contentOf(errors());
+    ASSERT_EQ(run(kind, "--frames 0:40 --set backend.factors.use_" + kind + "=false", drive_), 0)
+        << contentOf(errors());
     EXPECT_FALSE(contentOf(out(kind) / "objects_final.csv") == objects) << kind;
   }
 }

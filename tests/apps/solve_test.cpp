@@ -29,7 +29,7 @@ const fs::path kGraphs = MOTORCADE_SOURCE_DIR "/../shared/data/posegraphs";
 const std::string kUnit3 = " 1 0 0 1 0 1\n";
 const std::string kUnit6 = " 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1\n";
 
-/// A motion of one metre ahead and a quarter turn to the left.
+/// A motion of one meter ahead and a quarter turn to the left.
 std::string quarterTurn(int from, int to) {
   return "EDGE_SE2 " + std::to_string(from) + " " + std::to_string(to) + " 1 0 1.5707963267948966" + kUnit3;
 }
@@ -37,7 +37,7 @@ std::string quarterTurn(int from, int to) {
 std::string quarterTurnBack(int from, int to) {
   return "EDGE_SE2 " + std::to_string(from) + " " + std::to_string(to) + " 0 1 -1.5707963267948966" + kUnit3;
 }
-/// One metre ahead, in space.
+/// One meter ahead, in space.
 std::string ahead(int from, int to) {
   return "EDGE_SE3:QUAT " + std::to_string(from) + " " + std::to_string(to) + " 1 0 0 0 0 0 1" + kUnit6;
 }
@@ -47,8 +47,8 @@ class Solve : public testing::Test {
   /// Runs the program and gives its exit code.
   int solve(const fs::path& graph, const std::string& options = "") {
     const std::string command = std::string(MOTORCADE_PROGRAM) + " solve " + graph.string() + " --json " +
-                                (folder_ / "solve.json").string() + " --out " + (folder_ / "out.g2o").string() + " " + options + " >" +
-                                (folder_ / "stdout").string() + " 2>" + (folder_ / "stderr").string();
+                                (folder_ / "solve.json").string() + " --out " + (folder_ / "out.g2o").string() + " " +
+                                options + " >" + (folder_ / "stdout").string() + " 2>" + (folder_ / "stderr").string();
     return WEXITSTATUS(std::system(command.c_str()));
   }
   /// Solves a graph that must be accepted, and gives what the program says of it.
@@ -100,20 +100,23 @@ TEST_F(Solve, ClosesASquareInThePlane) {
 }
 
 TEST_F(Solve, TakesEdgesInEitherDirectionAndIdsWithGaps) {
-  EXPECT_NEAR(solved(quarterTurnBack(15, 7) + quarterTurnBack(22, 15) + quarterTurn(22, 40) + quarterTurn(40, 7))["chi2"], 0, kTol);
+  EXPECT_NEAR(
+      solved(quarterTurnBack(15, 7) + quarterTurnBack(22, 15) + quarterTurn(22, 40) + quarterTurn(40, 7))["chi2"], 0,
+      kTol);
   EXPECT_THAT(planarPose(7), IsNearPose(SE2{}, kTol));
   EXPECT_THAT(planarPose(15), IsNearPose(kQuarterTurn, kTol));
 }
 
 TEST_F(Solve, NeverStartsFromTheValuesOfVertices) {
   const std::string edges = quarterTurn(0, 1) + quarterTurn(1, 2);
-  const json without = solved(edges), with = solved("VERTEX_SE2 1 1e6 1e6 3\nVERTEX_SE2 2 -1e6 5 1\nVERTEX_SE2 0 9 9 9\n" + edges);
+  const json without = solved(edges),
+             with = solved("VERTEX_SE2 1 1e6 1e6 3\nVERTEX_SE2 2 -1e6 5 1\nVERTEX_SE2 0 9 9 9\n" + edges);
   EXPECT_EQ(without["chi2"], with["chi2"]);
   EXPECT_THAT(planarPose(2), IsNearPose(kQuarterTurn * kQuarterTurn, kTol));
 }
 
 TEST_F(Solve, WeighsContradictionsInSpaceByTheirInformation) {
-  // Two motions of one metre and one of five between the same poses, with unit information: chi2 = 1/3 of (5 - 2)^2.
+  // Two motions of one meter and one of five between the same poses, with unit information: chi2 = 1/3 of (5 - 2)^2.
   const json result = solved(ahead(0, 1) + ahead(1, 2) + "EDGE_SE3:QUAT 0 2 5 0 0 0 0 0 1" + kUnit6);
   EXPECT_NEAR(result["chi2"], 3, kTol);
   EXPECT_EQ(result["poses"], 3);
@@ -141,7 +144,8 @@ TEST_F(Solve, EveryPolicyAndTheBatchSolutionAgree) {
 }
 
 TEST_F(Solve, AMeasurementThatIsNoNumberIsLeftOutAndNamed) {
-  const json result = solved(quarterTurn(0, 1) + quarterTurn(1, 2) + "EDGE_SE2 0 2 nan 0 0" + kUnit3 + quarterTurn(2, 3));
+  const json result =
+      solved(quarterTurn(0, 1) + quarterTurn(1, 2) + "EDGE_SE2 0 2 nan 0 0" + kUnit3 + quarterTurn(2, 3));
   ASSERT_THAT(kinds(result), ElementsAre("not_finite"));
   EXPECT_EQ(result["problems"][0]["name"], "edge from pose 0 to pose 2");
   EXPECT_THAT(std::string(result["problems"][0]["detail"]), HasSubstr("line 3"));
@@ -179,7 +183,8 @@ TEST_F(Solve, APartThatNothingJoinsIsNamedAndTheRestIsSolved) {
 
 TEST_F(Solve, APartThatIsJoinedLateEntersWithTheEdgeThatJoinsIt) {
   // 2 and 3 come before 4 joins them to the rest, through an edge that points either way.
-  for (const std::string& joint : {quarterTurn(3, 4) + quarterTurn(4, 0), quarterTurnBack(4, 3) + quarterTurnBack(0, 4)}) {
+  for (const std::string& joint :
+       {quarterTurn(3, 4) + quarterTurn(4, 0), quarterTurnBack(4, 3) + quarterTurnBack(0, 4)}) {
     const json result = solved(quarterTurn(0, 1) + quarterTurn(2, 3) + joint);
     EXPECT_NEAR(result["chi2"], 0, kTol);
     EXPECT_EQ(result["poses"], 5);
@@ -197,7 +202,8 @@ TEST_F(Solve, AFirstPoseWithoutEdgesDoesNotHoldUpTheRest) {
 }
 
 TEST_F(Solve, ANumberTooLargeDoesNotSpoilTheRest) {
-  const json result = solved(quarterTurn(0, 1) + "EDGE_SE2 0 1 1e200 0 0" + kUnit3 + "EDGE_SE2 0 1 1 0 0 1e300 0 0 1e300 0 1e300\n");
+  const json result =
+      solved(quarterTurn(0, 1) + "EDGE_SE2 0 1 1e200 0 0" + kUnit3 + "EDGE_SE2 0 1 1 0 0 1e300 0 0 1e300 0 1e300\n");
   EXPECT_THAT(kinds(result), ElementsAre("not_finite", "not_finite"));
   EXPECT_NEAR(result["chi2"], 0, kTol);
 }
@@ -206,11 +212,13 @@ TEST_F(Solve, AJointThatSaysNextToNothingIsNamedWithItsMend) {
   const json result = solved(quarterTurn(0, 1) + "EDGE_SE2 1 2 1 0 0 1e-14 0 0 1e-14 0 1e-14\n" + quarterTurn(2, 3));
   ASSERT_THAT(kinds(result), ElementsAre("badly_conditioned"));
   EXPECT_THAT(std::string(result["problems"][0]["name"]), testing::AnyOf("pose 2", "pose 3"));
-  EXPECT_THAT(printed(), AllOf(HasSubstr("badly conditioned in any direction"), HasSubstr("bring their information closer together")));
+  EXPECT_THAT(printed(), AllOf(HasSubstr("badly conditioned in any direction"),
+                               HasSubstr("bring their information closer together")));
 }
 
 TEST_F(Solve, ErrorsSayWhatToMend) {
-  EXPECT_THAT(errorOf("EDGE_SE2 0 1 1 0 0 1 0 0 1 0\n"), AllOf(HasSubstr("graph.g2o, line 1"), HasSubstr("give it 11")));
+  EXPECT_THAT(errorOf("EDGE_SE2 0 1 1 0 0 1 0 0 1 0\n"),
+              AllOf(HasSubstr("graph.g2o, line 1"), HasSubstr("give it 11")));
   EXPECT_THAT(errorOf(quarterTurn(0, 1) + ahead(1, 2)), AllOf(HasSubstr("line 2"), HasSubstr("two files")));
   EXPECT_THAT(errorOf(""), HasSubstr("no pose and no edge"));
   EXPECT_EQ(solve(folder_ / "absent.g2o"), 3);
@@ -220,14 +228,17 @@ TEST_F(Solve, ErrorsSayWhatToMend) {
   EXPECT_EQ(solve(good, "--every 5"), 2);
   EXPECT_EQ(solve(good, "--json " + (folder_ / "absent/solve.json").string()), 2) << "--json twice";
   EXPECT_EQ(WEXITSTATUS(std::system(
-                (std::string(MOTORCADE_PROGRAM " solve ") + good.string() + " --out /dev/null/out.g2o >/dev/null 2>&1").c_str())),
+                (std::string(MOTORCADE_PROGRAM " solve ") + good.string() + " --out /dev/null/out.g2o >/dev/null 2>&1")
+                    .c_str())),
             4);
 }
 
 TEST_F(Solve, PublicGraphsReachTheirBatchOptimum) {
-  const std::vector<std::pair<std::string, double>> optima{{"manhattan", 3549.04}, {"sphere2500", 1351.36}, {"parking-garage", 1.2684}};
+  const std::vector<std::pair<std::string, double>> optima{
+      {"manhattan", 3549.04}, {"sphere2500", 1351.36}, {"parking-garage", 1.2684}};
   for (const auto& [name, chi2] : optima) {
-    if (!fs::exists(kGraphs / (name + ".g2o"))) GTEST_SKIP() << "../shared/data/posegraphs/" << name << ".g2o is not there";
+    if (!fs::exists(kGraphs / (name + ".g2o")))
+      GTEST_SKIP() << "../shared/data/posegraphs/" << name << ".g2o is not there";
     const json result = solvedFile(kGraphs / (name + ".g2o"), "--batch");
     EXPECT_NEAR(result["chi2"], chi2, 1e-4 * chi2) << name;  // the digits known
     EXPECT_THAT(result["problems"], IsEmpty()) << name;
@@ -245,7 +256,8 @@ TEST_F(Solve, APublicGraphIsSmoothedPoseByPose) {
 
 TEST(PoseGraphFeed, KnowsVariablesPosesAndChi2AfterEachUpdate) {
   test::TemporaryFolder folder;
-  const PoseGraph graph = readPoseGraph(folder.write("g.g2o", quarterTurn(3, 5) + quarterTurn(5, 9) + "EDGE_SE2 3 9 1 2 3" + kUnit3));
+  const PoseGraph graph =
+      readPoseGraph(folder.write("g.g2o", quarterTurn(3, 5) + quarterTurn(5, 9) + "EDGE_SE2 3 9 1 2 3" + kUnit3));
   PoseGraphFeed feed(graph, {});
   EXPECT_EQ(feed.updateCount(), 3U);
   feed.next();

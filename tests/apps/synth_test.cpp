@@ -38,7 +38,9 @@ bool overlap(const Placed& a, const Placed& b, double clearance_m) {
   for (double x = -0.5; x <= 0.5; x += 0.1)
     for (const double y : {-0.5, 0.0, 0.5}) {
       const Eigen::Vector3d p = T_a_b * Eigen::Vector3d(x * b.model->length_m, y * b.model->width_m, 0);
-      if (std::abs(p.x()) < 0.5 * a.model->length_m + clearance_m && std::abs(p.y()) < 0.5 * a.model->width_m + clearance_m) return true;
+      if (std::abs(p.x()) < 0.5 * a.model->length_m + clearance_m &&
+          std::abs(p.y()) < 0.5 * a.model->width_m + clearance_m)
+        return true;
     }
   return false;
 }
@@ -72,7 +74,8 @@ TEST(SynthRays, MeetWhatTryingEveryPartFinds) {
       const float t = nearestOfAll(frame, eye.origin(), d, 1e-3F, 300);
       ASSERT_NEAR(hit ? hit->t : 300, t, 1e-5F * t) << name << " " << u_px << " " << v_px;  // float rounding
       const Vec3 origin = eye.origin() + d * (0.99F * t);
-      ASSERT_EQ(to_sun.occluded(origin, 60), nearestOfAll(frame, origin, scene.sun, 1e-4F, 60) < 60) << name << " " << u_px << " " << v_px;
+      ASSERT_EQ(to_sun.occluded(origin, 60), nearestOfAll(frame, origin, scene.sun, 1e-4F, 60) < 60)
+          << name << " " << u_px << " " << v_px;
     }
   }
 }
@@ -90,7 +93,8 @@ TEST(SynthRenderer, DepthsLieOnTheRoadAndInsideTheVehicles) {
       const int id = left.object[indexOf(x, y)];
       road += id < 0 && std::abs(p_map.z()) < 1e-3 ? 1 : 0;
       if (id < 0) continue;
-      const auto placed = std::find_if(frame.placed().begin(), frame.placed().end(), [&](const Placed& p) { return p.id == id; });
+      const auto placed =
+          std::find_if(frame.placed().begin(), frame.placed().end(), [&](const Placed& p) { return p.id == id; });
       const Eigen::Vector3d p_body = placed->T_map_body.inverse() * p_map;
       EXPECT_LE(std::abs(p_body.x()), 0.5 * placed->model->length_m + 0.01);
       EXPECT_LE(std::abs(p_body.y()), 0.5 * placed->model->width_m + 0.01);
@@ -104,7 +108,8 @@ TEST(SynthRenderer, DepthsLieOnTheRoadAndInsideTheVehicles) {
 TEST(SynthRenderer, TheRightEyeShowsTheLeftPictureShiftedByTheDisparity) {
   const Scene scene = makeScene("overtake", 2);
   const FrameScene frame(scene, 14, true);
-  const Rendering left = render(frame, kCamera, Eye::kLeft, kNoNoise), right = render(frame, kCamera, Eye::kRight, kNoNoise);
+  const Rendering left = render(frame, kCamera, Eye::kLeft, kNoNoise),
+                  right = render(frame, kCamera, Eye::kRight, kNoNoise);
   std::vector<double> differences;
   double shift = 0, weight = 0;
   for (int y = 1; y < kCamera.height_px - 1; ++y)
@@ -119,8 +124,8 @@ TEST(SynthRenderer, TheRightEyeShowsTheLeftPictureShiftedByTheDisparity) {
                         std::abs(right.depth_m[indexOf(u0 + 1, y)] - depth) < 0.02 * depth;
       if (!same) continue;
       const double t = u - u0, sample = (1 - t) * right.image.at(u0, y) + t * right.image.at(u0 + 1, y);
-      const double slope =
-          0.25 * (right.image.at(u0 + 2, y) - right.image.at(u0 - 1, y) + right.image.at(u0 + 1, y) - right.image.at(u0, y));
+      const double slope = 0.25 * (right.image.at(u0 + 2, y) - right.image.at(u0 - 1, y) + right.image.at(u0 + 1, y) -
+                                   right.image.at(u0, y));
       differences.push_back(std::abs(sample - left.image.at(x, y)));
       if (differences.back() < 20) {
         shift += slope * (sample - left.image.at(x, y));
@@ -128,9 +133,11 @@ TEST(SynthRenderer, TheRightEyeShowsTheLeftPictureShiftedByTheDisparity) {
       }
     }
   ASSERT_GT(differences.size(), 10000U);
-  std::nth_element(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2), differences.end());
-  EXPECT_LT(differences[differences.size() / 2], 2.5);  // linear interpolation of a sharp picture; the gray levels span 255
-  EXPECT_LT(std::abs(shift / weight), 0.02);            // px: no bias of the whole
+  std::nth_element(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2),
+                   differences.end());
+  EXPECT_LT(differences[differences.size() / 2],
+            2.5);                             // linear interpolation of a sharp picture; the gray levels span 255
+  EXPECT_LT(std::abs(shift / weight), 0.02);  // px: no bias of the whole
 }
 
 TEST(SynthRenderer, NoiseDiffersBetweenTheEyesAndHasTheSizeAskedFor) {
@@ -140,11 +147,14 @@ TEST(SynthRenderer, NoiseDiffersBetweenTheEyesAndHasTheSizeAskedFor) {
   noisy.noise_levels = 1.5F;
   std::vector<double> left, right;
   for (const Eye eye : {Eye::kLeft, Eye::kRight}) {
-    const auto clean = pixels(render(frame, kCamera, eye, kNoNoise).image), with = pixels(render(frame, kCamera, eye, noisy).image);
+    const auto clean = pixels(render(frame, kCamera, eye, kNoNoise).image),
+               with = pixels(render(frame, kCamera, eye, noisy).image);
     for (std::size_t i = 0; i < clean.size(); ++i)
-      if (clean[i] > 100 && clean[i] < 150) (eye == Eye::kLeft ? left : right).push_back(static_cast<double>(with[i]) - clean[i]);
+      if (clean[i] > 100 && clean[i] < 150)
+        (eye == Eye::kLeft ? left : right).push_back(static_cast<double>(with[i]) - clean[i]);
   }
-  const double power = std::inner_product(left.begin(), left.end(), left.begin(), 0.0) / static_cast<double>(left.size());
+  const double power =
+      std::inner_product(left.begin(), left.end(), left.begin(), 0.0) / static_cast<double>(left.size());
   EXPECT_NEAR(std::sqrt(power), 1.5, 0.2);  // signal dependent, and rounded twice
   EXPECT_FALSE(std::equal(left.begin(), left.begin() + 100, right.begin()));
 }
@@ -188,14 +198,14 @@ TEST(SynthSequence, IsTheSameForASeedAndAnyThreadCountAndStartsAtTheIdentity) {
   writeSequence(scene, folder / "one", options);
   options.render.threads = 3;
   writeSequence(makeScene("overtake", 5), folder / "three", options);
-  for (const char* file : {"image_0/000001.png", "image_1/000001.png", "disp/000001.png", "instance/000001.png", "poses.txt",
-                           "label_02.txt", "object_poses.txt", "calib.txt", "times.txt"})
+  for (const char* file : {"image_0/000001.png", "image_1/000001.png", "disp/000001.png", "instance/000001.png",
+                           "poses.txt", "label_02.txt", "object_poses.txt", "calib.txt", "times.txt"})
     EXPECT_EQ(content(folder / "one" / file), content(folder / "three" / file)) << file;
   writeSequence(makeScene("overtake", 6), folder / "other", options);
   EXPECT_NE(content(folder / "one/image_0/000001.png"), content(folder / "other/image_0/000001.png"));
   EXPECT_EQ(content(folder / "one/poses.txt").substr(0, 11), "1.000000000");
   const auto disparity = readPng16(folder / "one/disp/000001.png");
-  EXPECT_GT(disparity.pixels[static_cast<std::size_t>(70 * 248 + 124)], 0);
+  EXPECT_GT(disparity.pixels[70 * 248 + 124], 0);
 }
 
 TEST(SynthSequence, MoversCanBeLeftOut) {

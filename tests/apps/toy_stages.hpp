@@ -22,11 +22,12 @@ inline StereoFrame frameAt(std::int64_t index) {
   return frame;
 }
 
-/// Stages that carry the frame's number through, take as long as `work` says, and move the camera by one metre per frame.
+/// Stages that carry the frame's number through, take as long as `work` says, and move the camera by one meter per
+/// frame.
 struct ToyStages {
   std::function<void(Stage, FrameId)> work = [](Stage, FrameId) {};
   std::vector<std::int64_t> order_of_flow{}, order_of_motion{}, order_of_backend{};
-  double travelled_m = 0;
+  double traveled_m = 0;
   std::vector<FrameEstimate> window{};  // keeps two frames
   bool branches_met_wrongly = false;
 
@@ -36,7 +37,7 @@ struct ToyStages {
             .flow = [this](const FeaturesPtr& m) { return flow(m); },
             .motion = [this](const StereoMatchesPtr& s, const OpticalFlowPtr& f) { return motion(s, f); },
             .tracking = [this](const SceneMotionPtr& m) { return tracking(m); },
-            .optimisation = [this](const FrameMeasurementsPtr& m) { return optimise(m); },
+            .optimization = [this](const FrameMeasurementsPtr& m) { return optimize(m); },
             .finish = [this] { return std::exchange(window, {}); }};
   }
 
@@ -76,15 +77,15 @@ struct ToyStages {
     result.T_previous_now = motion->T_previous_now;
     return std::make_shared<const FrameMeasurements>(result);
   }
-  EstimatesPtr optimise(const FrameMeasurementsPtr& measurements) {
-    work(Stage::kOptimisation, measurements->frame);
+  EstimatesPtr optimize(const FrameMeasurementsPtr& measurements) {
+    work(Stage::kOptimization, measurements->frame);
     order_of_backend.push_back(measurements->frame.value);
-    travelled_m += measurements->T_previous_now.translation().z();
+    traveled_m += measurements->T_previous_now.translation().z();
     Estimates result;
     result.online.frame = measurements->frame;
     result.online.stamp = measurements->stamp;
     result.online.status = measurements->status;
-    result.online.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, travelled_m});
+    result.online.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, traveled_m});
     window.push_back(result.online);
     if (window.size() > 2) {
       result.finals.push_back(window.front());

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -11,7 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// Holds the arrows between the folders: apps -> {frontend, backend, io} -> core.
+/// Holds the arrows between the folders, apps -> {frontend, backend, io} -> core, and between the rooms of a folder.
 namespace motorcade {
 namespace {
 
@@ -26,19 +27,32 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"apps", {"core", "frontend", "backend", "io", "apps"}},
 };
 
+/// The rooms of a folder in the order of the flow: a room may include those before it, and itself. What lies in the
+/// folder itself (messages, the back-end's interface) comes before all rooms.
+const std::map<std::string, std::vector<std::string>> kRooms{
+    {"frontend", {"image", "geometry", "features", "matching", "motion", "segmentation", "tracking"}},
+    {"backend", {"graph", "elimination", "solver", "smoother"}},
+};
+
+/// Rooms that stand beside the flow, with those of their folder that they may include besides themselves.
+const std::map<std::string, std::set<std::string>> kSideRooms{{"backend/filter", {}}};
+
 /// Calls `visit(file, included)` for each include of a folder's sources.
-void forEachInclude(const std::string& folder, const std::function<void(const std::string&, const std::string&)>& visit) {
+void forEachInclude(const std::string& folder,
+                    const std::function<void(const std::string&, const std::string&)>& visit) {
   const std::regex include(R"re(\s*#\s*include\s*["<]([^">]+)[">].*)re");
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(MOTORCADE_SOURCE_DIR) / folder)) {
     if (entry.path().extension() != ".hpp" && entry.path().extension() != ".cpp") continue;
     std::ifstream file(entry.path());
     std::smatch match;
     for (std::string line; std::getline(file, line);)
-      if (std::regex_match(line, match, include)) visit(fs::relative(entry.path(), MOTORCADE_SOURCE_DIR).string(), match[1]);
+      if (std::regex_match(line, match, include))
+        visit(fs::relative(entry.path(), MOTORCADE_SOURCE_DIR).string(), match[1]);
   }
 }
 
-std::vector<std::string> includesIn(const std::string& folder, const std::function<bool(const std::string&)>& forbidden) {
+std::vector<std::string> includesIn(const std::string& folder,
+                                    const std::function<bool(const std::string&)>& forbidden) {
   std::vector<std::string> found;
   forEachInclude(folder, [&](const std::string& file, const std::string& included) {
     if (forbidden(included)) found.push_back(file + " includes " + included);
@@ -56,12 +70,83 @@ TEST(Architecture, IncludesFollowTheArrowsBetweenFolders) {
   }
 }
 
+/// The room of a path: `image` of `frontend/image/image_pyramid.hpp`, empty for what lies in the folder itself.
+std::string roomOf(const std::string& path) {
+  const auto begin = path.find('/'), end = path.find('/', begin + 1);
+  return end == std::string::npos ? "" : path.substr(begin + 1, end - begin - 1);
+}
+
+/// The rooms that a room may include, itself and the folder among them.
+std::set<std::string> roomsBelow(const std::string& folder, const std::string& room) {
+  std::set<std::string> allowed{"", room};
+  const auto side = kSideRooms.find(folder + "/" + room);
+  if (side != kSideRooms.end()) {
+    allowed.insert(side->second.begin(), side->second.end());
+  } else if (!room.empty()) {
+    for (const std::string& below : kRooms.at(folder)) {
+      if (below == room) break;
+      allowed.insert(below);
+    }
+  }
+  return allowed;
+}
+
+TEST(Architecture, IncludesFollowTheArrowsBetweenRooms) {
+  for (const auto& [folder, rooms] : kRooms) {
+    std::vector<std::string> against;
+    forEachInclude(folder, [&, &folder = folder](const std::string& file, const std::string& included) {
+      if (included.starts_with(folder + "/") && !roomsBelow(folder, roomOf(file)).contains(roomOf(included)))
+        against.push_back(file + " includes " + included);
+    });
+    EXPECT_THAT(against, IsEmpty());
+  }
+}
+
+TEST(Architecture, EveryFolderInsideAFolderIsARoom) {
+  for (const auto& [folder, rooms] : kRooms) {
+    for (const auto& entry : fs::directory_iterator(fs::path(MOTORCADE_SOURCE_DIR) / folder)) {
+      const std::string room = entry.path().filename().string();
+      if (!entry.is_directory()) continue;
+      EXPECT_TRUE(kSideRooms.contains(folder + "/" + room) || std::ranges::find(rooms, room) != rooms.end()) << room;
+    }
+  }
+}
+
+/// A file may include only what does not include it, over however many steps.
+TEST(Architecture, NoIncludesGoInACircle) {
+  std::map<std::string, std::set<std::string>> includes;
+  for (const auto& [folder, allowed] : kMayInclude)
+    forEachInclude(folder,
+                   [&](const std::string& file, const std::string& included) { includes[file].insert(included); });
+  std::set<std::string> done, open;
+  const std::function<void(const std::string&)> visit = [&](const std::string& file) {
+    if (done.contains(file)) return;
+    ASSERT_TRUE(open.insert(file).second) << file << " includes itself over other files";
+    for (const std::string& included : includes[file]) visit(included);
+    open.erase(file);
+    done.insert(file);
+  };
+  for (const auto& [file, included] : std::map(includes)) visit(file);
+}
+
+TEST(Architecture, TestsMirrorTheRooms) {
+  const fs::path root = MOTORCADE_SOURCE_DIR;
+  for (const auto& [folder, rooms] : kRooms) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / "tests" / folder)) {
+      const std::string name = entry.path().filename().string();
+      if (!name.ends_with("_test.cpp")) continue;
+      const fs::path room = fs::relative(entry.path().parent_path(), root / "tests");
+      EXPECT_TRUE(fs::is_directory(root / room) && room != folder) << entry.path() << " lies in no room";
+    }
+  }
+}
+
 TEST(Architecture, StagesKnowNeitherFlowGraphNorLog) {
   for (const char* folder : {"core", "frontend", "backend", "io"}) {
     EXPECT_THAT(includesIn(folder,
                            [](const std::string& included) {
-                             return included.find("flow_graph") != std::string::npos || included.starts_with("spdlog/") ||
-                                    included.starts_with("CLI/");
+                             return included.find("flow_graph") != std::string::npos ||
+                                    included.starts_with("spdlog/") || included.starts_with("CLI/");
                            }),
                 IsEmpty());
   }
@@ -69,7 +154,8 @@ TEST(Architecture, StagesKnowNeitherFlowGraphNorLog) {
 
 TEST(Architecture, OpenCvStaysInsideFrontendAndIo) {
   for (const char* folder : {"core", "backend", "apps/pipeline", "apps/run"})
-    EXPECT_THAT(includesIn(folder, [](const std::string& included) { return included.starts_with("opencv2/"); }), IsEmpty());
+    EXPECT_THAT(includesIn(folder, [](const std::string& included) { return included.starts_with("opencv2/"); }),
+                IsEmpty());
 }
 
 TEST(Architecture, TheFlowGraphIsWiredInOneFile) {
@@ -81,12 +167,14 @@ TEST(Architecture, TheFlowGraphIsWiredInOneFile) {
 }
 
 TEST(Architecture, TheLibraryTouchesNoProcessWideState) {
-  const std::regex process_wide(R"re(\b(global_control|setNumThreads|sigaction|std::signal|theRNG|set_default_logger)\b)re");
+  const std::regex process_wide(
+      R"re(\b(global_control|setNumThreads|sigaction|std::signal|theRNG|set_default_logger)\b)re");
   for (const char* folder : {"core", "frontend", "backend", "io", "apps/pipeline"}) {
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(MOTORCADE_SOURCE_DIR) / folder)) {
       if (entry.path().extension() != ".hpp" && entry.path().extension() != ".cpp") continue;
       std::ifstream file(entry.path());
-      for (std::string line; std::getline(file, line);) EXPECT_FALSE(std::regex_search(line, process_wide)) << entry.path() << ": " << line;
+      for (std::string line; std::getline(file, line);)
+        EXPECT_FALSE(std::regex_search(line, process_wide)) << entry.path() << ": " << line;
     }
   }
 }

@@ -12,7 +12,7 @@
 
 namespace motorcade::test {
 
-/// Thresholds at zero: the solver corrects and relinearises whatever moved.
+/// Thresholds at zero: the solver corrects and relinearizes whatever moved.
 inline constexpr IncrementalSolver::Params kExact{
     .mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0, .substitution_tolerance = 0};
 
@@ -23,9 +23,9 @@ class DenseSystem {
   explicit DenseSystem(const FactorGraph& graph)
       : graph_(graph), variables_(graph.variables()), offset_(graph.slots()), values_(graph.slots()) {
     for (const VariableId v : variables_) {
-      offset_[index(v)] = size_;
+      offset_[v.value] = size_;
       size_ += graph.sizeOf(v);
-      values_[index(v)] = graph.estimate(v);
+      values_[v.value] = graph.estimate(v);
     }
   }
 
@@ -36,7 +36,7 @@ class DenseSystem {
     for (const FactorId f : graph_.factors()) {
       const Factor& factor = graph_.factor(f);
       std::vector<const Value*> values;
-      for (const VariableId v : factor.variables()) values.push_back(&values_[index(v)]);
+      for (const VariableId v : factor.variables()) values.push_back(&values_[v.value]);
       const auto at = entries(factor.variables());
       const auto n = static_cast<Eigen::Index>(at.size());
       Eigen::MatrixXd quadratic(factor.rows(), n + 1);
@@ -61,11 +61,12 @@ class DenseSystem {
 
   /// Moves every value by `delta`, under right perturbations.
   void move(const Eigen::VectorXd& delta) {
-    for (const VariableId v : variables_) values_[index(v)] = retract(value(v), delta.segment(offset(v), graph_.sizeOf(v)));
+    for (const VariableId v : variables_)
+      values_[v.value] = retract(value(v), delta.segment(offset(v), graph_.sizeOf(v)));
   }
 
   int size() const { return size_; }
-  int offset(VariableId v) const { return offset_[index(v)]; }
+  int offset(VariableId v) const { return offset_[v.value]; }
   /// Rows of these variables.
   std::vector<int> entries(std::span<const VariableId> variables) const {
     std::vector<int> at;
@@ -73,11 +74,9 @@ class DenseSystem {
       for (int i = 0; i < graph_.sizeOf(v); ++i) at.push_back(offset(v) + i);
     return at;
   }
-  const Value& value(VariableId v) const { return values_[index(v)]; }
+  const Value& value(VariableId v) const { return values_[v.value]; }
 
  private:
-  static std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
-
   const FactorGraph& graph_;
   std::vector<VariableId> variables_;
   std::vector<int> offset_;
@@ -91,8 +90,9 @@ inline void settle(IncrementalSolver& solver) {
     if (solver.update().largest_change < 1e-11) return;
 }
 
-/// Largest difference of a variable between the solver and a converged dense solution of its own graph, which begins `nudge` (standard
-/// deviation of each component) beside the solver's: a point that is stationary but no minimum would be left.
+/// Largest difference of a variable between the solver and a converged dense solution of its own graph, which begins
+/// `nudge` (standard deviation of each component) beside the solver's: a point that is stationary but no minimum would
+/// be left.
 inline double differenceFromBatch(const IncrementalSolver& solver, double nudge = 0.01) {
   DenseSystem dense(solver.graph());
   Noise noise(static_cast<std::uint64_t>(dense.size()));
@@ -101,7 +101,8 @@ inline double differenceFromBatch(const IncrementalSolver& solver, double nudge 
   dense.move(delta);
   dense.converge();
   double largest = 0;
-  for (const VariableId v : solver.graph().variables()) largest = std::max(largest, local(dense.value(v), solver.estimate(v)).norm());
+  for (const VariableId v : solver.graph().variables())
+    largest = std::max(largest, local(dense.value(v), solver.estimate(v)).norm());
   return largest;
 }
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "backend/smoother/factors.hpp"
 #include "backend/graph/relative_pose_factor.hpp"
+#include "backend/smoother/factors.hpp"
 #include "tests/support/noise.hpp"
 
 /// Seeded measurements between variables of every kind that a solver may hold.
@@ -75,9 +75,9 @@ class PositionDifference final : public Factor {
 };
 
 /// A pose sees a point, a vector of two or three numbers: r = (T^-1 p - measured) / sigma
-class PointSighting final : public Factor {
+class PointObservation final : public Factor {
  public:
-  PointSighting(VariableId pose, VariableId point, const SmallVector& measured, double sigma)
+  PointObservation(VariableId pose, VariableId point, const SmallVector& measured, double sigma)
       : Factor({pose, point}, Form::kJacobian, static_cast<int>(measured.size())), measured_(measured), sigma_(sigma) {}
 
   static SmallVector seen(const Value& pose, const SmallVector& p) {
@@ -115,18 +115,19 @@ class RandomWorld {
   static constexpr double kSigma_m = 0.05, kSigma_rad = 0.01;
 
   /// The loss is that of `encounter` and of half of the relative poses in space; one in ten of them is then an outlier.
-  RandomWorld(std::uint64_t seed, Kind kind, RobustLoss loss = RobustLoss::kNone) : noise_(seed), kind_(kind), loss_(loss) {}
+  RandomWorld(std::uint64_t seed, Kind kind, RobustLoss loss = RobustLoss::kNone)
+      : noise_(seed), kind_(kind), loss_(loss) {}
 
   /// To a FactorGraph or an IncrementalSolver.
   template <class Graph>
   VariableId addVariable(Graph& graph) {
     const Value truth = draw();
     const VariableId v = graph.addVariable(disturbed(truth, 2));
-    truth_.resize(std::max(truth_.size(), index(v) + 1));
-    truth_[index(v)] = truth;
+    truth_.resize(std::max(truth_.size(), static_cast<std::size_t>(v.value) + 1));
+    truth_[v.value] = truth;
     return v;
   }
-  const Value& truth(VariableId v) const { return truth_[index(v)]; }
+  const Value& truth(VariableId v) const { return truth_[v.value]; }
 
   /// `scale` multiplies the standard deviations.
   std::unique_ptr<const Factor> prior(VariableId v, double scale = 1) {
@@ -135,7 +136,8 @@ class RandomWorld {
       return std::make_unique<PriorFactor>(std::array{v}, PriorModel{*space}, poseNoise(scale));
     if (const auto* planar = std::get_if<SE2>(&mean)) {
       const Eigen::Vector3d sigma = scale * sigmaOf(mean);
-      return std::make_unique<PriorFactorSE2>(v, *planar, Eigen::Matrix3d(sigma.cwiseAbs2().cwiseInverse().asDiagonal()));
+      return std::make_unique<PriorFactorSE2>(v, *planar,
+                                              Eigen::Matrix3d(sigma.cwiseAbs2().cwiseInverse().asDiagonal()));
     }
     return std::make_unique<VectorPrior>(v, std::get<SmallVector>(mean), scale * kSigma_m);
   }
@@ -147,17 +149,17 @@ class RandomWorld {
     return from.index() == to.index();
   }
 
-  /// A measurement that involves both: a relative pose, a sighting, or a difference of positions. A `sure` one is no outlier and has no
-  /// loss.
+  /// A measurement that involves both: a relative pose, a observation, or a difference of positions. A `sure` one is no
+  /// outlier and has no loss.
   std::unique_ptr<const Factor> between(VariableId a, VariableId b, bool sure) {
     const Value &from = truth(a), &to = truth(b);
     if (std::holds_alternative<SE3>(from) && std::holds_alternative<SE3>(to)) return betweenInSpace(a, b, sure);
     if (std::holds_alternative<SE2>(from) && std::holds_alternative<SE2>(to)) return betweenInPlane(a, b);
-    const bool sighting = !std::holds_alternative<SmallVector>(from) && std::holds_alternative<SmallVector>(to) &&
-                          dimension(to) == static_cast<int>(positionOf(from).size());
-    if (sighting) {
-      const Value seen = PointSighting::seen(from, std::get<SmallVector>(to));
-      return std::make_unique<PointSighting>(a, b, std::get<SmallVector>(disturbed(seen, 1)), kSigma_m);
+    const bool observation = !std::holds_alternative<SmallVector>(from) && std::holds_alternative<SmallVector>(to) &&
+                             dimension(to) == static_cast<int>(positionOf(from).size());
+    if (observation) {
+      const Value seen = PointObservation::seen(from, std::get<SmallVector>(to));
+      return std::make_unique<PointObservation>(a, b, std::get<SmallVector>(disturbed(seen, 1)), kSigma_m);
     }
     const auto size = std::min(positionOf(from).size(), positionOf(to).size());
     const Value difference = SmallVector(positionOf(to).head(size) - positionOf(from).head(size));
@@ -167,16 +169,18 @@ class RandomWorld {
   /// Over three poses in space.
   std::unique_ptr<const Factor> encounter(VariableId x, VariableId a, VariableId z) {
     const SE3 seen = space(x).inverse() * space(a) * space(z);
-    return std::make_unique<CameraEncounterFactor>(std::array{x, a, z}, CameraEncounterModel{measured(seen, loss_)}, poseNoise(1, loss_));
+    return std::make_unique<CameraEncounterFactor>(std::array{x, a, z}, CameraEncounterModel{measured(seen, loss_)},
+                                                   poseNoise(1, loss_));
   }
   bool isSpace(VariableId v) const { return std::holds_alternative<SE3>(truth(v)); }
 
   Noise& noise() { return noise_; }
   /// Uniform in [0, n).
-  std::size_t below(std::size_t n) { return std::min(static_cast<std::size_t>(noise_.uniform(0, static_cast<double>(n))), n - 1); }
+  std::size_t below(std::size_t n) {
+    return std::min(static_cast<std::size_t>(noise_.uniform(0, static_cast<double>(n))), n - 1);
+  }
 
  private:
-  static std::size_t index(VariableId v) { return static_cast<std::size_t>(v.value); }
   SE3 space(VariableId v) const { return std::get<SE3>(truth(v)); }
 
   /// Standard deviations of a measurement of the value.
@@ -222,9 +226,11 @@ class RandomWorld {
   std::unique_ptr<const Factor> betweenInSpace(VariableId a, VariableId b, bool sure) {
     const SE3 T_a_b = space(a).inverse() * space(b);
     const RobustLoss loss = sure ? RobustLoss::kNone : loss_;
-    if (below(2) == 0) return std::make_unique<MotionFactor>(std::array{a, b}, MotionModel{measured(T_a_b, loss)}, poseNoise(1, loss));
+    if (below(2) == 0)
+      return std::make_unique<MotionFactor>(std::array{a, b}, MotionModel{measured(T_a_b, loss)}, poseNoise(1, loss));
     const Matrix6d covariance = correlatedNoise<6>(Vector6d(sigmaOf(SE3{})));
-    return std::make_unique<RelativePoseFactorSE3>(a, b, T_a_b * SE3::exp(noise_.correlated(covariance)), Matrix6d(covariance.inverse()));
+    return std::make_unique<RelativePoseFactorSE3>(a, b, T_a_b * SE3::exp(noise_.correlated(covariance)),
+                                                   Matrix6d(covariance.inverse()));
   }
 
   std::unique_ptr<const Factor> betweenInPlane(VariableId a, VariableId b) {

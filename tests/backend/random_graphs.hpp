@@ -54,8 +54,8 @@ class MultibodyGraph {
     if (n == 1)
       add<PriorFactor, 1>({camera_[0]}, PriorModel{}, 1e-2, 1e-3);
     else
-      add<MotionFactor, 2>({camera_[n - 2], camera_[n - 1]}, MotionModel{noisy(before.inverse() * camera_truth_.back())}, kSigma_m,
-                           kSigma_rad);
+      add<MotionFactor, 2>({camera_[n - 2], camera_[n - 1]},
+                           MotionModel{noisy(before.inverse() * camera_truth_.back())}, kSigma_m, kSigma_rad);
     for (std::size_t m = 0; m < objects_.size(); ++m) addObject(objects_[m], m);
   }
 
@@ -113,14 +113,16 @@ class MultibodyGraph {
       add<PriorFactor, 1>({object.poses[0]}, PriorModel{}, 1e-2, 1e-3);
     } else {
       const SE3 motion = object.truth[object.truth.size() - 2].inverse() * z;
-      add<MotionFactor, 2>({object.poses[n - 2], object.poses[n - 1]}, MotionModel{noisy(motion)}, kSigma_m, kSigma_rad);
+      add<MotionFactor, 2>({object.poses[n - 2], object.poses[n - 1]}, MotionModel{noisy(motion)}, kSigma_m,
+                           kSigma_rad);
     }
     if (n >= 3)
-      add<SmoothMotionFactor, 3>({object.poses[n - 3], object.poses[n - 2], object.poses[n - 1]}, SmoothMotionModel{0.1, 0.1}, 2, 0.5);
+      add<SmoothMotionFactor, 3>({object.poses[n - 3], object.poses[n - 2], object.poses[n - 1]},
+                                 SmoothMotionModel{0.1, 0.1}, 2, 0.5);
     const SE3 seen = camera_truth_.back().inverse() * object.anchor_truth * z;
     const SE3 slip = loss_ != RobustLoss::kNone && random_.below(8) == 0 ? random_.pose(2, 0.3) : SE3{};
-    add<CameraEncounterFactor, 3>({camera_.back(), object.anchor, object.poses.back()}, CameraEncounterModel{noisy(seen) * slip}, 0.1, 0.02,
-                                  loss_);
+    add<CameraEncounterFactor, 3>({camera_.back(), object.anchor, object.poses.back()},
+                                  CameraEncounterModel{noisy(seen) * slip}, 0.1, 0.02, loss_);
     if (number > 0) {
       const Object& other = objects_[number - 1];
       const SE3 relative = (other.anchor_truth * other.truth.back()).inverse() * object.anchor_truth * z;

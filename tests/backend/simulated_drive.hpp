@@ -46,7 +46,8 @@ class SimulatedDrive {
     upright << 0, -1, 0, 0, 0, -1, 1, 0, 0;
     Vector6d twist;
     twist << v.speed_mps, 0, 0, 0, 0, v.turn_rate_radps;
-    return SE3(expSO3({0, v.heading_rad, 0}) * upright, v.start_world) * SE3::exp(options_.dt_s * (frame - v.first_frame) * twist);
+    return SE3(expSO3({0, v.heading_rad, 0}) * upright, v.start_world) *
+           SE3::exp(options_.dt_s * (frame - v.first_frame) * twist);
   }
   bool visible(std::size_t vehicle, int frame) const {
     return frame >= options_.vehicles[vehicle].first_frame && frame <= options_.vehicles[vehicle].last_frame;
@@ -56,10 +57,12 @@ class SimulatedDrive {
     FrameMeasurements m{.frame = {frame}, .stamp = stamp(frame), .T_previous_now = {}, .objects = {}, .ended = {}};
     m.odometry_covariance = covariance(options_.odometry_sigma_m, options_.odometry_sigma_rad);
     if (frame > 0)
-      m.T_previous_now = camera(frame - 1).inverse() * camera(frame) * random_.pose(options_.odometry_sigma_m, options_.odometry_sigma_rad);
+      m.T_previous_now = camera(frame - 1).inverse() * camera(frame) *
+                         random_.pose(options_.odometry_sigma_m, options_.odometry_sigma_rad);
     for (std::size_t v = 0; v < options_.vehicles.size(); ++v) {
       const int age = frame - options_.vehicles[v].first_frame;
-      if (age == static_cast<int>(options_.vehicles[v].last_frame) - options_.vehicles[v].first_frame + 1) m.ended.push_back(track(v));
+      if (age == static_cast<int>(options_.vehicles[v].last_frame) - options_.vehicles[v].first_frame + 1)
+        m.ended.push_back(track(v));
       if (!visible(v, frame)) continue;
       auto& backlog = backlog_[v];
       backlog.push_back(observe(v, frame));
@@ -136,7 +139,9 @@ inline double objectError_m(const std::vector<FrameEstimate>& estimates, const S
   for (const auto& frame : estimates)
     for (const auto& object : frame.objects) {
       const auto vehicle = static_cast<std::size_t>(object.track.value - 100);
-      sum += (object.T_world_body.translation() - drive.object(vehicle, static_cast<int>(frame.frame.value)).translation()).squaredNorm();
+      sum +=
+          (object.T_world_body.translation() - drive.object(vehicle, static_cast<int>(frame.frame.value)).translation())
+              .squaredNorm();
       ++count;
     }
   return count > 0 ? std::sqrt(sum / count) : 0;

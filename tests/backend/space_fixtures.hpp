@@ -4,8 +4,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "backend/smoother/factors.hpp"
 #include "backend/graph/relative_pose_factor.hpp"
+#include "backend/smoother/factors.hpp"
 #include "tests/backend/random_graphs.hpp"
 
 /// Graphs over each kind of variable, with the same words.
@@ -102,14 +102,20 @@ struct Space2 {
 /// Points.
 struct Vectors {
   static constexpr int kSize = 3;
-  static Value between(const Value& from, const Value& to) { return SmallVector(std::get<SmallVector>(to) - std::get<SmallVector>(from)); }
-  static Value moved(const Value& from, const SmallVector& step) { return SmallVector(std::get<SmallVector>(from) + step); }
+  static Value between(const Value& from, const Value& to) {
+    return SmallVector(std::get<SmallVector>(to) - std::get<SmallVector>(from));
+  }
+  static Value moved(const Value& from, const SmallVector& step) {
+    return SmallVector(std::get<SmallVector>(from) + step);
+  }
   static Value origin() { return SmallVector(SmallVector::Zero(3)); }
   static std::unique_ptr<Factor> relative(VariableId i, VariableId j, const Value& Z, double weight = 1) {
-    return std::make_unique<RelativeVectorFactor>(i, j, std::get<SmallVector>(Z), std::sqrt(weight) * Eigen::Matrix3d::Identity());
+    return std::make_unique<RelativeVectorFactor>(i, j, std::get<SmallVector>(Z),
+                                                  std::sqrt(weight) * Eigen::Matrix3d::Identity());
   }
   static std::unique_ptr<Factor> prior(VariableId v, const Value& mean, double weight = 1) {
-    return std::make_unique<PriorVectorFactor>(v, std::get<SmallVector>(mean), std::sqrt(weight) * Eigen::Matrix3d::Identity());
+    return std::make_unique<PriorVectorFactor>(v, std::get<SmallVector>(mean),
+                                               std::sqrt(weight) * Eigen::Matrix3d::Identity());
   }
 };
 

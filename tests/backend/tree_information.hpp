@@ -5,8 +5,8 @@
 #include "backend/elimination/elimination_tree.hpp"
 #include "tests/backend/dense_system.hpp"
 
-/// The linear system [H g; g^T *] in the coordinates of a graph, in a dense system's order of variables, from two sides. The last corner,
-/// which no solution depends on, is zero.
+/// The linear system [H g; g^T *] in the coordinates of a graph, in a dense system's order of variables, from two
+/// sides. The last corner, which no solution depends on, is zero.
 namespace motorcade::test {
 
 /// Summed up from the linear models of the factors.
@@ -34,8 +34,8 @@ inline Eigen::MatrixXd informationOfTree(const EliminationTree& tree, const Dens
     for (int child = clique.first_child; child >= 0; child = tree[child].next_sibling) open.push_back(child);
     auto at = dense.entries(clique.variables);
     at.push_back(dense.size());
-    Eigen::MatrixXd L = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>(clique.panel, clique.size + 1, clique.frontal_size,
-                                                                                   Eigen::OuterStride<>(clique.panelStride()));
+    Eigen::MatrixXd L = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>(
+        clique.panel, clique.size + 1, clique.frontal_size, Eigen::OuterStride<>(clique.panelStride()));
     L.topRows(clique.frontal_size).triangularView<Eigen::StrictlyUpper>().setZero();
     system(at, at) += L * L.transpose();
   }

@@ -13,7 +13,8 @@ constexpr double kForbidden = 10;
 
 double totalCost(const Eigen::MatrixXd& cost, const std::vector<int>& columns) {
   double total = 0;
-  for (std::size_t row = 0; row < columns.size(); ++row) total += columns[row] < 0 ? kForbidden : cost(static_cast<int>(row), columns[row]);
+  for (std::size_t row = 0; row < columns.size(); ++row)
+    total += columns[row] < 0 ? kForbidden : cost(static_cast<int>(row), columns[row]);
   return total;
 }
 

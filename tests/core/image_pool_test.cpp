@@ -75,7 +75,7 @@ TEST(ImagePool, NoTwoThreadsEverHoldTheSameBuffer) {
       for (int x = 0; x < 64; ++x)
         if (image->at(x, 0) != mark) ++spoilt;
       if (round % 2 == 0) continue;
-      const std::unique_ptr<Image> before(handed[static_cast<std::size_t>((self + 1) % kThreads)].exchange(image.release()));
+      const std::unique_ptr<Image> before(handed[(self + 1) % kThreads].exchange(image.release()));
     }
   };
   {
@@ -84,7 +84,8 @@ TEST(ImagePool, NoTwoThreadsEverHoldTheSameBuffer) {
   }
   for (auto& left : handed) delete left.load();
   EXPECT_EQ(spoilt, 0);
-  EXPECT_LT(pool.buffersMade(), std::size_t{kRounds} / 10);  // a search may miss a buffer that comes back behind it, now and then
+  EXPECT_LT(pool.buffersMade(),
+            std::size_t{kRounds} / 10);  // a search may miss a buffer that comes back behind it, now and then
 }
 
 }  // namespace

@@ -44,8 +44,8 @@ TEST(ObjectPool, ServesMoreThanItKeeps) {
   for (int round = 0; round < 2; ++round) {
     std::vector<std::shared_ptr<Numbers>> held;
     for (int i = 0; i < 200; ++i) held.push_back(pool.acquire());
-    for (int i = 0; i < 200; ++i) held[static_cast<std::size_t>(i)]->values.assign(1, i);
-    for (int i = 0; i < 200; ++i) ASSERT_EQ(held[static_cast<std::size_t>(i)]->values.front(), i);
+    for (int i = 0; i < 200; ++i) held[i]->values.assign(1, i);
+    for (int i = 0; i < 200; ++i) ASSERT_EQ(held[i]->values.front(), i);
   }
 }
 

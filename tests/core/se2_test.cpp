@@ -10,7 +10,8 @@ namespace {
 
 using test::IsNear;
 
-const std::array<Eigen::Vector3d, 5> kTwists{Eigen::Vector3d{1, -2, 0.7}, {0.3, 0.1, -3.1}, {2, 1, 1e-6}, {-1, 4, 0}, {0.1, 0.2, 5e-4}};
+const std::array<Eigen::Vector3d, 5> kTwists{
+    Eigen::Vector3d{1, -2, 0.7}, {0.3, 0.1, -3.1}, {2, 1, 1e-6}, {-1, 4, 0}, {0.1, 0.2, 5e-4}};
 
 TEST(SE2, IsSE3InThePlane) {
   for (const auto& xi : kTwists) {

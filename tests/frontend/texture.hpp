@@ -12,7 +12,8 @@
 
 namespace motorcade::test {
 
-/// A smooth random pattern, a sum of plane waves no shorter than `min_wavelength_px`: it can be sampled anywhere, so any shift is exact.
+/// A smooth random pattern, a sum of plane waves no shorter than `min_wavelength_px`: it can be sampled anywhere, so
+/// any shift is exact.
 class Texture {
  public:
   explicit Texture(unsigned seed, double min_wavelength_px = 6, double max_wavelength_px = 40) {
@@ -20,9 +21,11 @@ class Texture {
     std::uniform_real_distribution<double> unit(0, 1);
     for (Wave& wave : waves_) {
       const double frequency =
-          2 * std::numbers::pi / (min_wavelength_px + (max_wavelength_px - min_wavelength_px) * unit(random) * unit(random));
+          2 * std::numbers::pi /
+          (min_wavelength_px + (max_wavelength_px - min_wavelength_px) * unit(random) * unit(random));
       const double direction_rad = 2 * std::numbers::pi * unit(random);
-      wave = {frequency * std::cos(direction_rad), frequency * std::sin(direction_rad), 2 * std::numbers::pi * unit(random)};
+      wave = {frequency * std::cos(direction_rad), frequency * std::sin(direction_rad),
+              2 * std::numbers::pi * unit(random)};
     }
   }
   /// Around 128, with a standard deviation of 24 gray levels.
@@ -46,7 +49,8 @@ struct Exposure {
 };
 
 /// An image of gray(x, y) as a camera with this exposure sees it.
-inline Image render(int width, int height, const std::function<double(double, double)>& gray, const Exposure& exposure = {}) {
+inline Image render(int width, int height, const std::function<double(double, double)>& gray,
+                    const Exposure& exposure = {}) {
   std::mt19937_64 random(exposure.seed);
   std::normal_distribution<double> noise(0, 1);
   ImagePool pool;

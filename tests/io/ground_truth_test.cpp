@@ -26,33 +26,38 @@ double largestDifference(const std::vector<SE3>& a, const std::vector<SE3>& b) {
 }
 
 TEST(GroundTruth, OxtsGiveTheReferencePosesInBothForms) {
-  if (!std::filesystem::exists(kData / "kitti_tracking_0003")) GTEST_SKIP() << "../shared/data/kitti_tracking_0003 is not there";
+  if (!std::filesystem::exists(kData / "kitti_tracking_0003"))
+    GTEST_SKIP() << "../shared/data/kitti_tracking_0003 is not there";
   Sequence sequence = openSequence(kData / "kitti_tracking_0003");
   const auto uninterpolated = readCameraTruth(sequence, OxtsTimes::kUninterpolated);
   ASSERT_TRUE(uninterpolated);
-  constexpr double kPrinted = 2e-4;  // the reference has ten digits, over a path of 170 m; rotations in the calibration have seven
-  EXPECT_LT(largestDifference(uninterpolated->T_world_cam, readKittiPoses(kData / "kitti_tracking_0003/poses_oxts_uninterpolated.txt")),
+  constexpr double kPrinted =
+      2e-4;  // the reference has ten digits, over a path of 170 m; rotations in the calibration have seven
+  EXPECT_LT(largestDifference(uninterpolated->T_world_cam,
+                              readKittiPoses(kData / "kitti_tracking_0003/poses_oxts_uninterpolated.txt")),
             kPrinted);
   sequence.truth.poses.clear();
   const auto interpolated = readCameraTruth(sequence);
   ASSERT_TRUE(interpolated);
-  // The first image is 1 ms older than the first packet, where the reference keeps the attitude and we continue it: 2e-5 rad, 3.5 mm at the
-  // end.
+  // The first image is 1 ms older than the first packet, where the reference keeps the attitude and we continue it:
+  // 2e-5 rad, 3.5 mm at the end.
   constexpr double kWayOfInterpolating = 5e-3;
-  EXPECT_LT(largestDifference(interpolated->T_world_cam, readKittiPoses(kData / "kitti_tracking_0003/poses.txt")), kWayOfInterpolating);
+  EXPECT_LT(largestDifference(interpolated->T_world_cam, readKittiPoses(kData / "kitti_tracking_0003/poses.txt")),
+            kWayOfInterpolating);
 }
 
 TEST(GroundTruth, LabelsAgreeWithTheExactPosesOfARenderedSequence) {
-  if (!std::filesystem::exists(kData / "rendered_street")) GTEST_SKIP() << "../shared/data/rendered_street is not there";
+  if (!std::filesystem::exists(kData / "rendered_street"))
+    GTEST_SKIP() << "../shared/data/rendered_street is not there";
   Sequence sequence = openSequence(kData / "rendered_street");
   const auto camera = readCameraTruth(sequence);
   const auto exact = readObjectTruths(sequence, *camera);
   sequence.truth.object_poses.clear();
-  const auto labelled = readObjectTruths(sequence, *camera);
-  ASSERT_EQ(exact->objects.size(), labelled->objects.size());
+  const auto labeled = readObjectTruths(sequence, *camera);
+  ASSERT_EQ(exact->objects.size(), labeled->objects.size());
   for (std::size_t i = 0; i < exact->objects.size(); ++i) {
     constexpr double kPitchOfTheCar = 0.03;  // a label has no pitch and roll
-    EXPECT_THAT(labelled->objects[i].T_world_object, IsNearPose(exact->objects[i].T_world_object, kPitchOfTheCar)) << i;
+    EXPECT_THAT(labeled->objects[i].T_world_object, IsNearPose(exact->objects[i].T_world_object, kPitchOfTheCar)) << i;
   }
 }
 
@@ -69,7 +74,8 @@ class OxtsDrive : public testing::Test {
     std::string oxts, packet_times, image_times;
     constexpr double kLatitude_deg = 49, kRadius_m = 6378137;
     for (int i = 0; i < 3; ++i) {
-      const double longitude_deg = 8 + i / (kRadius_m * std::cos(kLatitude_deg * std::numbers::pi / 180)) * 180 / std::numbers::pi;
+      const double longitude_deg =
+          8 + i / (kRadius_m * std::cos(kLatitude_deg * std::numbers::pi / 180)) * 180 / std::numbers::pi;
       char line[128];
       std::snprintf(line, sizeof(line), "49 %.15g 100 0 0 0 and more\n", longitude_deg);
       oxts += line;
@@ -89,13 +95,14 @@ TEST_F(OxtsDrive, PathIsAheadInTheCamerasFrame) {
   ASSERT_TRUE(truth);
   constexpr double kRounding = 1e-6;  // longitudes with 15 digits
   for (int i = 0; i < 3; ++i)
-    EXPECT_THAT(truth->T_world_cam[static_cast<std::size_t>(i)],
+    EXPECT_THAT(truth->T_world_cam[i],
                 IsNearPose(SE3(Eigen::Matrix3d::Identity(), {0, 0, static_cast<double>(i)}), kRounding));
 }
 
 TEST_F(OxtsDrive, InterpolationTakesTheTimesIntoAccount) {
-  sequence_.truth.image_timestamps = folder_.write(
-      "image_timestamps.txt", "2011-09-26 13:10:51.100000000\n2011-09-26 13:10:51.250000000\n2011-09-26 13:10:51.300000000\n");
+  sequence_.truth.image_timestamps =
+      folder_.write("image_timestamps.txt",
+                    "2011-09-26 13:10:51.100000000\n2011-09-26 13:10:51.250000000\n2011-09-26 13:10:51.300000000\n");
   constexpr double kRounding = 1e-6;
   EXPECT_NEAR(readCameraTruth(sequence_)->T_world_cam[1].translation().z(), 1.5, kRounding);
   EXPECT_NEAR(readCameraTruth(sequence_, OxtsTimes::kUninterpolated)->T_world_cam[1].translation().z(), 1.0, kRounding);
@@ -106,10 +113,10 @@ TEST_F(OxtsDrive, TooFewPacketsAreNamed) {
   EXPECT_THAT(messageOf<InputError>([&] { readCameraTruth(sequence_); }), HasSubstr("oxts.txt"));
 }
 
-TEST(GroundTruth, ColourPairMovesLabelsAndPosesIntoItsLeftCamera) {
+TEST(GroundTruth, ColorPairMovesLabelsAndPosesIntoItsLeftCamera) {
   const test::TemporaryFolder folder;
   Sequence sequence;
-  sequence.pair = CameraPair::kColour;
+  sequence.pair = CameraPair::kColor;
   sequence.frames.resize(1);
   Calibration::Projection P2;
   P2 << 700, 0, 300, 70, 0, 700, 100, 0, 0, 0, 1, 0;
@@ -121,7 +128,8 @@ TEST(GroundTruth, ColourPairMovesLabelsAndPosesIntoItsLeftCamera) {
   const auto truths = readObjectTruths(sequence, *readCameraTruth(sequence));
   ASSERT_EQ(truths->objects.size(), 1u);
   EXPECT_EQ(truths->ignored.size(), 1u);
-  EXPECT_NEAR(truths->objects[0].T_cam_object.translation().x(), 2.1, 1e-12);  // 70 px / 700 px further right as seen from camera 2
+  EXPECT_NEAR(truths->objects[0].T_cam_object.translation().x(), 2.1,
+              1e-12);  // 70 px / 700 px further right as seen from camera 2
   EXPECT_EQ(truths->objects[0].occluded, 1);
 }
 

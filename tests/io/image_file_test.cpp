@@ -70,19 +70,20 @@ TEST_F(ImageFile, GrayPngComesBackBitForBit) {
   }
 }
 
-TEST_F(ImageFile, ColourPngBecomesGrayByItsLuma) {
-  RgbImage colour{20, 16, std::vector<std::uint8_t>(20 * 16 * 3)};
+TEST_F(ImageFile, ColorPngBecomesGrayByItsLuma) {
+  RgbImage color{20, 16, std::vector<std::uint8_t>(20 * 16 * 3)};
   for (int x = 0; x < 20; ++x) {
     for (int y = 0; y < 16; ++y) {
-      colour.at(x, y)[0] = static_cast<std::uint8_t>(10 * x);
-      colour.at(x, y)[1] = static_cast<std::uint8_t>(15 * y);
-      colour.at(x, y)[2] = 77;
+      color.at(x, y)[0] = static_cast<std::uint8_t>(10 * x);
+      color.at(x, y)[1] = static_cast<std::uint8_t>(15 * y);
+      color.at(x, y)[2] = 77;
     }
   }
-  writePngRgb(folder_ / "c.png", colour);
+  writePngRgb(folder_ / "c.png", color);
   const Image gray = readImage(folder_ / "c.png", pool_);
   for (int x = 0; x < 20; ++x)
-    for (int y = 0; y < 16; ++y) EXPECT_NEAR(gray.at(x, y), 0.299 * 10 * x + 0.587 * 15 * y + 0.114 * 77, 1.0);  // rounding of the weights
+    for (int y = 0; y < 16; ++y)
+      EXPECT_NEAR(gray.at(x, y), 0.299 * 10 * x + 0.587 * 15 * y + 0.114 * 77, 1.0);  // rounding of the weights
 }
 
 TEST_F(ImageFile, SixteenBitPngKeepsItsValuesAndItsUpperByteAsGray) {
@@ -151,14 +152,17 @@ TEST_F(ImageFile, AbsurdSizesAreRefusedFromTheHeader) {
   writePng(folder_ / "a.png", noise(40, 24, pool_));
   std::string png = folder_.read("a.png");
   png.replace(16, 8, std::string("\x7f\xff\xff\xff\x7f\xff\xff\xff"));
-  EXPECT_THAT(messageOf<InputError>([&] { readImage(folder_.write("a.png", png), pool_); }), HasSubstr("2147483647x2147483647"));
-  EXPECT_THAT(messageOf<InputError>([&] { readImage(folder_.write("a.pgm", "P5 99999 99999 255\n"), pool_); }), HasSubstr("99999"));
+  EXPECT_THAT(messageOf<InputError>([&] { readImage(folder_.write("a.png", png), pool_); }),
+              HasSubstr("2147483647x2147483647"));
+  EXPECT_THAT(messageOf<InputError>([&] { readImage(folder_.write("a.pgm", "P5 99999 99999 255\n"), pool_); }),
+              HasSubstr("99999"));
   EXPECT_EQ(pool_.buffersMade(), 1u) << "only the image that was written";
 }
 
 TEST_F(ImageFile, WritingWhereNothingCanBeWrittenIsAnOutputError) {
   const Image image = noise(640, 480, pool_);
-  EXPECT_THAT(messageOf<OutputError>([&] { writePng(folder_ / "no/such/folder.png", image); }), HasSubstr("folder.png"));
+  EXPECT_THAT(messageOf<OutputError>([&] { writePng(folder_ / "no/such/folder.png", image); }),
+              HasSubstr("folder.png"));
   if (!std::filesystem::exists("/dev/full")) return;
   EXPECT_THROW(writePng("/dev/full", image), OutputError);
 }

@@ -37,7 +37,8 @@ const std::string kUnit3 = " 1 0 0 1 0 1\n";
 const std::string kUnit6 = " 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1\n";
 
 TEST_F(PoseGraphFile, TellsPosesMeasurementsAndInformationInThePlane) {
-  const PoseGraph graph = read("# a comment\n\nVERTEX_SE2 4 1 2 0.5\r\n\tEDGE_SE2 9 4 1e0 -2 +.25 1 2 3 10 5 20 # behind a line\n");
+  const PoseGraph graph =
+      read("# a comment\n\nVERTEX_SE2 4 1 2 0.5\r\n\tEDGE_SE2 9 4 1e0 -2 +.25 1 2 3 10 5 20 # behind a line\n");
   EXPECT_TRUE(graph.planar);
   EXPECT_THAT(graph.poses, ElementsAre(4, 9));
   ASSERT_EQ(graph.vertices.size(), 1U);
@@ -69,10 +70,12 @@ TEST_F(PoseGraphFile, KeepsFramesAndFixedPoses) {
 }
 
 TEST_F(PoseGraphFile, ErrorsNameFileLineAndMend) {
-  EXPECT_THAT(errorOf("\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0\n"), AllOf(HasSubstr("graph.g2o, line 2"), HasSubstr("give it 11")));
+  EXPECT_THAT(errorOf("\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0\n"),
+              AllOf(HasSubstr("graph.g2o, line 2"), HasSubstr("give it 11")));
   EXPECT_THAT(errorOf("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1 8\n"), AllOf(HasSubstr("line 1"), HasSubstr("followed by 12")));
   EXPECT_THAT(errorOf("VERTEX_SE3:QUAT 0 0 0 0 0 0 1\n"), HasSubstr("give it 8"));
-  EXPECT_THAT(errorOf("EDGE_SE2 0 1 1 zero 0" + kUnit3), AllOf(HasSubstr("line 1"), HasSubstr("'zero'"), HasSubstr("decimal number")));
+  EXPECT_THAT(errorOf("EDGE_SE2 0 1 1 zero 0" + kUnit3),
+              AllOf(HasSubstr("line 1"), HasSubstr("'zero'"), HasSubstr("decimal number")));
   EXPECT_THAT(errorOf("EDGE_SE2 0 1 1 0x 0" + kUnit3), HasSubstr("'0x'"));
   EXPECT_THAT(errorOf("EDGE_SE2 0 1.5 1 0 0" + kUnit3), AllOf(HasSubstr("'1.5'"), HasSubstr("whole numbers")));
   EXPECT_THAT(errorOf("EDGE_SE2 0 -1 1 0 0" + kUnit3), AllOf(HasSubstr("-1 is negative"), HasSubstr("from 0")));
@@ -80,7 +83,8 @@ TEST_F(PoseGraphFile, ErrorsNameFileLineAndMend) {
   EXPECT_THAT(errorOf("EDGE_XY 0 1 1 0\n"), AllOf(HasSubstr("unknown tag 'EDGE_XY'"), HasSubstr("EDGE_SE2")));
   EXPECT_THAT(errorOf("EDGE_SE2 0 1 1 0 0" + kUnit3 + "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n"),
               AllOf(HasSubstr("line 2"), HasSubstr("two files")));
-  EXPECT_THAT(errorOf("EDGE_SE3:QUAT 0 1 0 0 0 0 0 0 0" + kUnit6), AllOf(HasSubstr("line 1"), HasSubstr("quaternion is zero")));
+  EXPECT_THAT(errorOf("EDGE_SE3:QUAT 0 1 0 0 0 0 0 0 0" + kUnit6),
+              AllOf(HasSubstr("line 1"), HasSubstr("quaternion is zero")));
   EXPECT_THAT(errorOf("FRAME\n"), HasSubstr("give it the id of the last pose"));
   EXPECT_THAT(errorOf("FIX zero\n"), HasSubstr("'zero'"));
   EXPECT_THAT(errorOf("# nothing\n"), HasSubstr("no pose and no edge"));
@@ -135,7 +139,8 @@ TEST_F(PoseGraphFile, ARepeatedEdgeCountsTwiceAndIsNamed) {
 
 TEST_F(PoseGraphFile, WhatIsWrittenReadsBackTheSame) {
   const std::string in_space =
-      "VERTEX_SE3:QUAT 3 0.1 -1e-9 12345.678 0.1 0.2 -0.3 0.9\nEDGE_SE3:QUAT 3 5 0.1 0.2 0.3 0.5 -0.5 0.5 -0.5" + kUnit6;
+      "VERTEX_SE3:QUAT 3 0.1 -1e-9 12345.678 0.1 0.2 -0.3 0.9\nEDGE_SE3:QUAT 3 5 0.1 0.2 0.3 0.5 -0.5 0.5 -0.5" +
+      kUnit6;
   const std::string in_plane = "VERTEX_SE2 0 0.1 0.2 3\nFIX 0\nEDGE_SE2 0 1 0.1 0.2 -3 3 0.1 0.2 3 0.3 3\nFRAME 1\n";
   for (const std::string& text : {in_space, in_plane}) {
     const PoseGraph graph = read(text);
@@ -150,7 +155,8 @@ TEST_F(PoseGraphFile, WhatIsWrittenReadsBackTheSame) {
         [&](const auto& pose) {
           using Pose = std::decay_t<decltype(pose)>;
           EXPECT_THAT(std::get<Pose>(again.vertices.at(0).pose), IsNearPose(pose, 1e-15));
-          EXPECT_THAT(std::get<Pose>(again.edges.at(0).measured), IsNearPose(std::get<Pose>(graph.edges.at(0).measured), 1e-15));
+          EXPECT_THAT(std::get<Pose>(again.edges.at(0).measured),
+                      IsNearPose(std::get<Pose>(graph.edges.at(0).measured), 1e-15));
         },
         graph.vertices.at(0).pose);
   }

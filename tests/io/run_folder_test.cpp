@@ -81,12 +81,13 @@ TEST(RunFolder, HasTheDocumentedHeadersAndStamps) {
   writeRun(folder / "run", 0, 1);
   EXPECT_THAT(
       folder.read("run/objects_final.csv"),
-      testing::StartsWith("frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,"
-                          "right,bottom\n0,4,moving,"));
+      testing::StartsWith(
+          "frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,"
+          "right,bottom\n0,4,moving,"));
   EXPECT_THAT(folder.read("run/camera_online.tum"), testing::StartsWith("1317042651.174740992 0.000000000 "));
   EXPECT_THAT(folder.read("run/camera_final.txt"), testing::StartsWith("1.000000000e+00 0.000000000e+00 "));
-  EXPECT_THAT(folder.read("run/trace.json"),
-              AllOf(testing::StartsWith("[\n{\"name\":\"prepare\""), HasSubstr("\"dur\":3000.000"), testing::EndsWith("]\n")));
+  EXPECT_THAT(folder.read("run/trace.json"), AllOf(testing::StartsWith("[\n{\"name\":\"prepare\""),
+                                                   HasSubstr("\"dur\":3000.000"), testing::EndsWith("]\n")));
 }
 
 TEST(RunFolder, RejectedStampsStayOutOfTheTumFiles) {

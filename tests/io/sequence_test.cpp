@@ -62,12 +62,12 @@ TEST_F(SequenceTest, PlainFolderGivesCameraFramesAndTimesAtTheGivenRate) {
   EXPECT_EQ(sequence.stamps[2].ns, 100'000'000);
 }
 
-TEST_F(SequenceTest, ColourPairTakesItsOwnProjections) {
+TEST_F(SequenceTest, ColorPairTakesItsOwnProjections) {
   writeImages("image_02", 2);
   writeImages("image_03", 2);
   folder_.write("calib.txt", kCalib);
   const Sequence sequence = openSequence(folder_.path());
-  EXPECT_EQ(sequence.pair, CameraPair::kColour);
+  EXPECT_EQ(sequence.pair, CameraPair::kColor);
   EXPECT_NEAR(sequence.camera.baseline_m, 392.32 / 700, 1e-12);
   const auto t = sequence.calibration.T_left_cam0(sequence.pair).translation();
   EXPECT_NEAR(t.x(), (42.32 - 320 * 0.001) / 700, 1e-12);
@@ -80,7 +80,8 @@ TEST_F(SequenceTest, TrackingLayoutIsFoundFromItsLeftImagesOrFromItsNumber) {
   folder_.write("training/calib/0003.txt", kCalib);
   folder_.write("training/label_02/0003.txt", "");
   folder_.write("training/oxts/0003.txt", "");
-  for (const char* name : {"training/image_02/0003", "training/image_02/0003/", "training/0003", "training/image_02/../image_02/0003"}) {
+  for (const char* name :
+       {"training/image_02/0003", "training/image_02/0003/", "training/0003", "training/image_02/../image_02/0003"}) {
     const Sequence sequence = openSequence(folder_ / name);
     EXPECT_EQ(sequence.layout, "tracking") << name;
     EXPECT_EQ(sequence.frames.size(), 2u);
@@ -112,7 +113,8 @@ TEST_F(SequenceTest, RawLayoutReadsTheDatesCalibrationAndClock) {
   folder_.write("2011_09_26/calib_cam_to_cam.txt",
                 "calib_time: 09-Jan-2012 13:57:47\ncorner_dist: 9.95e-02\nR_rect_00: 1 0 0 0 1 0 0 0 1\n"
                 "P_rect_00: 700 0 320 0 0 700 100 0 0 0 1 0\nP_rect_01: 700 0 320 -350 0 700 100 0 0 0 1 0\n");
-  folder_.write("2011_09_26/calib_velo_to_cam.txt", "calib_time: x\nR: 0 -1 0 0 0 -1 1 0 0\nT: 0 -0.1 -0.3\ndelta_f: 0 0\n");
+  folder_.write("2011_09_26/calib_velo_to_cam.txt",
+                "calib_time: x\nR: 0 -1 0 0 0 -1 1 0 0\nT: 0 -0.1 -0.3\ndelta_f: 0 0\n");
   folder_.write("2011_09_26/calib_imu_to_velo.txt", "R: 1 0 0 0 1 0 0 0 1\nT: -0.8 0.3 -0.8\n");
   const Sequence sequence = openSequence(folder_ / drive);
   EXPECT_EQ(sequence.layout, "raw");
@@ -161,7 +163,8 @@ TEST_F(SequenceTest, FrameRangesAreReadAndBadOnesRefused) {
   EXPECT_EQ(parseFrameRange("3:").within(10).size(), 7u);
   EXPECT_EQ(parseFrameRange(":4").within(2).size(), 2u);
   EXPECT_EQ(parseFrameRange("20:30").within(10).size(), 0u);
-  for (const char* bad : {"", "5", "5:5", "7:3", "a:b", "-1:4", "1:2:3"}) EXPECT_THROW(parseFrameRange(bad), UsageError) << bad;
+  for (const char* bad : {"", "5", "5:5", "7:3", "a:b", "-1:4", "1:2:3"})
+    EXPECT_THROW(parseFrameRange(bad), UsageError) << bad;
 }
 
 TEST_F(SequenceTest, DecoderGivesTheFramesInOrderAndKeepsItsBound) {

@@ -11,7 +11,8 @@
 
 namespace motorcade::test {
 
-/// Positions on the grid of 1/16 px that triangulations are exact on. All below is exact for points less than 2^14 grid steps apart.
+/// Positions on the grid of 1/16 px that triangulations are exact on. All below is exact for points less than 2^14 grid
+/// steps apart.
 using Whole = std::int64_t;
 struct Grid {
   Whole x, y;
@@ -19,21 +20,25 @@ struct Grid {
 inline Grid onGrid(const Eigen::Vector2d& p) { return {std::llround(16 * p.x()), std::llround(16 * p.y())}; }
 
 /// Positive when a, b, c turn clockwise as seen in the image.
-inline Whole turn(const Grid& a, const Grid& b, const Grid& c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+inline Whole turn(const Grid& a, const Grid& b, const Grid& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
 
 /// Of a clockwise triangle a, b, c: positive with d strictly inside its circle, zero with d on it.
 inline Whole circleSide(const Grid& a, const Grid& b, const Grid& c, const Grid& d) {
   const auto lift = [&](const Grid& p) { return (p.x - d.x) * (p.x - d.x) + (p.y - d.y) * (p.y - d.y); };
-  const auto cross = [&](const Grid& p, const Grid& q) { return (p.x - d.x) * (q.y - d.y) - (p.y - d.y) * (q.x - d.x); };
+  const auto cross = [&](const Grid& p, const Grid& q) {
+    return (p.x - d.x) * (q.y - d.y) - (p.y - d.y) * (q.x - d.x);
+  };
   return lift(a) * cross(b, c) + lift(b) * cross(c, a) + lift(c) * cross(a, b);
 }
 
-/// Edges (i, j), i < j, of the Delaunay triangulation, by the definition: triangles whose circle is empty. Empty where the triangulation
-/// is not unique: three points on a line, or four on an empty circle. Takes O(n^4).
+/// Edges (i, j), i < j, of the Delaunay triangulation, by the definition: triangles whose circle is empty. Empty where
+/// the triangulation is not unique: three points on a line, or four on an empty circle. Takes O(n^4).
 inline std::optional<std::set<std::array<int, 2>>> delaunayEdgesByDefinition(const std::vector<Grid>& points) {
   std::set<std::array<int, 2>> edges;
   const auto n = static_cast<int>(points.size());
-  const auto at = [&](int i) { return points[static_cast<std::size_t>(i)]; };
+  const auto at = [&](int i) { return points[i]; };
   for (int i = 0; i < n; ++i) {
     for (int j = i + 1; j < n; ++j) {
       for (int k = j + 1; k < n; ++k) {
@@ -42,7 +47,8 @@ inline std::optional<std::set<std::array<int, 2>>> delaunayEdgesByDefinition(con
         bool empty = true, touched = false;
         for (int l = 0; empty && l < n; ++l) {
           if (l == i || l == j || l == k) continue;
-          const Whole side = orientation > 0 ? circleSide(at(i), at(j), at(k), at(l)) : circleSide(at(i), at(k), at(j), at(l));
+          const Whole side =
+              orientation > 0 ? circleSide(at(i), at(j), at(k), at(l)) : circleSide(at(i), at(k), at(j), at(l));
           empty = side <= 0;
           touched |= side == 0;
         }

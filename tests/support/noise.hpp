@@ -40,19 +40,20 @@ class Noise {
 template <int N>
 Eigen::Matrix<double, N, N> randomCovariance(Noise& noise, const Eigen::Matrix<double, N, 1>& sigma) {
   Eigen::Matrix<double, N, N> A;
-  for (int i = 0; i < N; ++i) A.col(i) = noise.gaussian(Eigen::Matrix<double, N, 1>(Eigen::Matrix<double, N, 1>::Ones()));
+  for (int i = 0; i < N; ++i)
+    A.col(i) = noise.gaussian(Eigen::Matrix<double, N, 1>(Eigen::Matrix<double, N, 1>::Ones()));
   A += 2 * Eigen::Matrix<double, N, N>::Identity();
   return sigma.asDiagonal() * (A * A.transpose() / (N + 4.0)) * sigma.asDiagonal();
 }
 
-/// Normalised error squared (NEES): chi-square with N degrees of freedom for an error with this covariance.
+/// Normalized error squared (NEES): chi-square with N degrees of freedom for an error with this covariance.
 template <int N>
 double nees(const Eigen::Matrix<double, N, 1>& error, const Eigen::Matrix<double, N, N>& covariance) {
   return error.dot(covariance.inverse() * error);
 }
 
-/// Half the width of the interval that the mean of n chi-square values lies in with 95 % probability; the normal approximation holds
-/// to a percent for the hundreds of draws that tests use.
+/// Half the width of the interval that the mean of n chi-square values lies in with 95 % probability; the normal
+/// approximation holds to a percent for the hundreds of draws that tests use.
 inline double meanChi2Spread(double degrees_of_freedom, int n) { return 1.96 * std::sqrt(2 * degrees_of_freedom / n); }
 
 }  // namespace motorcade::test

@@ -4,8 +4,9 @@
 #include <cstdlib>
 #include <new>
 
-/// Replaces the program's heap by itself with a look at each call: operator new and delete, and, by the linker's --wrap, the C functions.
-/// For one file of a program that is a test of its own; that file defines what happens at each call.
+/// Replaces the program's heap by itself with a look at each call: operator new and delete, and, by the linker's
+/// --wrap, the C functions. For one file of a program that is a test of its own; that file defines what happens at each
+/// call.
 void heapTaken();
 void heapGiven();
 

@@ -6,30 +6,33 @@
 #include <vector>
 
 #include "frontend/messages.hpp"
-#include "frontend/segmentation/motion_segmenter.hpp"
 #include "frontend/motion/point_history.hpp"
 #include "frontend/motion/scene_flow.hpp"
+#include "frontend/segmentation/motion_segmenter.hpp"
 #include "tests/support/stereo_views.hpp"
 
 namespace motorcade::test {
 
-/// A car that the camera sees. World: x right, y down, z ahead, the road at y = 1.65 m. Body: x ahead, y left, z up, on the road.
+/// A car that the camera sees. World: x right, y down, z ahead, the road at y = 1.65 m. Body: x ahead, y left, z up, on
+/// the road.
 struct SimulatedCar {
-  double x_m = 0, z_m = 15, heading_rad = 0;  // at the start; heading 0 drives along the world's z, positive turns right
+  double x_m = 0, z_m = 15,
+         heading_rad = 0;  // at the start; heading 0 drives along the world's z, positive turns right
   double speed_mps = 10, turn_rate_radps = 0;
   int points = 40;
-  double size = 1;  // of the box on which they lie, over a car's
+  double size = 1;                                    // of the box on which they lie, over a car's
   int gone_from = 1'000'000, gone_until = 1'000'000;  // frames without any of its points
   int stands_from = 1'000'000, stands_until = 1'000'000;
 };
 
-/// A camera driving straight ahead among cars and points at rest: exact truth, noisy sightings, and scene flow and segments made of them
-/// by the stages themselves. Call `next` once per frame.
+/// A camera driving straight ahead among cars and points at rest: exact truth, noisy observations, and scene flow and
+/// segments made of them by the stages themselves. Call `next` once per frame.
 class SimulatedTraffic {
  public:
   static constexpr double kDt_s = 0.1, kRoad_m = 1.65;
 
-  SimulatedTraffic(std::vector<SimulatedCar> cars, double camera_speed_mps, std::uint64_t seed, double odometry_sigma_m = 0.003)
+  SimulatedTraffic(std::vector<SimulatedCar> cars, double camera_speed_mps, std::uint64_t seed,
+                   double odometry_sigma_m = 0.003)
       : cars_(std::move(cars)), camera_speed_mps_(camera_speed_mps), odometry_sigma_m_(odometry_sigma_m), noise_(seed) {
     for (const auto& car : cars_) {
       T_world_car_.push_back({poseOf(car)});
@@ -52,18 +55,20 @@ class SimulatedTraffic {
     const SE3 truth = frame > 0 ? SE3(Eigen::Matrix3d::Identity(), {0, 0, kDt_s * camera_speed_mps_}) : SE3{};
     scene->odometry_covariance.setZero();
     scene->odometry_covariance.diagonal().head<3>().setConstant(odometry_sigma_m_ * odometry_sigma_m_);
-    scene->odometry_covariance.diagonal().tail<3>().setConstant(1e-3 * odometry_sigma_m_ * odometry_sigma_m_);  // 0.03 rad per metre
+    scene->odometry_covariance.diagonal().tail<3>().setConstant(1e-3 * odometry_sigma_m_ *
+                                                                odometry_sigma_m_);  // 0.03 rad per meter
     scene->T_previous_now = frame > 0 ? truth * SE3::exp(noise_.correlated(scene->odometry_covariance)) : SE3{};
     trail_.add(scene->stamp, scene->T_previous_now);
     for (std::size_t c = 0; c < cars_.size(); ++c) seeCar(c, frame);
-    for (std::size_t i = 0; i < street_.size(); ++i) see({-1, static_cast<int>(i)}, camera(frame).inverse() * street_[i], true);
+    for (std::size_t i = 0; i < street_.size(); ++i)
+      see({-1, static_cast<int>(i)}, camera(frame).inverse() * street_[i], true);
     fill(*scene);
     return scene;
   }
 
   /// Truth.
   SE3 camera(int frame) const { return {Eigen::Matrix3d::Identity(), {0, 0, kDt_s * camera_speed_mps_ * frame}}; }
-  const SE3& car(std::size_t c, int frame) const { return T_world_car_[c][static_cast<std::size_t>(frame)]; }
+  const SE3& car(std::size_t c, int frame) const { return T_world_car_[c][frame]; }
   SE3 carInCamera(std::size_t c, int frame) const { return camera(frame).inverse() * car(c, frame); }
   double speed(std::size_t c, int frame) const {
     const bool stands = frame >= cars_[c].stands_from && frame < cars_[c].stands_until;
@@ -93,7 +98,8 @@ class SimulatedTraffic {
 
   void driveOn(int frame) {
     for (std::size_t c = 0; c < cars_.size(); ++c) {
-      const double turning = speed(c, frame) > 0 ? -cars_[c].turn_rate_radps : 0;  // about the body's z axis, which points up
+      const double turning =
+          speed(c, frame) > 0 ? -cars_[c].turn_rate_radps : 0;  // about the body's z axis, which points up
       Vector6d twist;
       twist << speed(c, frame), 0, 0, 0, 0, turning;
       T_world_car_[c].push_back(T_world_car_[c].back() * SE3::exp(kDt_s * twist));
@@ -123,15 +129,18 @@ class SimulatedTraffic {
     next_point_ += born;
     PointTrack& track = seen_[at->second];
     track.point = at->second;
-    track.add({trail_.newest().step, uvd->cast<float>(), kSightingSigma_px.cast<float>()});
+    track.add({trail_.newest().step, uvd->cast<float>(), kObservationSigma_px.cast<float>()});
   }
 
   void fill(SceneMotion& scene) {
     const SceneFlowEstimator flow({}, kRig);
     std::erase_if(seen_, [&](const auto& t) { return t.second.newest().step != trail_.newest().step; });
     for (const auto& [point, track] : seen_) {
-      ScenePoint p{
-          .point = point, .uvd_px = track.newest().uvd_px.cast<double>(), .sigma_px = kSightingSigma_px, .age = track.count, .flow = {}};
+      ScenePoint p{.point = point,
+                   .uvd_px = track.newest().uvd_px.cast<double>(),
+                   .sigma_px = kObservationSigma_px,
+                   .age = track.count,
+                   .flow = {}};
       if (const auto at_rest = flow.fitStatic(track, trail_)) p.flow = flow.fitMoving(track, trail_, *at_rest);
       scene.points.push_back(p);
     }

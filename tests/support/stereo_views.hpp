@@ -11,12 +11,12 @@ namespace motorcade::test {
 /// KITTI-like rig of the front-end's tests.
 inline const StereoCamera kRig{720, 720, 620, 188, 0.54, 1242, 375};
 
-/// Standard deviation of each coordinate (u, v, d) that the simulated sightings have.
-inline const Eigen::Vector3d kSightingSigma_px = Eigen::Vector3d::Constant(0.3);
+/// Standard deviation of each coordinate (u, v, d) that the simulated observations have.
+inline const Eigen::Vector3d kObservationSigma_px = Eigen::Vector3d::Constant(0.3);
 
-/// A sighting with noise; empty outside the image.
+/// A observation with noise; empty outside the image.
 inline std::optional<Eigen::Vector3d> look(const Eigen::Vector3d& p_cam, Noise& noise,
-                                           const Eigen::Vector3d& sigma_px = kSightingSigma_px) {
+                                           const Eigen::Vector3d& sigma_px = kObservationSigma_px) {
   const auto uvd = kRig.project(p_cam);
   if (!uvd || !kRig.inLeftImage(uvd->x(), uvd->y())) return std::nullopt;
   const Eigen::Vector3d seen = *uvd + noise.gaussian(sigma_px);
@@ -25,16 +25,18 @@ inline std::optional<Eigen::Vector3d> look(const Eigen::Vector3d& p_cam, Noise& 
 }
 
 /// Covariance of a triangulated point.
-inline Eigen::Matrix3d triangulationCovariance(const Eigen::Vector3d& uvd_px, const Eigen::Vector3d& sigma_px = kSightingSigma_px) {
+inline Eigen::Matrix3d triangulationCovariance(const Eigen::Vector3d& uvd_px,
+                                               const Eigen::Vector3d& sigma_px = kObservationSigma_px) {
   const Eigen::Matrix3d J = kRig.triangulationJacobian(uvd_px);
   return J * sigma_px.cwiseAbs2().asDiagonal() * J.transpose();
 }
 
 /// A point seen from two poses of the camera, triangulated in the first; empty when either does not see it.
-inline std::optional<PoseObservation> lookTwice(const Eigen::Vector3d& p_before, const Eigen::Vector3d& p_now, Noise& noise) {
+inline std::optional<PoseObservation> lookTwice(const Eigen::Vector3d& p_before, const Eigen::Vector3d& p_now,
+                                                Noise& noise) {
   const auto before = look(p_before, noise), now = look(p_now, noise);
   if (!before || !now) return std::nullopt;
-  return PoseObservation{kRig.triangulate(*before), triangulationCovariance(*before), *now, kSightingSigma_px};
+  return PoseObservation{kRig.triangulate(*before), triangulationCovariance(*before), *now, kObservationSigma_px};
 }
 
 /// A point of the street, in the camera's frame: from `near_m` to `far_m` ahead, evenly over the image.

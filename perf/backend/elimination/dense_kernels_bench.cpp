@@ -6,7 +6,8 @@
 
 #include "backend/elimination/dense_kernels.hpp"
 
-/// Each kernel beside what Eigen does for the same task. The rate "flops" counts a multiplication with its addition as two.
+/// Each kernel beside what Eigen does for the same task. The rate "flops" counts a multiplication with its addition as
+/// two.
 namespace motorcade {
 namespace {
 
@@ -22,7 +23,7 @@ MatrixXd randomMatrix(int rows, int cols, std::mt19937& random) {
 
 int padded(int rows) { return (rows + 3) / 4 * 4; }
 
-/// Panels of random problems, unfactorised and factorised, and right-hand sides for them.
+/// Panels of random problems, unfactorized and factorized, and right-hand sides for them.
 struct Panels {
   int rows, columns, ld = padded(rows);
   std::vector<MatrixXd> information, factors;
@@ -120,7 +121,8 @@ void BM_EliminateClique(benchmark::State& state) {
   for (auto _ : state) {
     panel = panels.information[i++ % kProblems];
     factorizePanel(panel.data(), panels.ld, panels.rows, panels.columns, singular);
-    subtractOuterProduct(remainder.data(), padded(rest), panel.data() + panels.columns, panels.ld, rest, panels.columns);
+    subtractOuterProduct(remainder.data(), padded(rest), panel.data() + panels.columns, panels.ld, rest,
+                         panels.columns);
     benchmark::ClobberMemory();
   }
   reportFlops(state, factorizationFlops(panels.rows, panels.columns) + outerProductFlops(rest, panels.columns));
@@ -173,7 +175,8 @@ void BM_BackSubstitute(benchmark::State& state) {
   std::size_t i = 0;
   for (auto _ : state) {
     const std::size_t problem = i++ % kProblems;
-    backSubstitute(panels.factors[problem].data(), panels.ld, panels.rows, panels.columns, panels.right[problem].data(), x.data());
+    backSubstitute(panels.factors[problem].data(), panels.ld, panels.rows, panels.columns, panels.right[problem].data(),
+                   x.data());
     benchmark::ClobberMemory();
   }
   reportFlops(state, panels.columns * (2.0 * panels.rows - panels.columns));
@@ -232,7 +235,8 @@ void BM_ForwardSubstituteByEigen(benchmark::State& state) {
 }
 
 void panelSizes(benchmark::internal::Benchmark* b) {
-  for (const auto& [rows, columns] : {std::pair{10, 3}, {19, 6}, {31, 6}, {60, 6}, {60, 12}, {100, 30}, {200, 60}, {301, 300}, {600, 150}})
+  for (const auto& [rows, columns] :
+       {std::pair{10, 3}, {19, 6}, {31, 6}, {60, 6}, {60, 12}, {100, 30}, {200, 60}, {301, 300}, {600, 150}})
     b->Args({rows, columns});
 }
 

@@ -15,7 +15,8 @@ using Json = nlohmann::ordered_json;
 double mebibytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
 
 void printTimes(const char* what, const Quantiles& ms) {
-  std::printf("  %-28s total %.3f s, median %.3f ms, p99 %.3f ms, max %.3f ms\n", what, 1e-3 * ms.total, ms.median, ms.p99, ms.max);
+  std::printf("  %-28s total %.3f s, median %.3f ms, p99 %.3f ms, max %.3f ms\n", what, 1e-3 * ms.total, ms.median,
+              ms.p99, ms.max);
 }
 
 /// The part of a run before the first loop closure, and the part from there on.
@@ -63,7 +64,8 @@ Json jsonOf(const Quantiles& quantiles) {
 Json closuresJson(const GraphFigures& figures) {
   const auto& closures = *figures.closures;
   const auto [before_ms, after_ms] = aroundClosure(figures);
-  Json json = {{"first_update", closures.first_update}, {"before_ms", jsonOf(before_ms)}, {"after_ms", jsonOf(after_ms)}};
+  Json json = {
+      {"first_update", closures.first_update}, {"before_ms", jsonOf(before_ms)}, {"after_ms", jsonOf(after_ms)}};
   json["updates_until_settled"] = closures.updates_until_settled ? Json(*closures.updates_until_settled) : Json();
   json["unsettled_updates"] = closures.unsettled_updates;
   json["worst_excess_percent"] = closures.worst_excess_percent;
@@ -71,8 +73,10 @@ Json closuresJson(const GraphFigures& figures) {
 }
 
 Json jsonOf(const SolutionCheck& check) {
-  Json json = {{"good", check.failures.empty()}, {"failures", check.failures}, {"chi2", Json::array()}, {"pose", Json::array()}};
-  for (const auto& [updates, excess] : check.chi2) json["chi2"].push_back({{"updates", updates}, {"excess_percent", excess}});
+  Json json = {
+      {"good", check.failures.empty()}, {"failures", check.failures}, {"chi2", Json::array()}, {"pose", Json::array()}};
+  for (const auto& [updates, excess] : check.chi2)
+    json["chi2"].push_back({{"updates", updates}, {"excess_percent", excess}});
   for (const auto& [updates, sigmas] : check.pose) json["pose"].push_back({{"updates", updates}, {"sigmas", sigmas}});
   return json;
 }
@@ -102,25 +106,29 @@ Json jsonOf(const MultibodyAging& aging) {
 Json jsonOf(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
 void printAging(const MultibodyAging& aging, int frames) {
-  std::printf("  beside a solver that begins after %d frames: median %.3f ms, the young one's %.3f ms, ratio %.3f (scalars %.0f, %.0f)%s\n",
-              frames, aging.old_ms, aging.young_ms, aging.timeRatio(), aging.old_scalars, aging.young_scalars,
-              aging.timeRatio() <= MultibodyAging::kMaxRatio ? "" : ": FAILED, it grows");
+  std::printf(
+      "  beside a solver that begins after %d frames: median %.3f ms, the young one's %.3f ms, ratio %.3f (scalars "
+      "%.0f, %.0f)%s\n",
+      frames, aging.old_ms, aging.young_ms, aging.timeRatio(), aging.old_scalars, aging.young_scalars,
+      aging.timeRatio() <= MultibodyAging::kMaxRatio ? "" : ": FAILED, it grows");
 }
 
 void printBin(const MultibodyRun& run, const MultibodyBin& bin) {
   const int frames = run.options.window_frames > 0 ? std::min(bin.frame, run.options.window_frames) : bin.frame;
-  std::printf("%8d %9.3f %8.3f %8.3f %9.3f %7.0f %7.0f %7.0f %7.0f %9zu %8.2f %9.1f %8.2f %8.2f %7.2f\n", bin.frame, bin.update_ms.median,
-              bin.update_ms.p99, bin.update_ms.max, bin.retire_ms.median, bin.eliminated_scalars.median, bin.eliminated_scalars.p99,
-              bin.substituted_scalars.median, bin.substituted_scalars.p99, bin.variables, mebibytes(bin.held_bytes),
-              1024 * mebibytes(bin.held_bytes) / frames, mebibytes(bin.heap_bytes), mebibytes(bin.resident_bytes), bin.normalized_error);
+  std::printf("%8d %9.3f %8.3f %8.3f %9.3f %7.0f %7.0f %7.0f %7.0f %9zu %8.2f %9.1f %8.2f %8.2f %7.2f\n", bin.frame,
+              bin.update_ms.median, bin.update_ms.p99, bin.update_ms.max, bin.retire_ms.median,
+              bin.eliminated_scalars.median, bin.eliminated_scalars.p99, bin.substituted_scalars.median,
+              bin.substituted_scalars.p99, bin.variables, mebibytes(bin.held_bytes),
+              1024 * mebibytes(bin.held_bytes) / frames, mebibytes(bin.heap_bytes), mebibytes(bin.resident_bytes),
+              bin.normalized_error);
 }
 
 }  // namespace
 
 void printGraphHead() {
-  std::printf("%-20s %6s %6s %8s %9s %8s %8s %12s %12s %8s %7s %7s %7s %7s %7s %7s %8s\n", "graph", "poses", "edges", "total s",
-              "median ms", "p99 ms", "max ms", "chi2", "optimum", "excess %", "elim.", "median", "p99", "subst.", "median", "p99",
-              "held MiB");
+  std::printf("%-20s %6s %6s %8s %9s %8s %8s %12s %12s %8s %7s %7s %7s %7s %7s %7s %8s\n", "graph", "poses", "edges",
+              "total s", "median ms", "p99 ms", "max ms", "chi2", "optimum", "excess %", "elim.", "median", "p99",
+              "subst.", "median", "p99", "held MiB");
 }
 
 void printGraph(const GraphFigures& figures) {
@@ -128,11 +136,12 @@ void printGraph(const GraphFigures& figures) {
   const Quantiles ms = quantilesOf(run.cpu_ms), eliminated = quantilesOf(run.eliminated_scalars),
                   substituted = quantilesOf(run.substituted_scalars);
   const auto updates = static_cast<double>(std::max<std::size_t>(1, run.cpu_ms.size()));
-  std::printf("%-20s %6zu %6zu %8.3f %9.3f %8.3f %8.3f %12.7g %12.7g %8.4f %7.0f %7.0f %7.0f %7.0f %7.0f %7.0f %8.2f%s\n",
-              figures.name.c_str(), run.poses, run.edges, 1e-3 * ms.total, ms.median, ms.p99, ms.max, run.chi2, run.optimum,
-              excessPercent(run.chi2, run.optimum), eliminated.total / updates, eliminated.median, eliminated.p99,
-              substituted.total / updates, substituted.median, substituted.p99, mebibytes(run.held_bytes),
-              run.reached_from_odometry ? "" : "  (optimum not reached from odometry)");
+  std::printf(
+      "%-20s %6zu %6zu %8.3f %9.3f %8.3f %8.3f %12.7g %12.7g %8.4f %7.0f %7.0f %7.0f %7.0f %7.0f %7.0f %8.2f%s\n",
+      figures.name.c_str(), run.poses, run.edges, 1e-3 * ms.total, ms.median, ms.p99, ms.max, run.chi2, run.optimum,
+      excessPercent(run.chi2, run.optimum), eliminated.total / updates, eliminated.median, eliminated.p99,
+      substituted.total / updates, substituted.median, substituted.p99, mebibytes(run.held_bytes),
+      run.reached_from_odometry ? "" : "  (optimum not reached from odometry)");
   if (run.problems > 0) std::printf("  %zu problems reported\n", run.problems);
   if (figures.closures) printClosures(figures);
   if (figures.check) printCheck(*figures.check);
@@ -160,12 +169,15 @@ Json jsonOf(const GraphFigures& figures) {
 }
 
 void printMultibody(const MultibodyRun& run) {
-  std::printf("\n%d objects in view, %d frames, window %d, seed %llu: total %.3f s, max %.3f ms\n", run.options.objects, run.options.frames,
-              run.options.window_frames, static_cast<unsigned long long>(run.options.seed), 1e-3 * run.update_ms.total, run.update_ms.max);
-  std::printf("%8s %9s %8s %8s %9s %7s %7s %7s %7s %9s %8s %9s %8s %8s %7s\n", "around", "update ms", "p99", "max", "retire ms", "elim.",
-              "p99", "subst.", "p99", "variables", "held MiB", "KiB/frame", "heap MiB", "RSS MiB", "error^2");
+  std::printf("\n%d objects in view, %d frames, window %d, seed %llu: total %.3f s, max %.3f ms\n", run.options.objects,
+              run.options.frames, run.options.window_frames, static_cast<unsigned long long>(run.options.seed),
+              1e-3 * run.update_ms.total, run.update_ms.max);
+  std::printf("%8s %9s %8s %8s %9s %7s %7s %7s %7s %9s %8s %9s %8s %8s %7s\n", "around", "update ms", "p99", "max",
+              "retire ms", "elim.", "p99", "subst.", "p99", "variables", "held MiB", "KiB/frame", "heap MiB", "RSS MiB",
+              "error^2");
   for (const MultibodyBin& bin : run.bins) printBin(run, bin);
-  if (const auto growth = run.timeGrowth()) std::printf("  median of the last row over that of the first: %.3f\n", *growth);
+  if (const auto growth = run.timeGrowth())
+    std::printf("  median of the last row over that of the first: %.3f\n", *growth);
   if (run.aging) printAging(*run.aging, run.options.frames);
   std::printf("  chi2 at the end is %.4f %% above what Gauss-Newton reaches from there\n", run.chi2_excess_percent);
   if (run.problems > 0) std::printf("  %zu problems reported\n", run.problems);

@@ -59,8 +59,12 @@ class Drive {
   // From one update on.
   Quantiles updateTimes_ms(std::size_t from) const { return quantilesOf(std::span(update_ms_).subspan(from)); }
   Quantiles retireTimes_ms(std::size_t from) const { return quantilesOf(std::span(retire_ms_).subspan(from)); }
-  Quantiles eliminatedScalars(std::size_t from) const { return quantilesOf(std::span(eliminated_scalars_).subspan(from)); }
-  Quantiles substitutedScalars(std::size_t from) const { return quantilesOf(std::span(substituted_scalars_).subspan(from)); }
+  Quantiles eliminatedScalars(std::size_t from) const {
+    return quantilesOf(std::span(eliminated_scalars_).subspan(from));
+  }
+  Quantiles substitutedScalars(std::size_t from) const {
+    return quantilesOf(std::span(substituted_scalars_).subspan(from));
+  }
 
  private:
   IncrementalSolver solver_;
@@ -103,7 +107,8 @@ std::vector<MultibodyBin> driveThroughBins(Drive& drive, MultibodyScene& scene, 
   return bins;
 }
 
-MultibodyAging measureAging(Drive& old, MultibodyScene& scene, const IncrementalSolver::Params& params, const MultibodyOptions& options) {
+MultibodyAging measureAging(Drive& old, MultibodyScene& scene, const IncrementalSolver::Params& params,
+                            const MultibodyOptions& options) {
   const int warm_up = options.window_frames + MultibodyScene::kMaxLifeFrames;
   Drive young(params, options.window_frames, warm_up + kAgingFrames);
   for (int i = 0; i < warm_up + kAgingFrames; ++i) {

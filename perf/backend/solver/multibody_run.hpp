@@ -18,13 +18,13 @@ struct MultibodyBin {
   int frame = 0;                                      // in the middle
   Quantiles update_ms, retire_ms;                     // CPU time; retiring is part of the update
   Quantiles eliminated_scalars, substituted_scalars;  // without those of retiring
-  double normalized_error = 0;                        // mean of the newest camera pose's, relative to ten frames earlier; 1 is expected
+  double normalized_error = 0;  // mean of the newest camera pose's, relative to ten frames earlier; 1 is expected
   // At its end.
   std::size_t held_bytes = 0, heap_bytes = 0, resident_bytes = 0, variables = 0, factors = 0;
 };
 
-/// A long drive's solver beside one that begins late in it, on the same frames, in turns: what they hold differs only in what was retired
-/// long ago, and what else the machine does slows both.
+/// A long drive's solver beside one that begins late in it, on the same frames, in turns: what they hold differs only
+/// in what was retired long ago, and what else the machine does slows both.
 struct MultibodyAging {
   static constexpr double kMaxRatio = 1.1;
 
@@ -40,9 +40,11 @@ struct MultibodyRun {
   std::optional<MultibodyAging> aging;  // after the last of the frames; empty where everything is kept
   Quantiles update_ms;                  // of all
   std::size_t problems = 0;             // that updates reported
-  double chi2_excess_percent = 0;  // at the end, over what Gauss-Newton reaches from there, of one per row of the factors in the window
+  double chi2_excess_percent =
+      0;  // at the end, over what Gauss-Newton reaches from there, of one per row of the factors in the window
 
-  /// Median time of an update in the last bin over that around frame 1000, as the machine's load allows; empty for shorter runs.
+  /// Median time of an update in the last bin over that around frame 1000, as the machine's load allows; empty for
+  /// shorter runs.
   std::optional<double> timeGrowth() const;
 };
 MultibodyRun runMultibody(const IncrementalSolver::Params& params, const MultibodyOptions& options);

@@ -26,9 +26,12 @@ SE3 bodyInRoadAxes() {
 
 }  // namespace
 
-MultibodyScene::MultibodyScene(int objects, std::uint64_t seed) : random_(seed), vehicles_(static_cast<std::size_t>(objects)) {}
+MultibodyScene::MultibodyScene(int objects, std::uint64_t seed)
+    : random_(seed), vehicles_(static_cast<std::size_t>(objects)) {}
 
-double MultibodyScene::uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
+double MultibodyScene::uniform(double from, double to) {
+  return std::uniform_real_distribution<double>(from, to)(random_);
+}
 
 SE3 MultibodyScene::noise(const MotionSigma& sigma) {
   Vector6d xi;
@@ -67,11 +70,14 @@ SimulatedFrame MultibodyScene::next() {
   ++frame_;
   const SE3 before = T_world_cam_;
   T_world_cam_ = roadPose(kAdvance_m * static_cast<double>(frame_), 0) * noise(kShake);
-  SimulatedFrame frame{
-      .T_world_cam = T_world_cam_, .T_previous_now = before.inverse() * T_world_cam_ * noise(kOdometry), .objects = {}, .encounters = {}};
+  SimulatedFrame frame{.T_world_cam = T_world_cam_,
+                       .T_previous_now = before.inverse() * T_world_cam_ * noise(kOdometry),
+                       .objects = {},
+                       .encounters = {}};
   for (Vehicle& vehicle : vehicles_) frame.objects.push_back(observed(vehicle));
   for (std::size_t m = 0; m + 1 < vehicles_.size(); m += 2)
-    frame.encounters.push_back(vehicles_[m].T_world_body.inverse() * vehicles_[m + 1].T_world_body * noise(kObjectEncounter));
+    frame.encounters.push_back(vehicles_[m].T_world_body.inverse() * vehicles_[m + 1].T_world_body *
+                               noise(kObjectEncounter));
   return frame;
 }
 

@@ -27,8 +27,8 @@ struct SimulatedFrame {
   std::vector<SE3> encounters;  // the pose of the object in place 2 i + 1 from the one in place 2 i
 };
 
-/// A camera on an endless winding road, with a given number of vehicles in view: each drives along for 60 to 200 frames, then another
-/// takes its place. Ten frames a second, about a metre per frame. Seeded.
+/// A camera on an endless winding road, with a given number of vehicles in view: each drives along for 60 to 200
+/// frames, then another takes its place. Ten frames a second, about a meter per frame. Seeded.
 class MultibodyScene {
  public:
   static constexpr double kFrame_s = 0.1;

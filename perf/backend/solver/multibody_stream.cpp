@@ -20,8 +20,9 @@ PoseNoise robust(PoseNoise noise, RobustLoss loss, double scale) {
 }
 
 PoseNoise smoothness(const Optimizer::Params& p) {
-  const AccelerationNoise acceleration{p.acceleration_along_mps2, p.acceleration_sideways_mps2, p.acceleration_vertical_mps2,
-                                       p.acceleration_yaw_radps2, p.acceleration_tilt_radps2};
+  const AccelerationNoise acceleration{p.acceleration_along_mps2, p.acceleration_sideways_mps2,
+                                       p.acceleration_vertical_mps2, p.acceleration_yaw_radps2,
+                                       p.acceleration_tilt_radps2};
   return smoothMotionNoise(acceleration, MultibodyScene::kFrame_s, MultibodyScene::kFrame_s);
 }
 
@@ -61,7 +62,8 @@ void MultibodyStream::addCamera(const SimulatedFrame& frame) {
 }
 
 void MultibodyStream::startObject(Object& object, const SimulatedFrame::Object& seen) {
-  if (object.anchor.valid()) records_[records_.size() - 2].of_frame.push_back(object.anchor);  // its last frame was the one before
+  if (object.anchor.valid())
+    records_[records_.size() - 2].of_frame.push_back(object.anchor);  // its last frame was the one before
   const SE3 T_world_body = (solver_.pose(records_.back().x) * seen.T_cam_body).normalized();
   object = {.anchor = solver_.addVariable(T_world_body), .z_before_last = {}, .z_last = solver_.addVariable(SE3{})};
   addPrior(object.anchor, T_world_body, {kProduct.anchor_sigma_m, kProduct.anchor_sigma_rad});
@@ -75,13 +77,13 @@ void MultibodyStream::addObject(Object& object, const SimulatedFrame::Object& se
     const VariableId before = object.z_last, before_that = object.z_before_last;
     object.z_last = solver_.addVariable((solver_.pose(before) * seen.T_before_now).normalized());
     object.z_before_last = before;
-    solver_.addFactor(
-        std::make_unique<MotionFactor>(std::array{before, object.z_last}, MotionModel{seen.T_before_now},
-                                       robust(noiseOf(MultibodyScene::kObjectMotion), kProduct.motion_loss, kProduct.motion_loss_scale)));
+    solver_.addFactor(std::make_unique<MotionFactor>(
+        std::array{before, object.z_last}, MotionModel{seen.T_before_now},
+        robust(noiseOf(MultibodyScene::kObjectMotion), kProduct.motion_loss, kProduct.motion_loss_scale)));
     if (before_that.valid())
-      solver_.addFactor(std::make_unique<SmoothMotionFactor>(std::array{before_that, before, object.z_last},
-                                                             SmoothMotionModel{MultibodyScene::kFrame_s, MultibodyScene::kFrame_s},
-                                                             smoothness(kProduct)));
+      solver_.addFactor(std::make_unique<SmoothMotionFactor>(
+          std::array{before_that, before, object.z_last},
+          SmoothMotionModel{MultibodyScene::kFrame_s, MultibodyScene::kFrame_s}, smoothness(kProduct)));
   }
   solver_.addFactor(std::make_unique<CameraEncounterFactor>(
       std::array{records_.back().x, object.anchor, object.z_last}, CameraEncounterModel{seen.T_cam_body},

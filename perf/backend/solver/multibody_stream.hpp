@@ -9,20 +9,22 @@
 
 namespace motorcade::perf {
 
-/// Feeds a solver with simulated frames, as the product's smoother does with measured ones: the same variables, factors and losses; a
-/// window of frames, beyond which poses are marginalised, and an object's anchor with the last of its poses.
+/// Feeds a solver with simulated frames, as the product's smoother does with measured ones: the same variables, factors
+/// and losses; a window of frames, beyond which poses are marginalized, and an object's anchor with the last of its
+/// poses.
 class MultibodyStream {
  public:
   /// A window of 0 keeps everything.
-  MultibodyStream(IncrementalSolver& solver, std::size_t window_frames) : solver_(solver), window_frames_(window_frames) {}
+  MultibodyStream(IncrementalSolver& solver, std::size_t window_frames)
+      : solver_(solver), window_frames_(window_frames) {}
 
   /// Variables and factors; then update the solver. The first frame may be any of a scene: what is in view then is new.
   void add(const SimulatedFrame& frame);
-  /// What is to be marginalised now; forgotten here.
+  /// What is to be marginalized now; forgotten here.
   std::vector<VariableId> takeRetired();
 
-  /// Squared error of the newest camera pose relative to one earlier, over its covariance and dimension: 1 on average. Empty where the
-  /// window does not reach back so far.
+  /// Squared error of the newest camera pose relative to one earlier, over its covariance and dimension: 1 on average.
+  /// Empty where the window does not reach back so far.
   std::optional<double> normalizedError(std::size_t frames_back) const;
 
  private:

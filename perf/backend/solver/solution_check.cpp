@@ -26,7 +26,8 @@ std::set<std::size_t> tenths(std::size_t updates) {
 std::set<std::size_t> randomUpdates(std::size_t updates, std::uint64_t seed) {
   std::vector<std::size_t> all(updates), chosen;
   std::iota(all.begin(), all.end(), std::size_t{1});
-  std::ranges::sample(all, std::back_inserter(chosen), static_cast<std::ptrdiff_t>(kRandomUpdates), std::mt19937_64(seed));
+  std::ranges::sample(all, std::back_inserter(chosen), static_cast<std::ptrdiff_t>(kRandomUpdates),
+                      std::mt19937_64(seed));
   return {chosen.begin(), chosen.end()};
 }
 
@@ -43,7 +44,8 @@ double sigmasOff(const IncrementalSolver& batch, const IncrementalSolver& measur
 double newestPosesOff(const PoseGraphFeed& batch, const PoseGraphFeed& measured, int newest) {
   double worst = 0;
   const auto count = static_cast<std::int64_t>(measured.poseCount());
-  for (std::int64_t v = count - newest; v < count; ++v) worst = std::max(worst, sigmasOff(batch.solver(), measured.solver(), {v}));
+  for (std::int64_t v = count - newest; v < count; ++v)
+    worst = std::max(worst, sigmasOff(batch.solver(), measured.solver(), {v}));
   return worst;
 }
 

@@ -12,7 +12,8 @@
 #include "perf/backend/solver/bench_report.hpp"
 #include "perf/backend/solver/solver_options.hpp"
 
-/// Measures the incremental solver: on public pose graphs, beside batch solutions, and on simulated drives of any length.
+/// Measures the incremental solver: on public pose graphs, beside batch solutions, and on simulated drives of any
+/// length.
 namespace motorcade::perf {
 namespace {
 
@@ -21,7 +22,8 @@ constexpr int kExitCheckFailed = 1, kExitUsage = 2;
 struct Options {
   std::set<std::string> parts{"graphs", "drives"};
   std::filesystem::path data = "../shared/data/posegraphs", json;
-  std::vector<std::string> graphs{"manhattan", "sphere2500", "parking-garage", "torus3D", "multibody_8", "multibody_8_loops"};
+  std::vector<std::string> graphs{"manhattan", "sphere2500",  "parking-garage",
+                                  "torus3D",   "multibody_8", "multibody_8_loops"};
   std::vector<int> objects{0, 5, 20};
   MultibodyOptions drive;
   bool check = false;
@@ -33,19 +35,25 @@ void addOptions(CLI::App& app, Options& options) {
       ->check(CLI::IsMember({"graphs", "drives"}))
       ->delimiter(',');
   app.add_option("--data", options.data, "Folder of the pose graphs")->capture_default_str();
-  app.add_option("--graphs", options.graphs, "Names of pose graphs in it, without .g2o")->delimiter(',')->capture_default_str();
+  app.add_option("--graphs", options.graphs, "Names of pose graphs in it, without .g2o")
+      ->delimiter(',')
+      ->capture_default_str();
   app.add_flag("--check", options.check,
-               "Compare with batch solutions along the way, which takes minutes; fail on what is off and on drives whose updates take "
+               "Compare with batch solutions along the way, which takes minutes; fail on what is off and on drives "
+               "whose updates take "
                "longer with age");
   app.add_option("--objects", options.objects, "Objects in view of the drives")
       ->delimiter(',')
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  app.add_option("--frames", options.drive.frames, "Length of the drives")->check(CLI::Range(1, 10'000'000))->capture_default_str();
+  app.add_option("--frames", options.drive.frames, "Length of the drives")
+      ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
   app.add_option("--window", options.drive.window_frames, "Frames that are kept; 0: all")
       ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();
-  app.add_option("--seed", options.drive.seed, "Of the drives, and of the updates that --check looks at")->capture_default_str();
+  app.add_option("--seed", options.drive.seed, "Of the drives, and of the updates that --check looks at")
+      ->capture_default_str();
   app.add_option("--json", options.json, "File for all figures as JSON");
   addSolverOptions(app, options.solver);
 }

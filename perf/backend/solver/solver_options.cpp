@@ -18,18 +18,21 @@ void addSolverOptions(CLI::App& app, IncrementalSolver::Params& params) {
   const auto add = [&](const char* name, auto& value, const char* help) {
     app.add_option(name, value, help)->check(CLI::NonNegativeNumber)->capture_default_str()->group("Solver");
   };
-  app.add_option("--policy", params.policy, "fluid: relinearise what is off; every: a batch step every N updates")
+  app.add_option("--policy", params.policy, "fluid: relinearize what is off; every: a batch step every N updates")
       ->transform(CLI::CheckedTransformer(kPolicies))
       ->group("Solver");
   add("--every", params.batch_every_updates, "N of --policy every");
-  add("--mismatch-tolerance", params.mismatch_tolerance, "Of a linear model, over the root mean square of the residuals");
-  add("--jacobian-drift", params.jacobian_drift_sigmas, "Summed mismatch of a factor at which its variables are relinearised");
-  add("--relinearize", params.relinearize_rad, "Turn of a variable at which it is relinearised [rad]");
+  add("--mismatch-tolerance", params.mismatch_tolerance,
+      "Of a linear model, over the root mean square of the residuals");
+  add("--jacobian-drift", params.jacobian_drift_sigmas,
+      "Summed mismatch of a factor at which its variables are relinearized");
+  add("--relinearize", params.relinearize_rad, "Turn of a variable at which it is relinearized [rad]");
   add("--substitution-tolerance", params.substitution_tolerance, "Steps below that do not spread");
-  add("--urgent-flops", params.urgent_flops, "Work per update that goes into relinearisation as soon as possible");
-  add("--polish-flops", params.polish_flops, "Work per update that goes into relinearisation at leisure");
+  add("--urgent-flops", params.urgent_flops, "Work per update that goes into relinearization as soon as possible");
+  add("--polish-flops", params.polish_flops, "Work per update that goes into relinearization at leisure");
   add("--iterations", params.iterations_per_update, "Gauss-Newton steps per update, at most");
-  add("--iterated-scalars", params.iterated_scalars, "Substituted in an update, up to which it may take a further step; 0: no limit");
+  add("--iterated-scalars", params.iterated_scalars,
+      "Substituted in an update, up to which it may take a further step; 0: no limit");
   add("--budget", params.budget_scalars, "Scalars eliminated per update beyond what new factors ask for; 0: no limit");
 }
 

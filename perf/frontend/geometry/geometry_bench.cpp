@@ -40,9 +40,8 @@ BENCHMARK(BM_Delaunay)->Arg(250)->Arg(1000)->Arg(4000)->Unit(benchmark::kMicrose
 
 void BM_CutDelaunayComponents(benchmark::State& state) {
   measurePixels(state, [](const auto& points) {
-    return cutDelaunayComponents(points, [&points](int a, int b) {
-      return (points[static_cast<std::size_t>(a)] - points[static_cast<std::size_t>(b)]).squaredNorm() < 400;
-    });
+    return cutDelaunayComponents(points,
+                                 [&points](int a, int b) { return (points[a] - points[b]).squaredNorm() < 400; });
   });
 }
 BENCHMARK(BM_CutDelaunayComponents)->Arg(250)->Arg(1000)->Arg(4000)->Unit(benchmark::kMicrosecond);
@@ -59,15 +58,16 @@ void BM_EgoMotion(benchmark::State& state) {
     while (frames[seed].size() < count) {
       const Eigen::Vector3d before = test::streetPoint(noise, 5, 50);
       const Eigen::Vector3d own = noise.uniform(0, 1) < moving ? Eigen::Vector3d(0.8, 0, 0) : Eigen::Vector3d(0, 0, 0);
-      if (const auto seen = test::lookTwice(before, T_now_previous * (before + own), noise)) frames[seed].push_back(*seen);
+      if (const auto seen = test::lookTwice(before, T_now_previous * (before + own), noise))
+        frames[seed].push_back(*seen);
     }
   }
   const EgoMotionEstimator estimate(EgoMotionEstimator::Params{}, test::kRig);
   const std::vector<bool> movers(count, false);
   std::uint64_t number = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        estimate(frames[number % kVariants], movers, {.T_previous_now = T_previous_now, .dt_s = 0.1, .steady_frames = 5}, number));
+    benchmark::DoNotOptimize(estimate(frames[number % kVariants], movers,
+                                      {.T_previous_now = T_previous_now, .dt_s = 0.1, .steady_frames = 5}, number));
     ++number;
   }
   state.SetItemsProcessed(state.iterations() * state.range(0));

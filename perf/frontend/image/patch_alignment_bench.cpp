@@ -27,7 +27,8 @@ void BM_MakeTemplate(benchmark::State& state) {
   const auto window_px = static_cast<int>(state.range(0));
   for (auto _ : state)
     for (const Corner& corner : corners)
-      benchmark::DoNotOptimize(makeTemplate(image, corner.u_px + 0.3F, corner.v_px + 0.4F, window_px, PatchDeformation::kScale));
+      benchmark::DoNotOptimize(
+          makeTemplate(image, corner.u_px + 0.3F, corner.v_px + 0.4F, window_px, PatchDeformation::kScale));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(corners.size()));
 }
 BENCHMARK(BM_MakeTemplate)->Arg(7)->Arg(11)->Unit(benchmark::kMicrosecond);
@@ -38,13 +39,14 @@ void BM_AlignPatch(benchmark::State& state) {
   const auto corners = innerCorners();
   std::vector<std::optional<PatchTemplate>> templates;
   for (const Corner& corner : corners)
-    templates.push_back(
-        makeTemplate(street.before->left.levels[0], corner.u_px, corner.v_px, PatchParams{}.window_px, PatchDeformation::kScale));
+    templates.push_back(makeTemplate(street.before->left.levels[0], corner.u_px, corner.v_px, PatchParams{}.window_px,
+                                     PatchDeformation::kScale));
   std::size_t aligned = 0, tried = 0;
   for (auto _ : state) {
     for (std::size_t i = 0; i < corners.size(); ++i) {
       if (!templates[i]) continue;
-      const auto patch = alignPatch(*templates[i], street.before->left.levels[0], corners[i].u_px + 0.5F, corners[i].v_px - 0.4F, {});
+      const auto patch =
+          alignPatch(*templates[i], street.before->left.levels[0], corners[i].u_px + 0.5F, corners[i].v_px - 0.4F, {});
       aligned += patch.has_value();
       ++tried;
     }
@@ -62,7 +64,8 @@ void BM_AlignCoarseToFine(benchmark::State& state) {
   std::size_t aligned = 0;
   for (auto _ : state)
     for (const Corner& corner : corners)
-      aligned += alignPatch(street.before->left, corner.u_px, corner.v_px, street.now->left, corner.u_px, corner.v_px, first_level, {})
+      aligned += alignPatch(street.before->left, corner.u_px, corner.v_px, street.now->left, corner.u_px, corner.v_px,
+                            first_level, {})
                      .has_value();
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(corners.size()));
   state.counters["aligned"] =
@@ -79,8 +82,8 @@ void BM_RefineDisparity(benchmark::State& state) {
   for (auto _ : state) {
     for (const Corner& corner : corners) {
       const double truth_px = 8 + 60 * corner.v_px / street.camera.height_px;
-      benchmark::DoNotOptimize(
-          refineDisparity(street.before->left.levels[0], street.before->right.levels[0], corner.u_px, corner.v_px, truth_px, params));
+      benchmark::DoNotOptimize(refineDisparity(street.before->left.levels[0], street.before->right.levels[0],
+                                               corner.u_px, corner.v_px, truth_px, params));
     }
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(corners.size()));

@@ -3,9 +3,9 @@
 
 #include <benchmark/benchmark.h>
 
+#include "frontend/image/window_differences.hpp"
 #include "frontend/matching/optical_flow.hpp"
 #include "frontend/matching/stereo_matcher.hpp"
-#include "frontend/image/window_differences.hpp"
 #include "perf/frontend/bench_street.hpp"
 
 /// The searches of stereo matching, and the stages stereo and flow as a whole, on one thread.
@@ -60,7 +60,7 @@ void BM_TrackFlow(benchmark::State& state) {
     for (; number < 8; ++number) track(renumbered(number % 2 == 0 ? *street.before : *street.now, number));
     for (auto _ : state) {
       const auto flow = track(renumbered(number % 2 == 0 ? *street.before : *street.now, number));
-      for (const FlowTrack& point : flow->tracks) followed += point.age > 1;
+      for (const FlowObservation& point : flow->observations) followed += point.age > 1;
       ++number;
     }
   });

@@ -45,7 +45,8 @@ class PaddedMatrix {
   MatrixXd lower() { return view().triangularView<Eigen::Lower>(); }
   bool intactAround() const {
     const auto isCanary = [](double value) { return value == kCanary; };
-    return std::all_of(buffer_.begin(), buffer_.begin() + kGuard, isCanary) && std::all_of(buffer_.end() - kGuard, buffer_.end(), isCanary);
+    return std::all_of(buffer_.begin(), buffer_.begin() + kGuard, isCanary) &&
+           std::all_of(buffer_.end() - kGuard, buffer_.end(), isCanary);
   }
 
  private:
@@ -60,7 +61,8 @@ struct Elimination {
   MatrixXd whole;  // [H g; g^T c]
   int columns;
 
-  Elimination(int rows, int eliminated, std::mt19937& random) : whole(randomInformation(rows, random)), columns(eliminated) {}
+  Elimination(int rows, int eliminated, std::mt19937& random)
+      : whole(randomInformation(rows, random)), columns(eliminated) {}
   int rows() const { return static_cast<int>(whole.rows()); }
   MatrixXd panel() const { return whole.leftCols(columns); }
   MatrixXd factor() const { return MatrixXd(whole.llt().matrixL()).leftCols(columns); }
@@ -70,7 +72,8 @@ template <class F>
 void forManySizes(const F& check) {
   std::mt19937 random(7);
   for (int columns = 1; columns <= 40; ++columns)
-    for (const int below : {1, 2, 3, 4, 5, 6, 7, 12, 13, 16, 19, 33, 50}) check(Elimination(columns + below, columns, random), random);
+    for (const int below : {1, 2, 3, 4, 5, 6, 7, 12, 13, 16, 19, 33, 50})
+      check(Elimination(columns + below, columns, random), random);
 }
 
 TEST(DenseKernels, PanelFactorEqualsThatOfTheWholeMatrix) {
@@ -136,7 +139,8 @@ TEST(DenseKernels, PaddingDoesNotMatter) {
 TEST(DenseKernels, SingularScalarsAreReplacedAndTheOthersUnchanged) {
   std::mt19937 random(11);
   for (const int bad : {0, 1, 3, 4, 6, 10}) {
-    for (const double diagonal : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (const double diagonal :
+         {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
       const Elimination elimination(29, 11, random);
       MatrixXd unconstrained = elimination.whole;
       unconstrained.row(bad).setZero();

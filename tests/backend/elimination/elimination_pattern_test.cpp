@@ -15,7 +15,6 @@ namespace {
 
 using Group = EliminationPattern::Group;
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 int below(test::Noise& noise, int n) { return static_cast<int>(noise.uniform(0, n - 1e-9)); }
 
 struct Problem {
@@ -49,15 +48,15 @@ EliminationPattern analyzed(const Problem& problem) {
 
 /// What each position meets when it is eliminated, by elimination of the graph of the terms.
 std::vector<std::set<int>> eliminated(const Problem& problem) {
-  std::vector<std::set<int>> later(index(problem.count + problem.boundary));
+  std::vector<std::set<int>> later(problem.count + problem.boundary);
   const auto join = [&](const auto& clique) {
     for (const int a : clique)
       for (const int b : clique)
-        if (b > a) later[index(a)].insert(b);
+        if (b > a) later[a].insert(b);
   };
   for (const auto& term : problem.terms) join(term);
-  for (int j = 0; j < problem.count; ++j) join(std::set(later[index(j)]));
-  later.resize(index(problem.count));
+  for (int j = 0; j < problem.count; ++j) join(std::set(later[j]));
+  later.resize(problem.count);
   return later;
 }
 
@@ -68,8 +67,8 @@ TEST(EliminationPattern, GroupsHoldWhatABruteForceEliminationMeets) {
     const auto pattern = analyzed(problem);
     const auto expected = eliminated(problem);
     for (int j = 0; j < problem.count; ++j) {
-      const auto positions = pattern.positions(pattern.groups()[index(pattern.groupOf(j))]);
-      ASSERT_TRUE(std::ranges::includes(positions, expected[index(j)])) << "problem " << i << ", position " << j;
+      const auto positions = pattern.positions(pattern.groups()[pattern.groupOf(j)]);
+      ASSERT_TRUE(std::ranges::includes(positions, expected[j])) << "problem " << i << ", position " << j;
     }
   }
 }
@@ -85,13 +84,13 @@ TEST(EliminationPattern, EachPositionIsFrontalOnce) {
       const auto positions = pattern.positions(group);
       ASSERT_GT(group.frontals, 0);
       ASSERT_THAT(positions, testing::WhenSorted(testing::ElementsAreArray(positions)));
-      for (const int p : positions.first(index(group.frontals))) {
+      for (const int p : positions.first(group.frontals)) {
         frontals.push_back(p);
         ASSERT_EQ(pattern.groupOf(p), static_cast<int>(g));
       }
     }
     std::ranges::sort(frontals);
-    std::vector<int> all(index(problem.count));
+    std::vector<int> all(problem.count);
     std::iota(all.begin(), all.end(), 0);
     ASSERT_EQ(frontals, all);
   }
@@ -104,13 +103,13 @@ TEST(EliminationPattern, AParentComesFirstAndHoldsItsChildrensSeparators) {
     const auto pattern = analyzed(problem);
     for (std::size_t g = 0; g < pattern.groups().size(); ++g) {
       const Group& group = pattern.groups()[g];
-      const auto separator = pattern.positions(group).subspan(index(group.frontals));
+      const auto separator = pattern.positions(group).subspan(group.frontals);
       if (group.parent < 0) {
         for (const int p : separator) ASSERT_GE(p, problem.count);
         continue;
       }
       ASSERT_LT(group.parent, static_cast<int>(g));
-      ASSERT_TRUE(std::ranges::includes(pattern.positions(pattern.groups()[index(group.parent)]), separator));
+      ASSERT_TRUE(std::ranges::includes(pattern.positions(pattern.groups()[group.parent]), separator));
     }
   }
 }
@@ -122,8 +121,8 @@ TEST(EliminationPattern, ATermBelongsToTheGroupOfItsFirstPosition) {
     const auto pattern = analyzed(problem);
     for (std::size_t t = 0; t < problem.terms.size(); ++t) {
       const auto& term = problem.terms[t];
-      const Group& group = pattern.groups()[index(pattern.groupOfTerm(static_cast<int>(t)))];
-      ASSERT_THAT(pattern.positions(group).first(index(group.frontals)), testing::Contains(*std::ranges::min_element(term)));
+      const Group& group = pattern.groups()[pattern.groupOfTerm(static_cast<int>(t))];
+      ASSERT_THAT(pattern.positions(group).first(group.frontals), testing::Contains(*std::ranges::min_element(term)));
       ASSERT_THAT(pattern.positions(group), testing::IsSupersetOf(term));
     }
   }

@@ -76,7 +76,8 @@ struct Scene {
   std::vector<int> created;
 };
 
-/// Each variable is frontal once, each factor belongs to the clique that owns it, each separator lies in the parent, where the rows say.
+/// Each variable is frontal once, each factor belongs to the clique that owns it, each separator lies in the parent,
+/// where the rows say.
 void Scene::expectSound() const {
   std::vector<VariableId> frontals;
   std::vector<FactorId> factors;
@@ -100,7 +101,8 @@ void Scene::expectSound() const {
     ASSERT_EQ(clique.row_in_parent.size(), clique.separator().size());
     for (std::size_t i = 0; i < clique.separator().size(); ++i) {
       int row = 0;
-      for (auto v = parent.variables.begin(); v != parent.variables.end() && *v != clique.separator()[i]; ++v) row += graph.sizeOf(*v);
+      for (auto v = parent.variables.begin(); v != parent.variables.end() && *v != clique.separator()[i]; ++v)
+        row += graph.sizeOf(*v);
       EXPECT_EQ(clique.row_in_parent[i], row);
     }
   }
@@ -129,7 +131,8 @@ TEST(EliminationTree, TheTopCanBeTakenOutAndEliminatedWithNewVariables) {
   forRandomTrees([](Scene& scene) {
     std::vector<int> removed_cliques;
     for (int i = 0; i < 2; ++i)
-      for (const int c : scene.pathFrom(scene.tree.cliqueOf(scene.variables[scene.world.below(scene.variables.size())])))
+      for (const int c :
+           scene.pathFrom(scene.tree.cliqueOf(scene.variables[scene.world.below(scene.variables.size())])))
         removed_cliques.push_back(c);
     std::ranges::sort(removed_cliques);
     removed_cliques.erase(std::unique(removed_cliques.begin(), removed_cliques.end()), removed_cliques.end());
@@ -140,14 +143,16 @@ TEST(EliminationTree, TheTopCanBeTakenOutAndEliminatedWithNewVariables) {
     for (int i = 0; i < 3; ++i) {
       const VariableId v = scene.world.addVariable(scene.graph);
       scene.graph.addFactor(scene.world.prior(v));
-      scene.graph.addFactor(scene.world.between(removed.variables[scene.world.below(removed.variables.size())], v, true));
+      scene.graph.addFactor(
+          scene.world.between(removed.variables[scene.world.below(removed.variables.size())], v, true));
       removed.variables.push_back(v);
     }
     for (const FactorId f : scene.graph.factors())
       if (!std::ranges::binary_search(before, f)) removed.factors.push_back(f);
     scene.shuffle(removed.variables);
-    scene.tree.eliminate({.order = removed.variables, .boundary = {}, .factors = removed.factors, .orphans = removed.orphans},
-                         scene.created);
+    scene.tree.eliminate(
+        {.order = removed.variables, .boundary = {}, .factors = removed.factors, .orphans = removed.orphans},
+        scene.created);
   });
 }
 
@@ -162,14 +167,16 @@ TEST(EliminationTree, RemovedVariablesComeInTheirEliminationOrder) {
     ASSERT_EQ(removed.variables.size(), expected.size());
     EXPECT_EQ(scene.tree.usedBytes(), 0U);
     for (const VariableId v : scene.variables) EXPECT_EQ(scene.tree.cliqueOf(v), -1);
-    scene.tree.eliminate({.order = removed.variables, .boundary = {}, .factors = removed.factors, .orphans = {}, .renumber = false},
-                         scene.created);
+    scene.tree.eliminate(
+        {.order = removed.variables, .boundary = {}, .factors = removed.factors, .orphans = {}, .renumber = false},
+        scene.created);
     // Numbered as before: the same order results again.
     EliminationTree::Removed again;
     scene.tree.remove(scene.cliques(), again);
     EXPECT_EQ(again.variables, removed.variables);
-    scene.tree.eliminate({.order = again.variables, .boundary = {}, .factors = again.factors, .orphans = {}, .renumber = false},
-                         scene.created);
+    scene.tree.eliminate(
+        {.order = again.variables, .boundary = {}, .factors = again.factors, .orphans = {}, .renumber = false},
+        scene.created);
   });
 }
 
@@ -178,13 +185,15 @@ TEST(EliminationTree, APartInTheMiddleCanBeTakenOutAndHungBack) {
     const auto all = scene.cliques();
     const int middle = all[scene.world.below(all.size())];
     const int parent = scene.tree[middle].parent;
-    const std::vector<VariableId> boundary(scene.tree[middle].separator().begin(), scene.tree[middle].separator().end());
+    const std::vector<VariableId> boundary(scene.tree[middle].separator().begin(),
+                                           scene.tree[middle].separator().end());
     EliminationTree::Removed removed;
     scene.tree.remove(std::array{middle}, removed);
     std::vector<int> orphans;
     for (const int orphan : removed.orphans) {
       const auto separator = scene.tree[orphan].separator();
-      const bool inside = std::ranges::any_of(separator, [&](VariableId v) { return contains<VariableId>(removed.variables, v); });
+      const bool inside =
+          std::ranges::any_of(separator, [&](VariableId v) { return contains<VariableId>(removed.variables, v); });
       if (inside)
         orphans.push_back(orphan);
       else
@@ -203,7 +212,7 @@ TEST(EliminationTree, APartInTheMiddleCanBeTakenOutAndHungBack) {
 TEST(EliminationTree, RefreshingAPathTakesUpNewLinearModels) {
   forRandomTrees([](Scene& scene) {
     for (const VariableId v : scene.variables) {
-      for (int i = 0; i < scene.graph.sizeOf(v); ++i) scene.graph[v].x[static_cast<std::size_t>(i)] += scene.world.noise().gaussian(0.1);
+      for (int i = 0; i < scene.graph.sizeOf(v); ++i) scene.graph[v].x[i] += scene.world.noise().gaussian(0.1);
       scene.graph.apply(v);
     }
     const VariableId moved = scene.variables[scene.world.below(scene.variables.size())];
@@ -227,7 +236,8 @@ TEST(EliminationTree, RefreshingAPathTakesUpNewLinearModels) {
 }
 
 /// Adds J^T r of a factor to the rows of a front.
-void addGradient(const Scene& scene, FactorId f, const Eigen::VectorXd& r, const Clique& clique, std::vector<double>& change) {
+void addGradient(const Scene& scene, FactorId f, const Eigen::VectorXd& r, const Clique& clique,
+                 std::vector<double>& change) {
   const auto term = scene.graph.term(f);
   const Eigen::VectorXd gradient = term.leftCols(term.cols() - 1).transpose() * r;
   Eigen::Index at = 0;
@@ -250,7 +260,8 @@ TEST(EliminationTree, ShiftingTheRightHandSideTakesUpNewResiduals) {
       addGradient(scene, f, r, scene.tree[path[0]], change);
       scene.graph.correctResidual(f, {r.data(), static_cast<std::size_t>(r.size())});
       for (std::size_t i = 0; i < path.size(); ++i) {
-        std::vector<double> above(i + 1 < path.size() ? static_cast<std::size_t>(scene.tree[path[i + 1]].size) : 0, 0.0);
+        std::vector<double> above(i + 1 < path.size() ? static_cast<std::size_t>(scene.tree[path[i + 1]].size) : 0,
+                                  0.0);
         scene.tree.shiftRightHandSide(path[i], change, above);
         change = above;
       }
@@ -278,11 +289,11 @@ TEST(EliminationTree, FindsTheCliquesThatHoldAVariable) {
 TEST(EliminationTree, AMarginalIsTheSchurComplementOfItsFactors) {
   forRandomTrees([](Scene& scene) {
     const VariableId gone = scene.variables[scene.world.below(scene.variables.size())];
-    std::vector<VariableId> neighbours;
+    std::vector<VariableId> neighbors;
     for (const FactorId f : scene.graph[gone].factors)
       for (const VariableId v : scene.graph.factor(f).variables())
-        if (v != gone && !contains<VariableId>(neighbours, v)) neighbours.push_back(v);
-    const Eigen::MatrixXd marginal = scene.tree.marginal(std::array{gone}, neighbours, scene.graph[gone].factors);
+        if (v != gone && !contains<VariableId>(neighbors, v)) neighbors.push_back(v);
+    const Eigen::MatrixXd marginal = scene.tree.marginal(std::array{gone}, neighbors, scene.graph[gone].factors);
 
     const DenseSystem dense(scene.graph);
     Eigen::MatrixXd system = Eigen::MatrixXd::Zero(dense.size() + 1, dense.size() + 1);
@@ -292,12 +303,14 @@ TEST(EliminationTree, AMarginalIsTheSchurComplementOfItsFactors) {
       system(at, at) += scene.graph.term(f).transpose() * scene.graph.term(f);
     }
     const auto out = dense.entries(std::array{gone});
-    auto stay = dense.entries(neighbours);
+    auto stay = dense.entries(neighbors);
     stay.push_back(dense.size());
     const Eigen::MatrixXd expected =
-        system(stay, stay) - system(stay, out) * Eigen::MatrixXd(system(out, out)).llt().solve(Eigen::MatrixXd(system(out, stay)));
+        system(stay, stay) -
+        system(stay, out) * Eigen::MatrixXd(system(out, out)).llt().solve(Eigen::MatrixXd(system(out, stay)));
     const Eigen::MatrixXd lower = marginal.triangularView<Eigen::Lower>();
-    EXPECT_THAT(lower, IsNear(Eigen::MatrixXd(expected.triangularView<Eigen::Lower>()), 1e-10 * system.cwiseAbs().maxCoeff()));
+    EXPECT_THAT(lower,
+                IsNear(Eigen::MatrixXd(expected.triangularView<Eigen::Lower>()), 1e-10 * system.cwiseAbs().maxCoeff()));
   });
 }
 
@@ -308,7 +321,8 @@ TEST(EliminationTree, NamesTheScalarsThatNoFactorConstrains) {
   const VariableId held = world.addVariable(graph), loose = world.addVariable(graph);
   graph.addFactor(world.prior(held));
   std::vector<int> created;
-  tree.eliminate({.order = std::array{loose, held}, .boundary = {}, .factors = graph.factors(), .orphans = {}}, created);
+  tree.eliminate({.order = std::array{loose, held}, .boundary = {}, .factors = graph.factors(), .orphans = {}},
+                 created);
   ASSERT_EQ(tree.singular().size(), 6U);
   for (const SingularScalar& scalar : tree.singular()) EXPECT_EQ(scalar.variable, loose);
   tree.clearFindings();

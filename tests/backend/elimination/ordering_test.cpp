@@ -16,13 +16,16 @@ namespace {
 
 using Rows = std::vector<std::vector<int>>;
 
-std::size_t below(test::Noise& noise, std::size_t n) { return static_cast<std::size_t>(noise.uniform(0, static_cast<double>(n) - 1e-9)); }
+std::size_t below(test::Noise& noise, std::size_t n) {
+  return static_cast<std::size_t>(noise.uniform(0, static_cast<double>(n) - 1e-9));
+}
 
 Rows randomRows(test::Noise& noise, int columns, int rows) {
   Rows result;
   for (int r = 0; r < rows; ++r) {
     std::set<int> entries;
-    for (std::size_t i = 0; i < 2 + below(noise, 2); ++i) entries.insert(static_cast<int>(below(noise, static_cast<std::size_t>(columns))));
+    for (std::size_t i = 0; i < 2 + below(noise, 2); ++i)
+      entries.insert(static_cast<int>(below(noise, static_cast<std::size_t>(columns))));
     result.emplace_back(entries.begin(), entries.end());
   }
   return result;
@@ -37,19 +40,19 @@ std::vector<int> ordered(Ordering& ordering, int columns, const Rows& rows, cons
 
 /// Entries of R off the diagonal when the columns are eliminated in this order.
 int entriesOfR(int columns, const Rows& rows, const std::vector<int>& order) {
-  std::vector<std::set<int>> neighbours(static_cast<std::size_t>(columns));
+  std::vector<std::set<int>> neighbors(static_cast<std::size_t>(columns));
   const auto join = [&](const auto& clique) {
     for (const int a : clique)
       for (const int b : clique)
-        if (a != b) neighbours[static_cast<std::size_t>(a)].insert(b);
+        if (a != b) neighbors[a].insert(b);
   };
   for (const auto& row : rows) join(row);
   int entries = 0;
   for (const int column : order) {
-    const std::set<int> left = neighbours[static_cast<std::size_t>(column)];
+    const std::set<int> left = neighbors[column];
     entries += static_cast<int>(left.size());
     join(left);
-    for (const int other : left) neighbours[static_cast<std::size_t>(other)].erase(column);
+    for (const int other : left) neighbors[other].erase(column);
   }
   return entries;
 }
@@ -74,9 +77,10 @@ TEST(Ordering, PutsHigherGroupsLater) {
   for (int i = 0; i < 200; ++i) {
     const int columns = 1 + static_cast<int>(below(noise, 40));
     std::vector<int> group(static_cast<std::size_t>(columns));
-    for (int& g : group) g = static_cast<int>(below(noise, std::min<std::size_t>(3, static_cast<std::size_t>(columns))));
+    for (int& g : group)
+      g = static_cast<int>(below(noise, std::min<std::size_t>(3, static_cast<std::size_t>(columns))));
     auto groups = ordered(ordering, columns, randomRows(noise, columns, 60), group);
-    for (int& column : groups) column = group[static_cast<std::size_t>(column)];
+    for (int& column : groups) column = group[column];
     EXPECT_THAT(groups, testing::WhenSorted(testing::ElementsAreArray(groups)));
   }
 }
@@ -88,7 +92,8 @@ TEST(Ordering, FillsLittleMoreThanTheBestOrder) {
   for (int i = 0; i < 60; ++i) {
     const int columns = 4 + static_cast<int>(below(noise, 4));
     const auto rows = randomRows(noise, columns, columns + static_cast<int>(below(noise, 4)));
-    total += entriesOfR(columns, rows, ordered(ordering, columns, rows, std::vector<int>(static_cast<std::size_t>(columns), 0)));
+    total += entriesOfR(columns, rows,
+                        ordered(ordering, columns, rows, std::vector<int>(static_cast<std::size_t>(columns), 0)));
     std::vector<int> order(static_cast<std::size_t>(columns));
     std::iota(order.begin(), order.end(), 0);
     int best = std::numeric_limits<int>::max();

@@ -28,7 +28,7 @@ struct Scene {
   /// Moves the coordinates of all variables, and the estimates with them.
   void move(double sigma) {
     for (const VariableId v : variables) {
-      for (int i = 0; i < graph.sizeOf(v); ++i) graph[v].x[static_cast<std::size_t>(i)] += world.noise().gaussian(sigma);
+      for (int i = 0; i < graph.sizeOf(v); ++i) graph[v].x[i] += world.noise().gaussian(sigma);
       graph.apply(v);
     }
   }
@@ -39,11 +39,12 @@ struct Scene {
   }
   Eigen::VectorXd coordinatesOf(const Factor& factor) const {
     std::vector<double> x;
-    for (const VariableId v : factor.variables()) x.insert(x.end(), graph[v].x.begin(), graph[v].x.begin() + graph.sizeOf(v));
+    for (const VariableId v : factor.variables())
+      x.insert(x.end(), graph[v].x.begin(), graph[v].x.begin() + graph.sizeOf(v));
     return Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
   }
   /// What the linear model says at the present coordinates.
-  Eigen::VectorXd modelled(FactorId f) const {
+  Eigen::VectorXd modeled(FactorId f) const {
     const auto term = graph.term(f);
     return term.leftCols(term.cols() - 1) * coordinatesOf(graph.factor(f)) + term.col(term.cols() - 1);
   }
@@ -95,7 +96,7 @@ TEST(FactorGraph, ANewModelIsTheFactorToFirstOrderInStepsOfTheWorldsAxes) {
       const auto values = scene.estimatesOf(factor);
       const auto term = scene.graph.term(f);
       EXPECT_THAT(term.leftCols(term.cols() - 1), IsNear(numericJacobian(factor, values), kNumeric));
-      EXPECT_THAT(scene.modelled(f), IsNear(residualAt(factor, values), kRounding));
+      EXPECT_THAT(scene.modeled(f), IsNear(residualAt(factor, values), kRounding));
     }
   });
 }
@@ -110,7 +111,7 @@ TEST(FactorGraph, AModelThatIsLinearizedAfterAMoveIsTheFactorThere) {
       const auto values = scene.estimatesOf(factor);
       const auto term = scene.graph.term(f);
       EXPECT_THAT(term.leftCols(term.cols() - 1), IsNear(numericJacobian(factor, values), kNumeric));
-      EXPECT_THAT(scene.modelled(f), IsNear(residualAt(factor, values), kRounding));
+      EXPECT_THAT(scene.modeled(f), IsNear(residualAt(factor, values), kRounding));
       EXPECT_LT(scene.graph.mismatch(f).norm, kRounding);
     }
   });
@@ -121,7 +122,8 @@ TEST(FactorGraph, AFactorAddedAfterAMoveIsStatedInTheSameCoordinates) {
     scene.move(0.3);
     for (const VariableId v : scene.variables) scene.graph.moveLinearizationPoint(v);
     const FactorId f = *scene.graph.addFactor(scene.world.between(scene.variables[0], scene.variables[2], true));
-    EXPECT_THAT(scene.modelled(f), IsNear(residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))), kRounding));
+    EXPECT_THAT(scene.modeled(f),
+                IsNear(residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))), kRounding));
     EXPECT_LT(scene.graph.mismatch(f).norm, kRounding);
   });
 }
@@ -130,11 +132,12 @@ TEST(FactorGraph, TheMismatchIsWhatTheModelMissesOfTheFactor) {
   forAllKinds([](Scene& scene) {
     scene.move(0.1);
     for (const FactorId f : scene.factors) {
-      const Eigen::VectorXd missed = residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))) - scene.modelled(f);
+      const Eigen::VectorXd missed =
+          residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))) - scene.modeled(f);
       const auto mismatch = scene.graph.mismatch(f);
       EXPECT_NEAR(mismatch.norm, missed.norm(), kRounding);
       ASSERT_EQ(static_cast<Eigen::Index>(mismatch.r.size()), missed.size());
-      for (Eigen::Index i = 0; i < missed.size(); ++i) EXPECT_NEAR(mismatch.r[static_cast<std::size_t>(i)], missed[i], kRounding);
+      for (Eigen::Index i = 0; i < missed.size(); ++i) EXPECT_NEAR(mismatch.r[i], missed[i], kRounding);
     }
   });
 }
@@ -149,7 +152,8 @@ TEST(FactorGraph, TheMismatchGrowsWithTheSquareOfTheStep) {
     return sum;
   };
   for (const auto kind : RandomWorld::kKinds)
-    for (std::uint64_t seed = 0; seed < 5; ++seed) EXPECT_NEAR(total(seed, kind, 1e-3) / total(seed, kind, 5e-4), 4.0, 0.05);
+    for (std::uint64_t seed = 0; seed < 5; ++seed)
+      EXPECT_NEAR(total(seed, kind, 1e-3) / total(seed, kind, 5e-4), 4.0, 0.05);
 }
 
 TEST(FactorGraph, ACorrectedModelMeetsTheFactorWithItsFormerJacobian) {
@@ -178,7 +182,8 @@ TEST(FactorGraph, RestartingTheCoordinatesKeepsTheEstimates) {
     }
     for (const FactorId f : scene.factors) {
       scene.graph.linearize(f);
-      EXPECT_THAT(scene.modelled(f), IsNear(residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))), kRounding));
+      EXPECT_THAT(scene.modeled(f),
+                  IsNear(residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))), kRounding));
     }
   });
 }
@@ -214,7 +219,8 @@ TEST(FactorGraph, AMarginalPriorsModelHasTheGradientOfItsCost) {
     const auto now = scene.estimatesOf(scene.graph.factor(f));
     const auto term = scene.graph.term(f);
     const Eigen::MatrixXd H = term.topLeftCorner(n, n).selfadjointView<Eigen::Lower>();
-    const Eigen::VectorXd gradient = 2 * (H * scene.coordinatesOf(scene.graph.factor(f)) + term.row(n).head(n).transpose());
+    const Eigen::VectorXd gradient =
+        2 * (H * scene.coordinatesOf(scene.graph.factor(f)) + term.row(n).head(n).transpose());
     Eigen::Index row = 0;
     for (std::size_t k = 0; k < now.size(); ++k) {
       for (int i = 0; i < dimension(now[k]); ++i, ++row) {
@@ -285,7 +291,8 @@ TEST(FactorGraph, RefusesAFactorThatIsNotFinite) {
   const std::size_t before = scene.graph.factorCount();
   const double cost = scene.graph.totalCost();
   const SE3 broken(Eigen::Matrix3d::Identity(), {0, std::numeric_limits<double>::infinity(), 0});
-  EXPECT_FALSE(scene.graph.addFactor(std::make_unique<PriorFactor>(std::array{scene.variables[0]}, PriorModel{broken}, PoseNoise{})));
+  EXPECT_FALSE(scene.graph.addFactor(
+      std::make_unique<PriorFactor>(std::array{scene.variables[0]}, PriorModel{broken}, PoseNoise{})));
   EXPECT_EQ(scene.graph.factorCount(), before);
   EXPECT_EQ(scene.graph.totalCost(), cost);
 }

@@ -15,7 +15,7 @@ using test::IsNear;
 using test::Noise;
 
 constexpr VariableId kI{0}, kJ{1};
-constexpr double kTol = 1e-5;       // of central differences with a step of 1e-6, on whitened residuals of up to a hundred
+constexpr double kTol = 1e-5;  // of central differences with a step of 1e-6, on whitened residuals of up to a hundred
 constexpr double kRounding = 1e-9;  // of some dozen operations on numbers of up to a thousand
 
 /// Of the whitened residual over the stacked perturbations of the values.
@@ -42,7 +42,8 @@ Eigen::MatrixXd numericJacobian(const Factor& factor, const std::vector<Value>& 
 }
 
 /// Jacobians against finite differences, both residuals against each other, the cost against e^T Omega e.
-void checkFactor(const Factor& factor, const std::vector<Value>& values, const Eigen::VectorXd& e, const Eigen::MatrixXd& information) {
+void checkFactor(const Factor& factor, const std::vector<Value>& values, const Eigen::VectorXd& e,
+                 const Eigen::MatrixXd& information) {
   std::vector<const Value*> pointers;
   for (const Value& value : values) pointers.push_back(&value);
   const int columns = dimension(values.front()) * static_cast<int>(values.size());
@@ -91,7 +92,8 @@ TEST(RelativePoseFactorSE3, VanishesWhereTheMeasurementIsMet) {
 }
 
 void checkInPlane(Noise& noise, double angle_i_rad, double angle_j_rad, double residual_rad) {
-  const SE2 Xi(angle_i_rad, {noise.gaussian(), noise.gaussian()}), Xj(angle_j_rad, {noise.gaussian(), noise.gaussian()});
+  const SE2 Xi(angle_i_rad, {noise.gaussian(), noise.gaussian()}),
+      Xj(angle_j_rad, {noise.gaussian(), noise.gaussian()});
   const SE2 E(residual_rad, {noise.gaussian(), noise.gaussian()});
   const SE2 Z = Xi.inverse() * Xj * E.inverse();
   const Eigen::Matrix3d information = test::randomCovariance<3>(noise, Eigen::Vector3d::Constant(2.0));

@@ -23,7 +23,8 @@ SmallVector randomVector(Noise& noise, int size, double sigma) {
 
 /// One of each kind, the planar ones turned by any angle.
 std::vector<Value> randomValues(Noise& noise) {
-  std::vector<Value> values{SE3::exp(randomVector(noise, 6, 1)), SE2(noise.uniform(-3.2, 3.2), randomVector(noise, 2, 1))};
+  std::vector<Value> values{SE3::exp(randomVector(noise, 6, 1)),
+                            SE2(noise.uniform(-3.2, 3.2), randomVector(noise, 2, 1))};
   for (int size = 1; size <= 6; ++size) values.emplace_back(randomVector(noise, size, 1));
   return values;
 }
@@ -35,7 +36,8 @@ double difference(const Value& a, const Value& b) {
   }
   if (const auto* planar = std::get_if<SE2>(&a)) {
     const auto& other = std::get<SE2>(b);
-    return std::max((planar->rotation() - other.rotation()).norm(), (planar->translation() - other.translation()).norm());
+    return std::max((planar->rotation() - other.rotation()).norm(),
+                    (planar->translation() - other.translation()).norm());
   }
   return (std::get<SmallVector>(a) - std::get<SmallVector>(b)).norm();
 }

@@ -82,7 +82,8 @@ TEST(SmoothMotionModel, IsZeroOnAnArcWithUnevenFrames) {
 
 TEST(SmoothMotionNoise, GrowsWithTheTimeBetweenFrames) {
   const AccelerationNoise acceleration{2, 0.5, 0.3, 0.3, 0.1};
-  const auto short_step = smoothMotionNoise(acceleration, 0.1, 0.1), long_step = smoothMotionNoise(acceleration, 0.4, 0.4);
+  const auto short_step = smoothMotionNoise(acceleration, 0.1, 0.1),
+             long_step = smoothMotionNoise(acceleration, 0.4, 0.4);
   EXPECT_NEAR(short_step.sqrt_information(0, 0), 2 * long_step.sqrt_information(0, 0), 1e-12);
   EXPECT_NEAR(1 / short_step.sqrt_information(0, 0), 2 * std::sqrt(0.1), 1e-12);
   EXPECT_NEAR(1 / short_step.sqrt_information(5, 5), 0.3 * std::sqrt(0.1), 1e-12);
@@ -92,8 +93,10 @@ TEST(CorrelatedSeriesInflation, IsThatOfTheMeanOfALongSeries) {
   constexpr double kDt_s = 0.1, kTime_s = 0.5;
   constexpr int kLength = 4000;
   double variance = 1.0 / kLength;  // of the mean of a series of variance 1: the sum of all its correlations
-  for (int lag = 1; lag < kLength; ++lag) variance += 2.0 * (kLength - lag) * std::exp(-lag * kDt_s / kTime_s) / kLength / kLength;
-  EXPECT_NEAR(kLength * variance, correlatedSeriesInflation(kDt_s, kTime_s), 0.05);  // the ends of the series count for less
+  for (int lag = 1; lag < kLength; ++lag)
+    variance += 2.0 * (kLength - lag) * std::exp(-lag * kDt_s / kTime_s) / kLength / kLength;
+  EXPECT_NEAR(kLength * variance, correlatedSeriesInflation(kDt_s, kTime_s),
+              0.05);  // the ends of the series count for less
   EXPECT_EQ(correlatedSeriesInflation(kDt_s, 0), 1);
   EXPECT_NEAR(correlatedSeriesInflation(100 * kTime_s, kTime_s), 1, 1e-12);
 }

@@ -1,8 +1,9 @@
 #include "backend/smoother/optimizer.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "backend/make_backend.hpp"
+#include "backend/filter/filter_backend.hpp"
 #include "tests/backend/simulated_drive.hpp"
 #include "tests/support/matchers.hpp"
 
@@ -12,7 +13,8 @@ namespace {
 using test::DriveResult;
 using test::SimulatedDrive;
 
-DriveResult smooth(std::uint64_t seed, const Optimizer::Params& params = {}, const SimulatedDrive::Options& options = {}) {
+DriveResult smooth(std::uint64_t seed, const Optimizer::Params& params = {},
+                   const SimulatedDrive::Options& options = {}) {
   SimulatedDrive drive(seed, options);
   Optimizer optimizer(params);
   return runDrive(optimizer, drive);
@@ -37,14 +39,16 @@ TEST(Optimizer, ObjectsAreBetterThanRawAndThanTheFilter) {
     for (int i = 0; i < again.options().frames; ++i) {
       const auto m = again.measure(i);
       T_world_cam = T_world_cam * m->T_previous_now;
-      seen.push_back({.frame = m->frame, .stamp = {}, .T_world_cam = T_world_cam, .camera_covariance = {}, .objects = {}});
+      seen.push_back(
+          {.frame = m->frame, .stamp = {}, .T_world_cam = T_world_cam, .camera_covariance = {}, .objects = {}});
       for (const auto& o : m->objects)
-        seen.back().objects.push_back({.track = o.track, .T_world_body = T_world_cam * o.T_cam_body, .box = {}, .covariance = {}});
+        seen.back().objects.push_back(
+            {.track = o.track, .T_world_body = T_world_cam * o.T_cam_body, .box = {}, .covariance = {}});
     }
     raw += error_m(seen);
   }
-  std::cout << "mean position error of objects: raw " << raw / 10 << " m, filter " << filtered / 10 << " m, smoother " << smoothed / 10
-            << " m\n";
+  std::cout << "mean position error of objects: raw " << raw / 10 << " m, filter " << filtered / 10 << " m, smoother "
+            << smoothed / 10 << " m\n";
   EXPECT_LT(smoothed, 0.8 * raw);
   EXPECT_LT(smoothed, filtered);
 }
@@ -60,7 +64,7 @@ TEST(Optimizer, EveryFrameBecomesFinalOnceAndInOrder) {
   }
 }
 
-/// Normalised error squared per dimension of the objects' poses seen from the camera, every fifth frame.
+/// Normalized error squared per dimension of the objects' poses seen from the camera, every fifth frame.
 double objectNees(const std::vector<FrameEstimate>& estimates, const SimulatedDrive& drive) {
   double sum = 0;
   int count = 0;
@@ -94,7 +98,8 @@ double cameraNees(const std::vector<FrameEstimate>& estimates, const SimulatedDr
 }
 
 TEST(Optimizer, CovariancesAreHonest) {
-  // Vehicles that really follow the motion model would need a random drive; at constant twist the errors are a little below the covariance.
+  // Vehicles that really follow the motion model would need a random drive; at constant twist the errors are a little
+  // below the covariance.
   double object = 0, camera = 0, without_objects = 0;
   constexpr int kSeeds = 30;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
@@ -105,7 +110,8 @@ TEST(Optimizer, CovariancesAreHonest) {
     empty.vehicles.clear();
     without_objects += cameraNees(smooth(seed, kIndependent, empty).finals, SimulatedDrive(0, {})) / kSeeds;
   }
-  std::cout << "NEES per dimension: objects " << object << ", camera " << camera << ", camera without objects " << without_objects << "\n";
+  std::cout << "NEES per dimension: objects " << object << ", camera " << camera << ", camera without objects "
+            << without_objects << "\n";
   EXPECT_GT(object, 0.6);
   EXPECT_LT(object, 1.15);
   EXPECT_GT(camera, 0.8);
@@ -114,7 +120,8 @@ TEST(Optimizer, CovariancesAreHonest) {
 
 TEST(Optimizer, AnErrorThatLastsIsNotTakenForManyMeasurements) {
   const SimulatedDrive::Options lasting{.encounter_correlation_s = 1.0};
-  Optimizer::Params told{.use_motion = false, .odometry_variance_scale = 1.0, .object_correlation_s = 1.0}, untold = told;
+  Optimizer::Params told{.use_motion = false, .odometry_variance_scale = 1.0, .object_correlation_s = 1.0},
+      untold = told;
   untold.object_correlation_s = 0;
   double told_nees = 0, untold_nees = 0;
   constexpr int kSeeds = 30;
@@ -122,8 +129,10 @@ TEST(Optimizer, AnErrorThatLastsIsNotTakenForManyMeasurements) {
     told_nees += objectNees(smooth(seed, told, lasting).finals, SimulatedDrive(0, {})) / kSeeds;
     untold_nees += objectNees(smooth(seed, untold, lasting).finals, SimulatedDrive(0, {})) / kSeeds;
   }
-  std::cout << "NEES per dimension: errors known to last " << told_nees << ", taken as independent " << untold_nees << "\n";
-  // An estimate that rests on less than a long series, as at the ends of a track, knows more than the inflation grants it.
+  std::cout << "NEES per dimension: errors known to last " << told_nees << ", taken as independent " << untold_nees
+            << "\n";
+  // An estimate that rests on less than a long series, as at the ends of a track, knows more than the inflation grants
+  // it.
   EXPECT_GT(told_nees, 0.2);
   EXPECT_LT(told_nees, 1.3);
   EXPECT_GT(untold_nees, 3.0);
@@ -159,8 +168,8 @@ TEST(Optimizer, PublishedObjectsDoNotMoveByTheirCorrections) {
     poses_as_estimated += error_m(plain.online);
     EXPECT_EQ(error_m(continuous.finals), error_m(plain.finals));
   }
-  std::cout << "online steps " << steps / 10 << " m, as estimated " << steps_as_estimated / 10 << " m; poses " << poses / 10 << " and "
-            << poses_as_estimated / 10 << " m\n";
+  std::cout << "online steps " << steps / 10 << " m, as estimated " << steps_as_estimated / 10 << " m; poses "
+            << poses / 10 << " and " << poses_as_estimated / 10 << " m\n";
   EXPECT_LT(steps, 0.8 * steps_as_estimated);
   EXPECT_LT(poses, 1.2 * poses_as_estimated);
 }
@@ -173,7 +182,8 @@ TEST(Optimizer, EachKindOfFactorMatters) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       EXPECT_EQ(all[i].objects.size(), other[i].objects.size());
       for (std::size_t k = 0; k < all[i].objects.size(); ++k) {
-        const auto difference = all[i].objects[k].T_world_body.translation() - other[i].objects[k].T_world_body.translation();
+        const auto difference =
+            all[i].objects[k].T_world_body.translation() - other[i].objects[k].T_world_body.translation();
         EXPECT_TRUE(difference.allFinite());
         largest = std::max(largest, difference.norm());
       }
@@ -210,7 +220,7 @@ TEST(Optimizer, VariablesStayBoundedWhenObjectsComeAndGo) {
   EXPECT_LE(result.counters.variables, 30 + 2 * 30 + 5);
   EXPECT_GE(result.counters.retired_variables, 170 + 250);
   ASSERT_EQ(result.finals.size(), 200u);
-  for (int i = 30; i < 185; ++i) EXPECT_FALSE(result.finals[static_cast<std::size_t>(i)].objects.empty());
+  for (int i = 30; i < 185; ++i) EXPECT_FALSE(result.finals[i].objects.empty());
 }
 
 TEST(Optimizer, SpeedAndItsSigmaMatchTheVehicles) {
@@ -220,7 +230,7 @@ TEST(Optimizer, SpeedAndItsSigmaMatchTheVehicles) {
     const auto finals = smooth(seed, kIndependent).finals;
     for (std::size_t i = 10; i < 40; ++i)
       for (const auto& object : finals[i].objects) {
-        const double truth_mps = SimulatedDrive::Options{}.vehicles[static_cast<std::size_t>(object.track.value - 100)].speed_mps;
+        const double truth_mps = SimulatedDrive::Options{}.vehicles[object.track.value - 100].speed_mps;
         sum += std::pow((object.velocity_world_mps.norm() - truth_mps) / object.speed_sigma_mps, 2);
         EXPECT_NEAR(object.velocity_world_mps.norm(), truth_mps, 2.0);
         ++count;
@@ -267,14 +277,12 @@ TEST(Optimizer, ABrokenObjectDoesNotStopTheCamera) {
   EXPECT_EQ(optimizer.finish().size(), 30u);
 }
 
-TEST(MakeBackend, NamesAParameterOutOfRange) {
-  BackendParams params;
-  params.smoother.anchor_sigma_m = 0;
+TEST(Optimizer, NamesAParameterOutOfRange) {
   try {
-    makeBackend(params);
+    Optimizer optimizer({.object_correlation_s = -1});
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("anchor_sigma_m"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("object_correlation_s"));
   }
 }
 

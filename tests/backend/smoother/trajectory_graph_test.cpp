@@ -63,8 +63,10 @@ TEST(TrajectoryGraph, AnObjectWhoseAnchorNothingConstrainsIsDroppedByName) {
   TrajectoryGraph graph(params), camera_alone(params);
   const auto problems = drive(graph, [](int, FrameMeasurements&) {});
   drive(camera_alone, [](int, FrameMeasurements& m) { m.objects.clear(); });
-  EXPECT_THAT(problems[0], Contains(AllOf(StartsWith("object 100 is dropped: anchor of object 100 is not constrained in any direction"),
-                                          HasSubstr("its 1 factor touches it alone"))));
+  EXPECT_THAT(
+      problems[0],
+      Contains(AllOf(StartsWith("object 100 is dropped: anchor of object 100 is not constrained in any direction"),
+                     HasSubstr("its 1 factor touches it alone"))));
   for (const auto& [id, track] : graph.tracks()) EXPECT_FALSE(track.anchor.valid());
   EXPECT_EQ(graph.solver().counters().variables, kFrames);
   expectSameCamera(graph, camera_alone);
@@ -80,7 +82,8 @@ TEST(TrajectoryGraph, TheOtherObjectsStayAsTheyAreWithoutTheDroppedOne) {
   drive(without, [&](int, FrameMeasurements& m) { std::erase_if(m.objects, isBroken); });
   graph.converge();
   without.converge();
-  EXPECT_THAT(problems[0], Contains("object 101, frame 0: its pose, whose covariance is not positive definite, is left out"));
+  EXPECT_THAT(problems[0],
+              Contains("object 101, frame 0: its pose, whose covariance is not positive definite, is left out"));
   EXPECT_THAT(problems[0], Contains(StartsWith("object 101 is dropped: anchor of object 101 is not constrained")));
   for (const auto& of_frame : problems) EXPECT_THAT(of_frame, Each(StartsWith("object 101")));
   expectSameCamera(graph, without);
@@ -96,11 +99,12 @@ TEST(TrajectoryGraph, AnObjectStartsAnewWhenItIsSeenAgain) {
     for (auto& seen : m.objects) seen.encounter_covariance.setConstant(kNan);
   });
   EXPECT_THAT(problems[4], Contains(StartsWith("object 100 is dropped")));
-  for (int frame = 5; frame < kFrames; ++frame) EXPECT_THAT(problems[static_cast<std::size_t>(frame)], IsEmpty());
+  for (int frame = 5; frame < kFrames; ++frame) EXPECT_THAT(problems[frame], IsEmpty());
   const auto& track = graph.tracks().at(SimulatedDrive::track(0));
   EXPECT_TRUE(track.anchor.valid());
   constexpr double kDriftAndNoise = 2;
-  EXPECT_THAT(graph.objectPose(track, {kFrames - 1}), IsNearPose(SimulatedDrive(8, {}).object(0, kFrames - 1), kDriftAndNoise));
+  EXPECT_THAT(graph.objectPose(track, {kFrames - 1}),
+              IsNearPose(SimulatedDrive(8, {}).object(0, kFrames - 1), kDriftAndNoise));
 }
 
 TEST(TrajectoryGraph, EveryMeasurementThatIsNoNumberIsNamed) {
@@ -118,13 +122,19 @@ TEST(TrajectoryGraph, EveryMeasurementThatIsNoNumberIsNamed) {
     if (frame == 12) seen.encounter_covariance *= 1e-300;
   });
   EXPECT_THAT(problems[5], Contains("object 100, frame 5: its pose, which is not finite, is left out"));
-  EXPECT_THAT(problems[6], Contains("object 100, frame 6: its pose, whose covariance is not positive definite, is left out"));
-  EXPECT_THAT(problems[7], Contains("object 100, frame 7: its motion, whose covariance is not positive definite, is left out"));
+  EXPECT_THAT(problems[6],
+              Contains("object 100, frame 6: its pose, whose covariance is not positive definite, is left out"));
+  EXPECT_THAT(problems[7],
+              Contains("object 100, frame 7: its motion, whose covariance is not positive definite, is left out"));
   EXPECT_THAT(problems[8],
-              Contains(StartsWith("a factor on pose of object 100 in frame 7 and pose of object 100 in frame 8 is not finite")));
-  EXPECT_THAT(problems[9], Contains(StartsWith("the camera's motion or its covariance is unusable: taken as standing still")));
-  EXPECT_THAT(problems[10], Contains(StartsWith("the camera's motion or its covariance is unusable: taken as measured")));
-  for (const std::size_t frame : {0U, 1U, 2U, 3U, 4U, 13U, 14U, 20U}) EXPECT_THAT(problems[frame], IsEmpty()) << "frame " << frame;
+              Contains(StartsWith(
+                  "a factor on pose of object 100 in frame 7 and pose of object 100 in frame 8 is not finite")));
+  EXPECT_THAT(problems[9],
+              Contains(StartsWith("the camera's motion or its covariance is unusable: taken as standing still")));
+  EXPECT_THAT(problems[10],
+              Contains(StartsWith("the camera's motion or its covariance is unusable: taken as measured")));
+  for (const std::size_t frame : {0U, 1U, 2U, 3U, 4U, 13U, 14U, 20U})
+    EXPECT_THAT(problems[frame], IsEmpty()) << "frame " << frame;
   for (const auto& [frame, camera] : graph.frames())
     EXPECT_TRUE(graph.solver().pose(camera.x).translation().allFinite()) << "frame " << frame.value;
   EXPECT_TRUE(std::isfinite(graph.solver().counters().chi2));

@@ -3,7 +3,8 @@
 #include "tests/backend/random_graphs.hpp"
 #include "tests/support/replaced_heap.hpp"
 
-/// Counts what the program takes from the heap while `counting`, also through the C functions that Eigen calls. This test is a program of its own, so that the replacements reach no other.
+/// Counts what the program takes from the heap while `counting`, also through the C functions that Eigen calls. This
+/// test is a program of its own, so that the replacements reach no other.
 namespace {
 
 // Volatile: compilers take it that allocating changes no variable of the program.
@@ -36,7 +37,8 @@ void leaveWindow(IncrementalSolver& solver, test::MultibodyGraph& graph, Leaving
   std::vector<VariableId> ends{graph.camera().front()};
   for (const auto& object : graph.objects()) ends.push_back(object.poses.front());
   for (const VariableId v : ends)
-    solver.addFactor(std::make_unique<PriorFactor>(std::array{v}, PriorModel{solver.pose(v)}, test::isotropicNoise(0.1, 0.01)));
+    solver.addFactor(
+        std::make_unique<PriorFactor>(std::array{v}, PriorModel{solver.pose(v)}, test::isotropicNoise(0.1, 0.01)));
 }
 
 /// Of a camera and three objects.
@@ -60,7 +62,8 @@ int allocationsOfTwoHundredSteadyUpdates(const IncrementalSolver::Params& params
   return allocationsIn(solver, graph, 200, leaving);
 }
 
-constexpr IncrementalSolver::Params kRelinearizesAll{.mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0};
+constexpr IncrementalSolver::Params kRelinearizesAll{
+    .mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0};
 
 TEST(IncrementalSolverAllocation, TheCounterSeesVectorsAndEigen) {
   allocations = 0;
@@ -78,8 +81,9 @@ TEST(IncrementalSolverAllocation, SteadyUpdatesTakeNothingFromTheHeap) {
   EXPECT_LE(allocationsOfTwoHundredSteadyUpdates(kRelinearizesAll, Leaving::kDrop), 4);
 }
 
-/// Ought to be next to nothing too. Measured: 55 in an update, 213 where everything is relinearised, all of them temporary matrices where
-/// the model of a marginal prior is made or compared (MarginalFactor::linearize, and FactorGraph's handling of Form::kInformation).
+/// Ought to be next to nothing too. Measured: 55 in an update, 213 where everything is relinearized, all of them
+/// temporary matrices where the model of a marginal prior is made or compared (MarginalFactor::linearize, and
+/// FactorGraph's handling of Form::kInformation).
 TEST(IncrementalSolverAllocation, MarginalPriorsCostABoundedNumberOfAllocations) {
   EXPECT_LE(allocationsOfTwoHundredSteadyUpdates({}, Leaving::kRetire), 200 * 60);
   EXPECT_LE(allocationsOfTwoHundredSteadyUpdates(kRelinearizesAll, Leaving::kRetire), 200 * 230);

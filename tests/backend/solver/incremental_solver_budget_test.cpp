@@ -16,7 +16,8 @@ using test::differenceFromBatch;
 using test::kExact;
 using test::MultibodyGraph;
 
-/// Scalars of the cliques from where the factors enter up to the root, and of the variables that are not in the tree yet.
+/// Scalars of the cliques from where the factors enter up to the root, and of the variables that are not in the tree
+/// yet.
 std::int64_t scalarsThatNewFactorsAskFor(const IncrementalSolver& solver, const std::vector<FactorId>& before) {
   std::set<int> cliques;
   std::set<VariableId> fresh;
@@ -43,7 +44,7 @@ IncrementalSolver::Params withBudget(std::int64_t scalars) {
   return params;
 }
 
-constexpr double kTol = 1e-6;  // m and rad: what turns by 1e-6 rad is not relinearised
+constexpr double kTol = 1e-6;  // m and rad: what turns by 1e-6 rad is not relinearized
 
 /// What is saved at any time is less than a variable costs, which is less than all of them.
 std::int64_t mostSaved(const IncrementalSolver& solver) {
@@ -154,10 +155,11 @@ TEST(IncrementalSolverBudget, ANewMeasurementIsNeverPutOff) {
       graph.addFrame();
       solver.update();
     }
-    // The camera's newest pose is measured to a millimetre, 0.1 m from where it stands.
+    // The camera's newest pose is measured to a millimeter, 0.1 m from where it stands.
     const VariableId newest = graph.camera().back();
     const SE3 measured = solver.pose(newest) * SE3(Eigen::Matrix3d::Identity(), {0.1, 0, 0});
-    solver.addFactor(std::make_unique<PriorFactor>(std::array{newest}, PriorModel{measured}, test::isotropicNoise(1e-3, 1e-4)));
+    solver.addFactor(
+        std::make_unique<PriorFactor>(std::array{newest}, PriorModel{measured}, test::isotropicNoise(1e-3, 1e-4)));
     solver.update();
     EXPECT_LT((solver.pose(newest).translation() - measured.translation()).norm(), 5e-3) << "seed " << seed;
     const auto covariance = solver.jointCovariance(std::array{newest});

@@ -7,8 +7,8 @@
 #include "tests/backend/random_factors.hpp"
 #include "tests/backend/random_graphs.hpp"
 
-/// Whatever is added, removed, retired and dropped, in whatever order: once settled, the solver stands where a dense batch solution of its
-/// own graph stands.
+/// Whatever is added, removed, retired and dropped, in whatever order: once settled, the solver stands where a dense
+/// batch solution of its own graph stands.
 namespace motorcade {
 namespace {
 
@@ -18,12 +18,13 @@ using test::MultibodyGraph;
 using test::RandomWorld;
 using test::settle;
 
-/// Of metres and radians. The systems have condition numbers of up to 1e7, which leaves 1e-9 of rounding.
+/// Of meters and radians. The systems have condition numbers of up to 1e7, which leaves 1e-9 of rounding.
 constexpr double kTol = 1e-8;
 
 constexpr std::array kLosses{RobustLoss::kNone, RobustLoss::kHuber, RobustLoss::kCauchy, RobustLoss::kTukey};
 
-/// Edits a solver's graph at random. A tree of relative measurements keeps every variable constrained; all others come and go.
+/// Edits a solver's graph at random. A tree of relative measurements keeps every variable constrained; all others come
+/// and go.
 class RandomEdits {
  public:
   RandomEdits(IncrementalSolver& solver, std::uint64_t seed, RandomWorld::Kind kind, RobustLoss loss)
@@ -75,8 +76,8 @@ class RandomEdits {
     if (chosen[0] == chosen[1] || chosen[1] == chosen[2] || chosen[0] == chosen[2]) return;
     const bool in_space = world_.isSpace(chosen[0]) && world_.isSpace(chosen[1]) && world_.isSpace(chosen[2]);
     const bool three = in_space && world_.below(2) == 0;
-    const auto id =
-        solver_.addFactor(three ? world_.encounter(chosen[0], chosen[1], chosen[2]) : world_.between(chosen[0], chosen[1], false));
+    const auto id = solver_.addFactor(three ? world_.encounter(chosen[0], chosen[1], chosen[2])
+                                            : world_.between(chosen[0], chosen[1], false));
     ASSERT_TRUE(id);
     extras_.push_back(*id);
   }
@@ -91,7 +92,8 @@ class RandomEdits {
   /// One to three variables at once, wherever they lie.
   void retire() {
     std::vector<VariableId> leaving;
-    for (std::size_t i = 0; i < 1 + world_.below(3) && nodes_.size() > 3; ++i) leaving.push_back(forget(world_.below(nodes_.size())));
+    for (std::size_t i = 0; i < 1 + world_.below(3) && nodes_.size() > 3; ++i)
+      leaving.push_back(forget(world_.below(nodes_.size())));
     solver_.retire(leaving);
   }
 
@@ -132,7 +134,9 @@ void expectEditsToEndAtTheBatchSolution(RandomWorld::Kind kind) {
   }
 }
 
-TEST(IncrementalSolverProperty, RandomEditsInSpaceEndAtTheBatchSolution) { expectEditsToEndAtTheBatchSolution(RandomWorld::Kind::kSpace); }
+TEST(IncrementalSolverProperty, RandomEditsInSpaceEndAtTheBatchSolution) {
+  expectEditsToEndAtTheBatchSolution(RandomWorld::Kind::kSpace);
+}
 
 TEST(IncrementalSolverProperty, RandomEditsInThePlaneEndAtTheBatchSolution) {
   expectEditsToEndAtTheBatchSolution(RandomWorld::Kind::kPlane);
@@ -152,7 +156,9 @@ void removeSomeFactors(IncrementalSolver& solver, MultibodyGraph& graph) {
     const Factor& factor = solver.graph().factor(f);
     const auto* seen = dynamic_cast<const CameraEncounterFactor*>(&factor);
     const bool one_of_many = seen && solver.graph()[factor.variables()[1]].factors.size() > 6;  // of its anchor's
-    if (!one_of_many && !dynamic_cast<const ObjectEncounterFactor*>(&factor) && !dynamic_cast<const SmoothMotionFactor*>(&factor)) continue;
+    if (!one_of_many && !dynamic_cast<const ObjectEncounterFactor*>(&factor) &&
+        !dynamic_cast<const SmoothMotionFactor*>(&factor))
+      continue;
     if (graph.random().below(5) == 0) solver.removeFactor(f);
   }
 }

@@ -65,8 +65,10 @@ TEST(IncrementalSolver, FoldingLeavesTheFactorOfTheWholeInformation) {
       solver.update();
     }
     const DenseSystem dense(solver.graph());
-    const Eigen::MatrixXd expected = test::informationOfFactors(solver.graph(), dense).topLeftCorner(dense.size(), dense.size());
-    const Eigen::MatrixXd folded = test::informationOfTree(solver.tree(), dense).topLeftCorner(dense.size(), dense.size());
+    const Eigen::MatrixXd expected =
+        test::informationOfFactors(solver.graph(), dense).topLeftCorner(dense.size(), dense.size());
+    const Eigen::MatrixXd folded =
+        test::informationOfTree(solver.tree(), dense).topLeftCorner(dense.size(), dense.size());
     EXPECT_THAT(folded, IsNear(expected, 1e-9 * expected.cwiseAbs().maxCoeff()));
   }
 }
@@ -83,8 +85,9 @@ TEST(IncrementalSolver, CovariancesEqualTheDenseInverse) {
   const DenseSystem dense(solver.graph());
   const Eigen::MatrixXd covariance = dense.linearized().first.inverse();
   const auto& object = graph.objects()[1];
-  for (const auto& chosen : {std::vector{graph.camera().back()}, std::vector{graph.camera()[1], object.anchor, object.poses.back()},
-                             std::vector{object.poses.back(), graph.camera().back()}}) {
+  for (const auto& chosen :
+       {std::vector{graph.camera().back()}, std::vector{graph.camera()[1], object.anchor, object.poses.back()},
+        std::vector{object.poses.back(), graph.camera().back()}}) {
     std::vector<int> at;
     for (const VariableId v : chosen)
       for (int i = 0; i < 6; ++i) at.push_back(dense.offset(v) + i);

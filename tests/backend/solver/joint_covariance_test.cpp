@@ -66,7 +66,8 @@ void expectDenseInverse(const IncrementalSolver& solver, std::span<const Variabl
   const Eigen::VectorXd sigma = expected.diagonal().cwiseSqrt();
   const auto actual = solver.jointCovariance(chosen);
   ASSERT_TRUE(actual);
-  const Eigen::MatrixXd relative = sigma.cwiseInverse().asDiagonal() * (*actual - expected) * sigma.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd relative =
+      sigma.cwiseInverse().asDiagonal() * (*actual - expected) * sigma.cwiseInverse().asDiagonal();
   EXPECT_LT(relative.cwiseAbs().maxCoeff(), 1e-6);
 }
 
@@ -95,7 +96,8 @@ TEST(JointCovariance, EqualsTheDenseInverseAfterRetirement) {
   }
 }
 
-/// The whole trajectory turns and moves when a sure measurement of its end comes: its start is known to 2 m and 0.4 rad only.
+/// The whole trajectory turns and moves when a sure measurement of its end comes: its start is known to 2 m and 0.4 rad
+/// only.
 Trajectory swungTrajectory(IncrementalSolver& solver, std::uint64_t seed) {
   Trajectory trajectory(solver, seed, seed % 2 == 0 ? RandomWorld::Kind::kSpace : RandomWorld::Kind::kPlane, 40);
   for (int i = 0; i < 12; ++i) trajectory.extend();
@@ -126,8 +128,8 @@ Eigen::MatrixXd turnOf(const Value& value) {
   return turn;
 }
 
-/// With Jacobians that stay where they were first taken, the covariance is that of the linear models, under right perturbations of where
-/// the pose is now.
+/// With Jacobians that stay where they were first taken, the covariance is that of the linear models, under right
+/// perturbations of where the pose is now.
 TEST(JointCovariance, IsStatedWhereThePoseIsNotWhereItWasLinearized) {
   for (std::uint64_t seed = 0; seed < 16; ++seed) {
     IncrementalSolver::Params params = kExact;
@@ -140,7 +142,8 @@ TEST(JointCovariance, IsStatedWhereThePoseIsNotWhereItWasLinearized) {
     for (const VariableId v : trajectory.variables()) {
       const auto at = dense.entries(std::array{v});
       const Eigen::MatrixXd turn = turnOf(solver.estimate(v)), expected = turn * covariance(at, at) * turn.transpose();
-      EXPECT_THAT(*solver.jointCovariance(std::array{v}), IsNear(expected, 1e-6 * expected.cwiseAbs().maxCoeff())) << "seed " << seed;
+      EXPECT_THAT(*solver.jointCovariance(std::array{v}), IsNear(expected, 1e-6 * expected.cwiseAbs().maxCoeff()))
+          << "seed " << seed;
     }
   }
 }
@@ -156,7 +159,8 @@ TEST(JointCovariance, MarginalsAreBlocksOfTheJoint) {
   Eigen::Index at = 0;
   for (const VariableId v : all) {
     const int size = solver.graph().sizeOf(v);
-    EXPECT_THAT(*solver.jointCovariance(std::array{v}), IsNear(Eigen::MatrixXd(joint->block(at, at, size, size)), 1e-10));
+    EXPECT_THAT(*solver.jointCovariance(std::array{v}),
+                IsNear(Eigen::MatrixXd(joint->block(at, at, size, size)), 1e-10));
     at += size;
   }
 }
@@ -172,7 +176,7 @@ TEST(JointCovariance, IsEmptyForWhatTheTreeDoesNotHoldOrDoesNotDetermine) {
   EXPECT_TRUE(solver.jointCovariance(std::array{trajectory.variables()[0]}));
 }
 
-/// Normalised errors of the newest, the oldest and a middle variable of one seed, summed, and their degrees of freedom.
+/// Normalized errors of the newest, the oldest and a middle variable of one seed, summed, and their degrees of freedom.
 struct Nees {
   double sum = 0;
   int degrees = 0;
@@ -200,7 +204,8 @@ Nees neesOf(std::uint64_t seed, RandomWorld::Kind kind) {
   return {error.dot(covariance->llt().solve(error)), static_cast<int>(at)};
 }
 
-/// Over 100 seeds the sum is chi-square with all the degrees of freedom together, nearly normal; its mean lies in the 95 % interval.
+/// Over 100 seeds the sum is chi-square with all the degrees of freedom together, nearly normal; its mean lies in the
+/// 95 % interval.
 TEST(JointCovariance, NormalizedErrorsOverAHundredSeedsAreChiSquare) {
   for (const auto kind : RandomWorld::kKinds) {
     Nees total;

@@ -10,8 +10,8 @@
 #include "tests/backend/space_fixtures.hpp"
 #include "tests/support/matchers.hpp"
 
-/// Broken graphs over each kind of variable: what the solver says of them, and that their good rest is solved as if the broken part were
-/// not there.
+/// Broken graphs over each kind of variable: what the solver says of them, and that their good rest is solved as if the
+/// broken part were not there.
 namespace motorcade {
 namespace {
 
@@ -97,7 +97,8 @@ class BrokenGraph : public testing::Test {
   }
   void expectSolvedAs(const std::vector<Value>& expected, const std::vector<VariableId>& ids) {
     for (std::size_t i = 0; i < expected.size(); ++i)
-      EXPECT_THAT(displacement(expected[i], solver().estimate(ids[i])), IsNear(SmallVector(SmallVector::Zero(kSize)), kSame))
+      EXPECT_THAT(displacement(expected[i], solver().estimate(ids[i])),
+                  IsNear(SmallVector(SmallVector::Zero(kSize)), kSame))
           << "variable " << i;
   }
   static std::vector<SmallVector> allDirections() {
@@ -157,7 +158,8 @@ TYPED_TEST(BrokenGraph, AnUnconstrainedDirectionIsNamedInTheVariablesOwnAxes) {
   const VariableId loose = this->solver().addVariable(seen);
   const SmallVector d = this->slanted();
   const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(this->kSize, this->kSize) - d * d.transpose();
-  const auto factor = this->solver().addFactor(std::make_unique<test::ProjectedFactor>(TypeParam::prior(loose, seen, 25), A));
+  const auto factor =
+      this->solver().addFactor(std::make_unique<test::ProjectedFactor>(TypeParam::prior(loose, seen, 25), A));
   const auto problems = this->settle();
   ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kUnconstrained));
   EXPECT_EQ(problems[0].variable, loose);
@@ -168,7 +170,8 @@ TYPED_TEST(BrokenGraph, AnUnconstrainedDirectionIsNamedInTheVariablesOwnAxes) {
   EXPECT_THAT(problems[0].factors, ElementsAre(factor.value()));
   EXPECT_THAT(describe(problems[0], this->solver().graph(), nameOf), HasSubstr("v9 is not constrained along (0.60 "));
   this->expectSolvedAs(good, chain.ids());
-  EXPECT_THAT(displacement(seen, this->solver().estimate(loose)), IsNear(SmallVector(SmallVector::Zero(this->kSize)), kSame));
+  EXPECT_THAT(displacement(seen, this->solver().estimate(loose)),
+              IsNear(SmallVector(SmallVector::Zero(this->kSize)), kSame));
 }
 
 TYPED_TEST(BrokenGraph, AJointThatSlidesFreesWhatHangsOnIt) {
@@ -179,7 +182,8 @@ TYPED_TEST(BrokenGraph, AJointThatSlidesFreesWhatHangsOnIt) {
   for (int i = 0; i < 5; ++i) chain.add(false);
   const SmallVector d = this->slanted();
   const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(this->kSize, this->kSize) - d * d.transpose();
-  const Value Z = TypeParam::between(this->solver().estimate(chain.ids()[joint - 1]), this->solver().estimate(chain.ids()[joint]));
+  const Value Z =
+      TypeParam::between(this->solver().estimate(chain.ids()[joint - 1]), this->solver().estimate(chain.ids()[joint]));
   auto whole = TypeParam::relative(chain.ids()[joint - 1], chain.ids()[joint], Z, 25);
   this->solver().addFactor(std::make_unique<test::ProjectedFactor>(std::move(whole), A));
   for (std::size_t i = joint; i + 1 < chain.ids().size(); ++i) chain.join(i, i + 1);
@@ -189,7 +193,8 @@ TYPED_TEST(BrokenGraph, AJointThatSlidesFreesWhatHangsOnIt) {
   EXPECT_EQ(problems[0].moving_variables, 5);
   EXPECT_EQ(problems[0].part_variables, 9);
   EXPECT_GE(problems[0].variable, chain.ids()[joint]);
-  EXPECT_THAT(describe(problems[0], this->solver().graph(), nameOf), HasSubstr("and 4 others that move with it are not constrained"));
+  EXPECT_THAT(describe(problems[0], this->solver().graph(), nameOf),
+              HasSubstr("and 4 others that move with it are not constrained"));
 }
 
 TYPED_TEST(BrokenGraph, AMeasurementThatIsNoNumberIsNamedByItsVariables) {
@@ -201,13 +206,14 @@ TYPED_TEST(BrokenGraph, AMeasurementThatIsNoNumberIsNamedByItsVariables) {
     chain.addMany(8);
     chain.hold(0);
     const Eigen::MatrixXd A = bad * Eigen::MatrixXd::Identity(this->kSize, this->kSize);
-    EXPECT_FALSE(this->solver().addFactor(
-        std::make_unique<test::ProjectedFactor>(TypeParam::relative(chain.ids()[2], chain.ids()[6], TypeParam::origin()), A)));
+    EXPECT_FALSE(this->solver().addFactor(std::make_unique<test::ProjectedFactor>(
+        TypeParam::relative(chain.ids()[2], chain.ids()[6], TypeParam::origin()), A)));
     const auto problems = this->settle();
     ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kNotFinite)) << bad;
     EXPECT_EQ(problems[0].variable, chain.ids()[2]);
     EXPECT_THAT(problems[0].others, ElementsAre(chain.ids()[6]));
-    EXPECT_THAT(describe(problems[0], this->solver().graph(), nameOf), HasSubstr("a factor on v2 and v6 is not finite"));
+    EXPECT_THAT(describe(problems[0], this->solver().graph(), nameOf),
+                HasSubstr("a factor on v2 and v6 is not finite"));
     this->expectSolvedAs(good, chain.ids());
   }
 }
@@ -224,7 +230,8 @@ TYPED_TEST(BrokenGraph, AVariableTwiceInAFactorAndOneThatIsNotThereAreNamed) {
   EXPECT_EQ(problems[0].variable, chain.ids()[5]);
   EXPECT_EQ(problems[1].variable, VariableId{77});
   EXPECT_THAT(problems[1].others, ElementsAre(chain.ids()[1]));
-  EXPECT_THAT(describe(problems[0], this->solver().graph(), nameOf), HasSubstr("a factor on v5 names a variable twice"));
+  EXPECT_THAT(describe(problems[0], this->solver().graph(), nameOf),
+              HasSubstr("a factor on v5 names a variable twice"));
   EXPECT_THAT(describe(problems[1], this->solver().graph(), nameOf), HasSubstr("not in the graph"));
   this->expectSolvedAs(good, chain.ids());
 }
@@ -247,7 +254,8 @@ TYPED_TEST(BrokenGraph, ADisconnectedPartIsNamedWithItsSize) {
   EXPECT_THAT(problems[1].factors, IsEmpty());
   EXPECT_THAT(problems[1].directions, testing::ElementsAreArray(this->allDirections()));
   EXPECT_THAT(describe(problems[0], this->solver().graph(), nameOf), HasSubstr("the 3 variables connected with"));
-  EXPECT_THAT(describe(problems[1], this->solver().graph(), nameOf), HasSubstr("v11 is disconnected from the rest, no factor touches it"));
+  EXPECT_THAT(describe(problems[1], this->solver().graph(), nameOf),
+              HasSubstr("v11 is disconnected from the rest, no factor touches it"));
   this->expectSolvedAs(good, chain.ids());
 }
 
@@ -257,7 +265,8 @@ TYPED_TEST(BrokenGraph, AProblemIsToldOnceUntilItComesBack) {
   ASSERT_THAT(kindsOf(this->solver().update().problems), ElementsAre(Kind::kMissingPrior));
   for (int i = 0; i < 20; ++i) {
     chain.add();
-    EXPECT_THAT(this->solver().update().problems, IsEmpty()) << "another variable of the part is held now, but the part was named";
+    EXPECT_THAT(this->solver().update().problems, IsEmpty())
+        << "another variable of the part is held now, but the part was named";
   }
   const FactorId prior = chain.hold(4).value();
   EXPECT_THAT(this->solver().update().problems, IsEmpty());
@@ -304,7 +313,8 @@ TYPED_TEST(BrokenGraph, NegativeInformationIsNamed) {
   const VariableId odd = this->solver().addVariable(TypeParam::origin());
   Eigen::MatrixXd information = Eigen::MatrixXd::Identity(this->kSize + 1, this->kSize + 1);
   information(1, 1) = -4;
-  this->solver().addFactor(std::make_unique<MarginalFactor>(std::vector{odd}, std::vector{TypeParam::origin()}, information));
+  this->solver().addFactor(
+      std::make_unique<MarginalFactor>(std::vector{odd}, std::vector{TypeParam::origin()}, information));
   const auto problems = this->settle();
   ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kIndefinite));
   EXPECT_EQ(problems[0].variable, odd);
@@ -318,8 +328,8 @@ TYPED_TEST(BrokenGraph, AFactorWithoutInformationConstrainsNothing) {
   chain.hold(0);
   const VariableId loose = this->solver().addVariable(TypeParam::origin());
   const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(this->kSize, this->kSize);
-  this->solver().addFactor(
-      std::make_unique<test::ProjectedFactor>(TypeParam::relative(chain.ids()[2], loose, TypeParam::origin()), nothing));
+  this->solver().addFactor(std::make_unique<test::ProjectedFactor>(
+      TypeParam::relative(chain.ids()[2], loose, TypeParam::origin()), nothing));
   const auto problems = this->settle();
   ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kUnconstrained));
   EXPECT_EQ(problems[0].variable, loose);
@@ -346,7 +356,8 @@ TEST(SolverProblem, AFactorThatIsNoNumberWhereItsVariableGoesSpoilsNeitherEstima
   IncrementalSolver solver({});
   const VariableId v = solver.addVariable(test::Vectors::origin());
   ASSERT_TRUE(solver.addFactor(std::make_unique<RootFactor>(v)));
-  solver.addFactor(test::Vectors::prior(v, test::Vectors::moved(test::Vectors::origin(), Eigen::Vector3d(10, 0, 0)), 1e6));
+  solver.addFactor(
+      test::Vectors::prior(v, test::Vectors::moved(test::Vectors::origin(), Eigen::Vector3d(10, 0, 0)), 1e6));
   for (int i = 0; i < 5; ++i) solver.update();
   solver.converge(5, 1e-9);
   EXPECT_NEAR(std::get<SmallVector>(solver.estimate(v))[0], 10, 1e-3);  // the prior is a million times as sure

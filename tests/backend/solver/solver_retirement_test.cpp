@@ -19,7 +19,8 @@ constexpr std::size_t kWindow = 12;
 /// Largest sizes over some frames.
 struct Sizes {
   std::int64_t eliminated_scalars = 0;
-  std::size_t used_bytes = 0, held_bytes = 0, variable_slots = 0, factor_slots = 0, cliques = 0, variables = 0, factors = 0;
+  std::size_t used_bytes = 0, held_bytes = 0, variable_slots = 0, factor_slots = 0, cliques = 0, variables = 0,
+              factors = 0;
 
   void include(const IncrementalSolver& solver, const IncrementalSolver::Report& report) {
     eliminated_scalars = std::max(eliminated_scalars, report.eliminated_scalars);
@@ -70,10 +71,11 @@ TEST(SolverRetirement, ADriveOfTwoThousandFramesCostsNoMoreThanItsWindowAndEndsA
   EXPECT_LE(late.cliques, early.cliques + early.cliques / 4);
   EXPECT_LE(late.used_bytes, early.used_bytes + early.used_bytes / 4);
   EXPECT_LE(late.held_bytes, early.held_bytes + early.held_bytes / 4);
-  EXPECT_LE(late.eliminated_scalars, 2 * 6 * static_cast<std::int64_t>(most_variables));  // everything, in both iterations
+  EXPECT_LE(late.eliminated_scalars,
+            2 * 6 * static_cast<std::int64_t>(most_variables));  // everything, in both iterations
 
   solver.converge(50, 1e-11);
-  EXPECT_LT(differenceFromBatch(solver, 1e-3), 1e-7);  // at coordinates of some hundred metres
+  EXPECT_LT(differenceFromBatch(solver, 1e-3), 1e-7);  // at coordinates of some hundred meters
 }
 
 /// Where a variable lies in the tree, or in which company it leaves, makes no difference to those that stay.
@@ -104,7 +106,8 @@ TEST(SolverRetirement, AnyVariablesMayLeaveWithoutChangingTheOthers) {
       EXPECT_LT(local(before[i], solver.estimate(variables[i])).norm(), 1e-8) << "seed " << seed;
     const auto after = solver.jointCovariance(variables);
     ASSERT_TRUE(covariance && after);
-    EXPECT_LT((*after - *covariance).cwiseAbs().maxCoeff(), 1e-8 * covariance->cwiseAbs().maxCoeff()) << "seed " << seed;
+    EXPECT_LT((*after - *covariance).cwiseAbs().maxCoeff(), 1e-8 * covariance->cwiseAbs().maxCoeff())
+        << "seed " << seed;
   }
 }
 

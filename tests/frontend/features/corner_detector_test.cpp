@@ -13,7 +13,9 @@ const CornerDetector::Params kParams;
 
 /// A bright square on a dark ground, with the given contrast.
 Image squareImage(double left, double top, double side, double contrast) {
-  const auto gray = [=](double x, double y) { return x >= left && x < left + side && y >= top && y < top + side ? 100 + contrast : 100; };
+  const auto gray = [=](double x, double y) {
+    return x >= left && x < left + side && y >= top && y < top + side ? 100 + contrast : 100;
+  };
   return test::render(200, 160, gray);
 }
 
@@ -58,7 +60,8 @@ TEST(CornerDetector, KeepsCornersApartAndOffTheBorder) {
     EXPECT_GE(corners[i].u_px, kParams.border_px);
     EXPECT_LE(corners[i].v_px, 199 - kParams.border_px);
     for (std::size_t j = 0; j < i; ++j) {
-      const float apart_px = std::max(std::abs(corners[i].u_px - corners[j].u_px), std::abs(corners[i].v_px - corners[j].v_px));
+      const float apart_px =
+          std::max(std::abs(corners[i].u_px - corners[j].u_px), std::abs(corners[i].v_px - corners[j].v_px));
       EXPECT_GT(apart_px, static_cast<float>(kParams.min_distance_px));
     }
   }

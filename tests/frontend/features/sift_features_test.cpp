@@ -24,8 +24,8 @@ FeaturesPtr wall(int frame) {
   FeaturePreparation::Params params;
   params.detector = DetectorKind::kSift;
   const test::Exposure noisy{.noise = 1, .seed = static_cast<unsigned>(frame)};
-  return FeaturePreparation(params)(
-      test::stereoFrame(frame, test::render(kWidth, kHeight, left, noisy), test::render(kWidth, kHeight, right, noisy)));
+  return FeaturePreparation(params)(test::stereoFrame(frame, test::render(kWidth, kHeight, left, noisy),
+                                                      test::render(kWidth, kHeight, right, noisy)));
 }
 
 TEST(SiftFeatures, MatchTheTwoEyes) {
@@ -49,17 +49,18 @@ TEST(SiftFeatures, KeepTheirIdsFromFrameToFrame) {
   for (int frame = 1; frame < 4; ++frame) {
     const OpticalFlowPtr now = track(wall(frame));
     int followed = 0, right = 0;
-    auto old = before->tracks.begin();
-    for (const FlowTrack& point : now->tracks) {
+    auto old = before->observations.begin();
+    for (const FlowObservation& point : now->observations) {
       EXPECT_EQ(point.age == 1, point.corner >= 0);
       if (point.age == 1) continue;
-      old = std::find_if(old, before->tracks.end(), [&](const FlowTrack& p) { return p.point == point.point; });
-      ASSERT_NE(old, before->tracks.end());  // both lists are ordered by id
+      old = std::find_if(old, before->observations.end(),
+                         [&](const FlowObservation& p) { return p.point == point.point; });
+      ASSERT_NE(old, before->observations.end());  // both lists are ordered by id
       EXPECT_EQ(point.age, old->age + 1);
       ++followed;
       right += std::hypot(point.u_px - old->u_px - 4.2F, point.v_px - old->v_px - 1.1F) < 1;
     }
-    EXPECT_GT(followed, 0.4 * static_cast<double>(before->tracks.size()));
+    EXPECT_GT(followed, 0.4 * static_cast<double>(before->observations.size()));
     EXPECT_GT(right, 0.95 * followed);
     before = now;
   }

@@ -67,9 +67,12 @@ void expectDelaunay(const Points& points_px, const DelaunayGraph& graph) {
     EXPECT_LE(triangles_at[edge], 2);
     EXPECT_TRUE(graph.triangles.empty() || triangles_at[edge] >= 1);
   }
-  EXPECT_TRUE(graph.triangles.empty() || triangles_at.size() == graph.edges.size());  // no triangle has an edge that is not listed
-  EXPECT_EQ(area, hullAreaTwice(distinct));  // with disjoint interiors, which the empty circles grant, the hull is covered
-  const auto euler = static_cast<int>(vertices.size()) - static_cast<int>(graph.edges.size()) + static_cast<int>(graph.triangles.size());
+  EXPECT_TRUE(graph.triangles.empty() ||
+              triangles_at.size() == graph.edges.size());  // no triangle has an edge that is not listed
+  EXPECT_EQ(area,
+            hullAreaTwice(distinct));  // with disjoint interiors, which the empty circles grant, the hull is covered
+  const auto euler = static_cast<int>(vertices.size()) - static_cast<int>(graph.edges.size()) +
+                     static_cast<int>(graph.triangles.size());
   EXPECT_EQ(euler, 1);  // without the outer face; a chain too
 }
 
@@ -77,7 +80,8 @@ Points randomPoints(int count, unsigned seed, double step_px) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> u(0, 400), v(0, 120);
   Points points;
-  for (int i = 0; i < count; ++i) points.emplace_back(std::round(u(random) / step_px) * step_px, std::round(v(random) / step_px) * step_px);
+  for (int i = 0; i < count; ++i)
+    points.emplace_back(std::round(u(random) / step_px) * step_px, std::round(v(random) / step_px) * step_px);
   return points;
 }
 

@@ -21,7 +21,8 @@ TEST(DoubleLanes, SymmetricMatricesHaveTheirInverse) {
     Eigen::Matrix3d A;
     for (int k = 0; k < 9; ++k) A(k / 3, k % 3) = noise.uniform(-1, 1);
     const Eigen::Matrix3d m = matrices[i] = A * A.transpose() + Eigen::Matrix3d::Identity();
-    lanes.xx[i] = m(0, 0), lanes.xy[i] = m(0, 1), lanes.xz[i] = m(0, 2), lanes.yy[i] = m(1, 1), lanes.yz[i] = m(1, 2), lanes.zz[i] = m(2, 2);
+    lanes.xx[i] = m(0, 0), lanes.xy[i] = m(0, 1), lanes.xz[i] = m(0, 2), lanes.yy[i] = m(1, 1), lanes.yz[i] = m(1, 2),
+    lanes.zz[i] = m(2, 2);
   }
   const SymmetricDoubles3x3 inverted = inverse(lanes);
   for (std::size_t i = 0; i < kDoubleLanes; ++i) {

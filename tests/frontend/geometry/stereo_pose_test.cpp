@@ -42,7 +42,8 @@ TEST(StereoPose, NoiseFreePointsGiveTheExactPose) {
   for (auto& o : observations) o.uvd_px = *kRig.project(trueMotion() * o.p_a);
   const auto found = fit(observations);
   ASSERT_TRUE(found);
-  EXPECT_THAT(found->T_cam_a, IsNearPose(trueMotion(), 1e-8));  // Gauss-Newton's last step is below 1e-6 and the error quadratic in it
+  EXPECT_THAT(found->T_cam_a,
+              IsNearPose(trueMotion(), 1e-8));  // Gauss-Newton's last step is below 1e-6 and the error quadratic in it
 }
 
 TEST(StereoPose, CovarianceIsThatOfTheErrors) {
@@ -86,7 +87,8 @@ TEST(StereoPose, APriorFillsWhatThePointsLeaveOpen) {
   ASSERT_TRUE(found);
   EXPECT_THAT(found->T_cam_a, IsNearPose(trueMotion(), 0.05));  // the prior's own distance and a point's depth noise
   const Matrix6d gained = found->covariance.inverse() - 1e4 * Matrix6d::Identity();
-  EXPECT_GT(gained.eigenvalues().real().minCoeff(), -10);  // a measurement never widens a prior, but for its curvature: a thousandth
+  EXPECT_GT(gained.eigenvalues().real().minCoeff(),
+            -10);  // a measurement never widens a prior, but for its curvature: a thousandth
 }
 
 TEST(StereoPose, WithoutPointsThePriorComesBack) {

@@ -18,7 +18,8 @@ Eigen::Vector3d lane(const Doubles3& v, std::size_t i) { return {v.x[i], v.y[i],
 
 struct FourPoints {
   SE3 T_cam_a{expSO3({0.1, -0.2, 0.05}), {0.3, -0.1, 1}};
-  std::array<Eigen::Vector3d, kDoubleLanes> p_a{{{1, 2, 10}, {-5, 1, 30}, {0, 0, -8}, {8, -3, 60}}};  // the third is behind the camera
+  std::array<Eigen::Vector3d, kDoubleLanes> p_a{
+      {{1, 2, 10}, {-5, 1, 30}, {0, 0, -8}, {8, -3, 60}}};  // the third is behind the camera
 
   Doubles3 lanes() const {
     Doubles3 p{};
@@ -51,7 +52,8 @@ TEST(StereoView, JacobianIsThatOfFiniteDifferences) {
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Vector3d d = kStep_m * Eigen::Vector3d::Unit(axis);
       by_differences.col(axis) =
-          (*kRig.project(four.T_cam_a * (four.p_a[i] + d)) - *kRig.project(four.T_cam_a * (four.p_a[i] - d))) / (2 * kStep_m);
+          (*kRig.project(four.T_cam_a * (four.p_a[i] + d)) - *kRig.project(four.T_cam_a * (four.p_a[i] - d))) /
+          (2 * kStep_m);
     }
     EXPECT_THAT(J, test::IsNear(by_differences, 1e-5));
   }

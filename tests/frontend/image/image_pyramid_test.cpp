@@ -13,7 +13,7 @@ TEST(ImagePyramid, PixelsOfEachLevelLieWhereTheMessageSays) {
   const ImagePyramid pyramid = buildPyramid(test::render(161, 131, ramp), 4, pool);
   ASSERT_EQ(pyramid.levels.size(), 4U);
   for (int level = 0; level < 4; ++level) {
-    const Image& image = pyramid.levels[static_cast<std::size_t>(level)];
+    const Image& image = pyramid.levels[level];
     EXPECT_EQ(image.width(), 161 >> level);
     for (int y = 0; y < image.height(); ++y) {
       for (int x = 0; x < image.width(); ++x) {

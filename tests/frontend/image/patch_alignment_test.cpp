@@ -67,8 +67,8 @@ TEST(PatchAlignment, PyramidReachesFarShifts) {
   int found = 0, tried = 0;
   forEachPlace(45, [&](double u, double v) {
     ++tried;
-    const auto aligned =
-        alignPatch(from, static_cast<float>(u), static_cast<float>(v), to, static_cast<float>(u), static_cast<float>(v), 3, {});
+    const auto aligned = alignPatch(from, static_cast<float>(u), static_cast<float>(v), to, static_cast<float>(u),
+                                    static_cast<float>(v), 3, {});
     if (!aligned || aligned->ncc < 0.95) return;
     ++found;
     EXPECT_NEAR(aligned->u_px, u + 21.3, 0.2);
@@ -86,7 +86,8 @@ TEST(PatchAlignment, ScaleChangeMovesNoPoint) {
     const auto grown = [&](double x, double y) { return texture(u + (x - u) / kScale, v + (y - v) / kScale); };
     const Image to = test::render(kWidth, kHeight, grown);
     const auto patch = makeTemplate(from, static_cast<float>(u), static_cast<float>(v), 11, PatchDeformation::kScale);
-    const auto aligned = patch ? alignPatch(*patch, to, static_cast<float>(u), static_cast<float>(v), {}) : std::nullopt;
+    const auto aligned =
+        patch ? alignPatch(*patch, to, static_cast<float>(u), static_cast<float>(v), {}) : std::nullopt;
     if (!aligned) return;
     error.add(std::hypot(aligned->u_px - u, aligned->v_px - v), aligned->sigma_px);
     growth.add(aligned->log_growth - std::log(kScale), 1);
@@ -100,7 +101,9 @@ TEST(PatchAlignment, AlignsATemplateMadeAtTheScaleOfNow) {
   const test::Texture texture(18, 8, 30);
   const Image from = test::render(kWidth, kHeight, texture);
   constexpr float kScale = 1.4F;
-  const auto grown = [&](double x, double y) { return texture(120.3 + (x - 131.8) / kScale, 65.6 + (y - 60.1) / kScale); };
+  const auto grown = [&](double x, double y) {
+    return texture(120.3 + (x - 131.8) / kScale, 65.6 + (y - 60.1) / kScale);
+  };
   const Image to = test::render(kWidth, kHeight, grown);
   const auto patch = makeTemplate(from, 120.3F, 65.6F, 11, PatchDeformation::kScale, kScale);
   ASSERT_TRUE(patch);
@@ -139,7 +142,8 @@ TEST(PatchAlignment, RefusesPatchesWithoutTexture) {
 }
 
 TEST(PatchAlignment, RefusesAnotherScene) {
-  const Image from = test::render(kWidth, kHeight, test::Texture(14)), to = test::render(kWidth, kHeight, test::Texture(15));
+  const Image from = test::render(kWidth, kHeight, test::Texture(14)),
+              to = test::render(kWidth, kHeight, test::Texture(15));
   PatchParams params;
   params.min_ncc = 0.9;
   int found = 0, tried = 0;
@@ -155,7 +159,8 @@ TEST(PatchAlignment, ReadsNothingOutsideTheImage) {  // for the sanitizers; the 
   const Image image = test::render(33, 20, test::Texture(16));
   for (const float u : {0.0F, 0.3F, 16.0F, 31.9F, 32.0F})
     for (const float v : {0.0F, 0.7F, 18.9F, 19.0F})
-      if (const auto patch = makeTemplate(image, u, v, kMaxPatchWindow_px, PatchDeformation::kScale)) alignPatch(*patch, image, u, v, {});
+      if (const auto patch = makeTemplate(image, u, v, kMaxPatchWindow_px, PatchDeformation::kScale))
+        alignPatch(*patch, image, u, v, {});
   EXPECT_FALSE(makeTemplate(image, -0.1F, 5, 11, PatchDeformation::kScale));
 }
 
@@ -184,7 +189,8 @@ TEST(RefineDisparity, FollowsTheSlopeOfTheRoad) {
   constexpr double kSlope = 0.33;  // px per row: a camera 1.65 m above the road, 0.54 m between the eyes
   ErrorStatistics error;
   // The right image shows at (x, y) what the left one shows at (x + d(y), y).
-  const Image right = test::render(kWidth, kHeight, [&](double x, double y) { return texture(x + 10 + kSlope * (y - 70), y); });
+  const Image right =
+      test::render(kWidth, kHeight, [&](double x, double y) { return texture(x + 10 + kSlope * (y - 70), y); });
   forEachPlace(42, [&](double u, double v) {
     const double disparity_px = 10 + kSlope * (v - 70);
     const auto match = refineDisparity(left, right, u, v, disparity_px + 0.8);

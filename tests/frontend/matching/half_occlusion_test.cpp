@@ -15,7 +15,8 @@ struct View {
   }
   /// A truck's rear, seen from u = 75 on.
   void addNearSurface(float disparity_px) {
-    for (int i = 0; i < 6; ++i) add(85.0F + 12 * static_cast<float>(i % 3), 200.0F + 20 * static_cast<float>(i / 3), disparity_px);
+    for (int i = 0; i < 6; ++i)
+      add(85.0F + 12 * static_cast<float>(i % 3), 200.0F + 20 * static_cast<float>(i / 3), disparity_px);
   }
 };
 
@@ -27,7 +28,7 @@ TEST(HalfOcclusion, AMatchBehindASurfaceThatLeavesTheRightImageGoes) {
   dropHalfOccluded(view.corners, view.of_corner);
   EXPECT_FALSE(view.of_corner[6]);
   EXPECT_FALSE(view.of_corner[7]);
-  for (int i = 0; i < 6; ++i) EXPECT_TRUE(view.of_corner[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < 6; ++i) EXPECT_TRUE(view.of_corner[i]);
 }
 
 TEST(HalfOcclusion, WhatTheRightImageCouldShowStays) {

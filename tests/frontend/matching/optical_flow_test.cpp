@@ -21,7 +21,8 @@ class MovingWall {
   MovingWall(double du_px, double dv_px) : du_px_(du_px), dv_px_(dv_px) {}
   FeaturesPtr at(int frame) const {
     const auto gray = [&](double x, double y) { return texture_(x - frame * du_px_, y - frame * dv_px_); };
-    const test::Exposure exposure{.gain = 1 - 0.02 * frame, .bias = 2.0 * frame, .noise = 2, .seed = static_cast<unsigned>(frame)};
+    const test::Exposure exposure{
+        .gain = 1 - 0.02 * frame, .bias = 2.0 * frame, .noise = 2, .seed = static_cast<unsigned>(frame)};
     const Image image = test::render(kWidth, kHeight, gray, exposure);
     return prepare_(test::stereoFrame(frame, image, image));
   }
@@ -45,7 +46,7 @@ TEST(OpticalFlowTracker, DoesNotWalkAwayOverManyFrames) {
   std::map<int, std::pair<double, int>> squares_at_age;
   for (int frame = 0; frame <= 12; ++frame) {
     const auto flow = track(wall.at(frame));
-    for (const FlowTrack& point : flow->tracks) {
+    for (const FlowObservation& point : flow->observations) {
       const Eigen::Vector2d uv_px(point.u_px, point.v_px);
       if (point.age == 1) births.emplace(point.point, Birth{uv_px, frame});
       const Birth& birth = births.at(point.point);
@@ -59,7 +60,8 @@ TEST(OpticalFlowTracker, DoesNotWalkAwayOverManyFrames) {
   for (const int age : {2, 5, 8, 12}) {
     const auto [squares, count] = squares_at_age.at(age);
     EXPECT_GE(count, 100);
-    EXPECT_LT(std::sqrt(squares / count), age <= 6 ? 0.1 : 0.14) << age;  // the anchor of a second keyframe adds its error
+    EXPECT_LT(std::sqrt(squares / count), age <= 6 ? 0.1 : 0.14)
+        << age;  // the anchor of a second keyframe adds its error
   }
 }
 
@@ -68,7 +70,8 @@ TEST(OpticalFlowTracker, FollowsLargeMotionFromTheFirstFrame) {
   OpticalFlowTracker track({}, kCamera);
   track(wall.at(0));
   const auto first = track(wall.at(1));
-  const auto followed = std::ranges::count_if(first->tracks, [](const FlowTrack& point) { return point.age == 2; });
+  const auto followed =
+      std::ranges::count_if(first->observations, [](const FlowObservation& point) { return point.age == 2; });
   EXPECT_GE(followed, 100);
 }
 
@@ -89,10 +92,12 @@ TEST(OpticalFlowTracker, FollowsWhatCrossesAStandingScene) {
   };
   const auto before = at(0), now = at(1);
   int crossing = 0;
-  for (const FlowTrack& point : now->tracks) {
-    if (point.age < 2 || point.u_px < left_px(1) + 8 || point.u_px > left_px(1) + 132 || point.v_px < 88 || point.v_px > 152) continue;
-    const auto then = std::ranges::find(before->tracks, point.point, &FlowTrack::point);
-    ASSERT_NE(then, before->tracks.end());
+  for (const FlowObservation& point : now->observations) {
+    if (point.age < 2 || point.u_px < left_px(1) + 8 || point.u_px > left_px(1) + 132 || point.v_px < 88 ||
+        point.v_px > 152)
+      continue;
+    const auto then = std::ranges::find(before->observations, point.point, &FlowObservation::point);
+    ASSERT_NE(then, before->observations.end());
     crossing += std::abs(point.u_px - then->u_px - kSpeed_px) < 1;
   }
   EXPECT_GE(crossing, 10);
@@ -106,13 +111,13 @@ TEST(OpticalFlowTracker, OrdersTracksByIdsThatAreNeverUsedTwice) {
     const auto features = wall.at(frame);
     const auto flow = track(features);
     std::set<PointId> now;
-    for (std::size_t i = 0; i < flow->tracks.size(); ++i) {
-      const FlowTrack& point = flow->tracks[i];
-      EXPECT_TRUE(i == 0 || flow->tracks[i - 1].point < point.point);
+    for (std::size_t i = 0; i < flow->observations.size(); ++i) {
+      const FlowObservation& point = flow->observations[i];
+      EXPECT_TRUE(i == 0 || flow->observations[i - 1].point < point.point);
       EXPECT_FALSE(ended.contains(point.point));
       EXPECT_EQ(point.age == 1, point.corner >= 0);
       EXPECT_EQ(point.age == 1, !alive.contains(point.point));
-      EXPECT_TRUE(point.corner < 0 || point.u_px == features->corners[static_cast<std::size_t>(point.corner)].u_px);
+      EXPECT_TRUE(point.corner < 0 || point.u_px == features->corners[point.corner].u_px);
       now.insert(point.point);
     }
     for (const PointId point : alive)
@@ -129,13 +134,14 @@ TEST(OpticalFlowTracker, KeepsTracksApartAndSpread) {
   OpticalFlowTracker track(params, kCamera);
   for (int frame = 0; frame < 4; ++frame) {
     const auto flow = track(wall.at(frame));
-    EXPECT_LE(flow->tracks.size(), 150U);
+    EXPECT_LE(flow->observations.size(), 150U);
     std::set<std::pair<int, int>> cells;
-    for (std::size_t i = 0; i < flow->tracks.size(); ++i) {
-      const FlowTrack& a = flow->tracks[i];
+    for (std::size_t i = 0; i < flow->observations.size(); ++i) {
+      const FlowObservation& a = flow->observations[i];
       cells.emplace(static_cast<int>(a.u_px) / params.cell_px, static_cast<int>(a.v_px) / params.cell_px);
       for (std::size_t j = 0; j < i; ++j)
-        EXPECT_GE(std::hypot(a.u_px - flow->tracks[j].u_px, a.v_px - flow->tracks[j].v_px), 0.99 * params.min_distance_px);
+        EXPECT_GE(std::hypot(a.u_px - flow->observations[j].u_px, a.v_px - flow->observations[j].v_px),
+                  0.99 * params.min_distance_px);
     }
     EXPECT_GE(cells.size(), 45U);  // of 50
   }
@@ -145,11 +151,11 @@ TEST(OpticalFlowTracker, StartsAgainAfterARejectedFrame) {
   const MovingWall wall(3, 0);
   OpticalFlowTracker track({}, kCamera);
   const auto before = track(wall.at(0));
-  EXPECT_TRUE(track(FeaturePreparation({})(test::rejectedFrame(1)))->tracks.empty());
+  EXPECT_TRUE(track(FeaturePreparation({})(test::rejectedFrame(1)))->observations.empty());
   const auto after = track(wall.at(2));
-  ASSERT_FALSE(after->tracks.empty());
-  EXPECT_GT(after->tracks.front().point, before->tracks.back().point);
-  EXPECT_TRUE(std::ranges::all_of(after->tracks, [](const FlowTrack& point) { return point.age == 1; }));
+  ASSERT_FALSE(after->observations.empty());
+  EXPECT_GT(after->observations.front().point, before->observations.back().point);
+  EXPECT_TRUE(std::ranges::all_of(after->observations, [](const FlowObservation& point) { return point.age == 1; }));
 }
 
 TEST(OpticalFlowTracker, StartsAgainWhenTheImageSizeChanges) {
@@ -157,7 +163,7 @@ TEST(OpticalFlowTracker, StartsAgainWhenTheImageSizeChanges) {
   OpticalFlowTracker track({}, kCamera);
   track(MovingWall(1, 0).at(0));
   const auto flow = track(FeaturePreparation({})(test::stereoFrame(1, small, small)));
-  EXPECT_TRUE(std::ranges::all_of(flow->tracks, [](const FlowTrack& point) { return point.age == 1; }));
+  EXPECT_TRUE(std::ranges::all_of(flow->observations, [](const FlowObservation& point) { return point.age == 1; }));
 }
 
 }  // namespace

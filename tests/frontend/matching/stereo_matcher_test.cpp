@@ -61,8 +61,8 @@ TEST(StereoMatcher, FindsTheDisparityOfEachPanel) {
 
 TEST(StereoMatcher, RefusesRepeatedTexture) {
   const auto fence = [](double x, double y) { return 128 + 50 * std::sin(x * 0.7) * std::sin(y * 0.4); };
-  const auto features = FeaturePreparation({})(
-      test::stereoFrame(0, test::render(400, 200, fence, {.noise = 1}), test::render(400, 200, fence, {.noise = 1, .seed = 2})));
+  const auto features = FeaturePreparation({})(test::stereoFrame(
+      0, test::render(400, 200, fence, {.noise = 1}), test::render(400, 200, fence, {.noise = 1, .seed = 2})));
   ASSERT_GE(features->corners.size(), 50U);
   const auto matches = StereoMatcher({}, kCamera)(features);
   const auto matched = std::ranges::count_if(matches->of_corner, [](const auto& match) { return match.has_value(); });

@@ -27,7 +27,8 @@ std::vector<StereoCorrespondence> window(double offset_px, double in_use_px, Noi
   while (points.size() < 200) {
     const Eigen::Vector3d p = test::streetPoint(noise, 9, 60);
     const auto then = test::look(p, noise), now = test::look(trueMotion() * p, noise);
-    if (then && now) points.push_back({*then + error, test::kSightingSigma_px, *now + error, test::kSightingSigma_px});
+    if (then && now)
+      points.push_back({*then + error, test::kObservationSigma_px, *now + error, test::kObservationSigma_px});
   }
   return points;
 }
@@ -61,7 +62,7 @@ TEST_P(DisparityOffsetSeeds, StaysNearZeroOnAGoodRig) {
   DisparityOffsetEstimator estimator({}, kRig);
   for (int w = 0; w < 60; ++w) {
     drive(estimator, 0, 1, noise);
-    EXPECT_LT(std::abs(estimator.offset_px()), 0.05);  // at all times: a depth of 60 m moves by less than half a metre
+    EXPECT_LT(std::abs(estimator.offset_px()), 0.05);  // at all times: a depth of 60 m moves by less than half a meter
   }
 }
 

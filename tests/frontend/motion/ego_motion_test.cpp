@@ -52,7 +52,8 @@ void expectTrueMotion(const std::optional<EgoMotion>& ego, const Street& s, std:
   EXPECT_LT(test::nees(error, ego->covariance), 30) << "seed " << seed;  // chi2(6) is below it but for 4 in 100,000
   int right = 0;
   for (std::size_t i = 0; i < s.moves.size(); ++i) right += ego->inliers[i] != s.moves[i];
-  EXPECT_GT(right, 0.95 * static_cast<double>(s.moves.size())) << "seed " << seed;  // 1 % of those at rest lie beyond the gate
+  EXPECT_GT(right, 0.95 * static_cast<double>(s.moves.size()))
+      << "seed " << seed;  // 1 % of those at rest lie beyond the gate
 }
 
 TEST(EgoMotion, SurvivesSixtyPercentMoversKnownFromBefore) {
@@ -74,7 +75,8 @@ TEST(EgoMotion, SurvivesFortyPercentMoversThatNobodyKnows) {
 TEST(EgoMotion, CovarianceIsThatOfTheErrors) {
   constexpr int kSeeds = 300;
   Vector6d xi;
-  xi << 1.5, 0, 3, 0, 0, 1;  // a camera that rolls by a radian: with little rotation, perturbing either side of the motion is the same
+  xi << 1.5, 0, 3, 0, 0,
+      1;  // a camera that rolls by a radian: with little rotation, perturbing either side of the motion is the same
   const SE3 T_previous_now = SE3::exp(xi);
   const EgoMotionEstimator estimate({}, kRig);
   double mean = 0;

@@ -19,7 +19,7 @@ Eigen::Vector3d above(const GroundPlane& plane, double x, double z, double heigh
   return {x, (plane.height_m - height_m - n.x() * x - n.z() * z) / n.y(), z};
 }
 
-/// Road and, for two of five points, what stands on it: cars, kerbs, walls.
+/// Road and, for two of five points, what stands on it: cars, curbs, walls.
 std::vector<GroundCandidate> roadWithClutter(const GroundPlane& plane, int count, std::uint64_t seed) {
   Noise noise(seed);
   std::vector<GroundCandidate> points;
@@ -35,7 +35,8 @@ TEST(GroundPlane, ATiltedRoadIsFoundUnderFortyPercentClutter) {
   GroundPlaneEstimator estimate({});
   GroundPlane plane;
   for (std::uint64_t frame = 0; frame < 20; ++frame) plane = estimate(roadWithClutter(kTilted, 150, frame), frame);
-  // Within the fit's 2.5 tolerances lie a tenth of the clutter, at 0.1 m on average, and the memory holds 0.1 % of the first guess.
+  // Within the fit's 2.5 tolerances lie a tenth of the clutter, at 0.1 m on average, and the memory holds 0.1 % of the
+  // first guess.
   EXPECT_NEAR(plane.height_m, kTilted.height_m, 0.04);
   EXPECT_THAT(plane.normal_cam, IsNear(kTilted.normal_cam, 0.005));
 }
@@ -54,7 +55,8 @@ TEST(GroundPlane, ARoofOrAWallIsNoRoad) {
   const GroundPlane before = estimate(roadWithClutter(kTilted, 150, 1), 1);
   std::vector<GroundCandidate> wall;
   Noise noise(2);
-  for (int i = 0; i < 100; ++i) wall.push_back({{noise.uniform(3.9, 4.1), noise.uniform(0.5, 5), noise.uniform(5, 25)}, 0.02});
+  for (int i = 0; i < 100; ++i)
+    wall.push_back({{noise.uniform(3.9, 4.1), noise.uniform(0.5, 5), noise.uniform(5, 25)}, 0.02});
   const GroundPlane after = estimate(wall, 2);
   EXPECT_GT(after.normal_cam.y(), 0.99);  // the steepest road allowed leans by 0.12 rad
   EXPECT_NEAR(after.height_m, before.height_m, 0.5);

@@ -34,21 +34,21 @@ struct Drive {
     const SE3& T_world_now = T_world_cam.back();
     // the error of the camera's path that the estimator allows for belongs to the noise
     const double jitter = SceneFlowEstimator::Params{}.pose_jitter_px;
-    const Eigen::Vector3d sigma = (test::kSightingSigma_px.array().square() + jitter * jitter).sqrt();
+    const Eigen::Vector3d sigma = (test::kObservationSigma_px.array().square() + jitter * jitter).sqrt();
     PointTrack track;
     for (std::size_t k = 0; k < T_world_cam.size(); ++k) {
       const double dt_s = kDt_s * (static_cast<double>(k) + 1 - static_cast<double>(T_world_cam.size()));
       const Eigen::Vector3d p_then_now = p_cam + dt_s * velocity_mps + 0.5 * dt_s * dt_s * acceleration_mps2;
       const Eigen::Vector3d p_then = T_world_cam[k].inverse() * (T_world_now * p_then_now);
       const Eigen::Vector3d uvd = *kRig.project(p_then) + noise.gaussian(sigma);
-      track.add({static_cast<std::int64_t>(k), uvd.cast<float>(), test::kSightingSigma_px.cast<float>()});
+      track.add({static_cast<std::int64_t>(k), uvd.cast<float>(), test::kObservationSigma_px.cast<float>()});
     }
     return track;
   }
 };
 
-/// For points whose velocity is constant to the last: no allowance for acceleration, and a loss without its linear part, which would take
-/// about one percent off the chi-square values of clean data.
+/// For points whose velocity is constant to the last: no allowance for acceleration, and a loss without its linear
+/// part, which would take about one percent off the chi-square values of clean data.
 SceneFlowEstimator exactModel() {
   SceneFlowEstimator::Params params;
   params.acceleration_mps2 = 0;
@@ -63,7 +63,7 @@ std::optional<SceneFlow> flowOf(const SceneFlowEstimator& estimator, const Drive
   return estimator.fitMoving(track, drive.trail, *at_rest);
 }
 
-/// Mean normalised error of velocity and of (position, velocity) over seeds.
+/// Mean normalized error of velocity and of (position, velocity) over seeds.
 struct MeanNees {
   double velocity = 0, state = 0;
 };
@@ -89,9 +89,11 @@ class SceneFlowOverFrames : public testing::TestWithParam<int> {};
 
 TEST_P(SceneFlowOverFrames, CovarianceIsThatOfTheErrors) {
   constexpr int kSeeds = 2000;
-  for (const Eigen::Vector3d& velocity : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(-3, 0, 3), Eigen::Vector3d(0.5, 0, 10)}) {
+  for (const Eigen::Vector3d& velocity :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(-3, 0, 3), Eigen::Vector3d(0.5, 0, 10)}) {
     const MeanNees nees = meanNees(GetParam(), velocity, kSeeds);
-    EXPECT_NEAR(nees.velocity, 3, 1.5 * test::meanChi2Spread(3, kSeeds)) << velocity.transpose();  // nine intervals are to hold at once
+    EXPECT_NEAR(nees.velocity, 3, 1.5 * test::meanChi2Spread(3, kSeeds))
+        << velocity.transpose();  // nine intervals are to hold at once
     EXPECT_NEAR(nees.state, 6, 1.5 * test::meanChi2Spread(6, kSeeds)) << velocity.transpose();
   }
 }
@@ -125,15 +127,15 @@ TEST_P(SceneFlowOverFrames, AccelerationLeavesTheVelocityWithinItsSigma) {
     ASSERT_TRUE(flow);
     mean += test::nees<3>(flow->velocity_mps - velocity, flow->covariance.bottomRightCorner<3, 3>()) / kSeeds;
   }
-  // The allowance counts each sighting's deviation as noise of its own, though one acceleration bends them all: the standard deviation is
-  // right within a factor of two.
+  // The allowance counts each observation's deviation as noise of its own, though one acceleration bends them all: the
+  // standard deviation is right within a factor of two.
   EXPECT_LT(mean, 4 * 3);
   EXPECT_GT(mean, 0.25 * 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Windows, SceneFlowOverFrames, testing::Values(3, 5, 8));
 
-TEST(SceneFlow, MoversAtTheCamerasOwnSpeedAreRecognised) {
+TEST(SceneFlow, MoversAtTheCamerasOwnSpeedAreRecognized) {
   const SceneFlowEstimator estimator({}, kRig);
   const Drive drive(6);
   const Eigen::Vector3d velocity = kCameraStep_m / kDt_s;  // hardly moves in the image
@@ -155,24 +157,24 @@ TEST(SceneFlow, ATrackThatJumpsHasNone) {
     Noise noise(seed);
     PointTrack track = drive.follow({2, 0.5, 15}, {0, 0, 0}, noise);
     EXPECT_TRUE(flowOf(estimator, drive, track));
-    for (std::size_t k = 0; k < 8; k += 2) track.sightings[k].uvd_px.x() += 12;  // to a neighbour and back
+    for (std::size_t k = 0; k < 8; k += 2) track.observations[k].uvd_px.x() += 12;  // to a neighbor and back
     EXPECT_FALSE(flowOf(estimator, drive, track));
   }
 }
 
-TEST(SceneFlow, TwoSightingsTellNothing) {
+TEST(SceneFlow, TwoObservationsTellNothing) {
   const SceneFlowEstimator estimator({}, kRig);
   const Drive drive(2);
   Noise noise(1);
   EXPECT_FALSE(flowOf(estimator, drive, drive.follow({2, 0.5, 15}, {0, 0, 0}, noise)));
 }
 
-TEST(SceneFlow, SightingsOfForgottenFramesAreLeftOut) {
+TEST(SceneFlow, ObservationsOfForgottenFramesAreLeftOut) {
   const SceneFlowEstimator estimator({}, kRig);
   const Drive drive(8);
   Noise noise(1);
   PointTrack track = drive.follow({2, 0.5, 15}, {0, 0, 0}, noise);
-  track.sightings[0].step = -5;
+  track.observations[0].step = -5;
   const auto flow = flowOf(estimator, drive, track);
   ASSERT_TRUE(flow);
   EXPECT_EQ(flow->observations, 7);

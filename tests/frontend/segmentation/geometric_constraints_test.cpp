@@ -32,13 +32,15 @@ TEST(GeometricConstraints, APointAtRestKeepsBoth) {
 }
 
 TEST(GeometricConstraints, ASidewaysMoverLeavesTheEpipolarLine) {
-  const auto r = residual({0.2, 2, 15}, {0.5, 0, 0});  // the line points down, the mover goes right by 0.5 m: 30 px at 12 m
+  const auto r =
+      residual({0.2, 2, 15}, {0.5, 0, 0});  // the line points down, the mover goes right by 0.5 m: 30 px at 12 m
   ASSERT_TRUE(r);
   EXPECT_GT(r->epipolar_sigmas, 20);
 }
 
 TEST(GeometricConstraints, AMoverAlongTheLineExceedsTheFlowBoundOnly) {
-  // It drives along our own direction: seen from a camera that goes straight it stays in the plane of its epipolar line.
+  // It drives along our own direction: seen from a camera that goes straight it stays in the plane of its epipolar
+  // line.
   for (const double step_m : {-3.0, 3.0}) {
     const auto r = residual({4, 1.5, 15}, {0, 0, step_m});
     ASSERT_TRUE(r);

@@ -27,17 +27,17 @@ Components search(int count, const std::set<std::array<int, 2>>& edges, const Pr
   std::vector<bool> seen(static_cast<std::size_t>(count), false);
   Components components;
   for (int start = 0; start < count; ++start) {
-    if (seen[static_cast<std::size_t>(start)]) continue;
+    if (seen[start]) continue;
     std::vector<int> members;
     std::queue<int> open({start});
-    seen[static_cast<std::size_t>(start)] = true;
+    seen[start] = true;
     while (!open.empty()) {
       const int i = open.front();
       open.pop();
       members.push_back(i);
       for (int j = 0; j < count; ++j) {
-        if (seen[static_cast<std::size_t>(j)] || !edges.contains({std::min(i, j), std::max(i, j)}) || !together(i, j)) continue;
-        seen[static_cast<std::size_t>(j)] = true;
+        if (seen[j] || !edges.contains({std::min(i, j), std::max(i, j)}) || !together(i, j)) continue;
+        seen[j] = true;
         open.push(j);
       }
     }
@@ -57,13 +57,11 @@ TEST(MotionGraph, ComponentsAreThoseOfTheTriangulationByItsDefinition) {
     std::vector<double> speed;
     for (const auto& p : points) {
       grid.push_back(test::onGrid(p));
-      speed.push_back(std::floor(p.x() / 100) + noise.uniform(0, 1.2));  // neighbouring stripes sometimes touch
+      speed.push_back(std::floor(p.x() / 100) + noise.uniform(0, 1.2));  // neighboring stripes sometimes touch
     }
     const auto edges = test::delaunayEdgesByDefinition(grid);
     if (!edges) continue;  // no unique triangulation to compare with
-    const auto together = [&](int i, int j) {
-      return std::abs(speed[static_cast<std::size_t>(i)] - speed[static_cast<std::size_t>(j)]) < 0.5;
-    };
+    const auto together = [&](int i, int j) { return std::abs(speed[i] - speed[j]) < 0.5; };
     const Components expected = search(count, *edges, together);
     EXPECT_EQ(cutDelaunayComponents(points, together), expected) << "seed " << seed;
     ++compared;
@@ -76,7 +74,7 @@ TEST(MotionGraph, ComponentsAreThoseOfTheTriangulationByItsDefinition) {
 TEST(MotionGraph, AClusterBetweenOthersIsCutOutAndCoincidentPointsStayTogether) {
   const Points points{{10, 10}, {50, 10}, {50, 10}, {10, 40}, {52, 40}, {10, 10.01}, {90, 12}, {91, 41}};
   const std::vector<int> body{0, 1, 2, 0, 1, 3, 4, 4};  // points 2 and 5 share their place with a stranger
-  const auto together = [&](int i, int j) { return body[static_cast<std::size_t>(i)] == body[static_cast<std::size_t>(j)]; };
+  const auto together = [&](int i, int j) { return body[i] == body[j]; };
   const Components expected{{0, 3, 5}, {1, 2, 4}, {6, 7}};
   EXPECT_EQ(cutDelaunayComponents(points, together), expected);
 }

@@ -21,35 +21,42 @@ struct Street {
 
   explicit Street(std::uint64_t seed) : noise(seed) {}
 
-  /// `count` points in a box about `centre`; returns the body's number. The velocities scatter by their covariance.
-  int add(const Eigen::Vector3d& centre, const Eigen::Vector3d& half_size, const Eigen::Vector3d& velocity_mps, int count,
-          double sigma_mps = 0.3) {
+  /// `count` points in a box about `center`; returns the body's number. The velocities scatter by their covariance.
+  int add(const Eigen::Vector3d& center, const Eigen::Vector3d& half_size, const Eigen::Vector3d& velocity_mps,
+          int count, double sigma_mps = 0.3) {
     for (int i = 0; i < count; ++i) {
-      const Eigen::Vector3d p = centre + noise.inBox(-half_size, half_size);
+      const Eigen::Vector3d p = center + noise.inBox(-half_size, half_size);
       const Eigen::Vector3d uvd = *kRig.project(p), sigma(0.4 * sigma_mps, 0.4 * sigma_mps, sigma_mps);
-      SceneFlow flow{.p_cam = p, .velocity_mps = velocity_mps + noise.gaussian(sigma), .covariance = Matrix6d::Zero(), .observations = 6};
+      SceneFlow flow{.p_cam = p,
+                     .velocity_mps = velocity_mps + noise.gaussian(sigma),
+                     .covariance = Matrix6d::Zero(),
+                     .observations = 6};
       flow.covariance.topLeftCorner<3, 3>() = test::triangulationCovariance(uvd) / 6;
       flow.covariance.bottomRightCorner<3, 3>() = sigma.cwiseAbs2().asDiagonal();
-      points.push_back(
-          {.point = {static_cast<std::int64_t>(points.size())}, .uvd_px = uvd, .sigma_px = test::kSightingSigma_px, .flow = flow});
+      points.push_back({.point = {static_cast<std::int64_t>(points.size())},
+                        .uvd_px = uvd,
+                        .sigma_px = test::kObservationSigma_px,
+                        .flow = flow});
       body.push_back(bodies);
     }
     return bodies++;
   }
-  std::vector<Segment> segments() { return MotionSegmenter({}, kRig)(points, std::vector<bool>(points.size(), false), GroundPlane{}); }
+  std::vector<Segment> segments() {
+    return MotionSegmenter({}, kRig)(points, std::vector<bool>(points.size(), false), GroundPlane{});
+  }
   /// Share of a body's points with a label.
   double share(int of_body, PointLabel label) const {
-    int all = 0, labelled = 0;
+    int all = 0, labeled = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       all += body[i] == of_body;
-      labelled += body[i] == of_body && points[i].label == label;
+      labeled += body[i] == of_body && points[i].label == label;
     }
-    return static_cast<double>(labelled) / all;
+    return static_cast<double>(labeled) / all;
   }
   /// The body most of a segment's points belong to, and whether they all do.
   std::pair<int, bool> ownerOf(const Segment& segment) const {
     std::vector<int> votes(static_cast<std::size_t>(bodies), 0);
-    for (const int i : segment.points) ++votes[static_cast<std::size_t>(body[static_cast<std::size_t>(i)])];
+    for (const int i : segment.points) ++votes[body[i]];
     const auto best = std::ranges::max_element(votes);
     return {static_cast<int>(best - votes.begin()), *best == static_cast<int>(segment.points.size())};
   }
@@ -57,13 +64,15 @@ struct Street {
 
 const Eigen::Vector3d kCar(0.9, 0.6, 0.8);  // half the size of a car's visible part
 
-TEST(MotionSegmenter, NeighboursOfDifferentSpeedAParkedCarAndTheWallAreToldApart) {
+TEST(MotionSegmenter, NeighborsOfDifferentSpeedAParkedCarAndTheWallAreToldApart) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Street street(seed);
-    const int fast = street.add({-1.5, 0.8, 14}, kCar, {0, 0, 12}, 15), slow = street.add({1.5, 0.8, 14}, kCar, {0, 0, 6}, 15);
-    const int parked = street.add({5, 0.8, 16}, kCar, {0, 0, 0}, 15), wall = street.add({0, -1, 24}, {12, 2, 0.5}, {0, 0, 0}, 80);
+    const int fast = street.add({-1.5, 0.8, 14}, kCar, {0, 0, 12}, 15),
+              slow = street.add({1.5, 0.8, 14}, kCar, {0, 0, 6}, 15);
+    const int parked = street.add({5, 0.8, 16}, kCar, {0, 0, 0}, 15),
+              wall = street.add({0, -1, 24}, {12, 2, 0.5}, {0, 0, 0}, 80);
     const auto segments = street.segments();
-    // One point in a hundred has a velocity that its neighbours do not share, by the gate, and stays alone and unknown.
+    // One point in a hundred has a velocity that its neighbors do not share, by the gate, and stays alone and unknown.
     EXPECT_GT(street.share(fast, PointLabel::kMoving), 0.9);
     EXPECT_GT(street.share(slow, PointLabel::kMoving), 0.9);
     EXPECT_EQ(street.share(parked, PointLabel::kMoving), 0);
@@ -104,13 +113,14 @@ TEST(MotionSegmenter, GroundPointsAreInNoSegment) {
   const auto segments = street.segments();
   ASSERT_FALSE(segments.empty());
   for (const auto& s : segments)
-    for (const int i : s.points) EXPECT_NE(street.body[static_cast<std::size_t>(i)], ground);
+    for (const int i : s.points) EXPECT_NE(street.body[i], ground);
   EXPECT_EQ(street.share(ground, PointLabel::kGround), 1);
 }
 
-TEST(MotionSegmenter, CarsOfEqualVelocityFiveMetresApartAreTwo) {
+TEST(MotionSegmenter, CarsOfEqualVelocityFiveMetersApartAreTwo) {
   Street street(3);
-  const int left = street.add({-3.4, 0.8, 14}, kCar, {0, 0, 10}, 15), right = street.add({3.4, 0.8, 14}, kCar, {0, 0, 10}, 15);
+  const int left = street.add({-3.4, 0.8, 14}, kCar, {0, 0, 10}, 15),
+            right = street.add({3.4, 0.8, 14}, kCar, {0, 0, 10}, 15);
   int moving = 0;
   for (const auto& s : street.segments()) {
     moving += s.label == PointLabel::kMoving;
@@ -123,7 +133,8 @@ TEST(MotionSegmenter, CarsOfEqualVelocityFiveMetresApartAreTwo) {
 
 TEST(MotionSegmenter, WhatFliesOrRisesIsNoVehicle) {
   Street street(4);
-  const int bird = street.add({0, -5, 14}, {0.3, 0.2, 0.3}, {3, 0, 5}, 8), leaf = street.add({6, 0.5, 14}, {0.3, 0.2, 0.3}, {0, -6, 1}, 8);
+  const int bird = street.add({0, -5, 14}, {0.3, 0.2, 0.3}, {3, 0, 5}, 8),
+            leaf = street.add({6, 0.5, 14}, {0.3, 0.2, 0.3}, {0, -6, 1}, 8);
   street.segments();
   EXPECT_EQ(street.share(bird, PointLabel::kMoving), 0);
   EXPECT_EQ(street.share(leaf, PointLabel::kMoving), 0);
@@ -137,7 +148,7 @@ TEST(MotionSegmenter, AnEndThatBreaksTheGeometryIsCutFromOneThatKeepsIt) {
   const auto segments = MotionSegmenter({}, kRig)(street.points, violates, GroundPlane{});
   EXPECT_GE(segments.size(), 2U);
   for (const auto& s : segments)
-    for (const int i : s.points) EXPECT_EQ(violates[static_cast<std::size_t>(i)], violates[static_cast<std::size_t>(s.points.front())]);
+    for (const int i : s.points) EXPECT_EQ(violates[i], violates[s.points.front()]);
 }
 
 }  // namespace

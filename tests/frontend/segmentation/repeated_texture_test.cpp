@@ -18,11 +18,12 @@ Image texture(int period) {
   for (auto& v : tile) v = static_cast<int>(random() % 200) + 20;
   ImagePool pool;
   Image image = pool.acquire(kWidth, kHeight);
-  const auto at = [&](int x, int y) { return tile[static_cast<std::size_t>(y * period + x % period)]; };
+  const auto at = [&](int x, int y) { return tile[y * period + x % period]; };
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {  // a 2x2 mean, so that the patches have slopes to descend
       const int below = std::min(y + 1, kHeight - 1);
-      image.mutableRow(y)[x] = static_cast<std::uint8_t>((at(x, y) + at(x + 1, y) + at(x, below) + at(x + 1, below)) / 4);
+      image.mutableRow(y)[x] =
+          static_cast<std::uint8_t>((at(x, y) + at(x + 1, y) + at(x, below) + at(x + 1, below)) / 4);
     }
   }
   return image;
@@ -30,7 +31,7 @@ Image texture(int period) {
 
 const Eigen::Vector2d kFollowed{80, 30}, kOnePeriodOn{112, 30};
 
-TEST(RepeatedTexture, FindsAFencePostWhereItsNeighbourStood) {
+TEST(RepeatedTexture, FindsAFencePostWhereItsNeighborStood) {
   const Image fence = texture(32);
   EXPECT_TRUE(isFoundAtRestToo(fence, kFollowed, fence, kOnePeriodOn + Eigen::Vector2d(1, -1), kFollowed, 1.0, {}));
 }

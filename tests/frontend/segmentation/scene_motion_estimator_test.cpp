@@ -36,7 +36,8 @@ TEST(SceneMotionEstimator, EveryInputGivesOneOutputOfItsFrameAlsoWhenRejectedOrE
     EXPECT_EQ(motion->stamp, Timestamp{frame * 100'000'000});
     EXPECT_EQ(motion->status, rejected ? FrameStatus::kRejected : frame == 0 ? FrameStatus::kGood : FrameStatus::kLost);
     EXPECT_TRUE(motion->points.empty());
-    EXPECT_THAT(motion->T_previous_now, test::IsNearPose(SE3{}, 0.0));  // no motion was ever seen: standing still is predicted
+    EXPECT_THAT(motion->T_previous_now,
+                test::IsNearPose(SE3{}, 0.0));  // no motion was ever seen: standing still is predicted
   }
 }
 
@@ -55,7 +56,8 @@ TEST(SceneMotionEstimator, APredictedMotionIsAsWideAsItsParametersSay) {
 constexpr StereoCamera kSmallRig{
     .fx_px = 300, .fy_px = 300, .cx_px = 200, .cy_px = 100, .baseline_m = 0.54, .width_px = 400, .height_px = 200};
 
-/// Two surfaces that face the camera, one at rest and one of a vehicle at the left, as a camera sees them that drives ahead.
+/// Two surfaces that face the camera, one at rest and one of a vehicle at the left, as a camera sees them that drives
+/// ahead.
 class TwoSurfaces {
  public:
   static constexpr double kCameraStep_m = 1, kWall_m = 30, kCar_m = 4;
@@ -69,7 +71,8 @@ class TwoSurfaces {
     features->frame = pair;
     for (const double eye_m : {0.0, kSmallRig.baseline_m}) {
       const auto gray = [&](double u, double v) { return grayAt(u, v, frame, eye_m); };
-      (eye_m > 0 ? features->right : features->left).levels.push_back(test::render(kSmallRig.width_px, kSmallRig.height_px, gray));
+      (eye_m > 0 ? features->right : features->left)
+          .levels.push_back(test::render(kSmallRig.width_px, kSmallRig.height_px, gray));
     }
     auto stereo = std::make_shared<StereoMatches>();
     auto flow = std::make_shared<OpticalFlow>();
@@ -77,8 +80,12 @@ class TwoSurfaces {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const Eigen::Vector3d uvd = *kSmallRig.project(inCamera(i, frame));
       const int corner = frame == 0 ? static_cast<int>(i) : -1;
-      flow->tracks.push_back(
-          {{static_cast<std::int64_t>(i)}, static_cast<float>(uvd.x()), static_cast<float>(uvd.y()), 0.2F, frame + 1, corner});
+      flow->observations.push_back({{static_cast<std::int64_t>(i)},
+                                    static_cast<float>(uvd.x()),
+                                    static_cast<float>(uvd.y()),
+                                    0.2F,
+                                    frame + 1,
+                                    corner});
       features->corners.push_back({static_cast<float>(uvd.x()), static_cast<float>(uvd.y()), 1});
       stereo->of_corner.push_back(StereoMatch{static_cast<float>(uvd.z()), 0.2F});
     }
@@ -98,7 +105,8 @@ class TwoSurfaces {
   /// The car covers x from -1.6 to -0.6 m and y from -0.6 to 0.4 m.
   double grayAt(double u, double v, int frame, double eye_m) const {
     const auto at = [&](double z_m) {
-      return Eigen::Vector2d((u - kSmallRig.cx_px) * z_m / kSmallRig.fx_px + eye_m, (v - kSmallRig.cy_px) * z_m / kSmallRig.fy_px);
+      return Eigen::Vector2d((u - kSmallRig.cx_px) * z_m / kSmallRig.fx_px + eye_m,
+                             (v - kSmallRig.cy_px) * z_m / kSmallRig.fy_px);
     };
     const Eigen::Vector2d on_car = at(depth_m(true, frame)), on_wall = at(depth_m(false, frame));
     const bool car = on_car.x() > -1.6 && on_car.x() < -0.6 && on_car.y() > -0.6 && on_car.y() < 0.4;

@@ -23,17 +23,21 @@ struct Road {
     twist << 10, 0, 0, 0, 0, 0;
     TrackedObject object;
     object.track = {static_cast<std::int64_t>(objects.size())};
-    object.kinematics = ObjectKinematics(SE3(upright, {x_m, 1, kDepth_m}), twist, 0.01 * ObjectKinematics::Matrix12d::Identity());
-    for (int i = 0; i < points; ++i) object.points.push_back({{first + i}, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity()});
+    object.kinematics =
+        ObjectKinematics(SE3(upright, {x_m, 1, kDepth_m}), twist, 0.01 * ObjectKinematics::Matrix12d::Identity());
+    for (int i = 0; i < points; ++i)
+      object.points.push_back({{first + i}, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity()});
     objects.push_back(object);
   }
   /// Of the next `points` ids of the scene.
   void addSegment(double x_m, int points, double speed_mps = 10, PointLabel label = PointLabel::kMoving) {
-    Segment segment{.points = {}, .label = label, .centroid_cam = {x_m, 1, kDepth_m}, .velocity_mps = {0, 0, speed_mps}};
+    Segment segment{
+        .points = {}, .label = label, .centroid_cam = {x_m, 1, kDepth_m}, .velocity_mps = {0, 0, speed_mps}};
     segment.velocity_covariance = 0.04 * Eigen::Matrix3d::Identity();
     for (int i = 0; i < points; ++i) {
       segment.points.push_back(static_cast<int>(scene.points.size()));
-      scene.points.push_back({.point = {next_point++}, .uvd_px = {600, 200, 25}, .sigma_px = {0.3, 0.3, 0.3}, .flow = {}});
+      scene.points.push_back(
+          {.point = {next_point++}, .uvd_px = {600, 200, 25}, .sigma_px = {0.3, 0.3, 0.3}, .flow = {}});
     }
     scene.segments.push_back(segment);
   }

@@ -53,7 +53,8 @@ TEST(ObjectKinematics, PredictsAConstantTwist) {
 TEST(ObjectKinematics, APlaceSeenOnTheBodyDrawsItThere) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Car car(seed);
-    const Eigen::Vector3d p_body(2, -0.5, 0.7), seen_world = car.T_world_body * p_body + Eigen::Vector3d(0.04, -0.02, 0.03);
+    const Eigen::Vector3d p_body(2, -0.5, 0.7),
+        seen_world = car.T_world_body * p_body + Eigen::Vector3d(0.04, -0.02, 0.03);
     const auto distance = [&](double sigma_m) {
       ObjectKinematics k = car.kinematics();
       k.fusePlace(p_body, seen_world, sigma_m);
@@ -84,7 +85,8 @@ TEST(ObjectKinematics, PredictedCovarianceFollowsTheFiniteDifferencesOfTheMotion
   };
   Matrix12d F;
   constexpr double kStep = 1e-6;
-  for (int i = 0; i < 12; ++i) F.col(i) = (error(kStep * Vector12d::Unit(i)) - error(-kStep * Vector12d::Unit(i))) / (2 * kStep);
+  for (int i = 0; i < 12; ++i)
+    F.col(i) = (error(kStep * Vector12d::Unit(i)) - error(-kStep * Vector12d::Unit(i))) / (2 * kStep);
   const Matrix12d expected = F * car.covariance * F.transpose();
   constexpr double kTol = 1e-8;  // of central differences, for entries below one
   EXPECT_THAT(k.poseCovariance(), IsNear(expected.topLeftCorner<6, 6>(), kTol));
@@ -162,7 +164,8 @@ TEST(ObjectKinematics, ChangingTheBodyFrameKeepsTheMotionOfEveryPoint) {
   const auto velocity = [](const ObjectKinematics& k, const Eigen::Vector3d& p_body) -> Eigen::Vector3d {
     return k.pose().rotation() * (k.twist().head<3>() + k.twist().tail<3>().cross(p_body));
   };
-  for (const Eigen::Vector3d& p_new : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(2, -1, 0.5), Eigen::Vector3d(-3, 0, 1)}) {
+  for (const Eigen::Vector3d& p_new :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(2, -1, 0.5), Eigen::Vector3d(-3, 0, 1)}) {
     EXPECT_THAT(after.pose() * p_new, IsNear(before.pose() * (T_body_new * p_new), 1e-12));  // rounding, here and below
     EXPECT_THAT(velocity(after, p_new), IsNear(velocity(before, T_body_new * p_new), 1e-12));
   }

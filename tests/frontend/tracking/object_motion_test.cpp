@@ -29,9 +29,12 @@ struct TwoFrames {
     test::Noise noise(1);
     for (std::int64_t id = 0; id < points; ++id) {
       const Eigen::Vector3d p = noise.inBox({-1, -0.9, -0.6}, {1, 0.9, 0.8});
-      before.points.push_back(
-          {.point = {id}, .uvd_px = *kRig.project(T_cam_body_before * p), .sigma_px = test::kSightingSigma_px, .flow = {}});
-      now.points.push_back({.point = {id}, .uvd_px = *kRig.project(T_cam_body * p), .sigma_px = test::kSightingSigma_px, .flow = {}});
+      before.points.push_back({.point = {id},
+                               .uvd_px = *kRig.project(T_cam_body_before * p),
+                               .sigma_px = test::kObservationSigma_px,
+                               .flow = {}});
+      now.points.push_back(
+          {.point = {id}, .uvd_px = *kRig.project(T_cam_body * p), .sigma_px = test::kObservationSigma_px, .flow = {}});
       object.points.push_back({{id}, p, 1e-4 * Eigen::Matrix3d::Identity()});
     }
     object.kinematics = ObjectKinematics(T_cam_body, twist, 0.04 * ObjectKinematics::Matrix12d::Identity());
@@ -39,12 +42,14 @@ struct TwoFrames {
     object.T_cam_body_before = T_cam_body_before;
     object.seen_before = before.frame;
   }
-  /// Moves the present sightings of even or odd points by less than a gross error.
+  /// Moves the present observations of even or odd points by less than a gross error.
   void shift(std::int64_t parity, double u_px) {
     for (auto& p : now.points)
       if (p.point.value % 2 == parity) p.uvd_px.x() += u_px;
   }
-  std::optional<ObjectObservation> follow() { return ObjectMotionEstimator({}, kRig).follow(object, now, &before, SE3{}); }
+  std::optional<ObjectObservation> follow() {
+    return ObjectMotionEstimator({}, kRig).follow(object, now, &before, SE3{});
+  }
 };
 
 TEST(ObjectMotion, NoiseFreePointsGiveTheExactEncounterAndMotion) {
@@ -73,7 +78,8 @@ TEST(ObjectMotion, EncounterAndMotionShareNoPoint) {
     const auto [encounter, motion] = influence(parity);
     EXPECT_GT(std::max(encounter, motion), 5e-3);
     EXPECT_LT(std::min(encounter, motion), 5e-4);
-    EXPECT_EQ(encounter > motion, influence(1 - parity).first < influence(1 - parity).second);  // the other half does the other thing
+    EXPECT_EQ(encounter > motion,
+              influence(1 - parity).first < influence(1 - parity).second);  // the other half does the other thing
   }
 }
 
@@ -87,7 +93,7 @@ TEST(ObjectMotion, FewPointsMeasureTheEncounterAlone) {
   EXPECT_FALSE(hardly.follow());
 }
 
-TEST(ObjectMotion, AGapInTheSightingsLeavesTheMotionOut) {
+TEST(ObjectMotion, AGapInTheObservationsLeavesTheMotionOut) {
   TwoFrames frames(30);
   frames.object.seen_before = {3};
   const auto o = frames.follow();
@@ -103,10 +109,13 @@ struct Unfollowed : TwoFrames {
     for (int i = 0; i < count; ++i) {
       const PointId id{1000 + static_cast<std::int64_t>(now.points.size())};
       const Eigen::Vector3d uvd = *kRig.project(T_cam_body * (p_body + Eigen::Vector3d(0, 0.1 * i, 0)));
-      now.points.push_back({.point = id, .uvd_px = uvd, .sigma_px = test::kSightingSigma_px, .label = label, .flow = {}});
+      now.points.push_back(
+          {.point = id, .uvd_px = uvd, .sigma_px = test::kObservationSigma_px, .label = label, .flow = {}});
     }
   }
-  std::optional<ObjectObservation> presence() const { return ObjectMotionEstimator({}, kRig).presence(object, now, predicted); }
+  std::optional<ObjectObservation> presence() const {
+    return ObjectMotionEstimator({}, kRig).presence(object, now, predicted);
+  }
 };
 
 TEST(ObjectMotion, PointsWithinItsOutlineShowThatAnObjectIsWhereItWasPredicted) {

@@ -23,7 +23,8 @@ struct Drive {
   ObjectTracker tracker;
   std::vector<FrameMeasurementsPtr> frames;
 
-  Drive(const std::vector<SimulatedCar>& cars, double camera_speed_mps, int count, std::uint64_t seed = 1, double odometry_sigma_m = 0.003)
+  Drive(const std::vector<SimulatedCar>& cars, double camera_speed_mps, int count, std::uint64_t seed = 1,
+        double odometry_sigma_m = 0.003)
       : traffic(cars, camera_speed_mps, seed, odometry_sigma_m), tracker({}, kRig) {
     for (int i = 0; i < count; ++i) frames.push_back(tracker(traffic.next()));
   }
@@ -45,7 +46,8 @@ struct Drive {
   std::size_t carOf(const ObjectObservation& o, std::size_t cars) const {
     std::size_t best = 0;
     const auto distance = [&](std::size_t c) {
-      return (traffic.carInCamera(c, static_cast<int>(o.frame.value)).translation() - o.T_cam_body.translation()).norm();
+      return (traffic.carInCamera(c, static_cast<int>(o.frame.value)).translation() - o.T_cam_body.translation())
+          .norm();
     };
     for (std::size_t c = 1; c < cars; ++c)
       if (distance(c) < distance(best)) best = c;
@@ -76,7 +78,8 @@ TEST(ObjectTracker, IsConfirmedWithinFiveFramesAndBringsItsBacklogAlong) {
   EXPECT_LE(now, 2 + 5);  // scene flow begins in frame 2
   ASSERT_GE(objects.size(), 2U);
   for (std::size_t i = 0; i < objects.size(); ++i)
-    EXPECT_EQ(objects[i].frame.value, now - static_cast<std::int64_t>(objects.size() - 1 - i));  // oldest first, its own frame last
+    EXPECT_EQ(objects[i].frame.value,
+              now - static_cast<std::int64_t>(objects.size() - 1 - i));  // oldest first, its own frame last
 }
 
 TEST(ObjectTracker, AnObjectThatVanishesIsPredictedFiveTimesAndThenEnds) {
@@ -92,7 +95,8 @@ TEST(ObjectTracker, AnObjectThatVanishesIsPredictedFiveTimesAndThenEnds) {
   int ends = 0;
   for (const auto& f : drive.frames) {
     ends += static_cast<int>(f->ended.size());
-    EXPECT_TRUE(f->ended.empty() || f->frame.value > 25) << f->frame.value;  // it may come back while its place is known
+    EXPECT_TRUE(f->ended.empty() || f->frame.value > 25)
+        << f->frame.value;  // it may come back while its place is known
   }
   EXPECT_EQ(ends, 1);
 }
@@ -109,10 +113,16 @@ TEST(ObjectTracker, ACarThatComesBackWithinASecondKeepsItsId) {
 
 TEST(ObjectTracker, ACarThatComesBackIsWhereItIsSeenAgain) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    // Unseen it waits for half a second: its place was predicted three metres ahead.
-    const Drive drive(
-        {{.x_m = 0.5, .z_m = 18, .speed_mps = 6, .points = 60, .gone_from = 25, .gone_until = 30, .stands_from = 25, .stands_until = 30}},
-        6, 45, seed);
+    // Unseen it waits for half a second: its place was predicted three meters ahead.
+    const Drive drive({{.x_m = 0.5,
+                        .z_m = 18,
+                        .speed_mps = 6,
+                        .points = 60,
+                        .gone_from = 25,
+                        .gone_until = 30,
+                        .stands_from = 25,
+                        .stands_until = 30}},
+                      6, 45, seed);
     ASSERT_EQ(drive.tracks().size(), 1U) << "seed " << seed;
     const auto all = drive.observations(*drive.tracks().begin());
     const auto placeAt = [&](std::int64_t frame) {
@@ -125,7 +135,8 @@ TEST(ObjectTracker, ACarThatComesBackIsWhereItIsSeenAgain) {
 
 TEST(ObjectTracker, TwoCarsSideBySideAreTwoFromTheFirstFrame) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const Drive drive({{.x_m = -1.5, .z_m = 14, .speed_mps = 10, .points = 80}, {.x_m = 1.1, .z_m = 14.5, .speed_mps = 10, .points = 80}},
+    const Drive drive({{.x_m = -1.5, .z_m = 14, .speed_mps = 10, .points = 80},
+                       {.x_m = 1.1, .z_m = 14.5, .speed_mps = 10, .points = 80}},
                       10, 30, seed);
     ASSERT_EQ(drive.tracks().size(), 2U) << "seed " << seed;
     for (const TrackId track : drive.tracks()) {
@@ -147,7 +158,8 @@ TEST(ObjectTracker, AFewPointsSeenThroughAVehicleAreNoVehicle) {
 }
 
 TEST(ObjectTracker, ACarThatStopsIsStoppedUntilItMovesAgain) {
-  const Drive drive({{.x_m = 3, .z_m = 20, .speed_mps = 5, .points = 60, .stands_from = 20, .stands_until = 45}}, 2, 65);
+  const Drive drive({{.x_m = 3, .z_m = 20, .speed_mps = 5, .points = 60, .stands_from = 20, .stands_until = 45}}, 2,
+                    65);
   ASSERT_EQ(drive.tracks().size(), 1U);
   std::map<std::int64_t, ObjectState> state;
   for (const auto& o : drive.observations(*drive.tracks().begin())) state[o.frame.value] = o.state;
@@ -159,9 +171,10 @@ TEST(ObjectTracker, ACarThatStopsIsStoppedUntilItMovesAgain) {
 
 TEST(ObjectTracker, ParkedCarsAreNeverReported) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const Drive drive(
-        {{.x_m = 4, .z_m = 25, .speed_mps = 0}, {.x_m = -4, .z_m = 40, .speed_mps = 0}, {.x_m = 5, .z_m = 60, .speed_mps = 0}}, 10, 30,
-        seed);
+    const Drive drive({{.x_m = 4, .z_m = 25, .speed_mps = 0},
+                       {.x_m = -4, .z_m = 40, .speed_mps = 0},
+                       {.x_m = 5, .z_m = 60, .speed_mps = 0}},
+                      10, 30, seed);
     EXPECT_TRUE(drive.tracks().empty()) << "seed " << seed;
   }
 }
@@ -178,12 +191,14 @@ TEST(ObjectTracker, WhatIsNoLargerThanAHandIsNoVehicle) {
 
 TEST(ObjectTracker, PointsWithinOnePatchAreNoVehicle) {
   for (std::uint64_t seed = 0; seed < 5; ++seed)  // 20 cm at 16 m: 9 pixels
-    EXPECT_TRUE(Drive({{.x_m = 0.5, .z_m = 16, .points = 30, .size = 0.12}}, 10, 20, seed).tracks().empty()) << "seed " << seed;
+    EXPECT_TRUE(Drive({{.x_m = 0.5, .z_m = 16, .points = 30, .size = 0.12}}, 10, 20, seed).tracks().empty())
+        << "seed " << seed;
 }
 
 TEST(ObjectTracker, TwoCarsThatPassEachOtherKeepTheirIds) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const Drive drive({{.x_m = -1.8, .z_m = 20, .speed_mps = 7}, {.x_m = 1.8, .z_m = 11, .speed_mps = 11}}, 8, 40, seed);
+    const Drive drive({{.x_m = -1.8, .z_m = 20, .speed_mps = 7}, {.x_m = 1.8, .z_m = 11, .speed_mps = 11}}, 8, 40,
+                      seed);
     ASSERT_EQ(drive.tracks().size(), 2U) << "seed " << seed;
     for (const TrackId track : drive.tracks()) {
       const auto all = drive.observations(track);
@@ -195,13 +210,17 @@ TEST(ObjectTracker, TwoCarsThatPassEachOtherKeepTheirIds) {
 
 TEST(ObjectTracker, TheBodysXAxisLiesAlongTheTravel) {
   for (const double heading : {0.0, 0.6, 3.1}) {
-    const Drive drive({{.x_m = heading == 0.6 ? -5.0 : -3.0, .z_m = heading > 3 ? 40.0 : 18.0, .heading_rad = heading, .speed_mps = 7}}, 6,
-                      18);
+    const Drive drive({{.x_m = heading == 0.6 ? -5.0 : -3.0,
+                        .z_m = heading > 3 ? 40.0 : 18.0,
+                        .heading_rad = heading,
+                        .speed_mps = 7}},
+                      6, 18);
     ASSERT_FALSE(drive.tracks().empty());
     const auto all = drive.observations(*drive.tracks().begin());
     for (const auto& o : all) {
       const Eigen::Matrix3d R = drive.bodyOnCar(o, 0).rotation();
-      // Confirmation comes with velocities good to 0.5 m/s of 7, and distant oncoming cars are seen from the front alone.
+      // Confirmation comes with velocities good to 0.5 m/s of 7, and distant oncoming cars are seen from the front
+      // alone.
       EXPECT_GT(R(0, 0), std::cos(0.14)) << heading;
       EXPECT_GT(R(2, 2), std::cos(0.08)) << heading;  // z up: the prior of the tilt allows 0.03 rad
     }
@@ -212,12 +231,15 @@ TEST(ObjectTracker, EncounterAndMotionErrorsAreWithinTheirCovariances) {
   double encounter = 0, motion = 0;
   int encounters = 0, motions = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const Drive drive({{.x_m = -2, .z_m = 12, .speed_mps = 9, .points = 80}}, 8, 25, seed, 1e-5);  // the points' noise alone
+    const Drive drive({{.x_m = -2, .z_m = 12, .speed_mps = 9, .points = 80}}, 8, 25, seed,
+                      1e-5);  // the points' noise alone
     ASSERT_FALSE(drive.tracks().empty());
     const auto all = drive.observations(*drive.tracks().begin());
-    Vector6d mean = Vector6d::Zero();  // where the body sits on the car: chosen by the tracker, known from all its observations
+    Vector6d mean =
+        Vector6d::Zero();  // where the body sits on the car: chosen by the tracker, known from all its observations
     const SE3 reference = drive.bodyOnCar(all[all.size() / 2], 0);
-    for (const auto& o : all) mean += (reference.inverse() * drive.bodyOnCar(o, 0)).log() / static_cast<double>(all.size());
+    for (const auto& o : all)
+      mean += (reference.inverse() * drive.bodyOnCar(o, 0)).log() / static_cast<double>(all.size());
     const SE3 T_car_body = reference * SE3::exp(mean);
     for (const auto& o : all) {
       const int frame = static_cast<int>(o.frame.value);
@@ -225,14 +247,15 @@ TEST(ObjectTracker, EncounterAndMotionErrorsAreWithinTheirCovariances) {
       encounter += test::nees((truth.inverse() * o.T_cam_body).log(), o.encounter_covariance);
       ++encounters;
       if (!o.motion) continue;
-      const SE3 moved =
-          (drive.traffic.car(0, static_cast<int>(o.motion->since.value)) * T_car_body).inverse() * drive.traffic.car(0, frame) * T_car_body;
+      const SE3 moved = (drive.traffic.car(0, static_cast<int>(o.motion->since.value)) * T_car_body).inverse() *
+                        drive.traffic.car(0, frame) * T_car_body;
       motion += test::nees((moved.inverse() * o.motion->T_before_now).log(), o.motion->covariance);
       ++motions;
     }
   }
   EXPECT_GT(motions, encounters / 2);  // 80 points are enough for both
-  // Generous: points keep their errors from frame to frame, which covariances of single frames leave out; half to twice the variance.
+  // Generous: points keep their errors from frame to frame, which covariances of single frames leave out; half to twice
+  // the variance.
   EXPECT_LT(encounter / encounters, 12);
   EXPECT_GT(encounter / encounters, 1);
   EXPECT_LT(motion / motions, 12);

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "apps/pipeline/pipeline_params.hpp"
+#include "backend/filter/filter_backend.hpp"
+#include "backend/smoother/optimizer.hpp"
+#include "frontend/features/feature_preparation.hpp"
+#include "frontend/matching/optical_flow.hpp"
+#include "frontend/matching/stereo_matcher.hpp"
+#include "frontend/segmentation/scene_motion_estimator.hpp"
+#include "frontend/tracking/object_tracker.hpp"
+
+namespace motorcade {
+
+enum class BackendKind {
+  kSmoother,  // the incremental smoother over camera and objects
+  kFilter,    // the paper's baseline: chained odometry and one Kalman filter per object
+};
+
+struct BackendParams {
+  BackendKind kind = BackendKind::kSmoother;
+  Optimizer::Params smoother;
+  FilterBackend::Params filter;
+};
+
+/// Every parameter of a run, those of each stage. What a user may set has a key in the configuration file.
+struct PipelineConfig {
+  PipelineParams pipeline;
+  FeaturePreparation::Params preparation;
+  StereoMatcher::Params stereo;
+  OpticalFlowTracker::Params optical_flow;
+  SceneMotionEstimator::Params scene_motion;
+  ObjectTracker::Params tracking;
+  BackendParams backend;
+};
+
+}  // namespace motorcade
