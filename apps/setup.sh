@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs from Debian's packages what Motorcade needs and is missing. Needs root or sudo only when something is missing.
+# Installs from Debian's packages what Motorcade needs and is missing, and the packages named as arguments. Needs root or sudo only
+# when something is missing.
 set -euo pipefail
 
 packages=(
@@ -9,6 +10,7 @@ packages=(
   libpng-dev libjpeg62-turbo-dev
   libspdlog-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev
+  "$@"
 )
 
 missing=()
