@@ -12,15 +12,18 @@ namespace motorcade {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kIterationsWithOutliers = 2;  // Huber alone, before observations beyond the gate are left out
+/// Iterations with Huber's loss alone: only then is the pose good enough to leave out observations beyond the gate.
+constexpr int kIterationsWithOutliers = 2;
+constexpr int kMinObservations = 3;  // that determine the six degrees of freedom with some redundancy
+constexpr double kMaxStep = 100;     // norm of an increment (m, rad) beyond which the fit diverges
 
 void setLane(PoseObservations::Block& block, std::size_t lane, const PoseObservation& o) {
-  setLane(block.p_a, lane, o.p_a);
+  setLane(block.p_ref, lane, o.p_ref);
   setLane(block.uvd_px, lane, o.uvd_px);
   setLane(block.variance_px2, lane, o.sigma_px.cwiseAbs2());
-  SymmetricDoubles3x3& C = block.covariance_a;
-  C.xx[lane] = o.covariance_a(0, 0), C.xy[lane] = o.covariance_a(0, 1), C.xz[lane] = o.covariance_a(0, 2);
-  C.yy[lane] = o.covariance_a(1, 1), C.yz[lane] = o.covariance_a(1, 2), C.zz[lane] = o.covariance_a(2, 2);
+  SymmetricDoubles3x3& C = block.covariance_ref;
+  C.xx[lane] = o.covariance_ref(0, 0), C.xy[lane] = o.covariance_ref(0, 1), C.xz[lane] = o.covariance_ref(0, 2);
+  C.yy[lane] = o.covariance_ref(1, 1), C.yz[lane] = o.covariance_ref(1, 2), C.zz[lane] = o.covariance_ref(2, 2);
 }
 
 /// A pose, the same in all lanes.
@@ -30,7 +33,7 @@ struct PoseLanes {
   Doubles3 t_m;
 };
 
-/// Residuals of four observations, their Jacobians by the point, and the weights S^-1.
+/// Residuals of four observations, their Jacobians with respect to the point, and the weights S^-1.
 struct Linearized {
   StereoViews view;
   Doubles3 residual_px, weighted_residual;
@@ -38,12 +41,12 @@ struct Linearized {
   Doubles chi2() const { return dot(residual_px, weighted_residual); }
 };
 
-Linearized linearize(const StereoCamera& camera, const PoseObservations::Block& o, const PoseLanes& T_cam_a) {
+Linearized linearize(const StereoCamera& camera, const PoseObservations::Block& o, const PoseLanes& T_cam_ref) {
   Linearized l;
-  l.view = viewPoints(camera, T_cam_a.R, T_cam_a.t_m, o.p_a);
+  l.view = viewPoints(camera, T_cam_ref.R, T_cam_ref.t_m, o.p_ref);
   const Doubles3x3& J = l.view.J;
   SymmetricDoubles3x3 S =
-      symmetricTimesTranspose({o.covariance_a * J.x, o.covariance_a * J.y, o.covariance_a * J.z}, J);
+      symmetricTimesTranspose({o.covariance_ref * J.x, o.covariance_ref * J.y, o.covariance_ref * J.z}, J);
   S.xx += o.variance_px2.x, S.yy += o.variance_px2.y, S.zz += o.variance_px2.z;
   l.information = inverse(S);
   l.residual_px = o.uvd_px - l.view.uvd_px;
@@ -58,7 +61,7 @@ struct NormalEquations {
   int inliers = 0;
 };
 
-/// The same in lanes, by translation (t) and rotation (r) of the perturbation.
+/// The same in lanes, in blocks of the perturbation's translation (t) and rotation (r).
 struct LaneEquations {
   SymmetricDoubles3x3 H_tt{}, H_rr{};
   Doubles3x3 H_tr{};
@@ -70,7 +73,8 @@ struct LaneEquations {
     const Doubles counts = chi2_px < allDoubles(gate) ? o.count * l.view.ahead : Doubles{};
     const Doubles weight = huberLoss(chi2_px, huber_sigmas).weight * counts;
     const Doubles3x3& J_t = l.view.J;
-    const Doubles3x3 J_r{cross(o.p_a, J_t.x), cross(o.p_a, J_t.y), cross(o.p_a, J_t.z)};  // rows of -J_t hat(p_a)
+    // The rows of -J_t hat(p_ref).
+    const Doubles3x3 J_r{cross(o.p_ref, J_t.x), cross(o.p_ref, J_t.y), cross(o.p_ref, J_t.z)};
     const Doubles3x3 W_t = weight * (l.information * J_t), W_r = weight * (l.information * J_r);
     const Doubles3 r = weight * l.weighted_residual;
     H_tt += symmetricTransposeTimes(J_t, W_t);
@@ -122,27 +126,27 @@ PoseObservations::PoseObservations(std::span<const PoseObservation> observations
 }
 
 std::optional<PoseFit> fitPose(const StereoCamera& camera, const PoseObservations& observations,
-                               const SE3& initial_T_cam_a, const PoseFitParams& params, const PosePrior* prior) {
-  SE3 T = initial_T_cam_a;
+                               const SE3& initial_T_cam_ref, const PoseFitParams& params, const PosePrior* prior) {
+  SE3 T = initial_T_cam_ref;
   NormalEquations n;
   for (int iteration = 0; iteration < params.max_iterations; ++iteration) {
     const double gate = iteration < kIterationsWithOutliers ? kInfinity : params.outlier_chi2;
     n = accumulate(camera, observations, T, params, gate, prior);
-    if (!prior && n.inliers < 3) return std::nullopt;
+    if (!prior && n.inliers < kMinObservations) return std::nullopt;
     const Cholesky<6> solver(n.H);
     if (!solver.positive()) return std::nullopt;
     const Vector6d step = solver.solve(n.b);
-    if (!step.allFinite() || step.norm() > 100) return std::nullopt;
+    if (!step.allFinite() || step.norm() > kMaxStep) return std::nullopt;
     T = T * SE3::exp(step);
     if (iteration >= kIterationsWithOutliers && step.norm() < params.min_step) break;
   }
-  PoseFit fit{.T_cam_a = T.normalized(), .covariance = Cholesky<6>(n.H).inverse()};
-  if (n.inliers > 2) fit.inlier_chi2_per_dof = n.inlier_chi2 / (3.0 * n.inliers - 6.0);
+  PoseFit fit{.T_cam_ref = T.normalized(), .covariance = Cholesky<6>(n.H).inverse()};
+  if (n.inliers >= kMinObservations) fit.inlier_chi2_per_dof = n.inlier_chi2 / (3.0 * n.inliers - 6.0);
   return fit;
 }
 
-std::vector<double> poseChi2(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_a) {
-  const PoseLanes pose(T_cam_a);
+std::vector<double> poseChi2(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref) {
+  const PoseLanes pose(T_cam_ref);
   std::vector<double> chi2;
   chi2.reserve(observations.blocks().size() * kDoubleLanes);
   for (const auto& o : observations.blocks()) {

@@ -5,23 +5,23 @@
 
 namespace motorcade {
 
-/// How the stereo camera sees four points, which may be known in frames of their own.
+/// How the stereo camera sees four points, each known in a reference frame of its own.
 struct StereoViews {
   Doubles3 uvd_px;
-  Doubles3x3 J;   // d (u, v, d) / d (point in its own frame) [px/m]
-  Doubles ahead;  // 1, or 0 for a point closer than the camera sees; the rest has no meaning then
+  Doubles3x3 J;   // d (u, v, d) / d p_ref [px/m]
+  Doubles ahead;  // 1, or 0 for a point closer than the camera sees, whose other values then have no meaning
 };
 
-/// `R_cam_a` and `t_cam_a_m` take the points `p_a_m` to the camera.
-inline StereoViews viewPoints(const StereoCamera& camera, const Doubles3x3& R_cam_a, const Doubles3& t_cam_a_m,
-                              const Doubles3& p_a_m) {
-  const Doubles3 p = R_cam_a * p_a_m + t_cam_a_m;
+/// Projects the points `p_ref_m`, which `R_cam_ref` and `t_cam_ref_m` take to the camera's frame.
+inline StereoViews viewPoints(const StereoCamera& camera, const Doubles3x3& R_cam_ref, const Doubles3& t_cam_ref_m,
+                              const Doubles3& p_ref_m) {
+  const Doubles3 p = R_cam_ref * p_ref_m + t_cam_ref_m;
   const auto is_ahead = p.z >= StereoCamera::kMinDepth_m;
   const Doubles one = allDoubles(1.0), iz = one / (is_ahead ? p.z : one);
   const Doubles x = camera.fx_px * iz, y = camera.fy_px * iz, d = camera.baseline_m * x;
   const Doubles u = x * p.x, v = y * p.y;
   return {{u + camera.cx_px, v + camera.cy_px, d},
-          {x * R_cam_a.x - (u * iz) * R_cam_a.z, y * R_cam_a.y - (v * iz) * R_cam_a.z, (-d * iz) * R_cam_a.z},
+          {x * R_cam_ref.x - (u * iz) * R_cam_ref.z, y * R_cam_ref.y - (v * iz) * R_cam_ref.z, (-d * iz) * R_cam_ref.z},
           is_ahead ? one : Doubles{}};
 }
 

@@ -36,9 +36,9 @@ std::vector<double> EgoMotionEstimator::votes(std::span<const PoseObservation> o
   std::vector<int*> sharing;
   sharing.reserve(observations.size());
   for (const auto& o : observations) {
-    const double scale = std::min(1.0, params_.vote_depth_m / o.p_a.z()) / params_.vote_cell_m;
-    int& points =
-        points_in[{static_cast<int>(std::floor(scale * o.p_a.x())), static_cast<int>(std::floor(scale * o.p_a.z()))}];
+    const double scale = std::min(1.0, params_.vote_depth_m / o.p_ref.z()) / params_.vote_cell_m;
+    int& points = points_in[{static_cast<int>(std::floor(scale * o.p_ref.x())),
+                             static_cast<int>(std::floor(scale * o.p_ref.z()))}];
     ++points;
     sharing.push_back(&points);
   }
@@ -91,11 +91,11 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
     const std::array<PoseObservation, 3> sample{pick(), pick(), pick()};
     const auto fit = fitPose(camera_, PoseObservations(sample), start, minimal);
     if (!fit) continue;
-    double fit_score = score(camera_, voters, fit->T_cam_a, params_.inlier_chi2);
-    if (!follows(fit->T_cam_a, predicted)) fit_score += penalty;
+    double fit_score = score(camera_, voters, fit->T_cam_ref, params_.inlier_chi2);
+    if (!follows(fit->T_cam_ref, predicted)) fit_score += penalty;
     if (fit_score >= best_score) continue;
     best_score = fit_score;
-    best = fit->T_cam_a;
+    best = fit->T_cam_ref;
   }
   return best;
 }
@@ -117,16 +117,16 @@ std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObse
   if (!fit) return std::nullopt;
 
   EgoMotion ego;
-  ego.T_previous_now = fit->T_cam_a.inverse();
+  ego.T_previous_now = fit->T_cam_ref.inverse();
   // log((T exp(xi))^-1) moves the perturbation to the other side: the covariance follows by the adjoint of
   // T_now_previous.
-  const Matrix6d A = fit->T_cam_a.adjoint();
+  const Matrix6d A = fit->T_cam_ref.adjoint();
   ego.covariance = std::max(1.0, fit->inlier_chi2_per_dof) * A * fit->covariance * A.transpose();
   ego.inliers.reserve(observations.size());
-  for (const double chi2 : poseChi2(camera_, all, fit->T_cam_a)) ego.inliers.push_back(chi2 < params_.inlier_chi2);
+  for (const double chi2 : poseChi2(camera_, all, fit->T_cam_ref)) ego.inliers.push_back(chi2 < params_.inlier_chi2);
   ego.inlier_count = static_cast<int>(std::count(ego.inliers.begin(), ego.inliers.end(), true));
   if (ego.inlier_count < params_.min_inliers) return std::nullopt;
-  ego.steady = follows(fit->T_cam_a, predicted);
+  ego.steady = follows(fit->T_cam_ref, predicted);
   return ego;
 }
 

@@ -144,7 +144,7 @@ std::optional<StereoMatch> SceneMotionEstimator::verifyInRightImage(const Featur
                                                                     const PointTrack& track,
                                                                     const SE3& predicted_T_now_previous) const {
   const double before_px = track.newest().uvd_px.z();
-  const auto at_rest = camera_.project(predicted_T_now_previous * lastPosition(track).p_a);
+  const auto at_rest = camera_.project(predicted_T_now_previous * lastPosition(track).p_ref);
   const double at_rest_px = at_rest ? at_rest->z() : before_px;
   const double middle_px = 0.5 * (at_rest_px + before_px) - disparity_offset_.offset_px(),
                change_px = std::abs(at_rest_px - before_px);
@@ -165,14 +165,14 @@ PoseObservation SceneMotionEstimator::lastPosition(const PointTrack& track) cons
   const SE3 T_last_then = trail_.find(newest.step)->T_then_now.inverse();
   PoseObservation o;
   if (track.p_static_cam) {
-    o.p_a = T_last_then * *track.p_static_cam;
-    o.covariance_a = T_last_then.rotation() * track.static_covariance * T_last_then.rotation().transpose();
+    o.p_ref = T_last_then * *track.p_static_cam;
+    o.covariance_ref = T_last_then.rotation() * track.static_covariance * T_last_then.rotation().transpose();
     return o;
   }
   const Eigen::Vector3d uvd = newest.uvd_px.cast<double>();
   const Eigen::Matrix3d J = T_last_then.rotation() * camera_.triangulationJacobian(uvd);
-  o.p_a = T_last_then * camera_.triangulate(uvd);
-  o.covariance_a = J * newest.sigma_px.cast<double>().cwiseAbs2().asDiagonal() * J.transpose();
+  o.p_ref = T_last_then * camera_.triangulate(uvd);
+  o.covariance_ref = J * newest.sigma_px.cast<double>().cwiseAbs2().asDiagonal() * J.transpose();
   return o;
 }
 

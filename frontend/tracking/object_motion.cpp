@@ -61,7 +61,7 @@ std::optional<ObjectMotionEstimator::Agreement> ObjectMotionEstimator::agree(con
   const auto fit = fitPose(camera_, observations, prior.mean, params_.fit, &prior);
   if (!fit) return std::nullopt;
   a.fit = *fit;
-  a.chi2 = poseChi2(camera_, observations, fit->T_cam_a);
+  a.chi2 = poseChi2(camera_, observations, fit->T_cam_ref);
   for (std::size_t i = 0; i < a.seen.size(); ++i)
     if (a.chi2[i] < params_.inlier_chi2) a.inliers.push_back(a.seen[i]);
   a.enough = static_cast<int>(a.inliers.size()) >= params_.min_points;
@@ -78,7 +78,7 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
     dropMisfits(object, agreement->seen, agreement->chi2);
     return std::nullopt;
   }
-  object.T_cam_body = agreement->fit.T_cam_a;
+  object.T_cam_body = agreement->fit.T_cam_ref;
   object.kinematics.acceptPose((T_world_cam * object.T_cam_body).normalized(), agreement->fit.covariance);
   ObjectObservation observation = measureEncounter(object, agreement->inliers, object.T_cam_body);
   if (previous_scene) measureMotion(object, agreement->inliers, scene, *previous_scene, observation);
@@ -92,7 +92,7 @@ std::optional<ObjectObservation> ObjectMotionEstimator::lookBack(const TrackedOb
                                                                  const PosePrior& prior) const {
   const auto agreement = agree(object, earlier, prior);
   if (!agreement || !agreement->enough) return std::nullopt;
-  return measureEncounter(object, agreement->inliers, agreement->fit.T_cam_a);
+  return measureEncounter(object, agreement->inliers, agreement->fit.T_cam_ref);
 }
 
 std::optional<ObjectObservation> ObjectMotionEstimator::presence(const TrackedObject& object, const SceneMotion& scene,
@@ -149,7 +149,7 @@ ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& o
   ObjectObservation observation;
   observation.points = static_cast<int>(inliers.size());
   observation.box = imageBox(visible);
-  observation.T_cam_body = fit ? fit->T_cam_a : T_cam_body;
+  observation.T_cam_body = fit ? fit->T_cam_ref : T_cam_body;
   observation.encounter_covariance = fit ? fit->covariance : Matrix6d(weak.information.inverse());
   return observation;
 }
@@ -177,10 +177,11 @@ void ObjectMotionEstimator::measureMotion(const TrackedObject& object, const std
   const PosePrior weak = weakPrior(object.T_cam_body);
   const auto fit = fitPose(camera_, PoseObservations(observations), object.T_cam_body, params_.fit, &weak);
   if (!fit) return;
-  const Matrix6d A = fit->T_cam_a.inverse().adjoint();  // carries the odometry's perturbation to the end of the product
-  observation.motion = ObjectObservation::Motion{previous_scene.frame,
-                                                 (T_body_cam_before * scene.T_previous_now * fit->T_cam_a).normalized(),
-                                                 fit->covariance + A * scene.odometry_covariance * A.transpose()};
+  // Carries the odometry's perturbation to the end of the product.
+  const Matrix6d A = fit->T_cam_ref.inverse().adjoint();
+  observation.motion = ObjectObservation::Motion{
+      previous_scene.frame, (T_body_cam_before * scene.T_previous_now * fit->T_cam_ref).normalized(),
+      fit->covariance + A * scene.odometry_covariance * A.transpose()};
 }
 
 /// One Kalman step per point, the pose taken as known.
@@ -207,7 +208,7 @@ ObjectObservation ObjectMotionEstimator::firstSight(const TrackedObject& object,
   for (const auto& s : seen) {
     visible.push_back(s.now);
     PoseObservation o = observe(object.points[s.body_point], *s.now);
-    o.covariance_a.setZero();  // the points were put into the body frame from these very observations
+    o.covariance_ref.setZero();  // the points were put into the body frame from these very observations
     observations.push_back(o);
   }
   ObjectObservation observation;

@@ -22,7 +22,7 @@ SE3 trueMotion() {
   return SE3::exp(xi);  // T_now_previous of a car at 11 m/s and 10 Hz in a bend
 }
 
-/// From the observations as they are written down.
+/// Fits from the identity with default parameters.
 std::optional<PoseFit> fit(const std::vector<PoseObservation>& observations, const PosePrior* prior = nullptr) {
   return fitPose(kRig, PoseObservations(observations), SE3{}, {}, prior);
 }
@@ -39,11 +39,11 @@ std::vector<PoseObservation> observe(int count, double near_m, double far_m, Noi
 TEST(StereoPose, NoiseFreePointsGiveTheExactPose) {
   Noise noise(1);
   auto observations = observe(30, 6, 30, noise);
-  for (auto& o : observations) o.uvd_px = *kRig.project(trueMotion() * o.p_a);
+  for (auto& o : observations) o.uvd_px = *kRig.project(trueMotion() * o.p_ref);
   const auto found = fit(observations);
   ASSERT_TRUE(found);
-  EXPECT_THAT(found->T_cam_a,
-              IsNearPose(trueMotion(), 1e-8));  // Gauss-Newton's last step is below 1e-6 and the error quadratic in it
+  // Gauss-Newton's last step is below 1e-6, and the error is quadratic in it.
+  EXPECT_THAT(found->T_cam_ref, IsNearPose(trueMotion(), 1e-8));
 }
 
 TEST(StereoPose, CovarianceIsThatOfTheErrors) {
@@ -53,7 +53,7 @@ TEST(StereoPose, CovarianceIsThatOfTheErrors) {
     Noise noise(static_cast<std::uint64_t>(seed));
     const auto found = fit(observe(80, 6, 30, noise));
     ASSERT_TRUE(found);
-    const Vector6d error = (trueMotion().inverse() * found->T_cam_a).log();
+    const Vector6d error = (trueMotion().inverse() * found->T_cam_ref).log();
     mean += test::nees(error, found->covariance) / kSeeds;
   }
   EXPECT_NEAR(mean, 6, test::meanChi2Spread(6, kSeeds));
@@ -66,13 +66,13 @@ TEST(StereoPose, ThirtyPercentOutliersDoNotMoveIt) {
     for (std::size_t i = 0; i < 30; ++i) observations[i].uvd_px += noise.inBox({-40, -15, -8}, {40, 15, 8});
     const auto found = fit(observations);
     ASSERT_TRUE(found);
-    const Vector6d error = (trueMotion().inverse() * found->T_cam_a).log();
+    const Vector6d error = (trueMotion().inverse() * found->T_cam_ref).log();
     EXPECT_LT(test::nees(error, found->covariance), 30) << "seed " << seed;  // chi2(6) is below it but for 4 in 100,000
-    const auto chi2 = poseChi2(kRig, PoseObservations(observations), found->T_cam_a);
+    const auto chi2 = poseChi2(kRig, PoseObservations(observations), found->T_cam_ref);
     ASSERT_EQ(chi2.size(), observations.size());
-    int refused = 0;
-    for (std::size_t i = 0; i < 30; ++i) refused += chi2[i] > 16;
-    EXPECT_GT(refused, 24);  // the rest fell close to the truth by chance
+    int rejected = 0;
+    for (std::size_t i = 0; i < 30; ++i) rejected += chi2[i] > 16;
+    EXPECT_GT(rejected, 24);  // the rest fell close to the truth by chance
   }
 }
 
@@ -85,17 +85,17 @@ TEST(StereoPose, APriorFillsWhatThePointsLeaveOpen) {
   const PosePrior prior{trueMotion() * SE3::exp(off), 1e4 * Matrix6d::Identity()};
   const auto found = fit(observations, &prior);
   ASSERT_TRUE(found);
-  EXPECT_THAT(found->T_cam_a, IsNearPose(trueMotion(), 0.05));  // the prior's own distance and a point's depth noise
+  EXPECT_THAT(found->T_cam_ref, IsNearPose(trueMotion(), 0.05));  // the prior's own distance and a point's depth noise
   const Matrix6d gained = found->covariance.inverse() - 1e4 * Matrix6d::Identity();
-  EXPECT_GT(gained.eigenvalues().real().minCoeff(),
-            -10);  // a measurement never widens a prior, but for its curvature: a thousandth
+  // A measurement never takes information from a prior, but for the prior's curvature: a thousandth of it.
+  EXPECT_GT(gained.eigenvalues().real().minCoeff(), -10);
 }
 
 TEST(StereoPose, WithoutPointsThePriorComesBack) {
   const PosePrior prior{trueMotion(), 25 * Matrix6d::Identity()};
   const auto found = fit({}, &prior);
   ASSERT_TRUE(found);
-  EXPECT_THAT(found->T_cam_a, IsNearPose(prior.mean, 1e-6));  // the convergence limit
+  EXPECT_THAT(found->T_cam_ref, IsNearPose(prior.mean, 1e-6));  // the convergence limit
   EXPECT_THAT(found->covariance, IsNear(0.04 * Matrix6d::Identity(), 1e-8));
 }
 
@@ -109,7 +109,7 @@ TEST(StereoPose, FarPointsDoNotStretchTheMotion) {
     observations.insert(observations.end(), far.begin(), far.end());
     const auto found = fit(observations);
     ASSERT_TRUE(found);
-    const double error = found->T_cam_a.translation().z() - trueMotion().translation().z();
+    const double error = found->T_cam_ref.translation().z() - trueMotion().translation().z();
     sum += error;
     sum2 += error * error;
   }
@@ -119,15 +119,15 @@ TEST(StereoPose, FarPointsDoNotStretchTheMotion) {
 
 TEST(StereoPose, Chi2IsThatOfEachObservationAlone) {
   Noise noise(4);
-  const auto observations = observe(7, 6, 30, noise);  // the last four are not full
+  const auto observations = observe(7, 6, 30, noise);  // one full block and one of three
   const SE3 T = trueMotion();
   const auto chi2 = poseChi2(kRig, PoseObservations(observations), T);
   ASSERT_EQ(chi2.size(), observations.size());
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const auto& o = observations[i];
-    const Eigen::Vector3d p = T * o.p_a, r = o.uvd_px - *kRig.project(p);
+    const Eigen::Vector3d p = T * o.p_ref, r = o.uvd_px - *kRig.project(p);
     const Eigen::Matrix3d J = kRig.projectionJacobian(p) * T.rotation();
-    Eigen::Matrix3d S = J * o.covariance_a * J.transpose();
+    Eigen::Matrix3d S = J * o.covariance_ref * J.transpose();
     S.diagonal() += o.sigma_px.cwiseAbs2();
     EXPECT_NEAR(chi2[i], r.dot(S.inverse() * r), 1e-9 * (1 + chi2[i]));
   }
@@ -136,7 +136,7 @@ TEST(StereoPose, Chi2IsThatOfEachObservationAlone) {
 TEST(StereoPose, PointsBehindTheCameraHaveInfiniteChi2) {
   Noise noise(5);
   auto observations = observe(2, 6, 30, noise);
-  observations[0].p_a.z() = -3;
+  observations[0].p_ref.z() = -3;
   const auto chi2 = poseChi2(kRig, PoseObservations(observations), trueMotion());
   ASSERT_EQ(chi2.size(), 2u);
   EXPECT_TRUE(std::isinf(chi2[0]));

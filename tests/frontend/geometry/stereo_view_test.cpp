@@ -17,17 +17,17 @@ using test::kRig;
 Eigen::Vector3d lane(const Doubles3& v, std::size_t i) { return {v.x[i], v.y[i], v.z[i]}; }
 
 struct FourPoints {
-  SE3 T_cam_a{expSO3({0.1, -0.2, 0.05}), {0.3, -0.1, 1}};
-  std::array<Eigen::Vector3d, kDoubleLanes> p_a{
-      {{1, 2, 10}, {-5, 1, 30}, {0, 0, -8}, {8, -3, 60}}};  // the third is behind the camera
+  SE3 T_cam_ref{expSO3({0.1, -0.2, 0.05}), {0.3, -0.1, 1}};
+  std::array<Eigen::Vector3d, kDoubleLanes> p_ref{
+      {{1, 2, 10}, {-5, 1, 30}, {0, 0, -8}, {8, -3, 60}}};  // the third lies behind the camera
 
   Doubles3 lanes() const {
     Doubles3 p{};
-    for (std::size_t i = 0; i < kDoubleLanes; ++i) setLane(p, i, p_a[i]);
+    for (std::size_t i = 0; i < kDoubleLanes; ++i) setLane(p, i, p_ref[i]);
     return p;
   }
   StereoViews views() const {
-    return viewPoints(kRig, allDoubles(T_cam_a.rotation()), allDoubles(T_cam_a.translation()), lanes());
+    return viewPoints(kRig, allDoubles(T_cam_ref.rotation()), allDoubles(T_cam_ref.translation()), lanes());
   }
 };
 
@@ -35,7 +35,7 @@ TEST(StereoView, IsTheCamerasProjectionInEveryLane) {
   const FourPoints four;
   const StereoViews views = four.views();
   for (std::size_t i = 0; i < kDoubleLanes; ++i) {
-    const auto uvd = kRig.project(four.T_cam_a * four.p_a[i]);
+    const auto uvd = kRig.project(four.T_cam_ref * four.p_ref[i]);
     EXPECT_EQ(views.ahead[i], uvd ? 1 : 0);
     if (!uvd) continue;
     EXPECT_THAT(lane(views.uvd_px, i), test::IsNear(*uvd, 1e-9));
@@ -52,7 +52,7 @@ TEST(StereoView, JacobianIsThatOfFiniteDifferences) {
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Vector3d d = kStep_m * Eigen::Vector3d::Unit(axis);
       by_differences.col(axis) =
-          (*kRig.project(four.T_cam_a * (four.p_a[i] + d)) - *kRig.project(four.T_cam_a * (four.p_a[i] - d))) /
+          (*kRig.project(four.T_cam_ref * (four.p_ref[i] + d)) - *kRig.project(four.T_cam_ref * (four.p_ref[i] - d))) /
           (2 * kStep_m);
     }
     EXPECT_THAT(J, test::IsNear(by_differences, 1e-5));
