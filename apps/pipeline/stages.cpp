@@ -17,8 +17,8 @@ std::unique_ptr<Backend> makeBackend(const BackendParams& params) {
 /// The stages live behind shared pointers, because a std::function copies what it holds.
 Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
   const auto prepare = std::make_shared<FeaturePreparation>(config.preparation);
-  const auto stereo = std::make_shared<StereoMatcher>(config.stereo, camera);
-  const auto flow = std::make_shared<OpticalFlowTracker>(config.optical_flow, camera);
+  const auto stereo = std::make_shared<StereoMatcher>(config.stereo);
+  const auto flow = std::make_shared<OpticalFlowTracker>(config.optical_flow);
   const auto motion = std::make_shared<SceneMotionEstimator>(config.scene_motion, camera);
   const auto tracking = std::make_shared<ObjectTracker>(config.tracking, camera);
   const std::shared_ptr<Backend> backend = makeBackend(config.backend);

@@ -370,7 +370,7 @@ void OpticalFlowTracker::State::followDescriptors(const Features& now) {
   }
 }
 
-OpticalFlowTracker::OpticalFlowTracker(const Params& params, const StereoCamera&) : state_(std::make_unique<State>()) {
+OpticalFlowTracker::OpticalFlowTracker(const Params& params) : state_(std::make_unique<State>()) {
   if (params.patch.window_px % 2 == 0 || params.patch.window_px > kMaxPatchWindow_px)
     throw std::invalid_argument("optical flow: patch.window_px must be odd and at most " +
                                 std::to_string(kMaxPatchWindow_px));

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/parameters.hpp"
-#include "core/stereo_camera.hpp"
 #include "frontend/image/patch_alignment.hpp"
 #include "frontend/messages.hpp"
 
@@ -38,7 +37,7 @@ class OpticalFlowTracker {
     double sift_max_ratio = 0.85;
     double sift_sigma_px = 0.4;
   };
-  OpticalFlowTracker(const Params& params, const StereoCamera& camera);
+  explicit OpticalFlowTracker(const Params& params);
   OpticalFlowTracker(OpticalFlowTracker&&) noexcept;
   OpticalFlowTracker& operator=(OpticalFlowTracker&&) noexcept;
   ~OpticalFlowTracker();

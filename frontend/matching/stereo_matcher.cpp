@@ -120,7 +120,7 @@ std::vector<std::optional<StereoMatch>> matchDescriptors(const Features& feature
 
 }  // namespace
 
-StereoMatcher::StereoMatcher(const Params& params, const StereoCamera&) : params_(requireValid(params)) {
+StereoMatcher::StereoMatcher(const Params& params) : params_(requireValid(params)) {
   if (params.search_columns % 2 == 0 || params.search_rows % 2 == 0)
     throw std::invalid_argument("stereo matcher: search_columns and search_rows must be odd");
   if (!fits({params.search_columns, params.search_rows}))

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "core/parameters.hpp"
-#include "core/stereo_camera.hpp"
 #include "frontend/image/patch_alignment.hpp"
 #include "frontend/messages.hpp"
 
@@ -25,7 +24,7 @@ class StereoMatcher {
     double sift_max_ratio = 0.9;
     double sift_sigma_px = 0.4;
   };
-  StereoMatcher(const Params& params, const StereoCamera& camera);
+  explicit StereoMatcher(const Params& params);
   StereoMatchesPtr operator()(const FeaturesPtr& features) const;
 
  private:

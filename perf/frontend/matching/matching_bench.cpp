@@ -31,7 +31,7 @@ BENCHMARK(BM_WindowDifferences)->Args({9, 5, 96})->Args({11, 7, 96})->Args({11, 
 /// Items are corners.
 void BM_MatchStereo(benchmark::State& state) {
   const BenchStreet& street = benchStreet(static_cast<int>(state.range(0)));
-  const StereoMatcher match(StereoMatcher::Params{}, street.camera);
+  const StereoMatcher match(StereoMatcher::Params{});
   onOneThread([&] {
     for (auto _ : state) benchmark::DoNotOptimize(match(street.now));
   });
@@ -54,7 +54,7 @@ void BM_TrackFlow(benchmark::State& state) {
   const BenchStreet& street = benchStreet(1242);
   OpticalFlowTracker::Params params;
   params.max_tracks = static_cast<int>(state.range(0));
-  OpticalFlowTracker track(params, street.camera);
+  OpticalFlowTracker track(params);
   std::int64_t number = 0, followed = 0;
   onOneThread([&] {
     for (; number < 8; ++number) track(renumbered(number % 2 == 0 ? *street.before : *street.now, number));

@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 200;
 constexpr double kDisparity_px = 12.4;
-const StereoCamera kCamera{721.5, 721.5, 160, 100, 0.54, kWidth, kHeight};
 
 /// A wall 12.4 px of disparity away that moves (4.2, 1.1) px per frame.
 FeaturesPtr wall(int frame) {
@@ -32,7 +31,7 @@ TEST(SiftFeatures, MatchTheTwoEyes) {
   const auto features = wall(0);
   ASSERT_GT(features->corners.size(), 60U);
   ASSERT_EQ(features->descriptors.size(), features->corners.size());
-  const auto matches = StereoMatcher({}, kCamera)(features);
+  const auto matches = StereoMatcher({})(features);
   int matched = 0, right = 0;
   for (const auto& match : matches->of_corner) {
     if (!match) continue;
@@ -44,7 +43,7 @@ TEST(SiftFeatures, MatchTheTwoEyes) {
 }
 
 TEST(SiftFeatures, KeepTheirIdsFromFrameToFrame) {
-  OpticalFlowTracker track({}, kCamera);
+  OpticalFlowTracker track({});
   OpticalFlowPtr before = track(wall(0));
   for (int frame = 1; frame < 4; ++frame) {
     const OpticalFlowPtr now = track(wall(frame));

@@ -13,7 +13,6 @@ namespace motorcade {
 namespace {
 
 constexpr int kWidth = 480, kHeight = 240;
-const StereoCamera kCamera{721.5, 721.5, 240, 120, 0.54, kWidth, kHeight};
 
 /// A texture that moves by (du, dv) per frame, seen with changing exposure.
 class MovingWall {
@@ -41,7 +40,7 @@ struct Birth {
 
 TEST(OpticalFlowTracker, DoesNotWalkAwayOverManyFrames) {
   const MovingWall wall(3.31, -1.27);
-  OpticalFlowTracker track({}, kCamera);
+  OpticalFlowTracker track({});
   std::map<PointId, Birth> births;
   std::map<int, std::pair<double, int>> squares_at_age;
   for (int frame = 0; frame <= 12; ++frame) {
@@ -67,7 +66,7 @@ TEST(OpticalFlowTracker, DoesNotWalkAwayOverManyFrames) {
 
 TEST(OpticalFlowTracker, FollowsLargeMotionFromTheFirstFrame) {
   const MovingWall wall(-62.4, 11.7);
-  OpticalFlowTracker track({}, kCamera);
+  OpticalFlowTracker track({});
   track(wall.at(0));
   const auto first = track(wall.at(1));
   const auto followed =
@@ -80,7 +79,7 @@ TEST(OpticalFlowTracker, FollowsWhatCrossesAStandingScene) {
   constexpr double kSpeed_px = 45;
   const test::Texture wall(61, 7, 60), vehicle(62, 7, 60);
   const FeaturePreparation prepare{{}};
-  OpticalFlowTracker track({}, kCamera);
+  OpticalFlowTracker track({});
   const auto left_px = [&](int frame) { return 100 + frame * kSpeed_px; };
   const auto at = [&](int frame) {
     const auto gray = [&](double x, double y) {
@@ -105,7 +104,7 @@ TEST(OpticalFlowTracker, FollowsWhatCrossesAStandingScene) {
 
 TEST(OpticalFlowTracker, OrdersTracksByIdsThatAreNeverUsedTwice) {
   const MovingWall wall(9.3, 2.2);
-  OpticalFlowTracker track({}, kCamera);
+  OpticalFlowTracker track({});
   std::set<PointId> ended, alive;
   for (int frame = 0; frame < 6; ++frame) {
     const auto features = wall.at(frame);
@@ -131,7 +130,7 @@ TEST(OpticalFlowTracker, KeepsTracksApartAndSpread) {
   const MovingWall wall(5.5, 0.4);
   OpticalFlowTracker::Params params;
   params.max_tracks = 150;
-  OpticalFlowTracker track(params, kCamera);
+  OpticalFlowTracker track(params);
   for (int frame = 0; frame < 4; ++frame) {
     const auto flow = track(wall.at(frame));
     EXPECT_LE(flow->observations.size(), 150U);
@@ -149,7 +148,7 @@ TEST(OpticalFlowTracker, KeepsTracksApartAndSpread) {
 
 TEST(OpticalFlowTracker, StartsAgainAfterARejectedFrame) {
   const MovingWall wall(3, 0);
-  OpticalFlowTracker track({}, kCamera);
+  OpticalFlowTracker track({});
   const auto before = track(wall.at(0));
   EXPECT_TRUE(track(FeaturePreparation({})(test::rejectedFrame(1)))->observations.empty());
   const auto after = track(wall.at(2));
@@ -160,7 +159,7 @@ TEST(OpticalFlowTracker, StartsAgainAfterARejectedFrame) {
 
 TEST(OpticalFlowTracker, StartsAgainWhenTheImageSizeChanges) {
   const Image small = test::render(200, 120, test::Texture(62));
-  OpticalFlowTracker track({}, kCamera);
+  OpticalFlowTracker track({});
   track(MovingWall(1, 0).at(0));
   const auto flow = track(FeaturePreparation({})(test::stereoFrame(1, small, small)));
   EXPECT_TRUE(std::ranges::all_of(flow->observations, [](const FlowObservation& point) { return point.age == 1; }));

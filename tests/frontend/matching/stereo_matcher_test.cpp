@@ -10,8 +10,6 @@
 namespace motorcade {
 namespace {
 
-const StereoCamera kCamera{721.5, 721.5, 200, 100, 0.54, 400, 200};
-
 /// A fronto-parallel wall at each disparity: the image's columns are split into panels of different depth.
 constexpr int kPanel_px = 100;
 double disparityAt(double u_px) { return 3.4 + 11.37 * std::floor(u_px / kPanel_px); }
@@ -39,7 +37,7 @@ bool isClear(const Corner& corner) {
 
 TEST(StereoMatcher, FindsTheDisparityOfEachPanel) {
   const auto features = FeaturePreparation({})(panels());
-  const auto matches = StereoMatcher({}, kCamera)(features);
+  const auto matches = StereoMatcher({})(features);
   ASSERT_EQ(matches->of_corner.size(), features->corners.size());
   int clear = 0, matched = 0;
   double squares = 0;
@@ -64,13 +62,13 @@ TEST(StereoMatcher, RefusesRepeatedTexture) {
   const auto features = FeaturePreparation({})(test::stereoFrame(
       0, test::render(400, 200, fence, {.noise = 1}), test::render(400, 200, fence, {.noise = 1, .seed = 2})));
   ASSERT_GE(features->corners.size(), 50U);
-  const auto matches = StereoMatcher({}, kCamera)(features);
+  const auto matches = StereoMatcher({})(features);
   const auto matched = std::ranges::count_if(matches->of_corner, [](const auto& match) { return match.has_value(); });
   EXPECT_LE(matched, static_cast<int>(features->corners.size()) / 20);
 }
 
 TEST(StereoMatcher, AnswersARejectedFrameWithoutMatches) {
-  const auto matches = StereoMatcher({}, kCamera)(FeaturePreparation({})(test::rejectedFrame(0)));
+  const auto matches = StereoMatcher({})(FeaturePreparation({})(test::rejectedFrame(0)));
   EXPECT_TRUE(matches->of_corner.empty());
 }
 
