@@ -55,12 +55,11 @@ struct FlowObservation {
   PointId point;
   float u_px = 0, v_px = 0;
   float sigma_px = 0;  // of each coordinate
-  int age = 1;         // frames in which it was seen so far, this one included
-  int corner =
-      -1;  // of `Features::corners`, where the track was born in this frame; -1 when it came from the frame before
+  int age = 1;         // number of frames in which it was observed, this one included
+  int corner = -1;     // index in `Features::corners` of a point that starts in this frame, -1 of any other
 };
 
-/// Tracks ordered by point id: those followed from the previous frame and those born here.
+/// Observations ordered by point id: of points followed from the previous frame, and of points that start here.
 struct OpticalFlow {
   FeaturesPtr features;
   std::vector<FlowObservation> observations;
@@ -80,7 +79,7 @@ struct SceneFlow {
 
 enum class PointLabel { kUnknown, kStatic, kGround, kMoving };
 
-/// A point seen in all four images, or born in this frame's pair.
+/// A point observed in all four images, or one that starts in this stereo pair.
 struct ScenePoint {
   PointId point;
   Eigen::Vector3d uvd_px;

@@ -6,8 +6,8 @@
 
 namespace motorcade {
 
-/// H = L D L' of a small positive definite matrix, of which the lower triangle is read; loops of fixed length, which
-/// the compiler unrolls.
+/// Factors H = L D L' a small positive definite matrix, of which only the lower triangle is read. All loops have a
+/// fixed length and are unrolled by the compiler.
 template <int N>
 class Cholesky {
  public:
@@ -33,7 +33,7 @@ class Cholesky {
     }
   }
 
-  /// False for a matrix that is not positive definite, of which nothing more can be asked.
+  /// False for a matrix that is not positive definite. Nothing below may be called then.
   bool positive() const { return positive_; }
 
   Vector solve(Vector b) const {

@@ -153,8 +153,8 @@ class Triangulator {
     }
   }
 
-  /// The next edge up on the left of the seam, after those that a better triangle replaces are gone; likewise on the
-  /// right.
+  /// The next edge upwards on the left of the seam (or on its right), once the edges that a better triangle replaces
+  /// are removed.
   int clearedLeft(int base) {
     int e = edges_.next(base ^ 1);
     while (rightOf(edges_.destination(e), base) &&

@@ -8,12 +8,12 @@
 
 namespace motorcade {
 
-/// Neighborhood of image points. Vertices are named by their point's index; points that coincide share the index of the
-/// first of them.
+/// Neighborhood of image points. A vertex is named by the index of its point; points that coincide share the index of
+/// the first of them.
 struct DelaunayGraph {
-  std::vector<int> vertex_of_point;           // per point: itself, or the first point at the same place
+  std::vector<int> vertex_of_point;           // per point: itself, or the first point at the same position
   std::vector<std::array<int, 2>> edges;      // (i, j), i < j, sorted
-  std::vector<std::array<int, 3>> triangles;  // clockwise as seen in the image (v down), smallest index first, sorted
+  std::vector<std::array<int, 3>> triangles;  // clockwise in the image (v down), smallest index first, sorted
 };
 
 /// Delaunay triangulation by divide and conquer (Guibas, Stolfi 1985). Exact for positions rounded to 1/16 px, within

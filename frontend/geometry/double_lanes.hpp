@@ -10,8 +10,8 @@
 
 #include <Eigen/Core>
 
-/// Vectors of four numbers, of the compilers' own kind: arithmetic is lane by lane, so that a formula for one point,
-/// written with them, is computed for four points. The values are the same in the portable build.
+/// Vectors of four numbers by the compilers' vector extension. Arithmetic is lane by lane, so that a formula for one
+/// point, written with them, is computed for four points. The values are the same in the portable build.
 namespace motorcade {
 
 inline constexpr std::size_t kDoubleLanes = 4;
@@ -27,7 +27,7 @@ inline Doubles squareRoots(const Doubles& x) {
 }
 inline double total(const Doubles& x) { return (x[0] + x[1]) + (x[2] + x[3]); }
 
-/// Four vectors, four matrices by their rows, and four symmetric matrices.
+/// Four vectors, four matrices by their rows, and four symmetric matrices by their upper triangles.
 struct Doubles3 {
   Doubles x, y, z;
 };
@@ -87,7 +87,7 @@ inline Doubles3x3 operator*(const SymmetricDoubles3x3& m, const Doubles3x3& n) {
   return {m.xx * n.x + m.xy * n.y + m.xz * n.z, m.xy * n.x + m.yy * n.y + m.yz * n.z,
           m.xz * n.x + m.yz * n.y + m.zz * n.z};
 }
-/// A diagonal matrix times another.
+/// The product of a diagonal matrix with a vector or matrix.
 inline Doubles3 scaledRows(const Doubles3& diagonal, const Doubles3& v) {
   return {diagonal.x * v.x, diagonal.y * v.y, diagonal.z * v.z};
 }

@@ -1,38 +1,37 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
 
 namespace motorcade {
 
-/// Finds points of an image by their place. Points outside the image count as those of its border.
+/// Finds points of an image by their position. Points outside the image count as points on its border.
 class PointGrid {
  public:
   static constexpr int kCell_px = 32;
 
-  /// `place_px(item)` tells where an item lies.
-  template <class Items, class Place>
-  PointGrid(const Items& items, int width, int height, const Place& place_px)
+  /// `position_px(item)` gives the position of an item.
+  template <class Items, class Position>
+  PointGrid(const Items& items, int width, int height, const Position& position_px)
       : columns_(width / kCell_px + 1),
         rows_(height / kCell_px + 1),
-        ends_(static_cast<std::size_t>(columns_) * rows_ + 1, 0),
+        ends_(columns_ * rows_ + 1, 0),
         points_(items.size()) {
-    for (const auto& item : items) ++ends_[cellOf(place_px(item)) + 1];
+    for (const auto& item : items) ++ends_[cellOf(position_px(item)) + 1];
     for (std::size_t i = 1; i < ends_.size(); ++i) ends_[i] += ends_[i - 1];
     std::vector<int> next(ends_.begin(), ends_.end() - 1);
     int number = 0;
-    for (const auto& item : items) points_[next[cellOf(place_px(item))]++] = number++;
+    for (const auto& item : items) points_[next[cellOf(position_px(item))]++] = number++;
   }
 
-  /// Calls f(index of a point) for all points in a rectangle, and for some around it.
+  /// Calls f(index) for all points in a rectangle, and for some around it, each once.
   template <class Function>
   void forEachNear(const Eigen::Vector2f& min_px, const Eigen::Vector2f& max_px, const Function& f) const {
     const int first = column(min_px.x()), last = column(max_px.x());
     for (int y = row(min_px.y()); y <= row(max_px.y()); ++y) {
-      const auto line = static_cast<std::size_t>(y) * columns_;
+      const int line = y * columns_;
       for (int i = ends_[line + first]; i < ends_[line + last + 1]; ++i) f(points_[i]);
     }
   }
@@ -42,13 +41,11 @@ class PointGrid {
  private:
   int column(float u_px) const { return std::clamp(static_cast<int>(u_px / kCell_px), 0, columns_ - 1); }
   int row(float v_px) const { return std::clamp(static_cast<int>(v_px / kCell_px), 0, rows_ - 1); }
-  std::size_t cellOf(const Eigen::Vector2f& p) const {
-    return static_cast<std::size_t>(row(p.y())) * columns_ + column(p.x());
-  }
+  int cellOf(const Eigen::Vector2f& p) const { return row(p.y()) * columns_ + column(p.x()); }
 
   int columns_, rows_;
-  std::vector<int> ends_;    // of each cell's points, after that of the cell before
-  std::vector<int> points_;  // cell by cell
+  std::vector<int> ends_;    // cell c holds points_[ends_[c]] to points_[ends_[c + 1] - 1]
+  std::vector<int> points_;  // indices of the points, cell by cell, in their order
 };
 
 }  // namespace motorcade

@@ -8,36 +8,45 @@
 namespace motorcade {
 namespace {
 
-constexpr float kReachAcross_px = 120, kReachDown_px = 40, kNearer = 1.25F, kHalfWindow_px = 6;
+constexpr float kReachAcross_px = 120, kReachDown_px = 40;  // to corners of the same surface
+constexpr float kNearer = 1.25F;                            // least ratio of a nearer surface's disparity
+constexpr float kHalfWindow_px = 6;                         // of a patch, which the right image must show
+
+struct Neighbor {
+  float distance_px = std::numeric_limits<float>::max();
+  bool hides = false;
+};
 
 bool leavesRightImage(float u_px, float disparity_px) { return u_px - disparity_px < kHalfWindow_px; }
+
+/// True when at least two of the three nearest matched corners to the right of corner i show that it must be hidden.
+bool isHalfOccluded(std::size_t i, const std::vector<Corner>& corners,
+                    const std::vector<std::optional<StereoMatch>>& of_corner) {
+  const Corner& here = corners[i];
+  std::array<Neighbor, 3> nearest;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const float du = corners[k].u_px - here.u_px, dv = corners[k].v_px - here.v_px;
+    if (k == i || !of_corner[k] || du < 0 || du > kReachAcross_px || std::abs(dv) > kReachDown_px) continue;
+    const float distance_px = std::hypot(du, dv), disparity_px = of_corner[k]->disparity_px;
+    if (distance_px >= nearest.back().distance_px) continue;
+    const bool is_nearer = disparity_px > kNearer * of_corner[i]->disparity_px;
+    nearest.back() = {distance_px, is_nearer && leavesRightImage(here.u_px, disparity_px)};
+    std::ranges::sort(nearest, {}, &Neighbor::distance_px);
+  }
+  return std::ranges::count(nearest, true, &Neighbor::hides) >= 2;
+}
 
 }  // namespace
 
 void dropHalfOccluded(const std::vector<Corner>& corners, std::vector<std::optional<StereoMatch>>& of_corner) {
   float greatest_px = 0;
   for (const auto& match : of_corner) greatest_px = std::max(greatest_px, match ? match->disparity_px : 0);
-  std::vector<std::size_t> looks_through;
+  std::vector<std::size_t> half_occluded;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Corner& here = corners[i];
-    if (!of_corner[i] || !leavesRightImage(here.u_px, greatest_px)) continue;
-    struct Neighbor {
-      float distance_px = std::numeric_limits<float>::max();
-      bool hides = false;
-    };
-    std::array<Neighbor, 3> nearest;
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      const float du = corners[k].u_px - here.u_px, dv = corners[k].v_px - here.v_px;
-      if (k == i || !of_corner[k] || du < 0 || du > kReachAcross_px || std::abs(dv) > kReachDown_px) continue;
-      const float distance_px = std::hypot(du, dv), disparity_px = of_corner[k]->disparity_px;
-      if (distance_px >= nearest.back().distance_px) continue;
-      nearest.back() = {distance_px, disparity_px > kNearer * of_corner[i]->disparity_px &&
-                                         leavesRightImage(here.u_px, disparity_px)};
-      std::ranges::sort(nearest, {}, &Neighbor::distance_px);
-    }
-    if (std::ranges::count(nearest, true, &Neighbor::hides) >= 2) looks_through.push_back(i);
+    const bool may_be_hidden = of_corner[i] && leavesRightImage(corners[i].u_px, greatest_px);
+    if (may_be_hidden && isHalfOccluded(i, corners, of_corner)) half_occluded.push_back(i);
   }
-  for (const std::size_t i : looks_through) of_corner[i].reset();
+  for (const std::size_t i : half_occluded) of_corner[i].reset();
 }
 
 }  // namespace motorcade

@@ -7,10 +7,10 @@
 
 namespace motorcade {
 
-/// Drops matches that look through a near surface. Close to the left border of the left image a near surface lies
-/// outside the right image: its points there can only find wrong partners, which seem farther away and move along with
-/// it. A match goes when most of the nearest matched corners to its right are so much nearer that their disparity would
-/// leave the right image here. One entry of `of_corner` per corner.
+/// Drops wrong matches of half-occluded points. Close to the left border of the left image a near surface lies outside
+/// the right image: its points there can only find wrong partners, which seem to be farther away and move along with
+/// it. A match is dropped when most of the nearest matched corners to its right are so much nearer that a point with
+/// their disparity would lie outside the right image. `of_corner` has one entry per corner.
 void dropHalfOccluded(const std::vector<Corner>& corners, std::vector<std::optional<StereoMatch>>& of_corner);
 
 }  // namespace motorcade

@@ -14,7 +14,7 @@
 namespace motorcade::perf {
 namespace {
 
-constexpr int kVariants = 8;  // of each input, so that no branch is learnt by heart
+constexpr int kVariants = 8;  // of each input, so that branches cannot be predicted from the iteration before
 
 std::vector<Eigen::Vector2d> pixels(int count, unsigned seed) {
   std::mt19937 random(seed);
@@ -46,7 +46,7 @@ void BM_CutDelaunayComponents(benchmark::State& state) {
 }
 BENCHMARK(BM_CutDelaunayComponents)->Arg(250)->Arg(1000)->Arg(4000)->Unit(benchmark::kMicrosecond);
 
-/// So many per cent of the points move otherwise than the world.
+/// The second argument is the percentage of points that move relative to the world.
 void BM_EgoMotion(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0));
   const double moving = static_cast<double>(state.range(1)) / 100;

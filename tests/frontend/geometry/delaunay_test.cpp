@@ -67,10 +67,10 @@ void expectDelaunay(const Points& points_px, const DelaunayGraph& graph) {
     EXPECT_LE(triangles_at[edge], 2);
     EXPECT_TRUE(graph.triangles.empty() || triangles_at[edge] >= 1);
   }
-  EXPECT_TRUE(graph.triangles.empty() ||
-              triangles_at.size() == graph.edges.size());  // no triangle has an edge that is not listed
-  EXPECT_EQ(area,
-            hullAreaTwice(distinct));  // with disjoint interiors, which the empty circles grant, the hull is covered
+  // No triangle has an edge that is not listed.
+  EXPECT_TRUE(graph.triangles.empty() || triangles_at.size() == graph.edges.size());
+  // The triangles cover the hull: empty circles make sure that they do not overlap.
+  EXPECT_EQ(area, hullAreaTwice(distinct));
   const auto euler = static_cast<int>(vertices.size()) - static_cast<int>(graph.edges.size()) +
                      static_cast<int>(graph.triangles.size());
   EXPECT_EQ(euler, 1);  // without the outer face; a chain too
