@@ -17,21 +17,29 @@ namespace {
 constexpr int kHalfWindow_px = 3;  // second moments are summed over 7x7 pixels
 constexpr int kWindowRows = 2 * kHalfWindow_px + 1, kWindowPixels = kWindowRows * kWindowRows;
 
-/// The last rows of something, by row number.
+constexpr int kCell_px = CornerDetector::kCell_px, kMinDistance_px = CornerDetector::kMinDistance_px;
+constexpr int kMaxPerCell = 6;
+/// Rows and columns along the border without corners: responses reach as far as window, smoothing and distance.
+constexpr int kBorder_px = kHalfWindow_px + 2 + kMinDistance_px;
+/// Least ratio of a corner's score to the standard deviation of the pixel noise that would look as rough as the
+/// corner's neighborhood does.
+constexpr double kMinScoreOverGrain = 0.5;
+
+/// The last rows of values computed row by row, by row number.
 template <class T>
 class RowRing {
  public:
-  RowRing(int rows, int width) : rows_(rows), width_(width), values_(static_cast<std::size_t>(rows) * width) {}
-  T* row(int y) { return values_.data() + static_cast<std::size_t>(y % rows_) * width_; }
-  const T* row(int y) const { return values_.data() + static_cast<std::size_t>(y % rows_) * width_; }
+  RowRing(int rows, int width) : rows_(rows), width_(width), values_(rows * width) {}
+  T* row(int y) { return values_.data() + y % rows_ * width_; }
+  const T* row(int y) const { return values_.data() + y % rows_ * width_; }
 
  private:
   int rows_, width_;
   std::vector<T> values_;
 };
 
-/// Gradients of the image smoothed by the binomial 3x3 filter, 32 times as large, row after row. Smoothing keeps the
-/// grain of dark images from passing for corners.
+/// Gradients of the image smoothed by the binomial 3x3 filter, scaled by 32, row after row. Without smoothing the grain
+/// of dark images would look like corners.
 class Gradients {
  public:
   explicit Gradients(const Image& image)
@@ -41,7 +49,7 @@ class Gradients {
         dx_(kRows, image.width()),
         dy_(kRows, image.width()) {}
 
-  /// Makes row y; rows are made in order, and the last `kRows` are kept.
+  /// Computes row y. Rows are computed in order, and the last `kRows` are kept.
   void advanceTo(int y) {
     for (int next = smoothed_to_ < 0 ? y - 1 : smoothed_to_ + 1; next <= y + 1; ++next) smooth(next);
     smoothed_to_ = y + 1;
@@ -55,7 +63,7 @@ class Gradients {
   const std::int16_t* dx(int y) const { return dx_.row(y); }
   const std::int16_t* dy(int y) const { return dy_.row(y); }
   static constexpr double kScale = 32;
-  static constexpr int kRows = kWindowRows + 1;  // the window's and the one that leaves it, zero at first
+  static constexpr int kRows = kWindowRows + 1;  // those of the window and the one that leaves it, zero at first
 
  private:
   void smooth(int y) {
@@ -77,11 +85,11 @@ struct ColumnMoments {
   std::vector<int> xx, xy, yy;
   explicit ColumnMoments(int width) : xx(width), xy(width), yy(width) {}
 
-  /// Adds the products of row y and takes away those of the row that leaves the window; at first that is zero.
+  /// Adds the products of row y and subtracts those of the row that leaves the window, which is zero at first.
   void slideTo(const Gradients& gradients, int y) {
     const std::int16_t *dx = gradients.dx(y), *dy = gradients.dy(y);
-    const int leaving =
-        y - kWindowRows + Gradients::kRows;  // the ring has a place more than the window: no negative row at the start
+    // The row that leaves, y - kWindowRows, and this one share a slot of the ring; this one is never negative.
+    const int leaving = y - kWindowRows + Gradients::kRows;
     const std::int16_t *old_dx = gradients.dx(leaving), *old_dy = gradients.dy(leaving);
     int *sum_xx = xx.data(), *sum_xy = xy.data(), *sum_yy = yy.data();
     for (int x = 0; x < static_cast<int>(xx.size()); ++x) {
@@ -109,8 +117,9 @@ void smallerEigenvalues(const ColumnMoments& moments, int first, int last, float
   }
 }
 
-/// True for the first of equal maxima in reading order.
-bool isMaximumWithin(const RowRing<float>& response, int x, int y, int radius) {
+/// True for the greatest value within the minimum distance; of equal ones for the first in reading order.
+bool isMaximum(const RowRing<float>& response, int x, int y) {
+  constexpr int radius = kMinDistance_px;
   const float value = response.row(y)[x];
   for (int dy = -radius; dy <= radius; ++dy) {
     const float* row = response.row(y + dy) + x;
@@ -122,7 +131,8 @@ bool isMaximumWithin(const RowRing<float>& response, int x, int y, int radius) {
   return true;
 }
 
-/// Marks pixels of row y above the threshold that no direct neighbor exceeds: a cheap filter, in vector code.
+/// Marks pixels of row y above the threshold that no direct neighbor exceeds: a cheap filter that compiles to vector
+/// code.
 void markPeaks(const RowRing<float>& response, int y, int first, int last, float threshold, std::uint8_t* marks) {
   const float *above = response.row(y - 1), *row = response.row(y), *below = response.row(y + 1);
   for (int x = first; x < last; ++x) {
@@ -171,18 +181,15 @@ bool strongerInCell(const Candidate& a, const Candidate& b) {
          std::tuple(b.cell, -b.corner.score, b.corner.v_px, b.corner.u_px);
 }
 
-int borderOf(const CornerDetector::Params& params) {
-  return std::max(params.border_px, kHalfWindow_px + 2 + params.min_distance_px);
-}
-
 /// Local maxima of the rows from `first_center` up to `end_center`, in reading order.
 std::vector<Candidate> findCandidates(const Image& image, int first_center, int end_center,
                                       const CornerDetector::Params& params) {
-  const int width = image.width(), radius = params.min_distance_px, border = borderOf(params);
+  const int width = image.width();
+  constexpr int radius = kMinDistance_px, border = kBorder_px;
   std::vector<Candidate> candidates;
   constexpr double kMomentScale = Gradients::kScale * Gradients::kScale * kWindowPixels;
   const auto threshold = static_cast<float>(params.min_score * params.min_score * kMomentScale);
-  const int columns = (width + params.cell_px - 1) / params.cell_px;
+  const int columns = (width + kCell_px - 1) / kCell_px;
   Gradients gradients(image);
   ColumnMoments moments(width);
   RowRing<float> response(2 * radius + 1, width);
@@ -199,22 +206,22 @@ std::vector<Candidate> findCandidates(const Image& image, int first_center, int 
     markPeaks(response, center, border, width - border, threshold, marks.data());
     for (int x = border; x < width - border; ++x) {
       x = nextMark(marks, x);
-      if (x >= width - border || !isMaximumWithin(response, x, center, radius)) continue;
+      if (x >= width - border || !isMaximum(response, x, center)) continue;
       const auto score = static_cast<float>(std::sqrt(response.row(center)[x] / kMomentScale));
-      if (score < params.min_score_over_grain * grainAround(image, x, center)) continue;
-      candidates.push_back({center / params.cell_px * columns + x / params.cell_px,
-                            {static_cast<float>(x), static_cast<float>(center), score}});
+      if (score < kMinScoreOverGrain * grainAround(image, x, center)) continue;
+      candidates.push_back(
+          {center / kCell_px * columns + x / kCell_px, {static_cast<float>(x), static_cast<float>(center), score}});
     }
   }
   return candidates;
 }
 
-/// Local maxima of the whole image, in reading order: bands of rows side by side.
+/// Local maxima of the whole image, in reading order. Bands of rows are searched in parallel.
 std::vector<Candidate> findCandidates(const Image& image, const CornerDetector::Params& params) {
   constexpr int kBands = 4;
-  const int border = borderOf(params), rows = image.height() - 2 * border;
-  if (rows <= 0 || image.width() <= 2 * border) return {};
-  const auto startOf = [&](std::size_t band) { return border + rows * static_cast<int>(band) / kBands; };
+  const int rows = image.height() - 2 * kBorder_px;
+  if (rows <= 0 || image.width() <= 2 * kBorder_px) return {};
+  const auto startOf = [&](std::size_t band) { return kBorder_px + rows * static_cast<int>(band) / kBands; };
   std::array<std::vector<Candidate>, kBands> bands;
   forEachItem(
       kBands, [&](std::size_t i) { bands[i] = findCandidates(image, startOf(i), startOf(i + 1), params); }, 1);
@@ -223,7 +230,7 @@ std::vector<Candidate> findCandidates(const Image& image, const CornerDetector::
   return candidates;
 }
 
-/// Lowest score that may pass in the last rank that still finds room.
+/// The score that corners of a rank must exceed where there is room for so many of them only.
 float cutOfRank(const std::vector<std::pair<int, Candidate>>& ranked, int rank, int room) {
   std::vector<float> scores;
   for (const auto& [r, candidate] : ranked)
@@ -241,19 +248,19 @@ std::vector<Corner> CornerDetector::operator()(const Image& image) const {
   std::ranges::sort(candidates, strongerInCell);
 
   std::vector<std::pair<int, Candidate>> ranked;  // with the rank in the cell
-  std::vector<int> of_rank(static_cast<std::size_t>(params_.max_per_cell));
+  std::vector<int> of_rank(kMaxPerCell);
   for (int i = 0, rank = 0; i < static_cast<int>(candidates.size()); ++i) {
     rank = i > 0 && candidates[i - 1].cell == candidates[i].cell ? rank + 1 : 0;
-    if (rank >= params_.max_per_cell) continue;
+    if (rank >= kMaxPerCell) continue;
     ranked.emplace_back(rank, candidates[i]);
     ++of_rank[rank];
   }
 
   int last_rank = 0, room = params_.max_corners;
-  while (last_rank < params_.max_per_cell && of_rank[last_rank] <= room) room -= of_rank[last_rank++];
-  const float cut = last_rank < params_.max_per_cell ? cutOfRank(ranked, last_rank, room) : 0;
+  while (last_rank < kMaxPerCell && of_rank[last_rank] <= room) room -= of_rank[last_rank++];
+  const float cut = last_rank < kMaxPerCell ? cutOfRank(ranked, last_rank, room) : 0;
   std::vector<Corner> corners;
-  corners.reserve(static_cast<std::size_t>(params_.max_corners));
+  corners.reserve(params_.max_corners);
   for (const auto& [rank, candidate] : ranked)
     if (rank < last_rank || (rank == last_rank && candidate.corner.score > cut)) corners.push_back(candidate.corner);
   return corners;

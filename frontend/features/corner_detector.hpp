@@ -14,15 +14,12 @@ class CornerDetector {
  public:
   struct Params {
     int max_corners = 1500;
-    int cell_px = 24;
-    int max_per_cell = 6;
-    double min_score =
-        1.5;  // gray levels per pixel: root of the smaller eigenvalue's mean over the window, in the smoothed image
-    double min_score_over_grain =
-        0.5;  // grain: standard deviation of the pixel noise that the neighborhood would need to look as rough
-    int border_px = 8;
-    int min_distance_px = 4;  // no better corner within this many columns and rows
+    /// In gray levels per pixel: root of the smaller eigenvalue, a mean over the window of the smoothed image.
+    double min_score = 1.5;
   };
+  static constexpr int kCell_px = 24;        // side of a cell
+  static constexpr int kMinDistance_px = 4;  // no better corner lies within this many columns and rows
+
   explicit CornerDetector(const Params& params);
 
   /// Corners ordered by cell, row by row, the strongest of a cell first. Their coordinates are whole pixels.

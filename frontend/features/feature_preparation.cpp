@@ -14,8 +14,8 @@ FeaturesPtr FeaturePreparation::operator()(const StereoFramePtr& frame) const {
   features.frame = frame;
   if (frame->rejected()) return std::make_shared<const Features>(std::move(features));
 
-  features.left = buildPyramid(frame->left, params_.pyramid_levels, pool_);
-  features.right = buildPyramid(frame->right, params_.pyramid_levels, pool_);
+  features.left = buildPyramid(frame->left, kPyramidLevels, pool_);
+  features.right = buildPyramid(frame->right, kPyramidLevels, pool_);
   if (params_.detector == DetectorKind::kCorners) {
     features.corners = detect_corners_(frame->left);
   } else {

@@ -18,10 +18,10 @@ class FeaturePreparation {
  public:
   struct Params {
     DetectorKind detector = DetectorKind::kCorners;
-    int pyramid_levels = 4;
     CornerDetector::Params corners;
     SiftDetector::Params sift;
   };
+  static constexpr int kPyramidLevels = 4;  // the coarsest, an eighth of full size, still shows the texture of vehicles
   explicit FeaturePreparation(const Params& params);
   FeaturesPtr operator()(const StereoFramePtr& frame) const;
 

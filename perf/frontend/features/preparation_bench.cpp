@@ -37,7 +37,7 @@ void BM_DetectCorners(benchmark::State& state) {
 }
 BENCHMARK(BM_DetectCorners)->Arg(621)->Arg(1242)->Unit(benchmark::kMicrosecond);
 
-/// The whole stage: both eyes.
+/// The whole stage: both images.
 void BM_PreparePair(benchmark::State& state) {
   const StereoFramePtr& frame = benchStreet(static_cast<int>(state.range(0))).now->frame;
   const FeaturePreparation prepare(FeaturePreparation::Params{});

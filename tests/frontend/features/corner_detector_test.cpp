@@ -10,6 +10,7 @@ namespace motorcade {
 namespace {
 
 const CornerDetector::Params kParams;
+constexpr int kBorder_px = 9;  // window, smoothing and minimum distance
 
 /// A bright square on a dark ground, with the given contrast.
 Image squareImage(double left, double top, double side, double contrast) {
@@ -31,7 +32,7 @@ TEST(CornerDetector, FindsTheFourCornersOfASquareAndNothingOnItsEdges) {
 
 TEST(CornerDetector, FindsFaintCorners) { EXPECT_EQ(CornerDetector(kParams)(squareImage(60, 50, 50, 12)).size(), 4U); }
 
-TEST(CornerDetector, TakesNoGrainForCorners) {
+TEST(CornerDetector, DetectsNoCornersInNoise) {
   const auto flat = [](double, double) { return 90.0; };
   EXPECT_TRUE(CornerDetector(kParams)(test::render(300, 200, flat, {.noise = 2})).empty());
   EXPECT_LE(CornerDetector(kParams)(test::render(300, 200, flat, {.noise = 12})).size(), 5U);
@@ -48,7 +49,8 @@ TEST(CornerDetector, GivesEachCellItsShareBesideStrongTexture) {
   EXPECT_GE(faint, 70);  // half of the area, less what the border takes
   std::set<std::pair<int, int>> cells;
   for (const Corner& corner : corners)
-    cells.emplace(static_cast<int>(corner.u_px) / params.cell_px, static_cast<int>(corner.v_px) / params.cell_px);
+    cells.emplace(static_cast<int>(corner.u_px) / CornerDetector::kCell_px,
+                  static_cast<int>(corner.v_px) / CornerDetector::kCell_px);
   EXPECT_GE(cells.size(), 120U);  // of 170
 }
 
@@ -57,12 +59,12 @@ TEST(CornerDetector, KeepsCornersApartAndOffTheBorder) {
   const auto corners = CornerDetector(kParams)(test::render(320, 200, texture));
   ASSERT_GT(corners.size(), 50U);
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    EXPECT_GE(corners[i].u_px, kParams.border_px);
-    EXPECT_LE(corners[i].v_px, 199 - kParams.border_px);
+    EXPECT_GE(corners[i].u_px, kBorder_px);
+    EXPECT_LE(corners[i].v_px, 199 - kBorder_px);
     for (std::size_t j = 0; j < i; ++j) {
       const float apart_px =
           std::max(std::abs(corners[i].u_px - corners[j].u_px), std::abs(corners[i].v_px - corners[j].v_px));
-      EXPECT_GT(apart_px, static_cast<float>(kParams.min_distance_px));
+      EXPECT_GT(apart_px, CornerDetector::kMinDistance_px);
     }
   }
 }

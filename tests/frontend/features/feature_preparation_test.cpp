@@ -18,7 +18,7 @@ TEST(FeaturePreparation, MakesPyramidsAndCorners) {
   EXPECT_TRUE(features->descriptors.empty());
 }
 
-TEST(FeaturePreparation, AnswersARejectedFrameWithoutImages) {
+TEST(FeaturePreparation, GivesNoImagesForARejectedFrame) {
   const auto features = FeaturePreparation({})(test::rejectedFrame(7));
   EXPECT_EQ(features->frame->frame, FrameId{7});
   EXPECT_TRUE(features->left.levels.empty());
