@@ -9,8 +9,13 @@
 namespace motorcade {
 namespace {
 
-/// Of descriptors, whose norm is about 512: bounds matches that have no rival for the ratio to judge by.
+/// Greatest distance of matching descriptors, whose norm is about 512. It bounds matches without a second nearest
+/// candidate, which the ratio cannot judge.
 constexpr double kMaxDistance = 250;
+
+// Parameters of Lowe (2004): three scales per octave, and a contrast threshold that OpenCV divides by their number.
+constexpr int kOctaveLayers = 3;
+constexpr double kContrastThreshold = 0.03;
 
 float squaredDistance(const SiftDescriptor& a, const SiftDescriptor& b) {
   float sum = 0;
@@ -40,9 +45,8 @@ struct Nearest {
 }  // namespace
 
 SiftPoints SiftDetector::operator()(const Image& image) const {
-  const cv::Mat view(image.height(), image.width(), CV_8UC1, const_cast<std::uint8_t*>(image.data()),
-                     static_cast<std::size_t>(image.stride()));
-  const auto sift = cv::SIFT::create(params_.max_points, 3, params_.contrast_threshold);
+  const cv::Mat view(image.height(), image.width(), CV_8UC1, const_cast<std::uint8_t*>(image.data()), image.stride());
+  const auto sift = cv::SIFT::create(params_.max_points, kOctaveLayers, kContrastThreshold);
   std::vector<cv::KeyPoint> keypoints;
   cv::Mat descriptors;
   sift->detectAndCompute(view, cv::noArray(), keypoints, descriptors);
@@ -50,7 +54,7 @@ SiftPoints SiftDetector::operator()(const Image& image) const {
   SiftPoints points;
   for (int i = 0; i < static_cast<int>(keypoints.size()); ++i) {
     const cv::KeyPoint& keypoint = keypoints[i];
-    // The same place in several orientations is one point: they come one after the other.
+    // Keypoints at the same position with different orientations follow one another and are one point.
     if (!points.corners.empty() && points.corners.back().u_px == keypoint.pt.x &&
         points.corners.back().v_px == keypoint.pt.y)
       continue;

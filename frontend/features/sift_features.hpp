@@ -9,6 +9,8 @@
 /// The paper's own front-end: SIFT points matched by their descriptors. An option; about 115 ms per image.
 namespace motorcade {
 
+inline constexpr double kSiftSigma_px = 0.4;  // of a point's position and of the disparity of a match
+
 struct SiftPoints {
   std::vector<Corner> corners;
   std::vector<SiftDescriptor> descriptors;
@@ -19,7 +21,6 @@ class SiftDetector {
  public:
   struct Params {
     int max_points = 1500;
-    double contrast_threshold = 0.03;
   };
   explicit SiftDetector(const Params& params) : params_(requireValid(params)) {}
   SiftPoints operator()(const Image& image) const;
@@ -28,14 +29,14 @@ class SiftDetector {
   Params params_;
 };
 
-/// A region of the other image, relative to a point, in which its match must lie; inclusive bounds.
+/// The region of the other image, relative to a point, in which its match must lie. Bounds are inclusive.
 struct SiftSearchRegion {
   double min_du_px = 0, max_du_px = 0;
   double max_dv_px = 0;
 };
 
 /// For each point of `from` the index in `to` of its mutual nearest descriptor within the region, -1 when there is
-/// none. `max_ratio` bounds the distance over that of the second nearest.
+/// none. `max_ratio` bounds the ratio of the nearest to the second nearest distance.
 std::vector<int> matchSift(const std::vector<Corner>& from, const std::vector<SiftDescriptor>& from_descriptors,
                            const std::vector<Corner>& to, const std::vector<SiftDescriptor>& to_descriptors,
                            const SiftSearchRegion& region, double max_ratio);

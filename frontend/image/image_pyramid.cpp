@@ -25,7 +25,7 @@ Image halved(const Image& image, ImagePool& pool) {
 ImagePyramid buildPyramid(const Image& image, int levels, ImagePool& pool) {
   assert(!image.empty() && levels >= 1);
   ImagePyramid pyramid;
-  pyramid.levels.reserve(static_cast<std::size_t>(levels));
+  pyramid.levels.reserve(levels);
   pyramid.levels.push_back(image);
   while (static_cast<int>(pyramid.levels.size()) < levels) {
     const Image& last = pyramid.levels.back();

@@ -1,55 +1,51 @@
 #pragma once
 
 #include <optional>
-#include <span>
+
+#include <Eigen/Core>
 
 #include "frontend/image/patch_template.hpp"
 #include "frontend/messages.hpp"
 
 /// Alignment of small square patches to a fraction of a pixel, whatever their gain and bias: the kernel of flow and
-/// stereo. A patch may be up to half outside its image, whose border pixels are then repeated.
+/// stereo. Up to half of a patch may lie outside its image, whose border pixels are then repeated.
 namespace motorcade {
 
+/// Least standard deviation of an alignment: it stands for errors that the residual does not show.
+inline constexpr double kPatchSigmaFloor_px = 0.12;
+
 struct PatchParams {
-  int window_px = 11;         // side of the patch, odd
-  int max_iterations = 12;    // of Gauss-Newton, per level
   double max_step_px = 0.02;  // converged below this
-  double max_shift_px = 4;    // from the guess, per level; further is a failure
+  double max_shift_px = 4;    // from the guess, per level; farther is a failure
   double min_ncc = 0.65;      // normalized cross-correlation at the solution
-  double sigma_floor_px = 0.12;
 };
 
 struct AlignedPatch {
   float u_px = 0, v_px = 0;
   float ncc = 0;         // with the deformation taken into account
-  float log_growth = 0;  // log scale of what `image` shows over the template's
-  float sigma_px =
-      0;  // standard deviation of each coordinate, from residual and H; of the worse one, never below the floor
+  float log_growth = 0;  // log of the patch's scale in `image` over that of the template
+  float sigma_px = 0;    // standard deviation of the worse coordinate, from residual and H; never below the floor
 };
 
 /// Finds a kScale template in `image` near a guess by inverse-compositional Gauss-Newton (Baker, Matthews 2004).
-/// Empty when it runs away, does not fit or leaves the image.
-std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& image, float u_guess_px,
-                                       float v_guess_px, const PatchParams& params);
+/// Empty when the alignment diverges, the patches do not fit, or the patch leaves the image.
+std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& image, const Eigen::Vector2f& guess_px,
+                                       const PatchParams& params);
 
-/// The same from coarse to fine: follows the point (u, v) of `from` into `to`, both in full-size pixels, from
-/// `first_level` down to 0.
-std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, float u_px, float v_px, const ImagePyramid& to,
-                                       float u_guess_px, float v_guess_px, int first_level, const PatchParams& params);
+/// Follows a point of `from` into `to` from coarse to fine, from `first_level` down to 0. Point and guess are in
+/// full-size pixels.
+std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, const Eigen::Vector2f& point_px,
+                                       const ImagePyramid& to, const Eigen::Vector2f& guess_px, int first_level,
+                                       const PatchParams& params);
 
 struct DisparityParams {
-  int window_px = 11;
-  double search_radius_px = 3;  // whole-pixel search around the prediction; 0 goes straight to the refinement
-  int max_iterations = 8;
-  double min_ncc = 0.65;
-  double sigma_floor_px = 0.12;
-  double max_sigma_px = 1;
+  double search_radius_px = 3;  // of the whole-pixel search around the prediction; with 0 there is only the refinement
 };
 
-/// Disparity of the left pixel (u, v), which may lie between pixels: whole-pixel search around the prediction by sums
-/// of absolute differences, then 1-D Gauss-Newton on the intensities of both patches (a parabola through the sums would
-/// pull to whole pixels), which follows the slope of the surface. Empty when the window leaves an image, nothing is
-/// similar enough, the disparity is not positive or its predicted sigma is too large.
+/// Disparity of the left point (u, v), which may lie between pixels. A whole-pixel search around the prediction by sums
+/// of absolute differences comes first, then 1-D Gauss-Newton on the intensities of both patches, which follows the
+/// slope of the surface (a parabola through the sums would pull to whole pixels). Empty when the patch leaves an image,
+/// nothing is similar enough, the disparity is not positive or its predicted sigma is too large.
 std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right, double u_px, double v_px,
                                            double predicted_disparity_px, const DisparityParams& params = {});
 

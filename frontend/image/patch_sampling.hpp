@@ -12,8 +12,10 @@
 /// Samples of an image between its pixels, a row of sixteen at a time, in integers of 1/64 gray level.
 namespace motorcade {
 
-inline constexpr int kSampleLevels = 64;  // of a sample per gray level; a column's place is held to 1/64 px as well
+inline constexpr int kSampleBits = 6, kSampleLevels = 1 << kSampleBits;  // of a sample per gray level, and per pixel
+inline constexpr int kRowLevels = 1 << 15;                               // per pixel, as `scaled` takes fractions
 inline constexpr int kBlockRows = 16, kBlockStride = 48;  // of the largest rectangle that may lie across a border
+inline constexpr int kBlockMargin = 32;                   // bytes that may be read past a block
 
 /// True from the middle of the first pixel to that of the last one.
 inline bool inside(const Image& image, float u_px, float v_px) {
@@ -27,21 +29,21 @@ inline Words windowMask(int window_px) {
   return kColumns < allWords(window_px);  // minus one: all bits set
 }
 
-/// A column's place in 1/64 px.
-struct GridPlace {
-  explicit GridPlace(float px) {
-    const int place = static_cast<int>(std::floor(px * kSampleLevels + 0.5F));
-    pixel = place >> 6;
-    fraction = place & (kSampleLevels - 1);
+/// A column's position in 1/64 px: sampling between columns knows only these.
+struct ColumnPosition {
+  explicit ColumnPosition(float px) {
+    const int position = static_cast<int>(std::floor(px * kSampleLevels + 0.5F));
+    pixel = position >> kSampleBits;
+    fraction = position & (kSampleLevels - 1);
   }
   float px() const { return static_cast<float>(pixel) + static_cast<float>(fraction) / kSampleLevels; }
   int pixel, fraction;
 };
 
-/// A row's place in 2^-15 px.
-struct RowPlace {
-  explicit RowPlace(float px) : pixel(static_cast<int>(std::floor(px))) {
-    fraction = std::min(static_cast<int>((px - static_cast<float>(pixel)) * 32768), 32767);
+/// A row's position in 2^-15 px.
+struct RowPosition {
+  explicit RowPosition(float px) : pixel(static_cast<int>(std::floor(px))) {
+    fraction = std::min(static_cast<int>((px - static_cast<float>(pixel)) * kRowLevels), kRowLevels - 1);
   }
   int pixel, fraction;
 };
@@ -50,8 +52,8 @@ inline Words betweenRows(const Words& upper, const Words& lower, const Words& fr
   return upper + scaled(lower - upper, fraction);
 }
 
-/// A rectangle of pixels with room to read 24 beyond its right edge: in the image itself, or copied with the border
-/// repeated.
+/// A rectangle of pixels with room to read 24 beyond its right edge. It lies in the image itself, or is a copy where
+/// the image's border is repeated.
 class Block {
  public:
   Block(const Image& image, int x, int y, int columns, int rows) {
@@ -69,8 +71,8 @@ class Block {
 
  private:
   [[gnu::noinline]] void copy(const Image& image, int x, int y, int rows) {
-    const int left = std::clamp(-x, 0, kBlockStride),
-              right = std::clamp(image.width() - x, left, kBlockStride);  // columns of the image
+    // Columns of the block where the image begins and ends.
+    const int left = std::clamp(-x, 0, kBlockStride), right = std::clamp(image.width() - x, left, kBlockStride);
     for (int r = 0; r < rows; ++r) {
       const std::uint8_t* row = image.row(std::clamp(y + r, 0, image.height() - 1));
       std::uint8_t* out = copy_.data() + r * kBlockStride;
@@ -78,30 +80,30 @@ class Block {
       std::memcpy(out + left, row + x + left, static_cast<std::size_t>(right - left));
       std::memset(out + right, row[image.width() - 1], static_cast<std::size_t>(kBlockStride - right));
     }
-    std::memset(copy_.data() + rows * kBlockStride, 0, 32);
+    std::memset(copy_.data() + rows * kBlockStride, 0, kBlockMargin);
   }
 
   const std::uint8_t* origin_;
   std::ptrdiff_t stride_;
-  std::array<std::uint8_t, kBlockRows * kBlockStride + 32> copy_;  // not filled unless needed
+  std::array<std::uint8_t, kBlockRows * kBlockStride + kBlockMargin> copy_;  // not filled unless needed
 };
 
-/// Sixteen columns to sample: of each, the pixels on its left and right, counted from the first of its group of eight,
-/// and their weights.
+/// Sixteen columns to sample. For each it keeps the pixels to its left and right, counted from the first pixel of its
+/// group of eight columns, and their weights.
 class SampleColumns {
  public:
-  /// A pixel apart, the first 1/64 `fraction` behind the row's first pixel.
+  /// Columns one pixel apart, the first `fraction` / 64 px to the right of the row's first pixel.
   explicit SampleColumns(int fraction)
       : second_group_(kWordLanes / 2),
         pixels_(kNextTo),
         weights_(Bytes(allWords(fraction << 8 | (kSampleLevels - fraction)))) {}
 
-  /// At any places from left to right; those of a group of eight lie within 15 px, all between 0 and `last_px`, which
-  /// is inside the image.
-  SampleColumns(const std::array<float, kWordLanes>& places_px, int last_px) {
+  /// Columns at any positions from left to right. Those of a group of eight lie within 15 px, all between 0 and
+  /// `last_px`, which is inside the image.
+  SampleColumns(const std::array<float, kWordLanes>& positions_px, int last_px) {
     for (int i = 0; i < kWordLanes; ++i) {
-      const int place = static_cast<int>(places_px[i] * kSampleLevels + 0.5F);
-      const int pixel = std::min(place >> 6, last_px - 1), right_weight = place - pixel * kSampleLevels;
+      const int position = static_cast<int>(positions_px[i] * kSampleLevels + 0.5F);
+      const int pixel = std::min(position >> kSampleBits, last_px - 1), right_weight = position - pixel * kSampleLevels;
       if (i == 0) first_group_ = pixel;
       if (i == kWordLanes / 2) second_group_ = pixel;
       const int column = pixel - (i < kWordLanes / 2 ? first_group_ : second_group_);

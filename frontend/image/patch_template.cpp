@@ -15,8 +15,10 @@ constexpr int kStride = PatchTemplate::kStride;
 constexpr float kOtherUnit = PatchTemplate::kOtherUnit;
 static_assert(kStride == kWordLanes && kMaxPatchWindow_px + 2 <= kWordLanes && kMaxPatchWindow_px + 3 <= kBlockRows);
 
-// What the words of the planes count: with the other image's, their products' sums over the largest window fit 32 bits.
+// Units of the words of the planes: the sums of their products with the other image's words, over the largest window,
+// fit 32 bits.
 constexpr int kAppearanceShift = 2;  // from samples
+constexpr int kGradientShift = 3;    // from differences of samples two pixels apart
 constexpr float kAppearanceUnit = 1.0F / 16, kGradientUnit = 1.0F / 16, kMomentUnit = 1.0F / 4;
 
 /// Gray levels that a word of each derivative counts.
@@ -26,10 +28,10 @@ Eigen::Vector3f descentUnits(PatchDeformation deformation) {
 
 using Square = std::array<Words, kMaxPatchWindow_px + 2>;
 
-/// Samples of a square around (u, v), the column as on the grid.
-void sampleSquare(const Image& image, const GridPlace& u, float v_px, int side_px, Square& out) {
+/// Samples a square around (u, v).
+void sampleSquare(const Image& image, const ColumnPosition& u, float v_px, int side_px, Square& out) {
   const int half = side_px / 2;
-  const RowPlace top(v_px - static_cast<float>(half));
+  const RowPosition top(v_px - static_cast<float>(half));
   const Block block(image, u.pixel - half, top.pixel, side_px + 1, side_px + 1);
   const SampleColumns columns(u.fraction);
   const Words fraction = allWords(top.fraction);
@@ -41,17 +43,18 @@ void sampleSquare(const Image& image, const GridPlace& u, float v_px, int side_p
   }
 }
 
-/// The same with samples 1 / scale px apart; the scale is at least `kMinTemplateScale`.
-void sampleScaledSquare(const Image& image, const GridPlace& u, float v_px, int side_px, float scale, Square& out) {
+/// Samples a square with samples 1 / scale px apart. The scale is at least `kMinTemplateScale`.
+void sampleScaledSquare(const Image& image, const ColumnPosition& u, float v_px, int side_px, float scale,
+                        Square& out) {
   const int half = side_px / 2;
   const float spacing_px = 1 / scale;
   const auto last_u = static_cast<float>(image.width() - 1), last_v = static_cast<float>(image.height() - 1);
-  std::array<float, kWordLanes> places_px;
+  std::array<float, kWordLanes> positions_px;
   for (int c = 0; c < kWordLanes; ++c)
-    places_px[c] = std::clamp(u.px() + static_cast<float>(c - half) * spacing_px, 0.0F, last_u);
-  const SampleColumns columns(places_px, image.width() - 1);
+    positions_px[c] = std::clamp(u.px() + static_cast<float>(c - half) * spacing_px, 0.0F, last_u);
+  const SampleColumns columns(positions_px, image.width() - 1);
   for (int r = 0; r < side_px; ++r) {
-    const RowPlace v(std::clamp(v_px + static_cast<float>(r - half) * spacing_px, 0.0F, last_v));
+    const RowPosition v(std::clamp(v_px + static_cast<float>(r - half) * spacing_px, 0.0F, last_v));
     const int below = std::min(v.pixel + 1, image.height() - 1);
     out[r] = betweenRows(columns(image.row(v.pixel)), columns(image.row(below)), allWords(v.fraction));
   }
@@ -93,13 +96,12 @@ TemplateSums fillPlanes(PatchTemplate& patch, const Square& square, PatchDeforma
   TemplateSums sums;
   Words above = afterFirst(square[0]), here = afterFirst(square[1]);
   for (int r = 0; r < window; ++r) {
-    const auto row = static_cast<std::size_t>(r);
-    const Words& samples = square[row + 1];
-    const Words below = afterFirst(square[row + 2]), rows = allWords((r - half) * (1 << kMomentShift));
-    const Words du = (afterSecond(samples) - samples) & mask,
-                dv = (below - above) & mask;  // of samples two pixels apart
-    const Words a = reduced(here - mean, kAppearanceShift) & mask, d0 = reduced(du, 3);
-    const Words d1 = scale ? reduced(dv, 3) : scaled(du, rows);
+    const Words& samples = square[r + 1];
+    const Words below = afterFirst(square[r + 2]), rows = allWords((r - half) * (1 << kMomentShift));
+    // Differences of samples two pixels apart.
+    const Words du = (afterSecond(samples) - samples) & mask, dv = (below - above) & mask;
+    const Words a = reduced(here - mean, kAppearanceShift) & mask, d0 = reduced(du, kGradientShift);
+    const Words d1 = scale ? reduced(dv, kGradientShift) : scaled(du, rows);
     const Words d2 = scale ? scaled(du, columns) + scaled(dv, rows) : scaled(du, columns);
     storeWords(patch.appearance.data() + r * kStride, a);
     storeWords(patch.descent[0].data() + r * kStride, d0);
@@ -112,9 +114,9 @@ TemplateSums fillPlanes(PatchTemplate& patch, const Square& square, PatchDeforma
   return sums;
 }
 
-/// Completes a template from the sums over its planes: takes the mean out of the appearance, and the mean and the
-/// component along the appearance out of the derivatives (a change of bias or gain is no motion). Returns the sums of
-/// products of the latter.
+/// Completes a template from the sums over its planes. Takes the mean out of the appearance, and the mean and the
+/// component along the appearance out of the derivatives, because a change of bias or gain is no motion. Returns the
+/// sums of products of the derivatives.
 Eigen::Matrix3f orthogonalize(PatchTemplate& patch, const TemplateSums& sums, PatchDeformation deformation) {
   const auto plain = totals(sums.appearance, sums.d0, sums.d1, sums.d2);
   const auto along = totals(sums.appearance_squares, sums.appearance_d0, sums.appearance_d1, sums.appearance_d2);
@@ -143,12 +145,13 @@ Eigen::Matrix3f orthogonalize(PatchTemplate& patch, const TemplateSums& sums, Pa
   return sum_dd - sum_d * patch.descent_mean.transpose() - patch.descent_along * patch.descent_along.transpose();
 }
 
-/// Information of a deformation whose standard deviation is `sigma`, for the noise that 8-bit images have at least (3
+/// Information of a deformation whose standard deviation is `sigma`, in units of the noise of 8-bit images (at least 3
 /// gray levels).
-constexpr float priorInformation(float sigma) { return 9 / (sigma * sigma); }
+constexpr float kNoise = 3;
+constexpr float priorInformation(float sigma) { return kNoise * kNoise / (sigma * sigma); }
 constexpr float kScaleSigma = 0.1F, kRowSlopeSigma = 0.3F, kColumnSlopeSigma = 0.15F;
-constexpr float kMinInformation =
-    60;  // of the shift: root mean square gradient of 0.7 gray levels per pixel over 11x11
+/// Least information of the shift: a root mean square gradient of 0.7 gray levels per pixel over 11x11.
+constexpr float kMinInformation = 60;
 
 }  // namespace
 
@@ -157,7 +160,7 @@ std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float 
   assert(window_px % 2 == 1 && window_px <= kMaxPatchWindow_px);
   std::optional<PatchTemplate> patch;  // the only object returned, so that it is never copied
   if (!inside(image, u_px, v_px) || scale < kMinTemplateScale) return patch;
-  const GridPlace u(u_px);
+  const ColumnPosition u(u_px);
   Square square;
   if (scale == 1) {
     sampleSquare(image, u, v_px, window_px + 2, square);

@@ -10,16 +10,18 @@
 
 namespace motorcade {
 
+inline constexpr int kPatchWindow_px = 11;  // side of the patches of flow and stereo, odd
 inline constexpr int kMaxPatchWindow_px = 13;
 
-/// How a patch may deform beside its shift: a small change of scale in time, a slope of the disparity between the eyes.
+/// How a patch may deform beside its shift: by a small change of scale from frame to frame, or by a slope of the
+/// disparity between left and right image.
 enum class PatchDeformation { kScale, kSlope };
 
-/// A patch with what its alignment needs: its appearance a = (I - mean) / |I - mean| and the derivatives D of I by the
-/// parameters (kScale: u, v, log scale; kSlope: u, u per row, u per column), made orthogonal to 1 and a. For the raw
-/// intensities J of another image the Gauss-Newton step is H^-1 sum(D J) / gain with H = sum(D D') + prior, whatever
-/// the gain and bias of J. The planes are kept in integers, before norm, mean and orthogonality, which the sums over
-/// them are given afterwards.
+/// A patch with what its alignment needs: its appearance a = (I - mean) / |I - mean| and the derivatives D of I with
+/// respect to the parameters (kScale: u, v, log scale; kSlope: u, u per row, u per column), made orthogonal to 1 and a.
+/// For the raw intensities J of another image the Gauss-Newton step is H^-1 sum(D J) / gain with H = sum(D D') + prior,
+/// whatever the gain and bias of J. The planes hold integers that are neither normalized, free of their mean nor
+/// orthogonal: the sums over them are corrected for that.
 struct PatchTemplate {
   PatchTemplate() {}  // leaves the planes as they are: they are filled at once
   static constexpr int kStride = 16;
@@ -30,19 +32,19 @@ struct PatchTemplate {
   int window_px = 0;
   int mean = 0;           // of the samples in the window, 1/64 gray level
   float norm = 0;         // of I - mean
-  float off_grid_px = 0;  // where the point lies, to the right of the grid's place at which it was sampled
-  // sum(a J) = unit * sum(appearance J) - mean * sum(J), and the same for sum(D J), less what lies along a.
+  float off_grid_px = 0;  // from the column at which the patch was sampled, in 1/64 px, to the point
+  // sum(a J) = unit * sum(appearance J) - mean * sum(J). The same holds for sum(D J), less its component along a.
   float appearance_unit = 0, appearance_mean = 0;
   Eigen::Vector3f descent_units, descent_mean, descent_along;
   Eigen::Vector3f prior;  // information of the deformations' prior around zero
   Eigen::Matrix3f inverse_hessian;
 };
 
-inline constexpr float kMinTemplateScale = 0.6F;
+inline constexpr float kMinTemplateScale = 0.6F;  // eight samples then span less than 15 px (`SampleColumns`)
 
-/// Empty without the texture that the shift needs, or when the point lies outside the image. With a `scale` the
-/// template shows the image that much enlarged around the point: how a point that was seen from afar looks now; empty
-/// below kMinTemplateScale.
+/// Empty when the patch lacks the texture that its shift needs, or when the point lies outside the image. With a
+/// `scale` the template shows the image enlarged by it around the point, as a point first seen from afar looks now.
+/// Empty below kMinTemplateScale.
 std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px,
                                           PatchDeformation deformation, float scale = 1);
 

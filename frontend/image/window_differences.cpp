@@ -10,75 +10,73 @@
 namespace motorcade {
 namespace {
 
-/// A size that the compiler knows, or one that it does not: then the template's is zero.
-template <int kColumns, int kRows>
+constexpr int kColumnLanes = 2 * kWordLanes;  // columns that sixteen neighboring windows may span
+
+/// Compares a window with sixteen neighboring ones at a time.
+template <WindowSize kSize>
 class Differences {
+  static constexpr int kColumns = kSize.columns, kRows = kSize.rows, kPixels = kColumns * kRows;
+  static_assert(kColumns - 1 <= kColumnLanes - kWordLanes);
+  static_assert(kPixels * UINT8_MAX <= INT16_MAX);  // a word holds the sum over a window
+
  public:
-  Differences(const Image& image, int u, int v, WindowSize window) : window_(window) {
-    for (int r = 0, i = 0; r < rows(); ++r) {
-      const std::uint8_t* row = image.row(v - rows() / 2 + r) + u - columns() / 2;
-      for (int c = 0; c < columns(); ++c) sum_ += pixels_[i++] = row[c];
+  explicit Differences(const Window& window) {
+    for (int r = 0, i = 0; r < kRows; ++r) {
+      const std::uint8_t* row = window.image.row(window.v - kRows / 2 + r) + window.u - kColumns / 2;
+      for (int c = 0; c < kColumns; ++c) sum_ += pixels_[i++] = row[c];
     }
   }
 
   /// Costs of sixteen neighboring windows, the first pixel of the first at `from`.
   Words operator()(const std::uint8_t* from, std::ptrdiff_t stride) const {
-    const Words per_pixel = allWords(std::min((1 << 15) / (columns() * rows()), INT16_MAX));
+    const Words per_pixel = allWords((1 << 15) / kPixels);  // as `scaled` takes fractions
     const Words offset = scaled(windowSums(from, stride) - static_cast<std::int16_t>(sum_), per_pixel);
     Words cost{};
-    for (int r = 0, i = 0; r < rows(); ++r) {
+    for (int r = 0, i = 0; r < kRows; ++r) {
       const std::uint8_t* row = from + r * stride;
-      for (int c = 0; c < columns(); ++c) cost += magnitude(wordPixels(row + c) - (offset + pixels_[i++]));
+      for (int c = 0; c < kColumns; ++c) cost += magnitude(wordPixels(row + c) - (offset + pixels_[i++]));
     }
     return cost;
   }
 
  private:
-  int columns() const { return kColumns > 0 ? kColumns : window_.columns; }
-  int rows() const { return kRows > 0 ? kRows : window_.rows; }
-
-  /// Sums of sixteen neighboring windows' pixels.
-  Words windowSums(const std::uint8_t* from, std::ptrdiff_t stride) const {
-    // Of each column first, over 32 columns: reads up to 31 bytes past a window's first pixel, the next row or the room
-    // after the last.
-    alignas(32) std::array<std::int16_t, 2 * kWordLanes> sums_of_columns;
-    for (int c = 0; c < 2 * kWordLanes; c += kWordLanes) {
+  /// Sums of the pixels of sixteen neighboring windows.
+  static Words windowSums(const std::uint8_t* from, std::ptrdiff_t stride) {
+    // The sums of 32 columns come first. This reads up to 31 bytes past a window's first pixel: of the next row, or of
+    // the room that an image keeps after its last row.
+    alignas(32) std::array<std::int16_t, kColumnLanes> sums_of_columns;
+    for (int c = 0; c < kColumnLanes; c += kWordLanes) {
       Words sum{};
-      for (int r = 0; r < rows(); ++r) sum += wordPixels(from + r * stride + c);
+      for (int r = 0; r < kRows; ++r) sum += wordPixels(from + r * stride + c);
       storeWords(sums_of_columns.data() + c, sum);
     }
     Words sums{};
-    for (int c = 0; c < columns(); ++c) sums += loadWords(sums_of_columns.data() + c);
+    for (int c = 0; c < kColumns; ++c) sums += loadWords(sums_of_columns.data() + c);
     return sums;
   }
 
-  WindowSize window_;
-  std::array<std::int16_t, kMaxWindowPixels> pixels_;
+  std::array<std::int16_t, kPixels> pixels_;
   int sum_ = 0;
 };
 
-template <int kColumns, int kRows>
-void fillCosts(const Image& image, int u, int v, const std::uint8_t* from, std::ptrdiff_t stride, WindowSize window,
-               std::span<std::uint16_t> costs) {
-  const Differences<kColumns, kRows> differences(image, u, v, window);
+template <WindowSize kSize>
+void fillCosts(const Window& window, const std::uint8_t* from, std::ptrdiff_t stride, std::span<std::uint16_t> costs) {
+  const Differences<kSize> differences(window);
   const int count = static_cast<int>(costs.size());
   for (int first = 0; first < count; first += kWordLanes) {
     const Words cost = differences(from + first, stride);
-    std::memcpy(costs.data() + first, &cost,
-                static_cast<std::size_t>(std::min(kWordLanes, count - first)) * sizeof(std::uint16_t));
+    std::memcpy(costs.data() + first, &cost, std::min(kWordLanes, count - first) * sizeof(std::uint16_t));
   }
 }
 
 }  // namespace
 
-void windowDifferences(const Image& image, int u, int v, const Image& other, int other_u, int other_v,
-                       WindowSize window, std::span<std::uint16_t> costs) {
-  assert(fits(window));
-  const std::uint8_t* from = other.row(other_v - window.rows / 2) + other_u - window.columns / 2;
-  const auto fill = window == WindowSize{9, 5}    ? fillCosts<9, 5>
-                    : window == WindowSize{11, 7} ? fillCosts<11, 7>
-                                                  : fillCosts<0, 0>;
-  fill(image, u, v, from, other.stride(), window, costs);
+void windowDifferences(const Window& window, const Image& other, int other_u, int other_v,
+                       std::span<std::uint16_t> costs) {
+  assert(window.size == kHalfSizeWindow || window.size == kFullSizeWindow);
+  const std::uint8_t* from = other.row(other_v - window.size.rows / 2) + other_u - window.size.columns / 2;
+  const auto fill = window.size == kHalfSizeWindow ? fillCosts<kHalfSizeWindow> : fillCosts<kFullSizeWindow>;
+  fill(window, from, other.stride(), costs);
 }
 
 }  // namespace motorcade

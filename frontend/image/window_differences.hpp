@@ -5,25 +5,35 @@
 
 #include "core/image.hpp"
 
-/// Comparison of windows to whole pixels: the kernel of searches for disparities.
+/// Comparison of windows at whole pixels: the kernel of the searches for disparities.
 namespace motorcade {
 
 struct WindowSize {
-  int columns = 11, rows = 7;  // odd
+  int columns, rows;  // odd
   bool operator==(const WindowSize&) const = default;
 };
-inline constexpr int kMaxWindowCosts = 512;
-inline constexpr int kMaxWindowColumns = 17, kMaxWindowRows = 15;
-inline constexpr int kMaxWindowPixels = 128;  // sums of differences then fit 15 bits and a sign
-constexpr bool fits(WindowSize window) {
-  return window.columns <= kMaxWindowColumns && window.rows <= kMaxWindowRows &&
-         window.columns * window.rows <= kMaxWindowPixels;
-}
+/// The sizes in use, known to the compiler, so that all loops have a fixed length: for images of half size, where a
+/// window shows twice as much of the scene, and for full size.
+inline constexpr WindowSize kHalfSizeWindow{9, 5}, kFullSizeWindow{11, 7};
 
-/// Sums of absolute differences, means removed to a whole gray level, between the window around (u, v) of `image` and
-/// those around (other_u
-/// + i, other_v) of `other`, i < costs.size() <= kMaxWindowCosts. All windows lie inside their images.
-void windowDifferences(const Image& image, int u, int v, const Image& other, int other_u, int other_v,
-                       WindowSize window, std::span<std::uint16_t> costs);
+inline constexpr int kMaxWindowCosts = 512;
+
+/// The pixels of an image around (u, v).
+struct Window {
+  const Image& image;
+  int u, v;
+  WindowSize size;  // kHalfSizeWindow or kFullSizeWindow
+
+  bool insideImage() const {
+    const int half_columns = size.columns / 2, half_rows = size.rows / 2;
+    return v >= half_rows && v + half_rows < image.height() && u >= half_columns && u + half_columns < image.width();
+  }
+};
+
+/// Sums of absolute differences, after the difference of the means (to a whole gray level) is taken out, between a
+/// window and those around (other_u + i, other_v) of another image, i < costs.size() <= kMaxWindowCosts. All windows
+/// lie inside their images.
+void windowDifferences(const Window& window, const Image& other, int other_u, int other_v,
+                       std::span<std::uint16_t> costs);
 
 }  // namespace motorcade

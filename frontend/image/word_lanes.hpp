@@ -7,8 +7,9 @@
 #include <immintrin.h>
 #endif
 
-/// Vectors of sixteen 16-bit integers, of the compilers' own kind: arithmetic is element by element. What that lacks
-/// (or GCC 12 turns into scalar code) is here, with the same values in the portable build.
+/// Vectors of sixteen 16-bit integers by the compilers' vector extension, whose arithmetic is element by element. The
+/// operations that it lacks (or that GCC 12 turns into scalar code) are here, with the same values in the portable
+/// build.
 namespace motorcade {
 
 inline constexpr int kWordLanes = 16;
@@ -32,7 +33,7 @@ inline Words magnitude(const Words& x) { return Words(_mm256_abs_epi16(__m256i(x
 inline WordSums products(const Words& a, const Words& b) { return WordSums(_mm256_madd_epi16(__m256i(a), __m256i(b))); }
 /// a b / 2^15, rounded.
 inline Words scaled(const Words& a, const Words& b) { return Words(_mm256_mulhrs_epi16(__m256i(a), __m256i(b))); }
-/// The words moved down by one or two places; zeros follow.
+/// The words moved down by one or two lanes; zeros follow.
 inline Words afterFirst(const Words& x) {
   const __m256i upper = _mm256_permute2x128_si256(__m256i(x), __m256i(x), 0x81);
   return Words(_mm256_alignr_epi8(upper, __m256i(x), 2));

@@ -17,8 +17,9 @@ using WordBytes = std::uint8_t __attribute__((vector_size(kWordLanes)));
 }  // namespace
 
 Signature::Signature(const ImagePyramid& pyramid, float u_px, float v_px) {
+  const int last_level = static_cast<int>(pyramid.levels.size()) - 1;
   for (int level = 0; level < 2; ++level) {
-    const Image& image = pyramid.levels[std::min(static_cast<std::size_t>(level), pyramid.levels.size() - 1)];
+    const Image& image = pyramid.levels[std::min(level, last_level)];
     const int x = std::clamp(static_cast<int>(std::lround(toLevel(u_px, level))) - kSide / 2, 0, image.width() - kSide);
     const int y =
         std::clamp(static_cast<int>(std::lround(toLevel(v_px, level))) - kSide / 2, 0, image.height() - kSide);
@@ -39,7 +40,8 @@ void Signature::fill(const Image& image, int x, int y, std::uint8_t* out) {
   Words sums{};
   for (int i = 0; i < kSide / 2; ++i) sums += pixels[i] = wordPixels(out + i * kWordLanes);
   const WordSums pairs = products(sums, allWords(1));
-  const Words shift = allWords(128 - totals(pairs, pairs, pairs, pairs)[0] / (kSide * kSide)), black{},
+  constexpr int kMeanGray = 128;
+  const Words shift = allWords(kMeanGray - totals(pairs, pairs, pairs, pairs)[0] / (kSide * kSide)), black{},
               white = allWords(255);
   for (int i = 0; i < kSide / 2; ++i) {
     const Words shifted = pixels[i] + shift, above = shifted < black ? black : shifted;
@@ -51,10 +53,10 @@ void Signature::fill(const Image& image, int x, int y, std::uint8_t* out) {
 CornerLookup::CornerLookup(const Features& features)
     : grid_(features.corners, features.left.levels.front().width(), features.left.levels.front().height(),
             [](const Corner& c) { return Eigen::Vector2f(c.u_px, c.v_px); }) {
-  places_.reserve(features.corners.size());
+  positions_.reserve(features.corners.size());
   signatures_.reserve(features.corners.size());
   for (const Corner& corner : features.corners) {
-    places_.emplace_back(corner.u_px, corner.v_px);
+    positions_.emplace_back(corner.u_px, corner.v_px);
     signatures_.emplace_back(features.left, corner.u_px, corner.v_px);
   }
 }
@@ -64,11 +66,11 @@ void CornerLookup::addSimilar(const ImagePyramid& from, const FlowObservation& p
   const Signature signature(from, point.u_px, point.v_px);
   const Eigen::Vector2f here(point.u_px, point.v_px);
   const std::pair none(static_cast<int>(max_difference * Signature::kPixels), -1);
-  std::array best{none, none};  // the smallest difference first, of equal ones the first corner
+  std::array best{none, none};  // the smallest difference first; of equal ones the corner with the smaller index
   const Eigen::Vector2f first(bounds.min_du_px, bounds.min_dv_px), last(bounds.max_du_px, bounds.max_dv_px);
   grid_.forEachNear(here + first, here + last, [&](int i) {
-    const Eigen::Vector2f shift = places_[i] - here;
-    if (!bounds.hold(shift.x(), shift.y())) return;
+    const Eigen::Vector2f shift = positions_[i] - here;
+    if (!bounds.contain(shift.x(), shift.y())) return;
     const std::pair candidate(signature.distance(signatures_[i]), i);
     if (candidate.first >= none.first || candidate >= best[1]) return;
     best[1] = candidate;
@@ -76,7 +78,7 @@ void CornerLookup::addSimilar(const ImagePyramid& from, const FlowObservation& p
   });
   for (const auto& [distance, i] : best) {
     if (i < 0) continue;
-    const Eigen::Vector2f shift = places_[i] - here;
+    const Eigen::Vector2f shift = positions_[i] - here;
     guesses.add({shift.x(), shift.y()});
   }
 }

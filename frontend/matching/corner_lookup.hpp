@@ -10,35 +10,35 @@
 #include "frontend/geometry/point_grid.hpp"
 #include "frontend/messages.hpp"
 
-/// Where a point of the frame before may have gone: guesses for its alignment.
+/// Guesses of where a point of the previous image may have gone, from which its alignment can start.
 namespace motorcade {
 
 struct Shift {
   float du_px = 0, dv_px = 0;
 };
 
-/// Bounds on a shift.
+/// Inclusive bounds on a shift.
 struct ShiftBounds {
   float min_du_px, max_du_px, min_dv_px, max_dv_px;
-  bool hold(float du_px, float dv_px) const {
+  bool contain(float du_px, float dv_px) const {
     return du_px >= min_du_px && du_px <= max_du_px && dv_px >= min_dv_px && dv_px <= max_dv_px;
   }
 };
 
-/// Shifts worth trying for one point.
+/// Shifts worth trying for one point: at most those of its neighbors and of two similar corners.
 struct Guesses {
-  std::array<Shift, 4> shifts;
+  std::array<Shift, 3> shifts;
   std::size_t count = 0;
   void add(const Shift& shift) { shifts[count++] = shift; }
   std::span<const Shift> all() const { return {shifts.data(), count}; }
 };
 
-/// How a point looks, for a quick comparison: 8x8 pixels of each of two levels, their means removed.
+/// How a point looks, for a quick comparison: 8x8 pixels of each of the two finest levels, their means moved to 128.
 class Signature {
  public:
   static constexpr int kSide = 8, kPixels = 2 * kSide * kSide;
   Signature(const ImagePyramid& pyramid, float u_px, float v_px);
-  /// Sum of absolute differences.
+  /// Sum of the absolute differences of the pixels.
   int distance(const Signature& other) const;
 
  private:
@@ -46,18 +46,18 @@ class Signature {
   std::array<std::uint8_t, kPixels> values_;
 };
 
-/// The corners of a frame, to look up where a point of the frame before may have gone.
+/// The corners of an image, to look up where a point of the previous image may have gone.
 class CornerLookup {
  public:
   explicit CornerLookup(const Features& features);
-  /// Adds the shifts to the two corners within the bounds that look most like the point and differ by less than
-  /// `max_difference` per pixel.
+  /// Adds the shifts from a point of the pyramid `from` to the two corners within the bounds that look most like it and
+  /// differ from it by less than `max_difference` gray levels per pixel.
   void addSimilar(const ImagePyramid& from, const FlowObservation& point, const ShiftBounds& bounds,
                   double max_difference, Guesses& guesses) const;
 
  private:
   PointGrid grid_;
-  std::vector<Eigen::Vector2f> places_;  // of each corner
+  std::vector<Eigen::Vector2f> positions_;  // of each corner
   std::vector<Signature> signatures_;
 };
 

@@ -4,31 +4,39 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "frontend/features/sift_features.hpp"
 #include "frontend/image/image_pyramid.hpp"
+#include "frontend/image/patch_alignment.hpp"
 #include "frontend/image/window_differences.hpp"
 #include "frontend/matching/half_occlusion.hpp"
 
 namespace motorcade {
 namespace {
 
-using Costs = std::array<std::uint16_t, kMaxWindowCosts>;
+/// Greatest ratio of the least cost of a search to the least cost elsewhere: repeated texture lies above it.
+constexpr double kMaxUniquenessRatio = 0.9;
+constexpr int kMaxDisparity_px = 500;  // so that one search fits kMaxWindowCosts
+constexpr int kMaxRoundTrip_px = 1;    // between the search from left to right and back, at half size
+constexpr int kFineReach_px = 3;       // at full size around the result at half size, which is off by a pixel at most
+
+// Greatest distance between the rows of two matching SIFT points, and greatest ratio of the nearest to the second
+// nearest descriptor's distance.
+constexpr double kSiftMaxRow_px = 1.5, kSiftMaxRatio = 0.9;
 
 std::uint16_t smallest(std::span<const std::uint16_t> costs) {
   std::uint16_t result = UINT16_MAX;
-  for (const std::uint16_t cost : costs) result = std::min(result, cost);  // in vector code, which min_element is not
+  for (const std::uint16_t cost : costs)
+    result = std::min(result, cost);  // compiles to vector code, unlike min_element
   return result;
 }
 
-/// Best window of a search; empty when another place, not a neighbor of the best, is nearly as good.
+/// Index of the least cost; empty when another one, not among its neighbors, is nearly as small.
 std::optional<int> uniqueMinimum(std::span<const std::uint16_t> costs, double max_ratio) {
   constexpr std::size_t kNeighbors_px = 2;
   const std::uint16_t least = smallest(costs);
-  const auto best = static_cast<std::size_t>(std::ranges::find(costs, least) - costs.begin());
+  const std::size_t best = std::ranges::find(costs, least) - costs.begin();
   const auto before = costs.first(best - std::min(best, kNeighbors_px));
   const auto after = costs.subspan(std::min(best + kNeighbors_px + 1, costs.size()));
   const bool alone = before.empty() && after.empty();
@@ -36,68 +44,60 @@ std::optional<int> uniqueMinimum(std::span<const std::uint16_t> costs, double ma
   return static_cast<int>(best);
 }
 
-/// Column in `other`, between first_u and last_u, whose window looks most like the one at (u, v) of `image`.
-std::optional<int> searchColumns(const Image& image, int u, int v, const Image& other, int first_u, int last_u,
-                                 WindowSize window, double max_uniqueness_ratio) {
-  const int half = window.columns / 2;
+/// Column in `other`, between first_u and last_u, around which a window of the same row looks most like the one given.
+std::optional<int> searchColumns(const Window& window, const Image& other, int first_u, int last_u, double max_ratio) {
+  const int half = window.size.columns / 2;
   first_u = std::max(first_u, half);
   last_u = std::min(last_u, other.width() - 1 - half);
   if (last_u < first_u) return std::nullopt;
-  Costs costs;
-  const auto searched = std::span(costs).first(static_cast<std::size_t>(last_u - first_u + 1));
-  windowDifferences(image, u, v, other, first_u, v, window, searched);
-  const auto best = uniqueMinimum(searched, max_uniqueness_ratio);
+  std::array<std::uint16_t, kMaxWindowCosts> costs;
+  const auto searched = std::span(costs).first(last_u - first_u + 1);
+  windowDifferences(window, other, first_u, window.v, searched);
+  const auto best = uniqueMinimum(searched, max_ratio);
   if (!best) return std::nullopt;
   return first_u + *best;
 }
 
-bool holds(const Image& image, int u, int v, WindowSize window) {
-  const int half_columns = window.columns / 2, half_rows = window.rows / 2;
-  return v >= half_rows && v + half_rows < image.height() && u >= half_columns && u + half_columns < image.width();
-}
-
-/// Disparity to a whole pixel of the images given, agreed on from left to right and back.
-std::optional<int> searchDisparity(const Image& left, const Image& right, int u, int v, int max_disparity_px,
-                                   const StereoMatcher::Params& params) {
-  const WindowSize window{params.search_columns, params.search_rows};
-  if (!holds(left, u, v, window)) return std::nullopt;
-  const auto u_right = searchColumns(left, u, v, right, u - max_disparity_px, u, window, params.max_uniqueness_ratio);
+/// Disparity to a whole pixel of the images given, on which the searches from left to right and back agree.
+std::optional<int> searchDisparity(const Image& left, const Image& right, int u, int v, int max_disparity_px) {
+  const Window window{left, u, v, kHalfSizeWindow};
+  if (!window.insideImage()) return std::nullopt;
+  const auto u_right = searchColumns(window, right, u - max_disparity_px, u, kMaxUniquenessRatio);
   if (!u_right) return std::nullopt;
-  const auto u_back = searchColumns(right, *u_right, v, left, *u_right, *u_right + max_disparity_px, window,
-                                    params.max_uniqueness_ratio);
-  if (!u_back || std::abs(*u_back - u) > params.max_round_trip_px) return std::nullopt;
+  const Window found{right, *u_right, v, kHalfSizeWindow};
+  const auto u_back = searchColumns(found, left, *u_right, *u_right + max_disparity_px, kMaxUniquenessRatio);
+  if (!u_back || std::abs(*u_back - u) > kMaxRoundTrip_px) return std::nullopt;
   return u - *u_right;
 }
 
-/// Disparity to a whole pixel of full size: searched in the images of half size, then among the pixels around.
-std::optional<int> searchCoarseToFine(const Features& features, float u_px, float v_px,
-                                      const StereoMatcher::Params& params) {
-  const int u = static_cast<int>(u_px), v = static_cast<int>(v_px);
+/// Disparity to a whole pixel of full size, searched in the images of half size, then among the pixels around.
+std::optional<int> searchCoarseToFine(const Features& features, const Corner& corner, int max_disparity_px) {
+  const int u = static_cast<int>(corner.u_px), v = static_cast<int>(corner.v_px);
   const Image &left = features.left.levels.front(), &right = features.right.levels.front();
-  if (features.left.levels.size() < 2) return searchDisparity(left, right, u, v, params.max_disparity_px, params);
-  const auto half_size_px = searchDisparity(
-      features.left.levels[1], features.right.levels[1], static_cast<int>(std::lround(toLevel(u_px, 1))),
-      static_cast<int>(std::lround(toLevel(v_px, 1))), params.max_disparity_px / 2, params);
-  constexpr WindowSize kWindow;
-  if (!half_size_px || !holds(left, u, v, kWindow)) return std::nullopt;
+  if (features.left.levels.size() < 2) return searchDisparity(left, right, u, v, max_disparity_px);
+  const int half_u = static_cast<int>(std::lround(toLevel(corner.u_px, 1))),
+            half_v = static_cast<int>(std::lround(toLevel(corner.v_px, 1)));
+  const auto half_size_px =
+      searchDisparity(features.left.levels[1], features.right.levels[1], half_u, half_v, max_disparity_px / 2);
+  const Window window{left, u, v, kFullSizeWindow};
+  if (!half_size_px || !window.insideImage()) return std::nullopt;
   const int middle = u - 2 * *half_size_px;
-  constexpr int kReach_px = 3;
+  constexpr double kAnyRatio = 1;  // uniqueness was checked at half size
   const auto u_right =
-      searchColumns(left, u, v, right, middle - kReach_px, std::min(u, middle + kReach_px), kWindow, 1);
+      searchColumns(window, right, middle - kFineReach_px, std::min(u, middle + kFineReach_px), kAnyRatio);
   if (!u_right) return std::nullopt;
   return u - *u_right;
 }
 
 std::vector<std::optional<StereoMatch>> matchCorners(const Features& features, const StereoMatcher::Params& params) {
   const Image &left = features.left.levels.front(), &right = features.right.levels.front();
-  DisparityParams refinement = params.refinement;
-  refinement.search_radius_px = 0;  // the search over all disparities has been here
+  constexpr DisparityParams kOnlyRefinement{.search_radius_px = 0};
   std::vector<std::optional<StereoMatch>> matches;
   matches.reserve(features.corners.size());
   for (const Corner& corner : features.corners) {
     auto& match = matches.emplace_back();
-    const auto whole_px = searchCoarseToFine(features, corner.u_px, corner.v_px, params);
-    if (whole_px) match = refineDisparity(left, right, corner.u_px, corner.v_px, *whole_px, refinement);
+    const auto whole_px = searchCoarseToFine(features, corner, params.max_disparity_px);
+    if (whole_px) match = refineDisparity(left, right, corner.u_px, corner.v_px, *whole_px, kOnlyRefinement);
     if (match && match->disparity_px < params.min_disparity_px) match.reset();
   }
   return matches;
@@ -106,28 +106,21 @@ std::vector<std::optional<StereoMatch>> matchCorners(const Features& features, c
 std::vector<std::optional<StereoMatch>> matchDescriptors(const Features& features,
                                                          const StereoMatcher::Params& params) {
   const SiftSearchRegion region{-static_cast<double>(params.max_disparity_px), -params.min_disparity_px,
-                                params.sift_max_row_px};
+                                kSiftMaxRow_px};
   const auto match_of = matchSift(features.corners, features.descriptors, features.right_corners,
-                                  features.right_descriptors, region, params.sift_max_ratio);
+                                  features.right_descriptors, region, kSiftMaxRatio);
   std::vector<std::optional<StereoMatch>> matches(features.corners.size());
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (match_of[i] < 0) continue;
     const float disparity_px = features.corners[i].u_px - features.right_corners[match_of[i]].u_px;
-    matches[i] = StereoMatch{disparity_px, static_cast<float>(params.sift_sigma_px)};
+    matches[i] = StereoMatch{disparity_px, static_cast<float>(kSiftSigma_px)};
   }
   return matches;
 }
 
 }  // namespace
 
-StereoMatcher::StereoMatcher(const Params& params) : params_(requireValid(params)) {
-  if (params.search_columns % 2 == 0 || params.search_rows % 2 == 0)
-    throw std::invalid_argument("stereo matcher: search_columns and search_rows must be odd");
-  if (!fits({params.search_columns, params.search_rows}))
-    throw std::invalid_argument("stereo matcher: search_columns must be at most " + std::to_string(kMaxWindowColumns) +
-                                ", search_rows at most " + std::to_string(kMaxWindowRows) +
-                                ", and their product at most " + std::to_string(kMaxWindowPixels));
-}
+StereoMatcher::StereoMatcher(const Params& params) : params_(requireValid(params)) {}
 
 StereoMatchesPtr StereoMatcher::operator()(const FeaturesPtr& features) const {
   StereoMatches matches{.features = features, .of_corner = {}};
@@ -141,7 +134,7 @@ StereoMatchesPtr StereoMatcher::operator()(const FeaturesPtr& features) const {
 std::vector<Parameter> parametersOf(StereoMatcher::Params& params) {
   return {numberParameter("min_disparity_px", params.min_disparity_px, {0.1, 5},
                           "lower keeps points that are farther away"),
-          numberParameter("max_disparity_px", params.max_disparity_px, {16, kMaxWindowCosts - 12},
+          numberParameter("max_disparity_px", params.max_disparity_px, {16, kMaxDisparity_px},
                           "higher finds points that are nearer, at more cost")};
 }
 

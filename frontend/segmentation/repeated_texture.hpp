@@ -10,7 +10,6 @@ namespace motorcade {
 /// seen from a car that drives two meters a frame, stand still in the image, as a vehicle at our own speed does. Such a
 /// point looks the same where it would be if it were at rest; a vehicle shows something else there.
 struct RepeatedTextureParams {
-  int window_px = 11;
   double min_ncc = 0.8;          // of the patch at rest
   double max_prediction_px = 3;  // between the place predicted at rest and the place found
   double min_separation_px =

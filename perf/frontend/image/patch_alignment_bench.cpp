@@ -5,7 +5,7 @@
 #include "frontend/image/patch_alignment.hpp"
 #include "perf/frontend/bench_street.hpp"
 
-/// Items are patches, all at corners of a 1242 px wide image: as many as a frame has.
+/// Items are patches, at all corners of an image 1242 px wide.
 namespace motorcade::perf {
 namespace {
 
@@ -39,14 +39,14 @@ void BM_AlignPatch(benchmark::State& state) {
   const auto corners = innerCorners();
   std::vector<std::optional<PatchTemplate>> templates;
   for (const Corner& corner : corners)
-    templates.push_back(makeTemplate(street.before->left.levels[0], corner.u_px, corner.v_px, PatchParams{}.window_px,
+    templates.push_back(makeTemplate(street.before->left.levels[0], corner.u_px, corner.v_px, kPatchWindow_px,
                                      PatchDeformation::kScale));
   std::size_t aligned = 0, tried = 0;
   for (auto _ : state) {
     for (std::size_t i = 0; i < corners.size(); ++i) {
       if (!templates[i]) continue;
-      const auto patch =
-          alignPatch(*templates[i], street.before->left.levels[0], corners[i].u_px + 0.5F, corners[i].v_px - 0.4F, {});
+      const Eigen::Vector2f guess_px(corners[i].u_px + 0.5F, corners[i].v_px - 0.4F);
+      const auto patch = alignPatch(*templates[i], street.before->left.levels[0], guess_px, {});
       aligned += patch.has_value();
       ++tried;
     }
@@ -56,24 +56,25 @@ void BM_AlignPatch(benchmark::State& state) {
 }
 BENCHMARK(BM_AlignPatch)->Unit(benchmark::kMicrosecond);
 
-/// From one frame to the next without a guess, through so many levels.
+/// From one frame to the next without a guess; the argument is the first level.
 void BM_AlignCoarseToFine(benchmark::State& state) {
   const BenchStreet& street = benchStreet(kWidth_px);
   const auto corners = innerCorners();
   const auto first_level = static_cast<int>(state.range(0));
   std::size_t aligned = 0;
-  for (auto _ : state)
-    for (const Corner& corner : corners)
-      aligned += alignPatch(street.before->left, corner.u_px, corner.v_px, street.now->left, corner.u_px, corner.v_px,
-                            first_level, {})
-                     .has_value();
+  for (auto _ : state) {
+    for (const Corner& corner : corners) {
+      const Eigen::Vector2f point_px(corner.u_px, corner.v_px);
+      aligned += alignPatch(street.before->left, point_px, street.now->left, point_px, first_level, {}).has_value();
+    }
+  }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(corners.size()));
   state.counters["aligned"] =
       static_cast<double>(aligned) / (static_cast<double>(state.iterations()) * static_cast<double>(corners.size()));
 }
 BENCHMARK(BM_AlignCoarseToFine)->Arg(1)->Arg(2)->Arg(3)->Unit(benchmark::kMicrosecond);
 
-/// Around the true disparity; 0 px: only the refinement.
+/// Around the true disparity; the argument is the radius of the search, which 0 leaves out.
 void BM_RefineDisparity(benchmark::State& state) {
   const BenchStreet& street = benchStreet(kWidth_px);
   const auto corners = innerCorners();

@@ -12,21 +12,21 @@
 namespace motorcade::perf {
 namespace {
 
-/// Items are windows compared.
+/// Items are pairs of windows.
 void BM_WindowDifferences(benchmark::State& state) {
   const Features& features = *benchStreet(1242).now;
   const Image &left = features.left.levels[1], &right = features.right.levels[1];
-  const WindowSize window{static_cast<int>(state.range(0)), static_cast<int>(state.range(1))};
-  std::vector<std::uint16_t> costs(static_cast<std::size_t>(state.range(2)));
+  const WindowSize size = state.range(0) == 0 ? kFullSizeWindow : kHalfSizeWindow;
+  std::vector<std::uint16_t> costs(state.range(1));
   int v = 20;
   for (auto _ : state) {
-    windowDifferences(left, 300, v, right, 120, v, window, costs);
+    windowDifferences({left, 300, v, size}, right, 120, v, costs);
     benchmark::DoNotOptimize(costs.data());
     v = v == 160 ? 20 : v + 1;
   }
-  state.SetItemsProcessed(state.iterations() * state.range(2));
+  state.SetItemsProcessed(state.iterations() * state.range(1));
 }
-BENCHMARK(BM_WindowDifferences)->Args({9, 5, 96})->Args({11, 7, 96})->Args({11, 7, 8});
+BENCHMARK(BM_WindowDifferences)->ArgNames({"half_size", "windows"})->Args({1, 96})->Args({0, 96})->Args({0, 7});
 
 /// Items are corners.
 void BM_MatchStereo(benchmark::State& state) {
@@ -39,7 +39,7 @@ void BM_MatchStereo(benchmark::State& state) {
 }
 BENCHMARK(BM_MatchStereo)->Arg(621)->Arg(1242)->Unit(benchmark::kMicrosecond);
 
-/// The same features under the next number: as if the camera went to and fro between two places.
+/// The same features under the next number, as if the camera went to and fro between two positions.
 FeaturesPtr renumbered(const Features& features, std::int64_t number) {
   auto frame = std::make_shared<StereoFrame>(*features.frame);
   frame->frame = {number};
@@ -49,7 +49,7 @@ FeaturesPtr renumbered(const Features& features, std::int64_t number) {
   return copy;
 }
 
-/// Items are tracks that were followed, not born.
+/// Items are the points that were followed from the frame before.
 void BM_TrackFlow(benchmark::State& state) {
   const BenchStreet& street = benchStreet(1242);
   OpticalFlowTracker::Params params;

@@ -27,7 +27,7 @@ FeaturesPtr wall(int frame) {
                                                       test::render(kWidth, kHeight, right, noisy)));
 }
 
-TEST(SiftFeatures, MatchTheTwoEyes) {
+TEST(SiftFeatures, MatchLeftAndRightImage) {
   const auto features = wall(0);
   ASSERT_GT(features->corners.size(), 60U);
   ASSERT_EQ(features->descriptors.size(), features->corners.size());

@@ -12,9 +12,9 @@ namespace {
 
 constexpr int kWidth = 260, kHeight = 140;
 
-/// Places for patches, off the border and on no common grid with the pixels.
+/// Calls f(u, v) for positions of patches, off the border and at varying fractions of a pixel.
 template <class Function>
-void forEachPlace(double border_px, const Function& f) {
+void forEachPosition(double border_px, const Function& f) {
   for (double v = border_px; v < kHeight - border_px; v += 17.3)
     for (double u = border_px; u < kWidth - border_px; u += 19.7) f(u, v);
 }
@@ -40,16 +40,17 @@ TEST(PatchAlignment, FindsSubPixelShiftsUnderGainBiasAndNoise) {
     const auto moved = [&](double x, double y) { return texture(x - 1 - shift_px, y + shift_px); };
     const Image to = test::render(kWidth, kHeight, moved, {.gain = 0.8, .bias = 15, .noise = 1.5, .seed = 2});
     ErrorStatistics u_error, v_error;
-    forEachPlace(20, [&](double u, double v) {
-      const auto patch = makeTemplate(from, static_cast<float>(u), static_cast<float>(v), 11, PatchDeformation::kScale);
+    forEachPosition(20, [&](double u, double v) {
+      const auto patch =
+          makeTemplate(from, static_cast<float>(u), static_cast<float>(v), kPatchWindow_px, PatchDeformation::kScale);
       ASSERT_TRUE(patch);
-      const auto aligned = alignPatch(*patch, to, static_cast<float>(u), static_cast<float>(v), {});
+      const auto aligned = alignPatch(*patch, to, Eigen::Vector2d(u, v).cast<float>(), {});
       if (!aligned) return;  // 2 px away is too far for a few of them
       u_error.add(aligned->u_px - (u + 1 + shift_px), aligned->sigma_px);
       v_error.add(aligned->v_px - (v - shift_px), aligned->sigma_px);
     });
     EXPECT_GE(u_error.count, 60);                           // of 72
-    EXPECT_LT(std::abs(u_error.mean()), 0.02) << shift_px;  // three times the standard error of some 80 places
+    EXPECT_LT(std::abs(u_error.mean()), 0.02) << shift_px;  // three times the standard error of some 80 positions
     EXPECT_LT(std::abs(v_error.mean()), 0.02) << shift_px;
     EXPECT_LT(u_error.rms(), 0.1) << shift_px;
     EXPECT_LT(v_error.rms(), 0.1) << shift_px;
@@ -65,10 +66,10 @@ TEST(PatchAlignment, PyramidReachesFarShifts) {
   const ImagePyramid from = buildPyramid(test::render(kWidth, kHeight, texture), 4, pool);
   const ImagePyramid to = buildPyramid(test::render(kWidth, kHeight, moved), 4, pool);
   int found = 0, tried = 0;
-  forEachPlace(45, [&](double u, double v) {
+  forEachPosition(45, [&](double u, double v) {
     ++tried;
-    const auto aligned = alignPatch(from, static_cast<float>(u), static_cast<float>(v), to, static_cast<float>(u),
-                                    static_cast<float>(v), 3, {});
+    const Eigen::Vector2f point_px = Eigen::Vector2d(u, v).cast<float>();
+    const auto aligned = alignPatch(from, point_px, to, point_px, 3, {});
     if (!aligned || aligned->ncc < 0.95) return;
     ++found;
     EXPECT_NEAR(aligned->u_px, u + 21.3, 0.2);
@@ -81,13 +82,13 @@ TEST(PatchAlignment, ScaleChangeMovesNoPoint) {
   const test::Texture texture(13, 8, 30);
   const Image from = test::render(kWidth, kHeight, texture);
   ErrorStatistics error, growth;
-  forEachPlace(25, [&](double u, double v) {
+  forEachPosition(25, [&](double u, double v) {
     constexpr double kScale = 1.08;
     const auto grown = [&](double x, double y) { return texture(u + (x - u) / kScale, v + (y - v) / kScale); };
     const Image to = test::render(kWidth, kHeight, grown);
-    const auto patch = makeTemplate(from, static_cast<float>(u), static_cast<float>(v), 11, PatchDeformation::kScale);
-    const auto aligned =
-        patch ? alignPatch(*patch, to, static_cast<float>(u), static_cast<float>(v), {}) : std::nullopt;
+    const auto patch =
+        makeTemplate(from, static_cast<float>(u), static_cast<float>(v), kPatchWindow_px, PatchDeformation::kScale);
+    const auto aligned = patch ? alignPatch(*patch, to, Eigen::Vector2d(u, v).cast<float>(), {}) : std::nullopt;
     if (!aligned) return;
     error.add(std::hypot(aligned->u_px - u, aligned->v_px - v), aligned->sigma_px);
     growth.add(aligned->log_growth - std::log(kScale), 1);
@@ -107,20 +108,20 @@ TEST(PatchAlignment, AlignsATemplateMadeAtTheScaleOfNow) {
   const Image to = test::render(kWidth, kHeight, grown);
   const auto patch = makeTemplate(from, 120.3F, 65.6F, 11, PatchDeformation::kScale, kScale);
   ASSERT_TRUE(patch);
-  const auto aligned = alignPatch(*patch, to, 131, 61, {});
+  const auto aligned = alignPatch(*patch, to, {131, 61}, {});
   ASSERT_TRUE(aligned);
   EXPECT_NEAR(aligned->u_px, 131.8, 0.05);
   EXPECT_NEAR(aligned->v_px, 60.1, 0.05);
   EXPECT_NEAR(aligned->log_growth, 0, 0.02);
 }
 
-/// Leaves not-a-number where the next call has its stack.
+/// Leaves not-a-number on the part of the stack that the next call uses.
 [[gnu::noinline]] void poisonStack() {
   volatile float garbage[8192];
   for (volatile float& value : garbage) value = std::nanf("");
 }
 
-TEST(PatchAlignment, TakesNothingFromMemoryThatNobodyWrote) {
+TEST(PatchAlignment, TakesNothingFromUninitializedMemory) {
   const Image image = test::render(kWidth, kHeight, test::Texture(11), {.noise = 1.5, .seed = 1});
   for (const float scale : {1.0F, 1.1F}) {
     for (const int window_px : {9, 11, kMaxPatchWindow_px}) {
@@ -133,7 +134,7 @@ TEST(PatchAlignment, TakesNothingFromMemoryThatNobodyWrote) {
   }
 }
 
-TEST(PatchAlignment, RefusesPatchesWithoutTexture) {
+TEST(PatchAlignment, RejectsPatchesWithoutTexture) {
   const Image flat = test::render(64, 64, [](double, double) { return 100.0; });
   EXPECT_FALSE(makeTemplate(flat, 30, 30, 11, PatchDeformation::kScale));
   const Image stripes = test::render(64, 64, [](double, double y) { return 100 + 40 * std::sin(y); });
@@ -141,16 +142,17 @@ TEST(PatchAlignment, RefusesPatchesWithoutTexture) {
   EXPECT_FALSE(makeTemplate(stripes, 30, 30, 11, PatchDeformation::kScale));
 }
 
-TEST(PatchAlignment, RefusesAnotherScene) {
+TEST(PatchAlignment, RejectsAnotherScene) {
   const Image from = test::render(kWidth, kHeight, test::Texture(14)),
               to = test::render(kWidth, kHeight, test::Texture(15));
   PatchParams params;
   params.min_ncc = 0.9;
   int found = 0, tried = 0;
-  forEachPlace(20, [&](double u, double v) {
+  forEachPosition(20, [&](double u, double v) {
     ++tried;
-    const auto patch = makeTemplate(from, static_cast<float>(u), static_cast<float>(v), 11, PatchDeformation::kScale);
-    found += patch && alignPatch(*patch, to, static_cast<float>(u), static_cast<float>(v), params);
+    const auto patch =
+        makeTemplate(from, static_cast<float>(u), static_cast<float>(v), kPatchWindow_px, PatchDeformation::kScale);
+    found += patch && alignPatch(*patch, to, Eigen::Vector2d(u, v).cast<float>(), params);
   });
   EXPECT_LE(found, tried / 20);
 }
@@ -160,7 +162,7 @@ TEST(PatchAlignment, ReadsNothingOutsideTheImage) {  // for the sanitizers; the 
   for (const float u : {0.0F, 0.3F, 16.0F, 31.9F, 32.0F})
     for (const float v : {0.0F, 0.7F, 18.9F, 19.0F})
       if (const auto patch = makeTemplate(image, u, v, kMaxPatchWindow_px, PatchDeformation::kScale))
-        alignPatch(*patch, image, u, v, {});
+        alignPatch(*patch, image, {u, v}, {});
   EXPECT_FALSE(makeTemplate(image, -0.1F, 5, 11, PatchDeformation::kScale));
 }
 
@@ -172,7 +174,7 @@ TEST(RefineDisparity, HasNoBiasByTheFractionOfTheDisparity) {
     const auto shifted = [&](double x, double y) { return texture(x + disparity_px, y); };
     const Image right = test::render(kWidth, kHeight, shifted, {.gain = 1.1, .bias = -8, .noise = 1.5, .seed = 4});
     ErrorStatistics error;
-    forEachPlace(45, [&](double u, double v) {
+    forEachPosition(45, [&](double u, double v) {
       const auto match = refineDisparity(left, right, u, v, disparity_px + (tenths % 3 - 1) * 1.5);
       if (match) error.add(match->disparity_px - disparity_px, match->sigma_px);
     });
@@ -186,12 +188,12 @@ TEST(RefineDisparity, HasNoBiasByTheFractionOfTheDisparity) {
 TEST(RefineDisparity, FollowsTheSlopeOfTheRoad) {
   const test::Texture texture(22);
   const Image left = test::render(kWidth, kHeight, texture);
-  constexpr double kSlope = 0.33;  // px per row: a camera 1.65 m above the road, 0.54 m between the eyes
+  constexpr double kSlope = 0.33;  // px per row: a camera 1.65 m above the road, 0.54 m of baseline
   ErrorStatistics error;
   // The right image shows at (x, y) what the left one shows at (x + d(y), y).
   const Image right =
       test::render(kWidth, kHeight, [&](double x, double y) { return texture(x + 10 + kSlope * (y - 70), y); });
-  forEachPlace(42, [&](double u, double v) {
+  forEachPosition(42, [&](double u, double v) {
     const double disparity_px = 10 + kSlope * (v - 70);
     const auto match = refineDisparity(left, right, u, v, disparity_px + 0.8);
     if (match) error.add(match->disparity_px - disparity_px, match->sigma_px);

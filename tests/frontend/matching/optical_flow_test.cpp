@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kWidth = 480, kHeight = 240;
 
-/// A texture that moves by (du, dv) per frame, seen with changing exposure.
+/// A texture that moves by (du, dv) per frame and is taken with changing exposure.
 class MovingWall {
  public:
   MovingWall(double du_px, double dv_px) : du_px_(du_px), dv_px_(dv_px) {}
@@ -33,7 +33,7 @@ class MovingWall {
   FeaturePreparation prepare_{{}};
 };
 
-struct Birth {
+struct Start {
   Eigen::Vector2d uv_px;
   int frame;
 };
@@ -41,16 +41,16 @@ struct Birth {
 TEST(OpticalFlowTracker, DoesNotWalkAwayOverManyFrames) {
   const MovingWall wall(3.31, -1.27);
   OpticalFlowTracker track({});
-  std::map<PointId, Birth> births;
+  std::map<PointId, Start> starts;
   std::map<int, std::pair<double, int>> squares_at_age;
   for (int frame = 0; frame <= 12; ++frame) {
     const auto flow = track(wall.at(frame));
     for (const FlowObservation& point : flow->observations) {
       const Eigen::Vector2d uv_px(point.u_px, point.v_px);
-      if (point.age == 1) births.emplace(point.point, Birth{uv_px, frame});
-      const Birth& birth = births.at(point.point);
-      EXPECT_EQ(point.age, frame - birth.frame + 1);
-      const Eigen::Vector2d error_px = uv_px - birth.uv_px - (frame - birth.frame) * wall.velocity_px();
+      if (point.age == 1) starts.emplace(point.point, Start{uv_px, frame});
+      const Start& start = starts.at(point.point);
+      EXPECT_EQ(point.age, frame - start.frame + 1);
+      const Eigen::Vector2d error_px = uv_px - start.uv_px - (frame - start.frame) * wall.velocity_px();
       auto& [squares, count] = squares_at_age[point.age];
       squares += error_px.squaredNorm() / 2;
       ++count;
@@ -59,8 +59,8 @@ TEST(OpticalFlowTracker, DoesNotWalkAwayOverManyFrames) {
   for (const int age : {2, 5, 8, 12}) {
     const auto [squares, count] = squares_at_age.at(age);
     EXPECT_GE(count, 100);
-    EXPECT_LT(std::sqrt(squares / count), age <= 6 ? 0.1 : 0.14)
-        << age;  // the anchor of a second keyframe adds its error
+    const double limit_px = age <= 6 ? 0.1 : 0.14;  // a second keyframe adds its own error
+    EXPECT_LT(std::sqrt(squares / count), limit_px) << age;
   }
 }
 
@@ -102,7 +102,7 @@ TEST(OpticalFlowTracker, FollowsWhatCrossesAStandingScene) {
   EXPECT_GE(crossing, 10);
 }
 
-TEST(OpticalFlowTracker, OrdersTracksByIdsThatAreNeverUsedTwice) {
+TEST(OpticalFlowTracker, OrdersPointsByIdsThatAreNeverUsedTwice) {
   const MovingWall wall(9.3, 2.2);
   OpticalFlowTracker track({});
   std::set<PointId> ended, alive;
@@ -126,7 +126,7 @@ TEST(OpticalFlowTracker, OrdersTracksByIdsThatAreNeverUsedTwice) {
   EXPECT_FALSE(ended.empty());
 }
 
-TEST(OpticalFlowTracker, KeepsTracksApartAndSpread) {
+TEST(OpticalFlowTracker, KeepsPointsApartAndSpread) {
   const MovingWall wall(5.5, 0.4);
   OpticalFlowTracker::Params params;
   params.max_tracks = 150;
@@ -137,10 +137,11 @@ TEST(OpticalFlowTracker, KeepsTracksApartAndSpread) {
     std::set<std::pair<int, int>> cells;
     for (std::size_t i = 0; i < flow->observations.size(); ++i) {
       const FlowObservation& a = flow->observations[i];
-      cells.emplace(static_cast<int>(a.u_px) / params.cell_px, static_cast<int>(a.v_px) / params.cell_px);
+      cells.emplace(static_cast<int>(a.u_px) / OpticalFlowTracker::kCell_px,
+                    static_cast<int>(a.v_px) / OpticalFlowTracker::kCell_px);
       for (std::size_t j = 0; j < i; ++j)
         EXPECT_GE(std::hypot(a.u_px - flow->observations[j].u_px, a.v_px - flow->observations[j].v_px),
-                  0.99 * params.min_distance_px);
+                  0.99 * OpticalFlowTracker::kMinDistance_px);
     }
     EXPECT_GE(cells.size(), 45U);  // of 50
   }

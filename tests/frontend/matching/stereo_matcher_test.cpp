@@ -23,13 +23,13 @@ StereoFramePtr panels() {
       const double u = x + disparityAt(panel * kPanel_px);
       if (u >= panel * kPanel_px && u < (panel + 1) * kPanel_px) return texture(u, y);
     }
-    return texture(x + 1000, y);  // what only the right eye sees
+    return texture(x + 1000, y);  // what only the right image shows
   };
   return test::stereoFrame(0, test::render(400, 200, left, {.noise = 1}),
                            test::render(400, 200, right, {.gain = 0.9, .bias = 10, .noise = 1, .seed = 2}));
 }
 
-/// Farther than the window from a panel's edge and seen by both eyes.
+/// Farther than the window from a panel's edge, and visible in both images.
 bool isClear(const Corner& corner) {
   const double in_panel = std::fmod(corner.u_px, kPanel_px);
   return in_panel > 12 && in_panel < kPanel_px - 24 && corner.u_px - disparityAt(corner.u_px) > 10;
@@ -57,7 +57,7 @@ TEST(StereoMatcher, FindsTheDisparityOfEachPanel) {
   EXPECT_LT(std::sqrt(squares / matched), 0.1);
 }
 
-TEST(StereoMatcher, RefusesRepeatedTexture) {
+TEST(StereoMatcher, RejectsAmbiguousTexture) {
   const auto fence = [](double x, double y) { return 128 + 50 * std::sin(x * 0.7) * std::sin(y * 0.4); };
   const auto features = FeaturePreparation({})(test::stereoFrame(
       0, test::render(400, 200, fence, {.noise = 1}), test::render(400, 200, fence, {.noise = 1, .seed = 2})));
@@ -67,7 +67,7 @@ TEST(StereoMatcher, RefusesRepeatedTexture) {
   EXPECT_LE(matched, static_cast<int>(features->corners.size()) / 20);
 }
 
-TEST(StereoMatcher, AnswersARejectedFrameWithoutMatches) {
+TEST(StereoMatcher, GivesNoMatchesForARejectedFrame) {
   const auto matches = StereoMatcher({})(FeaturePreparation({})(test::rejectedFrame(0)));
   EXPECT_TRUE(matches->of_corner.empty());
 }

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "frontend/geometry/point_grid.hpp"
+#include "frontend/matching/corner_lookup.hpp"
+
+namespace motorcade {
+
+/// A point that was found again in the next image.
+struct MovedPoint {
+  Eigen::Vector2f from_px;
+  Shift shift;
+};
+
+/// Looks up how the neighbors of a point moved, to guess how it moved itself.
+class NeighborShifts {
+ public:
+  /// The points lie in an image of this size.
+  NeighborShifts(std::vector<MovedPoint> moved, int width, int height);
+
+  /// Median of the shifts of the three points that were nearest to a position; empty when there are fewer. Of points at
+  /// equal distances the first one is nearer.
+  std::optional<Shift> medianAround(const Eigen::Vector2f& from_px) const;
+
+ private:
+  using Neighbor = std::pair<float, int>;  // squared distance and index
+  std::array<Neighbor, 3> nearestThree(const Eigen::Vector2f& from_px, float reach_px) const;
+
+  std::vector<MovedPoint> moved_;
+  PointGrid grid_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,54 @@
+#include "frontend/matching/point_follower.hpp"
+
+#include <cmath>
+
+#include "frontend/image/image_pyramid.hpp"
+
+namespace motorcade {
+namespace {
+
+/// At the coarse level an alignment only has to be near enough for the next level.
+constexpr PatchParams kCoarse{.max_step_px = 0.1, .min_ncc = 0.6};
+constexpr PatchParams kFine;
+
+}  // namespace
+
+std::optional<PatchTemplate> PointFollower::patchAt(const FlowObservation& point, int level) const {
+  return makeTemplate(from_.levels[level], toLevel(point.u_px, level), toLevel(point.v_px, level), kPatchWindow_px,
+                      PatchDeformation::kScale);
+}
+
+std::optional<AlignedPatch> PointFollower::follow(const FlowObservation& point,
+                                                  const std::optional<PatchTemplate>& patch,
+                                                  std::span<const Shift> guesses, int level) const {
+  const auto start = bestGuess(point, patch, guesses, level);
+  if (!start) return std::nullopt;
+  return refine(point, *start, level - 1);
+}
+
+std::optional<Shift> PointFollower::bestGuess(const FlowObservation& point, const std::optional<PatchTemplate>& patch,
+                                              std::span<const Shift> guesses, int level) const {
+  if (!patch) return guesses.front();
+  const float u = toLevel(point.u_px, level), v = toLevel(point.v_px, level), scale = static_cast<float>(1 << level);
+  std::optional<Shift> best;
+  float best_ncc = 0;
+  for (const Shift& guess : guesses) {
+    const Eigen::Vector2f guess_px(u + guess.du_px / scale, v + guess.dv_px / scale);
+    const auto aligned = alignPatch(*patch, to_.levels[level], guess_px, kCoarse);
+    if (!aligned || aligned->ncc <= best_ncc) continue;
+    best_ncc = aligned->ncc;
+    best = Shift{(aligned->u_px - u) * scale, (aligned->v_px - v) * scale};
+  }
+  return best;
+}
+
+std::optional<AlignedPatch> PointFollower::refine(const FlowObservation& point, const Shift& start, int level) const {
+  const Eigen::Vector2f point_px(point.u_px, point.v_px), shift_px(start.du_px, start.dv_px);
+  const auto forward = alignPatch(from_, point_px, to_, point_px + shift_px, level, kFine);
+  if (!forward) return std::nullopt;
+  const auto back = alignPatch(to_, {forward->u_px, forward->v_px}, from_, point_px, 0, kFine);
+  if (!back || std::hypot(back->u_px - point.u_px, back->v_px - point.v_px) > max_round_trip_px_) return std::nullopt;
+  return forward;
+}
+
+}  // namespace motorcade
