@@ -72,7 +72,7 @@ void CornerLookup::addSimilar(const ImagePyramid& from, const FlowObservation& p
     const Eigen::Vector2f shift = positions_[i] - here;
     if (!bounds.contain(shift.x(), shift.y())) return;
     const std::pair candidate(signature.distance(signatures_[i]), i);
-    if (candidate.first >= none.first || candidate >= best[1]) return;
+    if (candidate >= best[1]) return;
     best[1] = candidate;
     if (best[1] < best[0]) std::swap(best[0], best[1]);
   });

@@ -78,13 +78,13 @@ TEST(CornerLookup, FindsTheTwoMostSimilarCornersOfAll) {
   const TwoImages images;
   const CornerLookup lookup(*images.now);
   std::mt19937 random(3);
-  std::uniform_real_distribution<float> center(-30, 30), reach(5, 80);
+  std::uniform_real_distribution<float> center(-30, 30), reach(1, 40);
   int two = 0, one = 0, none = 0;
   for (const Corner& corner : images.before->corners) {
     const FlowObservation point = at(corner);
     const float du = center(random), dv = center(random), reach_u = reach(random), reach_v = reach(random);
     const ShiftBounds bounds{du - reach_u, du + reach_u, dv - reach_v, dv + reach_v};
-    for (const double max_difference : {255.0, 25.0}) {
+    for (const double max_difference : {255.0, 12.0}) {
       const auto expected = similarByBruteForce(point, images, bounds, max_difference);
       Guesses guesses;
       lookup.addSimilar(images.before->left, point, bounds, max_difference, guesses);
@@ -113,6 +113,17 @@ TEST(CornerLookup, GuessesTheShiftOfMostCorners) {
     });
   }
   EXPECT_GT(right, 0.7 * static_cast<double>(images.before->corners.size()));  // some leave the image, others are lost
+}
+
+TEST(CornerLookup, PrefersTheFirstOfCornersThatLookTheSame) {
+  const auto flat = prepare([](double, double) { return 100.0; }, {});
+  Features features = *flat;
+  features.corners = {{250, 150, 1}, {200, 100, 1}, {30, 20, 1}, {100, 50, 1}};
+  Guesses guesses;
+  CornerLookup(features).addSimilar(flat->left, at({150, 80, 1}), {-160, 160, -160, 160}, 255, guesses);
+  ASSERT_EQ(guesses.count, 2U);
+  EXPECT_EQ(guesses.shifts[0].du_px, 100);
+  EXPECT_EQ(guesses.shifts[1].du_px, 50);
 }
 
 TEST(CornerLookup, AddsToGuessesThatAreThere) {

@@ -29,7 +29,9 @@ TEST(Occupancy, KeepsPointsApartAndNoneAwayWithoutReason) {
     const bool near = occupancy.near(p.u_px, p.v_px);
     EXPECT_LE(near, expected);
     // A cell remembers its last point only. Two points 5 px apart fit in one cell just along its diagonal.
-    if (taken.size() < 20) EXPECT_EQ(near, expected);
+    if (taken.size() < 20) {
+      EXPECT_EQ(near, expected);
+    }
     if (near) continue;
     occupancy.take(p.u_px, p.v_px);
     taken.push_back(p);
