@@ -230,7 +230,7 @@ std::vector<Candidate> findCandidates(const Image& image, const CornerDetector::
   return candidates;
 }
 
-/// The score that corners of a rank must exceed where there is room for so many of them only.
+/// The score that corners of a rank must exceed, so that at most `room` of them pass.
 float cutOfRank(const std::vector<std::pair<int, Candidate>>& ranked, int rank, int room) {
   std::vector<float> scores;
   for (const auto& [r, candidate] : ranked)

@@ -124,9 +124,9 @@ float explainedCorrelation(const PatchTemplate& patch, const Moments& moments) {
   return std::sqrt(std::min(1.0F, (moments.appearance * moments.appearance + deformation) / moments.variation));
 }
 
-/// Standard deviation of the shift along a parameter, from a residual taken to be white. The factor accounts for what
-/// that leaves out (noise in the gradients of H, deformations beyond the model). It was fitted to the median error on
-/// rendered street scenes.
+/// Standard deviation of the shift along a parameter, from a residual taken to be white. The factor accounts for noise
+/// in the gradients of H and for deformations beyond the model. It was fitted to the median error on rendered street
+/// scenes.
 constexpr float kSigmaFactor = 1.35F;
 constexpr int kPatchParameters = 5;  // that the residual is free of: three of the deformation, gain and bias
 float shiftSigma(const PatchTemplate& patch, const Moments& moments, float ncc, int parameter) {
@@ -186,8 +186,8 @@ std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, const Eigen::Ve
 
 namespace {
 
-/// Whole-pixel disparity with the smallest difference within the radius of the prediction; the prediction when no
-/// window fits.
+/// The whole-pixel disparity with the smallest difference within the radius of the prediction. It is the prediction
+/// itself when no window fits into the images.
 double searchAround(const Image& left, const Image& right, double u_px, double v_px, double predicted_px,
                     double radius_px) {
   const int u = static_cast<int>(std::lround(u_px)), v = static_cast<int>(std::lround(v_px));
@@ -204,6 +204,16 @@ double searchAround(const Image& left, const Image& right, double u_px, double v
   return u - (first + static_cast<double>(best));
 }
 
+/// The match where an alignment ended; empty when it does not fit or its disparity is too uncertain.
+std::optional<StereoMatch> acceptedMatch(float disparity_px, const PatchTemplate& patch, const Moments& moments) {
+  constexpr double kMinNcc = 0.65;
+  constexpr float kMaxSigma_px = 1;
+  const float ncc = explainedCorrelation(patch, moments);
+  const float sigma = std::hypot(shiftSigma(patch, moments, ncc, 0), static_cast<float>(kPatchSigmaFloor_px));
+  if (ncc < kMinNcc || sigma > kMaxSigma_px || disparity_px <= 0) return std::nullopt;
+  return StereoMatch{disparity_px, sigma};
+}
+
 }  // namespace
 
 std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right, double u_px, double v_px,
@@ -215,8 +225,7 @@ std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right
   if (params.search_radius_px > 0)
     start_px = searchAround(left, right, u_px, v_px, predicted_disparity_px, params.search_radius_px);
 
-  constexpr float kConverged_px = 0.02F, kMaxShift_px = 2, kMaxSigma_px = 1;
-  constexpr double kMinNcc = 0.65;
+  constexpr float kConverged_px = 0.02F, kMaxShift_px = 2;
   constexpr float kMaxSlope = static_cast<float>(kMaxShearShift_px) / static_cast<float>(kPatchWindow_px / 2);
   float u_right = u - static_cast<float>(start_px), slope = 0;
   const float first_guess = u_right;
@@ -234,11 +243,7 @@ std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right
     if (std::abs(u_right - first_guess) > kMaxShift_px) return std::nullopt;
     if (std::abs(step[0]) > kConverged_px && iteration + 1 < kMaxDisparityIterations) continue;
 
-    const float ncc = explainedCorrelation(*patch, moments);
-    const float sigma = std::hypot(shiftSigma(*patch, moments, ncc, 0), static_cast<float>(kPatchSigmaFloor_px));
-    const float disparity_px = u - patch->off_grid_px - u_right;
-    if (ncc < kMinNcc || sigma > kMaxSigma_px || disparity_px <= 0) return std::nullopt;
-    return StereoMatch{disparity_px, sigma};
+    return acceptedMatch(u - patch->off_grid_px - u_right, *patch, moments);
   }
   return std::nullopt;
 }

@@ -76,9 +76,9 @@ class Block {
     for (int r = 0; r < rows; ++r) {
       const std::uint8_t* row = image.row(std::clamp(y + r, 0, image.height() - 1));
       std::uint8_t* out = copy_.data() + r * kBlockStride;
-      std::memset(out, row[0], static_cast<std::size_t>(left));
-      std::memcpy(out + left, row + x + left, static_cast<std::size_t>(right - left));
-      std::memset(out + right, row[image.width() - 1], static_cast<std::size_t>(kBlockStride - right));
+      std::memset(out, row[0], left);
+      std::memcpy(out + left, row + x + left, right - left);
+      std::memset(out + right, row[image.width() - 1], kBlockStride - right);
     }
     std::memset(copy_.data() + rows * kBlockStride, 0, kBlockMargin);
   }

@@ -20,34 +20,37 @@ namespace {
 
 using Params = OpticalFlowTracker::Params;
 
-constexpr int kBorder_px = 6;  // half a patch: nearer to the image's border its pixels are repeated
+constexpr int kBorder_px = 6;  // of the image, where a patch would repeat the image's last pixels
 
-// A point gets a new keyframe after so many frames, when it looks less like its keyframe than like the previous frame
-// by more than this, or when the keyframe draws it farther than this from its frame-to-frame position.
-constexpr int kKeyframeFrames = 6;
-constexpr double kMaxKeyframeNccLoss = 0.2, kMaxKeyframeDrift_px = 1;
+// A point gets a new keyframe when one of these is exceeded.
+constexpr int kKeyframeFrames = 6;           // since the keyframe
+constexpr double kMaxKeyframeNccLoss = 0.2;  // how much less a point looks like its keyframe than like the last frame
+constexpr double kMaxKeyframeDrift_px = 1;   // from the frame-to-frame position to that of the keyframe's patch
 
-// Pyramid levels at which the alignment starts. Guesses for points without a known velocity come from corners, which
-// are exact to a pixel, so that a finer level reaches them and tells them apart better.
+// Pyramid levels at which an alignment starts. Young points (new ones, and those that did not keep their velocity) get
+// their guesses from corners, which are exact to a pixel, and need less reach.
 constexpr int kMovingLevel = 2, kYoungLevel = 1;
 
-// Bounds for the shift of a point without a known velocity: this factor times the shift of its neighbors, this much in
-// any direction, and this much to the sides when no corner like it is that near.
-constexpr float kNeighborFactor = 1.3F, kNearMargin_px = 20, kFarMargin_px = 150;
-// Greatest mean difference of gray levels to a corner: near ones are judged by their alignment alone.
-constexpr double kMaxNearDifference = 255, kMaxFarDifference = 30;
+// Bounds of the shift of a young point.
+constexpr float kNeighborFactor = 1.3F;  // times the shift of its neighbors
+constexpr float kNearMargin_px = 20;     // more than that in any direction
+constexpr float kFarMargin_px = 150;     // more than that sideways, for a second try
 
-constexpr double kSiftMaxFlow_px = 150, kSiftMaxRatio = 0.85;  // the ratio as in `matchSift`
+// Greatest mean difference in gray levels from a young point to a corner.
+constexpr double kMaxNearDifference = 255;  // none: the alignment decides
+constexpr double kMaxFarDifference = 30;    // many corners are far, and most of them are wrong
+
+constexpr double kSiftMaxFlow_px = 150, kSiftMaxRatio = 0.85;  // as `matchSift` takes them
 
 /// The patch to which a point is aligned.
 struct Keyframe {
   Image image;
   float u_px = 0, v_px = 0;
-  int frames = 0;   // since then
-  float scale = 1;  // by which the patch has grown since then
+  int frames = 0;   // number of frames since
+  float scale = 1;  // by which the patch has grown since
 };
 
-/// A scene point on its way through the images.
+/// A scene point that is followed from image to image.
 struct FollowedPoint {
   FlowObservation observation;
   Shift shift;         // since the previous frame
@@ -56,7 +59,7 @@ struct FollowedPoint {
   int descriptor = -1;  // with SIFT: index of its descriptor in this frame
 };
 
-/// How points moved that were found in this frame.
+/// The shifts of all points that were found in this frame.
 NeighborShifts shiftsOf(const std::vector<FollowedPoint>& points, const Image& image) {
   std::vector<MovedPoint> moved;
   for (const FollowedPoint& point : points) {
@@ -92,13 +95,13 @@ std::optional<AlignedPatch> alignToKeyframe(const Keyframe& keyframe, const Alig
   return patch ? alignPatch(*patch, now, {found.u_px, found.v_px}, params) : std::nullopt;
 }
 
-/// Takes over a frame-to-frame position, after alignment to the keyframe where that still looks alike.
+/// Moves a point to a frame-to-frame position, corrected by alignment to its keyframe where that still fits.
 void moveTo(FollowedPoint& point, const AlignedPatch& found, const Image& now) {
   Keyframe& keyframe = point.keyframe;
   AlignedPatch position = found;
   ++keyframe.frames;
   keyframe.scale *= std::exp(found.log_growth);
-  bool anchored = keyframe.frames == 1;  // found from the keyframe itself
+  bool anchored = keyframe.frames == 1;  // then the keyframe's own patch was aligned
   if (!anchored) {
     const auto aligned = alignToKeyframe(keyframe, found, now);
     if (aligned) {
@@ -143,7 +146,7 @@ struct OpticalFlowTracker::State {
   void followDescriptors(const Features& now);
 };
 
-/// Points that moved before: their own velocity is the guess.
+/// Follows points that moved before. Their last shift is the guess.
 void OpticalFlowTracker::State::followMoving(const PointFollower& follower, const Image& now) {
   const int level = std::min(kMovingLevel, follower.coarsestLevel());
   forEachItem(points.size(), [&](std::size_t i) {
@@ -155,7 +158,7 @@ void OpticalFlowTracker::State::followMoving(const PointFollower& follower, cons
   });
 }
 
-/// New points, and those that were not found at their own velocity.
+/// Follows the points that `followMoving` leaves: new ones, and those that did not keep their velocity.
 void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const Features& now) {
   const Image& image = now.left.levels.front();
   const NeighborShifts moved = shiftsOf(points, image);
@@ -170,7 +173,7 @@ void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const
   });
 }
 
-/// Guesses come from neighbors that moved and from corners that look alike: near ones first, then far ones.
+/// Follows a point by guesses from its neighbors and from corners that look like it, first near ones, then far ones.
 std::optional<AlignedPatch> OpticalFlowTracker::State::searchYoung(const FlowObservation& point,
                                                                    const std::optional<Shift>& neighbors,
                                                                    const CornerLookup& corners,
@@ -249,7 +252,7 @@ void OpticalFlowTracker::State::startPoints(const Features& now) {
   }
 }
 
-/// SIFT: points go on where descriptors match from frame to frame, and start at all others.
+/// Follows SIFT points, whose descriptors match from frame to frame, and starts points at all others.
 void OpticalFlowTracker::State::followDescriptors(const Features& now) {
   std::vector<bool> taken(now.corners.size(), false);
   if (previous && !points.empty()) {

@@ -16,12 +16,11 @@ class OpticalFlowTracker {
  public:
   struct Params {
     int max_tracks = 2000;
-    double max_round_trip_px = 0.5;  // between a point and its alignment forwards and back
+    double max_round_trip_px = 0.5;  // from a point to where it is found forwards and back
     double max_flow_px = 250;        // per frame
   };
-  /// New points are spread over cells of this side, and points keep this distance from each other.
-  static constexpr int kCell_px = 48;
-  static constexpr double kMinDistance_px = 5;
+  static constexpr int kCell_px = 48;           // side of the cells over which new points are spread
+  static constexpr double kMinDistance_px = 5;  // between points
 
   explicit OpticalFlowTracker(const Params& params);
   OpticalFlowTracker(OpticalFlowTracker&&) noexcept;

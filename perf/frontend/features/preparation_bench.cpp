@@ -5,7 +5,7 @@
 #include "frontend/image/image_pyramid.hpp"
 #include "perf/frontend/bench_street.hpp"
 
-/// What is done to every image: pyramids and corners. Items are pixels of the full-size image.
+/// Preparation of an image: pyramids and corners. Items are pixels of the full-size image.
 namespace motorcade::perf {
 namespace {
 

@@ -10,7 +10,7 @@
 #include "frontend/segmentation/motion_graph.hpp"
 #include "tests/support/stereo_views.hpp"
 
-/// What is done to points, without images. Items are points.
+/// Computations on points, without images. Items are points.
 namespace motorcade::perf {
 namespace {
 
@@ -48,7 +48,7 @@ BENCHMARK(BM_CutDelaunayComponents)->Arg(250)->Arg(1000)->Arg(4000)->Unit(benchm
 
 /// The second argument is the percentage of points that move relative to the world.
 void BM_EgoMotion(benchmark::State& state) {
-  const auto count = static_cast<std::size_t>(state.range(0));
+  const std::size_t count = state.range(0);
   const double moving = static_cast<double>(state.range(1)) / 100;
   const SE3 T_previous_now = SE3::exp((Vector6d() << 0.01, 0, 1.2, 0, 0.01, 0).finished());
   const SE3 T_now_previous = T_previous_now.inverse();

@@ -46,7 +46,7 @@ TEST(CornerDetector, GivesEachCellItsShareBesideStrongTexture) {
   const auto corners = CornerDetector(params)(test::render(400, 240, gray));
   EXPECT_LE(corners.size(), 200U);
   const auto faint = std::ranges::count_if(corners, [](const Corner& corner) { return corner.u_px >= 200; });
-  EXPECT_GE(faint, 70);  // half of the area, less what the border takes
+  EXPECT_GE(faint, 70);  // half of the area, less the border
   std::set<std::pair<int, int>> cells;
   for (const Corner& corner : corners)
     cells.emplace(static_cast<int>(corner.u_px) / CornerDetector::kCell_px,

@@ -23,7 +23,7 @@ FeaturesPtr prepare(const std::function<double(double, double)>& gray, const tes
   return FeaturePreparation({})(test::stereoFrame(0, image, image));
 }
 
-/// A textured wall, and what it looks like after a shift.
+/// A textured wall before and after a shift.
 struct TwoImages {
   test::Texture texture{81, 7, 40};
   FeaturesPtr before = prepare(texture, {.noise = 2, .seed = 1});
@@ -53,7 +53,7 @@ int difference(const std::vector<int>& a, const std::vector<int>& b) {
   return sum;
 }
 
-/// The shifts that the header promises, by comparison with every corner.
+/// The shifts that `addSimilar` must add, found by comparison with every corner.
 std::vector<Shift> similarByBruteForce(const FlowObservation& point, const TwoImages& images, const ShiftBounds& bounds,
                                        double max_difference) {
   const auto looks = signaturePixels(images.before->left, point.u_px, point.v_px);
