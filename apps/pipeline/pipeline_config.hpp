@@ -6,7 +6,7 @@
 #include "frontend/features/feature_preparation.hpp"
 #include "frontend/matching/optical_flow.hpp"
 #include "frontend/matching/stereo_matcher.hpp"
-#include "frontend/segmentation/scene_motion_estimator.hpp"
+#include "frontend/segmentation/scene_flow_segmentation.hpp"
 #include "frontend/tracking/object_tracker.hpp"
 
 namespace motorcade {
@@ -28,7 +28,7 @@ struct PipelineConfig {
   FeaturePreparation::Params preparation;
   StereoMatcher::Params stereo;
   OpticalFlowTracker::Params optical_flow;
-  SceneMotionEstimator::Params scene_motion;
+  SceneFlowSegmentation::Params scene_motion;
   ObjectTracker::Params tracking;
   BackendParams backend;
 };

@@ -5,7 +5,7 @@
 
 #include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
-#include "frontend/motion/point_history.hpp"
+#include "frontend/motion/point_track.hpp"
 
 namespace motorcade {
 

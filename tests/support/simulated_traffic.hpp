@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "frontend/messages.hpp"
-#include "frontend/motion/point_history.hpp"
+#include "frontend/motion/point_track.hpp"
 #include "frontend/motion/scene_flow.hpp"
 #include "frontend/segmentation/motion_segmenter.hpp"
 #include "tests/support/stereo_views.hpp"

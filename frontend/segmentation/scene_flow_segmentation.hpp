@@ -9,14 +9,14 @@
 #include "core/stereo_camera.hpp"
 #include "frontend/geometry/point_grid.hpp"
 #include "frontend/image/patch_alignment.hpp"
+#include "frontend/matching/ambiguous_texture.hpp"
 #include "frontend/messages.hpp"
 #include "frontend/motion/disparity_offset.hpp"
 #include "frontend/motion/ego_motion.hpp"
 #include "frontend/motion/ground_plane.hpp"
-#include "frontend/motion/point_history.hpp"
+#include "frontend/motion/point_track.hpp"
 #include "frontend/motion/scene_flow.hpp"
 #include "frontend/segmentation/motion_segmenter.hpp"
-#include "frontend/segmentation/repeated_texture.hpp"
 
 namespace motorcade {
 
@@ -26,7 +26,7 @@ namespace motorcade {
 ///   2. ego-motion from the static world   3. scene flow of every point over its track   4. ground plane   5. motion
 ///   segmentation
 /// Call in frame order: it remembers the tracks and the camera's recent path.
-class SceneMotionEstimator {
+class SceneFlowSegmentation {
  public:
   struct Params {
     DisparityParams disparity;
@@ -49,7 +49,7 @@ class SceneMotionEstimator {
     GroundPlaneEstimator::Params ground_plane;
     MotionSegmenter::Params segmenter;
   };
-  SceneMotionEstimator(const Params& params, const StereoCamera& camera);
+  SceneFlowSegmentation(const Params& params, const StereoCamera& camera);
 
   /// Both messages are of the same frame.
   SceneMotionPtr operator()(const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow);
@@ -103,6 +103,6 @@ class SceneMotionEstimator {
   int steady_frames_ = 0;  // see PredictedMotion
 };
 
-std::vector<Parameter> parametersOf(SceneMotionEstimator::Params& params);
+std::vector<Parameter> parametersOf(SceneFlowSegmentation::Params& params);
 
 }  // namespace motorcade

@@ -1,4 +1,4 @@
-#include "frontend/segmentation/scene_motion_estimator.hpp"
+#include "frontend/segmentation/scene_flow_segmentation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace motorcade {
 
-SceneMotionEstimator::SceneMotionEstimator(const Params& params, const StereoCamera& camera)
+SceneFlowSegmentation::SceneFlowSegmentation(const Params& params, const StereoCamera& camera)
     : params_(requireValid(params)),
       camera_(camera),
       disparity_offset_(params.disparity_offset, camera),
@@ -18,13 +18,13 @@ SceneMotionEstimator::SceneMotionEstimator(const Params& params, const StereoCam
       ground_plane_(params.ground_plane),
       segmenter_(params.segmenter, camera) {}
 
-SE3 SceneMotionEstimator::predictMotion(Timestamp stamp) const {
+SE3 SceneFlowSegmentation::predictMotion(Timestamp stamp) const {
   if (!last_motion_ || last_dt_s_ <= 0) return SE3{};
   return scaledMotion(*last_motion_, secondsBetween(trail_.newest().stamp, stamp) / last_dt_s_);
 }
 
 /// In the memory of one that is no longer in use.
-std::shared_ptr<SceneMotion> SceneMotionEstimator::emptyMotion() {
+std::shared_ptr<SceneMotion> SceneFlowSegmentation::emptyMotion() {
   auto motion = motions_.acquire();
   auto points = std::move(motion->points);
   points.clear();
@@ -33,7 +33,7 @@ std::shared_ptr<SceneMotion> SceneMotionEstimator::emptyMotion() {
   return motion;
 }
 
-SceneMotionPtr SceneMotionEstimator::operator()(const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow) {
+SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow) {
   const StereoFrame& frame = *stereo->features->frame;
   auto motion = emptyMotion();
   motion->frame = frame.frame;
@@ -72,7 +72,7 @@ SceneMotionPtr SceneMotionEstimator::operator()(const StereoMatchesPtr& stereo, 
 
 /// Learns from points at rest that were seen at both ends of a window; the disparities remembered follow the offset in
 /// use.
-void SceneMotionEstimator::calibrateDisparity() {
+void SceneFlowSegmentation::calibrateDisparity() {
   const std::int64_t now = trail_.newest().step, then = now - params_.disparity_offset.window_frames;
   const auto* relation = trail_.find(then);
   if (relation && now % params_.disparity_offset.window_frames == 0) {
@@ -91,7 +91,7 @@ void SceneMotionEstimator::calibrateDisparity() {
     for (int i = 0; i < track.count; ++i) track.observations[i].uvd_px.z() += change;
 }
 
-std::vector<SceneMotionEstimator::Sighted> SceneMotionEstimator::closeCircle(
+std::vector<SceneFlowSegmentation::Sighted> SceneFlowSegmentation::closeCircle(
     const StereoMatches& stereo, const OpticalFlow& flow, const SE3& predicted_T_previous_now) const {
   std::vector<Sighted> sighted;
   sighted.reserve(flow.observations.size());
@@ -117,8 +117,8 @@ std::vector<SceneMotionEstimator::Sighted> SceneMotionEstimator::closeCircle(
 
 /// Stereo matching gives it where the track was born; where it failed there, a matched corner close by tells where to
 /// look.
-std::optional<StereoMatch> SceneMotionEstimator::firstDisparity(const StereoMatches& stereo, const PointGrid& corners,
-                                                                const FlowObservation& flow) const {
+std::optional<StereoMatch> SceneFlowSegmentation::firstDisparity(const StereoMatches& stereo, const PointGrid& corners,
+                                                                 const FlowObservation& flow) const {
   if (flow.corner >= 0 && stereo.of_corner[flow.corner]) return stereo.of_corner[flow.corner];
   const Eigen::Vector2f here(flow.u_px, flow.v_px),
       reach = Eigen::Vector2f::Constant(static_cast<float>(params_.neighbor_px));
@@ -139,10 +139,10 @@ std::optional<StereoMatch> SceneMotionEstimator::firstDisparity(const StereoMatc
 /// The disparity lies between that of a point at rest and that of a point which moves along with the camera; where
 /// nothing is found there, it may be a vehicle that comes towards the camera or overtakes it, at up to the camera's own
 /// speed.
-std::optional<StereoMatch> SceneMotionEstimator::verifyInRightImage(const Features& features,
-                                                                    const FlowObservation& flow,
-                                                                    const PointTrack& track,
-                                                                    const SE3& predicted_T_now_previous) const {
+std::optional<StereoMatch> SceneFlowSegmentation::verifyInRightImage(const Features& features,
+                                                                     const FlowObservation& flow,
+                                                                     const PointTrack& track,
+                                                                     const SE3& predicted_T_now_previous) const {
   const double before_px = track.newest().uvd_px.z();
   const auto at_rest = camera_.project(predicted_T_now_previous * lastPosition(track).p_ref);
   const double at_rest_px = at_rest ? at_rest->z() : before_px;
@@ -160,7 +160,7 @@ std::optional<StereoMatch> SceneMotionEstimator::verifyInRightImage(const Featur
   return between || change_px < search.search_radius_px ? between : within(1.5 * change_px);
 }
 
-PoseObservation SceneMotionEstimator::lastPosition(const PointTrack& track) const {
+PoseObservation SceneFlowSegmentation::lastPosition(const PointTrack& track) const {
   const auto& newest = track.newest();
   const SE3 T_last_then = trail_.find(newest.step)->T_then_now.inverse();
   PoseObservation o;
@@ -176,7 +176,7 @@ PoseObservation SceneMotionEstimator::lastPosition(const PointTrack& track) cons
   return o;
 }
 
-PoseObservation SceneMotionEstimator::observe(const Sighted& sighted) const {
+PoseObservation SceneFlowSegmentation::observe(const Sighted& sighted) const {
   PoseObservation o = lastPosition(*sighted.track);
   o.uvd_px = {sighted.flow.u_px, sighted.flow.v_px, sighted.disparity->disparity_px};
   const double sigma_flow = std::max<double>(sighted.flow.sigma_px, params_.sigma_flow_px);
@@ -184,8 +184,8 @@ PoseObservation SceneMotionEstimator::observe(const Sighted& sighted) const {
   return o;
 }
 
-std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted,
-                                                          SceneMotion& motion) {
+std::vector<bool> SceneFlowSegmentation::estimateEgoMotion(const std::vector<Sighted>& sighted, const SE3& predicted,
+                                                           SceneMotion& motion) {
   std::vector<PoseObservation> observations;
   std::vector<bool> known_movers;
   std::vector<bool> inliers(sighted.size(), false);
@@ -216,7 +216,7 @@ std::vector<bool> SceneMotionEstimator::estimateEgoMotion(const std::vector<Sigh
   return inliers;
 }
 
-void SceneMotionEstimator::updateTracks(const std::vector<Sighted>& sighted, const FeaturesPtr& features) {
+void SceneFlowSegmentation::updateTracks(const std::vector<Sighted>& sighted, const FeaturesPtr& features) {
   updated_tracks_.resize(sighted.size());
   const Image& now = features->left.levels.front();
   forEachItem(sighted.size(), [&](std::size_t i) {
@@ -229,7 +229,7 @@ void SceneMotionEstimator::updateTracks(const std::vector<Sighted>& sighted, con
 }
 
 /// Looked for both ways: something else may hide its place at rest in one of the two images.
-bool SceneMotionEstimator::isFoundAtRest(const Sighted& s, const Image& now) const {
+bool SceneFlowSegmentation::isFoundAtRest(const Sighted& s, const Image& now) const {
   const CameraTrail::Relation* before = s.track ? trail_.find(s.track->newest().step) : nullptr;
   if (!before || !previous_features_ || s.track->newest().step + 1 != trail_.newest().step) return false;
   const Image& image_before = previous_features_->left.levels.front();
@@ -246,7 +246,7 @@ bool SceneMotionEstimator::isFoundAtRest(const Sighted& s, const Image& now) con
          found(uvd_before, image_before, before->T_then_now.inverse(), uvd_now, now);
 }
 
-PointTrack SceneMotionEstimator::extendTrack(const Sighted& s, const Image& now) const {
+PointTrack SceneFlowSegmentation::extendTrack(const Sighted& s, const Image& now) const {
   PointTrack track;
   if (s.track) track = *s.track;
   track.point = s.flow.point;
@@ -269,8 +269,8 @@ PointTrack SceneMotionEstimator::extendTrack(const Sighted& s, const Image& now)
   return track;
 }
 
-void SceneMotionEstimator::fillPoints(const std::vector<Sighted>& sighted, const std::vector<bool>& inliers,
-                                      SceneMotion& motion) const {
+void SceneFlowSegmentation::fillPoints(const std::vector<Sighted>& sighted, const std::vector<bool>& inliers,
+                                       SceneMotion& motion) const {
   motion.points.reserve(tracks_.size());
   auto track = tracks_.begin();
   for (std::size_t i = 0; i < sighted.size(); ++i) {
@@ -287,7 +287,7 @@ void SceneMotionEstimator::fillPoints(const std::vector<Sighted>& sighted, const
   }
 }
 
-void SceneMotionEstimator::markGround(SceneMotion& motion, const std::vector<bool>& violates_geometry) {
+void SceneFlowSegmentation::markGround(SceneMotion& motion, const std::vector<bool>& violates_geometry) {
   std::vector<GroundCandidate> candidates;
   std::vector<double> height_sigma_m(motion.points.size());
   for (std::size_t i = 0; i < motion.points.size(); ++i) {
@@ -305,12 +305,12 @@ void SceneMotionEstimator::markGround(SceneMotion& motion, const std::vector<boo
   }
 }
 
-bool SceneMotionEstimator::sightedNow(const PointTrack& track) const {
+bool SceneFlowSegmentation::sightedNow(const PointTrack& track) const {
   return track.newest().step == trail_.newest().step;
 }
 
 /// Judged over the longest stretch of the track, where the epipolar line is longest.
-bool SceneMotionEstimator::violatesGeometry(const PointTrack& track) const {
+bool SceneFlowSegmentation::violatesGeometry(const PointTrack& track) const {
   if (track.count < params_.scene_flow.min_observations) return false;
   const auto& then = track.observations.front();
   const auto* relation = trail_.find(then.step);
@@ -323,7 +323,7 @@ bool SceneMotionEstimator::violatesGeometry(const PointTrack& track) const {
                       residual->flow_bound_px > params_.segmenter.flow_bound_violation_px);
 }
 
-std::vector<Parameter> parametersOf(SceneMotionEstimator::Params& params) {
+std::vector<Parameter> parametersOf(SceneFlowSegmentation::Params& params) {
   return {numberParameter("sigma_flow_px", params.sigma_flow_px, {0.05, 2},
                           "the floor of what the image noise of your camera does to a followed point"),
           numberParameter("sigma_disparity_px", params.sigma_disparity_px, {0.05, 2}, "the same of a disparity"),

@@ -1,4 +1,4 @@
-#include "frontend/motion/point_history.hpp"
+#include "frontend/motion/point_track.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "frontend/segmentation/repeated_texture.hpp"
+#include "frontend/matching/ambiguous_texture.hpp"
 
 #include "frontend/image/patch_alignment.hpp"
 

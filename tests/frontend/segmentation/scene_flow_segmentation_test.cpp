@@ -1,4 +1,4 @@
-#include "frontend/segmentation/scene_motion_estimator.hpp"
+#include "frontend/segmentation/scene_flow_segmentation.hpp"
 
 #include <cmath>
 
@@ -12,7 +12,7 @@ namespace motorcade {
 namespace {
 
 /// Messages of a frame without a single point.
-SceneMotionPtr runEmpty(SceneMotionEstimator& estimate, int frame, const std::string& problem) {
+SceneMotionPtr runEmpty(SceneFlowSegmentation& estimate, int frame, const std::string& problem) {
   auto pair = std::make_shared<StereoFrame>();
   pair->frame = {frame};
   pair->stamp = {frame * 100'000'000};
@@ -26,8 +26,8 @@ SceneMotionPtr runEmpty(SceneMotionEstimator& estimate, int frame, const std::st
   return estimate(stereo, flow);
 }
 
-TEST(SceneMotionEstimator, EveryInputGivesOneOutputOfItsFrameAlsoWhenRejectedOrEmpty) {
-  SceneMotionEstimator estimate({}, test::kRig);
+TEST(SceneFlowSegmentation, EveryInputGivesOneOutputOfItsFrameAlsoWhenRejectedOrEmpty) {
+  SceneFlowSegmentation estimate({}, test::kRig);
   for (int frame = 0; frame < 6; ++frame) {
     const bool rejected = frame == 2 || frame == 3;
     const auto motion = runEmpty(estimate, frame, rejected ? "unreadable" : "");
@@ -41,9 +41,9 @@ TEST(SceneMotionEstimator, EveryInputGivesOneOutputOfItsFrameAlsoWhenRejectedOrE
   }
 }
 
-TEST(SceneMotionEstimator, APredictedMotionIsAsWideAsItsParametersSay) {
-  const SceneMotionEstimator::Params params;
-  SceneMotionEstimator estimate(params, test::kRig);
+TEST(SceneFlowSegmentation, APredictedMotionIsAsWideAsItsParametersSay) {
+  const SceneFlowSegmentation::Params params;
+  SceneFlowSegmentation estimate(params, test::kRig);
   runEmpty(estimate, 0, "");
   for (const int frame : {1, 2}) {
     const auto motion = runEmpty(estimate, frame, frame == 1 ? "" : "unreadable");
@@ -63,7 +63,7 @@ class TwoSurfaces {
   static constexpr double kCameraStep_m = 1, kWall_m = 30, kCar_m = 4;
   explicit TwoSurfaces(double car_step_m) : car_step_m_(car_step_m) {}
 
-  SceneMotionPtr see(SceneMotionEstimator& estimate, int frame) const {
+  SceneMotionPtr see(SceneFlowSegmentation& estimate, int frame) const {
     auto features = std::make_shared<Features>();
     auto pair = std::make_shared<StereoFrame>();
     pair->frame = {frame};
@@ -129,10 +129,10 @@ class TwoSurfaces {
 };
 
 /// Beside a camera at 10 m/s: cars that overtake it at 20 m/s and fall back at 5 m/s.
-TEST(SceneMotionEstimator, FindsTheDisparityOfANearVehicleWhateverItsSpeed) {
+TEST(SceneFlowSegmentation, FindsTheDisparityOfANearVehicleWhateverItsSpeed) {
   for (const double car_step_m : {2.0, 0.5}) {
     const TwoSurfaces scene(car_step_m);
-    SceneMotionEstimator estimate({}, kSmallRig);
+    SceneFlowSegmentation estimate({}, kSmallRig);
     for (int frame = 0; frame < 3; ++frame) {
       const auto motion = scene.see(estimate, frame);
       ASSERT_EQ(motion->status, FrameStatus::kGood);
