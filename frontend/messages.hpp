@@ -85,7 +85,7 @@ struct ScenePoint {
   Eigen::Vector3d uvd_px;
   Eigen::Vector3d sigma_px;  // independent standard deviations of u, v, d
   int age = 1;
-  bool repeats = false;     // its patch is also found where a point at rest would be: its motion proves nothing
+  bool ambiguous = false;   // its patch is also found where a point at rest would be: its motion proves nothing
   bool ego_inlier = false;  // agrees with the camera's motion over a static world since the previous frame
   PointLabel label = PointLabel::kUnknown;
   std::optional<SceneFlow> flow;

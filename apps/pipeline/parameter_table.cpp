@@ -20,19 +20,20 @@ std::vector<ConfigurationKey> parameterTable(PipelineConfig& config) {
   const auto add = [&](const std::string& section, std::vector<Parameter> parameters) {
     for (Parameter& parameter : parameters) table.push_back({section, std::move(parameter)});
   };
-  auto& motion = config.scene_motion;
+  auto& segmentation = config.scene_flow_segmentation;
   add("pipeline", parametersOf(config.pipeline));
   add("frontend", parametersOf(config.preparation));
   add("frontend.corners", parametersOf(config.preparation.corners));
   add("frontend.sift", parametersOf(config.preparation.sift));
   add("frontend.stereo", parametersOf(config.stereo));
   add("frontend.optical_flow", parametersOf(config.optical_flow));
-  add("frontend.motion", parametersOf(motion));
-  add("frontend.disparity_offset", parametersOf(motion.disparity_offset));
-  add("frontend.ego_motion", parametersOf(motion.ego_motion));
-  add("frontend.scene_flow", parametersOf(motion.scene_flow));
-  add("frontend.ground_plane", parametersOf(motion.ground_plane));
-  add("frontend.segmentation", parametersOf(motion.segmenter));
+  add("frontend.circular_matching", parametersOf(segmentation.circular_matching));
+  add("frontend.disparity_offset", parametersOf(segmentation.disparity_offset));
+  add("frontend.ego_motion", parametersOf(segmentation.ego_motion));
+  add("frontend.point_tracks", parametersOf(segmentation.point_tracks));
+  add("frontend.scene_flow", parametersOf(segmentation.point_tracks.scene_flow));
+  add("frontend.ground_plane", parametersOf(segmentation.ground_plane));
+  add("frontend.segmentation", parametersOf(segmentation.segmenter));
   add("frontend.tracking", parametersOf(config.tracking));
   add("frontend.object_motion", parametersOf(config.tracking.motion));
   add("backend", {backendKind(config.backend)});

@@ -28,7 +28,7 @@ struct PipelineConfig {
   FeaturePreparation::Params preparation;
   StereoMatcher::Params stereo;
   OpticalFlowTracker::Params optical_flow;
-  SceneFlowSegmentation::Params scene_motion;
+  SceneFlowSegmentation::Params scene_flow_segmentation;
   ObjectTracker::Params tracking;
   BackendParams backend;
 };

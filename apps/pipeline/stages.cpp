@@ -19,7 +19,7 @@ Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
   const auto prepare = std::make_shared<FeaturePreparation>(config.preparation);
   const auto stereo = std::make_shared<StereoMatcher>(config.stereo);
   const auto flow = std::make_shared<OpticalFlowTracker>(config.optical_flow);
-  const auto motion = std::make_shared<SceneFlowSegmentation>(config.scene_motion, camera);
+  const auto motion = std::make_shared<SceneFlowSegmentation>(config.scene_flow_segmentation, camera);
   const auto tracking = std::make_shared<ObjectTracker>(config.tracking, camera);
   const std::shared_ptr<Backend> backend = makeBackend(config.backend);
   return {.prepare = [prepare](const StereoFramePtr& frame) { return (*prepare)(frame); },

@@ -3,20 +3,25 @@
 #include "frontend/image/patch_alignment.hpp"
 
 namespace motorcade {
+namespace {
 
-bool isFoundAtRestToo(const Image& now, const Eigen::Vector2d& now_px, const Image& before,
-                      const Eigen::Vector2d& at_rest_px, const Eigen::Vector2d& followed_from_px, double scale,
-                      const RepeatedTextureParams& params) {
-  if ((at_rest_px - followed_from_px).norm() < params.min_separation_px) return false;
-  const Eigen::Vector2f from = now_px.cast<float>();
-  const auto patch =
-      makeTemplate(now, from.x(), from.y(), kPatchWindow_px, PatchDeformation::kScale, static_cast<float>(scale));
-  if (!patch) return false;
+constexpr double kMinNcc = 0.8;        // stricter than optical flow: the patch at rest speaks against a motion
+constexpr double kMaxShift_px = 3;     // between the position at rest as predicted and as found: errors of ego-motion
+constexpr double kMinDistance_px = 5;  // from the followed position: patches nearer than that overlap and look alike
+
+}  // namespace
+
+bool isAlsoFoundAtRest(const FollowedPatch& patch, const Eigen::Vector2d& at_rest_px, double scale) {
+  if ((at_rest_px - patch.to_px).norm() < kMinDistance_px) return false;
+  const Eigen::Vector2f from = patch.from_px.cast<float>();
+  const auto looks = makeTemplate(patch.from, from.x(), from.y(), kPatchWindow_px, PatchDeformation::kScale,
+                                  static_cast<float>(scale));
+  if (!looks) return false;
   PatchParams alignment;
-  alignment.min_ncc = params.min_ncc;
-  alignment.max_shift_px = params.max_prediction_px;
-  const auto found = alignPatch(*patch, before, at_rest_px.cast<float>(), alignment);
-  return found && (Eigen::Vector2d(found->u_px, found->v_px) - followed_from_px).norm() > params.min_separation_px;
+  alignment.min_ncc = kMinNcc;
+  alignment.max_shift_px = kMaxShift_px;
+  const auto found = alignPatch(*looks, patch.to, at_rest_px.cast<float>(), alignment);
+  return found && (Eigen::Vector2d(found->u_px, found->v_px) - patch.to_px).norm() > kMinDistance_px;
 }
 
 }  // namespace motorcade

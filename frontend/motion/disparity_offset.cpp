@@ -11,6 +11,14 @@
 namespace motorcade {
 namespace {
 
+constexpr double kMinMotion_m = 2.0;  // of the camera in a window: depths hardly show in a shorter one
+constexpr int kMinPoints = 60;        // of a window: fewer rarely hold near and far ones alike
+constexpr double kInlierChi2 = 9.0;   // 3 degrees of freedom: 97 %
+constexpr double kHuberSigmas = 2.0;  // where the loss turns linear
+constexpr double kInflation = 3.0;    // of a window's variance: neighboring windows share points and their errors
+constexpr int kIterations = 4;        // Gauss-Newton from the motion as estimated: converged to 1e-4 px
+constexpr double kMaxStep = 10;       // (m, rad, px): a longer one diverges
+
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
@@ -48,7 +56,6 @@ double DisparityOffsetEstimator::sigma_px() const { return std::sqrt(variance_px
 
 std::optional<DisparityOffsetEstimator::Measurement> DisparityOffsetEstimator::measure(
     std::span<const StereoCorrespondence> points, const SE3& T_now_then) const {
-  constexpr int kIterations = 4;
   SE3 T = T_now_then;
   double offset_px = 0;
   Matrix7d H;
@@ -60,27 +67,32 @@ std::optional<DisparityOffsetEstimator::Measurement> DisparityOffsetEstimator::m
       const auto l = linearize(camera_, c, T, offset_px);
       if (!l) continue;
       const double chi2 = l->residual_px.dot(l->information * l->residual_px);
-      if (iteration > 0 && chi2 > params_.inlier_chi2) continue;
+      if (iteration > 0 && chi2 > kInlierChi2) continue;
       const Eigen::Matrix<double, 7, 3> JtW =
-          robustWeight(RobustLoss::kHuber, std::sqrt(chi2), params_.huber_sigmas) * l->J.transpose() * l->information;
+          robustWeight(RobustLoss::kHuber, std::sqrt(chi2), kHuberSigmas) * l->J.transpose() * l->information;
       H.noalias() += JtW * l->J;
       b.noalias() += JtW * l->residual_px;
       ++inliers;
     }
-    if (inliers < params_.min_points) return std::nullopt;
+    if (inliers < kMinPoints) return std::nullopt;
     const Vector7d step = H.ldlt().solve(b);
-    if (!step.allFinite() || step.norm() > 10) return std::nullopt;
+    if (!step.allFinite() || step.norm() > kMaxStep) return std::nullopt;
     T = T * SE3::exp(step.head<6>());
     offset_px += step[6];
   }
   return Measurement{offset_px, H.inverse()(6, 6)};
 }
 
+std::optional<std::int64_t> DisparityOffsetEstimator::windowStart(std::int64_t now) const {
+  if (now % params_.window_frames != 0) return std::nullopt;
+  return now - params_.window_frames;
+}
+
 void DisparityOffsetEstimator::learn(std::span<const StereoCorrespondence> points, const SE3& T_now_then) {
-  if (params_.prior_sigma_px <= 0 || T_now_then.translation().norm() < params_.min_motion_m) return;
+  if (params_.prior_sigma_px <= 0 || T_now_then.translation().norm() < kMinMotion_m) return;
   const auto measured = measure(points, T_now_then);
   if (!measured) return;
-  const double variance = params_.variance_inflation * measured->variance_px2;
+  const double variance = kInflation * measured->variance_px2;
   const double gain = variance_px2_ / (variance_px2_ + variance);
   estimate_px_ += gain * (in_use_px_ + measured->correction_px - estimate_px_);
   variance_px2_ *= 1 - gain;
@@ -95,7 +107,7 @@ double DisparityOffsetEstimator::advance() {
 std::vector<Parameter> parametersOf(DisparityOffsetEstimator::Params& params) {
   return {numberParameter("prior_sigma_px", params.prior_sigma_px, {0, 5},
                           "how far the calibration of the rig may be off; 0 trusts it"),
-          numberParameter("window_frames", params.window_frames, {2, 9},
+          numberParameter("window_frames", params.window_frames, {2, CameraTrail::kCapacity - 1},
                           "longer windows see the offset more clearly, and less often")};
 }
 

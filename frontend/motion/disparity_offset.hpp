@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,14 +10,9 @@
 #include "core/parameters.hpp"
 #include "core/se3.hpp"
 #include "core/stereo_camera.hpp"
+#include "frontend/motion/point_track.hpp"
 
 namespace motorcade {
-
-/// A point at rest, seen in two stereo pairs some frames apart.
-struct StereoCorrespondence {
-  Eigen::Vector3d uvd_then_px, sigma_then_px;
-  Eigen::Vector3d uvd_now_px, sigma_now_px;
-};
 
 /// Calibrates the rig while it drives: a constant error of the disparities (an error of the rectification's vergence)
 /// bends far depths more than near ones, so that no single camera motion explains near and far points alike. Estimates
@@ -29,16 +25,14 @@ class DisparityOffsetEstimator {
     double prior_sigma_px = 0.1;  // of a rig that was calibrated well; 0 switches the estimation off
     double max_rate_px = 0.005;   // per frame, by which the offset in use follows the estimate, so that no depth jumps
     int window_frames = 5;        // length of the windows from which the offset is learned
-    double min_motion_m = 2.0;    // of the camera between the two frames
-    int min_points = 60;
-    double inlier_chi2 = 9.0;  // 3 degrees of freedom
-    double huber_sigmas = 2.0;
-    double variance_inflation = 3.0;  // neighboring windows share points and their errors
   };
   DisparityOffsetEstimator(const Params& params, const StereoCamera& camera);
 
-  /// One window: disparities with the offset in use already added. `T_now_then` is the camera's motion as estimated so
-  /// far.
+  /// The first frame of the window that ends with frame `now`; empty when none ends there.
+  std::optional<std::int64_t> windowStart(std::int64_t now) const;
+
+  /// One window: points at rest, their disparities with the offset in use already added. `T_now_then` is the camera's
+  /// motion as estimated so far.
   void learn(std::span<const StereoCorrespondence> points, const SE3& T_now_then);
 
   /// Moves the offset in use towards the estimate; returns by how much it changed.

@@ -12,11 +12,37 @@
 namespace motorcade {
 namespace {
 
+constexpr int kScoredPoints = 300;         // of all observations: more tell hypotheses apart no better
+constexpr int kMinimalIterations = 5;      // of a fit to three points, which starts near
+constexpr double kKnownMoverWeight = 0.1;  // vote of a point that moved in the frame before: it may have stopped
+constexpr double kVoteCell_m = 4;          // edge of the floor's cells, each with one vote: about a car's length
+constexpr double kVoteDepth_m = 40;        // beyond it depth noise exceeds a cell
+constexpr double kSurprisePenalty = 0.3;   // votes, as a share of all, against a motion that no vehicle can make
+constexpr int kTrustedSteadyFrames = 3;    // after which the penalty counts in full
+constexpr double kClearScore = 0.25;   // of the worst score: three quarters agree, and more samples gain nothing ...
+constexpr int kSearchShare = 4;        // ... once a quarter of the hypotheses have been tried
+constexpr double kRefinementGate = 3;  // of the inliers' chi-square: a hypothesis of three points is not exact
+
 /// The observations that vote on hypotheses, with the weights of their votes.
 struct Voters {
   PoseObservations observations;
   std::vector<double> weights;
+  double worst_score;  // of a hypothesis that no observation agrees with
 };
+
+/// Spread evenly over the observations.
+Voters chooseVoters(std::span<const PoseObservation> observations, const std::vector<double>& votes,
+                    double inlier_chi2) {
+  std::vector<PoseObservation> voting;
+  std::vector<double> weights;
+  const double stride = std::max(1.0, static_cast<double>(observations.size()) / kScoredPoints);
+  for (double at = 0; at < static_cast<double>(observations.size()); at += stride) {
+    voting.push_back(observations[static_cast<std::size_t>(at)]);
+    weights.push_back(votes[static_cast<std::size_t>(at)]);
+  }
+  const double worst_score = inlier_chi2 * std::accumulate(weights.begin(), weights.end(), 0.0);
+  return {PoseObservations(voting), std::move(weights), worst_score};
+}
 
 /// Truncated quadratic score (MSAC): the smaller the better.
 double score(const StereoCamera& camera, const Voters& voters, const SE3& T_now_previous, double inlier_chi2) {
@@ -26,28 +52,52 @@ double score(const StereoCamera& camera, const Voters& voters, const SE3& T_now_
   return sum;
 }
 
-}  // namespace
-
 /// Of each observation. The world is larger than the vehicles in it, though these may carry most points: so what counts
-/// is the floor space that agrees. Points share the vote of their cell; those beyond `vote_depth_m` share by bearing.
-std::vector<double> EgoMotionEstimator::votes(std::span<const PoseObservation> observations,
-                                              const std::vector<bool>& known_movers) const {
+/// is the floor space that agrees. Points share the vote of their cell; those beyond `kVoteDepth_m` share by bearing.
+std::vector<double> votesOf(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers) {
   std::map<std::pair<int, int>, int> points_in;
   std::vector<int*> sharing;
   sharing.reserve(observations.size());
   for (const auto& o : observations) {
-    const double scale = std::min(1.0, params_.vote_depth_m / o.p_ref.z()) / params_.vote_cell_m;
-    int& points = points_in[{static_cast<int>(std::floor(scale * o.p_ref.x())),
-                             static_cast<int>(std::floor(scale * o.p_ref.z()))}];
+    const double scale = std::min(1.0, kVoteDepth_m / o.p_ref.z()) / kVoteCell_m;
+    int& points =
+        points_in[{static_cast<int>(std::floor(scale * o.p_ref.x())), static_cast<int>(std::floor(scale * o.p_ref.z()))}];
     ++points;
     sharing.push_back(&points);
   }
   std::vector<double> votes;
   votes.reserve(observations.size());
   for (std::size_t i = 0; i < observations.size(); ++i)
-    votes.push_back((known_movers[i] ? params_.known_mover_weight : 1.0) / *sharing[i]);
+    votes.push_back((known_movers[i] ? kKnownMoverWeight : 1.0) / *sharing[i]);
   return votes;
 }
+
+/// Draws observations at random, each as often as its vote counts; known movers never.
+class Sampler {
+ public:
+  Sampler(std::span<const PoseObservation> observations, const std::vector<double>& votes,
+          const std::vector<bool>& known_movers, std::uint64_t seed)
+      : observations_(observations), votes_up_to_(observations.size()), random_(seed) {
+    double total = 0;
+    for (std::size_t i = 0; i < observations.size(); ++i) votes_up_to_[i] = total += known_movers[i] ? 0.0 : votes[i];
+    empty_ = total <= 0;
+    up_to_ = std::uniform_real_distribution<double>(0, total);
+  }
+  bool empty() const { return empty_; }
+  const PoseObservation& operator()() {
+    const auto at = std::ranges::upper_bound(votes_up_to_, up_to_(random_));
+    return observations_[std::min(static_cast<std::size_t>(at - votes_up_to_.begin()), observations_.size() - 1)];
+  }
+
+ private:
+  std::span<const PoseObservation> observations_;
+  std::vector<double> votes_up_to_;
+  std::mt19937_64 random_;
+  std::uniform_real_distribution<double> up_to_;
+  bool empty_ = true;
+};
+
+}  // namespace
 
 bool EgoMotionEstimator::follows(const SE3& T_now_previous, const PredictedMotion& predicted) const {
   const double change_m = (T_now_previous.inverse().translation() - predicted.T_previous_now.translation()).norm();
@@ -57,39 +107,20 @@ bool EgoMotionEstimator::follows(const SE3& T_now_previous, const PredictedMotio
 SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observations,
                                        const std::vector<bool>& known_movers, const PredictedMotion& predicted,
                                        std::uint64_t seed) const {
-  const auto vote = votes(observations, known_movers);
-  std::vector<PoseObservation> voting;
-  std::vector<double> weights;
-  const double stride = std::max(1.0, static_cast<double>(observations.size()) / params_.scored_points);
-  for (double at = 0; at < static_cast<double>(observations.size()); at += stride) {
-    voting.push_back(observations[static_cast<std::size_t>(at)]);
-    weights.push_back(vote[static_cast<std::size_t>(at)]);
-  }
-  const double worst_score = params_.inlier_chi2 * std::accumulate(weights.begin(), weights.end(), 0.0);
-  const Voters voters{PoseObservations(voting), std::move(weights)};
-  std::vector<double> votes_up_to(observations.size());
-  double total = 0;
-  for (std::size_t i = 0; i < observations.size(); ++i) votes_up_to[i] = total += known_movers[i] ? 0.0 : vote[i];
-  PoseFitParams minimal = params_.fit;
-  minimal.max_iterations = 5;
+  const auto votes = votesOf(observations, known_movers);
+  const Voters voters = chooseVoters(observations, votes, params_.inlier_chi2);
+  const SE3 start = predicted.T_previous_now.inverse();
+  Sampler sample(observations, votes, known_movers, seed);
+  if (sample.empty()) return start;
+  const double trust = std::min(1.0, static_cast<double>(predicted.steady_frames) / kTrustedSteadyFrames);
+  const double penalty = kSurprisePenalty * trust * voters.worst_score;
 
-  SE3 best = predicted.T_previous_now.inverse();
-  const SE3 start = best;
+  SE3 best = start;
   double best_score = score(camera_, voters, best, params_.inlier_chi2);
-  const double trust = std::min(1.0, static_cast<double>(predicted.steady_frames) / params_.trusted_steady_frames);
-  const double penalty = params_.surprise_penalty * trust * worst_score;
-  if (total <= 0) return best;
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> upTo(0, total);
-  const auto pick = [&] {
-    const auto at = std::ranges::upper_bound(votes_up_to, upTo(random));
-    return observations[std::min(static_cast<std::size_t>(at - votes_up_to.begin()), observations.size() - 1)];
-  };
   for (int k = 0; k < params_.max_hypotheses; ++k) {
-    if (best_score < 0.25 * worst_score && k >= params_.max_hypotheses / 4)
-      break;  // three quarters agree: more samples gain nothing
-    const std::array<PoseObservation, 3> sample{pick(), pick(), pick()};
-    const auto fit = fitPose(camera_, PoseObservations(sample), start, minimal);
+    if (best_score < kClearScore * voters.worst_score && k >= params_.max_hypotheses / kSearchShare) break;
+    const std::array<PoseObservation, 3> three{sample(), sample(), sample()};
+    const auto fit = fitPose(camera_, PoseObservations(three), start, {.max_iterations = kMinimalIterations});
     if (!fit) continue;
     double fit_score = score(camera_, voters, fit->T_cam_ref, params_.inlier_chi2);
     if (!follows(fit->T_cam_ref, predicted)) fit_score += penalty;
@@ -100,20 +131,25 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
   return best;
 }
 
+/// Covariance-weighted refinement over what agrees with a hypothesis.
+std::optional<PoseFit> EgoMotionEstimator::refine(std::span<const PoseObservation> observations,
+                                                  const PoseObservations& all, const SE3& hypothesis) const {
+  const auto chi2 = poseChi2(camera_, all, hypothesis);
+  std::vector<PoseObservation> agreeing;
+  agreeing.reserve(observations.size());
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    if (chi2[i] < kRefinementGate * params_.inlier_chi2) agreeing.push_back(observations[i]);
+  return fitPose(camera_, PoseObservations(agreeing), hypothesis, {});
+}
+
 std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObservation> observations,
                                                         const std::vector<bool>& known_movers,
                                                         const PredictedMotion& predicted, std::uint64_t seed) const {
   assert(observations.size() == known_movers.size());
   if (static_cast<int>(observations.size()) < params_.min_inliers) return std::nullopt;
-  const SE3 start = bestHypothesis(observations, known_movers, predicted, seed);
-
+  const SE3 hypothesis = bestHypothesis(observations, known_movers, predicted, seed);
   const PoseObservations all(observations);
-  const auto start_chi2 = poseChi2(camera_, all, start);
-  std::vector<PoseObservation> agreeing;
-  agreeing.reserve(observations.size());
-  for (std::size_t i = 0; i < observations.size(); ++i)
-    if (start_chi2[i] < 3 * params_.inlier_chi2) agreeing.push_back(observations[i]);
-  const auto fit = fitPose(camera_, PoseObservations(agreeing), start, params_.fit);
+  const auto fit = refine(observations, all, hypothesis);
   if (!fit) return std::nullopt;
 
   EgoMotion ego;

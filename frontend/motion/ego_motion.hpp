@@ -33,16 +33,9 @@ class EgoMotionEstimator {
  public:
   struct Params {
     int max_hypotheses = 80;
-    int scored_points = 300;    // per hypothesis, spread evenly over the observations
     double inlier_chi2 = 12.0;  // 3 degrees of freedom: 99 % is 11.3
     int min_inliers = 12;
-    double known_mover_weight = 0.1;    // vote of a point that moved in the previous frame
-    double vote_cell_m = 4.0;           // edge of the floor's cells, each with one vote
-    double vote_depth_m = 40.0;         // beyond it the floor is not told apart by depth
     double max_acceleration_mps2 = 20;  // of the camera, jitter of its times included
-    double surprise_penalty = 0.3;      // votes, as a share of all, against a motion beyond it
-    int trusted_steady_frames = 3;      // after which the penalty counts in full
-    PoseFitParams fit;
   };
   EgoMotionEstimator(const Params& params, const StereoCamera& camera)
       : params_(requireValid(params)), camera_(camera) {}
@@ -55,10 +48,11 @@ class EgoMotionEstimator {
                                       std::uint64_t seed) const;
 
  private:
-  std::vector<double> votes(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers) const;
   bool follows(const SE3& T_now_previous, const PredictedMotion& predicted) const;
   SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
                      const PredictedMotion& predicted, std::uint64_t seed) const;
+  std::optional<PoseFit> refine(std::span<const PoseObservation> observations, const PoseObservations& all,
+                                const SE3& hypothesis) const;
 
   Params params_;
   StereoCamera camera_;

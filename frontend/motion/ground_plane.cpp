@@ -11,46 +11,54 @@
 namespace motorcade {
 namespace {
 
-/// A point that may lie on the road.
-struct LowPoint {
-  Eigen::Vector3d p_cam;
-  double tolerance_m;  // of its height above the plane
-};
+constexpr double kMaxDepth_m = 30, kMaxSide_m = 10;  // where roads are flat and a height is known to centimeters
+constexpr double kMinHeightShare = 0.5;              // of the lowest plane allowed: points above it lie on no road
+constexpr double kRoughness_m = 0.08;                // of a road around its plane: camber, curbs' feet, ruts
+constexpr double kMaxHeightNoise_m = 0.3;            // higher objects are no road, however little their height is known
+constexpr int kHypotheses = 60;                      // find a road that carries half of the points but for 1 in 3000
+constexpr int kMinInliers = 15;                      // fewer are a curb or a car's roof as well
+constexpr double kMemory = 0.7;  // weight of the plane before: two thirds of a new pitch show within three frames
+constexpr double kMinTriangle_m2 = 0.5;  // twice its area: thinner and smaller ones carry no plane
+
+// Distances from a plane, in tolerances.
+constexpr double kSupport = 3;         // nearer points speak for the plane, those on it most
+constexpr double kBelow = 4;           // points this far below speak against it: one cannot look through a road
+constexpr double kBelowPenalty = 0.5;  // of a point below, in points on the plane
+constexpr double kFit = 2.5;           // nearer points are fitted
 
 std::optional<GroundPlane> planeThrough(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   Eigen::Vector3d normal = (b - a).cross(c - a);
   const double length = normal.norm();
-  if (length < 0.5) return std::nullopt;  // nearly collinear, or too close together to carry a plane [m^2]
+  if (length < kMinTriangle_m2) return std::nullopt;
   normal /= normal.y() < 0 ? -length : length;
   return GroundPlane{normal, normal.dot(a)};
 }
 
-/// Truncated quadratic score: the larger the better. Planes with many points above them lie too low and are no roads:
-/// a point below a plane (seen through it) counts against it.
+/// Truncated quadratic score: the larger the better.
 double support(const std::vector<LowPoint>& points, const GroundPlane& plane) {
   double sum = 0;
   for (const auto& c : points) {
     const double x = plane.heightOf_m(c.p_cam) / c.tolerance_m;
-    if (std::abs(x) < 3) sum += 1 - x * x / 9;
-    if (x < -4) sum -= 0.5;
+    if (std::abs(x) < kSupport) sum += 1 - x * x / (kSupport * kSupport);
+    if (x < -kBelow) sum -= kBelowPenalty;
   }
   return sum;
 }
 
 /// Weighted least squares of y = (height - n_x x - n_z z) / n_y over the points near a plane.
-std::optional<GroundPlane> refine(const std::vector<LowPoint>& points, const GroundPlane& start, int min_inliers) {
+std::optional<GroundPlane> refine(const std::vector<LowPoint>& points, const GroundPlane& start) {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   int inliers = 0;
   for (const auto& c : points) {
     const double tolerance = c.tolerance_m, x = start.heightOf_m(c.p_cam) / tolerance;
-    if (std::abs(x) > 2.5) continue;
+    if (std::abs(x) > kFit) continue;
     const Eigen::Vector3d row(c.p_cam.x(), c.p_cam.z(), 1);
     H += row * row.transpose() / (tolerance * tolerance);
     b += row * c.p_cam.y() / (tolerance * tolerance);
     ++inliers;
   }
-  if (inliers < min_inliers) return std::nullopt;
+  if (inliers < kMinInliers) return std::nullopt;
   const Eigen::Vector3d k = H.ldlt().solve(b);  // y = k0 x + k1 z + k2
   if (!k.allFinite()) return std::nullopt;
   const Eigen::Vector3d normal(-k[0], 1, -k[1]);
@@ -71,31 +79,39 @@ bool GroundPlaneEstimator::plausible(const GroundPlane& plane) const {
 GroundPlane GroundPlaneEstimator::operator()(std::span<const GroundCandidate> points, std::uint64_t seed) {
   std::vector<LowPoint> low;
   for (const auto& c : points) {
-    const bool near = c.p_cam.z() < params_.max_depth_m && std::abs(c.p_cam.x()) < params_.max_side_m;
-    if (near && c.p_cam.y() > 0.5 * params_.min_height_m)
-      low.push_back({c.p_cam, std::hypot(params_.inlier_m, c.height_sigma_m)});
+    const bool near = c.p_cam.z() < kMaxDepth_m && std::abs(c.p_cam.x()) < kMaxSide_m;
+    if (near && c.p_cam.y() > kMinHeightShare * params_.min_height_m)
+      low.push_back({c.p_cam, std::hypot(kRoughness_m, c.height_sigma_m)});
   }
-  if (static_cast<int>(low.size()) < params_.min_inliers) return plane_;
+  if (static_cast<int>(low.size()) < kMinInliers) return plane_;
+  const auto plane = refine(low, bestHypothesis(low, seed));
+  if (!plane || !plausible(*plane)) return plane_;
+  plane_.normal_cam = (kMemory * plane_.normal_cam + (1 - kMemory) * plane->normal_cam).normalized();
+  plane_.height_m = kMemory * plane_.height_m + (1 - kMemory) * plane->height_m;
+  return plane_;
+}
 
+/// Of random planes and the last one, the one with most support.
+GroundPlane GroundPlaneEstimator::bestHypothesis(const std::vector<LowPoint>& points, std::uint64_t seed) const {
   GroundPlane best = plane_;
-  double best_support = support(low, best);
+  double best_support = support(points, best);
   std::mt19937_64 random(seed);
-  std::uniform_int_distribution<std::size_t> pick(0, low.size() - 1);
-  for (int k = 0; k < params_.hypotheses; ++k) {
-    const auto plane = planeThrough(low[pick(random)].p_cam, low[pick(random)].p_cam, low[pick(random)].p_cam);
+  std::uniform_int_distribution<std::size_t> pick(0, points.size() - 1);
+  for (int k = 0; k < kHypotheses; ++k) {
+    const auto plane = planeThrough(points[pick(random)].p_cam, points[pick(random)].p_cam, points[pick(random)].p_cam);
     if (!plane || !plausible(*plane)) continue;
-    const double s = support(low, *plane);
+    const double s = support(points, *plane);
     if (s > best_support) {
       best_support = s;
       best = *plane;
     }
   }
-  const auto refined = refine(low, best, params_.min_inliers);
-  if (!refined || !plausible(*refined)) return plane_;
-  const double m = params_.memory;
-  plane_.normal_cam = (m * plane_.normal_cam + (1 - m) * refined->normal_cam).normalized();
-  plane_.height_m = m * plane_.height_m + (1 - m) * refined->height_m;
-  return plane_;
+  return best;
+}
+
+bool GroundPlaneEstimator::isOnGround(const GroundCandidate& point) const {
+  const double tolerance_m = kRoughness_m + std::min(kMaxHeightNoise_m, point.height_sigma_m);
+  return std::abs(plane_.heightOf_m(point.p_cam)) < tolerance_m;
 }
 
 std::vector<Parameter> parametersOf(GroundPlaneEstimator::Params& params) {

@@ -18,6 +18,12 @@ struct GroundCandidate {
   double height_sigma_m;  // standard deviation of its height that its disparity leaves
 };
 
+/// A point that may lie on the road.
+struct LowPoint {
+  Eigen::Vector3d p_cam;
+  double tolerance_m;  // of its height above the plane
+};
+
 /// Finds the road's plane by RANSAC over near, low points and a weighted fit, steadied by the previous frame's plane.
 /// Call in frame order: it remembers the last plane.
 class GroundPlaneEstimator {
@@ -26,19 +32,17 @@ class GroundPlaneEstimator {
     double initial_height_m = 1.65;
     double min_height_m = 0.8, max_height_m = 3.0;  // camera above the road
     double max_tilt_rad = 0.12;                     // between plane normal and the camera's y axis
-    double max_depth_m = 30, max_side_m = 10;
-    double inlier_m = 0.08;
-    int hypotheses = 60;
-    int min_inliers = 15;
-    double memory = 0.7;  // weight of the previous plane in the new one
   };
   explicit GroundPlaneEstimator(const Params& params);
 
-  /// Points that moved in the last frame should be left out by the caller. Keeps the last plane when too few points lie
-  /// on one.
+  /// The caller leaves points out that move. Keeps the last plane when too few points lie on one.
   GroundPlane operator()(std::span<const GroundCandidate> points, std::uint64_t seed);
 
+  /// Does a point lie on the last plane, as far as can be told?
+  bool isOnGround(const GroundCandidate& point) const;
+
  private:
+  GroundPlane bestHypothesis(const std::vector<LowPoint>& points, std::uint64_t seed) const;
   bool plausible(const GroundPlane& plane) const;
 
   Params params_;

@@ -10,33 +10,26 @@ const PointObservation* PointTrack::find(std::int64_t step) const {
   return nullptr;
 }
 
+StereoCorrespondence PointTrack::sinceThen(const PointObservation& then) const {
+  return {then.uvd_px.cast<double>(), then.sigma_px.cast<double>(), newest().uvd_px.cast<double>(),
+          newest().sigma_px.cast<double>()};
+}
+
+void PointTrack::restart(PointId new_point) {
+  point = new_point;
+  count = 0;
+  flow.reset();
+  p_static_cam.reset();
+  label = PointLabel::kUnknown;
+  ambiguity = 0;
+}
+
 void PointTrack::add(const PointObservation& observation) {
-  if (count == kCapacity) shorten(kCapacity - 1);
-  observations[count++] = observation;
-}
-
-void PointTrack::shorten(int keep) {
-  if (keep >= count) return;
-  std::move(observations.begin() + (count - keep), observations.begin() + count, observations.begin());
-  count = keep;
-}
-
-void CameraTrail::add(Timestamp stamp, const SE3& T_previous_now) {
-  if (steps_.empty()) {
-    steps_.push_back({0, stamp, SE3{}});
-  } else {
-    steps_.push_back({steps_.back().step + 1, stamp, (steps_.back().T_world_cam * T_previous_now).normalized()});
+  if (count == kCapacity) {
+    std::move(observations.begin() + 1, observations.end(), observations.begin());
+    --count;
   }
-  if (steps_.size() > PointTrack::kCapacity) steps_.erase(steps_.begin());
-  const Step& now = steps_.back();
-  relations_.clear();
-  for (const auto& s : steps_)
-    relations_.push_back({s.T_world_cam.inverse() * now.T_world_cam, secondsBetween(now.stamp, s.stamp)});
-}
-
-const CameraTrail::Relation* CameraTrail::find(std::int64_t step) const {
-  if (steps_.empty() || step < steps_.front().step || step > steps_.back().step) return nullptr;
-  return &relations_[step - steps_.front().step];
+  observations[count++] = observation;
 }
 
 }  // namespace motorcade

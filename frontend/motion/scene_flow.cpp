@@ -12,6 +12,10 @@ namespace motorcade {
 namespace {
 
 constexpr double kConverged_chi2 = 1e-3;  // a step that gains less is the last
+constexpr double kMaxChi2PerDof = 6;      // of the moving fit: above it the track is no single rigid point
+constexpr int kShortWindow = 5;           // observations: longer windows that do not fit are halved, others lose one
+
+int shorterWindow(int observations) { return observations > kShortWindow ? (observations + 1) / 2 : observations - 1; }
 
 /// Four observations with the relation of their cameras to the newest one. Where there are fewer, the first one fills
 /// up, without weight.
@@ -99,6 +103,44 @@ Linearized linearizeMoving(const Observations& o, const StereoViews& view, const
 
 bool allAhead(const StereoViews& view) { return total(view.ahead) == kDoubleLanes; }
 
+/// Position and velocity of a point, in the frame of now.
+struct MovingPoint {
+  Eigen::Vector3d p_cam, velocity_mps;
+};
+
+/// Normal equations of (p, v).
+struct MovingEquations {
+  Matrix6d H;
+  Vector6d b;
+  double cost;
+};
+
+/// Empty where the point lies behind a camera.
+std::optional<MovingEquations> linearizeMoving(const StereoCamera& camera, const Window& window,
+                                               const MovingPoint& point, const SceneFlowEstimator::Params& params) {
+  SymmetricDoubles3x3 H_pp{}, H_pv{}, H_vv{};
+  Doubles3 b_p{}, b_v{};
+  Doubles cost{};
+  for (const auto& o : window.blocks()) {
+    const StereoViews view = viewPoints(camera, o.R_then_now, o.t_then_now_m,
+                                        allDoubles(point.p_cam) + o.dt_s * allDoubles(point.velocity_mps));
+    if (!allAhead(view)) return std::nullopt;
+    const Linearized l =
+        linearizeMoving(o, view, (0.5 * params.acceleration_mps2) * o.dt_s * o.dt_s, params.huber_sigmas);
+    H_pp += l.JtWJ, H_pv += o.dt_s * l.JtWJ, H_vv += (o.dt_s * o.dt_s) * l.JtWJ;
+    b_p += l.JtWr, b_v += o.dt_s * l.JtWr;
+    cost += l.cost;
+  }
+  const double prior_information = 1.0 / (params.max_speed_mps * params.max_speed_mps);
+  MovingEquations n;
+  const Eigen::Matrix3d cross = total(H_pv);
+  n.H << total(H_pp), cross, cross, total(H_vv);
+  n.H.diagonal().tail<3>().array() += prior_information;
+  n.b << total(b_p), total(b_v) - prior_information * point.velocity_mps;
+  n.cost = total(cost);
+  return n;
+}
+
 }  // namespace
 
 std::optional<SceneFlowEstimator::StaticFit> SceneFlowEstimator::fitStatic(const PointTrack& track,
@@ -128,8 +170,7 @@ std::optional<SceneFlowEstimator::StaticFit> SceneFlowEstimator::fitStatic(const
 
 std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, const CameraTrail& trail,
                                                        const std::optional<StaticFit>& at_rest) const {
-  for (int n = std::min(params_.max_observations, track.count); n >= params_.min_observations;
-       n = n > 5 ? (n + 1) / 2 : n - 1) {
+  for (int n = std::min(params_.max_observations, track.count); n >= params_.min_observations; n = shorterWindow(n)) {
     auto flow = fitMoving(track, trail, n);
     if (!flow) continue;
     flow->static_chi2 = at_rest ? at_rest->chi2 : std::numeric_limits<double>::infinity();
@@ -142,44 +183,25 @@ std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, 
                                                        int observations) const {
   const Window window = collect(track, trail, params_.pose_jitter_px, observations);
   if (window.size < params_.min_observations) return std::nullopt;
-  Eigen::Vector3d p = camera_.triangulate(track.newest().uvd_px.cast<double>());
-  Eigen::Vector3d v = Eigen::Vector3d::Zero();
-  const double prior_information = 1.0 / (params_.max_speed_mps * params_.max_speed_mps);
+  MovingPoint point{camera_.triangulate(track.newest().uvd_px.cast<double>()), Eigen::Vector3d::Zero()};
   for (int iteration = 0;; ++iteration) {
-    SymmetricDoubles3x3 H_pp{}, H_pv{}, H_vv{};
-    Doubles3 b_p{}, b_v{};
-    Doubles cost{};
-    for (const auto& o : window.blocks()) {
-      const StereoViews view =
-          viewPoints(camera_, o.R_then_now, o.t_then_now_m, allDoubles(p) + o.dt_s * allDoubles(v));
-      if (!allAhead(view)) return std::nullopt;
-      const Linearized l =
-          linearizeMoving(o, view, (0.5 * params_.acceleration_mps2) * o.dt_s * o.dt_s, params_.huber_sigmas);
-      H_pp += l.JtWJ, H_pv += o.dt_s * l.JtWJ, H_vv += (o.dt_s * o.dt_s) * l.JtWJ;
-      b_p += l.JtWr, b_v += o.dt_s * l.JtWr;
-      cost += l.cost;
-    }
-    Matrix6d normal;
-    const Eigen::Matrix3d cross = total(H_pv);
-    normal << total(H_pp), cross, cross, total(H_vv);
-    normal.diagonal().tail<3>().array() += prior_information;
-    Vector6d b;
-    b << total(b_p), total(b_v) - prior_information * v;
-    const Cholesky<6> H(normal);
+    const auto normal = linearizeMoving(camera_, window, point, params_);
+    if (!normal) return std::nullopt;
+    const Cholesky<6> H(normal->H);
     if (!H.positive()) return std::nullopt;
-    const Vector6d step = H.solve(b);
-    const double gain = b.dot(step);
-    const bool converged = gain < kConverged_chi2;
-    if (converged || iteration == params_.iterations) {
-      const double chi2 = total(cost) - (converged ? gain : 0);
-      if (!(chi2 < params_.max_chi2_per_dof * (3.0 * window.size - 6.0))) return std::nullopt;
-      if (converged) p += step.head<3>(), v += step.tail<3>();
-      return SceneFlow{
-          .p_cam = p, .velocity_mps = v, .covariance = H.inverse(), .moving_chi2 = chi2, .observations = window.size};
-    }
-    p += step.head<3>();
-    v += step.tail<3>();
-    if (!step.allFinite() || p.z() < StereoCamera::kMinDepth_m) return std::nullopt;
+    const Vector6d step = H.solve(normal->b);
+    const double gain = normal->b.dot(step);
+    const bool converged = gain < kConverged_chi2, last = converged || iteration == params_.iterations;
+    const double chi2 = normal->cost - (converged ? gain : 0);
+    if (last && !(chi2 < kMaxChi2PerDof * (3.0 * window.size - 6.0))) return std::nullopt;
+    if (converged || !last) point.p_cam += step.head<3>(), point.velocity_mps += step.tail<3>();
+    if (last)
+      return SceneFlow{.p_cam = point.p_cam,
+                       .velocity_mps = point.velocity_mps,
+                       .covariance = H.inverse(),
+                       .moving_chi2 = chi2,
+                       .observations = window.size};
+    if (!step.allFinite() || point.p_cam.z() < StereoCamera::kMinDepth_m) return std::nullopt;
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
+#include "frontend/motion/camera_trail.hpp"
 #include "frontend/motion/point_track.hpp"
 
 namespace motorcade {
@@ -15,15 +16,13 @@ namespace motorcade {
 class SceneFlowEstimator {
  public:
   struct Params {
-    int max_observations =
-        8;  // newest observations that are used; half as many where they do not fit a constant velocity
+    int max_observations = 8;      // the newest; half as many where they do not fit a constant velocity
     int min_observations = 3;      // fewer tell nothing about motion
-    double pose_jitter_px = 0.15;  // image error of the camera's path, added to each observation
     double max_speed_mps = 60;     // standard deviation of the velocity's prior
-    double acceleration_mps2 =
-        1;  // standard deviation of what the moving model leaves out: old observations count less, where it would show
-    double huber_sigmas = 2.5;
-    double max_chi2_per_dof = 6;  // of the moving fit: above it the track is no single rigid point
+    double pose_jitter_px = 0.15;  // image error of the camera's path, added to each observation
+    /// Standard deviation of what the moving model leaves out: old observations count less, where it would show.
+    double acceleration_mps2 = 1;
+    double huber_sigmas = 2.5;  // where the loss turns linear, in units of the whitened residual norm
     int iterations = 3;
   };
   SceneFlowEstimator(const Params& params, const StereoCamera& camera)

@@ -2,10 +2,10 @@
 
 #include <optional>
 
-#include <Eigen/Core>
-
 #include "core/se3.hpp"
 #include "core/stereo_camera.hpp"
+#include "frontend/motion/camera_trail.hpp"
+#include "frontend/motion/point_track.hpp"
 
 namespace motorcade {
 
@@ -16,15 +16,18 @@ struct GeometricResidual {
   /// Distance from the epipolar line, in standard deviations.
   double epipolar_sigmas = 0;
   /// How far the flow vector lies outside its bound along the epipolar line, in px beyond the bound; 0 inside.
-  /// The bound is the stretch of the line that the depths within `depth_sigmas` of the stereo depth project to.
+  /// The bound is the stretch of the line that the depths within three standard deviations of the stereo depth project
+  /// to.
   double flow_bound_px = 0;
 };
 
-/// `uvd_then` with `sigma_then` was seen before, pixel `uv_now` now; T_now_then is the camera's motion between.
-/// Empty when the camera hardly moved (no epipolar line) or the point projects behind it.
-std::optional<GeometricResidual> geometricResidual(const StereoCamera& camera, const Eigen::Vector3d& uvd_then_px,
-                                                   const Eigen::Vector3d& sigma_then_px,
-                                                   const Eigen::Vector2d& uv_now_px, double sigma_now_px,
-                                                   const SE3& T_now_then, double depth_sigmas = 3.0);
+/// The residual of a point under the camera's motion. Empty when the camera hardly moved (no epipolar line) or the
+/// point projects behind it.
+std::optional<GeometricResidual> geometricResidual(const StereoCamera& camera, const StereoCorrespondence& point,
+                                                   const SE3& T_now_then);
+
+/// Does the newest observation of a track break the epipolar constraint or the flow-vector bound of a point at rest?
+/// Not so for tracks that are too short to tell.
+bool violatesGeometry(const StereoCamera& camera, const PointTrack& track, const CameraTrail& trail);
 
 }  // namespace motorcade

@@ -12,10 +12,27 @@
 namespace motorcade {
 namespace {
 
+// Differences of velocities on one body that the points' covariances do not explain.
+constexpr double kSpeedTolerance_mps = 0.2;  // errors of the model: acceleration, points that are no corners in space
+constexpr double kMaxTurnRate_radps = 0.4;   // of a car in a tight turn: at 10 m/s it accelerates aside by 4 m/s^2
+constexpr double kMaxSpeedSigma_mps = 4.0;   // points less certain than this are no vertices: they would join anything
+constexpr int kPoolingIterations = 3;    // from the median to the weighted mean: the weights hardly change after two
+constexpr double kNoInformation = 1e-6;  // keeps sums of information regular [s^2/m^2]
+
+// Errors that the velocities of all points of a component share: those of the camera's own motion.
+constexpr double kSystematicSpeed_mps = 0.25;
+constexpr double kSystematicAngle_radps = 0.003;
+constexpr double kSystematicDisparity_pxps = 0.15;
+
+constexpr double kStaticSigma_mps = 1.0;  // a component is static when its velocity is known this well
+constexpr double kMaxHeight_m = 2.5;      // of its lowest point above the road: what is all higher is leaves and signs
+constexpr double kMaxVerticalRatio = 0.35;  // vertical part of a vehicle's velocity: roads are less steep
+constexpr double kNoiseSigmas = 2;          // of room for noise where a size or a speed is compared with a bound
+
+double square(double x) { return x * x; }
+
 Eigen::Matrix3d velocityCovariance(const ScenePoint& p) { return p.flow->covariance.bottomRightCorner<3, 3>(); }
 Eigen::Matrix3d positionCovariance(const ScenePoint& p) { return p.flow->covariance.topLeftCorner<3, 3>(); }
-
-const ScenePoint& at(const std::vector<ScenePoint>& points, int i) { return points[i]; }
 
 struct PooledVelocity {
   Eigen::Vector3d velocity_mps;
@@ -29,21 +46,21 @@ PooledVelocity poolVelocities(const std::vector<int>& members, const std::vector
   std::vector<double> values(members.size());
   for (int axis = 0; axis < 3; ++axis) {
     std::transform(members.begin(), members.end(), values.begin(),
-                   [&](int i) { return at(points, i).flow->velocity_mps[axis]; });
+                   [&](int i) { return points[i].flow->velocity_mps[axis]; });
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     velocity[axis] = *middle;
   }
-  Eigen::Matrix3d information = Eigen::Matrix3d::Identity() * 1e-6;
-  for (int iteration = 0; iteration < 3; ++iteration) {
-    information = Eigen::Matrix3d::Identity() * 1e-6;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  for (int iteration = 0; iteration < kPoolingIterations; ++iteration) {
+    information = Eigen::Matrix3d::Identity() * kNoInformation;
     Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
     for (const int i : members) {
-      const Eigen::Matrix3d W = velocityCovariance(at(points, i)).inverse();
-      const Eigen::Vector3d difference = at(points, i).flow->velocity_mps - velocity;
+      const Eigen::Matrix3d W = velocityCovariance(points[i]).inverse();
+      const Eigen::Vector3d difference = points[i].flow->velocity_mps - velocity;
       const double chi2 = difference.dot(W * difference), weight = chi2 < max_chi2 ? 1.0 : max_chi2 / chi2;
       information += weight * W;
-      weighted += weight * W * at(points, i).flow->velocity_mps;
+      weighted += weight * W * points[i].flow->velocity_mps;
     }
     velocity = information.inverse() * weighted;
   }
@@ -53,22 +70,21 @@ PooledVelocity poolVelocities(const std::vector<int>& members, const std::vector
 }  // namespace
 
 bool MotionSegmenter::isVertex(const ScenePoint& point) const {
-  if (!point.flow || point.repeats || point.label == PointLabel::kGround) return false;
-  return std::sqrt(velocityCovariance(point).trace()) < params_.max_speed_sigma_mps;
+  if (!point.flow || point.ambiguous || point.label == PointLabel::kGround) return false;
+  return std::sqrt(velocityCovariance(point).trace()) < kMaxSpeedSigma_mps;
 }
 
 bool MotionSegmenter::belongTogether(const ScenePoint& a, const ScenePoint& b) const {
   const Eigen::Vector3d dv = a.flow->velocity_mps - b.flow->velocity_mps, dp = a.flow->p_cam - b.flow->p_cam;
   const double distance = dp.norm(),
-               tolerance_mps =
-                   params_.speed_tolerance_mps + params_.max_turn_rate_radps * std::min(distance, params_.max_gap_m);
+               tolerance_mps = kSpeedTolerance_mps + kMaxTurnRate_radps * std::min(distance, params_.max_gap_m);
   Eigen::Matrix3d C = velocityCovariance(a) + velocityCovariance(b);
   C.diagonal().array() += tolerance_mps * tolerance_mps;
   if (dv.dot(C.inverse() * dv) > params_.max_flow_chi2) return false;
   if (distance < params_.max_gap_m) return true;
   const Eigen::Vector3d direction = dp / distance;
   const double sigma_m = std::sqrt(direction.dot((positionCovariance(a) + positionCovariance(b)) * direction));
-  return distance < params_.max_gap_m + 2 * sigma_m;
+  return distance < params_.max_gap_m + kNoiseSigmas * sigma_m;
 }
 
 std::vector<Segment> MotionSegmenter::operator()(std::vector<ScenePoint>& points,
@@ -77,14 +93,14 @@ std::vector<Segment> MotionSegmenter::operator()(std::vector<ScenePoint>& points
   std::vector<int> vertices;
   std::vector<Eigen::Vector2d> pixels;
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
-    if (!isVertex(at(points, i))) continue;
+    if (!isVertex(points[i])) continue;
     vertices.push_back(i);
-    pixels.emplace_back(at(points, i).uvd_px.head<2>());
+    pixels.emplace_back(points[i].uvd_px.head<2>());
   }
   const auto together = [&](int a, int b) {
     const int i = vertices[a], j = vertices[b];
     if (violates_geometry[i] != violates_geometry[j]) return false;
-    return belongTogether(at(points, i), at(points, j));
+    return belongTogether(points[i], points[j]);
   };
   std::vector<Segment> segments;
   for (auto& component : cutDelaunayComponents(pixels, together)) {
@@ -101,7 +117,7 @@ Segment MotionSegmenter::describe(std::vector<int> members, const std::vector<Sc
   Segment segment;
   segment.points = std::move(members);
   for (const int i : segment.points)
-    segment.centroid_cam += at(points, i).flow->p_cam / static_cast<double>(segment.points.size());
+    segment.centroid_cam += points[i].flow->p_cam / static_cast<double>(segment.points.size());
   const auto pooled = poolVelocities(segment.points, points, params_.max_flow_chi2);
   segment.velocity_mps = pooled.velocity_mps;
   segment.velocity_covariance = pooled.covariance + systematicCovariance(segment.centroid_cam);
@@ -110,11 +126,10 @@ Segment MotionSegmenter::describe(std::vector<int> members, const std::vector<Sc
 }
 
 Eigen::Matrix3d MotionSegmenter::systematicCovariance(const Eigen::Vector3d& p_cam) const {
-  const auto square = [](double x) { return x * x; };
   const double z = p_cam.z(), range2 = p_cam.squaredNorm();
   const Eigen::Vector3d ray = p_cam / std::sqrt(range2);
-  const double across = square(params_.systematic_speed_mps) + range2 * square(params_.systematic_angle_radps);
-  const double along = square(params_.systematic_disparity_pxps * z * z / (camera_.fx_px * camera_.baseline_m));
+  const double across = square(kSystematicSpeed_mps) + range2 * square(kSystematicAngle_radps);
+  const double along = square(kSystematicDisparity_pxps * z * z / (camera_.fx_px * camera_.baseline_m));
   return across * Eigen::Matrix3d::Identity() + along * ray * ray.transpose();
 }
 
@@ -125,21 +140,25 @@ PointLabel MotionSegmenter::decide(const Segment& segment, const std::vector<Sce
   const double significance = std::sqrt(v.dot(segment.velocity_covariance.inverse() * v));
   const double speed_sigma = std::sqrt(segment.velocity_covariance.trace());
   if (significance < params_.min_significance || v.norm() < params_.min_speed_mps)
-    return speed_sigma < params_.certain_static_sigma_mps ? PointLabel::kStatic : PointLabel::kUnknown;
+    return speed_sigma < kStaticSigma_mps ? PointLabel::kStatic : PointLabel::kUnknown;
+  return isLikeAVehicle(segment, points, ground) ? PointLabel::kMoving : PointLabel::kUnknown;
+}
 
+/// Not too long, not up in the air, and not going up or down.
+bool MotionSegmenter::isLikeAVehicle(const Segment& segment, const std::vector<ScenePoint>& points,
+                                     const GroundPlane& ground) const {
   Eigen::AlignedBox3d box;
   double lowest_m = std::numeric_limits<double>::infinity();
   for (const int i : segment.points) {
-    box.extend(at(points, i).flow->p_cam);
-    lowest_m = std::min(lowest_m, ground.heightOf_m(at(points, i).flow->p_cam));
+    box.extend(points[i].flow->p_cam);
+    lowest_m = std::min(lowest_m, ground.heightOf_m(points[i].flow->p_cam));
   }
-  const double depth_noise_m = 2 * std::sqrt(positionCovariance(at(points, segment.points.front())).trace());
+  const Eigen::Vector3d& v = segment.velocity_mps;
+  const double depth_noise_m = kNoiseSigmas * std::sqrt(positionCovariance(points[segment.points.front()]).trace());
   const double vertical_mps = std::abs(v.dot(ground.normal_cam));
   const double vertical_sigma = std::sqrt(ground.normal_cam.dot(segment.velocity_covariance * ground.normal_cam));
-  const bool like_a_vehicle = box.diagonal().norm() < params_.max_extent_m + depth_noise_m &&
-                              lowest_m < params_.max_height_m &&
-                              vertical_mps < params_.max_vertical_ratio * v.norm() + 2 * vertical_sigma;
-  return like_a_vehicle ? PointLabel::kMoving : PointLabel::kUnknown;
+  return box.diagonal().norm() < params_.max_extent_m + depth_noise_m && lowest_m < kMaxHeight_m &&
+         vertical_mps < kMaxVerticalRatio * v.norm() + kNoiseSigmas * vertical_sigma;
 }
 
 std::vector<Parameter> parametersOf(MotionSegmenter::Params& params) {

@@ -14,28 +14,12 @@ namespace motorcade {
 class MotionSegmenter {
  public:
   struct Params {
-    double max_flow_chi2 = 11.3;  // of a scene-flow difference, 3 degrees of freedom: 99 %
-    double speed_tolerance_mps =
-        0.2;  // differences on one body that its points' covariances do not explain: model errors, ...
-    double max_turn_rate_radps = 0.4;  // ... and turning
-    double max_gap_m = 2.0;            // between neighbors on one vehicle, beyond what their depth noise explains
-    double max_speed_sigma_mps = 4.0;  // points less certain than this are no vertices
-    double epipolar_violation_sigmas =
-        4;  // an end that violates the geometry of a static world and one that does not are cut apart
-    double flow_bound_violation_px = 2;
-
-    int min_points = 3;
-    double min_speed_mps = 1.0;
-    double min_significance = 4.5;  // of the speed, in standard deviations
-    double systematic_speed_mps =
-        0.25;  // error of the velocities that all points of a component share: the camera's own
-    double systematic_angle_radps = 0.003;
-    double systematic_disparity_pxps = 0.15;
-    double certain_static_sigma_mps =
-        1.0;  // a component whose velocity is known this well and is not significant is static
-    double max_extent_m = 14.0;
-    double max_height_m = 2.5;         // of the lowest point above the road: what is all higher is leaves and signs
-    double max_vertical_ratio = 0.35;  // vertical part of a vehicle's velocity
+    double max_flow_chi2 = 11.3;    // of a scene-flow difference, 3 degrees of freedom: 99 %
+    double max_gap_m = 2.0;         // between neighbors on one vehicle, beyond what their depth noise explains
+    int min_points = 3;             // of a moving or static component
+    double min_speed_mps = 1.0;     // of a moving component ...
+    double min_significance = 4.5;  // ... and its speed in standard deviations
+    double max_extent_m = 14.0;     // of a vehicle
   };
   MotionSegmenter(const Params& params, const StereoCamera& camera) : params_(requireValid(params)), camera_(camera) {}
 
@@ -53,6 +37,7 @@ class MotionSegmenter {
  private:
   Segment describe(std::vector<int> members, const std::vector<ScenePoint>& points, const GroundPlane& ground) const;
   PointLabel decide(const Segment& segment, const std::vector<ScenePoint>& points, const GroundPlane& ground) const;
+  bool isLikeAVehicle(const Segment& segment, const std::vector<ScenePoint>& points, const GroundPlane& ground) const;
   Eigen::Matrix3d systematicCovariance(const Eigen::Vector3d& p_cam) const;
 
   Params params_;

@@ -15,6 +15,9 @@ struct Abreast {
   double aside_m;
 };
 
+constexpr std::size_t kStrays = 20;      // of so many points the outermost one, on each side, may belong elsewhere
+constexpr double kDepthNoiseSigmas = 2;  // of room for noise in the width of a vehicle
+
 const SceneFlow& flowOf(const SceneMotion& scene, int point) { return *scene.points[point].flow; }
 
 Segment piece(const Segment& segment, std::span<const Abreast> members, const SceneMotion& scene) {
@@ -29,9 +32,9 @@ Segment piece(const Segment& segment, std::span<const Abreast> members, const Sc
   return vehicle;
 }
 
-/// Without the outermost twentieth on each side.
+/// Without the strays.
 double width_m(std::span<const Abreast> members) {
-  const std::size_t strays = members.size() / 20;
+  const std::size_t strays = members.size() / kStrays;
   return members[members.size() - 1 - strays].aside_m - members[strays].aside_m;
 }
 
@@ -53,7 +56,8 @@ std::vector<Segment> splitAbreast(const Segment& segment, const std::vector<int>
   for (const int i : members) {
     const SceneFlow& flow = flowOf(scene, i);
     sorted.push_back({i, left.dot(flow.p_cam)});
-    depth_noise_m = std::max(depth_noise_m, 2 * std::sqrt(flow.covariance.topLeftCorner<3, 3>().trace()));
+    depth_noise_m =
+        std::max(depth_noise_m, kDepthNoiseSigmas * std::sqrt(flow.covariance.topLeftCorner<3, 3>().trace()));
   }
   std::ranges::stable_sort(sorted, {}, &Abreast::aside_m);
 

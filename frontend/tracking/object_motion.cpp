@@ -112,7 +112,7 @@ std::optional<ObjectObservation> ObjectMotionEstimator::presence(const TrackedOb
   };
   std::vector<const ScenePoint*> visible;
   for (const ScenePoint& p : scene.points)
-    if (p.label != PointLabel::kStatic && p.label != PointLabel::kGround && !p.repeats && mayLieWithin(p))
+    if (p.label != PointLabel::kStatic && p.label != PointLabel::kGround && !p.ambiguous && mayLieWithin(p))
       visible.push_back(&p);
   if (static_cast<int>(visible.size()) < params_.min_points) return std::nullopt;
   ObjectObservation observation;

@@ -30,7 +30,7 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
   std::vector<BodyPoint> adopted;
   const auto consider = [&](std::size_t i) {
     const auto& p = scene.points[i];
-    if (taken[i] || p.repeats || p.label == PointLabel::kGround) return;
+    if (taken[i] || p.ambiguous || p.label == PointLabel::kGround) return;
     BodyPoint candidate = toBody(object, p);
     const double slack_m = params_.depth_noise_sigmas * std::sqrt(candidate.covariance.trace());
     const Eigen::AlignedBox3d grown = Eigen::AlignedBox3d(known).extend(candidate.p_body);

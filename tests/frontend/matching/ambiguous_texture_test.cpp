@@ -31,19 +31,22 @@ Image texture(int period) {
 
 const Eigen::Vector2d kFollowed{80, 30}, kOnePeriodOn{112, 30};
 
-TEST(RepeatedTexture, FindsAFencePostWhereItsNeighborStood) {
+/// Followed as if it had not moved in the image.
+FollowedPatch followed(const Image& image) { return {image, image, kFollowed, kFollowed}; }
+
+TEST(AmbiguousTexture, FindsAFencePostWhereItsNeighborStood) {
   const Image fence = texture(32);
-  EXPECT_TRUE(isFoundAtRestToo(fence, kFollowed, fence, kOnePeriodOn + Eigen::Vector2d(1, -1), kFollowed, 1.0, {}));
+  EXPECT_TRUE(isAlsoFoundAtRest(followed(fence), kOnePeriodOn + Eigen::Vector2d(1, -1), 1.0));
 }
 
-TEST(RepeatedTexture, FindsNothingWhereAVehicleHidesOtherThings) {
+TEST(AmbiguousTexture, FindsNothingWhereAVehicleHidesOtherThings) {
   const Image street = texture(kWidth);
-  EXPECT_FALSE(isFoundAtRestToo(street, kFollowed, street, kOnePeriodOn, kFollowed, 1.0, {}));
+  EXPECT_FALSE(isAlsoFoundAtRest(followed(street), kOnePeriodOn, 1.0));
 }
 
-TEST(RepeatedTexture, SaysNothingWhereBothPlacesAreOne) {
+TEST(AmbiguousTexture, SaysNothingWhereBothPositionsAreOne) {
   const Image street = texture(kWidth);
-  EXPECT_FALSE(isFoundAtRestToo(street, kFollowed, street, kFollowed + Eigen::Vector2d(3, 0), kFollowed, 1.0, {}));
+  EXPECT_FALSE(isAlsoFoundAtRest(followed(street), kFollowed + Eigen::Vector2d(3, 0), 1.0));
 }
 
 }  // namespace

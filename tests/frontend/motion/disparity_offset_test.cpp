@@ -87,6 +87,14 @@ TEST(DisparityOffset, ACameraThatStandsLearnsNothing) {
   EXPECT_EQ(estimator.sigma_px(), DisparityOffsetEstimator::Params{}.prior_sigma_px);
 }
 
+TEST(DisparityOffset, WindowsFollowOneAnother) {
+  DisparityOffsetEstimator::Params params;
+  params.window_frames = 4;
+  const DisparityOffsetEstimator estimator(params, kRig);
+  EXPECT_EQ(estimator.windowStart(12), 8);
+  for (const int now : {9, 10, 11}) EXPECT_FALSE(estimator.windowStart(now));
+}
+
 TEST(DisparityOffset, FollowsTheEstimateAtABoundedRate) {
   Noise noise(1);
   const DisparityOffsetEstimator::Params params;

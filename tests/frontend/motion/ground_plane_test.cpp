@@ -62,5 +62,14 @@ TEST(GroundPlane, ARoofOrAWallIsNoRoad) {
   EXPECT_NEAR(after.height_m, before.height_m, 0.5);
 }
 
+TEST(GroundPlane, APointIsOnTheGroundAsFarAsItsNoiseTells) {
+  GroundPlaneEstimator estimate({});
+  const GroundPlane plane = estimate(roadWithClutter(kTilted, 150, 1), 1);
+  EXPECT_TRUE(estimate.isOnGround({above(plane, 2, 15, 0.05), 0.02}));
+  EXPECT_FALSE(estimate.isOnGround({above(plane, 2, 15, 0.2), 0.02}));
+  EXPECT_TRUE(estimate.isOnGround({above(plane, 2, 60, 0.2), 0.3}));
+  EXPECT_FALSE(estimate.isOnGround({above(plane, 2, 60, 0.8), 3}));  // a car's side, however far
+}
+
 }  // namespace
 }  // namespace motorcade

@@ -14,8 +14,8 @@ const SE3 kT_now_then(Eigen::Matrix3d::Identity(), {0, 0, -3});  // 3 m straight
 
 std::optional<GeometricResidual> residual(const Eigen::Vector3d& p_then, const Eigen::Vector3d& step_m,
                                           const SE3& T_now_then = kT_now_then) {
-  const Eigen::Vector2d now = kRig.project(T_now_then * Eigen::Vector3d(p_then + step_m))->head<2>();
-  return geometricResidual(kRig, *kRig.project(p_then), kSigma_px, now, kSigma_px.x(), T_now_then);
+  const Eigen::Vector3d now = *kRig.project(T_now_then * Eigen::Vector3d(p_then + step_m));
+  return geometricResidual(kRig, {*kRig.project(p_then), kSigma_px, now, kSigma_px}, T_now_then);
 }
 
 TEST(GeometricConstraints, APointAtRestKeepsBoth) {
@@ -55,7 +55,39 @@ TEST(GeometricConstraints, PureRotationHasNoEpipolarLine) {
 
 TEST(GeometricConstraints, APointThatWePassedHasNone) {
   const Eigen::Vector3d p(0.5, 0.2, 2);
-  EXPECT_FALSE(geometricResidual(kRig, *kRig.project(p), kSigma_px, {600, 180}, 0.3, kT_now_then));
+  EXPECT_FALSE(geometricResidual(kRig, {*kRig.project(p), kSigma_px, {600, 180, 20}, kSigma_px}, kT_now_then));
+}
+
+/// Followed over frames in which the camera drives 1 m each; in the first camera's frame the point starts at `p` and
+/// moves by `step_m` each.
+bool violates(int frames, const Eigen::Vector3d& p, const Eigen::Vector3d& step_m) {
+  CameraTrail trail;
+  PointTrack track;
+  for (int k = 0; k < frames; ++k) {
+    trail.add({k * 100'000'000}, k ? SE3(Eigen::Matrix3d::Identity(), {0, 0, 1}) : SE3{});
+    const Eigen::Vector3d p_cam = p + k * step_m - Eigen::Vector3d(0, 0, k);
+    track.add({k, kRig.project(p_cam)->cast<float>(), kSigma_px.cast<float>()});
+  }
+  return violatesGeometry(kRig, track, trail);
+}
+
+TEST(GeometricConstraints, ATrackIsJudgedOverAllItsFrames) {
+  const Eigen::Vector3d p(3, 1.5, 15), slow(0.02, 0, 0);
+  EXPECT_FALSE(violates(8, p, {0, 0, 0}));
+  EXPECT_FALSE(violates(3, p, slow));
+  EXPECT_TRUE(violates(8, p, slow));  // 0.14 m aside at 8 m are 12 px
+  EXPECT_TRUE(violates(3, p, {0.5, 0, 0}));
+}
+
+TEST(GeometricConstraints, ATrackOfTwoObservationsIsNotJudged) { EXPECT_FALSE(violates(2, {3, 1.5, 15}, {0.5, 0, 0})); }
+
+TEST(GeometricConstraints, ATrackOlderThanTheTrailIsNotJudged) {
+  EXPECT_TRUE(violates(CameraTrail::kCapacity, {3, 1.5, 25}, {0.5, 0, 0}));
+  CameraTrail trail;
+  PointTrack track;
+  for (int k = 0; k < 3; ++k) track.add({k, {600, 180, 20}, kSigma_px.cast<float>()});
+  for (int k = 0; k < 2 * CameraTrail::kCapacity; ++k) trail.add({k * 100'000'000}, SE3{});
+  EXPECT_FALSE(violatesGeometry(kRig, track, trail));
 }
 
 }  // namespace

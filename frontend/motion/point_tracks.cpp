@@ -1,0 +1,146 @@
+#include "frontend/motion/point_tracks.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "frontend/matching/ambiguous_texture.hpp"
+#include "frontend/parallel_items.hpp"
+
+namespace motorcade {
+namespace {
+
+/// A track whose misfit as a point at rest stays below this, per degree of freedom, has the fitted position; the median
+/// of points at rest is about 1, and a mover exceeds it within a few frames.
+constexpr double kMaxStaticChi2 = 3.0;
+/// A track that fits motion better than rest by this much is checked for ambiguous texture: four standard deviations of
+/// a single residual, below it the motion is not significant anyway.
+constexpr double kMinMotionChi2 = 16;
+constexpr int kMaxAmbiguity = 3;  // frames after which an ambiguous point is trusted again when it no longer is
+
+}  // namespace
+
+PointTracks::PointTracks(const Params& params, const StereoCamera& camera)
+    : params_(requireValid(params)), camera_(camera), scene_flow_(params.scene_flow, camera) {}
+
+/// Index of the track of each flow observation, -1 for a new point. Both are ordered by point.
+std::vector<int> PointTracks::tracksOf(const OpticalFlow& flow) const {
+  std::vector<int> tracks;
+  tracks.reserve(flow.observations.size());
+  auto track = tracks_.begin();
+  for (const auto& observation : flow.observations) {
+    while (track != tracks_.end() && track->point < observation.point) ++track;
+    const bool found = track != tracks_.end() && track->point == observation.point;
+    tracks.push_back(found ? static_cast<int>(track - tracks_.begin()) : -1);
+  }
+  return tracks;
+}
+
+std::vector<std::optional<KnownPoint>> PointTracks::known(const OpticalFlow& flow, const CameraTrail& trail) const {
+  const auto tracks = tracksOf(flow);
+  std::vector<std::optional<KnownPoint>> known(tracks.size());
+  forEachItem(tracks.size(), [&](std::size_t i) {
+    if (tracks[i] >= 0) known[i] = knownPoint(tracks_[tracks[i]], trail);
+  });
+  return known;
+}
+
+/// The fitted position while the track fits a point at rest, else the triangulated one. Empty when the trail no longer
+/// reaches back to the last observation.
+std::optional<KnownPoint> PointTracks::knownPoint(const PointTrack& track, const CameraTrail& trail) const {
+  const auto& newest = track.newest();
+  const auto* relation = trail.find(newest.step);
+  if (!relation) return std::nullopt;
+  const SE3 T_last_then = relation->T_then_now.inverse();
+  const Eigen::Vector3d uvd_px = newest.uvd_px.cast<double>();
+  KnownPoint known{
+      .p_cam = {}, .covariance = {}, .disparity_px = uvd_px.z(), .moving = track.label == PointLabel::kMoving};
+  if (track.p_static_cam) {
+    known.p_cam = T_last_then * *track.p_static_cam;
+    known.covariance = T_last_then.rotation() * track.static_covariance * T_last_then.rotation().transpose();
+    return known;
+  }
+  const Eigen::Matrix3d J = T_last_then.rotation() * camera_.triangulationJacobian(uvd_px);
+  known.p_cam = T_last_then * camera_.triangulate(uvd_px);
+  known.covariance = J * newest.sigma_px.cast<double>().cwiseAbs2().asDiagonal() * J.transpose();
+  return known;
+}
+
+void PointTracks::update(const OpticalFlow& flow, const std::vector<std::optional<StereoObservation>>& observed,
+                         const CameraTrail& trail) {
+  const auto tracks = tracksOf(flow);
+  const Image& now = flow.features->left.levels.front();
+  step_ = trail.newest().step;
+  updated_.resize(tracks.size());
+  forEachItem(tracks.size(), [&](std::size_t i) {
+    PointTrack& track = updated_[i];
+    if (tracks[i] >= 0) {
+      track = tracks_[tracks[i]];
+    } else {
+      track.restart(flow.observations[i].point);
+    }
+    if (!observed[i]) return;
+    track.add({step_, observed[i]->uvd_px, observed[i]->sigma_px});
+    fit(track, trail, now);
+  });
+  const std::int64_t oldest_kept = step_ - params_.max_missed_frames;
+  std::erase_if(updated_, [&](const PointTrack& t) { return t.count == 0 || t.newest().step < oldest_kept; });
+  std::swap(tracks_, updated_);
+  left_ = now;
+}
+
+/// What the observations of a track up to now tell.
+void PointTracks::fit(PointTrack& track, const CameraTrail& trail, const Image& now) const {
+  const auto at_rest = scene_flow_.fitStatic(track, trail);
+  const double degrees_of_freedom = std::max(1.0, 3.0 * track.count - 3.0);
+  track.p_static_cam.reset();
+  if (at_rest && track.count > 1 && at_rest->chi2 < kMaxStaticChi2 * degrees_of_freedom) {
+    track.p_static_cam = at_rest->p_cam;
+    track.static_covariance = at_rest->covariance;
+  }
+  track.flow = scene_flow_.fitMoving(track, trail, at_rest);
+  if (track.flow && track.flow->static_chi2 - track.flow->moving_chi2 > kMinMotionChi2)
+    track.ambiguity = std::clamp(track.ambiguity + (isFoundAtRest(track, trail, now) ? 1 : -1), 0, kMaxAmbiguity);
+}
+
+/// Is its patch also found where it would be at rest? Looked for both ways, because something else may hide its
+/// position at rest in one of the two images.
+bool PointTracks::isFoundAtRest(const PointTrack& track, const CameraTrail& trail, const Image& now) const {
+  const auto* before = track.find(step_ - 1);
+  const auto* relation = trail.find(step_ - 1);
+  if (!before || !relation) return false;
+  const Eigen::Vector3d uvd_now = track.newest().uvd_px.cast<double>(), uvd_before = before->uvd_px.cast<double>();
+  const auto found = [&](const Eigen::Vector3d& uvd, const SE3& T_other_this, const FollowedPatch& patch) {
+    const Eigen::Vector3d p = camera_.triangulate(uvd), p_other = T_other_this * p;
+    const auto at_rest = camera_.project(p_other);
+    return at_rest && isAlsoFoundAtRest(patch, at_rest->head<2>(), p.z() / p_other.z());
+  };
+  return found(uvd_now, relation->T_then_now, {now, left_, uvd_now.head<2>(), uvd_before.head<2>()}) ||
+         found(uvd_before, relation->T_then_now.inverse(), {left_, now, uvd_before.head<2>(), uvd_now.head<2>()});
+}
+
+void PointTracks::setLabels(std::span<const ScenePoint> points) {
+  auto point = points.begin();
+  for (auto& track : tracks_)
+    if (ObservedAt{step_}(track)) track.label = (point++)->label;
+}
+
+std::vector<StereoCorrespondence> PointTracks::atRestSince(std::int64_t step) const {
+  std::vector<StereoCorrespondence> points;
+  for (const PointTrack& track : observedNow()) {
+    if (!track.p_static_cam || track.label == PointLabel::kMoving) continue;
+    if (const auto* then = track.find(step)) points.push_back(track.sinceThen(*then));
+  }
+  return points;
+}
+
+void PointTracks::shiftDisparities(float change_px) {
+  for (auto& track : tracks_)
+    for (int i = 0; i < track.count; ++i) track.observations[i].uvd_px.z() += change_px;
+}
+
+std::vector<Parameter> parametersOf(PointTracks::Params& params) {
+  return {numberParameter("max_missed_frames", params.max_missed_frames, {0, CameraTrail::kCapacity - 2},
+                          "higher keeps points that are hidden for some frames")};
+}
+
+}  // namespace motorcade

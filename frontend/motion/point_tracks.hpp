@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <ranges>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/image.hpp"
+#include "core/parameters.hpp"
+#include "core/stereo_camera.hpp"
+#include "frontend/matching/circular_matching.hpp"
+#include "frontend/messages.hpp"
+#include "frontend/motion/camera_trail.hpp"
+#include "frontend/motion/point_track.hpp"
+#include "frontend/motion/scene_flow.hpp"
+
+namespace motorcade {
+
+/// What a track tells of its point before the point is observed again.
+struct KnownPoint {
+  Eigen::Vector3d p_cam;  // in the newest camera of the trail, as if it were at rest since it was last observed
+  Eigen::Matrix3d covariance;
+  double disparity_px;  // when it was last observed
+  bool moving;          // by its label then
+};
+
+/// The tracks of scene points over the latest frames, each fitted as a point at rest and as a moving one. Call `update`
+/// in frame order. Nothing that comes out refers to a track beyond the next `update`.
+class PointTracks {
+ public:
+  struct Params {
+    int max_missed_frames = 2;  // a point may be without disparity so long before its track ends
+    SceneFlowEstimator::Params scene_flow;
+  };
+  PointTracks(const Params& params, const StereoCamera& camera);
+
+  /// One per flow observation, empty for a new point. To be asked before the trail gets the frame of `flow`.
+  std::vector<std::optional<KnownPoint>> known(const OpticalFlow& flow, const CameraTrail& trail) const;
+
+  /// Extends the tracks by the newest frame of the trail and fits them anew: `observed` has one item per flow
+  /// observation. A track ends when optical flow no longer follows its point.
+  void update(const OpticalFlow& flow, const std::vector<std::optional<StereoObservation>>& observed,
+              const CameraTrail& trail);
+
+  /// The tracks that the last update extended, ordered by point: one per item of `observed` that is not empty.
+  auto observedNow() const { return std::views::filter(tracks_, ObservedAt{step_}); }
+
+  /// `points` are those of `observedNow`, with the labels that the segmentation gave them.
+  void setLabels(std::span<const ScenePoint> points);
+
+  /// Points at rest that were observed in an earlier frame and in the newest.
+  std::vector<StereoCorrespondence> atRestSince(std::int64_t step) const;
+
+  /// Adds to the disparities of all observations.
+  void shiftDisparities(float change_px);
+
+ private:
+  struct ObservedAt {
+    std::int64_t step;
+    bool operator()(const PointTrack& track) const { return track.newest().step == step; }
+  };
+
+  std::vector<int> tracksOf(const OpticalFlow& flow) const;
+  std::optional<KnownPoint> knownPoint(const PointTrack& track, const CameraTrail& trail) const;
+  void fit(PointTrack& track, const CameraTrail& trail, const Image& now) const;
+  bool isFoundAtRest(const PointTrack& track, const CameraTrail& trail, const Image& now) const;
+
+  Params params_;
+  StereoCamera camera_;
+  SceneFlowEstimator scene_flow_;
+  std::vector<PointTrack> tracks_;   // ordered by point
+  std::vector<PointTrack> updated_;  // memory for the next update
+  std::int64_t step_ = -1;           // of the last update
+  Image left_;                       // of the last update
+};
+
+std::vector<Parameter> parametersOf(PointTracks::Params& params);
+
+}  // namespace motorcade

@@ -1,0 +1,155 @@
+#include "frontend/motion/point_tracks.hpp"
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/frontend/texture.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/stereo_views.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::kRig;
+
+const Eigen::Vector3d kPoint(2, 0.5, 20);  // in the first camera
+constexpr PointId kA{4}, kB{9};
+
+/// A camera that drives ahead by 1 m a frame, and what circular matching tells of the points that optical flow follows.
+class Drive {
+ public:
+  explicit Drive(const PointTracks::Params& params = {}) : tracks(params, kRig) {}
+
+  OpticalFlow flow(const std::vector<PointId>& points) const {
+    OpticalFlow flow;
+    flow.features = features_;
+    for (const PointId point : points) flow.observations.push_back({.point = point});
+    return flow;
+  }
+  void addFrame() {
+    trail.add({frame * 100'000'000}, frame ? SE3(Eigen::Matrix3d::Identity(), {0, 0, 1}) : SE3{});
+    ++frame;
+  }
+  /// Point A is at rest, B drives aside; `missing` was not found in the right image.
+  void observe(const std::vector<PointId>& points, std::optional<PointId> missing = {}) {
+    addFrame();
+    std::vector<std::optional<StereoObservation>> observed;
+    for (const PointId point : points) {
+      const Eigen::Vector3d p = p_cam(point);
+      observed.push_back(StereoObservation{kRig.project(p)->cast<float>(), Eigen::Vector3f::Constant(0.3F)});
+      if (point == missing) observed.back().reset();
+    }
+    tracks.update(flow(points), observed, trail);
+  }
+  Eigen::Vector3d p_cam(PointId point) const {
+    const double travelled_m = frame - 1;
+    return kPoint + Eigen::Vector3d(point == kB ? -0.5 * travelled_m : 0, 0, -travelled_m);
+  }
+  std::vector<PointId> observedNow() const {
+    std::vector<PointId> points;
+    for (const PointTrack& track : tracks.observedNow()) points.push_back(track.point);
+    return points;
+  }
+  std::optional<KnownPoint> known(PointId point) const { return tracks.known(flow({point}), trail)[0]; }
+
+  PointTracks tracks;
+  CameraTrail trail;
+  int frame = 0;
+
+ private:
+  static FeaturesPtr gray() {
+    auto features = std::make_shared<Features>();
+    features->left.levels.push_back(test::render(kRig.width_px, kRig.height_px, [](double, double) { return 128.0; }));
+    return features;
+  }
+  FeaturesPtr features_ = gray();
+};
+
+TEST(PointTracks, APointAtRestIsKnownMoreExactlyWithEveryFrame) {
+  Drive drive;
+  EXPECT_FALSE(drive.known(kA));
+  double before_m2 = 1e9;
+  for (int k = 0; k < 5; ++k) {
+    drive.observe({kA, kB});
+    const auto known = drive.known(kA);
+    ASSERT_TRUE(known);
+    EXPECT_THAT(known->p_cam, test::IsNear(drive.p_cam(kA), 1e-3));  // pixels are kept as floats
+    EXPECT_NEAR(known->disparity_px, kRig.project(drive.p_cam(kA))->z(), 1e-4);
+    EXPECT_LT(known->covariance(2, 2), before_m2);
+    before_m2 = known->covariance(2, 2);
+  }
+  EXPECT_FALSE(drive.known({5}));
+}
+
+TEST(PointTracks, TellsMotionFromRest) {
+  Drive drive;
+  for (int k = 0; k < 5; ++k) drive.observe({kA, kB});
+  for (const PointTrack& track : drive.tracks.observedNow()) {
+    ASSERT_TRUE(track.flow);
+    EXPECT_EQ(track.p_static_cam.has_value(), track.point == kA);
+    EXPECT_NEAR(track.flow->velocity_mps.x(), track.point == kA ? 0 : -5, 0.5);  // the velocity's prior pulls to zero
+  }
+}
+
+TEST(PointTracks, ATrackThatMissesItsDisparityForLongEnds) {
+  PointTracks::Params params;
+  params.max_missed_frames = 2;
+  Drive drive(params);
+  drive.observe({kA, kB});
+  for (int missed = 1; missed <= 3; ++missed) {
+    EXPECT_TRUE(drive.known(kA));
+    drive.observe({kA, kB}, kA);
+    EXPECT_EQ(drive.observedNow(), std::vector{kB});
+  }
+  EXPECT_FALSE(drive.known(kA));
+  EXPECT_TRUE(drive.known(kB));
+}
+
+TEST(PointTracks, ATrackEndsWhenOpticalFlowNoLongerFollowsItsPoint) {
+  Drive drive;
+  drive.observe({kA, kB});
+  drive.observe({kB});
+  EXPECT_FALSE(drive.known(kA));
+  drive.observe({kA, kB});
+  EXPECT_EQ(drive.observedNow(), (std::vector{kA, kB}));
+  EXPECT_EQ((*drive.tracks.observedNow().begin()).count, 1);
+}
+
+TEST(PointTracks, NothingIsKnownOfAPointThatTheTrailHasForgotten) {
+  Drive drive;
+  drive.observe({kA});
+  for (int k = 0; k < 2 * CameraTrail::kCapacity; ++k) drive.addFrame();
+  EXPECT_FALSE(drive.known(kA));
+  drive.observe({kA});
+  EXPECT_TRUE(drive.known(kA));
+}
+
+TEST(PointTracks, LabelsComeBackAndSayWhatIsAtRest) {
+  Drive drive;
+  for (int k = 0; k < 4; ++k) drive.observe({kA, kB});
+  EXPECT_EQ(drive.tracks.atRestSince(1).size(), 1U);
+  EXPECT_TRUE(drive.tracks.atRestSince(-1).empty());
+  std::vector<ScenePoint> points{{.point = kA, .label = PointLabel::kMoving, .flow = {}}, {.point = kB, .flow = {}}};
+  drive.tracks.setLabels(points);
+  EXPECT_TRUE(drive.known(kA)->moving);
+  EXPECT_FALSE(drive.known(kB)->moving);
+  EXPECT_TRUE(drive.tracks.atRestSince(1).empty());
+}
+
+TEST(PointTracks, AllDisparitiesFollowTheOffset) {
+  Drive drive;
+  drive.observe({kA});
+  drive.observe({kA});
+  const double before_px = drive.known(kA)->disparity_px;
+  drive.tracks.shiftDisparities(0.5F);
+  EXPECT_NEAR(drive.known(kA)->disparity_px, before_px + 0.5, 1e-5);
+  const PointTrack& track = *drive.tracks.observedNow().begin();
+  EXPECT_NEAR(track.oldest().uvd_px.z(), kRig.project(kPoint)->z() + 0.5, 1e-4);
+}
+
+}  // namespace
+}  // namespace motorcade
