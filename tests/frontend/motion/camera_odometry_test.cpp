@@ -56,7 +56,7 @@ TEST(CameraOdometry, MeasuresTheMotionAndLeavesATrail) {
   ASSERT_EQ(motion.inliers.size(), views.observed.size());
   int inliers = 0;
   for (std::size_t i = 0; i < motion.inliers.size(); ++i) {
-    if (motion.inliers[i]) EXPECT_TRUE(views.known[i] && views.observed[i]);
+    EXPECT_TRUE(!motion.inliers[i] || (views.known[i] && views.observed[i]));
     inliers += motion.inliers[i];
   }
   EXPECT_EQ(inliers, motion.inlier_count);

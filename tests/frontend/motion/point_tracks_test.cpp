@@ -133,7 +133,8 @@ TEST(PointTracks, LabelsComeBackAndSayWhatIsAtRest) {
   for (int k = 0; k < 4; ++k) drive.observe({kA, kB});
   EXPECT_EQ(drive.tracks.atRestSince(1).size(), 1U);
   EXPECT_TRUE(drive.tracks.atRestSince(-1).empty());
-  std::vector<ScenePoint> points{{.point = kA, .label = PointLabel::kMoving, .flow = {}}, {.point = kB, .flow = {}}};
+  std::vector<ScenePoint> points(2);
+  points[0].label = PointLabel::kMoving;
   drive.tracks.setLabels(points);
   EXPECT_TRUE(drive.known(kA)->moving);
   EXPECT_FALSE(drive.known(kB)->moving);
