@@ -64,7 +64,7 @@ TEST(EgoMotion, SurvivesSixtyPercentMoversKnownFromBefore) {
   }
 }
 
-TEST(EgoMotion, SurvivesFortyPercentMoversThatNobodyKnows) {
+TEST(EgoMotion, SurvivesFortyPercentUnknownMovers) {
   const EgoMotionEstimator estimate({}, kRig);
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Street s = street(120, 80, 100 + seed);

@@ -73,7 +73,7 @@ TEST(MotionGraph, ComponentsAreThoseOfTheTriangulationByItsDefinition) {
 
 TEST(MotionGraph, AClusterBetweenOthersIsCutOutAndCoincidentPointsStayTogether) {
   const Points points{{10, 10}, {50, 10}, {50, 10}, {10, 40}, {52, 40}, {10, 10.01}, {90, 12}, {91, 41}};
-  const std::vector<int> body{0, 1, 2, 0, 1, 3, 4, 4};  // points 2 and 5 share their place with a stranger
+  const std::vector<int> body{0, 1, 2, 0, 1, 3, 4, 4};  // points 2 and 5 lie at the pixel of another body
   const auto together = [&](int i, int j) { return body[i] == body[j]; };
   const Components expected{{0, 3, 5}, {1, 2, 4}, {6, 7}};
   EXPECT_EQ(cutDelaunayComponents(points, together), expected);

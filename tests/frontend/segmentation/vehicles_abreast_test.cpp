@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kWidth_m = 2.8;
 
-/// A segment that drives ahead, of points around some places.
+/// A segment that drives ahead, of points around some positions.
 struct Traffic {
   SceneMotion scene;
   Segment segment;
