@@ -60,8 +60,8 @@ std::vector<double> votesOf(std::span<const PoseObservation> observations, const
   sharing.reserve(observations.size());
   for (const auto& o : observations) {
     const double scale = std::min(1.0, kVoteDepth_m / o.p_ref.z()) / kVoteCell_m;
-    int& points =
-        points_in[{static_cast<int>(std::floor(scale * o.p_ref.x())), static_cast<int>(std::floor(scale * o.p_ref.z()))}];
+    int& points = points_in[{static_cast<int>(std::floor(scale * o.p_ref.x())),
+                             static_cast<int>(std::floor(scale * o.p_ref.z()))}];
     ++points;
     sharing.push_back(&points);
   }
