@@ -5,7 +5,8 @@
 
 namespace motorcade {
 
-/// What a user can mend. The message names the file, the line or key, and the mend; `main` turns it into the exit code.
+/// An error that a user can fix. The message names the file, the line or key, and how to fix it; `main` turns it into
+/// the exit code.
 class UserError : public std::runtime_error {
  public:
   UserError(const std::string& message, int exit_code) : std::runtime_error(message), exit_code_(exit_code) {}

@@ -50,10 +50,10 @@ std::vector<SE3> mercatorPoses(const std::vector<OxtsPacket>& packets) {
   return poses;
 }
 
-/// The pose at a time between, or a little outside, the packets: place and attitude each at a constant rate.
+/// The pose at a time between, or a little outside, the packets: position and attitude each at a constant rate.
 SE3 poseAt(Timestamp stamp, const std::vector<SE3>& poses, const std::vector<Timestamp>& stamps) {
   const auto after = std::ranges::upper_bound(stamps, stamp) - stamps.begin();
-  const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after - 1, 0, std::ssize(stamps) - 2));
+  const std::size_t i = std::clamp<std::ptrdiff_t>(after - 1, 0, std::ssize(stamps) - 2);
   const double part = secondsBetween(stamps[i], stamp) / secondsBetween(stamps[i], stamps[i + 1]);
   const auto &from = poses[i], &to = poses[i + 1];
   return {from.rotation() * expSO3(part * logSO3(from.rotation().transpose() * to.rotation())),
@@ -173,7 +173,7 @@ std::optional<ObjectTruths> readObjectTruths(const Sequence& sequence, const Cam
       truths.ignored.push_back({label.frame, label.box});
       continue;
     }
-    const auto frame = static_cast<std::size_t>(label.frame.value);
+    const std::size_t frame = label.frame.value;
     if (frame >= camera.T_world_cam.size()) continue;
     ObjectTruth truth;
     truth.frame = label.frame;

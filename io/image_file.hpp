@@ -23,12 +23,8 @@ struct ImageSize {
 struct RgbImage {
   int width = 0, height = 0;
   std::vector<std::uint8_t> pixels;
-  std::uint8_t* at(int x, int y) {
-    return &pixels[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3];
-  }
-  const std::uint8_t* at(int x, int y) const {
-    return &pixels[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3];
-  }
+  std::uint8_t* at(int x, int y) { return &pixels[3 * (y * width + x)]; }
+  const std::uint8_t* at(int x, int y) const { return &pixels[3 * (y * width + x)]; }
 };
 
 /// 16-bit gray image, rows without gaps: KITTI's disparity maps, instance masks.

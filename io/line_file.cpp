@@ -40,8 +40,7 @@ void LineFile::writeLine(std::string_view line) {
     const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail(file_, "cannot be written");
-    rest.remove_prefix(
-        static_cast<std::size_t>(written));  // a disk that is almost full takes a part, and refuses the next
+    rest.remove_prefix(written);  // a disk that is almost full takes a part, and refuses the next
   }
 }
 

@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// A text file that grows by one whole line per write, so that whatever stops the program leaves whole lines behind.
+/// A text file that grows by one whole line per write, so that a program that is killed leaves whole lines behind.
 /// Every failure is an OutputError naming the file.
 class LineFile {
  public:

@@ -51,8 +51,8 @@ struct PoseGraph {
 std::string_view nameOf(PoseGraph::Problem::Kind kind);
 
 /// Reads VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT, EDGE_SE3:QUAT, FIX and FRAME lines. Throws an InputError that names
-/// file, line and mend for what is not written as g2o. Edges that are not finite, have no positive definite information
-/// or join a pose to itself are left out, of vertices of one id the first is kept: these become problems.
+/// file, line and how to fix it for what is not written as g2o. Edges that are not finite, have no positive definite
+/// information or join a pose to itself are left out, of vertices of one id the first is kept: these become problems.
 PoseGraph readPoseGraph(const std::filesystem::path& file);
 
 /// Numbers are written with all their digits. Throws OutputError.

@@ -19,7 +19,7 @@ class SequenceDecoder {
  public:
   struct Params {
     std::size_t ahead = 8;  // pairs, rounded up to a power of two
-    /// Asked, on the decoder's thread, before a pair is decoded; what is not wanted is left out. The last pair always
+    /// Asked, on the decoder's thread, before a pair is decoded; an unwanted pair is left out. The last pair always
     /// comes.
     std::function<bool(Timestamp)> wanted{};
   };
@@ -30,7 +30,7 @@ class SequenceDecoder {
   SequenceDecoder(const SequenceDecoder&) = delete;
   SequenceDecoder& operator=(const SequenceDecoder&) = delete;
 
-  /// The next pair, numbered by its place in the sequence, without a due time; waits for it. Empty after the last or
+  /// The next pair, numbered by its index in the sequence, without a due time; waits for it. Empty after the last or
   /// after `stop`.
   std::optional<StereoFrame> next() { return ring_.pop(); }
   /// Ends decoding early, from any thread; pairs already decoded still come out.

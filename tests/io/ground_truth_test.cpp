@@ -8,6 +8,7 @@
 #include "io/errors.hpp"
 #include "io/trajectory.hpp"
 #include "tests/io/temporary_folder.hpp"
+#include "tests/support/data_folder.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace motorcade {
@@ -17,7 +18,7 @@ using test::IsNearPose;
 using test::messageOf;
 using testing::HasSubstr;
 
-const std::filesystem::path kData = MOTORCADE_SOURCE_DIR "/../shared/data";
+const std::filesystem::path kData = test::dataFolder();
 
 double largestDifference(const std::vector<SE3>& a, const std::vector<SE3>& b) {
   double largest = 0;
@@ -27,7 +28,8 @@ double largestDifference(const std::vector<SE3>& a, const std::vector<SE3>& b) {
 
 TEST(GroundTruth, OxtsGiveTheReferencePosesInBothForms) {
   if (!std::filesystem::exists(kData / "kitti_tracking_0003"))
-    GTEST_SKIP() << "../shared/data/kitti_tracking_0003 is not there";
+    GTEST_SKIP() << kData / "kitti_tracking_0003"
+                 << " is not there";
   Sequence sequence = openSequence(kData / "kitti_tracking_0003");
   const auto uninterpolated = readCameraTruth(sequence, OxtsTimes::kUninterpolated);
   ASSERT_TRUE(uninterpolated);
@@ -48,7 +50,8 @@ TEST(GroundTruth, OxtsGiveTheReferencePosesInBothForms) {
 
 TEST(GroundTruth, LabelsAgreeWithTheExactPosesOfARenderedSequence) {
   if (!std::filesystem::exists(kData / "rendered_street"))
-    GTEST_SKIP() << "../shared/data/rendered_street is not there";
+    GTEST_SKIP() << kData / "rendered_street"
+                 << " is not there";
   Sequence sequence = openSequence(kData / "rendered_street");
   const auto camera = readCameraTruth(sequence);
   const auto exact = readObjectTruths(sequence, *camera);

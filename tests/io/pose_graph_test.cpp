@@ -69,7 +69,7 @@ TEST_F(PoseGraphFile, KeepsFramesAndFixedPoses) {
   EXPECT_THAT(graph.frame_ends, ElementsAre(1, 5));
 }
 
-TEST_F(PoseGraphFile, ErrorsNameFileLineAndMend) {
+TEST_F(PoseGraphFile, ErrorsNameFileLineAndHowToFixIt) {
   EXPECT_THAT(errorOf("\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0\n"),
               AllOf(HasSubstr("graph.g2o, line 2"), HasSubstr("give it 11")));
   EXPECT_THAT(errorOf("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1 8\n"), AllOf(HasSubstr("line 1"), HasSubstr("followed by 12")));

@@ -195,7 +195,7 @@ TEST_F(SequenceTest, DamagedOrMissizedImagesBecomeRejectedFrames) {
   EXPECT_FALSE(decoder.next()->rejected());
 }
 
-TEST_F(SequenceTest, DecoderLeavesOutWhatNobodyWantsButNeverTheLastPair) {
+TEST_F(SequenceTest, DecoderLeavesOutUnwantedPairsButNeverTheLast) {
   writePlain(10);
   const Sequence sequence = openSequence(folder_.path());
   const auto third = [&](Timestamp stamp) { return stamp == sequence.stamps[3]; };

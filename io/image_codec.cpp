@@ -1,0 +1,36 @@
+#include "io/image_codec.hpp"
+
+#include "io/errors.hpp"
+#include "io/text_file.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr int kMinSide_px = 16, kMaxSide_px = 16384;
+constexpr std::size_t kMaxFile_bytes = std::size_t{1} << 28;
+
+}  // namespace
+
+std::string readImageBytes(const std::filesystem::path& file) { return readWhole(file, kMaxFile_bytes); }
+
+ImageSize checkedSize(std::uint64_t width, std::uint64_t height, const std::filesystem::path& file) {
+  const auto bad = [](std::uint64_t side) { return side < kMinSide_px || side > kMaxSide_px; };
+  if (bad(width) || bad(height)) {
+    throw InputError(file.string() + ": its header tells " + std::to_string(width) + "x" + std::to_string(height) +
+                     " pixels; each side must lie between " + std::to_string(kMinSide_px) + " and " +
+                     std::to_string(kMaxSide_px));
+  }
+  return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+[[noreturn]] void failDamaged(const std::filesystem::path& file, const std::string& why) {
+  throw InputError(file.string() + ": damaged image: " + why);
+}
+
+std::vector<std::uint8_t*> rowPointers(std::uint8_t* first, int height, std::size_t stride) {
+  std::vector<std::uint8_t*> rows(height);
+  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = first + y * stride;
+  return rows;
+}
+
+}  // namespace motorcade

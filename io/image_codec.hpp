@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/image.hpp"
+#include "io/image_file.hpp"
+
+/// What `image_file` asks of each format, and what the formats share.
+namespace motorcade {
+
+/// Reads one format from the bytes of a whole file; `file` is for messages. Throws InputError on a damaged image.
+struct ImageCodec {
+  ImageFormat format;
+  bool (*recognizes)(std::string_view bytes);
+  /// From the header alone.
+  ImageSize (*size)(std::string_view bytes, const std::filesystem::path& file);
+  /// As 8-bit gray.
+  Image (*decode)(std::string_view bytes, const std::filesystem::path& file, ImagePool& pool);
+};
+const ImageCodec& pngCodec();
+const ImageCodec& jpegCodec();
+const ImageCodec& pgmCodec();
+
+/// The whole file, unless it is too large for an image.
+std::string readImageBytes(const std::filesystem::path& file);
+/// The size that a header tells, if it is one that an image may have.
+ImageSize checkedSize(std::uint64_t width, std::uint64_t height, const std::filesystem::path& file);
+[[noreturn]] void failDamaged(const std::filesystem::path& file, const std::string& why);
+
+/// Where each row begins, for libraries that want to be told.
+std::vector<std::uint8_t*> rowPointers(std::uint8_t* first, int height, std::size_t stride);
+
+}  // namespace motorcade

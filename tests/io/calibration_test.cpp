@@ -1,0 +1,101 @@
+#include "io/calibration.hpp"
+
+#include <string>
+
+#include <gmock/gmock.h>
+
+#include "io/errors.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::messageOf;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Focal length 700 px; the gray pair 0.5 m apart, the color pair 0.6 m.
+constexpr std::string_view kProjections =
+    "P0: 700 0 320 0 0 710 100 0 0 0 1 0\n"
+    "P1: 700 0 320 -350 0 710 100 0 0 0 1 0\n"
+    "P2: 700 0 320 70 0 710 100 0 0 0 1 0\n"
+    "P3: 700 0 320 -350 0 710 100 0 0 0 1 0\n";
+
+class CalibrationFile : public testing::Test {
+ protected:
+  Calibration read(const std::string& content) { return readCalibration(folder_.write("calib.txt", content)); }
+  std::string errorOf(const std::string& content, CameraPair pair = CameraPair::kGray) {
+    return messageOf<InputError>([&] { read(content).stereoCamera(pair); });
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(CalibrationFile, GivesIntrinsicsAndBaselineOfEachPair) {
+  const Calibration calibration = read(std::string(kProjections));
+  const StereoCamera gray = calibration.stereoCamera(CameraPair::kGray);
+  EXPECT_DOUBLE_EQ(gray.fx_px, 700);
+  EXPECT_DOUBLE_EQ(gray.fy_px, 710);
+  EXPECT_DOUBLE_EQ(gray.cx_px, 320);
+  EXPECT_DOUBLE_EQ(gray.cy_px, 100);
+  EXPECT_DOUBLE_EQ(gray.baseline_m, 0.5);
+  EXPECT_DOUBLE_EQ(calibration.stereoCamera(CameraPair::kColor).baseline_m, 0.6);
+}
+
+TEST_F(CalibrationFile, TellsWhereTheLeftColorCameraStands) {
+  const Calibration calibration = read(std::string(kProjections));
+  EXPECT_TRUE(calibration.T_left_cam0(CameraPair::kGray).translation().isZero());
+  EXPECT_TRUE(calibration.T_left_cam0(CameraPair::kColor).translation().isApprox(Eigen::Vector3d(0.1, 0, 0)));
+}
+
+TEST_F(CalibrationFile, TakesBothSpellingsOfItsKeys) {
+  const std::string rotation = " 1 0 0 0 1 0 0 0 1\n", rigid = " 1 0 0 4 0 1 0 5 0 0 1 6\n";
+  const Calibration tracking =
+      read("R_rect" + rotation + "Tr_velo_cam" + rigid + "Tr_imu_velo" + rigid + std::string(kProjections));
+  const Calibration raw = read("P_rect_00: 700 0 320 0 0 710 100 0 0 0 1 0\nR0_rect:" + rotation +
+                               "Tr_velo_to_cam:" + rigid + "Tr_imu_to_velo:" + rigid);
+  ASSERT_TRUE(tracking.T_cam0_imu() && raw.T_cam0_imu());
+  EXPECT_TRUE(tracking.T_cam0_imu()->translation().isApprox(Eigen::Vector3d(8, 10, 12)));
+  EXPECT_TRUE(raw.T_cam0_imu()->translation().isApprox(Eigen::Vector3d(8, 10, 12)));
+  EXPECT_TRUE(raw.P[0].has_value());
+}
+
+TEST_F(CalibrationFile, KnowsNoInertialUnitWhenAPartOfTheChainIsMissing) {
+  EXPECT_FALSE(read(std::string(kProjections)).T_cam0_imu().has_value());
+  EXPECT_FALSE(read("R_rect 1 0 0 0 1 0 0 0 1\n").T_cam0_imu().has_value());
+}
+
+TEST_F(CalibrationFile, PassesOverTheTimeOfTheCalibration) {
+  EXPECT_NO_THROW(read("calib_time: 09-Jan-2012 13:57:47\n" + std::string(kProjections)));
+}
+
+TEST_F(CalibrationFile, NamesTheKeyThatIsMissingOrHasTheWrongLength) {
+  EXPECT_THAT(errorOf("P0: 700 0 320 0 0 710 100 0 0 0 1 0\n"), AllOf(HasSubstr("calib.txt"), HasSubstr("key P1")));
+  EXPECT_THAT(errorOf(std::string(kProjections.substr(0, kProjections.find("P3"))), CameraPair::kColor),
+              HasSubstr("key P3 is missing; the images are those of cameras 2 and 3"));
+  EXPECT_THAT(errorOf("P0: 1 2 3\n"), HasSubstr("key P0 has 3 numbers, 12 are needed"));
+  EXPECT_THAT(errorOf("P0: 700 zero\n"), AllOf(HasSubstr("line 1"), HasSubstr("'zero' is not a number (P0)")));
+}
+
+TEST_F(CalibrationFile, RefusesPairsThatCannotBeUsed) {
+  const std::string left = "P0: 700 0 320 0 0 710 100 0 0 0 1 0\n";
+  EXPECT_THAT(errorOf("P0: 0 0 320 0 0 710 100 0 0 0 1 0\nP1: 0 0 320 -350 0 710 100 0 0 0 1 0\n"),
+              HasSubstr("the focal lengths must be positive"));
+  EXPECT_THAT(errorOf(left + "P1: 700 0 330 -350 0 710 100 0 0 0 1 0\n"), HasSubstr("the pair is not rectified"));
+  EXPECT_THAT(errorOf(left + "P1: 700 0 320 350 0 710 100 0 0 0 1 0\n"), HasSubstr("are left and right swapped?"));
+}
+
+TEST_F(CalibrationFile, JoinsTheThreeFilesOfARawDate) {
+  folder_.write("calib_cam_to_cam.txt", "R_rect_00: 1 0 0 0 1 0 0 0 1\nP_rect_00: 700 0 320 0 0 710 100 0 0 0 1 0\n");
+  folder_.write("calib_velo_to_cam.txt", "R: 1 0 0 0 1 0 0 0 1\nT: 1 2 3\n");
+  EXPECT_FALSE(readRawCalibration(folder_.path()).T_cam0_imu().has_value());
+  folder_.write("calib_imu_to_velo.txt", "R: 1 0 0 0 1 0 0 0 1\nT: 10 20 30\n");
+  const auto T_cam0_imu = readRawCalibration(folder_.path()).T_cam0_imu();
+  ASSERT_TRUE(T_cam0_imu.has_value());
+  EXPECT_TRUE(T_cam0_imu->translation().isApprox(Eigen::Vector3d(11, 22, 33)));
+  folder_.write("calib_imu_to_velo.txt", "R: 1 0 0 0 1 0 0 0 1\n");
+  EXPECT_THAT(messageOf<InputError>([&] { readRawCalibration(folder_.path()); }), HasSubstr("key R or T is missing"));
+}
+
+}  // namespace
+}  // namespace motorcade
