@@ -11,10 +11,22 @@
 namespace motorcade {
 
 /// The pipeline's stages, in the order of the data.
-enum class Stage { kPrepare, kStereo, kFlow, kMotion, kTracking, kOptimization };
+enum class Stage {
+  kPrepare,
+  kStereoMatching,
+  kOpticalFlow,
+  kSceneFlowSegmentation,
+  kTracking,
+  kIncrementalOptimization
+};
 inline constexpr std::size_t kStageCount = 6;
-inline constexpr std::array<std::string_view, kStageCount> kStageNames{"prepare", "stereo",   "flow",
-                                                                       "motion",  "tracking", "optimization"};
+inline constexpr std::array<std::string_view, kStageCount> kStageNames{
+    "prepare", "stereo matching", "optical flow", "scene flow segmentation", "tracking", "incremental optimization"};
+/// The same as one word, for columns and keys of files.
+inline constexpr std::array<std::string_view, kStageCount> kStageKeys{
+    "prepare", "stereo_matching", "optical_flow", "scene_flow_segmentation", "tracking", "incremental_optimization"};
+
+inline std::string_view nameOf(Stage stage) { return kStageNames[static_cast<std::size_t>(stage)]; }
 
 inline double millisecondsBetween(SteadyTime from, SteadyTime to) {
   return std::chrono::duration<double, std::milli>(to - from).count();
@@ -39,6 +51,7 @@ struct FrameTiming {
   double decode_ms = 0;  // done ahead, so not part of the latency; filled by who decodes
   std::array<StageSpan, kStageCount> stages;
 
+  StageSpan& of(Stage stage) { return stages[static_cast<std::size_t>(stage)]; }
   const StageSpan& of(Stage stage) const { return stages[static_cast<std::size_t>(stage)]; }
   double latency_ms() const { return millisecondsBetween(due, published); }
 };

@@ -85,7 +85,7 @@ std::string covariancesHeader() {
 
 std::string framesHeader() {
   std::string header("frame,status,stamp_ns,latency_ms,decode_ms");
-  for (const auto& stage : kStageNames) header.append(",").append(stage).append("_ms");
+  for (const auto& stage : kStageKeys) header.append(",").append(stage).append("_ms");
   return header;
 }
 
@@ -289,7 +289,7 @@ void RunFolderWriter::writeTiming(const FrameTiming& timing) {
   if (!origin_) origin_ = timing.due;
   for (std::size_t i = 0; i < kStageCount; ++i) {
     const StageSpan& span = timing.stages[i];
-    if (span.start != span.end) trace_.writeLine(stageEvent(kStageNames[i], timing.frame, span, *origin_));
+    if (span.start != span.end) trace_.writeLine(stageEvent(kStageKeys[i], timing.frame, span, *origin_));
   }
   // The whole way of a frame overlaps with that of the next, which only the asynchronous kind of event can show.
   trace_.writeLine(asyncEvent('b', timing.frame, timing.due, *origin_));

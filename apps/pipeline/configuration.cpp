@@ -18,14 +18,14 @@ namespace motorcade {
 namespace {
 
 /// Where a value stands, for messages.
-struct Place {
+struct Position {
   std::string file;
   toml::source_index line = 0;
   std::string text() const { return line > 0 ? file + ", line " + std::to_string(line) : file; }
 };
 
-[[noreturn]] void fail(const Place& place, const std::string& message) {
-  throw UsageError(place.text() + ": " + message);
+[[noreturn]] void fail(const Position& position, const std::string& message) {
+  throw UsageError(position.text() + ": " + message);
 }
 
 /// Levenshtein's distance: how many letters to change, to add or to take away.
@@ -91,14 +91,14 @@ std::string nodeText(const toml::node& node) {
 }
 
 void applyValue(const std::vector<ConfigurationKey>& table, std::string key, const toml::node& node,
-                const Place& place) {
+                const Position& position) {
   if (key == "backend") key = "backend.kind";
   const auto known = std::ranges::find(table, key, &ConfigurationKey::key);
-  if (known == table.end()) fail(place, "unknown key '" + key + "'; did you mean '" + nearestKey(table, key) + "'?");
+  if (known == table.end()) fail(position, "unknown key '" + key + "'; did you mean '" + nearestKey(table, key) + "'?");
   const Parameter& parameter = known->parameter;
   if (std::visit(Assign{parameter, node}, parameter.value)) return;
   const bool whole = std::holds_alternative<int*>(parameter.value);
-  fail(place,
+  fail(position,
        "'" + key + "' is " + nodeText(node) + "; write " + (whole ? "a whole number, " : "") + parameter.allowed());
 }
 

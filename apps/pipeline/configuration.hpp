@@ -8,8 +8,8 @@
 
 namespace motorcade {
 
-/// Sets what the TOML text names and leaves the rest. Throws UsageError naming file, line, key and the mend. `backend =
-/// "filter"` is short for `backend.kind = "filter"`.
+/// Sets what the TOML text names and leaves the rest. Throws UsageError naming file, line and key, and how to fix it.
+/// `backend = "filter"` is short for `backend.kind = "filter"`.
 void applyToml(PipelineConfig& config, std::string_view toml, const std::string& file_name);
 /// The same for a file.
 void applyFile(PipelineConfig& config, const std::filesystem::path& file);

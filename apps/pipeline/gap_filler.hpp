@@ -21,7 +21,7 @@ class GapFiller {
  public:
   /// Estimates of frames that came after the last published one and were not processed.
   std::vector<FrameEstimate> fill(const std::vector<FrameHeader>& frames, FrameStatus status);
-  /// Notes a published estimate; `seen_by_backend` is false when the frame's final estimate will not come from there.
+  /// Notes a published estimate; `seen_by_backend` is false when the back-end gives no final estimate of the frame.
   void published(const FrameEstimate& online, bool seen_by_backend);
   /// The pose predicted for a moment after the last published frame.
   SE3 predict(Timestamp stamp) const;

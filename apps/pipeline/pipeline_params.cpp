@@ -1,5 +1,8 @@
 #include "apps/pipeline/pipeline_params.hpp"
 
+#include <algorithm>
+#include <bit>
+
 namespace motorcade {
 
 std::vector<Parameter> parametersOf(PipelineParams& params) {
@@ -9,6 +12,15 @@ std::vector<Parameter> parametersOf(PipelineParams& params) {
           choiceParameter<InputPolicy>("policy", params.policy,
                                        {{"replay", InputPolicy::kReplay}, {"live", InputPolicy::kLive}},
                                        "replay drops nothing; live takes the newest pair and never waits")};
+}
+
+std::size_t ringCapacity(const PipelineParams& params) {
+  return std::bit_floor(static_cast<std::size_t>(params.frames_in_flight));
+}
+
+std::size_t tokens(const PipelineParams& params) {
+  const bool live = params.policy == InputPolicy::kLive;
+  return static_cast<std::size_t>(live ? std::min(params.frames_in_flight, params.threads) : params.frames_in_flight);
 }
 
 }  // namespace motorcade

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "core/parameters.hpp"
@@ -8,7 +9,7 @@ namespace motorcade {
 
 enum class InputPolicy {
   kReplay,  // nothing is dropped: the producer waits when the pipeline is behind
-  kLive,    // the newest pair wins: the producer never waits, pairs that nobody took are dropped
+  kLive,    // the newest pair wins: the producer never waits, pairs that were not taken are dropped
 };
 
 struct PipelineParams {
@@ -18,5 +19,11 @@ struct PipelineParams {
 };
 
 std::vector<Parameter> parametersOf(PipelineParams& params);
+
+/// Capacity of the rings at both ends. Rings round up to a power of two: this much stays within the bound.
+std::size_t ringCapacity(const PipelineParams& params);
+/// Frames that may be in the flow graph at once. In live, frames beyond those that the workers can work on would only
+/// grow old between the stages.
+std::size_t tokens(const PipelineParams& params);
 
 }  // namespace motorcade

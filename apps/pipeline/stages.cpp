@@ -23,12 +23,13 @@ Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
   const auto tracking = std::make_shared<ObjectTracker>(config.tracking, camera);
   const std::shared_ptr<Backend> backend = makeBackend(config.backend);
   return {.prepare = [prepare](const StereoFramePtr& frame) { return (*prepare)(frame); },
-          .stereo = [stereo](const FeaturesPtr& features) { return (*stereo)(features); },
-          .flow = [flow](const FeaturesPtr& features) { return (*flow)(features); },
-          .motion = [motion](const StereoMatchesPtr& matches,
-                             const OpticalFlowPtr& tracks) { return (*motion)(matches, tracks); },
+          .stereo_matching = [stereo](const FeaturesPtr& features) { return (*stereo)(features); },
+          .optical_flow = [flow](const FeaturesPtr& features) { return (*flow)(features); },
+          .scene_flow_segmentation = [motion](const StereoMatchesPtr& matches,
+                                              const OpticalFlowPtr& tracks) { return (*motion)(matches, tracks); },
           .tracking = [tracking](const SceneMotionPtr& scene) { return (*tracking)(scene); },
-          .optimization = [backend](const FrameMeasurementsPtr& measurements) { return (*backend)(measurements); },
+          .incremental_optimization =
+              [backend](const FrameMeasurementsPtr& measurements) { return (*backend)(measurements); },
           .finish = [backend] { return backend->finish(); }};
 }
 

@@ -11,16 +11,16 @@ namespace motorcade {
 
 struct PipelineConfig;
 
-/// What the flow graph wires together, so that it can be tested with toy stages. `prepare` and `stereo` are called for
-/// several frames at once; the others one frame at a time, in order. `finish` is called once, after the last frame.
-/// Each call gives one message; a stage that throws costs its frame, not the run.
+/// What the flow graph wires together, so that it can be tested with toy stages. `prepare` and `stereo_matching` are
+/// called for several frames at once; the others one frame at a time, in order. `finish` is called once, after the last
+/// frame. Each call gives one message; a stage that throws costs its frame, not the run.
 struct Stages {
   std::function<FeaturesPtr(const StereoFramePtr&)> prepare;
-  std::function<StereoMatchesPtr(const FeaturesPtr&)> stereo;
-  std::function<OpticalFlowPtr(const FeaturesPtr&)> flow;
-  std::function<SceneMotionPtr(const StereoMatchesPtr&, const OpticalFlowPtr&)> motion;
+  std::function<StereoMatchesPtr(const FeaturesPtr&)> stereo_matching;
+  std::function<OpticalFlowPtr(const FeaturesPtr&)> optical_flow;
+  std::function<SceneMotionPtr(const StereoMatchesPtr&, const OpticalFlowPtr&)> scene_flow_segmentation;
   std::function<FrameMeasurementsPtr(const SceneMotionPtr&)> tracking;
-  std::function<EstimatesPtr(const FrameMeasurementsPtr&)> optimization;
+  std::function<EstimatesPtr(const FrameMeasurementsPtr&)> incremental_optimization;
   std::function<std::vector<FrameEstimate>()> finish;
 };
 

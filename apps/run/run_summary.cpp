@@ -60,7 +60,7 @@ std::string toJson(const RunSummary& summary) {
   const PipelineSummary& pipeline = summary.pipeline;
   Json stages, queues = Json::array({toJson(summary.decoded)});
   for (std::size_t stage = 0; stage < kStageCount; ++stage)
-    stages[std::string(kStageNames[stage])] = toJson(pipeline.stages[stage]);
+    stages[std::string(kStageKeys[stage])] = toJson(pipeline.stages[stage]);
   for (const QueueMark& queue : pipeline.queues) queues.push_back(toJson(queue));
   Json json{{"complete", summary.signal == 0},
             {"sequence", summary.sequence},

@@ -32,7 +32,7 @@ class DriveTable {
   void note(const PipelineResult& result) {
     if (frames_ == 0) since_ = result.timing.published;
     ++frames_;
-    backend_ms_ += result.timing.of(Stage::kOptimization).cpu_ms;
+    backend_ms_ += result.timing.of(Stage::kIncrementalOptimization).cpu_ms;
     objects_ += static_cast<double>(result.online.objects.size());
     if (frames_ % every_ == 0) print(result);
   }
@@ -73,7 +73,7 @@ int drive(const LongDriveOptions& options) {
   playback.observer = [&table](const PipelineResult& result) { table.note(result); };
   const Playback run = play(*source, config, makeStages(config, sequence.camera), playback);
 
-  double backend_ms = run.stage_cpu_ms[static_cast<std::size_t>(Stage::kOptimization)];
+  double backend_ms = run.stage_cpu_ms[static_cast<std::size_t>(Stage::kIncrementalOptimization)];
   std::printf("\nall      | %9.1f %9.2f | %7.2f ms %8.1f %%; %lld lost of %lld\n", run.rate_hz(),
               run.perFrame(1e3 * run.used.cpu_s), run.perFrame(backend_ms), 100 * backend_ms / (1e3 * run.used.cpu_s),
               static_cast<long long>(run.summary.lost), static_cast<long long>(run.frames()));

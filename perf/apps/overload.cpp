@@ -57,8 +57,8 @@ HeldDrive seenFaster(const OverloadOptions& options, std::size_t frames, std::si
 
 /// The stages, of which motion takes `pause` longer in one frame.
 Stages withStall(Stages stages, FrameId frame, std::chrono::duration<double> pause) {
-  stages.motion = [motion = std::move(stages.motion), frame, pause, done = false](const StereoMatchesPtr& stereo,
-                                                                                  const OpticalFlowPtr& flow) mutable {
+  stages.scene_flow_segmentation = [motion = std::move(stages.scene_flow_segmentation), frame, pause, done = false](
+                                       const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow) mutable {
     if (!done && flow->features->frame->frame >= frame) {
       done = true;
       std::this_thread::sleep_for(pause);

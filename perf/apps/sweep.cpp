@@ -84,7 +84,7 @@ void print(const Cell& cell, double decoding_cpu_ms) {
 void printStages(const std::vector<Cell>& cells) {
   std::printf("\nper stage, CPU ms of the thread that ran it / wall ms\n%-7s %7s %9s", "images", "threads",
               "in flight");
-  for (const auto& name : kStageNames) std::printf(" %14s", std::string(name).c_str());
+  for (const auto& name : kStageKeys) std::printf(" %14.14s", std::string(name).c_str());
   std::printf("\n");
   for (const Cell& cell : cells) {
     std::printf("%-7s %7d %9d", cell.source.c_str(), cell.threads, cell.in_flight);

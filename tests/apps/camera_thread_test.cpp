@@ -64,7 +64,7 @@ TEST(CameraThread, TheCountersSeeTheHeapAndMutexes) {
 TEST(CameraThread, NeitherLocksNorAsksTheHeapHoweverManyPairsAreDropped) {
   std::atomic<bool> hangs{true}, in_motion{false};
   ToyStages toy{.work = [&](Stage stage, FrameId) {
-    if (stage != Stage::kMotion) return;
+    if (stage != Stage::kSceneFlowSegmentation) return;
     in_motion = true;
     hangs.wait(true);
   }};

@@ -11,8 +11,8 @@
 #include "apps/pipeline/pipeline.hpp"
 #include "tests/apps/toy_stages.hpp"
 
-/// The live policy. Stages and camera wait for each other here, so that nothing depends on anybody's speed: time is
-/// counted in pairs that the camera has delivered.
+/// The live policy. Stages and camera wait for each other here, so that nothing depends on the speed of the machine:
+/// time is counted in pairs that the camera has delivered.
 namespace motorcade {
 namespace {
 
@@ -46,7 +46,7 @@ TEST_P(LiveOverload, ProcessesTheNewestPairEachTime) {
   std::atomic<std::int64_t> ordered = 1, delivered = 0;  // pairs
   ToyStages toys;
   toys.work = [&, factor_ = factor](Stage stage, FrameId frame) {
-    if (stage != Stage::kMotion || frame.value >= (kProcessed - 1) * factor_) return;
+    if (stage != Stage::kSceneFlowSegmentation || frame.value >= (kProcessed - 1) * factor_) return;
     raiseTo(ordered, frame.value + 1 + factor_);
     waitUntilAtLeast(delivered, frame.value + 1 + factor_);
   };
@@ -79,7 +79,7 @@ TEST(PipelineLive, IsFreshInTheFrameAfterAStallOfTheMotionStage) {
   std::latch stalled(1), stall_ends(1);
   ToyStages toys;
   toys.work = [&](Stage stage, FrameId frame) {
-    if (stage != Stage::kMotion || frame.value != 0) return;
+    if (stage != Stage::kSceneFlowSegmentation || frame.value != 0) return;
     stalled.count_down();
     stall_ends.wait();
   };
@@ -100,7 +100,7 @@ TEST(PipelineLive, IsFreshWithinThreeFramesAfterAStallOfTheBackEnd) {
   std::latch stalled(1), stall_ends(1);
   ToyStages toys;
   toys.work = [&](Stage stage, FrameId frame) {
-    if (stage != Stage::kOptimization || frame.value != 0) return;
+    if (stage != Stage::kIncrementalOptimization || frame.value != 0) return;
     stalled.count_down();
     stall_ends.wait();
   };
@@ -118,7 +118,7 @@ TEST(PipelineLive, IsFreshWithinThreeFramesAfterAStallOfTheBackEnd) {
 
 /// The results that wait for a consumer and the frames behind them are bounded; the camera goes on meanwhile, and the
 /// next frame is new.
-TEST(PipelineLive, NeitherBlocksTheCameraNorPilesUpWhenNobodyTakesResults) {
+TEST(PipelineLive, NeitherBlocksTheCameraNorPilesUpWhenNoResultIsTaken) {
   constexpr std::int64_t kFrames = 1000;
   constexpr int kInFlight = 4;
   ToyStages toys;

@@ -70,8 +70,8 @@ TEST_P(PipelineThreads, UsesNoMoreWorkersThanItWasGiven) {
 }
 
 TEST_P(PipelineThreads, SurvivesAStageThatThrows) {
-  for (const Stage broken :
-       {Stage::kPrepare, Stage::kStereo, Stage::kFlow, Stage::kMotion, Stage::kTracking, Stage::kOptimization}) {
+  for (const Stage broken : {Stage::kPrepare, Stage::kStereoMatching, Stage::kOpticalFlow,
+                             Stage::kSceneFlowSegmentation, Stage::kTracking, Stage::kIncrementalOptimization}) {
     std::mutex mutex;
     std::vector<std::string> log;
     ToyStages toys{.work = [&](Stage stage, FrameId frame) {
@@ -93,7 +93,7 @@ TEST_P(PipelineThreads, SurvivesAStageThatThrows) {
     EXPECT_EQ(run.summary.rejected, broken == Stage::kPrepare ? 2 : 0);
     // One meter per frame, predicted or measured.
     EXPECT_NEAR(run.results[3].online.T_world_cam.translation().z(), 3, 1e-9);
-    EXPECT_NEAR(run.finals[3].T_world_cam.translation().z(), broken == Stage::kOptimization ? 2.5 : 3, 1e-9);
+    EXPECT_NEAR(run.finals[3].T_world_cam.translation().z(), broken == Stage::kIncrementalOptimization ? 2.5 : 3, 1e-9);
   }
 }
 
@@ -130,7 +130,8 @@ TEST(Pipeline, NumbersFramesThatHaveNoId) {
 TEST(Pipeline, DropsOldFramesWhenLiveAndAccountsForAll) {
   constexpr std::int64_t kFrames = 60;
   ToyStages toys{.work = [](Stage stage, FrameId) {
-    if (stage == Stage::kMotion) std::this_thread::sleep_for(milliseconds(5));  // five times the camera's period
+    if (stage == Stage::kSceneFlowSegmentation)
+      std::this_thread::sleep_for(milliseconds(5));  // five times the camera's period
   }};
   Pipeline pipeline({.policy = InputPolicy::kLive}, toys.stages());
   auto frames = framesFrom0To(kFrames);
@@ -197,8 +198,8 @@ TEST(Pipeline, RecordsWhenEachStageWorked) {
       EXPECT_GE(span.start, timing.admitted);
       EXPECT_LE(span.end, timing.published);
     }
-    EXPECT_GE(timing.of(Stage::kMotion).start, timing.of(Stage::kStereo).end);
-    EXPECT_GE(timing.of(Stage::kMotion).start, timing.of(Stage::kFlow).end);
+    EXPECT_GE(timing.of(Stage::kSceneFlowSegmentation).start, timing.of(Stage::kStereoMatching).end);
+    EXPECT_GE(timing.of(Stage::kSceneFlowSegmentation).start, timing.of(Stage::kOpticalFlow).end);
     EXPECT_GE(timing.latency_ms(), 5);
   }
   EXPECT_EQ(run.summary.latency.count(), 5);

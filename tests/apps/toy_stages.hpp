@@ -22,7 +22,7 @@ inline StereoFrame frameAt(std::int64_t index) {
   return frame;
 }
 
-/// Stages that carry the frame's number through, take as long as `work` says, and move the camera by one meter per
+/// Stages that pass the frame's number on, take as long as `work` says, and move the camera by one meter per
 /// frame.
 struct ToyStages {
   std::function<void(Stage, FrameId)> work = [](Stage, FrameId) {};
@@ -32,13 +32,14 @@ struct ToyStages {
   bool branches_met_wrongly = false;
 
   Stages stages() {
-    return {.prepare = [this](const StereoFramePtr& m) { return prepare(m); },
-            .stereo = [this](const FeaturesPtr& m) { return stereo(m); },
-            .flow = [this](const FeaturesPtr& m) { return flow(m); },
-            .motion = [this](const StereoMatchesPtr& s, const OpticalFlowPtr& f) { return motion(s, f); },
-            .tracking = [this](const SceneMotionPtr& m) { return tracking(m); },
-            .optimization = [this](const FrameMeasurementsPtr& m) { return optimize(m); },
-            .finish = [this] { return std::exchange(window, {}); }};
+    return {
+        .prepare = [this](const StereoFramePtr& m) { return prepare(m); },
+        .stereo_matching = [this](const FeaturesPtr& m) { return stereo(m); },
+        .optical_flow = [this](const FeaturesPtr& m) { return flow(m); },
+        .scene_flow_segmentation = [this](const StereoMatchesPtr& s, const OpticalFlowPtr& f) { return motion(s, f); },
+        .tracking = [this](const SceneMotionPtr& m) { return tracking(m); },
+        .incremental_optimization = [this](const FrameMeasurementsPtr& m) { return optimize(m); },
+        .finish = [this] { return std::exchange(window, {}); }};
   }
 
   FeaturesPtr prepare(const StereoFramePtr& frame) {
@@ -48,17 +49,17 @@ struct ToyStages {
     return std::make_shared<const Features>(features);
   }
   StereoMatchesPtr stereo(const FeaturesPtr& features) {
-    work(Stage::kStereo, features->frame->frame);
+    work(Stage::kStereoMatching, features->frame->frame);
     return std::make_shared<const StereoMatches>(StereoMatches{features, {}});
   }
   OpticalFlowPtr flow(const FeaturesPtr& features) {
-    work(Stage::kFlow, features->frame->frame);
+    work(Stage::kOpticalFlow, features->frame->frame);
     order_of_flow.push_back(features->frame->frame.value);
     return std::make_shared<const OpticalFlow>(OpticalFlow{features, {}});
   }
   SceneMotionPtr motion(const StereoMatchesPtr& matches, const OpticalFlowPtr& flow) {
     const StereoFrame& frame = *flow->features->frame;
-    work(Stage::kMotion, frame.frame);
+    work(Stage::kSceneFlowSegmentation, frame.frame);
     if (matches->features != flow->features) branches_met_wrongly = true;
     order_of_motion.push_back(frame.frame.value);
     SceneMotion result;
@@ -78,7 +79,7 @@ struct ToyStages {
     return std::make_shared<const FrameMeasurements>(result);
   }
   EstimatesPtr optimize(const FrameMeasurementsPtr& measurements) {
-    work(Stage::kOptimization, measurements->frame);
+    work(Stage::kIncrementalOptimization, measurements->frame);
     order_of_backend.push_back(measurements->frame.value);
     traveled_m += measurements->T_previous_now.translation().z();
     Estimates result;

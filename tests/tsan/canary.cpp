@@ -54,15 +54,17 @@ long raceOfStage() {
     features.frame = frame;
     return std::make_shared<const Features>(std::move(features));
   };
-  stages.stereo = [](const FeaturesPtr& features) {
+  stages.stereo_matching = [](const FeaturesPtr& features) {
     return std::make_shared<const StereoMatches>(StereoMatches{features, {}});
   };
-  stages.flow = [](const FeaturesPtr& features) {
+  stages.optical_flow = [](const FeaturesPtr& features) {
     return std::make_shared<const OpticalFlow>(OpticalFlow{features, {}});
   };
-  stages.motion = [](const StereoMatchesPtr&, const OpticalFlowPtr&) { return std::make_shared<const SceneMotion>(); };
+  stages.scene_flow_segmentation = [](const StereoMatchesPtr&, const OpticalFlowPtr&) {
+    return std::make_shared<const SceneMotion>();
+  };
   stages.tracking = [](const SceneMotionPtr&) { return std::make_shared<const FrameMeasurements>(); };
-  stages.optimization = [](const FrameMeasurementsPtr&) { return std::make_shared<const Estimates>(); };
+  stages.incremental_optimization = [](const FrameMeasurementsPtr&) { return std::make_shared<const Estimates>(); };
   stages.finish = [] { return std::vector<FrameEstimate>(); };
   Pipeline pipeline({.threads = 2}, std::move(stages));
   std::jthread producer([&pipeline] {

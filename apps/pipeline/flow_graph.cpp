@@ -1,0 +1,167 @@
+#include "apps/pipeline/flow_graph.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <future>
+#include <thread>
+#include <tuple>
+#include <utility>
+
+#include <oneapi/tbb/flow_graph.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include "apps/pipeline/edge_gauge.hpp"
+#include "apps/pipeline/entrance.hpp"
+#include "apps/pipeline/publisher.hpp"
+#include "apps/pipeline/stage_runner.hpp"
+
+namespace motorcade {
+namespace {
+
+namespace flow = oneapi::tbb::flow;
+
+using Node = flow::function_node<Job*, Job*>;
+using InOrder = flow::sequencer_node<Job*>;
+using JobPair = std::tuple<Job*, Job*>;  // twice the same job, from the two branches
+
+/// The edges on which frames may wait.
+enum Edge : std::size_t {
+  kToPrepare,
+  kToStereo,
+  kToFlow,
+  kStereoToSegmentation,
+  kFlowToSegmentation,
+  kToTracking,
+  kToOptimization,
+  kToPublish,
+  kEdges
+};
+constexpr std::array<const char*, kEdges> kEdgeNames{"admit>prepare",
+                                                     "prepare>stereo_matching",
+                                                     "prepare>optical_flow",
+                                                     "stereo_matching>scene_flow_segmentation",
+                                                     "optical_flow>scene_flow_segmentation",
+                                                     "scene_flow_segmentation>tracking",
+                                                     "tracking>incremental_optimization",
+                                                     "incremental_optimization>publish"};
+
+constexpr auto kSequence = [](const Job* job) { return job->sequence; };
+constexpr auto kSequenceOfPair = [](const JobPair& pair) { return std::get<0>(pair)->sequence; };
+
+}  // namespace
+
+class FlowGraph::Impl {
+ public:
+  Impl(int threads, const Work& work);
+
+  void put(Job& job);
+  void close() { graph_->release_wait(); }
+  void join() { thread_.join(); }
+  std::vector<QueueMark> queues(std::int64_t bound) const;
+
+ private:
+  void run(std::promise<void>& wired);
+  auto stage(std::vector<Edge> in, void (StageRunner::*work)(Job&), std::vector<Edge> out);
+  void publish(Job& job);
+
+  Work work_;
+  std::array<EdgeGauge, kEdges> gauges_;
+  oneapi::tbb::task_arena arena_;
+  flow::graph* graph_ = nullptr;  // on the stack of `run`, like all nodes
+  flow::receiver<Job*>* first_node_ = nullptr;
+  std::jthread thread_;
+};
+
+/// One slot of the arena is reserved for the thread of `run`, which works too: together they are `threads` workers.
+FlowGraph::Impl::Impl(int threads, const Work& work)
+    : work_(work), arena_(std::min(threads, oneapi::tbb::info::default_concurrency()), 1) {
+  std::promise<void> promise;
+  auto wired = promise.get_future();
+  thread_ = std::jthread([this, &promise] { arena_.execute([this, &promise] { run(promise); }); });
+  wired.get();
+}
+
+/// What a node does with a job: takes it off the edges that lead here, works, and leaves it on the edges that lead on.
+auto FlowGraph::Impl::stage(std::vector<Edge> in, void (StageRunner::*work)(Job&), std::vector<Edge> out) {
+  return [this, in = std::move(in), work, out = std::move(out)](Job* job) {
+    for (const Edge edge : in) gauges_[edge].leave();
+    (work_.stages.*work)(*job);
+    for (const Edge edge : out) gauges_[edge].enter();
+    return job;
+  };
+}
+
+void FlowGraph::Impl::publish(Job& job) {
+  gauges_[kToPublish].leave();
+  work_.publisher.publish(job);
+}
+
+/// The wiring: stateless stages `unlimited`, stages with memory `serial` behind a sequencer (a serial node may start
+/// its next message before it has handed on the last one). Stays in the graph until it is closed and all jobs are out.
+void FlowGraph::Impl::run(std::promise<void>& wired) {
+  flow::graph graph;
+  Node prepare(graph, flow::unlimited, stage({kToPrepare}, &StageRunner::prepare, {kToStereo, kToFlow}));
+  Node stereo_matching(graph, flow::unlimited, stage({kToStereo}, &StageRunner::matchStereo, {kStereoToSegmentation}));
+  InOrder flow_order(graph, kSequence);
+  Node optical_flow(graph, flow::serial, stage({kToFlow}, &StageRunner::trackFlow, {kFlowToSegmentation}));
+  flow::join_node<JobPair, flow::key_matching<std::size_t>> both(graph, kSequence, kSequence);
+  flow::sequencer_node<JobPair> segmentation_order(graph, kSequenceOfPair);
+  const auto segment =
+      stage({kStereoToSegmentation, kFlowToSegmentation}, &StageRunner::segmentSceneFlow, {kToTracking});
+  flow::function_node<JobPair, Job*> scene_flow_segmentation(graph, flow::serial, [this, segment](const JobPair& pair) {
+    Job* const job = segment(std::get<0>(pair));
+    work_.entrance.pass();
+    return job;
+  });
+  InOrder tracking_order(graph, kSequence);
+  Node tracking(graph, flow::serial, stage({kToTracking}, &StageRunner::trackObjects, {kToOptimization}));
+  InOrder optimization_order(graph, kSequence);
+  Node incremental_optimization(graph, flow::serial, stage({kToOptimization}, &StageRunner::optimize, {kToPublish}));
+  InOrder publish_order(graph, kSequence);
+  flow::function_node<Job*, flow::continue_msg> publish(graph, flow::serial, [this](Job* job) { this->publish(*job); });
+
+  flow::make_edge(prepare, stereo_matching);
+  flow::make_edge(prepare, flow_order);
+  flow::make_edge(flow_order, optical_flow);
+  flow::make_edge(stereo_matching, flow::input_port<0>(both));
+  flow::make_edge(optical_flow, flow::input_port<1>(both));
+  flow::make_edge(both, segmentation_order);
+  flow::make_edge(segmentation_order, scene_flow_segmentation);
+  flow::make_edge(scene_flow_segmentation, tracking_order);
+  flow::make_edge(tracking_order, tracking);
+  flow::make_edge(tracking, optimization_order);
+  flow::make_edge(optimization_order, incremental_optimization);
+  flow::make_edge(incremental_optimization, publish_order);
+  flow::make_edge(publish_order, publish);
+
+  first_node_ = &prepare;
+  graph_ = &graph;
+  graph.reserve_wait();
+  wired.set_value();
+  graph.wait_for_all();
+  work_.publisher.close();
+}
+
+void FlowGraph::Impl::put(Job& job) {
+  gauges_[kToPrepare].enter();
+  first_node_->try_put(&job);  // never refused: the node queues
+}
+
+std::vector<QueueMark> FlowGraph::Impl::queues(std::int64_t bound) const {
+  std::vector<QueueMark> marks;
+  for (std::size_t edge = 0; edge < kEdges; ++edge)
+    marks.push_back({kEdgeNames[edge], gauges_[edge].highWater(), bound});
+  return marks;
+}
+
+FlowGraph::FlowGraph(int threads, const Work& work) : impl_(std::make_unique<Impl>(threads, work)) {}
+FlowGraph::~FlowGraph() = default;
+
+void FlowGraph::put(Job& job) { impl_->put(job); }
+void FlowGraph::close() { impl_->close(); }
+void FlowGraph::join() { impl_->join(); }
+std::vector<QueueMark> FlowGraph::queues(std::int64_t bound) const { return impl_->queues(bound); }
+
+}  // namespace motorcade

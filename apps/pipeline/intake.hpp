@@ -1,0 +1,63 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "apps/pipeline/entrance.hpp"
+#include "apps/pipeline/gap_filler.hpp"
+#include "apps/pipeline/job.hpp"
+#include "apps/pipeline/log_callback.hpp"
+#include "apps/pipeline/pipeline_params.hpp"
+#include "core/mailbox.hpp"
+#include "core/messages.hpp"
+#include "core/spsc_ring.hpp"
+
+namespace motorcade {
+
+/// How frames get in: from the producer's thread, by a ring (replay) or a mailbox (live), to the pump, which admits
+/// them one by one into a free job.
+class Intake {
+ public:
+  Intake(const PipelineParams& params, FreeJobs& free_jobs, Entrance& entrance, LogCallback log);
+
+  /// Producer: see `Pipeline`.
+  bool push(StereoFrame frame);
+  void passOver(const FrameHeader& frame);
+  /// Any thread: no further frame comes.
+  void close();
+
+  /// Pump: the next frame, admitted; waits for a free job first and then for a frame, so that in live it is the newest.
+  /// Null after the last frame.
+  Job* next();
+
+  /// After the end.
+  std::int64_t received() const { return received_.load(); }
+  std::int64_t dropped() const { return newest_.overwritten() + passed_over_.load(); }
+  std::size_t highWater() const { return input_.highWater(); }
+
+ private:
+  bool live() const { return policy_ == InputPolicy::kLive; }
+  void announce(FrameHeader header);
+  void admit(Job& job, StereoFrame frame);
+  std::vector<FrameHeader> droppedBefore(FrameId frame);
+
+  InputPolicy policy_;
+  FreeJobs& free_jobs_;
+  Entrance& entrance_;
+  LogCallback log_;
+
+  // The ring in replay; in live the mailbox, and the headers of all frames to know those that it lost.
+  SpscRing<StereoFrame> input_;
+  Mailbox<StereoFrame> newest_;
+  SpscRing<FrameHeader> headers_;
+  std::atomic<std::int64_t> received_{0}, passed_over_{0};
+
+  FrameId next_id_{0};                       // producer only
+  std::optional<FrameHeader> header_ahead_;  // pump only: taken from `headers_`, later than the newest frame
+  std::size_t admitted_ = 0;                 // pump only
+};
+
+}  // namespace motorcade

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "apps/pipeline/gap_filler.hpp"
+#include "core/frame_timing.hpp"
+#include "core/messages.hpp"
+#include "core/spsc_ring.hpp"
+#include "frontend/messages.hpp"
+
+namespace motorcade {
+
+/// One frame on its way through the stages, with the messages that they have made so far.
+/// Each field has one writer; the graph's edges order writers before readers.
+struct Job {
+  std::size_t sequence = 0;  // without gaps, unlike the frame's id
+  std::vector<FrameHeader> dropped;
+  StereoFramePtr frame;
+  FeaturesPtr features;
+  StereoMatchesPtr matches;
+  OpticalFlowPtr flow;
+  SceneMotionPtr motion;
+  FrameMeasurementsPtr measurements;
+  EstimatesPtr estimates;
+  FrameTiming timing;
+  std::array<std::string, kStageCount> problems;  // exceptions of the stages
+
+  std::string& problemOf(Stage stage) { return problems[static_cast<std::size_t>(stage)]; }
+  /// `frame 12`, for messages.
+  std::string name() const { return "frame " + std::to_string(timing.frame.value); }
+  /// Lets go of the messages, with their images.
+  void clear() {
+    dropped.clear();
+    frame.reset();
+    features.reset();
+    matches.reset();
+    flow.reset();
+    motion.reset();
+    measurements.reset();
+    estimates.reset();
+  }
+};
+
+/// The tokens: a frame needs a job to enter the flow graph, so that there are never more frames in flight than jobs.
+/// One thread takes jobs, one gives them back.
+class FreeJobs {
+ public:
+  explicit FreeJobs(std::size_t count) : jobs_(count), free_(count) {
+    for (Job& job : jobs_) giveBack(job);
+  }
+
+  /// Waits for a free job; null once closed.
+  Job* take() { return free_.pop().value_or(nullptr); }
+  void giveBack(Job& job) { free_.push(&job); }
+  void close() { free_.close(); }
+
+ private:
+  std::vector<Job> jobs_;
+  SpscRing<Job*> free_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/frame_timing.hpp"
+#include "core/latency_histogram.hpp"
+#include "core/messages.hpp"
+
+/// What a pipeline gives to its consumer: a result per frame, and a summary at the end.
+namespace motorcade {
+
+/// One processed or rejected frame, published in frame order. Owns its facts: no image stays alive through it.
+struct PipelineResult {
+  FrameEstimate online;
+  std::vector<FrameEstimate> dropped;  // frames that the live policy dropped just before this one, with predicted poses
+  std::vector<FrameEstimate> finals;   // every frame once, in order, when it leaves the smoothing window
+  FrameTiming timing;
+  SolverCounters counters;
+  std::string problem;  // why the frame was rejected or lost, empty when all went well
+};
+
+/// The most frames that ever waited in one queue.
+struct QueueMark {
+  std::string name;
+  std::int64_t high_water = 0, bound = 0;
+};
+
+/// received == processed + dropped + rejected, once the run has ended.
+struct PipelineSummary {
+  std::int64_t received = 0, processed = 0, dropped = 0, rejected = 0;
+  std::int64_t lost = 0;  // of the processed ones: without an ego-motion
+  LatencyHistogram latency, latency_with_decoding;
+  std::array<LatencyHistogram, kStageCount> stages;
+  std::vector<QueueMark> queues;
+  SolverCounters solver;
+};
+
+struct PipelineEnd {
+  std::vector<PipelineResult> results;  // those that were not taken before
+  std::vector<FrameEstimate> finals;    // frames that were still in the window, oldest first
+  PipelineSummary summary;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "apps/pipeline/gap_filler.hpp"
+#include "apps/pipeline/job.hpp"
+#include "apps/pipeline/pipeline_params.hpp"
+#include "apps/pipeline/pipeline_result.hpp"
+#include "core/spsc_ring.hpp"
+
+namespace motorcade {
+
+/// How results get out: copies the facts of a finished job, hands them to the consumer and gives the job back.
+class Publisher {
+ public:
+  Publisher(const PipelineParams& params, FreeJobs& free_jobs);
+
+  /// In frame order; waits while the consumer is behind.
+  void publish(Job& job);
+  /// No further result comes, or none will be taken.
+  void close() { results_.close(); }
+
+  /// Consumer: the next result, waiting for it; empty after the last one.
+  std::optional<PipelineResult> next() { return results_.pop(); }
+  /// Consumer: the next result if there is one already.
+  std::optional<PipelineResult> poll() { return results_.tryPop(); }
+
+  /// After the last `publish`: all frames that are not final yet, oldest first. `last` are the back-end's.
+  std::vector<FrameEstimate> lastFinals(const std::vector<FrameEstimate>& last);
+  const PipelineSummary& summary() const { return summary_; }
+  std::size_t highWater() const { return results_.highWater(); }
+
+ private:
+  PipelineResult resultOf(Job& job);
+  void count(const Job& job, const PipelineResult& result);
+
+  FreeJobs& free_jobs_;
+  SpscRing<PipelineResult> results_;
+  GapFiller gaps_;
+  PipelineSummary summary_;
+};
+
+}  // namespace motorcade

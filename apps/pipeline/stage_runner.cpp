@@ -1,0 +1,100 @@
+#include "apps/pipeline/stage_runner.hpp"
+
+#include <chrono>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <oneapi/tbb/task_arena.h>
+
+#include "apps/pipeline/stage_fallbacks.hpp"
+#include "core/thread_clock.hpp"
+
+namespace motorcade {
+namespace {
+
+/// Calls `work`; what it threw in words, empty when nothing.
+template <class Work>
+std::string exceptionOf(const Work& work) {
+  try {
+    work();
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "unknown exception";
+  }
+  return {};
+}
+
+}  // namespace
+
+StageRunner::StageRunner(Stages stages, LogCallback log) : stages_(std::move(stages)), log_(std::move(log)) {}
+
+/// Isolated, so that a stage that waits for its own parallel loop does not begin with a later frame meanwhile.
+template <class Run, class Fallback>
+auto StageRunner::attempt(Job& job, Stage stage, const Run& run, const Fallback& fallback) {
+  StageSpan& span = job.timing.of(stage);
+  decltype(run()) message;
+  span.worker = oneapi::tbb::this_task_arena::current_thread_index();
+  span.start = std::chrono::steady_clock::now();
+  const double cpu_before_ms = threadCpu_ms();
+  const std::string problem = exceptionOf([&] {
+    oneapi::tbb::this_task_arena::isolate([&] { message = run(); });
+    if (!message) throw std::logic_error("no message came out");
+  });
+  if (!problem.empty()) {
+    job.problemOf(stage) = std::string(nameOf(stage)) + " failed: " + problem;
+    log_(LogLevel::kError, job.name() + ": " + job.problemOf(stage));
+    message = fallback();
+  }
+  span.cpu_ms = threadCpu_ms() - cpu_before_ms;
+  span.end = std::chrono::steady_clock::now();
+  return message;
+}
+
+void StageRunner::prepare(Job& job) {
+  job.features = attempt(
+      job, Stage::kPrepare, [&] { return stages_.prepare(job.frame); },
+      [&] { return rejectedFeatures(*job.frame, job.problemOf(Stage::kPrepare)); });
+}
+
+void StageRunner::matchStereo(Job& job) {
+  job.matches = attempt(
+      job, Stage::kStereoMatching, [&] { return stages_.stereo_matching(job.features); },
+      [&] { return noMatches(job.features); });
+}
+
+void StageRunner::trackFlow(Job& job) {
+  job.flow = attempt(
+      job, Stage::kOpticalFlow, [&] { return stages_.optical_flow(job.features); },
+      [&] { return noFlow(job.features); });
+}
+
+void StageRunner::segmentSceneFlow(Job& job) {
+  job.motion = attempt(
+      job, Stage::kSceneFlowSegmentation, [&] { return stages_.scene_flow_segmentation(job.matches, job.flow); },
+      [&] { return predictedMotion(*job.features->frame, last_motion_); });
+  last_motion_ = job.motion->T_previous_now;
+}
+
+void StageRunner::trackObjects(Job& job) {
+  job.measurements = attempt(
+      job, Stage::kTracking, [&] { return stages_.tracking(job.motion); }, [&] { return cameraAlone(*job.motion); });
+}
+
+void StageRunner::optimize(Job& job) {
+  job.estimates = attempt(
+      job, Stage::kIncrementalOptimization, [&] { return stages_.incremental_optimization(job.measurements); },
+      [&] { return lostEstimates(*job.measurements); });
+  for (const std::string& problem : job.estimates->problems) log_(LogLevel::kWarning, job.name() + ": " + problem);
+}
+
+std::vector<FrameEstimate> StageRunner::finish() {
+  std::vector<FrameEstimate> finals;
+  const std::string problem = exceptionOf([&] { finals = stages_.finish(); });
+  if (!problem.empty()) log_(LogLevel::kError, "the back-end could not finish: " + problem);
+  return finals;
+}
+
+}  // namespace motorcade

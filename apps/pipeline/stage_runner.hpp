@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "apps/pipeline/job.hpp"
+#include "apps/pipeline/log_callback.hpp"
+#include "apps/pipeline/stages.hpp"
+#include "core/messages.hpp"
+#include "core/se3.hpp"
+
+namespace motorcade {
+
+/// The pipeline's frame boundary: runs a stage on a job and notes when. A stage that throws costs its frame, not the
+/// run: the exception is logged and noted in the job, and a fallback stands in for the stage's message. Each
+/// function has the call rule of its stage, see `Stages`.
+class StageRunner {
+ public:
+  StageRunner(Stages stages, LogCallback log);
+
+  void prepare(Job& job);
+  void matchStereo(Job& job);
+  void trackFlow(Job& job);
+  void segmentSceneFlow(Job& job);
+  void trackObjects(Job& job);
+  void optimize(Job& job);
+  /// After the last frame: the estimates that are still in the window.
+  std::vector<FrameEstimate> finish();
+
+ private:
+  template <class Run, class Fallback>
+  auto attempt(Job& job, Stage stage, const Run& run, const Fallback& fallback);
+
+  Stages stages_;
+  LogCallback log_;
+  SE3 last_motion_;  // of `segmentSceneFlow` alone
+};
+
+}  // namespace motorcade
