@@ -12,7 +12,7 @@
 
 namespace motorcade {
 
-/// Writes a run folder (DESIGN section 5). Frames come in order, each exactly once as online and once as final; a line
+/// Writes a run folder (docs/formats.md). Frames come in order, each exactly once as online and once as final; a line
 /// per write keeps the folder readable at any moment. Not thread safe. Every failure is an OutputError naming the file.
 class RunFolderWriter {
  public:
@@ -26,7 +26,7 @@ class RunFolderWriter {
   void writeFinal(const FrameEstimate& estimate);
   /// `frames.csv` and `trace.json`.
   void writeTiming(const FrameTiming& timing);
-  /// Closes all files, then writes `summary.json`: its presence says that the run is complete.
+  /// Closes all files, then writes `summary.json`: a run with this file is complete.
   void finish(std::string_view summary_json);
 
  private:
@@ -62,7 +62,7 @@ struct RunFolder {
     double latency_ms = 0;
   };
   /// Poses and objects of one kind, online or final. Line i of the camera file belongs to frame first_frame + i.
-  struct Tracks {
+  struct Trajectories {
     std::vector<SE3> camera;
     std::vector<ObjectRow> objects;
   };
@@ -70,7 +70,7 @@ struct RunFolder {
   std::filesystem::path folder{};
   std::int64_t first_frame = 0;  // of the sequence; not zero when the run began later
   std::vector<FrameRow> frames{};
-  Tracks online{}, final{};
+  Trajectories online{}, final{};
   std::vector<CovarianceRow> covariances{};
   std::string summary_json{};  // empty when the run did not complete
 

@@ -38,7 +38,7 @@ double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 Canvas::Canvas(int width, int height, Color background) {
   image_.width = width;
   image_.height = height;
-  image_.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+  image_.pixels.resize(std::size_t{3} * width * height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) blend(x, y, background, 1);
 }

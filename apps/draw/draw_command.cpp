@@ -2,10 +2,7 @@
 
 #include <cstdio>
 #include <iostream>
-#include <memory>
 #include <string>
-
-#include <CLI/CLI.hpp>
 
 #include "apps/draw/frame_view.hpp"
 #include "io/errors.hpp"
@@ -20,7 +17,7 @@ void addTruth(DrawnRun& drawn, const Sequence& sequence) {
   if (!camera || drawn.first_frame >= std::ssize(camera->T_world_cam)) return;
   const SE3 T_run_world = camera->T_world_cam[drawn.first_frame].inverse();
   for (std::size_t i = 0; i < drawn.T_world_cam.size(); ++i) {
-    const std::size_t frame = static_cast<std::size_t>(drawn.first_frame) + i;
+    const std::size_t frame = drawn.first_frame + i;
     if (frame < camera->T_world_cam.size()) drawn.T_world_cam_true.push_back(T_run_world * camera->T_world_cam[frame]);
   }
   const auto truths = readObjectTruths(sequence, *camera);
@@ -36,15 +33,15 @@ DrawnRun drawnRun(const RunFolder& run, const Sequence& sequence) {
   drawn.camera = sequence.camera;
   drawn.first_frame = run.first_frame;
   // A run that was killed has few final poses: what was published online tells more then.
-  const RunFolder::Tracks& tracks = run.final.camera.size() >= run.online.camera.size() ? run.final : run.online;
-  drawn.T_world_cam = tracks.camera;
+  const RunFolder::Trajectories& shown = run.final.camera.size() >= run.online.camera.size() ? run.final : run.online;
+  drawn.T_world_cam = shown.camera;
   const std::size_t available =
       sequence.frames.size() - std::min(sequence.frames.size(), static_cast<std::size_t>(run.first_frame));
   if (drawn.T_world_cam.size() > available) drawn.T_world_cam.resize(available);
   for (std::size_t i = 0; i < drawn.T_world_cam.size(); ++i) {
-    drawn.stamps.push_back(sequence.stamps[static_cast<std::size_t>(run.first_frame) + i]);
+    drawn.stamps.push_back(sequence.stamps[run.first_frame + i]);
   }
-  for (const auto& row : tracks.objects) drawn.objects[row.frame.value - run.first_frame].push_back(row.object);
+  for (const auto& row : shown.objects) drawn.objects[row.frame.value - run.first_frame].push_back(row.object);
   addTruth(drawn, sequence);
   return drawn;
 }
@@ -66,9 +63,9 @@ int runDraw(const DrawOptions& options) {
   ImagePool pool;
   int pictures = 0;
   for (std::size_t i = 0; i < drawn.T_world_cam.size(); ++i) {
-    const std::size_t frame = static_cast<std::size_t>(drawn.first_frame) + i;
+    const std::size_t frame = drawn.first_frame + i;
     if (frame < options.frames.begin || frame >= options.frames.end ||
-        (frame - options.frames.begin) % static_cast<std::size_t>(options.every) != 0)
+        (frame - options.frames.begin) % options.every != 0)
       continue;
     try {
       const Image left = readImage(sequence.frames[frame].left, pool);
@@ -80,27 +77,6 @@ int runDraw(const DrawOptions& options) {
   }
   std::cout << pictures << " pictures in " << options.out.string() << '\n';
   return 0;
-}
-
-void addDrawCommand(CLI::App& app, std::function<int()>& action) {
-  const auto options = std::make_shared<DrawOptions>();
-  const auto frames = std::make_shared<std::string>(":");
-  CLI::App* command = app.add_subcommand("draw", "Draw a run: the annotated left images above a view from the top");
-  command->add_option("run", options->run, "Run folder")->required();
-  command->add_option("--sequence", options->sequence, "The sequence that was run")->required();
-  command->add_option("--out", options->out, "Folder for the pictures")->required();
-  command->add_option("--frames", *frames, "Frames A:B of the sequence");
-  command->add_option("--every", options->every, "Draw every Nth frame")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]")
-      ->capture_default_str();
-  command->callback([options, frames, &action] {
-    action = [options, frames] {
-      options->frames = parseFrameRange(*frames);
-      return runDraw(*options);
-    };
-  });
 }
 
 }  // namespace motorcade

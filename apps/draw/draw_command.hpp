@@ -1,13 +1,8 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 
 #include "io/sequence.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace motorcade {
 
@@ -20,8 +15,5 @@ struct DrawOptions {
 
 /// Draws frames of a run as PNG pictures `frame_NNNNNN.png`; gives the exit code. Failures are UserErrors.
 int runDraw(const DrawOptions& options);
-
-/// Registers `motorcade draw`; parsing it sets `action`.
-void addDrawCommand(CLI::App& app, std::function<int()>& action);
 
 }  // namespace motorcade

@@ -18,7 +18,7 @@ struct DrawnRun {
   std::vector<Timestamp> stamps;  // of the run's frames
   std::int64_t first_frame = 0;
   std::vector<SE3> T_world_cam, T_world_cam_true;               // the truth may be empty
-  std::map<std::int64_t, std::vector<ObjectEstimate>> objects;  // by place in the run
+  std::map<std::int64_t, std::vector<ObjectEstimate>> objects;  // by index of the frame in the run
   std::map<std::int64_t, std::vector<ObjectTruth>> true_objects;
 };
 

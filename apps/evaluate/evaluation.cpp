@@ -108,8 +108,8 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   const RunFolder run = readRunFolder(options.run);
   const CameraTruth camera = neededTruth(sequence, options.uninterpolated);
   const auto truths = readObjectTruths(sequence, camera);
-  const auto compare = [&](const RunFolder::Tracks& tracks, std::int64_t first_frame) {
-    return compareFrames(tracks, first_frame, camera, truths ? &*truths : nullptr, sequence.stamps);
+  const auto compare = [&](const RunFolder::Trajectories& trajectories, std::int64_t first_frame) {
+    return compareFrames(trajectories, first_frame, camera, truths ? &*truths : nullptr, sequence.stamps);
   };
   Evaluation evaluation;
   evaluation.run = options.run;

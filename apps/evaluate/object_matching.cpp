@@ -20,9 +20,9 @@ bool isCounted(const ObjectTruth& truth) {
 
 /// Fills in the motion of one label's track, its frames in order.
 void describeTrack(const std::vector<TrueObject*>& track, const std::vector<Timestamp>& stamps) {
-  const auto place = [&](std::size_t i) { return track[i]->truth.T_world_object.translation(); };
+  const auto position_m = [&](std::size_t i) { return track[i]->truth.T_world_object.translation(); };
   const auto stamp = [&](std::size_t i) { return stamps[track[i]->truth.frame.value]; };
-  const double way_m = (place(track.size() - 1) - place(0)).norm(),
+  const double way_m = (position_m(track.size() - 1) - position_m(0)).norm(),
                time_s = secondsBetween(stamp(0), stamp(track.size() - 1));
   const bool travels = way_m > kMovingDistance_m && way_m > kMovingSpeed_mps * time_s;
   int visible = 0;
@@ -34,7 +34,7 @@ void describeTrack(const std::vector<TrueObject*>& track, const std::vector<Time
       ++to;
     TrueObject& object = *track[i];
     const double span_s = secondsBetween(stamp(from), stamp(to));
-    object.speed_mps = span_s > 0 ? (place(to) - place(from)).norm() / span_s : 0;
+    object.speed_mps = span_s > 0 ? (position_m(to) - position_m(from)).norm() / span_s : 0;
     object.moving = travels && object.speed_mps > kMovingSpeed_mps;
     object.counted = isCounted(object.truth);
     object.visible_before = visible;
@@ -103,26 +103,26 @@ std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& t
   return frames;
 }
 
-std::vector<ComparedFrame> compareFrames(const RunFolder::Tracks& tracks, std::int64_t first_frame,
+std::vector<ComparedFrame> compareFrames(const RunFolder::Trajectories& trajectories, std::int64_t first_frame,
                                          const CameraTruth& camera, const ObjectTruths* truths,
                                          const std::vector<Timestamp>& stamps) {
   std::map<FrameId, std::vector<TrueObject>> objects;
   if (truths) objects = describeObjects(*truths, stamps);
   std::vector<ComparedFrame> frames;
   const auto count = static_cast<std::size_t>(
-      std::clamp<std::int64_t>(std::ssize(camera.T_world_cam) - first_frame, 0, std::ssize(tracks.camera)));
+      std::clamp<std::int64_t>(std::ssize(camera.T_world_cam) - first_frame, 0, std::ssize(trajectories.camera)));
   if (count == 0) return frames;
   const SE3 T_run_world = camera.T_world_cam[first_frame].inverse();
   for (std::size_t i = 0; i < count; ++i) {
     ComparedFrame frame;
     frame.frame.value = first_frame + static_cast<std::int64_t>(i);
-    frame.T_world_cam = tracks.camera[i];
+    frame.T_world_cam = trajectories.camera[i];
     frame.T_world_cam_true = T_run_world * camera.T_world_cam[frame.frame.value];
     frame.objects = objects[frame.frame];
     for (auto& object : frame.objects) object.truth.T_world_object = T_run_world * object.truth.T_world_object;
     frames.push_back(std::move(frame));
   }
-  for (const auto& row : tracks.objects) {
+  for (const auto& row : trajectories.objects) {
     const std::int64_t index = row.frame.value - first_frame;
     if (index < 0 || index >= std::ssize(frames)) continue;
     MatchedRow matched;

@@ -8,7 +8,7 @@
 #include "io/ground_truth.hpp"
 #include "io/run_folder.hpp"
 
-/// Brings a run's object rows and the labels together, frame by frame (DESIGN section 6).
+/// Brings a run's object rows and the labels together, frame by frame.
 namespace motorcade {
 
 /// What the measures need to know of a label in one frame.
@@ -46,7 +46,7 @@ std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& t
 /// Every frame that has a camera pose in `tracks` and in `camera`, with its rows matched one to one to labels: as many
 /// as possible within the gate max(3 m, half the length + 0.08 z), then the least total distance on the ground as seen
 /// from the camera. Without labels the frames have no objects.
-std::vector<ComparedFrame> compareFrames(const RunFolder::Tracks& tracks, std::int64_t first_frame,
+std::vector<ComparedFrame> compareFrames(const RunFolder::Trajectories& trajectories, std::int64_t first_frame,
                                          const CameraTruth& camera, const ObjectTruths* truths,
                                          const std::vector<Timestamp>& stamps);
 

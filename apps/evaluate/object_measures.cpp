@@ -32,7 +32,7 @@ std::vector<Pair> askedPairs(const std::vector<ComparedFrame>& frames) {
   return pairs;
 }
 
-/// E = L(k)^-1 H L(k-1) with H the estimated motion, carried from the estimated to the true camera (DESIGN section 6).
+/// E = L(k)^-1 H L(k-1) with H the estimated motion, moved from the estimated to the true camera.
 SE3 motionError(const Pair& before, const Pair& now) {
   const SE3 H_world = now.row->row.object.T_world_body * before.row->row.object.T_world_body.inverse();
   const SE3 H_cam = before.frame->T_world_cam.inverse() * H_world * before.frame->T_world_cam;

@@ -13,7 +13,7 @@ namespace motorcade {
 
 /// Motion of objects from frame to frame, and speed.
 struct MotionErrors {
-  Statistics me_m, me_deg;  // H against L, see DESIGN section 6
+  Statistics me_m, me_deg;  // H against L
   Statistics speed_mps;     // |estimated| - |true|
   double speed_bias_mps = 0;
   double speed_coverage = 0;  // share of speeds within 1.96 of their sigma

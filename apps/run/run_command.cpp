@@ -4,11 +4,9 @@
 #include <bit>
 #include <chrono>
 #include <cstdio>
-#include <memory>
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
 #include "apps/pipeline/configuration.hpp"
@@ -103,8 +101,8 @@ void follow(const Sequence& sequence, const FrameRange& range, const PipelineCon
   std::optional<CameraClock> clock;
   if (summary.rate_hz) clock.emplace(*summary.rate_hz / summary.capture_rate_hz, 1 / summary.capture_rate_hz);
   SequenceDecoder::Params decoding{.ahead = std::bit_floor(static_cast<std::size_t>(config.pipeline.frames_in_flight))};
-  if (clock && config.pipeline.policy ==
-                   InputPolicy::kLive)  // where decoding is too slow for the camera, what is overtaken is left out
+  // Where decoding is too slow for a live camera, pairs that a later one has overtaken are left out.
+  if (clock && config.pipeline.policy == InputPolicy::kLive)
     decoding.wanted = [&](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };
   SequenceDecoder decoder(sequence, range, decoding);
   Pipeline pipeline(config.pipeline, makeStages(config, sequence.camera), logToSpdlog);
@@ -116,7 +114,7 @@ void follow(const Sequence& sequence, const FrameRange& range, const PipelineCon
     try {
       while (const auto result = pipeline.next()) recorder.record(*result);
     } catch (...) {
-      pipeline.close();  // or the feeder would wait for room that nobody makes
+      pipeline.close();  // or the feeder would wait for room for ever
       throw;
     }
   }
@@ -131,7 +129,9 @@ void follow(const Sequence& sequence, const FrameRange& range, const PipelineCon
   summary.signal = signals.received();
 }
 
-int run(const RunOptions& options) {
+}  // namespace
+
+int runSequence(const RunOptions& options) {
   const ProcessUsage before = processUsage();
   const PipelineConfig config = configurationOf(options);
   const auto required_tracking = requiredTracking(options);
@@ -160,31 +160,6 @@ int run(const RunOptions& options) {
     return kExitUntracked;
   }
   return 0;
-}
-
-}  // namespace
-
-void addRunCommand(CLI::App& app, std::function<int()>& action) {
-  auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "Follow the camera and the moving vehicles through a stereo sequence");
-  command->add_option("SEQUENCE", options->sequence, "Folder of a plain, KITTI tracking, odometry or raw sequence")
-      ->required();
-  command->add_option("--out", options->out, "Folder for the results")->required();
-  command->add_option("--rate", options->rate, "Pace of the replay in pairs per second, or max (the default)");
-  command->add_option("--fps", options->fps_hz, "Capture rate of a sequence without times [Hz]")
-      ->check(CLI::Range(0.001, 100'000.0))
-      ->capture_default_str();
-  command->add_flag("--live", options->live,
-                    "Behave like a camera that does not wait: the newest pair wins, others are dropped");
-  command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
-  command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
-  command->add_option("--config", options->config, "Parameters; see effective_config.toml of any run")
-      ->type_name("FILE.toml");
-  command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")
-      ->type_name("KEY=VALUE");
-  command->add_option("--require", options->require, "Exit with 5 when fewer frames are tracked")
-      ->type_name("tracked=FRACTION");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 
 }  // namespace motorcade

@@ -1,14 +1,10 @@
 #pragma once
 
-#include <functional>
-
-namespace CLI {
-class App;
-}
+#include "apps/run/run_options.hpp"
 
 namespace motorcade {
 
-/// Adds `motorcade run`. When the user asks for it, `action` becomes what to do; it gives the exit code.
-void addRunCommand(CLI::App& app, std::function<int()>& action);
+/// Runs a sequence through the pipeline and writes the run folder; gives the exit code. Failures are UserErrors.
+int runSequence(const RunOptions& options);
 
 }  // namespace motorcade

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "apps/pipeline/configuration.hpp"
 #include "io/errors.hpp"
 
 namespace motorcade {

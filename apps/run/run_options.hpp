@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/configuration.hpp"
-#include "io/sequence.hpp"
+#include "apps/pipeline/pipeline_params.hpp"
 
 namespace motorcade {
+
+struct PipelineConfig;
 
 /// The command line of `motorcade run`, as the user typed it.
 struct RunOptions {

@@ -2,12 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
-
-namespace CLI {
-class App;
-}
 
 namespace motorcade {
 
@@ -22,8 +17,5 @@ struct SolveOptions {
 /// Solves a pose graph, prints the result and writes what else was asked for; gives the exit code. Failures are
 /// UserErrors.
 int runSolve(const SolveOptions& options);
-
-/// Registers `motorcade solve`; parsing it sets `action`.
-void addSolveCommand(CLI::App& app, std::function<int()>& action);
 
 }  // namespace motorcade

@@ -20,7 +20,7 @@ struct Rendering {
 struct RenderOptions {
   int threads = 2;
   float noise_levels = 1.3F;  // standard deviation of the sensor's noise at middle gray; 0 for none
-  bool equal_gains = false;   // both eyes equally sensitive
+  bool equal_gains = false;   // both cameras equally sensitive
 };
 
 /// Renders one eye. The result does not depend on the number of threads.

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <memory>
 #include <string>
 #include <thread>
 
@@ -10,16 +9,10 @@
 
 #include "apps/synth/scene_builder.hpp"
 #include "apps/synth/sequence_writer.hpp"
+#include "io/errors.hpp"
 
 namespace motorcade {
 namespace {
-
-struct Arguments {
-  std::string out, scene, size;
-  int frames = 0, threads = 0;
-  std::uint32_t seed = 1;
-  bool without_movers = false;
-};
 
 /// `1242x375`, checked.
 StereoCamera cameraOfSize(const std::string& size) {
@@ -28,7 +21,7 @@ StereoCamera cameraOfSize(const std::string& size) {
   if (size.empty()) return synth::kittiCamera();
   if (std::sscanf(size.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 64 || height < 32 || width > 8192 ||
       height > 8192)
-    throw CLI::ValidationError("--size", "expected WIDTHxHEIGHT from 64x32 to 8192x8192, got '" + size + "'");
+    throw UsageError("--size " + size + ": write WIDTHxHEIGHT from 64x32 to 8192x8192");
   return synth::kittiCamera(width, height);
 }
 
@@ -42,48 +35,30 @@ void reportProgress(int done, int frames, std::chrono::steady_clock::time_point&
                !terminal || done == frames ? "\n" : "");
 }
 
-int synthesize(const Arguments& arguments, const StereoCamera& camera) {
-  const synth::Scene scene = synth::makeScene(arguments.scene, arguments.seed);
-  synth::WriteOptions options;
-  options.frames = arguments.frames;
-  options.with_movers = !arguments.without_movers;
-  options.camera = camera;
-  options.render.threads =
-      arguments.threads > 0 ? arguments.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}  // namespace
+
+std::vector<std::string> synthSceneNames() { return synth::sceneNames(); }
+
+int runSynth(const SynthOptions& options) {
+  const StereoCamera camera = cameraOfSize(options.size);
+  const synth::Scene scene = synth::makeScene(options.scene, options.seed);
+  synth::WriteOptions writing;
+  writing.frames = options.frames;
+  writing.with_movers = !options.without_movers;
+  writing.camera = camera;
+  writing.render.threads =
+      options.threads > 0 ? options.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const auto start = std::chrono::steady_clock::now();
   int frames = 0;
-  options.progress = [&, last = start](int done, int of) mutable {
+  writing.progress = [&, last = start](int done, int of) mutable {
     frames = done;
     reportProgress(done, of, last);
   };
-  synth::writeSequence(scene, arguments.out, options);
+  synth::writeSequence(scene, options.out, writing);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::printf("%s: %d stereo pairs of scene '%s' in %.1f s (%.2f per second)\n", arguments.out.c_str(), frames,
+  std::printf("%s: %d stereo pairs of scene '%s' in %.1f s (%.2f per second)\n", options.out.c_str(), frames,
               scene.name.c_str(), seconds, frames / seconds);
   return 0;
-}
-
-}  // namespace
-
-void addSynthCommand(CLI::App& app, std::function<int()>& action) {
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("synth", "Render a stereo sequence with exact ground truth");
-  command->add_option("OUT", arguments->out, "folder to write")->required();
-  command->add_option("--scene", arguments->scene, "which scene")
-      ->required()
-      ->check(CLI::IsMember(synth::sceneNames()));
-  command->add_option("--frames", arguments->frames, "number of frames; the scene's own length when absent")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--seed", arguments->seed, "changes textures, colors, placement and, slightly, speeds")
-      ->capture_default_str();
-  command->add_option("--size", arguments->size, "image size as WIDTHxHEIGHT; 1242x375 when absent");
-  command->add_option("--threads", arguments->threads, "rendering threads; all processors when absent")
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--without-movers", arguments->without_movers, "the same scene without its moving vehicles");
-  command->callback([arguments, &action] {
-    const StereoCamera camera = cameraOfSize(arguments->size);
-    action = [arguments, camera] { return synthesize(*arguments, camera); };
-  });
 }
 
 }  // namespace motorcade

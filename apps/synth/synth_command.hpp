@@ -1,13 +1,22 @@
 #pragma once
 
-#include <functional>
-
-#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace motorcade {
 
-/// Registers `synth OUT --scene NAME`; when it is parsed, sets `action` to what the program shall do, which returns the
-/// exit code.
-void addSynthCommand(CLI::App& app, std::function<int()>& action);
+struct SynthOptions {
+  std::string out, scene, size;  // WIDTHxHEIGHT; empty for KITTI's
+  int frames = 0, threads = 0;   // 0: the scene's own length, all processors
+  std::uint32_t seed = 1;
+  bool without_movers = false;
+};
+
+/// The scenes that there are.
+std::vector<std::string> synthSceneNames();
+
+/// Renders a sequence; gives the exit code. Failures are UserErrors.
+int runSynth(const SynthOptions& options);
 
 }  // namespace motorcade

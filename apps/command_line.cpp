@@ -1,0 +1,138 @@
+#include "apps/command_line.hpp"
+
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/draw/draw_command.hpp"
+#include "apps/evaluate/evaluate_command.hpp"
+#include "apps/run/run_command.hpp"
+#include "apps/solve/solve_command.hpp"
+#include "apps/synth/synth_command.hpp"
+
+/// The only source that includes CLI11, which takes long to compile.
+namespace motorcade {
+namespace {
+
+using Action = std::function<int()>;
+
+constexpr int kExitUsage = 2;
+
+void addRun(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Follow the camera and the moving vehicles through a stereo sequence");
+  command->add_option("SEQUENCE", options->sequence, "Folder of a plain, KITTI tracking, odometry or raw sequence")
+      ->required();
+  command->add_option("--out", options->out, "Folder for the results")->required();
+  command->add_option("--rate", options->rate, "Pace of the replay in pairs per second, or max (the default)");
+  command->add_option("--fps", options->fps_hz, "Capture rate of a sequence without times [Hz]")
+      ->check(CLI::Range(0.001, 100'000.0))
+      ->capture_default_str();
+  command->add_flag("--live", options->live,
+                    "Behave like a camera that does not wait: the newest pair wins, others are dropped");
+  command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
+  command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
+  command->add_option("--config", options->config, "Parameters; see effective_config.toml of any run")
+      ->type_name("FILE.toml");
+  command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")
+      ->type_name("KEY=VALUE");
+  command->add_option("--require", options->require, "Exit with 5 when fewer frames are tracked")
+      ->type_name("tracked=FRACTION");
+  command->callback([options, &action] { action = [options] { return runSequence(*options); }; });
+}
+
+void addSynth(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<SynthOptions>();
+  CLI::App* command = app.add_subcommand("synth", "Render a stereo sequence with exact ground truth");
+  command->add_option("OUT", options->out, "folder to write")->required();
+  command->add_option("--scene", options->scene, "which scene")->required()->check(CLI::IsMember(synthSceneNames()));
+  command->add_option("--frames", options->frames, "number of frames; the scene's own length when absent")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--seed", options->seed, "changes textures, colors, placement and, slightly, speeds")
+      ->capture_default_str();
+  command->add_option("--size", options->size, "image size as WIDTHxHEIGHT; 1242x375 when absent");
+  command->add_option("--threads", options->threads, "rendering threads; all processors when absent")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--without-movers", options->without_movers, "the same scene without its moving vehicles");
+  command->callback([options, &action] { action = [options] { return runSynth(*options); }; });
+}
+
+void addEvaluate(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<EvaluateOptions>();
+  CLI::App* command = app.add_subcommand("evaluate", "Measure a run against the ground truth of its sequence");
+  command->add_option("run", options->run, "Run folder")->required();
+  command->add_option("--sequence", options->sequence, "The sequence that was run")->required();
+  command->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]")
+      ->capture_default_str();
+  command->add_option("--baseline", options->baseline,
+                      "KITTI pose lines of another camera trajectory, for the relative error");
+  command->add_option("--baseline-run", options->baseline_run,
+                      "Run folder of another method, for the relative error of the objects");
+  command->add_option("--export-truth", options->export_truth,
+                      "Folder for the true trajectories of camera and objects");
+  command->add_option("--json", options->json, "File for all measures as JSON");
+  command->add_flag("--uninterpolated", options->uninterpolated,
+                    "Take oxts packet k for image k, as published evaluations do");
+  command->callback([options, &action] { action = [options] { return runEvaluate(*options); }; });
+}
+
+void addDraw(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<DrawOptions>();
+  const auto frames = std::make_shared<std::string>(":");
+  CLI::App* command = app.add_subcommand("draw", "Draw a run: the annotated left images above a view from the top");
+  command->add_option("run", options->run, "Run folder")->required();
+  command->add_option("--sequence", options->sequence, "The sequence that was run")->required();
+  command->add_option("--out", options->out, "Folder for the pictures")->required();
+  command->add_option("--frames", *frames, "Frames A:B of the sequence");
+  command->add_option("--every", options->every, "Draw every Nth frame")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]")
+      ->capture_default_str();
+  command->callback([options, frames, &action] {
+    action = [options, frames] {
+      options->frames = parseFrameRange(*frames);
+      return runDraw(*options);
+    };
+  });
+}
+
+void addSolve(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<SolveOptions>();
+  CLI::App* command =
+      app.add_subcommand("solve", "Smooth a pose graph in g2o form incrementally, one update per new pose");
+  command->add_option("graph", options->graph, "g2o file, of poses in the plane or in space")->required();
+  command->add_option("--out", options->out, "g2o file for the optimized graph");
+  command->add_option("--json", options->json, "File for times, chi2 and problems as JSON");
+  command
+      ->add_option("--policy", options->policy, "fluid: relinearize what is off; every: a batch step every N updates")
+      ->check(CLI::IsMember({"fluid", "every"}))
+      ->capture_default_str();
+  command->add_option("--every", options->batch_every_updates, "N of --policy every")->check(CLI::PositiveNumber);
+  command
+      ->add_option("--budget", options->budget_scalars, "Scalars eliminated per update beyond what new edges ask for")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--batch", options->at_once, "The batch solution: everything at once, until it converges");
+  command->add_flag("--updates", options->every_update, "Write the times of every update to the JSON file too");
+  command->callback([options, &action] { action = [options] { return runSolve(*options); }; });
+}
+
+}  // namespace
+
+CommandLine parseCommandLine(int argc, const char* const* argv) {
+  CLI::App app("Follows a car's own path and the moving vehicles around it, from one stereo camera, in real time.",
+               "motorcade");
+  app.set_version_flag("--version", MOTORCADE_VERSION);
+  app.require_subcommand(1);
+  CommandLine command_line;
+  for (const auto add : {addRun, addSynth, addEvaluate, addDraw, addSolve}) add(app, command_line.action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return {.action = {}, .exit_code = app.exit(error) == 0 ? 0 : kExitUsage};
+  }
+  return command_line;
+}
+
+}  // namespace motorcade
