@@ -4,7 +4,7 @@
 #   perf/accuracy.sh [DATA_FOLDER] [OUT_FOLDER]
 set -euo pipefail
 cd "$(dirname "$0")/.."
-data=${1:-../shared/data}
+data=${1:-${MOTORCADE_DATA:-../shared/data}}
 out=${2:-results/accuracy}
 motorcade=${MOTORCADE:-build/release/apps/motorcade}
 seed=1

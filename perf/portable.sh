@@ -4,7 +4,7 @@
 #   perf/portable.sh [DRIVE] [FRAMES] [TOLERANCE]
 set -euo pipefail
 cd "$(dirname "$0")/.."
-drive=${1:-../shared/data/kitti_tracking_0003}
+drive=${1:-${MOTORCADE_DATA:-../shared/data}/kitti_tracking_0003}
 frames=${2:-30}
 tolerance=${3:-1e-6}
 native=${MOTORCADE:-build/release/apps/motorcade} portable=${MOTORCADE_PORTABLE:-build/portable/apps/motorcade}

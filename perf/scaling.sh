@@ -4,7 +4,7 @@
 #   perf/scaling.sh [DATA_FOLDER] [OUT_FOLDER]
 set -euo pipefail
 cd "$(dirname "$0")/.."
-data=${1:-../shared/data}
+data=${1:-${MOTORCADE_DATA:-../shared/data}}
 out=${2:-results/scaling}
 motorcade=${MOTORCADE:-build/release/apps/motorcade}
 bench=${PIPELINE_BENCH:-build/release/perf/apps/pipeline_bench}

@@ -11,6 +11,7 @@
 #include "io/run_folder.hpp"
 #include "io/trajectory.hpp"
 #include "tests/io/temporary_folder.hpp"
+#include "tests/support/data_folder.hpp"
 
 namespace motorcade {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 using test::messageOf;
 using testing::HasSubstr;
 
-const std::filesystem::path kData = MOTORCADE_SOURCE_DIR "/../shared/data";
+const std::filesystem::path kData = test::dataFolder();
 
 /// What others measured for VISO2-S with their own program; printed with three or four digits.
 struct Anchor {
@@ -30,8 +31,7 @@ class Anchors : public testing::TestWithParam<Anchor> {};
 
 TEST_P(Anchors, MeasuresOfVisoAgreeWithPublishedOnes) {
   const Anchor& anchor = GetParam();
-  if (!std::filesystem::exists(kData / anchor.drive))
-    GTEST_SKIP() << "../shared/data/" << anchor.drive << " is not there";
+  if (!std::filesystem::exists(kData / anchor.drive)) GTEST_SKIP() << kData / anchor.drive << " is not there";
   const Sequence sequence = openSequence(kData / anchor.drive);
   const auto poses = readKittiPoses(kData / "viso2" / (std::string(anchor.drive) + ".txt"));
   const auto errors = evaluatePoses(poses, sequence).camera;
@@ -58,7 +58,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(UninterpolatedTruth, GivesTheLargerErrorsOfPublishedEvaluations) {
   if (!std::filesystem::exists(kData / "kitti_tracking_0003"))
-    GTEST_SKIP() << "../shared/data/kitti_tracking_0003 is not there";
+    GTEST_SKIP() << kData / "kitti_tracking_0003"
+                 << " is not there";
   const auto errors = evaluatePoses(readKittiPoses(kData / "viso2/kitti_tracking_0003.txt"),
                                     openSequence(kData / "kitti_tracking_0003"), OxtsTimes::kUninterpolated)
                           .camera;

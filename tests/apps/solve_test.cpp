@@ -10,6 +10,7 @@
 
 #include "apps/solve/pose_graph_feed.hpp"
 #include "tests/io/temporary_folder.hpp"
+#include "tests/support/data_folder.hpp"
 #include "tests/support/matchers.hpp"
 
 /// `motorcade solve` from outside, on small graphs written here and on public ones; and the feed beneath it.
@@ -25,7 +26,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-const fs::path kGraphs = MOTORCADE_SOURCE_DIR "/../shared/data/posegraphs";
+const fs::path kGraphs = test::dataFolder() / "posegraphs";
 const std::string kUnit3 = " 1 0 0 1 0 1\n";
 const std::string kUnit6 = " 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1\n";
 
@@ -237,8 +238,7 @@ TEST_F(Solve, PublicGraphsReachTheirBatchOptimum) {
   const std::vector<std::pair<std::string, double>> optima{
       {"manhattan", 3549.04}, {"sphere2500", 1351.36}, {"parking-garage", 1.2684}};
   for (const auto& [name, chi2] : optima) {
-    if (!fs::exists(kGraphs / (name + ".g2o")))
-      GTEST_SKIP() << "../shared/data/posegraphs/" << name << ".g2o is not there";
+    if (!fs::exists(kGraphs / (name + ".g2o"))) GTEST_SKIP() << kGraphs / name << ".g2o is not there";
     const json result = solvedFile(kGraphs / (name + ".g2o"), "--batch");
     EXPECT_NEAR(result["chi2"], chi2, 1e-4 * chi2) << name;  // the digits known
     EXPECT_THAT(result["problems"], IsEmpty()) << name;
@@ -247,7 +247,7 @@ TEST_F(Solve, PublicGraphsReachTheirBatchOptimum) {
 
 TEST_F(Solve, APublicGraphIsSmoothedPoseByPose) {
   const fs::path manhattan = kGraphs / "manhattan.g2o";
-  if (!fs::exists(manhattan)) GTEST_SKIP() << "../shared/data/posegraphs/manhattan.g2o is not there";
+  if (!fs::exists(manhattan)) GTEST_SKIP() << manhattan << " is not there";
   const json result = solvedFile(manhattan);
   EXPECT_EQ(result["updates"], 3500);
   EXPECT_LT(result["chi2"], 1.01 * 3549.04);

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -19,9 +20,15 @@ namespace {
 
 constexpr int kExitCheckFailed = 1, kExitUsage = 2;
 
+/// Where the tests and scripts look for data: the folder that MOTORCADE_DATA names.
+std::filesystem::path dataFolder() {
+  const char* const named = std::getenv("MOTORCADE_DATA");
+  return named && *named ? named : "../shared/data";
+}
+
 struct Options {
   std::set<std::string> parts{"graphs", "drives"};
-  std::filesystem::path data = "../shared/data/posegraphs", json;
+  std::filesystem::path data = dataFolder() / "posegraphs", json;
   std::vector<std::string> graphs{"manhattan", "sphere2500",  "parking-garage",
                                   "torus3D",   "multibody_8", "multibody_8_loops"};
   std::vector<int> objects{0, 5, 20};
