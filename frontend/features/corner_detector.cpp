@@ -269,7 +269,7 @@ std::vector<Corner> CornerDetector::operator()(const Image& image) const {
 std::vector<Parameter> parametersOf(CornerDetector::Params& params) {
   return {numberParameter("max_corners", params.max_corners, {100, 20000},
                           "more corners: more points to follow, at more cost"),
-          numberParameter("min_score", params.min_score, {0.1, 20},
+          numberParameter("min_score", params.min_score, {0.1, 5},
                           "lower finds corners in dim or blurred images, higher ignores noise")};
 }
 

@@ -302,7 +302,7 @@ OpticalFlowPtr OpticalFlowTracker::operator()(const FeaturesPtr& features) {
 
 std::vector<Parameter> parametersOf(OpticalFlowTracker::Params& params) {
   return {
-      numberParameter("max_tracks", params.max_tracks, {100, 20000}, "more points are more exact, fewer are faster"),
+      numberParameter("max_tracks", params.max_tracks, {150, 20000}, "more points are more exact, fewer are faster"),
       numberParameter("max_flow_px", params.max_flow_px, {20, 1000}, "higher follows faster motion in the image"),
       numberParameter("max_round_trip_px", params.max_round_trip_px, {0.1, 5},
                       "higher keeps more points in noisy images, lower keeps better ones")};

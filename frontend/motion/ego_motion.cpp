@@ -170,7 +170,7 @@ std::vector<Parameter> parametersOf(EgoMotionEstimator::Params& params) {
   return {numberParameter("max_hypotheses", params.max_hypotheses, {10, 10000},
                           "more find the motion among more outliers, at more cost"),
           numberParameter("inlier_chi2", params.inlier_chi2, {4, 100}, "higher tolerates a worse calibration"),
-          numberParameter("min_inliers", params.min_inliers, {6, 200},
+          numberParameter("min_inliers", params.min_inliers, {6, 100},
                           "lower goes on in scenes with little texture, higher reports the frame as lost"),
           numberParameter("max_acceleration_mps2", params.max_acceleration_mps2, {1, 1000},
                           "what the vehicle can do: a motion beyond it must win by more")};

@@ -166,7 +166,7 @@ std::vector<Parameter> parametersOf(MotionSegmenter::Params& params) {
                           "lower cuts objects apart at smaller differences of their scene flow"),
           numberParameter("max_gap_m", params.max_gap_m, {0.2, 10},
                           "lower parts neighboring vehicles, higher joins sparse ones"),
-          numberParameter("min_points", params.min_points, {2, 30},
+          numberParameter("min_points", params.min_points, {2, 10},
                           "fewer find smaller and farther objects, more find fewer false ones"),
           numberParameter("min_speed_mps", params.min_speed_mps, {0.1, 10}, "lower finds slower objects"),
           numberParameter("min_significance", params.min_significance, {1, 20},

@@ -222,7 +222,7 @@ ObjectObservation ObjectMotionEstimator::firstSight(const TrackedObject& object,
 }
 
 std::vector<Parameter> parametersOf(ObjectMotionEstimator::Params& params) {
-  return {numberParameter("min_points", params.min_points, {2, 30},
+  return {numberParameter("min_points", params.min_points, {2, 10},
                           "fewer follow objects farther away, more follow them more surely")};
 }
 

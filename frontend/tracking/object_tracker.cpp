@@ -311,10 +311,10 @@ void ObjectTracker::bury(FrameMeasurements& measurements) {
 
 std::vector<Parameter> parametersOf(ObjectTracker::Params& params) {
   return {
-      numberParameter("confirm_observations", params.confirm_observations, {1, 20},
+      numberParameter("confirm_observations", params.confirm_observations, {1, 10},
                       "fewer report an object earlier, more surely"),
       numberParameter("confirm_speed_mps", params.confirm_speed_mps, {0, 10}, "lower reports slower objects"),
-      numberParameter("confirm_travel_m", params.confirm_travel_m, {0, 20},
+      numberParameter("confirm_travel_m", params.confirm_travel_m, {0, 10},
                       "lower reports an object earlier, higher more surely"),
       numberParameter("look_back_frames", params.look_back_frames, {0, 50},
                       "more fill in an object's path before it was confirmed"),

@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 
 #include "io/run_folder.hpp"
+#include "tests/support/data_folder.hpp"
 
 /// `motorcade run` from outside, on a short rendered drive that the build's test fixture makes.
 namespace motorcade {
@@ -195,13 +196,30 @@ TEST_F(Run, TellsWhatIsWrongByItsExitCode) {
   EXPECT_EQ(motorcade("run " + kSequence.string() + " --out " + (kSequence / "calib.txt").string()), 4);
 }
 
+TEST_F(Run, AnswersSettingsThatCannotWorkWithTheKeyAndItsRange) {
+  for (const std::string setting : {"frontend.disparity_offset.window_frames=0", "frontend.motion.max_missed_frames=30",
+                                    "frontend.motion.max_missed_frames=-1", "frontend.segmentation.max_gap_m=1e-6",
+                                    "backend.window_frames=1e300", "frontend.ground_plane.max_tilt_rad=inf"}) {
+    EXPECT_EQ(run("x", "--set " + setting), 2) << setting;
+    EXPECT_THAT(contentOf(errors()), HasSubstr("'" + setting.substr(0, setting.find('=')) + "' is ")) << setting;
+    EXPECT_THAT(contentOf(errors()), HasSubstr(" to ")) << setting;
+  }
+  // Keys that once could be set to something that ended the program; they are keys no more.
+  for (const std::string setting : {"frontend.motion.calibration_frames=0", "backend.factors.object_encounter_share=0",
+                                    "backend.final_iterations=0", "frontend.optical_flow.patch.window_px=10",
+                                    "frontend.optical_flow.min_distance_px=0"}) {
+    EXPECT_EQ(run("x", "--set " + setting), 2) << setting;
+    EXPECT_THAT(contentOf(errors()), HasSubstr("unknown key")) << setting;
+  }
+}
+
 /// Real frames with two lead cars; the tests that need them are skipped where the data is absent.
 class RealRun : public Run {
  protected:
   void SetUp() override {
     if (!fs::exists(drive_)) GTEST_SKIP() << drive_ << " is not there";
   }
-  const fs::path drive_ = fs::path(MOTORCADE_SOURCE_DIR) / "../shared/data/kitti_tracking_0003";
+  const fs::path drive_ = test::dataFolder() / "kitti_tracking_0003";
 };
 
 TEST_F(RealRun, FollowsTheCameraAndTheTwoLeadCars) {
