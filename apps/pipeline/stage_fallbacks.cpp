@@ -3,16 +3,10 @@
 #include <memory>
 #include <utility>
 
+#include "core/unknown_motion.hpp"
+
 namespace motorcade {
 namespace {
-
-/// Uncertainty of a motion that was not measured.
-Matrix6d unknownMotionCovariance() {
-  constexpr double kSigma_m = 1.0, kSigma_rad = 0.1;
-  Vector6d variances;
-  variances << Eigen::Vector3d::Constant(kSigma_m * kSigma_m), Eigen::Vector3d::Constant(kSigma_rad * kSigma_rad);
-  return variances.asDiagonal();
-}
 
 template <class Message>
 std::shared_ptr<const Message> shared(Message message) {

@@ -4,26 +4,13 @@
 #include <map>
 #include <optional>
 
-#include "backend/filter/object_filter.hpp"
+#include "core/is_finite.hpp"
 
 namespace motorcade {
 namespace {
 
-constexpr int kCovarianceFrames = 10;
+constexpr int kCovarianceFrames = 10;    // the camera's covariance is relative to that many frames earlier
 constexpr std::size_t kKeptFrames = 64;  // past camera poses, for observations from before a confirmation
-
-ObjectFilter::Params filterParams(const FilterBackend::Params& params) {
-  return {.acceleration = {params.acceleration_along_mps2, params.acceleration_sideways_mps2,
-                           params.acceleration_vertical_mps2, params.acceleration_yaw_radps2,
-                           params.acceleration_tilt_radps2},
-          .initial_speed_sigma_mps = params.initial_speed_sigma_mps,
-          .initial_turn_rate_sigma_radps = params.initial_turn_rate_sigma_radps,
-          .adapt_process_noise = params.adapt_process_noise,
-          .adaptation_time_s = params.adaptation_time_s,
-          .innovation_scale = params.innovation_scale};
-}
-
-bool isFinite(const SE3& T) { return T.rotation().allFinite() && T.translation().allFinite(); }
 
 }  // namespace
 
@@ -33,7 +20,7 @@ struct FilterBackend::State {
     SE3 T_world_cam, T_previous_now;
     Matrix6d odometry_covariance;
   };
-  ObjectFilter::Params params;
+  Params params;
   std::map<FrameId, Camera> cameras;
   std::map<TrackId, ObjectFilter> filters;
   double innovations = 0;
@@ -59,41 +46,39 @@ struct FilterBackend::State {
     return covariance;
   }
 
-  void observe(const ObjectObservation& seen) {
-    const auto camera = cameras.find(seen.frame);
-    if (camera == cameras.end() || !isFinite(seen.T_cam_body)) return;
-    const SE3 T_world_body = camera->second.T_world_cam * seen.T_cam_body;
-    const auto filter = filters.find(seen.track);
+  void observe(const ObjectObservation& observation) {
+    const auto camera = cameras.find(observation.frame);
+    if (camera == cameras.end() || !isFinite(observation.T_cam_body)) return;
+    const SE3 T_world_body = camera->second.T_world_cam * observation.T_cam_body;
+    const auto filter = filters.find(observation.track);
     if (filter == filters.end()) {
-      if (seen.encounter_covariance.allFinite())
-        filters.emplace(seen.track,
-                        ObjectFilter(params, camera->second.stamp, T_world_body, seen.encounter_covariance));
+      if (observation.encounter_covariance.allFinite())
+        filters.emplace(observation.track,
+                        ObjectFilter(params, camera->second.stamp, T_world_body, observation.encounter_covariance));
       return;
     }
     filter->second.predict(camera->second.stamp);
-    if (seen.state == ObjectState::kPredicted) return;
-    if (const auto normalized = filter->second.correct(T_world_body, seen.encounter_covariance)) {
+    if (observation.state == ObjectState::kPredicted) return;
+    if (const auto normalized = filter->second.correct(T_world_body, observation.encounter_covariance)) {
       innovations += *normalized;
       ++counters.factors;
     }
   }
 
-  ObjectEstimate read(const ObjectObservation& seen) const {
-    const ObjectFilter& filter = filters.at(seen.track);
-    return {.track = seen.track,
-            .state = seen.state,
+  ObjectEstimate read(const ObjectObservation& observation) const {
+    const ObjectFilter& filter = filters.at(observation.track);
+    return {.track = observation.track,
+            .state = observation.state,
             .T_world_body = filter.pose(),
             .velocity_world_mps = filter.velocityWorld_mps(),
             .speed_sigma_mps = filter.speedSigma_mps(),
-            .points = seen.points,
-            .box = seen.box,
+            .points = observation.points,
+            .box = observation.box,
             .covariance = filter.poseCovariance()};
   }
 };
 
-FilterBackend::FilterBackend(const Params& params) : state_(std::make_unique<State>()) {
-  state_->params = filterParams(params);
-}
+FilterBackend::FilterBackend(const Params& params) : state_(std::make_unique<State>()) { state_->params = params; }
 FilterBackend::~FilterBackend() = default;
 
 EstimatesPtr FilterBackend::operator()(const FrameMeasurementsPtr& measurements) {
@@ -107,10 +92,10 @@ EstimatesPtr FilterBackend::operator()(const FrameMeasurementsPtr& measurements)
                                  .objects = {}},
                       .finals = {},
                       .counters = {}};
-  for (const ObjectObservation& seen : m.objects) {
-    state_->observe(seen);
-    if (seen.frame == m.frame && state_->filters.contains(seen.track))
-      estimates.online.objects.push_back(state_->read(seen));
+  for (const ObjectObservation& observation : m.objects) {
+    state_->observe(observation);
+    if (observation.frame == m.frame && state_->filters.contains(observation.track))
+      estimates.online.objects.push_back(state_->read(observation));
   }
   std::ranges::sort(estimates.online.objects, {}, &ObjectEstimate::track);
   for (const TrackId track : m.ended) state_->filters.erase(track);

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "backend/smoother/factors.hpp"
+#include <optional>
+
+#include "core/constant_twist.hpp"
 #include "core/timestamp.hpp"
 
 namespace motorcade {
@@ -10,11 +12,14 @@ namespace motorcade {
 class ObjectFilter {
  public:
   struct Params {
-    AccelerationNoise acceleration;
-    double initial_speed_sigma_mps, initial_turn_rate_sigma_radps;
-    bool adapt_process_noise;
-    double adaptation_time_s;
-    double innovation_scale;
+    AccelerationNoise acceleration{
+        .along_mps2 = 2.0, .sideways_mps2 = 0.5, .vertical_mps2 = 0.3, .yaw_radps2 = 0.3, .tilt_radps2 = 0.1};
+    double initial_speed_sigma_mps = 10.0, initial_turn_rate_sigma_radps = 0.3;
+    /// Scales the process noise of each object so that its normalized innovation squared stays near 1 per dimension.
+    bool adapt_process_noise = true;
+    double adaptation_time_s = 2.0;
+    /// Innovations beyond this many sigma are weighted down (Huber).
+    double innovation_scale = 3.0;
   };
 
   ObjectFilter(const Params& params, Timestamp stamp, const SE3& T_world_body, const Matrix6d& covariance);
@@ -24,21 +29,19 @@ class ObjectFilter {
   /// when the measurement is unusable.
   std::optional<double> correct(const SE3& T_world_body, const Matrix6d& covariance);
 
-  const SE3& pose() const { return T_world_body_; }
-  Eigen::Vector3d velocityWorld_mps() const { return T_world_body_.rotation() * twist_.head<3>(); }
-  Matrix6d poseCovariance() const { return P_.topLeftCorner<6, 6>(); }
+  const SE3& pose() const { return state_.T_world_body; }
+  Eigen::Vector3d velocityWorld_mps() const { return state_.velocityWorld_mps(); }
+  Matrix6d poseCovariance() const { return state_.poseCovariance(); }
   double speedSigma_mps() const;
 
  private:
-  using Matrix12d = Eigen::Matrix<double, 12, 12>;
+  void adaptNoise(double normalized_innovation);
 
   Params params_;
   Timestamp stamp_;
   double dt_s_ = 0;  // of the last prediction
   double noise_scale_ = 1.0;
-  SE3 T_world_body_;
-  Vector6d twist_ = Vector6d::Zero();
-  Matrix12d P_ = Matrix12d::Zero();
+  ConstantTwistState state_;
 };
 
 }  // namespace motorcade

@@ -87,12 +87,6 @@ PoseResidual<3> SmoothMotionModel::evaluate(const std::array<SE3, 3>& z) const {
   return result;
 }
 
-Vector6d AccelerationNoise::density() const {
-  Vector6d sigma;
-  sigma << along_mps2, sideways_mps2, vertical_mps2, tilt_radps2, tilt_radps2, yaw_radps2;
-  return sigma.cwiseAbs2();
-}
-
 PoseNoise smoothMotionNoise(const AccelerationNoise& acceleration, double dt_before_s, double dt_after_s) {
   const Vector6d variance = 0.5 * (dt_before_s + dt_after_s) * acceleration.density();
   return {.sqrt_information = variance.cwiseSqrt().cwiseInverse().asDiagonal()};

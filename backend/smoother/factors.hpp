@@ -1,6 +1,7 @@
 #pragma once
 
 #include "backend/smoother/pose_factor.hpp"
+#include "core/constant_twist.hpp"
 
 /// The factors of multibody VSLAM (Reddy et al. 2016, section V; anchors after Kim et al. 2010).
 ///
@@ -54,13 +55,6 @@ struct SmoothMotionModel {
   PoseResidual<3> evaluate(const std::array<SE3, 3>& z) const;
 };
 using SmoothMotionFactor = PoseFactor<SmoothMotionModel, 3>;
-
-/// Standard deviation of the twist's change after one second (body axes: x ahead, y left, z up).
-struct AccelerationNoise {
-  double along_mps2, sideways_mps2, vertical_mps2, yaw_radps2, tilt_radps2;
-  /// Spectral density of white noise on acceleration, per second.
-  Vector6d density() const;
-};
 
 /// White noise on acceleration of density q makes the mean velocities of two adjacent intervals differ by q (dt1 + dt2)
 /// / 3, but such differences are correlated from one to the next (1/4); q (dt1 + dt2) / 2, independent, has the right

@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "backend/smoother/object_pairs.hpp"
+#include "core/is_finite.hpp"
+#include "core/unknown_motion.hpp"
 
 namespace motorcade {
 namespace {
-
-bool isFinite(const SE3& T) { return T.rotation().allFinite() && T.translation().allFinite(); }
 
 PoseNoise isotropic(double sigma_m, double sigma_rad) {
   Vector6d sigma;
@@ -40,15 +40,12 @@ bool isTrouble(SolverProblem::Kind kind) {
   return kind != Kind::kNotFinite && kind != Kind::kUnknownVariable && kind != Kind::kRepeatedVariable;
 }
 
-constexpr double kUnknownMotion_m = 2.0, kUnknownMotion_rad = 0.2;  // odometry whose covariance is unusable
-constexpr double kUsualInterval_s = 0.1;                            // between frames, until there are two
+constexpr double kUsualInterval_s = 0.1;  // between frames, until there are two
 
 }  // namespace
 
 TrajectoryGraph::TrajectoryGraph(const Optimizer::Params& params)
     : params_(params),
-      acceleration_{params.acceleration_along_mps2, params.acceleration_sideways_mps2,
-                    params.acceleration_vertical_mps2, params.acceleration_yaw_radps2, params.acceleration_tilt_radps2},
       series_inflation_(correlatedSeriesInflation(kUsualInterval_s, params.object_correlation_s)),
       solver_(solverParams(params)) {}
 
@@ -186,7 +183,7 @@ bool TrajectoryGraph::addSmoothness(const ObjectTrack& track, FrameId frame) {
                dt_after_s = secondsBetween(last[1]->stamp, last[0]->stamp);
   if (!(dt_before_s > 0) || !(dt_after_s > 0)) return false;
   const std::array variables{last[2]->z, last[1]->z, last[0]->z};
-  const PoseNoise noise = smoothMotionNoise(acceleration_, dt_before_s, dt_after_s);
+  const PoseNoise noise = smoothMotionNoise(params_.acceleration, dt_before_s, dt_after_s);
   return solver_
       .addFactor(std::make_unique<SmoothMotionFactor>(variables, SmoothMotionModel{dt_before_s, dt_after_s}, noise))
       .has_value();

@@ -4,20 +4,16 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/unknown_motion.hpp"
+
 namespace motorcade {
 namespace {
-
-/// Standard deviations of a predicted motion: within half a second without ego-motion a car may have braked at 6 m/s^2
-/// and changed its turn rate by 0.2 rad/s, which shows as so much in a frame of 0.1 s.
-constexpr double kLostSigma_m = 0.3, kLostSigma_rad = 0.02;
 
 CameraMotion predictedMotion(const SE3& T_previous_now, std::size_t observations) {
   CameraMotion motion{.status = FrameStatus::kLost,
                       .T_previous_now = T_previous_now,
                       .inliers = std::vector<bool>(observations, false)};
-  motion.covariance.setZero();
-  motion.covariance.diagonal().head<3>().setConstant(kLostSigma_m * kLostSigma_m);
-  motion.covariance.diagonal().tail<3>().setConstant(kLostSigma_rad * kLostSigma_rad);
+  motion.covariance = unknownMotionCovariance();
   return motion;
 }
 

@@ -20,10 +20,7 @@ PoseNoise robust(PoseNoise noise, RobustLoss loss, double scale) {
 }
 
 PoseNoise smoothness(const Optimizer::Params& p) {
-  const AccelerationNoise acceleration{p.acceleration_along_mps2, p.acceleration_sideways_mps2,
-                                       p.acceleration_vertical_mps2, p.acceleration_yaw_radps2,
-                                       p.acceleration_tilt_radps2};
-  return smoothMotionNoise(acceleration, MultibodyScene::kFrame_s, MultibodyScene::kFrame_s);
+  return smoothMotionNoise(p.acceleration, MultibodyScene::kFrame_s, MultibodyScene::kFrame_s);
 }
 
 const Optimizer::Params kProduct;

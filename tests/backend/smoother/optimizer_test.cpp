@@ -286,18 +286,5 @@ TEST(Optimizer, NamesAParameterOutOfRange) {
   }
 }
 
-TEST(FilterBackend, InnovationsMatchTheirCovariance) {
-  for (const bool adapt : {false, true}) {
-    SimulatedDrive drive(4, {});
-    FilterBackend::Params params;
-    params.adapt_process_noise = adapt;
-    FilterBackend filter(params);
-    const auto result = runDrive(filter, drive);
-    ASSERT_EQ(result.finals.size(), 60u);
-    std::cout << "filter NIS per dimension " << filter.meanNormalizedInnovation() << "\n";
-    EXPECT_NEAR(filter.meanNormalizedInnovation(), 1.0, 0.25);
-  }
-}
-
 }  // namespace
 }  // namespace motorcade

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace motorcade {
+
+/// A * B of fixed sizes. Eigen would take a product with more than eight rows or columns for a large one and compile
+/// its blocked kernels for each shape, at two seconds apiece. The sums are those of its kernels without vectors: of the
+/// first 8 n terms the even and the odd ones apart, as two chains that run side by side, then the rest in order. For
+/// code that is compiled to give the same bits on every processor (core and frontend).
+template <int Rows, int Inner, int Cols>
+Eigen::Matrix<double, Rows, Cols> fixedProduct(const Eigen::Matrix<double, Rows, Inner>& A,
+                                               const Eigen::Matrix<double, Inner, Cols>& B) {
+  constexpr int kPaired = Inner / 8 * 8;
+  Eigen::Matrix<double, Rows, Cols> product;
+  for (int c = 0; c < Cols; ++c) {
+    Eigen::Matrix<double, Rows, 1> even = Eigen::Matrix<double, Rows, 1>::Zero(), odd = even;
+    for (int k = 0; k < kPaired; k += 2) {
+      even += A.col(k) * B(k, c);
+      odd += A.col(k + 1) * B(k + 1, c);
+    }
+    even += odd;
+    for (int k = kPaired; k < Inner; ++k) even += A.col(k) * B(k, c);
+    product.col(c) = even;
+  }
+  return product;
+}
+
+}  // namespace motorcade
