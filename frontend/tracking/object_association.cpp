@@ -1,32 +1,36 @@
 #include "frontend/tracking/object_association.hpp"
 
-#include <limits>
-
 #include <Eigen/LU>
 
 #include "core/assignment.hpp"
+#include "frontend/tracking/body_axes.hpp"
 
 namespace motorcade {
 namespace {
 
-constexpr double kForbidden = 1e6;
+constexpr double kGateChi2 = 16.0;         // position and velocity over the ground, 4 degrees of freedom: 99.7 %
+constexpr double kCentroidSpread_m = 1.5;  // standard deviation of a segment's centroid about the body's origin
+constexpr double kVelocitySpread_mps = 1.0;
+constexpr double kDepthNoise = 0.02;         // of the centroid, over its depth: the errors that its points share
+constexpr double kSharedPointsBonus = 20.0;  // cost taken off when all points of the segment are the object's already:
+                                             // beyond the gate, as points outweigh any distance within it
+constexpr double kClaimedShare = 0.3;        // a segment with this share of an object's points belongs to it whatever
+                                             // the distance
+constexpr double kForbidden = 1e6;           // cost of a pair that must not match
 
-}  // namespace
-
-double sharedPoints(const TrackedObject& object, const SceneMotion& scene, const Segment& segment) {
-  int shared = 0;
-  for (const int i : segment.points) shared += object.find(scene.points[i].point) != nullptr;
-  return static_cast<double>(shared) / static_cast<double>(segment.points.size());
-}
-
-double ObjectAssociation::cost(const TrackedObject& object, const SceneMotion& scene, const Segment& segment,
-                               const SE3& T_world_cam) const {
+/// Projects world coordinates onto the road: two axes across its normal.
+Eigen::Matrix<double, 2, 3> overGround(const SceneMotion& scene, const SE3& T_world_cam) {
   const Eigen::Matrix3d& R = T_world_cam.rotation();
-  const Eigen::Vector3d up = -(R * scene.ground.normal_cam);
-  Eigen::Matrix<double, 2, 3> over_ground;  // projects onto the road: two axes across the normal
+  const Eigen::Vector3d up = upInWorld(scene, T_world_cam);
+  Eigen::Matrix<double, 2, 3> over_ground;
   over_ground.row(0) = R.col(0).transpose();
   over_ground.row(1) = up.cross(R.col(0)).normalized().transpose();
+  return over_ground;
+}
 
+double cost(const TrackedObject& object, const SceneMotion& scene, const Segment& segment, const SE3& T_world_cam) {
+  const Eigen::Matrix3d& R = T_world_cam.rotation();
+  const Eigen::Matrix<double, 2, 3> over_ground = overGround(scene, T_world_cam);
   const auto& k = object.kinematics;
   const Eigen::Matrix3d R_body = k.pose().rotation();
   const Eigen::Vector2d dp = over_ground * (T_world_cam * segment.centroid_cam - k.pose().translation());
@@ -36,35 +40,43 @@ double ObjectAssociation::cost(const TrackedObject& object, const SceneMotion& s
   const Eigen::Matrix3d C_v =
       R * segment.velocity_covariance * R.transpose() + R_body * k.velocityCovariance() * R_body.transpose();
   Eigen::Matrix2d S_v = over_ground * C_v * over_ground.transpose();
-  const double depth_noise_m = 0.02 * segment.centroid_cam.z();
-  S_p.diagonal().array() += params_.centroid_spread_m * params_.centroid_spread_m + depth_noise_m * depth_noise_m;
-  S_v.diagonal().array() += params_.velocity_spread_mps * params_.velocity_spread_mps;
+  const double depth_noise_m = kDepthNoise * segment.centroid_cam.z();
+  S_p.diagonal().array() += kCentroidSpread_m * kCentroidSpread_m + depth_noise_m * depth_noise_m;
+  S_v.diagonal().array() += kVelocitySpread_mps * kVelocitySpread_mps;
   const double chi2 = dp.dot(S_p.inverse() * dp) + dv.dot(S_v.inverse() * dv);
   const double shared = sharedPoints(object, scene, segment);
-  if (chi2 > params_.gate_chi2 && shared < params_.claimed_share) return kForbidden;
-  return chi2 - params_.shared_points_bonus * shared;
+  if (chi2 > kGateChi2 && shared < kClaimedShare) return kForbidden;
+  return chi2 - kSharedPointsBonus * shared;
 }
 
-std::vector<int> ObjectAssociation::operator()(const std::vector<TrackedObject>& objects, const SceneMotion& scene,
-                                               const SE3& T_world_cam) const {
-  std::vector<int> object_of(scene.segments.size(), -1);
-  if (objects.empty() || scene.segments.empty()) return object_of;
-  Eigen::MatrixXd costs = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(scene.segments.size()),
-                                                    static_cast<Eigen::Index>(objects.size()), kForbidden);
+/// A vehicle may fall into several segments: gives those that are left over to the object whose points they hold.
+void claimRest(const std::vector<TrackedObject>& objects, const SceneMotion& scene, std::vector<int>& object_of) {
   for (std::size_t s = 0; s < scene.segments.size(); ++s) {
-    if (scene.segments[s].label != PointLabel::kMoving) continue;
-    for (std::size_t m = 0; m < objects.size(); ++m)
-      costs(static_cast<Eigen::Index>(s), static_cast<Eigen::Index>(m)) =
-          cost(objects[m], scene, scene.segments[s], T_world_cam);
-  }
-  object_of = assignMinCost(costs, kForbidden);
-
-  for (std::size_t s = 0; s < scene.segments.size(); ++s) {  // a vehicle may fall into several segments
     if (scene.segments[s].label != PointLabel::kMoving || object_of[s] >= 0) continue;
     for (std::size_t m = 0; m < objects.size(); ++m)
-      if (sharedPoints(objects[m], scene, scene.segments[s]) >= params_.claimed_share)
-        object_of[s] = static_cast<int>(m);
+      if (sharedPoints(objects[m], scene, scene.segments[s]) >= kClaimedShare) object_of[s] = static_cast<int>(m);
   }
+}
+
+}  // namespace
+
+double sharedPoints(const TrackedObject& object, const SceneMotion& scene, const Segment& segment) {
+  int shared = 0;
+  for (const int i : segment.points) shared += object.find(scene.points[i].point) != nullptr;
+  return static_cast<double>(shared) / static_cast<double>(segment.points.size());
+}
+
+std::vector<int> associateObjects(const std::vector<TrackedObject>& objects, const SceneMotion& scene,
+                                  const SE3& T_world_cam) {
+  const auto segments = static_cast<int>(scene.segments.size()), known = static_cast<int>(objects.size());
+  if (segments == 0 || known == 0) return std::vector<int>(segments, -1);
+  Eigen::MatrixXd costs = Eigen::MatrixXd::Constant(segments, known, kForbidden);
+  for (int s = 0; s < segments; ++s) {
+    if (scene.segments[s].label != PointLabel::kMoving) continue;
+    for (int m = 0; m < known; ++m) costs(s, m) = cost(objects[m], scene, scene.segments[s], T_world_cam);
+  }
+  std::vector<int> object_of = assignMinCost(costs, kForbidden);
+  claimRest(objects, scene, object_of);
   return object_of;
 }
 

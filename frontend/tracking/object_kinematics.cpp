@@ -3,89 +3,88 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
+
+#include "core/fixed_product.hpp"
 
 namespace motorcade {
+namespace {
+
+/// Covariances of up to six dimensions, and columns of that many: their decomposition is compiled once for all sizes.
+using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+using Columns = Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::ColMajor, 6, 12>;
+
+Columns solve(const Covariance& S, const Columns& B) { return Eigen::LDLT<Covariance>(S).solve(B); }
+
+/// Kalman update of the state by a linear measurement of its error, residual = J * error + noise of this `sigma`.
+template <int N>
+void correct(ConstantTwistState& state, const Eigen::Matrix<double, N, 1>& residual,
+             const Eigen::Matrix<double, N, 12>& J, const Eigen::Matrix<double, N, 1>& sigma) {
+  const Eigen::Matrix<double, N, 12> JP = fixedProduct(J, state.covariance);
+  Eigen::Matrix<double, N, N> S = JP.lazyProduct(J.transpose());
+  S.diagonal() += sigma.cwiseAbs2();
+  const Eigen::Matrix<double, N, 12> K_transposed = solve(S, JP);
+  const Eigen::Matrix<double, 12, N> K = K_transposed.transpose();
+  const Eigen::Matrix<double, 12, 1> step = K * residual;
+  state.T_world_body = (state.T_world_body * SE3::exp(step.template head<6>())).normalized();
+  state.twist += step.template tail<6>();
+  const Matrix12d I_KJ = Matrix12d::Identity() - fixedProduct(K, J);
+  const Eigen::Matrix<double, 12, N> KR = K * sigma.cwiseAbs2().asDiagonal();
+  // Joseph's form keeps the covariance symmetric and positive.
+  state.covariance = congruence(I_KJ, state.covariance) + fixedProduct(KR, K_transposed);
+}
+
+}  // namespace
 
 double ObjectKinematics::speedSigma_mps() const {
+  constexpr double kNoDirection_mps = 1e-3;  // slower, the velocity has no direction: the mean over all of them
   const double speed = speed_mps();
-  if (speed < 1e-3) return std::sqrt(velocityCovariance().trace() / 3);
-  const Eigen::Vector3d direction = twist_.head<3>() / speed;
+  if (speed < kNoDirection_mps) return std::sqrt(velocityCovariance().trace() / 3);
+  const Eigen::Vector3d direction = state_.twist.head<3>() / speed;
   return std::sqrt(direction.dot(velocityCovariance() * direction));
 }
 
-void ObjectKinematics::predict(double dt_s, const Params& params) {
-  const Vector6d step = dt_s * twist_;
-  const SE3 motion = SE3::exp(step);
-  Matrix12d F = Matrix12d::Identity();
-  F.topLeftCorner<6, 6>() = motion.inverse().adjoint();
-  F.topRightCorner<6, 6>() = dt_s * rightJacobianSE3(step);
-
-  Vector6d density;  // of white noise on acceleration
-  density << params.acceleration_along_mps2, params.acceleration_sideways_mps2, params.acceleration_vertical_mps2,
-      params.acceleration_tilt_radps2, params.acceleration_tilt_radps2, params.acceleration_yaw_radps2;
-  density = density.cwiseAbs2();
-  Matrix12d Q = Matrix12d::Zero();
-  const double span_s = std::abs(dt_s);
-  Q.topLeftCorner<6, 6>().diagonal() = density * span_s * span_s * span_s / 3;
-  Q.topRightCorner<6, 6>().diagonal() = density * dt_s * span_s / 2;
-  Q.bottomLeftCorner<6, 6>() = Q.topRightCorner<6, 6>();
-  Q.bottomRightCorner<6, 6>().diagonal() = density * span_s;
-
-  T_world_body_ = (T_world_body_ * motion).normalized();
-  covariance_ = F * covariance_ * F.transpose() + Q;
-}
+double ObjectKinematics::positionSigma_m() const { return std::sqrt(poseCovariance().topLeftCorner<3, 3>().trace()); }
 
 void ObjectKinematics::acceptPose(const SE3& T_world_body, const Matrix6d& covariance) {
-  const Matrix6d P = poseCovariance(), cross = covariance_.bottomLeftCorner<6, 6>();
-  const Matrix6d gain = P.ldlt().solve(cross.transpose()).transpose();  // twist per pose
-  twist_ += gain * (T_world_body_.inverse() * T_world_body).log();
-  T_world_body_ = T_world_body;
-  covariance_.topLeftCorner<6, 6>() = covariance;
-  covariance_.bottomLeftCorner<6, 6>() = gain * covariance;
-  covariance_.topRightCorner<6, 6>() = (gain * covariance).transpose();
-  covariance_.bottomRightCorner<6, 6>() -= gain * (P - covariance) * gain.transpose();
+  Matrix12d& joint = state_.covariance;
+  const Matrix6d P = poseCovariance(), cross = joint.bottomLeftCorner<6, 6>();
+  const Matrix6d gain = Eigen::LDLT<Covariance>(P).solve(cross.transpose()).transpose();  // twist per pose
+  state_.twist += gain * (state_.T_world_body.inverse() * T_world_body).log();
+  state_.T_world_body = T_world_body;
+  joint.topLeftCorner<6, 6>() = covariance;
+  joint.bottomLeftCorner<6, 6>() = gain * covariance;
+  joint.topRightCorner<6, 6>() = (gain * covariance).transpose();
+  joint.bottomRightCorner<6, 6>() -= gain * (P - covariance) * gain.transpose();
 }
 
-void ObjectKinematics::fusePlace(const Eigen::Vector3d& p_body, const Eigen::Vector3d& p_world, double sigma_m) {
+void ObjectKinematics::fusePosition(const Eigen::Vector3d& p_body, const Eigen::Vector3d& p_world, double sigma_m) {
   Eigen::Matrix<double, 3, 12> J = Eigen::Matrix<double, 3, 12>::Zero();
   J.leftCols<3>() = Eigen::Matrix3d::Identity();
   J.middleCols<3>(3) = -hat(p_body);
-  correct<3>(T_world_body_.inverse() * p_world - p_body, J, Eigen::Vector3d::Constant(sigma_m));
+  const Eigen::Vector3d residual = state_.T_world_body.inverse() * p_world - p_body;
+  correct<3>(state_, residual, J, Eigen::Vector3d::Constant(sigma_m));
 }
 
 void ObjectKinematics::fuseVehicleModel(const Eigen::Vector3d& up_world, const Params& params) {
-  Eigen::Matrix<double, 6, 1> residual, sigma;
+  Vector6d residual, sigma;
   Eigen::Matrix<double, 6, 12> J = Eigen::Matrix<double, 6, 12>::Zero();
-  const Eigen::Vector3d up_body = T_world_body_.rotation().transpose() * up_world;
-  residual << -twist_[1], -twist_[2], -twist_[3], -twist_[4], -up_body.x(), -up_body.y();
-  sigma << params.slip_mps + params.slip_per_mps * std::abs(twist_[0]), params.vertical_mps, params.tilt_rate_radps,
+  const Vector6d& twist = state_.twist;
+  const Eigen::Vector3d up_body = state_.T_world_body.rotation().transpose() * up_world;
+  residual << -twist[1], -twist[2], -twist[3], -twist[4], -up_body.x(), -up_body.y();
+  sigma << params.slip_mps + params.slip_per_mps * std::abs(twist[0]), params.vertical_mps, params.tilt_rate_radps,
       params.tilt_rate_radps, params.tilt_rad, params.tilt_rad;
   for (int i = 0; i < 4; ++i) J(i, 7 + i) = 1;
   J.block<2, 3>(4, 3) = hat(up_body).topRows<2>();  // (R exp(phi))' up = up_body + up_body x phi
-  correct<6>(residual, J, sigma);
-}
-
-template <int N>
-void ObjectKinematics::correct(const Eigen::Matrix<double, N, 1>& residual, const Eigen::Matrix<double, N, 12>& J,
-                               const Eigen::Matrix<double, N, 1>& sigma) {
-  Eigen::Matrix<double, N, N> S = J * covariance_ * J.transpose();
-  S.diagonal() += sigma.cwiseAbs2();
-  const Eigen::Matrix<double, 12, N> K = S.ldlt().solve(J * covariance_).transpose();
-  const Eigen::Matrix<double, 12, 1> step = K * residual;
-  T_world_body_ = (T_world_body_ * SE3::exp(step.template head<6>())).normalized();
-  twist_ += step.template tail<6>();
-  const Matrix12d I_KJ = Matrix12d::Identity() - K * J;  // Joseph's form keeps the covariance symmetric and positive
-  covariance_ = I_KJ * covariance_ * I_KJ.transpose() + K * sigma.cwiseAbs2().asDiagonal() * K.transpose();
+  correct<6>(state_, residual, J, sigma);
 }
 
 void ObjectKinematics::changeBodyFrame(const SE3& T_body_new) {
   const Matrix6d A = T_body_new.inverse().adjoint();
-  T_world_body_ = (T_world_body_ * T_body_new).normalized();
-  twist_ = A * twist_;
+  state_.T_world_body = (state_.T_world_body * T_body_new).normalized();
+  state_.twist = A * state_.twist;
   Matrix12d A2 = Matrix12d::Zero();
   A2.topLeftCorner<6, 6>() = A2.bottomRightCorner<6, 6>() = A;
-  covariance_ = A2 * covariance_ * A2.transpose();
+  state_.covariance = congruence(A2, state_.covariance);
 }
 
 }  // namespace motorcade

@@ -8,8 +8,8 @@
 namespace motorcade {
 namespace {
 
-/// Points are dealt to the encounter and to the motion by their id, so that a point keeps its side for life:
-/// the two factors then share no measurement and may be counted as independent.
+/// Points measure either the encounter or the motion, by their id and so in all frames alike: the two factors then
+/// share no measurement and may be counted as independent.
 bool measuresEncounter(PointId point) { return point.value % 2 == 0; }
 
 Box imageBox(const std::vector<const ScenePoint*>& points) {
@@ -95,13 +95,14 @@ std::optional<ObjectObservation> ObjectMotionEstimator::lookBack(const TrackedOb
   return measureEncounter(object, agreement->inliers, agreement->fit.T_cam_ref);
 }
 
-std::optional<ObjectObservation> ObjectMotionEstimator::presence(const TrackedObject& object, const SceneMotion& scene,
-                                                                 const PosePrior& predicted) const {
+std::optional<ObjectObservation> ObjectMotionEstimator::visibleEvidence(const TrackedObject& object,
+                                                                        const SceneMotion& scene,
+                                                                        const PosePrior& predicted) const {
   const auto origin = camera_.project(predicted.mean.translation());
   if (!origin || !camera_.inLeftImage(origin->x(), origin->y())) return std::nullopt;
   Eigen::AlignedBox3d outline = object.core(SE3{});
-  outline.min().array() -= params_.presence_margin_m;
-  outline.max().array() += params_.presence_margin_m;
+  outline.min().array() -= params_.evidence_margin_m;
+  outline.max().array() += params_.evidence_margin_m;
   const SE3 T_body_cam = predicted.mean.inverse();
   const auto mayLieWithin = [&](const ScenePoint& p) {
     const Eigen::Vector3d p_body = T_body_cam * camera_.triangulate(p.uvd_px);
@@ -160,7 +161,7 @@ ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& o
 void ObjectMotionEstimator::measureMotion(const TrackedObject& object, const std::vector<Observation>& inliers,
                                           const SceneMotion& scene, const SceneMotion& previous_scene,
                                           ObjectObservation& observation) const {
-  if (!object.seen_before.valid() || object.seen_before != previous_scene.frame) return;
+  if (!object.observed_before.valid() || object.observed_before != previous_scene.frame) return;
   const SE3 T_body_cam_before = object.T_cam_body_before.inverse();
   std::vector<PoseObservation> observations;
   for (const auto& s : inliers) {
@@ -201,7 +202,7 @@ void ObjectMotionEstimator::refinePoints(TrackedObject& object, const std::vecto
   }
 }
 
-ObjectObservation ObjectMotionEstimator::firstSight(const TrackedObject& object, const SceneMotion& scene) const {
+ObjectObservation ObjectMotionEstimator::firstObservation(const TrackedObject& object, const SceneMotion& scene) const {
   const auto seen = observations(object, scene);
   std::vector<PoseObservation> observations;
   std::vector<const ScenePoint*> visible;

@@ -16,14 +16,17 @@ class ObjectMotionEstimator {
   struct Params {
     int min_points = 3;            // that agree on a pose
     double inlier_chi2 = 12.0;     // 3 degrees of freedom
-    int max_misfits = 2;           // then a point is no longer counted to the body
+    int max_misfits = 2;           // frames in a row, after which a point is no longer counted to the body
     int split_points = 12;         // from here on, half of the points measure the encounter and half the motion
     double weak_position_m = 2.0;  // prior that only closes directions which the points leave open
     double weak_yaw_rad = 0.15, weak_tilt_rad = 0.03;
-    double presence_margin_m =
-        0.8;  // by which other points may lie beyond those known, and still show that the object is there
+    double evidence_margin_m = 0.8;  // by which visible evidence may lie beyond the points that are known
     PoseFitParams fit;
   };
+  /// Visible evidence is worth looking for while the standard deviation of the predicted position is below this: an
+  /// outline that is off by half a vehicle holds other points.
+  static constexpr double kMaxEvidenceSigma_m = 1.5;
+
   ObjectMotionEstimator(const Params& params, const StereoCamera& camera)
       : params_(requireValid(params)), camera_(camera) {}
 
@@ -38,13 +41,14 @@ class ObjectMotionEstimator {
   std::optional<ObjectObservation> lookBack(const TrackedObject& object, const SceneMotion& earlier,
                                             const PosePrior& prior) const;
 
-  /// Where no points of its own were followed: the predicted pose, when enough points of unknown motion lie within its
-  /// outline there. Its covariance is wide: the prediction is made of measurements that count already.
-  std::optional<ObjectObservation> presence(const TrackedObject& object, const SceneMotion& scene,
-                                            const PosePrior& predicted) const;
+  /// For an object none of whose own points were followed: the predicted pose, when there is visible evidence of it,
+  /// enough points of unknown motion within its outline. Its covariance is wide, as the prediction is made of
+  /// measurements that count already.
+  std::optional<ObjectObservation> visibleEvidence(const TrackedObject& object, const SceneMotion& scene,
+                                                   const PosePrior& predicted) const;
 
-  /// Encounter of an object that is born in this frame: its body frame is where its points say, up to their noise.
-  ObjectObservation firstSight(const TrackedObject& object, const SceneMotion& scene) const;
+  /// Encounter of an object that is spawned in this frame: its body frame is where its points say, up to their noise.
+  ObjectObservation firstObservation(const TrackedObject& object, const SceneMotion& scene) const;
 
  private:
   struct Observation {

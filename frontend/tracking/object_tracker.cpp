@@ -1,68 +1,35 @@
 #include "frontend/tracking/object_tracker.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
+#include <utility>
 
-#include <Eigen/Geometry>
+#include <Eigen/LU>
 
-#include "frontend/segmentation/vehicles_abreast.hpp"
+#include "frontend/tracking/body_axes.hpp"
+#include "frontend/tracking/duplicate_objects.hpp"
+#include "frontend/tracking/object_association.hpp"
 
 namespace motorcade {
 namespace {
 
-/// Body axes for a direction of travel: x ahead over the ground, z up, y to the left.
-Eigen::Matrix3d travelAxes(const Eigen::Vector3d& velocity, const Eigen::Vector3d& up) {
-  const Eigen::Vector3d ahead = (velocity - up * up.dot(velocity)).normalized();
-  Eigen::Matrix3d R;
-  R << ahead, up.cross(ahead), up;
-  return R;
-}
-
-double placeSigma_m(const ObjectKinematics& kinematics) {
-  return std::sqrt(kinematics.poseCovariance().topLeftCorner<3, 3>().trace());
-}
-double placeSigma_m(const TrackedObject& object) { return placeSigma_m(object.kinematics); }
-
-Eigen::Vector3d upInWorld(const SceneMotion& scene, const SE3& T_world_cam) {
-  return -(T_world_cam.rotation() * scene.ground.normal_cam);
-}
-
-/// Vehicles do not: most points of the one lie within the other.
-bool within(const TrackedObject& one, const SE3& T_other_one, const TrackedObject& other) {
-  constexpr double kMargin_m = 0.3, kMost = 0.7;  // a margin, as a face alone has no depth
-  Eigen::AlignedBox3d box = other.core(SE3{});
-  box.min().array() -= kMargin_m;
-  box.max().array() += kMargin_m;
-  const auto inside =
-      std::ranges::count_if(one.points, [&](const BodyPoint& p) { return box.contains(T_other_one * p.p_body); });
-  return static_cast<double>(inside) > kMost * static_cast<double>(one.points.size());
-}
-
-double diagonal_px(const Box& box) { return std::hypot(box.right_px - box.left_px, box.bottom_px - box.top_px); }
-
-/// A few points that seem to lie behind a vehicle with many, and within its outline, are the vehicle's own with wrong
-/// disparities.
-bool looksThrough(const ObjectObservation& few, const std::vector<ObjectObservation>& objects) {
-  constexpr double kMargin = 0.25, kMaxMargin_px = 30;  // of the outline's width and height
-  constexpr int kMany = 3;
-  return std::ranges::any_of(objects, [&](const ObjectObservation& o) {
-    const double du = std::min(kMaxMargin_px, kMargin * (o.box.right_px - o.box.left_px));
-    const double dv = std::min(kMaxMargin_px, kMargin * (o.box.bottom_px - o.box.top_px));
-    return o.frame == few.frame && o.points >= kMany * few.points &&
-           o.T_cam_body.translation().z() < few.T_cam_body.translation().z() && o.box.left_px - du < few.box.left_px &&
-           few.box.right_px < o.box.right_px + du && o.box.top_px - dv < few.box.top_px &&
-           few.box.bottom_px < o.box.bottom_px + dv;
-  });
-}
+constexpr int kMaxTentativeMisses = 1;   // frames without a measurement, after which a tentative object ends
+constexpr double kMaxLostSigma_m = 3;    // of a position: less well known, what is met there may be another vehicle
+constexpr double kOutsideImage_px = 50;  // an unseen object that is predicted this far outside has left
+constexpr double kReappearanceSpread_m = 1.0;  // standard deviation of the middle of an object's points when it is seen
+                                               // again, about that of those seen last
+constexpr int kStopFrames = 3;                 // in a row below the stop speed, as the speed's noise may fall below it
 
 }  // namespace
 
 ObjectTracker::ObjectTracker(const Params& params, const StereoCamera& camera)
     : params_(requireValid(params)),
       camera_(camera),
-      associate_(params.association),
-      adopt_(params.adoption, camera),
-      motion_(params.motion, camera) {}
+      adopt_(camera),
+      motion_(params.motion, camera),
+      spawn_(params.motion, camera),
+      is_confirmed_(params.confirmation),
+      look_back_(params.look_back_frames, params.confirmation.confirm_observations, params.motion, camera) {}
 
 FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   auto measurements = std::make_shared<FrameMeasurements>();
@@ -73,15 +40,13 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   measurements->odometry_covariance = scene->odometry_covariance;
 
   advance(*scene);
-  for (auto& object : objects_) follow(object, *scene, *measurements);
-  associate(*scene);
-  mergeTwins();
-  bury(*measurements);
-  std::stable_sort(measurements->objects.begin(), measurements->objects.end(),
-                   [](const ObjectObservation& a, const ObjectObservation& b) { return a.track < b.track; });
+  for (TrackedObject& object : objects_) follow(object, *scene, *measurements);
+  matchSegments(*scene);
+  mergeDuplicates(objects_);
+  removeEnded(*measurements);
+  std::ranges::stable_sort(measurements->objects, {}, &ObjectObservation::track);
   previous_scene_ = scene;
-  past_.push_back({scene, T_world_cam_});
-  if (static_cast<int>(past_.size()) > params_.look_back_frames + params_.confirm_observations) past_.pop_front();
+  look_back_.remember(scene, T_world_cam_);
   return measurements;
 }
 
@@ -89,7 +54,7 @@ void ObjectTracker::advance(const SceneMotion& scene) {
   T_world_cam_ = (T_world_cam_ * scene.T_previous_now).normalized();
   if (!previous_scene_) return;
   const double dt_s = secondsBetween(previous_scene_->stamp, scene.stamp);
-  for (auto& object : objects_) {
+  for (TrackedObject& object : objects_) {
     object.kinematics.predict(dt_s, params_.kinematics);
     object.T_cam_body_before = object.T_cam_body;
     object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
@@ -99,223 +64,127 @@ void ObjectTracker::advance(const SceneMotion& scene) {
 void ObjectTracker::follow(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements) {
   auto observation = motion_.follow(object, scene, previous_scene_.get(), T_world_cam_);
   if (!observation) return coast(object, scene, measurements);
+  object.life.observe();
   object.kinematics.fuseVehicleModel(upInWorld(scene, T_world_cam_), params_.kinematics);
   object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
-  object.coasted = 0;
-  object.last_middle = object.middle();
-  ++object.observations;
+  object.last_middle_body = object.middle();
   updateState(object);
   observation->frame = scene.frame;
   observation->state = object.state;
   record(object, std::move(*observation), measurements);
-  object.seen_before = scene.frame;
+  object.observed_before = scene.frame;
 }
 
+/// A frame without a measurement of the object.
+void ObjectTracker::coast(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements) {
+  object.life.miss();
+  object.observed_before = FrameId{};
+  if (isOutOfReach(object)) return object.life.end();
+  if (object.life.phase() == Phase::kTentative) return;
+  if (auto observation = withoutMeasurement(object, scene)) record(object, std::move(*observation), measurements);
+}
+
+bool ObjectTracker::isOutOfReach(const TrackedObject& object) const {
+  const int allowed = object.life.phase() == Phase::kTentative ? kMaxTentativeMisses : params_.max_lost_frames;
+  if (object.life.missed() > allowed || object.kinematics.positionSigma_m() > kMaxLostSigma_m) return true;
+  const auto uvd = camera_.project(object.T_cam_body.translation());
+  return !uvd || !camera_.inLeftImage(uvd->x(), uvd->y(), -kOutsideImage_px);
+}
+
+/// What is reported of a lost object: its predicted pose, as an observation where there is visible evidence of it, and
+/// for some frames as a prediction where there is none.
+std::optional<ObjectObservation> ObjectTracker::withoutMeasurement(const TrackedObject& object,
+                                                                   const SceneMotion& scene) const {
+  std::optional<ObjectObservation> observation;
+  if (object.kinematics.positionSigma_m() < ObjectMotionEstimator::kMaxEvidenceSigma_m)
+    observation =
+        motion_.visibleEvidence(object, scene, {object.T_cam_body, object.kinematics.poseCovariance().inverse()});
+  if (observation) {
+    observation->state = object.state;
+  } else if (object.life.missed() <= params_.max_coasted_frames) {
+    observation.emplace();
+    observation->state = ObjectState::kPredicted;
+    observation->T_cam_body = object.T_cam_body;
+    observation->encounter_covariance = object.kinematics.poseCovariance();
+    if (const auto origin = camera_.project(object.T_cam_body.translation()))
+      observation->box = {origin->x(), origin->y(), origin->x(), origin->y()};
+  }
+  if (observation) observation->frame = scene.frame;
+  return observation;
+}
+
+void ObjectTracker::updateState(TrackedObject& object) const {
+  const double speed_mps = object.kinematics.speed_mps();
+  object.slow_frames = speed_mps < params_.stop_speed_mps ? object.slow_frames + 1 : 0;
+  if (object.slow_frames >= kStopFrames) object.state = ObjectState::kStopped;
+  if (speed_mps > params_.start_speed_mps) object.state = ObjectState::kMoving;
+}
+
+/// Reports an observation, or keeps it until the object is confirmed.
 void ObjectTracker::record(TrackedObject& object, ObjectObservation observation, FrameMeasurements& measurements) {
   observation.track = object.track;
   observation.velocity_cam_mps = T_world_cam_.rotation().transpose() * object.kinematics.velocityWorld_mps();
-  if (object.confirmed) {
+  if (object.life.reported()) {
     measurements.objects.push_back(std::move(observation));
-    return;
+  } else {
+    object.backlog.push_back(std::move(observation));
+    if (is_confirmed_(object, measurements.objects)) confirm(object, measurements);
   }
-  const bool doubtful =
-      looksThrough(observation, measurements.objects) || diagonal_px(observation.box) < params_.confirm_extent_px;
-  object.backlog.push_back(std::move(observation));
-  if (doubtful) return;
-  const double traveled_m = (object.kinematics.pose().translation() - object.birthplace_world).norm();
-  const double speed = object.kinematics.speed_mps();
-  const bool moves =
-      speed > params_.confirm_speed_mps && speed > params_.confirm_significance * object.kinematics.speedSigma_mps();
-  const bool far_enough = object.observations >= params_.confirm_observations && traveled_m > params_.confirm_travel_m;
-  if (far_enough && moves && object.extent(0).diagonal().norm() > params_.confirm_extent_m)
-    confirm(object, measurements);
 }
 
-/// The direction of travel is known better now than at birth, and points that were not the body's are gone: the body's
-/// x axis is laid along the travel and its origin amid the points, once and for all.
+/// The direction of travel is known better now than when the object was spawned, and points that were not the body's
+/// are gone: the body's x axis is laid along the travel and its origin amid the points, once and for all.
 void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measurements) {
   const Eigen::Matrix3d& R = object.kinematics.pose().rotation();
   const Eigen::Matrix3d R_travel = travelAxes(object.kinematics.velocityWorld_mps(), R.col(2));
   object.changeBodyFrame(SE3(R.transpose() * R_travel, object.middle()));
-  object.confirmed = true;
-  lookBack(object, measurements.stamp);
-  for (auto& o : object.backlog) {
+  object.life.confirm();
+  look_back_(object, measurements.stamp, params_.kinematics);
+  for (ObjectObservation& o : object.backlog) {
     o.track = object.track;
     measurements.objects.push_back(std::move(o));
   }
   object.backlog.clear();
 }
 
-/// The points from which an object is born were followed for some frames before: they tell where it was then.
-void ObjectTracker::lookBack(TrackedObject& object, Timestamp now) const {
-  auto earlier = past_.rbegin();
-  while (earlier != past_.rend() && earlier->scene->frame >= object.backlog.front().frame) ++earlier;
-  for (int k = 0; k < params_.look_back_frames && earlier != past_.rend(); ++k, ++earlier) {
-    ObjectKinematics then = object.kinematics;
-    then.predict(secondsBetween(now, earlier->scene->stamp), params_.kinematics);
-    const PosePrior prior{earlier->T_world_cam.inverse() * then.pose(), then.poseCovariance().inverse()};
-    auto observation = motion_.lookBack(object, *earlier->scene, prior);
-    if (!observation && placeSigma_m(then) < params_.max_presence_sigma_m)
-      observation = motion_.presence(object, *earlier->scene, prior);
-    if (!observation) return;
-    observation->frame = earlier->scene->frame;
-    observation->velocity_cam_mps = earlier->T_world_cam.rotation().transpose() * then.velocityWorld_mps();
-    object.backlog.insert(object.backlog.begin(), std::move(*observation));
-  }
-}
-
-void ObjectTracker::coast(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements) {
-  ++object.coasted;
-  object.seen_before = FrameId{};
-  const int allowed = object.confirmed ? params_.max_lost_frames : params_.max_tentative_misses;
-  if (object.coasted > allowed || leftView(object) || placeSigma_m(object) > params_.max_lost_sigma_m) {
-    object.ended = true;
-    return;
-  }
-  if (!object.confirmed) return;
-  if (placeSigma_m(object) < params_.max_presence_sigma_m) {
-    if (auto present =
-            motion_.presence(object, scene, {object.T_cam_body, object.kinematics.poseCovariance().inverse()})) {
-      present->frame = scene.frame;
-      present->state = object.state;
-      return record(object, std::move(*present), measurements);
-    }
-  }
-  if (object.coasted > params_.max_coasted_frames) return;
-  ObjectObservation predicted;
-  predicted.frame = scene.frame;
-  predicted.state = ObjectState::kPredicted;
-  predicted.T_cam_body = object.T_cam_body;
-  predicted.encounter_covariance = object.kinematics.poseCovariance();
-  if (const auto origin = camera_.project(object.T_cam_body.translation()))
-    predicted.box = {origin->x(), origin->y(), origin->x(), origin->y()};
-  record(object, std::move(predicted), measurements);
-}
-
-/// Where it was lost from sight its place has drifted: what is seen again is taken for what was seen last.
-void ObjectTracker::reappear(TrackedObject& object, const Segment& segment) const {
-  object.kinematics.fusePlace(object.last_middle, T_world_cam_ * segment.centroid_cam, params_.reappearance_spread_m);
-  object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
-}
-
-bool ObjectTracker::leftView(const TrackedObject& object) const {
-  const auto uvd = camera_.project(object.T_cam_body.translation());
-  return !uvd || !camera_.inLeftImage(uvd->x(), uvd->y(), -params_.image_margin_px);
-}
-
-void ObjectTracker::updateState(TrackedObject& object) const {
-  const double speed = object.kinematics.speed_mps();
-  object.slow_frames = speed < params_.stop_speed_mps ? object.slow_frames + 1 : 0;
-  if (object.slow_frames >= params_.stop_frames) object.state = ObjectState::kStopped;
-  if (speed > params_.start_speed_mps) object.state = ObjectState::kMoving;
-}
-
-void ObjectTracker::associate(const SceneMotion& scene) {
-  const auto object_of = associate_(objects_, scene, T_world_cam_);
+/// Segments give their points to the objects that they are matched with, and spawn new ones where they are left over.
+void ObjectTracker::matchSegments(const SceneMotion& scene) {
+  const std::vector<int> object_of = associateObjects(objects_, scene, T_world_cam_);
   std::vector<bool> taken(scene.points.size(), false);
   for (std::size_t i = 0; i < scene.points.size(); ++i)
-    taken[i] = std::any_of(objects_.begin(), objects_.end(),
-                           [&](const auto& o) { return o.find(scene.points[i].point) != nullptr; });
+    taken[i] = std::ranges::any_of(objects_, [&](const auto& o) { return o.find(scene.points[i].point) != nullptr; });
 
-  const std::size_t known = objects_.size();
   for (std::size_t s = 0; s < scene.segments.size(); ++s) {
     if (object_of[s] < 0) continue;
     TrackedObject& object = objects_[object_of[s]];
-    if (object.coasted > 0 && sharedPoints(object, scene, scene.segments[s]) == 0) reappear(object, scene.segments[s]);
+    if (object.life.missed() > 0 && sharedPoints(object, scene, scene.segments[s]) == 0)
+      reappear(object, scene.segments[s]);
     adopt_(object, scene, &scene.segments[s], T_world_cam_, taken);
   }
-  for (std::size_t m = 0; m < known; ++m)
-    if (objects_[m].coasted == 0) adopt_(objects_[m], scene, nullptr, T_world_cam_, taken);
-  for (std::size_t s = 0; s < scene.segments.size(); ++s)
-    if (object_of[s] < 0 && scene.segments[s].label == PointLabel::kMoving) bear(scene, scene.segments[s], taken);
-}
-
-void ObjectTracker::bear(const SceneMotion& scene, const Segment& segment, std::vector<bool>& taken) {
-  std::vector<int> free;
-  for (const int i : segment.points)
-    if (!taken[i]) free.push_back(i);
-  for (const Segment& vehicle : splitAbreast(segment, free, scene, params_.adoption.vehicle.width_m))
-    if (static_cast<int>(vehicle.points.size()) >= params_.motion.min_points) bearOne(scene, vehicle, taken);
-}
-
-void ObjectTracker::bearOne(const SceneMotion& scene, const Segment& segment, std::vector<bool>& taken) {
-  TrackedObject object;
-  object.track = TrackId{next_track_++};
-  const Eigen::Matrix3d R_world_body =
-      travelAxes(T_world_cam_.rotation() * segment.velocity_mps, upInWorld(scene, T_world_cam_));
-  object.birthplace_world = T_world_cam_ * segment.centroid_cam;
-  const SE3 T_world_body(R_world_body, object.birthplace_world);
-  object.T_cam_body = object.T_cam_body_before = T_world_cam_.inverse() * T_world_body;
-  for (const int i : segment.points) {
-    object.points.push_back(adopt_.toBody(object, scene.points[i]));
-    taken[i] = true;
-  }
-  ObjectObservation first = motion_.firstSight(object, scene);
-  first.frame = scene.frame;
-
-  const Eigen::Matrix3d R_body_cam = R_world_body.transpose() * T_world_cam_.rotation();
-  const Eigen::Vector3d v_body = R_body_cam * segment.velocity_mps;
-  Vector6d twist;
-  twist << v_body, Eigen::Vector3d::Zero();
-  ObjectKinematics::Matrix12d P = ObjectKinematics::Matrix12d::Zero();
-  P.topLeftCorner<6, 6>() = first.encounter_covariance;
-  P.block<3, 3>(6, 6) =
-      R_body_cam * segment.velocity_covariance * R_body_cam.transpose() + 0.25 * Eigen::Matrix3d::Identity();
-  P.bottomRightCorner<3, 3>().diagonal().setConstant(params_.birth_turn_rate_radps * params_.birth_turn_rate_radps);
-  object.kinematics = ObjectKinematics(T_world_body, twist, P);
-  object.observations = 1;
-  object.seen_before = scene.frame;
-  first.velocity_cam_mps = segment.velocity_mps;
-  object.backlog.push_back(std::move(first));
-  objects_.push_back(std::move(object));
-}
-
-/// Of two objects on one vehicle the older stays and takes the points of the younger.
-void ObjectTracker::mergeTwins() {
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    for (std::size_t j = i + 1; j < objects_.size(); ++j) {
-      TrackedObject &older = objects_[i], &younger = objects_[j];
-      if (older.ended || younger.ended || !areTwins(older, younger)) continue;
-      const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
-      for (auto& p : younger.points) {
-        p.p_body = T_older_younger * p.p_body;
-        p.covariance = T_older_younger.rotation() * p.covariance * T_older_younger.rotation().transpose();
-        p.misfits = 0;
-      }
-      older.adopt(younger.points);
-      younger.ended = true;
-    }
+  for (TrackedObject& object : objects_)
+    if (object.life.missed() == 0) adopt_(object, scene, nullptr, T_world_cam_, taken);
+  for (std::size_t s = 0; s < scene.segments.size(); ++s) {
+    if (object_of[s] >= 0 || scene.segments[s].label != PointLabel::kMoving) continue;
+    std::ranges::move(spawn_(scene, scene.segments[s], T_world_cam_, taken), std::back_inserter(objects_));
   }
 }
 
-bool ObjectTracker::areTwins(const TrackedObject& older, const TrackedObject& younger) const {
-  const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
-  const Eigen::AlignedBox3d own = older.core(SE3{}), other = younger.core(T_older_younger);
-  if (older.coasted > 0 && younger.observations > 1)
-    return false;  // one that is seen longer than the other was lost is not the other
-  const double slack_m = std::min(params_.twin_slack_m, 2 * std::hypot(placeSigma_m(older), placeSigma_m(younger)));
-  const bool one_vehicle = params_.adoption.vehicle.holds(own.merged(other), slack_m);
-  if (!one_vehicle && !within(younger, T_older_younger, older) && !within(older, T_older_younger.inverse(), younger))
-    return false;
-  const Eigen::Vector3d dv =
-      older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps();
-  const double sigma_mps = std::hypot(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());
-  return dv.norm() < params_.twin_speed_mps + (one_vehicle ? 2 * sigma_mps : 0);
+/// The position of an object that was not seen has drifted: what is seen again is taken for what was seen last.
+void ObjectTracker::reappear(TrackedObject& object, const Segment& segment) const {
+  object.kinematics.fusePosition(object.last_middle_body, T_world_cam_ * segment.centroid_cam, kReappearanceSpread_m);
+  object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
 }
 
-void ObjectTracker::bury(FrameMeasurements& measurements) {
-  for (const auto& object : objects_)
-    if (object.ended && object.confirmed) measurements.ended.push_back(object.track);
-  std::erase_if(objects_, [](const auto& o) { return o.ended; });
+void ObjectTracker::removeEnded(FrameMeasurements& measurements) {
+  const auto ended = [](const TrackedObject& object) { return object.life.phase() == Phase::kEnded; };
+  for (const TrackedObject& object : objects_)
+    if (ended(object) && object.life.reported()) measurements.ended.push_back(object.track);
+  std::erase_if(objects_, ended);
 }
 
 std::vector<Parameter> parametersOf(ObjectTracker::Params& params) {
-  return {
-      numberParameter("confirm_observations", params.confirm_observations, {1, 10},
-                      "fewer report an object earlier, more surely"),
-      numberParameter("confirm_speed_mps", params.confirm_speed_mps, {0, 10}, "lower reports slower objects"),
-      numberParameter("confirm_travel_m", params.confirm_travel_m, {0, 10},
-                      "lower reports an object earlier, higher more surely"),
+  std::vector<Parameter> all = parametersOf(params.confirmation);
+  const std::vector<Parameter> own{
       numberParameter("look_back_frames", params.look_back_frames, {0, 50},
                       "more fill in an object's path before it was confirmed"),
       numberParameter("max_coasted_frames", params.max_coasted_frames, {0, 5},
@@ -325,6 +194,8 @@ std::vector<Parameter> parametersOf(ObjectTracker::Params& params) {
       numberParameter("stop_speed_mps", params.stop_speed_mps, {0, 0.75},
                       "an object that is slower for some frames is reported as stopped"),
       numberParameter("start_speed_mps", params.start_speed_mps, {0.75, 5}, "and one that is faster as moving again")};
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
 }
 
 }  // namespace motorcade

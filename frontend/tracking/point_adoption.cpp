@@ -1,6 +1,31 @@
 #include "frontend/tracking/point_adoption.hpp"
 
+#include <cmath>
+
+#include "frontend/tracking/vehicle_size.hpp"
+
 namespace motorcade {
+namespace {
+
+constexpr double kMargin_m = 0.8;          // beyond the points known so far, in which others may join
+constexpr double kDepthNoiseSigmas = 2.0;  // by which the margin grows
+constexpr double kFitsChi2 = 9.0;          // of a velocity to the body's; 3 degrees of freedom: 97 %
+constexpr double kNotStaticChi2 = 16.0;  // by which a moving point explains the track better than one at rest: 4 sigma
+constexpr double kMinSpeed_mps = 1.0;    // slower objects cannot be told from the background by motion
+
+/// Close to the points known so far: a long vehicle is found step by step. Points of a segment that was matched to the
+/// object need no neighbors within the size of an ordinary vehicle.
+bool isWithinReach(const Eigen::AlignedBox3d& known, const BodyPoint& candidate, bool matched) {
+  const double slack_m = kDepthNoiseSigmas * std::sqrt(candidate.covariance.trace());
+  const Eigen::AlignedBox3d grown = Eigen::AlignedBox3d(known).extend(candidate.p_body);
+  Eigen::AlignedBox3d near = known;
+  near.min().array() -= kMargin_m;
+  near.max().array() += kMargin_m;
+  const bool close = near.exteriorDistance(candidate.p_body) < slack_m;
+  return (close && kLongestVehicle.holds(grown, slack_m)) || (matched && kOrdinaryVehicle.holds(grown, slack_m));
+}
+
+}  // namespace
 
 BodyPoint PointAdoption::toBody(const TrackedObject& object, const ScenePoint& point) const {
   const SE3 T_body_cam = object.T_cam_body.inverse();
@@ -9,41 +34,30 @@ BodyPoint PointAdoption::toBody(const TrackedObject& object, const ScenePoint& p
           J * point.sigma_px.cwiseAbs2().asDiagonal() * J.transpose()};
 }
 
-/// Its velocity is the body's there, and not zero.
+/// Its velocity is the body's at that point, and not zero.
 bool PointAdoption::movesWith(const TrackedObject& object, const ScenePoint& point, const SE3& T_world_cam) const {
   if (!point.flow) return false;
-  return object.velocityChi2(*point.flow, T_world_cam) < params_.fits_chi2 &&
-         point.flow->static_chi2 - point.flow->moving_chi2 > params_.not_static_chi2;
-}
-
-/// A long vehicle is found by and by; it is no wider or higher than others.
-bool PointAdoption::couldBeOneBody(const Eigen::AlignedBox3d& box, double slack_m) const {
-  const VehicleSize longest{params_.max_length_m, params_.vehicle.width_m, params_.vehicle.height_m};
-  return longest.holds(box, slack_m);
+  return object.velocityChi2(*point.flow, T_world_cam) < kFitsChi2 &&
+         point.flow->static_chi2 - point.flow->moving_chi2 > kNotStaticChi2;
 }
 
 void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, const Segment* segment,
                                const SE3& T_world_cam, std::vector<bool>& taken) const {
-  if (object.kinematics.speed_mps() < params_.min_speed_mps) return;
-  const auto extent = object.extent(params_.margin_m);
-  const auto known = object.extent(0);
+  if (object.kinematics.speed_mps() < kMinSpeed_mps) return;
+  const Eigen::AlignedBox3d known = object.extent(0);
   std::vector<BodyPoint> adopted;
-  const auto consider = [&](std::size_t i) {
-    const auto& p = scene.points[i];
+  const auto consider = [&](int i) {
+    const ScenePoint& p = scene.points[i];
     if (taken[i] || p.ambiguous || p.label == PointLabel::kGround) return;
-    BodyPoint candidate = toBody(object, p);
-    const double slack_m = params_.depth_noise_sigmas * std::sqrt(candidate.covariance.trace());
-    const Eigen::AlignedBox3d grown = Eigen::AlignedBox3d(known).extend(candidate.p_body);
-    const bool close = extent.exteriorDistance(candidate.p_body) < slack_m && couldBeOneBody(grown, slack_m);
-    if (!close && !(segment && params_.vehicle.holds(grown, slack_m))) return;
-    if (!movesWith(object, p, T_world_cam)) return;
+    const BodyPoint candidate = toBody(object, p);
+    if (!isWithinReach(known, candidate, segment != nullptr) || !movesWith(object, p, T_world_cam)) return;
     taken[i] = true;
     adopted.push_back(candidate);
   };
   if (segment) {
-    for (const int i : segment->points) consider(static_cast<std::size_t>(i));
+    for (const int i : segment->points) consider(i);
   } else {
-    for (std::size_t i = 0; i < scene.points.size(); ++i) consider(i);
+    for (int i = 0; i < static_cast<int>(scene.points.size()); ++i) consider(i);
   }
   object.adopt(adopted);
 }

@@ -6,6 +6,11 @@
 
 namespace motorcade {
 
+void BodyPoint::moveTo(const SE3& T_new_old) {
+  p_body = T_new_old * p_body;
+  covariance = T_new_old.rotation() * covariance * T_new_old.rotation().transpose();
+}
+
 const BodyPoint* TrackedObject::find(PointId point) const {
   const auto at = std::lower_bound(points.begin(), points.end(), point,
                                    [](const BodyPoint& p, PointId id) { return p.point < id; });
@@ -27,14 +32,15 @@ Eigen::AlignedBox3d TrackedObject::extent(double margin_m) const {
 
 Eigen::AlignedBox3d TrackedObject::core(const SE3& T, double left_out) const {
   Eigen::AlignedBox3d box;
-  const auto strays = static_cast<std::size_t>(left_out * static_cast<double>(points.empty() ? 0 : points.size() - 1));
+  const auto outliers =
+      static_cast<std::size_t>(left_out * static_cast<double>(points.empty() ? 0 : points.size() - 1));
   std::vector<double> values(points.size());
   for (int axis = 0; axis < 3 && !points.empty(); ++axis) {
     std::transform(points.begin(), points.end(), values.begin(),
                    [&](const BodyPoint& p) { return (T * p.p_body)[axis]; });
     std::sort(values.begin(), values.end());
-    box.min()[axis] = values[strays];
-    box.max()[axis] = values[values.size() - 1 - strays];
+    box.min()[axis] = values[outliers];
+    box.max()[axis] = values[values.size() - 1 - outliers];
   }
   return box;
 }
@@ -50,12 +56,12 @@ Eigen::Vector3d TrackedObject::velocityAt_mps(const Eigen::Vector3d& p_body) con
 }
 
 double TrackedObject::velocityChi2(const SceneFlow& flow, const SE3& T_world_cam) const {
-  constexpr double kModelVariance_m2ps2 = 0.25;
+  constexpr double kModelSigma_mps = 0.5;  // a few points' velocities depart from a rigid body's: wheels, wrong matches
   const Eigen::Matrix3d &R = T_world_cam.rotation(), &R_body = kinematics.pose().rotation();
   const Eigen::Vector3d difference = R * flow.velocity_mps - velocityAt_mps(T_cam_body.inverse() * flow.p_cam);
   const Eigen::Matrix3d S = R * flow.covariance.bottomRightCorner<3, 3>() * R.transpose() +
                             R_body * kinematics.velocityCovariance() * R_body.transpose() +
-                            kModelVariance_m2ps2 * Eigen::Matrix3d::Identity();
+                            kModelSigma_mps * kModelSigma_mps * Eigen::Matrix3d::Identity();
   return difference.dot(S.inverse() * difference);
 }
 
@@ -65,10 +71,7 @@ void TrackedObject::changeBodyFrame(const SE3& T_body_new) {
   kinematics.changeBodyFrame(T_body_new);
   T_cam_body = T_cam_body * T_body_new;
   T_cam_body_before = T_cam_body_before * T_body_new;
-  for (auto& p : points) {
-    p.p_body = T_new_body * p.p_body;
-    p.covariance = T_new_body.rotation() * p.covariance * T_new_body.rotation().transpose();
-  }
+  for (BodyPoint& p : points) p.moveTo(T_new_body);
   for (auto& o : backlog) {
     o.T_cam_body = o.T_cam_body * T_body_new;
     o.encounter_covariance = A * o.encounter_covariance * A.transpose();

@@ -7,6 +7,7 @@
 
 #include "core/messages.hpp"
 #include "frontend/messages.hpp"
+#include "frontend/tracking/life_cycle.hpp"
 #include "frontend/tracking/object_kinematics.hpp"
 
 namespace motorcade {
@@ -17,41 +18,41 @@ struct BodyPoint {
   Eigen::Vector3d p_body;
   Eigen::Matrix3d covariance;
   int misfits = 0;  // frames in a row in which it did not move with the body
+  /// Changes to another frame: p_new = T_new_old * p_old.
+  void moveTo(const SE3& T_new_old);
 };
 
 /// A vehicle that the tracker follows. The body frame's origin is the middle of the points when it is confirmed, fixed
 /// to the vehicle from then on.
 struct TrackedObject {
   TrackId track;
+  LifeCycle life;
   ObjectKinematics kinematics;  // in the front-end's own odometry world
   SE3 T_cam_body;               // of the newest frame, and of the one before
   SE3 T_cam_body_before;
-  FrameId seen_before;            // frame of T_cam_body_before's measurement; invalid while there is none
+  FrameId observed_before;        // frame of T_cam_body_before's measurement; invalid while there is none
   std::vector<BodyPoint> points;  // ordered by point
   ObjectState state = ObjectState::kMoving;
-  bool confirmed = false;
-  int observations = 0;
-  int coasted = 0;  // frames in a row without a measurement
-  int slow_frames = 0;
-  Eigen::Vector3d last_middle = Eigen::Vector3d::Zero();  // of the points when it was seen last, in body axes
-  Eigen::Vector3d birthplace_world = Eigen::Vector3d::Zero();
-  std::vector<ObjectObservation> backlog;  // until it is confirmed
-  bool ended = false;
+  int slow_frames = 0;                                         // in a row
+  Eigen::Vector3d last_middle_body = Eigen::Vector3d::Zero();  // of the points when it was measured last
+  Eigen::Vector3d spawned_at_world = Eigen::Vector3d::Zero();
+  std::vector<ObjectObservation> backlog;  // observations until it is confirmed, oldest first
 
   const BodyPoint* find(PointId point) const;
   /// Adds points and keeps the order.
   void adopt(const std::vector<BodyPoint>& more);
   /// Box around the points in body axes, grown by `margin_m`.
   Eigen::AlignedBox3d extent(double margin_m) const;
-  /// Box around the points, moved by `T`, without the outermost share at each side (at most half): strays do not
-  /// stretch it.
+  /// Box around the points, moved by `T`, without the outermost share at each side (at most half), so that outliers do
+  /// not stretch it.
   Eigen::AlignedBox3d core(const SE3& T, double left_out = 0.1) const;
   /// Median of the points, axis by axis.
   Eigen::Vector3d middle() const;
-  /// Velocity relative to the world of a place on the body, in world axes.
+  /// Velocity relative to the world of a point on the body, in world axes.
   Eigen::Vector3d velocityAt_mps(const Eigen::Vector3d& p_body) const;
   /// Misfit of a point's velocity to the body's there; chi-square with 3 degrees of freedom.
   double velocityChi2(const SceneFlow& flow, const SE3& T_world_cam) const;
+  /// Another choice of body axes, for all that is kept in them.
   void changeBodyFrame(const SE3& T_body_new);
 };
 

@@ -23,8 +23,7 @@ struct Road {
     twist << 10, 0, 0, 0, 0, 0;
     TrackedObject object;
     object.track = {static_cast<std::int64_t>(objects.size())};
-    object.kinematics =
-        ObjectKinematics(SE3(upright, {x_m, 1, kDepth_m}), twist, 0.01 * ObjectKinematics::Matrix12d::Identity());
+    object.kinematics = ObjectKinematics(SE3(upright, {x_m, 1, kDepth_m}), twist, 0.01 * Matrix12d::Identity());
     for (int i = 0; i < points; ++i)
       object.points.push_back({{first + i}, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity()});
     objects.push_back(object);
@@ -41,7 +40,7 @@ struct Road {
     }
     scene.segments.push_back(segment);
   }
-  std::vector<int> associate() const { return ObjectAssociation({})(objects, scene, SE3{}); }
+  std::vector<int> associate() const { return associateObjects(objects, scene, SE3{}); }
 };
 
 TEST(ObjectAssociation, TakesTheLeastTotalCostRatherThanTheNearest) {
@@ -57,7 +56,7 @@ TEST(ObjectAssociation, FarAndDifferentSegmentsAreNew) {
   Road road;
   road.addObject(0, 1000, 5);
   road.addSegment(12, 5);
-  road.addSegment(0.3, 5, -5);  // at the place, but oncoming
+  road.addSegment(0.3, 5, -5);  // at its position, but oncoming
   EXPECT_EQ(road.associate(), (std::vector<int>{-1, -1}));
 }
 

@@ -12,7 +12,6 @@ namespace {
 
 using test::IsNear;
 using test::IsNearPose;
-using Matrix12d = ObjectKinematics::Matrix12d;
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 
 /// A car in a bend, its state known with all kinds of correlation.
@@ -37,8 +36,7 @@ struct Car {
 /// Without noise on acceleration.
 ObjectKinematics::Params frictionless() {
   ObjectKinematics::Params p;
-  p.acceleration_along_mps2 = p.acceleration_sideways_mps2 = p.acceleration_vertical_mps2 = 0;
-  p.acceleration_yaw_radps2 = p.acceleration_tilt_radps2 = 0;
+  p.acceleration = {0, 0, 0, 0, 0};
   return p;
 }
 
@@ -50,14 +48,14 @@ TEST(ObjectKinematics, PredictsAConstantTwist) {
   EXPECT_EQ(k.twist(), car.twist);
 }
 
-TEST(ObjectKinematics, APlaceSeenOnTheBodyDrawsItThere) {
+TEST(ObjectKinematics, APointObservedOnTheBodyDrawsItThere) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Car car(seed);
     const Eigen::Vector3d p_body(2, -0.5, 0.7),
         seen_world = car.T_world_body * p_body + Eigen::Vector3d(0.04, -0.02, 0.03);
     const auto distance = [&](double sigma_m) {
       ObjectKinematics k = car.kinematics();
-      k.fusePlace(p_body, seen_world, sigma_m);
+      k.fusePosition(p_body, seen_world, sigma_m);
       return (k.pose() * p_body - seen_world).norm();
     };
     const double before_m = (car.T_world_body * p_body - seen_world).norm();
@@ -66,7 +64,7 @@ TEST(ObjectKinematics, APlaceSeenOnTheBodyDrawsItThere) {
     EXPECT_NEAR(distance(100), before_m, 1e-3) << seed;  // not trusted: nowhere
 
     ObjectKinematics k = car.kinematics();
-    k.fusePlace(p_body, car.T_world_body * p_body, 0.2);
+    k.fusePosition(p_body, car.T_world_body * p_body, 0.2);
     EXPECT_THAT(k.pose(), IsNearPose(car.T_world_body, 1e-12)) << seed;  // as expected: only surer
     EXPECT_LT(k.poseCovariance().trace(), car.kinematics().poseCovariance().trace()) << seed;
   }

@@ -37,12 +37,12 @@ struct TwoFrames {
           {.point = {id}, .uvd_px = *kRig.project(T_cam_body * p), .sigma_px = test::kObservationSigma_px, .flow = {}});
       object.points.push_back({{id}, p, 1e-4 * Eigen::Matrix3d::Identity()});
     }
-    object.kinematics = ObjectKinematics(T_cam_body, twist, 0.04 * ObjectKinematics::Matrix12d::Identity());
+    object.kinematics = ObjectKinematics(T_cam_body, twist, 0.04 * Matrix12d::Identity());
     object.T_cam_body = T_cam_body;
     object.T_cam_body_before = T_cam_body_before;
-    object.seen_before = before.frame;
+    object.observed_before = before.frame;
   }
-  /// Moves the present observations of even or odd points by less than a gross error.
+  /// Moves the observations of now of even or odd points by less than a gross error.
   void shift(std::int64_t parity, double u_px) {
     for (auto& p : now.points)
       if (p.point.value % 2 == parity) p.uvd_px.x() += u_px;
@@ -95,7 +95,7 @@ TEST(ObjectMotion, FewPointsMeasureTheEncounterAlone) {
 
 TEST(ObjectMotion, AGapInTheObservationsLeavesTheMotionOut) {
   TwoFrames frames(30);
-  frames.object.seen_before = {3};
+  frames.object.observed_before = {3};
   const auto o = frames.follow();
   ASSERT_TRUE(o);
   EXPECT_FALSE(o->motion);
@@ -113,15 +113,15 @@ struct Unfollowed : TwoFrames {
           {.point = id, .uvd_px = uvd, .sigma_px = test::kObservationSigma_px, .label = label, .flow = {}});
     }
   }
-  std::optional<ObjectObservation> presence() const {
-    return ObjectMotionEstimator({}, kRig).presence(object, now, predicted);
+  std::optional<ObjectObservation> visibleEvidence() const {
+    return ObjectMotionEstimator({}, kRig).visibleEvidence(object, now, predicted);
   }
 };
 
 TEST(ObjectMotion, PointsWithinItsOutlineShowThatAnObjectIsWhereItWasPredicted) {
   Unfollowed frames;
   frames.see(4, {-0.5, 0, 0.3}, PointLabel::kUnknown);
-  const auto o = frames.presence();
+  const auto o = frames.visibleEvidence();
   ASSERT_TRUE(o);
   EXPECT_EQ(o->points, 4);
   EXPECT_THAT(o->T_cam_body, IsNearPose(frames.T_cam_body, 0.0));
@@ -136,16 +136,16 @@ TEST(ObjectMotion, PointsAtRestBesideOrTooFewShowNoObject) {
   at_rest.see(4, {-0.5, 0, -0.4}, PointLabel::kGround);
   beside.see(4, {-0.5, 3, 0.3}, PointLabel::kUnknown);
   few.see(2, {-0.5, 0, 0.3}, PointLabel::kUnknown);
-  for (const auto* frames : {&at_rest, &beside, &few}) EXPECT_FALSE(frames->presence());
+  for (const auto* frames : {&at_rest, &beside, &few}) EXPECT_FALSE(frames->visibleEvidence());
 }
 
 TEST(ObjectMotion, AnObjectThatIsPredictedOutsideTheImageIsNotThere) {
   Unfollowed frames;
   frames.see(4, {-0.5, 0, 0.3}, PointLabel::kUnknown);
   frames.predicted.mean = SE3(frames.T_cam_body.rotation(), {0, 0, -2});
-  EXPECT_FALSE(frames.presence());
+  EXPECT_FALSE(frames.visibleEvidence());
   frames.predicted.mean = SE3(frames.T_cam_body.rotation(), {-12, 1, 12});
-  EXPECT_FALSE(frames.presence());
+  EXPECT_FALSE(frames.visibleEvidence());
 }
 
 TEST(ObjectMotion, PointsThatLeaveTheBodyAreDropped) {
@@ -153,7 +153,7 @@ TEST(ObjectMotion, PointsThatLeaveTheBodyAreDropped) {
   for (std::size_t i = 0; i < 3; ++i) frames.now.points[i].uvd_px.x() += 30;
   ASSERT_TRUE(frames.follow());
   EXPECT_EQ(frames.object.points.size(), 30U);  // once may be a mistake
-  frames.object.seen_before = FrameId{};
+  frames.object.observed_before = FrameId{};
   ASSERT_TRUE(frames.follow());
   EXPECT_EQ(frames.object.points.size(), 27U);
 }

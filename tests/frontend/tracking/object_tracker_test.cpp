@@ -53,7 +53,7 @@ struct Drive {
       if (distance(c) < distance(best)) best = c;
     return best;
   }
-  /// The body's place on the car, as the observation has it; a constant up to noise.
+  /// The body's pose on the car, as the observation has it; a constant up to noise.
   SE3 bodyOnCar(const ObjectObservation& o, std::size_t car) const {
     return traffic.carInCamera(car, static_cast<int>(o.frame.value)).inverse() * o.T_cam_body;
   }
@@ -95,8 +95,8 @@ TEST(ObjectTracker, AnObjectThatVanishesIsPredictedFiveTimesAndThenEnds) {
   int ends = 0;
   for (const auto& f : drive.frames) {
     ends += static_cast<int>(f->ended.size());
-    EXPECT_TRUE(f->ended.empty() || f->frame.value > 25)
-        << f->frame.value;  // it may come back while its place is known
+    // It may come back while its position is known.
+    EXPECT_TRUE(f->ended.empty() || f->frame.value > 25) << f->frame.value;
   }
   EXPECT_EQ(ends, 1);
 }
@@ -113,7 +113,7 @@ TEST(ObjectTracker, ACarThatComesBackWithinASecondKeepsItsId) {
 
 TEST(ObjectTracker, ACarThatComesBackIsWhereItIsSeenAgain) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    // Unseen it waits for half a second: its place was predicted three meters ahead.
+    // Unseen it waits for half a second: its position was predicted three meters ahead.
     const Drive drive({{.x_m = 0.5,
                         .z_m = 18,
                         .speed_mps = 6,
@@ -125,11 +125,11 @@ TEST(ObjectTracker, ACarThatComesBackIsWhereItIsSeenAgain) {
                       6, 45, seed);
     ASSERT_EQ(drive.tracks().size(), 1U) << "seed " << seed;
     const auto all = drive.observations(*drive.tracks().begin());
-    const auto placeAt = [&](std::int64_t frame) {
+    const auto positionAt = [&](std::int64_t frame) {
       const auto at = std::ranges::find_if(all, [&](const auto& o) { return o.frame.value == frame; });
       return drive.bodyOnCar(*at, 0).translation();
     };
-    EXPECT_LT((placeAt(44) - placeAt(24)).norm(), 1.8) << "seed " << seed;
+    EXPECT_LT((positionAt(44) - positionAt(24)).norm(), 1.8) << "seed " << seed;
   }
 }
 

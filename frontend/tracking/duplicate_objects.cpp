@@ -1,0 +1,67 @@
+#include "frontend/tracking/duplicate_objects.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "frontend/tracking/vehicle_size.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr double kMaxSpeedDifference_mps = 1.5;  // of two objects on one vehicle, where their frames' origins are
+constexpr double kMaxSlack_m =
+    2;                         // by which they may exceed one vehicle at most, however uncertain their positions are
+constexpr double kSigmas = 2;  // that slack, and what uncertain speeds add, in standard deviations
+
+/// Vehicles do not overlap: most points of the one lie within the other.
+bool isWithin(const TrackedObject& one, const SE3& T_other_one, const TrackedObject& other) {
+  constexpr double kMargin_m = 0.3, kMost = 0.7;  // a margin, as a face alone has no depth
+  Eigen::AlignedBox3d box = other.core(SE3{});
+  box.min().array() -= kMargin_m;
+  box.max().array() += kMargin_m;
+  const auto inside =
+      std::ranges::count_if(one.points, [&](const BodyPoint& p) { return box.contains(T_other_one * p.p_body); });
+  return static_cast<double>(inside) > kMost * static_cast<double>(one.points.size());
+}
+
+bool areDuplicates(const TrackedObject& older, const TrackedObject& younger) {
+  const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
+  const Eigen::AlignedBox3d own = older.core(SE3{}), other = younger.core(T_older_younger);
+  // A younger one that was observed for longer than the older one is lost is another vehicle.
+  if (older.life.missed() > 0 && younger.life.observations() > 1) return false;
+  const double slack_m = std::min(
+      kMaxSlack_m, kSigmas * std::hypot(older.kinematics.positionSigma_m(), younger.kinematics.positionSigma_m()));
+  const bool one_vehicle = kOrdinaryVehicle.holds(own.merged(other), slack_m);
+  if (!one_vehicle && !isWithin(younger, T_older_younger, older) &&
+      !isWithin(older, T_older_younger.inverse(), younger))
+    return false;
+  const Eigen::Vector3d dv =
+      older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps();
+  const double sigma_mps = std::hypot(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());
+  return dv.norm() < kMaxSpeedDifference_mps + (one_vehicle ? kSigmas * sigma_mps : 0);
+}
+
+void takePoints(TrackedObject& older, TrackedObject& younger) {
+  const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
+  for (BodyPoint& p : younger.points) {
+    p.moveTo(T_older_younger);
+    p.misfits = 0;
+  }
+  older.adopt(younger.points);
+}
+
+}  // namespace
+
+void mergeDuplicates(std::vector<TrackedObject>& objects) {
+  const auto ended = [](const TrackedObject& object) { return object.life.phase() == Phase::kEnded; };
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    for (std::size_t j = i + 1; j < objects.size(); ++j) {
+      TrackedObject &older = objects[i], &younger = objects[j];
+      if (ended(older) || ended(younger) || !areDuplicates(older, younger)) continue;
+      takePoints(older, younger);
+      younger.life.end();
+    }
+  }
+}
+
+}  // namespace motorcade

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "core/stereo_camera.hpp"
+#include "core/timestamp.hpp"
+#include "frontend/messages.hpp"
+#include "frontend/tracking/object_motion.hpp"
+#include "frontend/tracking/tracked_object.hpp"
+
+namespace motorcade {
+
+/// Looks for an object in the frames before it was spawned: its points were followed for some frames by then, and tell
+/// where it was.
+class LookBack {
+ public:
+  /// Looks back `frames` frames at most, from an object that was spawned up to `confirmed_after` frames ago.
+  LookBack(int frames, int confirmed_after, const ObjectMotionEstimator::Params& params, const StereoCamera& camera)
+      : frames_(frames), kept_(frames + confirmed_after), motion_(params, camera) {}
+
+  /// Puts what is found before the object's backlog; ends at the first frame in which it is not found.
+  void operator()(TrackedObject& object, Timestamp now, const ObjectKinematics::Params& kinematics) const;
+
+  /// Call at the end of each frame.
+  void remember(const SceneMotionPtr& scene, const SE3& T_world_cam);
+
+ private:
+  struct PastScene {
+    SceneMotionPtr scene;
+    SE3 T_world_cam;
+  };
+  std::optional<ObjectObservation> observe(const TrackedObject& object, const PastScene& earlier,
+                                           const ObjectKinematics& then) const;
+
+  int frames_, kept_;
+  ObjectMotionEstimator motion_;
+  std::deque<PastScene> past_;  // oldest first
+};
+
+}  // namespace motorcade

@@ -1,0 +1,53 @@
+#include "frontend/tracking/object_confirmation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace motorcade {
+namespace {
+
+constexpr double kSpeedSigmas = 9.0;  // of the speed above zero: a parked car with a bad track reaches a few
+constexpr double kMinExtent_m = 0.3;  // span of the points: less is a blot, no vehicle
+constexpr double kMinExtent_px = 20;  // in the image too: points whose patches overlap are one measurement
+
+double diagonal_px(const Box& box) { return std::hypot(box.right_px - box.left_px, box.bottom_px - box.top_px); }
+
+/// A few points that seem to lie behind a vehicle with many, and within its outline, are the vehicle's own with wrong
+/// disparities.
+bool looksThrough(const ObjectObservation& few, const std::vector<ObjectObservation>& objects) {
+  constexpr double kMargin = 0.25, kMaxMargin_px = 30;  // of the outline's width and height
+  constexpr int kMany = 3;                              // times as many points
+  return std::ranges::any_of(objects, [&](const ObjectObservation& o) {
+    const double du = std::min(kMaxMargin_px, kMargin * (o.box.right_px - o.box.left_px));
+    const double dv = std::min(kMaxMargin_px, kMargin * (o.box.bottom_px - o.box.top_px));
+    return o.frame == few.frame && o.points >= kMany * few.points &&
+           o.T_cam_body.translation().z() < few.T_cam_body.translation().z() && o.box.left_px - du < few.box.left_px &&
+           few.box.right_px < o.box.right_px + du && o.box.top_px - dv < few.box.top_px &&
+           few.box.bottom_px < o.box.bottom_px + dv;
+  });
+}
+
+}  // namespace
+
+bool ObjectConfirmation::operator()(const TrackedObject& object, const std::vector<ObjectObservation>& reported) const {
+  const ObjectObservation& newest = object.backlog.back();
+  if (looksThrough(newest, reported) || diagonal_px(newest.box) < kMinExtent_px) return false;
+  const double traveled_m = (object.kinematics.pose().translation() - object.spawned_at_world).norm();
+  return object.life.observations() >= params_.confirm_observations && traveled_m > params_.confirm_travel_m &&
+         movesSurely(object.kinematics) && object.extent(0).diagonal().norm() > kMinExtent_m;
+}
+
+bool ObjectConfirmation::movesSurely(const ObjectKinematics& kinematics) const {
+  const double speed_mps = kinematics.speed_mps();
+  return speed_mps > params_.confirm_speed_mps && speed_mps > kSpeedSigmas * kinematics.speedSigma_mps();
+}
+
+std::vector<Parameter> parametersOf(ObjectConfirmation::Params& params) {
+  return {numberParameter("confirm_observations", params.confirm_observations, {1, 10},
+                          "fewer report an object earlier, more surely"),
+          numberParameter("confirm_speed_mps", params.confirm_speed_mps, {0, 10}, "lower reports slower objects"),
+          numberParameter("confirm_travel_m", params.confirm_travel_m, {0, 10},
+                          "lower reports an object earlier, higher more surely")};
+}
+
+}  // namespace motorcade

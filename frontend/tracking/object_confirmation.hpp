@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "core/messages.hpp"
+#include "core/parameters.hpp"
+#include "frontend/tracking/tracked_object.hpp"
+
+namespace motorcade {
+
+/// Decides when a tentative object has shown that it is a vehicle on the move.
+class ObjectConfirmation {
+ public:
+  struct Params {
+    int confirm_observations = 3;    // frames with a measurement before an object is reported,
+    double confirm_speed_mps = 1.0;  // its speed,
+    double confirm_travel_m = 0.5;   // and its way since it was spawned
+  };
+  explicit ObjectConfirmation(const Params& params) : params_(params) {}
+
+  /// By the newest observation of the object's backlog. `reported` are this frame's observations of other objects.
+  bool operator()(const TrackedObject& object, const std::vector<ObjectObservation>& reported) const;
+
+ private:
+  bool movesSurely(const ObjectKinematics& kinematics) const;
+
+  Params params_;
+};
+
+std::vector<Parameter> parametersOf(ObjectConfirmation::Params& params);
+
+}  // namespace motorcade

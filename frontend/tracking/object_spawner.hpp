@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/stereo_camera.hpp"
+#include "frontend/messages.hpp"
+#include "frontend/tracking/object_motion.hpp"
+#include "frontend/tracking/point_adoption.hpp"
+#include "frontend/tracking/tracked_object.hpp"
+
+namespace motorcade {
+
+/// Spawns tentative objects from moving segments that no object claims. Gives each its track id.
+class ObjectSpawner {
+ public:
+  ObjectSpawner(const ObjectMotionEstimator::Params& params, const StereoCamera& camera)
+      : min_points_(params.min_points), adopt_(camera), motion_(params, camera) {}
+
+  /// Objects from those points of the segment that are not `taken`, one for each vehicle abreast; marks their points.
+  std::vector<TrackedObject> operator()(const SceneMotion& scene, const Segment& segment, const SE3& T_world_cam,
+                                        std::vector<bool>& taken);
+
+ private:
+  TrackedObject spawn(const SceneMotion& scene, const Segment& vehicle, const SE3& T_world_cam);
+
+  int min_points_;
+  PointAdoption adopt_;
+  ObjectMotionEstimator motion_;
+  std::int64_t next_track_ = 0;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace motorcade {
+
+/// A box that a vehicle's points fit into.
+struct VehicleSize {
+  double length_m, width_m, height_m;
+  bool holds(const Eigen::AlignedBox3d& box, double slack_m) const {
+    return (box.sizes().array() < Eigen::Array3d(length_m, width_m, height_m) + slack_m).all();
+  }
+};
+
+/// A car or a van with some margin: what may be one body without further evidence.
+constexpr VehicleSize kOrdinaryVehicle{.length_m = 6.0, .width_m = 2.8, .height_m = 3.2};
+
+/// A lorry or a bus. Its length is found point by point; it is no wider or higher than others.
+constexpr VehicleSize kLongestVehicle{
+    .length_m = 14.0, .width_m = kOrdinaryVehicle.width_m, .height_m = kOrdinaryVehicle.height_m};
+
+}  // namespace motorcade

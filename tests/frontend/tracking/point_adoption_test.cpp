@@ -1,0 +1,133 @@
+#include "frontend/tracking/point_adoption.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/matchers.hpp"
+#include "tests/support/stereo_views.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::IsNear;
+using test::kRig;
+
+/// A car 12 m ahead with points over two meters of its length, and points of the scene that may join it. The camera
+/// stands at the world's origin.
+struct Car {
+  TrackedObject object;
+  SceneMotion scene;
+  std::vector<bool> taken;
+
+  explicit Car(double speed_mps = 10) {
+    Eigen::Matrix3d upright;  // columns: ahead = camera's z, left = -x, up = -y
+    upright << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+    object.T_cam_body = SE3(upright, {1, 1, 12});
+    Vector6d twist;
+    twist << speed_mps, 0, 0, 0, 0, 0;
+    object.kinematics = ObjectKinematics(object.T_cam_body, twist, 0.01 * Matrix12d::Identity());
+    for (const double x_m : {-1.0, 0.0, 1.0})
+      object.points.push_back(
+          {{static_cast<std::int64_t>(1000 + x_m)}, {x_m, 0, 0}, 1e-4 * Eigen::Matrix3d::Identity()});
+  }
+
+  /// A point of the scene at `p_body`, moving as the body does there.
+  ScenePoint& see(const Eigen::Vector3d& p_body) {
+    ScenePoint p{.point = {static_cast<std::int64_t>(scene.points.size())},
+                 .uvd_px = *kRig.project(object.T_cam_body * p_body),
+                 .sigma_px = Eigen::Vector3d::Constant(0.05),
+                 .flow = {}};
+    p.flow = SceneFlow{.p_cam = object.T_cam_body * p_body,
+                       .velocity_mps = object.velocityAt_mps(p_body),
+                       .covariance = 0.01 * Matrix6d::Identity(),
+                       .static_chi2 = 100,
+                       .moving_chi2 = 5};
+    scene.points.push_back(p);
+    taken.push_back(false);
+    return scene.points.back();
+  }
+  /// Whether the object takes the newest point, from the whole scene or from a segment of all its points.
+  bool takes(bool from_segment = false) {
+    Segment segment;
+    for (int i = 0; i < static_cast<int>(scene.points.size()); ++i) segment.points.push_back(i);
+    PointAdoption adopt(kRig);
+    adopt(object, scene, from_segment ? &segment : nullptr, SE3{}, taken);
+    return object.find(scene.points.back().point) != nullptr;
+  }
+};
+
+/// Whether a car takes a point at `p_body` after `change` was made to it.
+template <class Change>
+bool takesAfter(const Change& change, const Eigen::Vector3d& p_body = {0.5, 0.2, 0.3}) {
+  Car car;
+  change(car.see(p_body));
+  return car.takes();
+}
+
+TEST(PointAdoption, TakesThePointsWithinTheObjectThatMoveWithIt) {
+  Car car;
+  car.see({0.5, 0.2, 0.3});
+  car.see({-0.5, -0.2, 0.1});
+  EXPECT_TRUE(car.takes());
+  ASSERT_EQ(car.object.points.size(), 5U);
+  EXPECT_TRUE(std::ranges::is_sorted(car.object.points, {}, &BodyPoint::point));
+  EXPECT_THAT(car.object.find({0})->p_body, IsNear(Eigen::Vector3d(0.5, 0.2, 0.3), 1e-9));
+  EXPECT_EQ(car.taken, std::vector<bool>({true, true}));
+}
+
+TEST(PointAdoption, LeavesWhatBelongsToAnotherObject) {
+  Car car;
+  car.see({0.5, 0.2, 0.3});
+  car.taken[0] = true;
+  EXPECT_FALSE(car.takes());
+  EXPECT_EQ(car.object.points.size(), 3U);
+}
+
+TEST(PointAdoption, LeavesWhatDoesNotShowThatItMovesWithTheBody) {
+  EXPECT_TRUE(takesAfter([](ScenePoint&) {}));
+  EXPECT_FALSE(takesAfter([](ScenePoint& p) { p.flow.reset(); }));
+  EXPECT_FALSE(takesAfter([](ScenePoint& p) { p.flow->velocity_mps.z() -= 3; }));  // slower than the body by 3 m/s
+  EXPECT_FALSE(takesAfter([](ScenePoint& p) { p.flow->static_chi2 = 15; }));       // as good as at rest
+  EXPECT_FALSE(takesAfter([](ScenePoint& p) { p.label = PointLabel::kGround; }));
+  EXPECT_FALSE(takesAfter([](ScenePoint& p) { p.ambiguous = true; }));
+}
+
+TEST(PointAdoption, ASlowObjectTakesNone) {
+  Car slow(0.5);
+  slow.see({0.5, 0.2, 0.3});
+  EXPECT_FALSE(slow.takes());
+}
+
+TEST(PointAdoption, WhatLiesApartJoinsOnlyFromTheSegmentThatWasMatched) {
+  for (const bool from_segment : {false, true}) {
+    Car car;
+    car.see({-3, 0, 0.3});  // two meters behind the points that are known, within the length of a car
+    EXPECT_EQ(car.takes(from_segment), from_segment);
+  }
+  Car wide;
+  wide.see({0, 5, 0.3});
+  EXPECT_FALSE(wide.takes(true));  // no vehicle is so wide
+}
+
+TEST(PointAdoption, ALongVehicleIsFoundStepByStepUpToTheLengthOfALorry) {
+  Car car;
+  double reached_m = 1;
+  for (double x_m = 1.5; x_m < 20; x_m += 0.5) {
+    car.see({x_m, 0, 0.3});
+    if (car.takes()) reached_m = x_m;
+  }
+  EXPECT_GT(reached_m, 10);
+  EXPECT_LT(reached_m, 14);
+}
+
+TEST(PointAdoption, APointInBodyAxesHasTheCovarianceOfItsTriangulation) {
+  Car car;
+  const ScenePoint& p = car.see({0.5, 0.2, 0.3});
+  const BodyPoint body = PointAdoption(kRig).toBody(car.object, p);
+  EXPECT_THAT(body.p_body, IsNear(Eigen::Vector3d(0.5, 0.2, 0.3), 1e-9));
+  const Eigen::Matrix3d R = car.object.T_cam_body.rotation();
+  EXPECT_THAT(body.covariance, IsNear(R.transpose() * test::triangulationCovariance(p.uvd_px, p.sigma_px) * R, 1e-12));
+  EXPECT_GT(body.covariance(0, 0), 10 * body.covariance(1, 1));  // the car is seen from behind: depth is worst
+}
+
+}  // namespace
+}  // namespace motorcade
