@@ -6,6 +6,9 @@
 
 namespace motorcade {
 
+/// A camera's covariance is that of its motion over this many frames: the drift of an absolute pose has no bound.
+inline constexpr int kCameraCovarianceFrames = 10;
+
 /// Measurements to trajectories. Call in frame order: a back-end remembers all frames of its window.
 class Backend {
  public:
@@ -14,8 +17,8 @@ class Backend {
   Backend& operator=(const Backend&) = delete;
   virtual ~Backend() = default;
 
-  /// The newest frame's estimate, and those that left the window. Numerical trouble shows in the result; nothing is
-  /// thrown.
+  /// The newest frame's estimate, and those that left the window. Throws nothing: numerical trouble shows in the
+  /// result.
   virtual EstimatesPtr operator()(const FrameMeasurementsPtr& measurements) = 0;
 
   /// Final estimates of the frames still in the window, oldest first. No further frame may follow.

@@ -14,8 +14,8 @@ struct Color {
   int red = 0, green = 0, blue = 0;
 };
 
-/// A color image to draw on, anti-aliased. Coordinates are pixels, whole numbers at pixel centers; what lies outside is
-/// cut.
+/// A color image to draw on, anti-aliased. Coordinates are pixels, whole numbers at pixel centers; drawings are
+/// clipped.
 class Canvas {
  public:
   Canvas(int width, int height, Color background);

@@ -69,7 +69,7 @@ int runDraw(const DrawOptions& options) {
       continue;
     try {
       const Image left = readImage(sequence.frames[frame].left, pool);
-      writePngRgb(options.out / pictureName(static_cast<std::int64_t>(frame)), drawFrame(left, drawn, i).image());
+      writePngRgb(options.out / pictureName(frame), drawFrame(left, drawn, i).image());
       ++pictures;
     } catch (const InputError& problem) {
       std::cerr << "left out: " << problem.what() << '\n';

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <set>
+#include <utility>
 
 namespace motorcade {
 namespace {
@@ -22,7 +23,7 @@ std::string format(const char* pattern, Values... values) {
 }
 
 std::vector<ObjectEstimate> objectsAt(const DrawnRun& run, std::size_t frame) {
-  const auto found = run.objects.find(static_cast<std::int64_t>(frame));
+  const auto found = run.objects.find(frame);
   return found == run.objects.end() ? std::vector<ObjectEstimate>() : found->second;
 }
 
@@ -30,7 +31,7 @@ std::vector<ObjectEstimate> objectsAt(const DrawnRun& run, std::size_t frame) {
 std::vector<Vector3d> wayOf(const DrawnRun& run, TrackId track, std::size_t frame) {
   std::vector<Vector3d> way;
   for (const auto& [at, objects] : run.objects) {
-    if (at > static_cast<std::int64_t>(frame)) break;
+    if (std::cmp_greater(at, frame)) break;
     for (const auto& object : objects)
       if (object.track == track) way.push_back(object.T_world_body.translation());
   }
@@ -149,7 +150,7 @@ void drawCameraFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame,
 }
 
 void drawTruthFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame, const TopMap& map) {
-  const auto here = run.true_objects.find(static_cast<std::int64_t>(frame));
+  const auto here = run.true_objects.find(frame);
   if (here == run.true_objects.end() || frame >= run.T_world_cam_true.size()) return;
   const SE3 T_cam_world = run.T_world_cam_true[frame].inverse();
   for (const auto& truth : here->second) {
@@ -185,7 +186,7 @@ void drawObjectFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame,
 void drawEarlierTracks(Canvas& canvas, const DrawnRun& run, std::size_t frame, const TopMap& map) {
   std::set<TrackId> earlier;
   for (const auto& [at, objects] : run.objects) {
-    if (at > static_cast<std::int64_t>(frame)) break;
+    if (std::cmp_greater(at, frame)) break;
     for (const auto& object : objects) earlier.insert(object.track);
   }
   for (const auto& object : objectsAt(run, frame)) earlier.erase(object.track);
@@ -195,8 +196,7 @@ void drawEarlierTracks(Canvas& canvas, const DrawnRun& run, std::size_t frame, c
 }
 
 void drawLegend(Canvas& canvas, const DrawnRun& run, std::size_t frame) {
-  canvas.text({12, 10},
-              format("frame %lld", static_cast<long long>(run.first_frame + static_cast<std::int64_t>(frame))), kText);
+  canvas.text({12, 10}, format("frame %lld", static_cast<long long>(run.first_frame + frame)), kText);
   canvas.text({12, 32}, format("camera %.1f m/s", cameraSpeed_mps(run, frame)), kText);
   const auto objects = objectsAt(run, frame);
   canvas.text(
@@ -224,7 +224,7 @@ Color trackColor(TrackId track) {
                                            {255, 138, 80},
                                            {140, 170, 255},
                                            {230, 130, 230}}};
-  return kColors[static_cast<std::size_t>(std::max<std::int64_t>(track.value, 0)) % kColors.size()];
+  return kColors[std::max<std::int64_t>(track.value, 0) % kColors.size()];
 }
 
 Canvas drawImageView(const Image& left, const DrawnRun& run, std::size_t frame) {

@@ -18,18 +18,18 @@ struct DrawnRun {
   std::vector<Timestamp> stamps;  // of the run's frames
   std::int64_t first_frame = 0;
   std::vector<SE3> T_world_cam, T_world_cam_true;               // the truth may be empty
-  std::map<std::int64_t, std::vector<ObjectEstimate>> objects;  // by index of the frame in the run
+  std::map<std::int64_t, std::vector<ObjectEstimate>> objects;  // by index in the run
   std::map<std::int64_t, std::vector<ObjectTruth>> true_objects;
 };
 
 /// Each track its color, the same in every picture.
 Color trackColor(TrackId track);
 
-/// The left image with a box, a name, speed and distance, the way behind and an arrow of one second's motion for every
-/// object.
+/// The left image with each object's box, name, speed and distance, its path so far and an arrow of one second's
+/// motion.
 Canvas drawImageView(const Image& left, const DrawnRun& run, std::size_t frame);
 
-/// The scene from above, the camera heading right: the ways so far of camera and objects, with the truth dashed.
+/// The scene from above, the camera heading right: the paths so far of camera and objects, with the truth dashed.
 Canvas drawTopView(const DrawnRun& run, std::size_t frame, int width, int height);
 
 /// The one above the other.

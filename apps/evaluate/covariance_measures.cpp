@@ -10,7 +10,8 @@
 namespace motorcade {
 namespace {
 
-constexpr std::int64_t kEveryFrames = 5, kCameraSpan = 10;
+constexpr std::int64_t kCameraSpan = 10;    // frames between the poses of a camera covariance
+constexpr std::int64_t kEveryFrames = 5;    // errors of neighboring frames are nearly the same
 constexpr double kChiSquare95 = 12.591587;  // 95 % quantile, 6 degrees of freedom
 
 void add(CovarianceErrors& errors, const SE3& estimate, const SE3& truth, const Matrix6d& covariance) {
@@ -48,15 +49,15 @@ CovarianceErrors cameraCovarianceErrors(const std::vector<ComparedFrame>& frames
 
 CovarianceErrors objectCovarianceErrors(const std::vector<ComparedFrame>& frames,
                                         const std::vector<RunFolder::CovarianceRow>& rows) {
-  struct Track {
+  struct FollowedObject {
     std::vector<SE3> bodies, boxes;  // seen from the camera
     std::vector<FrameId> frames;
   };
-  std::map<TrackId, Track> tracks;
+  std::map<TrackId, FollowedObject> tracks;
   for (const auto& frame : frames) {
     for (const auto& row : frame.rows) {
       if (row.object < 0 || !frame.objects[row.object].ever_moves) continue;
-      Track& track = tracks[row.row.object.track];
+      FollowedObject& track = tracks[row.row.object.track];
       track.bodies.push_back(frame.T_world_cam.inverse() * row.row.object.T_world_body);
       track.boxes.push_back(frame.objects[row.object].truth.T_cam_object);
       track.frames.push_back(frame.frame);

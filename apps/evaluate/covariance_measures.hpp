@@ -16,8 +16,7 @@ struct CovarianceErrors {
 /// The camera's motion over the last ten frames.
 CovarianceErrors cameraCovarianceErrors(const std::vector<ComparedFrame>& frames,
                                         const std::vector<RunFolder::CovarianceRow>& rows);
-/// Objects relative to the camera of the same frame, with each track's constant offset between body and box frame taken
-/// out.
+/// Objects relative to the camera of the same frame, without each track's constant offset between body and box frame.
 CovarianceErrors objectCovarianceErrors(const std::vector<ComparedFrame>& frames,
                                         const std::vector<RunFolder::CovarianceRow>& rows);
 

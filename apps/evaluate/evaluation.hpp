@@ -52,8 +52,7 @@ struct Evaluation {
   std::vector<double> latency_ms;  // sorted
 };
 
-/// Measures a run against the truth of its sequence. Throws InputError where one of them cannot be read or there is no
-/// truth.
+/// Measures a run against the truth of its sequence. Throws InputError where one of them cannot be read or is missing.
 Evaluation evaluateRun(const EvaluateOptions& options);
 
 /// The same for camera poses alone, frame i of the sequence in line i.

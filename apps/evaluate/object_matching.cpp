@@ -8,9 +8,12 @@
 namespace motorcade {
 namespace {
 
-constexpr double kMaxTruncated = 0.5, kMinHeight_px = 25, kMovingSpeed_mps = 1, kMovingDistance_m = 1.5;
-constexpr int kMaxOccluded = 1;
-constexpr std::int64_t kSpeedFrames = 3;
+/// Labels that are harder to see are not asked for: KITTI's moderate level, with the truncation of its hard one.
+constexpr double kMaxTruncated = 0.5, kMinHeight_px = 25;
+constexpr int kMaxOccluded = 1;  // partly
+/// A label moves when it travels this far at this speed: labels at rest jitter.
+constexpr double kMovingSpeed_mps = 1, kMovingDistance_m = 1.5;
+constexpr std::int64_t kSpeedFrames = 3;  // before and after the frame, over which a label's speed is taken
 
 bool isCounted(const ObjectTruth& truth) {
   const bool on_foot = truth.type == "Pedestrian" || truth.type == "Person" || truth.type == "Person_sitting";
@@ -22,9 +25,9 @@ bool isCounted(const ObjectTruth& truth) {
 void describeTrack(const std::vector<TrueObject*>& track, const std::vector<Timestamp>& stamps) {
   const auto position_m = [&](std::size_t i) { return track[i]->truth.T_world_object.translation(); };
   const auto stamp = [&](std::size_t i) { return stamps[track[i]->truth.frame.value]; };
-  const double way_m = (position_m(track.size() - 1) - position_m(0)).norm(),
+  const double distance_m = (position_m(track.size() - 1) - position_m(0)).norm(),
                time_s = secondsBetween(stamp(0), stamp(track.size() - 1));
-  const bool travels = way_m > kMovingDistance_m && way_m > kMovingSpeed_mps * time_s;
+  const bool travels = distance_m > kMovingDistance_m && distance_m > kMovingSpeed_mps * time_s;
   int visible = 0;
   bool ever_moves = false;
   for (std::size_t i = 0; i < track.size(); ++i) {
@@ -56,20 +59,20 @@ double overlapArea(const Box& a, const Box& b) {
 }
 
 bool mostlyInside(const Box& box, const Box& area) {
-  return overlapArea(box, area) >= 0.5 * (box.right_px - box.left_px) * (box.bottom_px - box.top_px) &&
+  constexpr double kShare = 0.5;
+  return overlapArea(box, area) >= kShare * (box.right_px - box.left_px) * (box.bottom_px - box.top_px) &&
          overlapArea(box, area) > 0;
 }
 
 void matchRows(ComparedFrame& frame) {
   constexpr double kForbidden_m = 1e6;  // far above any gate: pairs come before short distances
-  Eigen::MatrixXd cost_m(static_cast<Eigen::Index>(frame.rows.size()), static_cast<Eigen::Index>(frame.objects.size()));
+  Eigen::MatrixXd cost_m(frame.rows.size(), frame.objects.size());
   for (std::size_t i = 0; i < frame.rows.size(); ++i) {
     const Eigen::Vector3d seen = frame.T_world_cam.inverse() * frame.rows[i].row.object.T_world_body.translation();
     for (std::size_t j = 0; j < frame.objects.size(); ++j) {
       const Eigen::Vector3d offset = seen - frame.objects[j].truth.T_cam_object.translation();
       const double distance_m = std::hypot(offset.x(), offset.z());
-      cost_m(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-          distance_m <= gateOf_m(frame.objects[j].truth) ? distance_m : 2 * kForbidden_m;
+      cost_m(i, j) = distance_m <= gateOf_m(frame.objects[j].truth) ? distance_m : 2 * kForbidden_m;
     }
   }
   const auto columns = assignMinCost(cost_m, kForbidden_m);
@@ -77,7 +80,7 @@ void matchRows(ComparedFrame& frame) {
     MatchedRow& row = frame.rows[i];
     row.object = columns[i];
     if (row.object < 0) continue;
-    row.distance_m = cost_m(static_cast<Eigen::Index>(i), row.object);
+    row.distance_m = cost_m(i, row.object);
     row.gate_m = gateOf_m(frame.objects[row.object].truth);
   }
 }

@@ -9,7 +9,8 @@
 namespace motorcade {
 namespace {
 
-constexpr double kNear_m = 30, kFar_m = 50;
+constexpr double kNear_m = 30, kFar_m = 50;  // bounds of the two ranges that recall is counted in
+constexpr double kSigmas95 = 1.96;           // half the width of the 95 % interval of a Gaussian
 
 bool asked(const TrueObject& object) { return object.counted && object.moving; }
 
@@ -32,7 +33,7 @@ std::vector<Pair> askedPairs(const std::vector<ComparedFrame>& frames) {
   return pairs;
 }
 
-/// E = L(k)^-1 H L(k-1) with H the estimated motion, moved from the estimated to the true camera.
+/// E = L(k)^-1 H L(k-1) with H the estimated motion, transferred from the estimated to the true camera.
 SE3 motionError(const Pair& before, const Pair& now) {
   const SE3 H_world = now.row->row.object.T_world_body * before.row->row.object.T_world_body.inverse();
   const SE3 H_cam = before.frame->T_world_cam.inverse() * H_world * before.frame->T_world_cam;
@@ -57,7 +58,7 @@ std::optional<TrajectoryErrors> bodyTrajectoryErrors(const std::vector<Pair>& pa
   }
   auto errors = trajectoryErrors(bodies, labels);
   if (!errors) return errors;
-  // Where the body's origin sits is free: hold the box's frame to it at the first match instead of moving the world.
+  // The body's origin is arbitrary: align the box's frame with it at the first match instead of moving the world.
   const SE3 offset = bodies.front().inverse() * labels.front(), mean_offset = bodyOffset(bodies, labels);
   std::vector<double> first_m, rotation_deg;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -99,9 +100,10 @@ struct HotaSums {
 };
 
 void setHota(DetectionErrors& errors, const HotaSums& sums) {
-  constexpr int kThresholds = 19;
+  constexpr int kThresholds = 19;  // 0.05, 0.1, ... 0.95, as in the paper
+  constexpr double kStep = 0.05;
   for (int i = 1; i <= kThresholds; ++i) {
-    const auto [det_a, ass_a] = sums.at(0.05 * i);
+    const auto [det_a, ass_a] = sums.at(kStep * i);
     errors.det_a += det_a / kThresholds;
     errors.ass_a += ass_a / kThresholds;
     errors.hota += std::sqrt(det_a * ass_a) / kThresholds;
@@ -128,7 +130,7 @@ void countLabels(const ComparedFrame& frame, DetectionErrors& errors) {
     if (!asked(object) || object.range_m() > kFar_m) continue;
     const bool is_found = found.contains(static_cast<int>(j)), near = object.range_m() <= kNear_m;
     count(near ? errors.within_30m : errors.from_30_to_50m, is_found);
-    constexpr int kFirstFrames = 4;
+    constexpr int kFirstFrames = 4;  // in which a tracker may still be confirming the object
     if (object.visible_before >= kFirstFrames)
       count(near ? errors.within_30m_from_fifth : errors.from_30_to_50m_from_fifth, is_found);
   }
@@ -143,7 +145,7 @@ void addToHota(const ComparedFrame& frame, HotaSums& sums) {
   for (const auto& row : frame.rows) {
     const TrueObject* object = row.object < 0 ? nullptr : &frame.objects[row.object];
     const bool of_interest = object && asked(*object) && object->range_m() <= kFar_m;
-    if (object && object->ever_moves && !of_interest) continue;  // neither right nor wrong
+    if (object && object->ever_moves && !of_interest) continue;  // counts neither as right nor as wrong
     ++sums.rows;
     ++sums.track_frames[row.row.object.track];
     if (of_interest) sums.pairs.push_back({Pair{&frame, object, &row}, 1 - row.distance_m / row.gate_m});
@@ -154,9 +156,10 @@ void addToHota(const ComparedFrame& frame, HotaSums& sums) {
 
 SE3 bodyOffset(const std::vector<SE3>& bodies, const std::vector<SE3>& labels) {
   if (bodies.empty()) return {};
-  // The tangent-space mean, starting at the middle pair; three rounds are plenty for spreads of some degrees.
+  // The tangent-space mean, starting at the middle pair; three rounds suffice for spreads of some degrees.
+  constexpr int kRounds = 3;
   SE3 mean = bodies[bodies.size() / 2].inverse() * labels[bodies.size() / 2];
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
     Vector6d step = Vector6d::Zero();
     for (std::size_t i = 0; i < bodies.size(); ++i) step += (mean.inverse() * bodies[i].inverse() * labels[i]).log();
     mean = mean * SE3::exp(step / static_cast<double>(bodies.size()));
@@ -182,7 +185,7 @@ MotionErrors motionErrors(const std::vector<ComparedFrame>& frames, std::optiona
     last.insert_or_assign({id, estimate.track}, pair);
     speed_mps.push_back(estimate.velocity_world_mps.norm() - pair.object->speed_mps);
     errors.speed_bias_mps += speed_mps.back();
-    covered += std::abs(speed_mps.back()) <= 1.96 * estimate.speed_sigma_mps;
+    covered += std::abs(speed_mps.back()) <= kSigmas95 * estimate.speed_sigma_mps;
   }
   const double n = std::max<double>(1, static_cast<double>(speed_mps.size()));
   errors.speed_bias_mps /= n;

@@ -13,7 +13,7 @@ namespace motorcade {
 
 /// Motion of objects from frame to frame, and speed.
 struct MotionErrors {
-  Statistics me_m, me_deg;  // H against L
+  Statistics me_m, me_deg;  // of E = L(k)^-1 H L(k-1): H the estimated motion, L the labels' poses, in the true camera
   Statistics speed_mps;     // |estimated| - |true|
   double speed_bias_mps = 0;
   double speed_coverage = 0;  // share of speeds within 1.96 of their sigma
@@ -27,8 +27,8 @@ struct ObjectErrors {
   int labeled_frames = 0;   // counted and moving
   int followed_frames = 0;  // by any track
   int tracks = 0;
-  std::optional<TrajectoryErrors>
-      trajectory;  // of the body's origin, SE(3) aligned; "first pose" holds the body frame at the first match
+  /// Of the body's origin, SE(3) aligned; "first pose" aligns by the body frame at the first match.
+  std::optional<TrajectoryErrors> trajectory;
   MotionErrors motion;
 };
 

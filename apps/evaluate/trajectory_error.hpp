@@ -24,8 +24,8 @@ SE3 alignPositions(const std::vector<SE3>& estimate, const std::vector<SE3>& tru
 struct TrajectoryErrors {
   Statistics ate_m;             // absolute, after SE(3) alignment
   Statistics ate_first_pose_m;  // absolute, aligned at the first pose
-  Statistics
-      are_deg;  // absolute rotation, aligned by the mean rotation: positions on a straight road leave the roll open
+  /// Absolute rotation, aligned by the mean rotation: positions on a straight road do not determine the roll.
+  Statistics are_deg;
   Statistics rpe_m, rpe_deg;  // relative, from each pose to the next
   double end_percent = 0;     // of the path's length, aligned at the first pose
   double length_m = 0;        // of the true path

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "backend/graph/relative_pose_factor.hpp"
 #include "backend/smoother/factors.hpp"
@@ -10,7 +11,7 @@
 namespace motorcade {
 namespace {
 
-constexpr double kGaugeSigma = 1e-4;  // m and rad; no edge pulls against it, so that it only has to be small
+constexpr double kGaugeSigma = 1e-4;  // m and rad; no edge disagrees with it, so that any small number does
 
 std::vector<std::size_t> updateEnds(const PoseGraph& graph, const PoseGraphIndex& index, PoseGraphFeed::Pace pace) {
   std::vector<std::size_t> ends;
@@ -91,7 +92,7 @@ std::optional<PoseGraphFeed::Neighbor> PoseGraphFeed::joinedTo(std::size_t pose)
   return first;
 }
 
-/// Breadth first: a pose that waited is placed over as few edges as possible.
+/// Breadth first: the initial value of a pose that waited comes over as few edges as possible.
 void PoseGraphFeed::addWithWaiting(std::size_t pose, const Neighbor& joint, Update& update) {
   struct Joining {
     std::size_t pose;
@@ -116,7 +117,7 @@ void PoseGraphFeed::addWithWaiting(std::size_t pose, const Neighbor& joint, Upda
 
 void PoseGraphFeed::add(std::size_t pose, const Value& initial, Update& update) {
   variable_[pose] = solver_.addVariable(initial);
-  assert(static_cast<std::size_t>(variable_[pose].value) == pose_of_variable_.size());
+  assert(std::cmp_equal(variable_[pose].value, pose_of_variable_.size()));
   pose_of_variable_.push_back(pose);
   ++update.poses;
   for (const Neighbor& neighbor : index_.neighbors(pose)) {
@@ -193,7 +194,7 @@ std::vector<PoseGraph::Vertex> PoseGraphFeed::vertices() const {
   return vertices;
 }
 
-/// The poses that wait together with `first`, placed along their edges.
+/// The poses that wait together with `first`, at their positions along the edges.
 std::vector<PoseGraph::Vertex> PoseGraphFeed::placedPart(std::size_t first, std::vector<char>& placed) const {
   std::vector<std::pair<std::size_t, Value>> part{{first, graph_.planar ? Value(SE2{}) : Value(SE3{})}};
   placed[first] = 1;

@@ -20,11 +20,11 @@ PoseGraphIndex::PoseGraphIndex(const PoseGraph& graph)
 }
 
 std::size_t PoseGraphIndex::at(std::int64_t id) const {
-  return static_cast<std::size_t>(std::ranges::lower_bound(graph_.poses, id) - graph_.poses.begin());
+  return std::ranges::lower_bound(graph_.poses, id) - graph_.poses.begin();
 }
 
 std::size_t PoseGraphIndex::after(std::int64_t id) const {
-  return static_cast<std::size_t>(std::ranges::upper_bound(graph_.poses, id) - graph_.poses.begin());
+  return std::ranges::upper_bound(graph_.poses, id) - graph_.poses.begin();
 }
 
 }  // namespace motorcade

@@ -29,7 +29,7 @@ void addSolverProblems(const IncrementalSolver::Report& report, const PoseGraphF
                        std::vector<SolveProblem>& problems) {
   const auto nameOf = [&](VariableId v) { return namesOf({feed.poseOf(v)}); };
   for (const SolverProblem& found : report.problems) {
-    if (found.kind == SolverProblem::Kind::kNotFinite) continue;  // is told with the edge and its line
+    if (found.kind == SolverProblem::Kind::kNotFinite) continue;  // reported with the edge and its line
     SolveProblem problem{std::string(motorcade::nameOf(found.kind)),
                          nameOf(found.variable),
                          describe(found, feed.solver().graph(), nameOf),

@@ -10,7 +10,7 @@ namespace motorcade {
 /// What a user should know of a graph and its solution.
 struct SolveProblem {
   std::string kind;    // one word
-  std::string name;    // of whom: "pose 17"
+  std::string name;    // its subject: "pose 17"
   std::string detail;  // what, and what became of it
   std::vector<std::int64_t> poses;
 };

@@ -36,7 +36,7 @@ class FrameScene {
   const Placed& placedOf(std::uint32_t item) const { return placed_[items_[item].placed]; }
   const Primitive& partOf(std::uint32_t item) const { return placedOf(item).model->parts[items_[item].part]; }
 
-  /// True if the left camera's ray meets the thing, hidden or not.
+  /// True if the left camera's ray meets the thing, also where another thing hides it.
   static bool meets(const Placed& placed, const Vec3& direction);
 
  private:

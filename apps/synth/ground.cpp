@@ -17,7 +17,7 @@ struct Ground::View {
     float sum = 0;
     for (int i = 0; i < taps; ++i) {
       const float shift = length * ((static_cast<float>(i) + 0.5F) / static_cast<float>(taps) - 0.5F);
-      sum += fractal2(px + shift * x, py + shift * y, spacing, octaves, gain,
+      sum += fractal2(px + shift * x, py + shift * y, {spacing, octaves, gain},
                       std::max(width, 0.8F * length / static_cast<float>(taps)), seed + salt);
     }
     return sum / static_cast<float>(taps);

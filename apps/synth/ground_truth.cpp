@@ -76,8 +76,7 @@ Coverage coverageOf(const FrameScene& frame, const Placed& placed, const StereoC
   Coverage count;
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x) {
-      const bool seen = left.object[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) +
-                                    static_cast<std::size_t>(x)] == placed.id;
+      const bool seen = left.object[y * camera.width_px + x] == placed.id;
       count.visible += seen ? 1 : 0;
       if ((x - x0) % step != 0 || (y - y0) % step != 0) continue;
       const Eigen::Vector3d d =

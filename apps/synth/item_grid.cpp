@@ -6,8 +6,7 @@ template <class Visit>
 void ItemGrid::forCells(const Covered& item, const Visit& visit) const {
   const int x0 = column(item.left), x1 = column(item.right), y1 = row(item.bottom);
   for (int y = row(item.top); y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x)
-      visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x));
+    for (int x = x0; x <= x1; ++x) visit(y * columns_ + x);
 }
 
 ItemGrid::ItemGrid(std::vector<Covered> items, const Area& area, float cell)
@@ -19,7 +18,7 @@ ItemGrid::ItemGrid(std::vector<Covered> items, const Area& area, float cell)
     return i.right < area.left || i.left > area.right || i.bottom < area.top || i.top > area.bottom;
   });
   std::stable_sort(items.begin(), items.end(), [](const Covered& a, const Covered& b) { return a.near < b.near; });
-  std::vector<std::uint32_t> filled(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+  std::vector<std::uint32_t> filled(columns_ * rows_);
   for (const auto& item : items) forCells(item, [&](std::size_t c) { ++filled[c]; });
   first_.reserve(filled.size() + 1);
   first_.push_back(0);

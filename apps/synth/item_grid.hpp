@@ -10,7 +10,7 @@
 
 namespace motorcade::synth {
 
-/// What an item covers of a family of rays that all cross one plane (from one eye, or side by side): a rectangle of the
+/// What an item covers of a family of rays that all cross one plane (from one point, or parallel): a rectangle of the
 /// plane, and a range along the rays.
 struct Covered {
   float left = 1e30F, top = 1e30F, right = -1e30F, bottom = -1e30F;
@@ -28,8 +28,7 @@ struct Covered {
 };
 
 /// Items by where they cover the plane of a family of rays: square cells with a list each, near items first, four
-/// tested at once. What no point of the plane between `lo` and `hi` meets shall be left out; points outside are served
-/// too, but slower.
+/// tested at once. Leave out items that cover no point of `area`; a ray through a point outside of it is slower.
 class ItemGrid {
  public:
   struct Area {
@@ -41,13 +40,12 @@ class ItemGrid {
   /// first. `visit` returns the new limit; one below `from` ends the search.
   template <class Visit>
   void traverse(float x, float y, float from, float limit, const Visit& visit) const {
-    const std::size_t cell =
-        static_cast<std::size_t>(row(y)) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column(x));
+    const std::size_t cell = row(y) * columns_ + column(x);
     for (std::uint32_t g = first_[cell]; g < first_[cell + 1]; ++g) {
       const Group& group = groups_[g];
       if (group.near[0] >= limit) return;
       for (auto hits = static_cast<unsigned>(group.test(x, y, from)); hits != 0; hits &= hits - 1) {
-        const auto i = static_cast<std::size_t>(__builtin_ctz(hits));
+        const int i = __builtin_ctz(hits);
         if (group.near[i] >= limit) return;
         limit = visit(group.item[i], limit);
       }

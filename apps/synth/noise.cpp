@@ -62,11 +62,19 @@ template <int N>
                  between(value<N>(x0 ^ (y0 + kY)), value<N>((x0 + kX) ^ (y0 + kY)), x.blend), y.blend);
 }
 
-/// A sum of noises, each half as wide and `gain` times as strong as the one before.
-struct Fractal {
+/// A fractal as a pixel sees it.
+struct SeenFractal {
   float spacing, gain, footprint;
   int octaves;
   std::uint32_t seed;
+  SeenFractal(const Fractal& fractal, float pixel_footprint, std::uint32_t first_seed)
+      : spacing(fractal.spacing),
+        gain(fractal.gain),
+        footprint(pixel_footprint),
+        octaves(fractal.octaves),
+        seed(first_seed) {
+    assert(octaves <= 8);
+  }
   bool reaches(int octave) const {
     return octaves > octave && visible(spacing / static_cast<float>(1 << octave), footprint) > 0;
   }
@@ -78,7 +86,7 @@ struct Octaves {
   typename Lanes<N>::Float per_spacing, weight;
   typename Lanes<N>::Bits seed;
 
-  [[gnu::always_inline]] explicit Octaves(const Fractal& f) {
+  [[gnu::always_inline]] explicit Octaves(const SeenFractal& f) {
     using Float = typename Lanes<N>::Float;
     const float gain2 = f.gain * f.gain, gain4 = gain2 * gain2, floor = 1.2F * f.footprint;
     Float twice, amplitude, number;
@@ -106,14 +114,14 @@ struct Octaves {
 };
 
 template <int N>
-[[gnu::noinline]] float sum2(const Fractal& f, float x, float y) {
+[[gnu::noinline]] float sum2(const SeenFractal& f, float x, float y) {
   const Octaves<N> octaves(f);
   return octaves.sum(
       planeNoise<N>(cellOf<N>(x * octaves.per_spacing), cellOf<N>(y * octaves.per_spacing), octaves.seed));
 }
 
 template <int N>
-[[gnu::noinline]] float sum3(const Fractal& f, float x, float y, float z) {
+[[gnu::noinline]] float sum3(const SeenFractal& f, float x, float y, float z) {
   const Octaves<N> octaves(f);
   const Cell<N> cx = cellOf<N>(x * octaves.per_spacing), cy = cellOf<N>(y * octaves.per_spacing),
                 cz = cellOf<N>(z * octaves.per_spacing);
@@ -134,7 +142,7 @@ float pulses(float x, float period, float width, float footprint) {
   return saturate((pulseIntegral(x + 0.5F * f, period, width) - pulseIntegral(x - 0.5F * f, period, width)) / f);
 }
 
-float noise2(float x, float y, std::uint32_t seed) { return fractal2(x, y, 1, 1, 1, 0, seed); }
+float noise2(float x, float y, std::uint32_t seed) { return fractal2(x, y, {1, 1, 1}, 0, seed); }
 
 float noise3(float x, float y, float z, std::uint32_t seed) {
   const float fx = std::floor(x), fy = std::floor(y), fz = std::floor(z);
@@ -148,18 +156,16 @@ float noise3(float x, float y, float z, std::uint32_t seed) {
               lerp(lerp(v[4], v[5], tx), lerp(v[6], v[7], tx), ty), tz);
 }
 
-float fractal2(float x, float y, float spacing, int octaves, float gain, float footprint, std::uint32_t seed) {
-  assert(octaves <= 8);
-  const Fractal fractal{spacing, gain, footprint, octaves, seed};
-  if (!fractal.reaches(0)) return 0;
-  return fractal.reaches(4) ? sum2<8>(fractal, x, y) : sum2<4>(fractal, x, y);
+float fractal2(float x, float y, const Fractal& fractal, float footprint, std::uint32_t seed) {
+  const SeenFractal seen(fractal, footprint, seed);
+  if (!seen.reaches(0)) return 0;
+  return seen.reaches(4) ? sum2<8>(seen, x, y) : sum2<4>(seen, x, y);
 }
 
-float fractal3(float x, float y, float z, float spacing, int octaves, float gain, float footprint, std::uint32_t seed) {
-  assert(octaves <= 8);
-  const Fractal fractal{spacing, gain, footprint, octaves, seed};
-  if (!fractal.reaches(0)) return 0;
-  return fractal.reaches(4) ? sum3<8>(fractal, x, y, z) : sum3<4>(fractal, x, y, z);
+float fractal3(float x, float y, float z, const Fractal& fractal, float footprint, std::uint32_t seed) {
+  const SeenFractal seen(fractal, footprint, seed);
+  if (!seen.reaches(0)) return 0;
+  return seen.reaches(4) ? sum3<8>(seen, x, y, z) : sum3<4>(seen, x, y, z);
 }
 
 }  // namespace motorcade::synth

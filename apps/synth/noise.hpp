@@ -45,10 +45,15 @@ inline float visible(float spacing, float footprint) {
   return saturate((spacing - 1.2F * footprint) / (1.2F * footprint + 1e-9F));
 }
 
-/// Sum of `octaves` noises from `spacing` downwards, each half as wide and `gain` times as strong; octaves too fine for
-/// the footprint fade out.
-float fractal2(float x, float y, float spacing, int octaves, float gain, float footprint, std::uint32_t seed);
-float fractal3(float x, float y, float z, float spacing, int octaves, float gain, float footprint, std::uint32_t seed);
+/// A sum of lattice noises, each half as wide and `gain` times as strong as the one before.
+struct Fractal {
+  float spacing;  // of the first lattice
+  int octaves;    // number of noises, at most 8
+  float gain;
+};
+/// Its value at a point; octaves too fine for the footprint fade out.
+float fractal2(float x, float y, const Fractal& fractal, float footprint, std::uint32_t seed);
+float fractal3(float x, float y, float z, const Fractal& fractal, float footprint, std::uint32_t seed);
 
 /// A sequence of random numbers for building a scene.
 class Random {

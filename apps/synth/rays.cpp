@@ -5,7 +5,7 @@
 namespace motorcade::synth {
 namespace {
 
-constexpr float kNear_m = 0.05F;  // nothing comes closer to the eye
+constexpr float kNear_m = 0.05F;  // nothing comes closer to the camera
 
 Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -42,7 +42,7 @@ Covered widened(Covered c, float margin) {
 
 }  // namespace
 
-EyeRays::EyeRays(const FrameScene& frame, const StereoCamera& camera, Eye eye)
+CameraRays::CameraRays(const FrameScene& frame, const StereoCamera& camera, StereoSide side)
     : frame_(frame),
       cx_px_(static_cast<float>(camera.cx_px)),
       cy_px_(static_cast<float>(camera.cy_px)),
@@ -55,7 +55,7 @@ EyeRays::EyeRays(const FrameScene& frame, const StereoCamera& camera, Eye eye)
   right_ = column(0);
   down_ = column(1);
   ahead_ = column(2);
-  if (eye == Eye::kRight) origin_ = right_ * static_cast<float>(camera.baseline_m);
+  if (side == StereoSide::kRight) origin_ = right_ * static_cast<float>(camera.baseline_m);
   for (const auto& placed : frame.placed())
     origins_body_.push_back(placed.rotation.transposed(origin_ - placed.translation));
   std::vector<Covered> all;
@@ -70,7 +70,7 @@ EyeRays::EyeRays(const FrameScene& frame, const StereoCamera& camera, Eye eye)
                 kCell_px);
 }
 
-Covered EyeRays::coveredBy(std::uint32_t item) const {
+Covered CameraRays::coveredBy(std::uint32_t item) const {
   const Placed& placed = frame_.placedOf(item);
   const Primitive& part = frame_.partOf(item);
   const auto round = part.shape == Shape::kEllipsoid ? coveredByEllipsoid(part, placed) : std::nullopt;
@@ -79,7 +79,7 @@ Covered EyeRays::coveredBy(std::uint32_t item) const {
   return covered;
 }
 
-Covered EyeRays::coveredByBox(const Primitive& part, const Placed& placed) const {
+Covered CameraRays::coveredByBox(const Primitive& part, const Placed& placed) const {
   std::array<Vec3, 8> corners;
   for (unsigned i = 0; i < 8; ++i) {
     const Vec3 p{(i & 1U) != 0 ? part.hi.x : part.lo.x, (i & 2U) != 0 ? part.hi.y : part.lo.y,
@@ -105,7 +105,7 @@ Covered EyeRays::coveredByBox(const Primitive& part, const Placed& placed) const
   return covered;
 }
 
-std::optional<Covered> EyeRays::coveredByEllipsoid(const Primitive& part, const Placed& placed) const {
+std::optional<Covered> CameraRays::coveredByEllipsoid(const Primitive& part, const Placed& placed) const {
   const Vec3 q = placed.rotation * centerOf(part) + placed.translation - origin_, half = halfOf(part);
   const auto axis = [&](const Vec3& a) { return placed.rotation.transposed(a) * half; };
   const Vec3 x = axis(right_), y = axis(down_), z = axis(ahead_);
@@ -120,7 +120,7 @@ std::optional<Covered> EyeRays::coveredByEllipsoid(const Primitive& part, const 
   return covered;
 }
 
-std::optional<RayHit> EyeRays::firstHit(float u_px, float v_px, const Vec3& direction, float t_max) const {
+std::optional<RayHit> CameraRays::firstHit(float u_px, float v_px, const Vec3& direction, float t_max) const {
   std::optional<RayHit> best;
   grid_->traverse(u_px, v_px, 0, t_max, [&](std::uint32_t item, float limit) {
     const Placed& placed = frame_.placedOf(item);

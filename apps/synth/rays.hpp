@@ -9,7 +9,7 @@
 
 namespace motorcade::synth {
 
-enum class Eye { kLeft, kRight };
+enum class StereoSide { kLeft, kRight };
 
 /// What a ray meets first.
 struct RayHit {
@@ -20,10 +20,10 @@ struct RayHit {
   Vec3 normal_body, position_body;
 };
 
-/// The rays of one eye into a frame.
-class EyeRays {
+/// The rays of one camera of the stereo pair into a frame.
+class CameraRays {
  public:
-  EyeRays(const FrameScene& frame, const StereoCamera& camera, Eye eye);
+  CameraRays(const FrameScene& frame, const StereoCamera& camera, StereoSide side);
 
   const Vec3& origin() const { return origin_; }
   /// Has unit depth along the optical axis, so that a ray's parameter is the depth.
@@ -40,7 +40,7 @@ class EyeRays {
   const FrameScene& frame_;
   Vec3 origin_, right_, down_, ahead_;
   float cx_px_, cy_px_, pixel_x_, pixel_y_;
-  std::vector<Vec3> origins_body_;  // the eye in the axes of each placed thing
+  std::vector<Vec3> origins_body_;  // the camera in the axes of each placed thing
   std::optional<ItemGrid> grid_;
 };
 

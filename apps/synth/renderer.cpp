@@ -46,13 +46,13 @@ struct Sample {
 constexpr std::uint32_t kSkySurface = 0xffffffffU, kRoadSurface = 0xfffffffeU, kCurbSurface = 0xfffffffdU,
                         kBesideSurface = 0xfffffffcU;
 
-/// Casts rays of one eye into one frame.
+/// Casts rays of one camera of the stereo pair into one frame.
 class RayCaster {
  public:
-  RayCaster(const FrameScene& frame, const StereoCamera& camera, Eye eye)
+  RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side)
       : frame_(frame),
         ground_(frame),
-        rays_(frame, camera, eye),
+        rays_(frame, camera, side),
         to_sun_(frame, frame.scene().sun),
         upwards_(frame, {0, 0, 1}),
         pixel_(static_cast<float>(1 / camera.fx_px)) {}
@@ -129,7 +129,7 @@ class RayCaster {
 
   const FrameScene& frame_;
   Ground ground_;
-  EyeRays rays_;
+  CameraRays rays_;
   ParallelRays to_sun_, upwards_;
   float pixel_;
 };
@@ -160,9 +160,9 @@ struct Sensor {
   }
 };
 
-Sensor sensorOf(const FrameScene& frame, Eye eye, const RenderOptions& options) {
+Sensor sensorOf(const FrameScene& frame, StereoSide side, const RenderOptions& options) {
   const Scene& scene = frame.scene();
-  const bool right = eye == Eye::kRight;
+  const bool right = side == StereoSide::kRight;
   const int moment = scene.lap_frames > 0 ? frame.frame() % scene.lap_frames : frame.frame();
   const std::uint32_t seed = hashOf(moment, right ? 1 : 0, scene.seed + 31);
   const bool different = right && !options.equal_gains;
@@ -177,11 +177,10 @@ struct Refinement {
 
 /// Compares a pixel with its neighbors: most rays where the surface or its shadow changes, some where the light does.
 Refinement refinementOf(const std::vector<Sample>& samples, int width, int height, int x, int y) {
-  constexpr float kContrast = 11,
-                  kGroundContrast = 30;  // the ground's grain is filtered already: only shadows and paint count
+  constexpr float kContrast = 11;        // gray levels
+  constexpr float kGroundContrast = 30;  // the ground's grain is filtered already: only shadows and paint count
   const auto at = [&](int i, int j) -> const Sample& {
-    return samples[static_cast<std::size_t>(std::clamp(j, 0, height - 1)) * static_cast<std::size_t>(width) +
-                   static_cast<std::size_t>(std::clamp(i, 0, width - 1))];
+    return samples[std::clamp(j, 0, height - 1) * width + std::clamp(i, 0, width - 1)];
   };
   const Sample& center = at(x, y);
   const bool ground = center.surface == kRoadSurface || center.surface == kBesideSurface;
@@ -217,12 +216,10 @@ float lightOf(const RayCaster& caster, const Sample& center, const Refinement& r
 
 }  // namespace
 
-Rendering render(const FrameScene& frame, const StereoCamera& camera, Eye eye, const RenderOptions& options) {
+Rendering render(const FrameScene& frame, const StereoCamera& camera, StereoSide side, const RenderOptions& options) {
   const int width = camera.width_px, height = camera.height_px;
-  const auto index = [width](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-  };
-  const RayCaster caster(frame, camera, eye);
+  const auto index = [width](int x, int y) { return y * width + x; };
+  const RayCaster caster(frame, camera, side);
   std::vector<Sample> samples(index(0, height));
   parallelRows(height, options.threads, [&](int y) {
     for (int x = 0; x < width; ++x)
@@ -230,7 +227,7 @@ Rendering render(const FrameScene& frame, const StereoCamera& camera, Eye eye, c
   });
   Rendering out{ImagePool().acquire(width, height), std::vector<float>(samples.size()),
                 std::vector<std::int16_t>(samples.size())};
-  const Sensor sensor = sensorOf(frame, eye, options);
+  const Sensor sensor = sensorOf(frame, side, options);
   parallelRows(height, options.threads, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const Sample& center = samples[index(x, y)];

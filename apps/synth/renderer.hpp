@@ -10,7 +10,7 @@
 
 namespace motorcade::synth {
 
-/// An eye's picture, and what lies exactly behind the center of each pixel.
+/// An image of one camera of the stereo pair, and the exact depth and object at the center of each pixel.
 struct Rendering {
   Image image;
   std::vector<float> depth_m;        // 0 for the sky
@@ -23,8 +23,8 @@ struct RenderOptions {
   bool equal_gains = false;   // both cameras equally sensitive
 };
 
-/// Renders one eye. The result does not depend on the number of threads.
-Rendering render(const FrameScene& frame, const StereoCamera& camera, Eye eye, const RenderOptions& options);
+/// Renders the image of one camera. The result does not depend on the number of threads.
+Rendering render(const FrameScene& frame, const StereoCamera& camera, StereoSide side, const RenderOptions& options);
 
 /// KITTI's gray pair, scaled to another size when asked for.
 StereoCamera kittiCamera(int width_px = 1242, int height_px = 375);

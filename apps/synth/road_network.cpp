@@ -52,7 +52,7 @@ RoadNetwork::RoadNetwork(std::vector<Road> roads) : roads_(std::move(roads)), al
   origin_y_m_ = lo.y() - kReach_m;
   columns_ = static_cast<int>((hi.x() - lo.x() + 2 * kReach_m) / kCell_m) + 1;
   rows_ = static_cast<int>((hi.y() - lo.y() + 2 * kReach_m) / kCell_m) + 1;
-  cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+  cells_.resize(columns_ * rows_);
   std::vector<double> nearest(cells_.size());
   const int reach = static_cast<int>(kReach_m / kCell_m);
   for (int r = 0; r < static_cast<int>(roads_.size()); ++r) {
@@ -65,8 +65,7 @@ RoadNetwork::RoadNetwork(std::vector<Road> roads) : roads_(std::move(roads)), al
                 row = static_cast<int>((p.y() - origin_y_m_) / kCell_m);
       for (int y = std::max(0, row - reach); y <= std::min(rows_ - 1, row + reach); ++y)
         for (int x = std::max(0, column - reach); x <= std::min(columns_ - 1, column + reach); ++x) {
-          const auto index =
-              static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
+          const int index = y * columns_ + x;
           const double d2 =
               (p - Eigen::Vector2d(origin_x_m_ + (x + 0.5) * kCell_m, origin_y_m_ + (y + 0.5) * kCell_m)).squaredNorm();
           if (d2 >= nearest[index]) continue;
@@ -84,15 +83,13 @@ RoadPosition RoadNetwork::locate(double x_m, double y_m) const {
             row = static_cast<int>(std::floor((y_m - origin_y_m_) / kCell_m));
   if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return best;
   const Eigen::Vector2d p(x_m, y_m);
-  for (const auto& candidate :
-       cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)]) {
+  for (const auto& candidate : cells_[row * columns_ + column]) {
     const Road& road = roads_[candidate.road];
     const double step = road.path->length_m() / static_cast<double>(road.path->samples().size() - 1);
     const auto& along = along_[candidate.road];
     const Foot foot = footOnPath(*road.path, step, candidate.sample, p, along);
-    const double past =
-        road.path->closed() ? -1e9 : std::max(-foot.s_m, foot.s_m - road.path->length_m());  // beyond an end
-    const auto outside = static_cast<float>(std::max(std::abs(foot.left_m) - road.half_width_m, past));
+    const double beyond_end_m = road.path->closed() ? -1e9 : std::max(-foot.s_m, foot.s_m - road.path->length_m());
+    const auto outside = static_cast<float>(std::max(std::abs(foot.left_m) - road.half_width_m, beyond_end_m));
     if (outside >= best.outside_m) {
       best.next_outside_m = std::min(best.next_outside_m, outside);
       continue;

@@ -12,7 +12,7 @@
 
 namespace motorcade::synth {
 
-/// Something that stands in the scene for ever; parked cars have an object id.
+/// A thing that never moves; parked cars carry an object id.
 struct Fixture {
   std::shared_ptr<const Model> model;
   SE3 T_map_body;

@@ -40,8 +40,7 @@ void SceneBuilder::place(Model model, int road, double along_m, double left_m, d
   const Eigen::Vector2d p = point.position + left_m * point.left();
   Vec3 reach;
   for (const auto& part : model.parts) reach = max(reach, max(part.hi, part.lo * -1));
-  // Large things: corners and middles of the footprint stay off all roads. Crowns of trees and arms of lamps may hang
-  // over.
+  // Large things: corners and middles of the footprint stay off all roads. Treetops and arms of lamps may overhang.
   const double heading = point.heading_rad + turn_rad, c = std::cos(heading), s = std::sin(heading);
   for (const double x : {-1.0, -0.5, 0.0, 0.5, 1.0})
     for (const double y : {-1.0, 0.0, 1.0}) {
@@ -105,8 +104,8 @@ void SceneBuilder::placePavement(int road, const Dressing& d, double side) {
     const auto point = scene.roads.roads()[road].path->at(along);
     const Eigen::Vector2d p = point.position + left * point.left();
     const auto where = scene.roads.locate(p.x(), p.y());
-    if (where.next_outside_m < 7 || std::abs(point.curvature_per_m) > 0.02)
-      continue;  // not in a junction or a tight bend
+    const bool in_junction = where.next_outside_m<7, in_tight_bend = std::abs(point.curvature_per_m)> 0.02;
+    if (in_junction || in_tight_bend) continue;
     addParked(random.chance(0.15F) ? VehicleKind::kVan : VehicleKind::kCar, road, along, left, side > 0);
   }
 }

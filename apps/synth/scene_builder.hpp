@@ -15,7 +15,7 @@ struct Dressing {
   double clear_m = 4;           // width of the pavement before the first wall or hedge
   bool buildings = true, trees = true;
   bool rural = false;       // hedges, bushes and guard rails instead of houses
-  double parked_share = 0;  // of the places at the curb, 7 m each
+  double parked_share = 0;  // of the parking spaces at the curb, 7 m each
 };
 
 /// Puts a scene together. Ids are given in the order of the calls.

@@ -56,10 +56,7 @@ Image instanceMask(const Rendering& left, const StereoCamera& camera) {
   Image mask = ImagePool().acquire(camera.width_px, camera.height_px);
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x)
-      mask.mutableRow(y)[x] = static_cast<std::uint8_t>(
-          left.object[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) +
-                      static_cast<std::size_t>(x)] +
-          1);
+      mask.mutableRow(y)[x] = static_cast<std::uint8_t>(left.object[y * camera.width_px + x] + 1);
   return mask;
 }
 
@@ -96,8 +93,8 @@ void writeSequence(const Scene& scene, const fs::path& folder, const WriteOption
   const int frames = options.frames > 0 ? options.frames : scene.frames;
   for (int k = 0; k < frames; ++k) {
     const FrameScene frame(scene, k, options.with_movers);
-    const Rendering left = render(frame, options.camera, Eye::kLeft, options.render);
-    const Rendering right = render(frame, options.camera, Eye::kRight, options.render);
+    const Rendering left = render(frame, options.camera, StereoSide::kLeft, options.render);
+    const Rendering right = render(frame, options.camera, StereoSide::kRight, options.render);
     const std::string name = format("%06d.png", k);
     writePng(folder / "image_0" / name, left.image);
     writePng(folder / "image_1" / name, right.image);

@@ -4,7 +4,7 @@
 
 namespace motorcade::synth {
 
-/// What the eye meets on a part, in its model's frame.
+/// What a ray meets on a part, in its model's frame.
 struct SurfacePoint {
   const Primitive* part = nullptr;
   const Model* model = nullptr;

@@ -24,7 +24,7 @@ float masonry(const SurfacePoint& s, const WallPoint& w) {
   const float shade = unit(hashOf(static_cast<int>(column), static_cast<int>(row), s.part->seed)) - 0.5F;
   const float joint = std::fmax(pulses(w.v, course, 0.016F, f), pulses(w.u + shift, width, 0.016F, f));
   const float fine = visible(course, f);
-  const float stains = fractal2(w.u, w.v * 0.5F, 2.6F, 7, 0.72F, f, s.part->seed + 1);
+  const float stains = fractal2(w.u, w.v * 0.5F, {2.6F, 7, 0.72F}, f, s.part->seed + 1);
   return s.part->tone * (1 + fine * ((brick ? 0.75F : 0.2F) * shade + (brick ? 0.5F : -0.3F) * joint) + 0.30F * stains);
 }
 
@@ -71,7 +71,7 @@ Reflectance facade(const SurfacePoint& s) {
 /// Leaves as light and dark clumps at all sizes; the inside of a crown is darker.
 float leaves(const SurfacePoint& s) {
   const Vec3& p = s.position;
-  const float clumps = fractal3(p.x, p.y, p.z, 0.42F, 4, 0.9F, s.footprint_m, s.part->seed + 17);
+  const float clumps = fractal3(p.x, p.y, p.z, {0.42F, 4, 0.9F}, s.footprint_m, s.part->seed + 17);
   const float bright = saturate(0.5F + 0.85F * clumps);
   return lerp(0.02F, 2.6F * s.part->tone, bright * bright);
 }
@@ -96,7 +96,7 @@ float planks(const SurfacePoint& s) {
   const WallPoint w = onWall(s);
   const float board = std::floor(w.u / 0.14F);
   const float shade = unit(hashOf(static_cast<int>(board), 3, s.part->seed)) - 0.5F;
-  const float grain = fractal2(w.u * 6, w.v, 0.4F, 4, 0.7F, s.footprint_m, s.part->seed);
+  const float grain = fractal2(w.u * 6, w.v, {0.4F, 4, 0.7F}, s.footprint_m, s.part->seed);
   return s.part->tone * (1 + visible(0.14F, s.footprint_m) * 0.6F * shade + 0.2F * grain -
                          0.7F * pulses(w.u, 0.14F, 0.012F, s.footprint_m));
 }
@@ -119,13 +119,13 @@ Reflectance streetReflectance(const SurfacePoint& s) {
       return {planks(s), 0, 0};
     case Material::kRoof:
       return {s.part->tone * (1 - 0.4F * pulses(p.z, 0.22F, 0.05F, f) +
-                              0.25F * fractal3(p.x, p.y, p.z, 0.9F, 4, 0.7F, f, s.part->seed)),
+                              0.25F * fractal3(p.x, p.y, p.z, {0.9F, 4, 0.7F}, f, s.part->seed)),
               0, 0};
     case Material::kBark:
-      return {s.part->tone * (1 + 0.6F * fractal3(p.x * 2, p.y * 2, p.z * 0.6F, 0.22F, 4, 0.75F, f, s.part->seed)), 0,
+      return {s.part->tone * (1 + 0.6F * fractal3(p.x * 2, p.y * 2, p.z * 0.6F, {0.22F, 4, 0.75F}, f, s.part->seed)), 0,
               0};
     default:
-      return {s.part->tone * (1 + 0.28F * fractal3(p.x, p.y, p.z, 1.1F, 6, 0.72F, f, s.part->seed)), 0, 0};
+      return {s.part->tone * (1 + 0.28F * fractal3(p.x, p.y, p.z, {1.1F, 6, 0.72F}, f, s.part->seed)), 0, 0};
   }
 }
 

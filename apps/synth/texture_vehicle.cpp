@@ -40,8 +40,7 @@ float wheelDistance(const Model& model, const Vec3& p) {
   return nearest;
 }
 
-/// Body panels: door gaps, sills, wheel arches, a crease that catches light, grime from below and reflections of the
-/// street.
+/// Body panels: door gaps, sills, wheel arches, a bright crease, grime from below and reflections of the street.
 Reflectance paint(const SurfacePoint& s) {
   const Vec3& p = s.position;
   const float f = s.footprint_m, length = s.part->hi.x - s.part->lo.x;
@@ -61,9 +60,9 @@ Reflectance paint(const SurfacePoint& s) {
     dark = std::fmax(dark, 0.7F * line(std::abs(p.y), 0.68F, 0.012F, f));
     dark = std::fmax(dark, 0.7F * line(std::abs(p.x), 0.27F * length, 0.014F, f));
   }
-  const float sheen = fractal3(p.x, p.y, p.z * 1.7F, 0.42F, 5, 0.72F, f, s.part->seed);
+  const float sheen = fractal3(p.x, p.y, p.z * 1.7F, {0.42F, 5, 0.72F}, f, s.part->seed);
   const float grime =
-      saturate((0.5F - p.z) * 2) * (0.35F + 0.5F * fractal3(p.x, p.y, p.z, 0.12F, 3, 0.7F, f, s.part->seed + 9));
+      saturate((0.5F - p.z) * 2) * (0.35F + 0.5F * fractal3(p.x, p.y, p.z, {0.12F, 3, 0.7F}, f, s.part->seed + 9));
   tone = lerp(tone * (1 + 0.42F * sheen) + 0.06F * std::fmax(0.0F, sheen), 0.16F, saturate(grime));
   return {tone * (1 - dark), 0.10F * (1 - dark), 0};
 }
@@ -86,7 +85,7 @@ Reflectance cabin(const SurfacePoint& s) {
   }
   const Reflectance metal = paint(s);
   // Seats, headrests and the far windows show through the glass as fixed shapes; stickers and heating wires lie on it.
-  float inner = 0.035F + 0.05F * saturate(fractal3(p.x, p.y, p.z, 0.30F, 3, 0.7F, f, s.part->seed + 3) * 1.5F);
+  float inner = 0.035F + 0.05F * saturate(fractal3(p.x, p.y, p.z, {0.30F, 3, 0.7F}, f, s.part->seed + 3) * 1.5F);
   if (std::abs(s.normal.x) > 0.5F) {
     for (const float at : {-0.36F, 0.36F})
       inner = lerp(inner, 0.015F, inside(p.y, at - 0.14F, at + 0.14F, f) * inside(v, 0.2F, 0.68F, fv));
@@ -142,7 +141,7 @@ Reflectance cargo(const SurfacePoint& s) {
   const Vec3 &p = s.position, &lo = s.part->lo, &hi = s.part->hi;
   const bool side = std::abs(s.normal.y) > 0.7F;
   const float u = side ? p.x - lo.x : p.y - lo.y, v = p.z - lo.z, height = hi.z - lo.z, f = s.footprint_m;
-  const float stains = fractal2(u, v * 0.6F, 0.8F, 5, 0.65F, f, s.part->seed);
+  const float stains = fractal2(u, v * 0.6F, {0.8F, 5, 0.65F}, f, s.part->seed);
   float tone = s.part->tone * (1 + 0.16F * stains);
   const float band = inside(v, 0.30F * height, 0.74F * height, f);
   const float ink = writing(u, v - 0.32F * height, 0.30F * height, 0.40F * height, f, s.part->seed + 5) *
@@ -190,7 +189,7 @@ Reflectance vehicleReflectance(const SurfacePoint& s) {
     case Material::kGrille:
       return {0.22F - 0.19F * pulses(s.position.z, 0.045F, 0.026F, s.footprint_m), 0.03F, 0};
     default:
-      return {s.part->tone * (1 + 0.25F * fractal3(s.position.x, s.position.y, s.position.z, 0.2F, 4, 0.7F,
+      return {s.part->tone * (1 + 0.25F * fractal3(s.position.x, s.position.y, s.position.z, {0.2F, 4, 0.7F},
                                                    s.footprint_m, s.part->seed)),
               0.02F, 0};
   }

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-/// Single precision vectors for the ray caster: coordinates are relative to the camera, so floats hold to a few
-/// micrometers.
+/// Single precision vectors for the ray caster: relative to the camera, coordinates are exact to a few micrometers.
 namespace motorcade::synth {
 
 struct Vec3 {

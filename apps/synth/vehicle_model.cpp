@@ -55,8 +55,8 @@ void addRear(Model& m, const Shape3& s, float lamp_z, float lamp_height) {
   m.addEllipsoid(Material::kChrome, {x + 0.05F, 0, plate_z + 0.26F}, {0.022F, 0.055F, 0.055F}, 0.6F);
   m.addCylinder(Material::kChrome, 0, {x - 0.03F, -y + 0.32F, 0.22F}, {x + 0.3F, -y + 0.40F, 0.30F}, 0.3F);
   addPair(m, Material::kTailLamp, {x - 0.006F, y - 0.40F, 0.36F}, {x + 0.02F, y - 0.24F, 0.41F}, 0.15F, s.seed);
-  m.add(Material::kPlate, {x + 0.036F, 0.33F, plate_z + 0.21F}, {x + 0.08F, 0.60F, plate_z + 0.27F}, 0.6F,
-        s.seed + 5);  // the model's name
+  // The model's name.
+  m.add(Material::kPlate, {x + 0.036F, 0.33F, plate_z + 0.21F}, {x + 0.08F, 0.60F, plate_z + 0.27F}, 0.6F, s.seed + 5);
 }
 
 void addSides(Model& m, const Shape3& s, float mirror_x, float belt_z) {
@@ -99,9 +99,9 @@ Model makeCar(const Shape3& s) {
   if (random.chance(0.5F))
     m.addCylinder(Material::kPlastic, 2, {back + 0.8F, -0.012F, s.height - 0.02F},
                   {back + 0.824F, 0.012F, s.height + 0.22F}, 0.03F);
-  if (random.chance(0.6F))
-    m.add(Material::kSign, {-x + 0.034F, -0.66F, belt - 0.20F}, {-x + 0.06F, -0.44F, belt - 0.06F}, 0.75F,
-          s.seed + 4);  // a sticker
+  const bool has_sticker = random.chance(0.6F);
+  if (has_sticker)
+    m.add(Material::kSign, {-x + 0.034F, -0.66F, belt - 0.20F}, {-x + 0.06F, -0.44F, belt - 0.06F}, 0.75F, s.seed + 4);
   return m;
 }
 

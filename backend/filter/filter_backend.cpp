@@ -9,7 +9,6 @@
 namespace motorcade {
 namespace {
 
-constexpr int kCovarianceFrames = 10;    // the camera's covariance is relative to that many frames earlier
 constexpr std::size_t kKeptFrames = 64;  // past camera poses, for observations from before a confirmation
 
 }  // namespace
@@ -36,7 +35,7 @@ struct FilterBackend::State {
 
   /// Chained over the last frames; the same frames' odometry is taken as independent.
   std::optional<Matrix6d> cameraCovariance(FrameId frame) const {
-    const auto from = cameras.find(FrameId{frame.value - kCovarianceFrames});
+    const auto from = cameras.find(FrameId{frame.value - kCameraCovarianceFrames});
     if (from == cameras.end()) return std::nullopt;
     Matrix6d covariance = Matrix6d::Zero();
     for (auto it = std::next(from); it != cameras.end(); ++it) {

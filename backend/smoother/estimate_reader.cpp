@@ -5,73 +5,84 @@
 namespace motorcade {
 namespace {
 
+using Matrix6x12d = Eigen::Matrix<double, 6, 12>;
 using Matrix6x18d = Eigen::Matrix<double, 6, 18>;
+using Matrix12d = Eigen::Matrix<double, 12, 12>;
 
 /// Twist in the body's axes between two poses [m/s, rad/s].
 Vector6d twist(const SE3& T_world_before, const SE3& T_world_after, double dt_s) {
   return (T_world_before.inverse() * T_world_after).log() / dt_s;
 }
 
+/// The pose of the same object before a frame's, else the one after it; null when the graph has neither.
+const ObjectRecord* neighborInTime(const ObjectTrack& track, FrameId frame) {
+  const auto now = track.records.find(frame);
+  if (now != track.records.begin() && std::prev(now)->second.z.valid()) return &std::prev(now)->second;
+  if (std::next(now) != track.records.end() && std::next(now)->second.z.valid()) return &std::next(now)->second;
+  return nullptr;
+}
+
+/// Of the speed |rho| / dt with (rho, phi) = log(z_other^-1 z_now), from the joint covariance of (z_now, z_other).
+std::optional<double> speedSigma_mps(const SE3& T_other_now, const Eigen::Ref<const Matrix12d>& joint, double dt_s) {
+  constexpr double kShortestStep_m = 1e-9;  // a shorter one has no direction
+  const Vector6d step = T_other_now.log();
+  const Matrix6d J_now = rightJacobianInverseSE3(step);
+  Matrix6x12d J_step;
+  J_step << J_now, -J_now * T_other_now.inverse().adjoint();
+  const Eigen::Matrix3d variance = (J_step * joint * J_step.transpose()).topLeftCorner<3, 3>();
+  const double length_m = step.head<3>().norm();
+  const Eigen::Vector3d direction =
+      length_m > kShortestStep_m ? Eigen::Vector3d(step.head<3>() / length_m) : Eigen::Vector3d::UnitX();
+  if (!(dt_s > 0)) return std::nullopt;
+  return std::sqrt(direction.dot(variance * direction)) / dt_s;
+}
+
 }  // namespace
 
-void EstimateReader::refreshCovariances(FrameId frame) {
-  CameraRecord& camera = graph_.frames().at(frame);
-  if (const auto covariance = cameraCovariance(frame)) camera.covariance = covariance;
-  for (auto& [id, track] : graph_.tracks()) {
-    const auto record = track.records.find(frame);
-    if (record != track.records.end() && record->second.z.valid()) refreshObject(track, record->second);
-  }
+FrameCovariances EstimateReader::covariances(FrameId frame) const {
+  FrameCovariances covariances{.camera = cameraCovariance(frame), .objects = {}};
+  for (const auto& [id, track] : graph_.tracks())
+    if (auto object = objectCovariance(id, track, frame)) covariances.objects.push_back(*std::move(object));
+  return covariances;
 }
 
 std::optional<Matrix6d> EstimateReader::cameraCovariance(FrameId frame) const {
   const auto now = graph_.frames().find(frame),
-             before = graph_.frames().find(FrameId{frame.value - params_.camera_covariance_frames});
+             before = graph_.frames().find(FrameId{frame.value - kCameraCovarianceFrames});
   if (before == graph_.frames().end()) return std::nullopt;
   const std::array variables{before->second.x, now->second.x};
   const auto joint = graph_.solver().jointCovariance(variables);
   if (!joint) return std::nullopt;
   // x_b^-1 x_n with both perturbed: exp(-Ad(T_n_b) xi_b + xi_n)
   const SE3 T_before_now = graph_.solver().pose(before->second.x).inverse() * graph_.solver().pose(now->second.x);
-  Eigen::Matrix<double, 6, 12> J;
+  Matrix6x12d J;
   J << -T_before_now.inverse().adjoint(), Matrix6d::Identity();
   return J * *joint * J.transpose();
 }
 
-void EstimateReader::refreshObject(const ObjectTrack& track, ObjectRecord& record) const {
+std::optional<FrameCovariances::Object> EstimateReader::objectCovariance(TrackId id, const ObjectTrack& track,
+                                                                         FrameId frame) const {
+  const auto record = track.records.find(frame);
+  if (record == track.records.end() || !record->second.z.valid()) return std::nullopt;
   const IncrementalSolver& solver = graph_.solver();
-  const VariableId x = graph_.frames().at(record.seen.frame).x;
-  // The neighbor in time, for the speed.
-  const ObjectRecord* other = nullptr;
-  const auto at = track.records.find(record.seen.frame);
-  if (at != track.records.begin() && std::prev(at)->second.z.valid())
-    other = &std::prev(at)->second;
-  else if (std::next(at) != track.records.end() && std::next(at)->second.z.valid())
-    other = &std::next(at)->second;
-  std::vector<VariableId> variables{x, track.anchor, record.z};
+  const VariableId x = graph_.frames().at(frame).x;
+  const ObjectRecord* other = neighborInTime(track, frame);
+  std::vector<VariableId> variables{x, track.anchor, record->second.z};
   if (other) variables.push_back(other->z);
   const auto joint = solver.jointCovariance(variables);
-  if (!joint) return;
+  if (!joint) return std::nullopt;
 
   // x^-1 a z: exp(-Ad(T_body_cam) xi_x + Ad(z^-1) xi_a + xi_z)
-  const SE3 z = solver.pose(record.z);
+  const SE3 z = solver.pose(record->second.z);
   const SE3 T_body_cam = (solver.pose(track.anchor) * z).inverse() * solver.pose(x);
   Matrix6x18d J;
   J << -T_body_cam.adjoint(), z.inverse().adjoint(), Matrix6d::Identity();
-  record.covariance = J * joint->topLeftCorner<18, 18>() * J.transpose();
-  if (!other) return;
-
-  // Speed = |rho| / dt with (rho, phi) = log(z_other^-1 z).
-  const SE3 T_other_now = solver.pose(other->z).inverse() * z;
-  const Vector6d step = T_other_now.log();
-  const Matrix6d J_now = rightJacobianInverseSE3(step);
-  Eigen::Matrix<double, 6, 12> J_step;
-  J_step << J_now, -J_now * T_other_now.inverse().adjoint();
-  const Eigen::Matrix3d variance =
-      (J_step * joint->bottomRightCorner<12, 12>() * J_step.transpose()).topLeftCorner<3, 3>();
-  const double dt_s = std::abs(secondsBetween(other->stamp, record.stamp)), length_m = step.head<3>().norm();
-  const Eigen::Vector3d direction =
-      length_m > 1e-9 ? Eigen::Vector3d(step.head<3>() / length_m) : Eigen::Vector3d::UnitX();
-  if (dt_s > 0) record.speed_sigma_mps = std::sqrt(direction.dot(variance * direction)) / dt_s;
+  FrameCovariances::Object object{
+      .track = id, .T_cam_body = J * joint->topLeftCorner<18, 18>() * J.transpose(), .speed_sigma_mps = {}};
+  if (other)
+    object.speed_sigma_mps = speedSigma_mps(solver.pose(other->z).inverse() * z, joint->bottomRightCorner<12, 12>(),
+                                            std::abs(secondsBetween(other->stamp, record->second.stamp)));
+  return object;
 }
 
 FrameEstimate EstimateReader::read(FrameId frame) const {

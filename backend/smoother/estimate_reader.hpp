@@ -4,24 +4,23 @@
 
 namespace motorcade {
 
-/// Reads what a graph says about a frame of its window.
+/// Reads what a graph says about a frame of its window. It changes nothing in the graph, which must outlive it.
 class EstimateReader {
  public:
-  EstimateReader(TrajectoryGraph& graph, const Optimizer::Params& params) : graph_(graph), params_(params) {}
+  explicit EstimateReader(const TrajectoryGraph& graph) : graph_(graph) {}
 
-  /// Computes the covariances of a frame anew and keeps them in its records.
-  void refreshCovariances(FrameId frame);
-  /// Poses and velocities now, covariances as last computed.
+  /// Covariances of a frame, computed from the graph as it is now.
+  FrameCovariances covariances(FrameId frame) const;
+  /// Poses and velocities as the graph is now, with the covariances that its records hold.
   FrameEstimate read(FrameId frame) const;
 
  private:
+  std::optional<Matrix6d> cameraCovariance(FrameId frame) const;
+  std::optional<FrameCovariances::Object> objectCovariance(TrackId id, const ObjectTrack& track, FrameId frame) const;
   ObjectEstimate readObject(TrackId id, const ObjectTrack& track, FrameId frame) const;
   Eigen::Vector3d velocity(const ObjectTrack& track, FrameId frame) const;
-  std::optional<Matrix6d> cameraCovariance(FrameId frame) const;
-  void refreshObject(const ObjectTrack& track, ObjectRecord& record) const;
 
-  TrajectoryGraph& graph_;
-  const Optimizer::Params& params_;
+  const TrajectoryGraph& graph_;
 };
 
 }  // namespace motorcade

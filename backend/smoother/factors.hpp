@@ -19,8 +19,8 @@ struct PriorModel {
 };
 using PriorFactor = PoseFactor<PriorModel, 1>;
 
-/// Odometry between successive camera poses, x_i = x_{i-1} u_i, and motion between successive object poses, z_i =
-/// z_{i-1} v_i:
+/// Odometry between successive camera poses, x_i = x_{i-1} u_i, and motion between successive object poses,
+/// z_i = z_{i-1} v_i:
 ///   r = log(motion^-1 * T_before^-1 * T_now)
 struct MotionModel {
   SE3 motion;  // T_before_now
@@ -61,9 +61,9 @@ using SmoothMotionFactor = PoseFactor<SmoothMotionModel, 3>;
 /// variance over many intervals.
 PoseNoise smoothMotionNoise(const AccelerationNoise& acceleration, double dt_before_s, double dt_after_s);
 
-/// How much wider a measurement's variance is to be taken when it is one of a series, dt apart, whose errors die out as
-/// exp(-t / time): the mean of n has (1 + rho) / (1 - rho) times the variance of the mean of n independent ones, rho =
-/// exp(-dt / time) (Priestley, Spectral analysis and time series, 1981, section 5.3.2).
+/// Factor on the variance of a measurement that is one of a series, dt apart, whose errors decay as exp(-t / time): the
+/// mean of n has (1 + rho) / (1 - rho) times the variance of the mean of n independent ones, with
+/// rho = exp(-dt / time) (Priestley, Spectral analysis and time series, 1981, section 5.3.2).
 double correlatedSeriesInflation(double dt_s, double correlation_time_s);
 
 }  // namespace motorcade

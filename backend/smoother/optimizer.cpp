@@ -9,9 +9,11 @@
 namespace motorcade {
 namespace {
 
+constexpr int kCovarianceLagFrames = 5;  // final covariances are taken so much later; what comes after adds little
+
 /// Poses of objects as they are published. Each observation corrects the whole track; published as it is, a correction
-/// would look like a motion of the object. So the published pose moves as the object is found to have moved since, and
-/// corrections come in little by little.
+/// would look like a motion of the object. So the published pose moves by the object's estimated motion since, and
+/// corrections are added gradually.
 class ContinuousPoses {
  public:
   explicit ContinuousPoses(double correction_s) : correction_s_(correction_s) {}
@@ -53,14 +55,14 @@ class ContinuousPoses {
 class Optimizer::Smoother {
  public:
   explicit Smoother(const Params& params)
-      : params_(params), graph_(params_), reader_(graph_, params_), continuous_(params.online_correction_s) {}
+      : params_(params), graph_(params_), reader_(graph_), continuous_(params.online_correction_s) {}
 
   EstimatesPtr add(const FrameMeasurements& measurements) {
     graph_.add(measurements);
     Estimates estimates{.online = {}, .finals = {}, .counters = {}, .problems = graph_.problems()};
     if (params_.compute_covariances) {
-      if (const auto settled = lagged()) reader_.refreshCovariances(*settled);
-      reader_.refreshCovariances(measurements.frame);
+      if (const auto settled = lagged()) keepCovariances(*settled);
+      keepCovariances(measurements.frame);
     }
     estimates.online = reader_.read(measurements.frame);
     continuous_(estimates.online, graph_);
@@ -78,17 +80,19 @@ class Optimizer::Smoother {
     std::vector<FrameEstimate> finals;
     int left = static_cast<int>(graph_.frames().size());
     for (const auto& [frame, camera] : graph_.frames()) {
-      if (params_.compute_covariances && left-- <= params_.covariance_lag_frames) reader_.refreshCovariances(frame);
+      if (params_.compute_covariances && left-- <= kCovarianceLagFrames) keepCovariances(frame);
       finals.push_back(reader_.read(frame));
     }
     return finals;
   }
 
  private:
-  /// The frame whose covariances are taken for good now.
+  void keepCovariances(FrameId frame) { graph_.keep(frame, reader_.covariances(frame)); }
+
+  /// The frame whose final covariances are due.
   std::optional<FrameId> lagged() const {
     auto it = graph_.frames().rbegin();
-    for (int i = 0; i < params_.covariance_lag_frames; ++i)
+    for (int i = 0; i < kCovarianceLagFrames; ++i)
       if (it == graph_.frames().rend() || ++it == graph_.frames().rend()) return std::nullopt;
     return it->first;
   }
@@ -105,31 +109,5 @@ Optimizer::~Optimizer() = default;
 EstimatesPtr Optimizer::operator()(const FrameMeasurementsPtr& measurements) { return smoother_->add(*measurements); }
 
 std::vector<FrameEstimate> Optimizer::finish() { return smoother_->finish(); }
-
-std::vector<Parameter> parametersOf(Optimizer::Params& params) {
-  using Policy = Optimizer::RelinearizationPolicy;
-  return {
-      numberParameter("window_frames", params.window_frames, {0, 1e6},
-                      "a frame is final when it leaves the window: longer is more exact, shorter comes earlier; 0 "
-                      "keeps everything"),
-      choiceParameter<Policy>("relinearization", params.policy, {{"every", Policy::kEveryN}, {"fluid", Policy::kFluid}},
-                              "fluid relinearizes what is off; every N updates is the paper's way"),
-      numberParameter("relinearize_every_updates", params.relinearize_every_updates, {1, 10000},
-                      "of \"every\": fewer updates are more exact, more are faster"),
-      numberParameter("budget_scalars", params.budget_scalars, {0, 1e6},
-                      "bounds the work of an update, which then costs exactness for some updates; 0 sets no bound"),
-      numberParameter("budget_ms", params.budget_ms, {0, 1000}, "the same in time, only with --live; 0 sets no bound"),
-      switchParameter("compute_covariances", params.compute_covariances, "off saves time where nobody reads them"),
-      numberParameter("online_correction_s", params.online_correction_s, {0, 10},
-                      "longer is smoother online, shorter follows corrections sooner; 0 publishes poses as estimated"),
-      switchParameter("factors.use_motion", params.use_motion, "motion of an object between successive frames"),
-      switchParameter("factors.use_smoothness", params.use_smoothness, "vehicles keep their velocity"),
-      switchParameter("factors.use_camera_encounter", params.use_camera_encounter,
-                      "poses of objects seen from the camera"),
-      switchParameter("factors.use_object_encounter", params.use_object_encounter,
-                      "poses of objects relative to each other"),
-      numberParameter("factors.object_correlation_s", params.object_correlation_s, {0, 30},
-                      "how long an error of an object's points lasts: longer is smoother, shorter follows maneuvers")};
-}
 
 }  // namespace motorcade

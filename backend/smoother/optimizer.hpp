@@ -4,9 +4,7 @@
 #include <vector>
 
 #include "backend/backend.hpp"
-#include "core/constant_twist.hpp"
-#include "core/parameters.hpp"
-#include "core/robust_loss.hpp"
+#include "backend/smoother/smoother_params.hpp"
 
 namespace motorcade {
 
@@ -14,58 +12,7 @@ namespace motorcade {
 /// incrementally. An object that the system cannot determine is dropped, and the camera goes on.
 class Optimizer final : public Backend {
  public:
-  enum class RelinearizationPolicy {
-    kEveryN,  // reorder and relinearize everything every `relinearize_every_updates` (the paper)
-    kFluid,   // correct the linear models that are off, in each update
-  };
-  struct Params {
-    int window_frames = 1000;  // a frame is final when it leaves the window; 0 keeps everything
-
-    /// Kinds of factors. Camera odometry is always on.
-    bool use_motion = true, use_smoothness = true, use_camera_encounter = true, use_object_encounter = true;
-
-    /// Losses act on whitened residual norms of six dimensions.
-    RobustLoss encounter_loss = RobustLoss::kHuber, motion_loss = RobustLoss::kHuber;
-    double encounter_loss_scale = 4.5, motion_loss_scale = 4.5;
-    /// Factors on the variances of the front-end's covariances: 1 takes them as they are. Odometry of successive frames
-    /// reuses points, so that its errors add up to more than their variances; 1.5 makes ten frames' motion consistent
-    /// on rendered scenes.
-    double odometry_variance_scale = 1.5, encounter_variance_scale = 1.0, motion_variance_scale = 1.0;
-    /// An object's points measure it again and again with the errors of their places on the body: time for which an
-    /// error lasts in encounters and motions. Each counts as the share of an independent measurement that it is; 0
-    /// takes all as independent.
-    double object_correlation_s = 3.0;
-
-    /// Gauge of the camera's and of each object's graph, and the weak prior of an anchor.
-    double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
-    double object_origin_sigma_m = 1e-3, object_origin_sigma_rad = 1e-4;
-    double anchor_sigma_m = 100.0, anchor_sigma_rad = 3.0;
-
-    /// Of the smooth motion factors.
-    AccelerationNoise acceleration{
-        .along_mps2 = 1.5, .sideways_mps2 = 0.5, .vertical_mps2 = 0.3, .yaw_radps2 = 0.07, .tilt_radps2 = 0.03};
-
-    /// Share of two camera encounters' information that goes to the encounter of the two objects, and which pairs get
-    /// one.
-    double object_encounter_share = 0.2, object_encounter_distance_m = 15.0;
-    int object_encounter_partners = 1;
-
-    /// Published online, an object's pose moves as the object does, and corrections of its whole track come in over
-    /// this time: they would look like motion. 0 publishes each pose as it is estimated.
-    double online_correction_s = 0.5;
-
-    RelinearizationPolicy policy = RelinearizationPolicy::kFluid;
-    int relinearize_every_updates = 50;
-    /// Fluid: see IncrementalSolver::Params.
-    double mismatch_tolerance = 0.02, jacobian_drift_sigmas = 0.3, substitution_tolerance = 0.02;
-    int iterations_per_update = 2, budget_scalars = 0;
-    double budget_ms = 0;       // for live drives: replay would not be reproducible
-    int final_iterations = 10;  // at most, in finish()
-
-    int camera_covariance_frames = 10;  // the camera's covariance is relative to that many frames earlier
-    int covariance_lag_frames = 5;  // final covariances are taken that many frames later; what comes after adds little
-    bool compute_covariances = true;
-  };
+  using Params = SmootherParams;
 
   explicit Optimizer(const Params& params);
   ~Optimizer() override;
@@ -77,7 +24,5 @@ class Optimizer final : public Backend {
   class Smoother;
   std::unique_ptr<Smoother> smoother_;
 };
-
-std::vector<Parameter> parametersOf(Optimizer::Params& params);
 
 }  // namespace motorcade

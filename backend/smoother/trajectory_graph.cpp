@@ -17,9 +17,9 @@ PoseNoise isotropic(double sigma_m, double sigma_rad) {
   return {.sqrt_information = sigma.cwiseInverse().asDiagonal()};
 }
 
-IncrementalSolver::Params solverParams(const Optimizer::Params& params) {
-  return {.policy = params.policy == Optimizer::RelinearizationPolicy::kFluid ? IncrementalSolver::Policy::kFluid
-                                                                              : IncrementalSolver::Policy::kEveryN,
+IncrementalSolver::Params solverParams(const SmootherParams& params) {
+  return {.policy = params.policy == RelinearizationPolicy::kFluid ? IncrementalSolver::Policy::kFluid
+                                                                   : IncrementalSolver::Policy::kEveryN,
           .batch_every_updates = params.relinearize_every_updates,
           .mismatch_tolerance = params.mismatch_tolerance,
           .jacobian_drift_sigmas = params.jacobian_drift_sigmas,
@@ -34,8 +34,8 @@ IncrementalSolver::Params solverParams(const Optimizer::Params& params) {
           .budget_ms = params.budget_ms};
 }
 
-/// Of variables, not of a factor that was left out.
-bool isTrouble(SolverProblem::Kind kind) {
+/// True for a problem of a variable, false for that of a factor that was left out.
+bool concernsVariable(SolverProblem::Kind kind) {
   using Kind = SolverProblem::Kind;
   return kind != Kind::kNotFinite && kind != Kind::kUnknownVariable && kind != Kind::kRepeatedVariable;
 }
@@ -44,7 +44,7 @@ constexpr double kUsualInterval_s = 0.1;  // between frames, until there are two
 
 }  // namespace
 
-TrajectoryGraph::TrajectoryGraph(const Optimizer::Params& params)
+TrajectoryGraph::TrajectoryGraph(const SmootherParams& params)
     : params_(params),
       series_inflation_(correlatedSeriesInflation(kUsualInterval_s, params.object_correlation_s)),
       solver_(solverParams(params)) {}
@@ -144,7 +144,7 @@ void TrajectoryGraph::addObservation(const ObjectObservation& seen, double encou
     addPrior(record.z, solver_.pose(record.z), params_.anchor_sigma_m, params_.anchor_sigma_rad);
 }
 
-/// False when nothing was known of the pose.
+/// False when there is nothing to constrain the pose with.
 bool TrajectoryGraph::constrain(const ObjectTrack& track, const ObjectRecord& record, double encounter_share) {
   bool constrained = false;
   if (record.seen.state != ObjectState::kPredicted) {
@@ -257,13 +257,13 @@ std::string TrajectoryGraph::nameOf(VariableId v) const {
   return "a variable that is gone";
 }
 
-/// Until no trouble is left that an object has.
+/// Dropping an object may make another one undetermined, and so goes on until no object has a problem.
 void TrajectoryGraph::dropTroubled(const IncrementalSolver::Report& report) {
   std::vector<SolverProblem> found = report.problems;
   while (!found.empty()) {
     std::vector<TrackId> troubled;
     for (const SolverProblem& problem : found) {
-      const auto object = isTrouble(problem.kind) ? objectOf(problem.variable) : std::nullopt;
+      const auto object = concernsVariable(problem.kind) ? objectOf(problem.variable) : std::nullopt;
       if (object) troubled.push_back(*object);
       const std::string text = describe(problem, solver_.graph(), [&](VariableId v) { return nameOf(v); });
       problems_.push_back(object ? "object " + std::to_string(object->value) + " is dropped: " + text : text);
@@ -301,9 +301,18 @@ void TrajectoryGraph::retireOldest() {
 }
 
 void TrajectoryGraph::converge() {
-  constexpr double kConverged = 1e-7;  // m or rad
+  constexpr double kConverged = 1e-7;  // m or rad: far below what is published
   problems_.clear();
   dropTroubled(solver_.converge(params_.final_iterations, kConverged));
+}
+
+void TrajectoryGraph::keep(FrameId frame, const FrameCovariances& covariances) {
+  if (covariances.camera) frames_.at(frame).covariance = covariances.camera;
+  for (const auto& [track, T_cam_body, speed_sigma_mps] : covariances.objects) {
+    ObjectRecord& record = tracks_.at(track).records.at(frame);
+    record.covariance = T_cam_body;
+    if (speed_sigma_mps) record.speed_sigma_mps = speed_sigma_mps;
+  }
 }
 
 }  // namespace motorcade

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "backend/backend.hpp"
 #include "backend/smoother/factors.hpp"
-#include "backend/smoother/optimizer.hpp"
+#include "backend/smoother/smoother_params.hpp"
 #include "backend/solver/incremental_solver.hpp"
+#include "core/messages.hpp"
 
 namespace motorcade {
 
@@ -35,11 +37,22 @@ struct ObjectTrack {
   std::map<FrameId, ObjectRecord> records;  // of the window, and the last that left it
 };
 
+/// Covariances of one frame, as far as its graph determines them.
+struct FrameCovariances {
+  struct Object {
+    TrackId track;
+    Matrix6d T_cam_body;                    // covariance of the pose seen from the camera, right perturbation
+    std::optional<double> speed_sigma_mps;  // empty when the frame's pose is the object's only one
+  };
+  std::optional<Matrix6d> camera;  // of T_cam(before)_cam(now), kCameraCovarianceFrames apart
+  std::vector<Object> objects;
+};
+
 /// Turns the measurements of frames into variables and factors, and remembers which is which. A pose that no factor
 /// would constrain gets a weak prior on its initial value, so that any combination of switches can be solved.
 class TrajectoryGraph {
  public:
-  explicit TrajectoryGraph(const Optimizer::Params& params);
+  explicit TrajectoryGraph(const SmootherParams& params);
 
   /// Adds a frame with its objects, and updates the solver. Measurements that are no numbers are left out, and an
   /// object that the system cannot determine is dropped: it starts anew with its next observation.
@@ -48,12 +61,13 @@ class TrajectoryGraph {
   const std::vector<std::string>& problems() const { return problems_; }
   /// Marginalizes the oldest frame.
   void retireOldest();
+  /// Iterates until the estimates stay where they are; call it when the drive has ended.
   void converge();
+  /// Keeps covariances in the records of their frame, in place of those that were kept before.
+  void keep(FrameId frame, const FrameCovariances& covariances);
 
   const std::map<FrameId, CameraRecord>& frames() const { return frames_; }
-  std::map<FrameId, CameraRecord>& frames() { return frames_; }
   const std::map<TrackId, ObjectTrack>& tracks() const { return tracks_; }
-  std::map<TrackId, ObjectTrack>& tracks() { return tracks_; }
   const IncrementalSolver& solver() const { return solver_; }
 
   /// T_world_body as it is estimated now.
@@ -78,7 +92,7 @@ class TrajectoryGraph {
   std::string nameOf(VariableId v) const;
   void leftOut(const ObjectObservation& seen, const std::string& what);
 
-  Optimizer::Params params_;
+  SmootherParams params_;
   double series_inflation_;  // of the variances of an object's measurements, at the rate of the newest frames
   IncrementalSolver solver_;
   std::map<FrameId, CameraRecord> frames_;

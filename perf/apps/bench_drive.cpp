@@ -14,8 +14,8 @@ namespace {
 std::size_t shownFrame(std::size_t index, std::size_t count, Looping looping) {
   if (count == 1) return 0;
   if (looping == Looping::kRound) return index % count;
-  const std::size_t place = index % (2 * count - 2);
-  return place < count ? place : 2 * count - 2 - place;
+  const std::size_t position = index % (2 * count - 2);
+  return position < count ? position : 2 * count - 2 - position;
 }
 
 class HeldSource : public FrameSource {
@@ -57,18 +57,18 @@ Sequence looped(const Sequence& sequence, std::size_t frames, Looping looping) {
 }
 
 HeldDrive::HeldDrive(const Sequence& drive) {
-  std::map<std::filesystem::path, std::size_t> places;  // of the files' pairs among `distinct`
+  std::map<std::filesystem::path, std::size_t> index_of;  // of each pair of files in `distinct`
   std::vector<std::size_t> shown;
   Sequence distinct = drive;
   distinct.frames.clear();
   distinct.stamps.clear();
   for (std::size_t index = 0; index < drive.frames.size(); ++index) {
-    const auto [place, is_new] = places.try_emplace(drive.frames[index].left, distinct.frames.size());
+    const auto [found, is_new] = index_of.try_emplace(drive.frames[index].left, distinct.frames.size());
     if (is_new) {
       distinct.frames.push_back(drive.frames[index]);
       distinct.stamps.push_back(drive.stamps[index]);
     }
-    shown.push_back(place->second);
+    shown.push_back(found->second);
   }
 
   std::vector<StereoFrame> decoded;

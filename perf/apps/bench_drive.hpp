@@ -17,8 +17,8 @@ enum class Looping {
   kRound,         // 0 1 2 3 0 1 2 3 ...: for a drive that ends where it begins
 };
 
-/// A drive of `frames` pairs out of the frames of a shorter sequence. The first pass keeps its stamps, later ones go on
-/// at the mean rate.
+/// A drive of `frames` pairs out of the frames of a shorter sequence. The first pass keeps its stamps; later passes
+/// continue at the mean rate.
 Sequence looped(const Sequence& sequence, std::size_t frames, Looping looping);
 
 /// Gives a drive's frames one after the other, without due times; empty at its end.
@@ -46,8 +46,8 @@ std::unique_ptr<FrameSource> playHeld(const HeldDrive& drive);
 /// Decodes while it plays, up to `ahead` pairs ahead, as `motorcade run` does.
 std::unique_ptr<FrameSource> playFromDisk(const Sequence& drive, std::size_t ahead);
 
-/// CPU time of decoding a pair, measured by decoding the drive, at most its first 200 pairs, while nothing else runs in
-/// the process [ms].
+/// CPU time of decoding a pair [ms], measured on at most the drive's first 200 pairs while nothing else runs in the
+/// process.
 double decodingCpu_ms(const Sequence& drive);
 
 }  // namespace motorcade::perf

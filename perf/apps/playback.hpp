@@ -25,7 +25,7 @@ struct Playback {
 
   std::int64_t frames() const { return summary.processed + summary.rejected; }
   double rate_hz() const { return static_cast<double>(frames()) / wall_s; }
-  /// `total`, shared out over the frames.
+  /// `total` divided by the number of frames.
   double perFrame(double total) const { return total / static_cast<double>(frames()); }
 };
 

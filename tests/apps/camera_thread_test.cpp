@@ -59,7 +59,7 @@ TEST(CameraThread, TheCountersSeeTheHeapAndMutexes) {
   EXPECT_EQ(locks, 1);
 }
 
-/// While the pipeline hangs in a frame, all pairs but the newest are dropped, and their images let go of, by the
+/// While the pipeline hangs in a frame, all pairs but the newest are dropped, and their images released, by the
 /// camera's thread.
 TEST(CameraThread, NeitherLocksNorAsksTheHeapHoweverManyPairsAreDropped) {
   std::atomic<bool> hangs{true}, in_motion{false};

@@ -74,8 +74,8 @@ TEST(Configuration, ReadsBackWhatItWrites) {
 
 TEST(Configuration, BindsEachKeyOnceWithItsDefaultInRange) {
   PipelineConfig config;
-  EXPECT_NO_THROW(
-      applyToml(config, toToml(config), "defaults"));  // TOML itself refuses a key or section that comes twice
+  // TOML itself refuses a key or section that comes twice.
+  EXPECT_NO_THROW(applyToml(config, toToml(config), "defaults"));
 }
 
 TEST(Configuration, HasFewKeysThatEachSayWhatTheyAreFor) {

@@ -66,9 +66,10 @@ TEST(Draw, MakesAPictureOfEveryNthFrameOfTheRun) {
   Image image = pool.acquire(400, 120);
   for (int y = 0; y < 120; ++y) std::fill_n(image.mutableRow(y), 400, std::uint8_t{90});
   std::string poses;
-  for (const char* eye : {"drive/left", "drive/right"}) std::filesystem::create_directories(folder / eye);
+  for (const char* side : {"drive/left", "drive/right"}) std::filesystem::create_directories(folder / side);
   for (int i = 0; i < 8; ++i) {
-    for (const char* eye : {"drive/left", "drive/right"}) writePng(folder / eye / (std::to_string(i) + ".png"), image);
+    for (const char* side : {"drive/left", "drive/right"})
+      writePng(folder / side / (std::to_string(i) + ".png"), image);
     poses += kittiLine(SE3(Eigen::Matrix3d::Identity(), {0, 0, static_cast<double>(i)})) + "\n";
   }
   folder.write("drive/calib.txt", "P0: 300 0 200 0 0 300 60 0 0 0 1 0\nP1: 300 0 200 -150 0 300 60 0 0 0 1 0\n");

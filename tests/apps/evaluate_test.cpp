@@ -96,7 +96,7 @@ class EvaluateDrive : public testing::Test {
     ImagePool pool;
     Image image = pool.acquire(64, 32);
     std::string poses, labels;
-    for (const char* eye : {"image_0", "image_1"}) std::filesystem::create_directories(folder_ / "drive" / eye);
+    for (const char* side : {"image_0", "image_1"}) std::filesystem::create_directories(folder_ / "drive" / side);
     for (int i = 0; i < kFrames; ++i) {
       std::string name = std::to_string(100 + i) + ".png";
       writePng(folder_ / "drive/image_0" / name, image);

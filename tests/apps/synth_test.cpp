@@ -64,16 +64,16 @@ TEST(SynthRays, MeetWhatTryingEveryPartFinds) {
   for (const char* name : {"urban", "highway"}) {
     const Scene scene = makeScene(name, 2);
     const FrameScene frame(scene, 30, true);
-    const EyeRays eye(frame, kCamera, Eye::kRight);
+    const CameraRays rays(frame, kCamera, StereoSide::kRight);
     const ParallelRays to_sun(frame, scene.sun);
     Random random(5);
     for (int i = 0; i < 3000; ++i) {
       const float u_px = random.uniform(-0.5F, 413.5F), v_px = random.uniform(-0.5F, 124.5F);
-      const Vec3 d = eye.direction(u_px, v_px);
-      const auto hit = eye.firstHit(u_px, v_px, d, 300);
-      const float t = nearestOfAll(frame, eye.origin(), d, 1e-3F, 300);
+      const Vec3 d = rays.direction(u_px, v_px);
+      const auto hit = rays.firstHit(u_px, v_px, d, 300);
+      const float t = nearestOfAll(frame, rays.origin(), d, 1e-3F, 300);
       ASSERT_NEAR(hit ? hit->t : 300, t, 1e-5F * t) << name << " " << u_px << " " << v_px;  // float rounding
-      const Vec3 origin = eye.origin() + d * (0.99F * t);
+      const Vec3 origin = rays.origin() + d * (0.99F * t);
       ASSERT_EQ(to_sun.occluded(origin, 60), nearestOfAll(frame, origin, scene.sun, 1e-4F, 60) < 60)
           << name << " " << u_px << " " << v_px;
     }
@@ -83,7 +83,7 @@ TEST(SynthRays, MeetWhatTryingEveryPartFinds) {
 TEST(SynthRenderer, DepthsLieOnTheRoadAndInsideTheVehicles) {
   const Scene scene = makeScene("static", 3);
   const FrameScene frame(scene, 5, true);
-  const Rendering left = render(frame, kCamera, Eye::kLeft, kNoNoise);
+  const Rendering left = render(frame, kCamera, StereoSide::kLeft, kNoNoise);
   int road = 0, vehicle = 0;
   for (int y = 0; y < kCamera.height_px; ++y)
     for (int x = 0; x < kCamera.width_px; ++x) {
@@ -108,8 +108,8 @@ TEST(SynthRenderer, DepthsLieOnTheRoadAndInsideTheVehicles) {
 TEST(SynthRenderer, TheRightEyeShowsTheLeftPictureShiftedByTheDisparity) {
   const Scene scene = makeScene("overtake", 2);
   const FrameScene frame(scene, 14, true);
-  const Rendering left = render(frame, kCamera, Eye::kLeft, kNoNoise),
-                  right = render(frame, kCamera, Eye::kRight, kNoNoise);
+  const Rendering left = render(frame, kCamera, StereoSide::kLeft, kNoNoise),
+                  right = render(frame, kCamera, StereoSide::kRight, kNoNoise);
   std::vector<double> differences;
   double shift = 0, weight = 0;
   for (int y = 1; y < kCamera.height_px - 1; ++y)
@@ -119,7 +119,7 @@ TEST(SynthRenderer, TheRightEyeShowsTheLeftPictureShiftedByTheDisparity) {
       const double u = x - kCamera.fx_px * kCamera.baseline_m / depth;
       const int u0 = static_cast<int>(std::floor(u));
       if (u0 < 1 || u0 + 2 >= kCamera.width_px) continue;
-      // Where the other eye sees the same surface.
+      // Where the other camera sees the same surface.
       const bool same = std::abs(right.depth_m[indexOf(u0, y)] - depth) < 0.02 * depth &&
                         std::abs(right.depth_m[indexOf(u0 + 1, y)] - depth) < 0.02 * depth;
       if (!same) continue;
@@ -135,8 +135,8 @@ TEST(SynthRenderer, TheRightEyeShowsTheLeftPictureShiftedByTheDisparity) {
   ASSERT_GT(differences.size(), 10000U);
   std::nth_element(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2),
                    differences.end());
-  EXPECT_LT(differences[differences.size() / 2],
-            2.5);                             // linear interpolation of a sharp picture; the gray levels span 255
+  constexpr double kInterpolation = 2.5;  // gray levels of 255: linear interpolation of a sharp picture
+  EXPECT_LT(differences[differences.size() / 2], kInterpolation);
   EXPECT_LT(std::abs(shift / weight), 0.02);  // px: no bias of the whole
 }
 
@@ -146,12 +146,12 @@ TEST(SynthRenderer, NoiseDiffersBetweenTheEyesAndHasTheSizeAskedFor) {
   RenderOptions noisy = kNoNoise;
   noisy.noise_levels = 1.5F;
   std::vector<double> left, right;
-  for (const Eye eye : {Eye::kLeft, Eye::kRight}) {
-    const auto clean = pixels(render(frame, kCamera, eye, kNoNoise).image),
-               with = pixels(render(frame, kCamera, eye, noisy).image);
+  for (const StereoSide side : {StereoSide::kLeft, StereoSide::kRight}) {
+    const auto clean = pixels(render(frame, kCamera, side, kNoNoise).image),
+               with = pixels(render(frame, kCamera, side, noisy).image);
     for (std::size_t i = 0; i < clean.size(); ++i)
       if (clean[i] > 100 && clean[i] < 150)
-        (eye == Eye::kLeft ? left : right).push_back(static_cast<double>(with[i]) - clean[i]);
+        (side == StereoSide::kLeft ? left : right).push_back(static_cast<double>(with[i]) - clean[i]);
   }
   const double power =
       std::inner_product(left.begin(), left.end(), left.begin(), 0.0) / static_cast<double>(left.size());
@@ -163,7 +163,7 @@ TEST(SynthGroundTruth, LabelsAgreeWithPosesAndMasks) {
   for (const char* name : {"overtake", "urban", "convoy"}) {
     const Scene scene = makeScene(name, 4);
     const FrameScene frame(scene, 20, true);
-    const Rendering left = render(frame, kCamera, Eye::kLeft, kNoNoise);
+    const Rendering left = render(frame, kCamera, StereoSide::kLeft, kNoNoise);
     const auto labels = labelsOf(frame, kCamera, left);
     ASSERT_GE(labels.size(), 2U);
     for (const auto& label : labels) {
@@ -263,7 +263,8 @@ TEST(SynthScenes, TheCircuitHasNoSeam) {
   ASSERT_GT(scene.lap_frames, 0);
   const StereoCamera camera = kittiCamera(124, 40);
   const FrameScene first(scene, 0, true), again(scene, scene.lap_frames, true);
-  EXPECT_EQ(pixels(render(first, camera, Eye::kLeft, {}).image), pixels(render(again, camera, Eye::kLeft, {}).image));
+  EXPECT_EQ(pixels(render(first, camera, StereoSide::kLeft, {}).image),
+            pixels(render(again, camera, StereoSide::kLeft, {}).image));
   // From the last frame to the first one is a step like those around it, for the camera and for all vehicles.
   const auto step = [&](int from, std::size_t i) {
     const FrameScene a(scene, from, true), b(scene, from + 1, true);

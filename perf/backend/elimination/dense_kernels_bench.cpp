@@ -6,8 +6,7 @@
 
 #include "backend/elimination/dense_kernels.hpp"
 
-/// Each kernel beside what Eigen does for the same task. The rate "flops" counts a multiplication with its addition as
-/// two.
+/// Each kernel beside what Eigen does for the same task. In the rate "flops" a multiplication and its addition are two.
 namespace motorcade {
 namespace {
 
@@ -115,13 +114,13 @@ void BM_OuterProductByEigen(benchmark::State& state) {
 void BM_EliminateClique(benchmark::State& state) {
   const Panels panels(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   const int rest = panels.rows - panels.columns;
-  MatrixXd panel(panels.ld, panels.columns), remainder = MatrixXd::Zero(padded(rest), rest);
+  MatrixXd panel(panels.ld, panels.columns), update_matrix = MatrixXd::Zero(padded(rest), rest);
   std::vector<int> singular;
   std::size_t i = 0;
   for (auto _ : state) {
     panel = panels.information[i++ % kProblems];
     factorizePanel(panel.data(), panels.ld, panels.rows, panels.columns, singular);
-    subtractOuterProduct(remainder.data(), padded(rest), panel.data() + panels.columns, panels.ld, rest,
+    subtractOuterProduct(update_matrix.data(), padded(rest), panel.data() + panels.columns, panels.ld, rest,
                          panels.columns);
     benchmark::ClobberMemory();
   }
@@ -131,12 +130,12 @@ void BM_EliminateClique(benchmark::State& state) {
 void BM_EliminateCliqueByEigen(benchmark::State& state) {
   const Panels panels(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   const int rest = panels.rows - panels.columns;
-  MatrixXd panel(panels.ld, panels.columns), remainder = MatrixXd::Zero(rest, rest);
+  MatrixXd panel(panels.ld, panels.columns), update_matrix = MatrixXd::Zero(rest, rest);
   std::size_t i = 0;
   for (auto _ : state) {
     panel = panels.information[i++ % kProblems];
     eliminateByEigen(panel, panels.rows, panels.columns);
-    remainder.selfadjointView<Eigen::Lower>().rankUpdate(panel.middleRows(panels.columns, rest), -1.0);
+    update_matrix.selfadjointView<Eigen::Lower>().rankUpdate(panel.middleRows(panels.columns, rest), -1.0);
     benchmark::ClobberMemory();
   }
   reportFlops(state, factorizationFlops(panels.rows, panels.columns) + outerProductFlops(rest, panels.columns));

@@ -7,8 +7,7 @@
 namespace motorcade::perf {
 
 /// The batch solution of the first updates of a graph, for more and more of them: each starts from the one before,
-/// relinearizes everything, and goes on until nothing moves. Solved with the solver's default parameters, whatever is
-/// measured.
+/// relinearizes everything, and goes on until nothing moves. Always solved with the solver's default parameters.
 class BatchReference {
  public:
   /// Keeps a reference to the graph.

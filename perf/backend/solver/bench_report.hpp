@@ -9,8 +9,7 @@
 #include "perf/backend/solver/multibody_run.hpp"
 #include "perf/backend/solver/solution_check.hpp"
 
-/// Rows of tables on standard output, and the same figures as JSON. Scalars are per update: eliminated, and solved for
-/// by substitution.
+/// Rows of tables on standard output, and the same figures as JSON. Scalars, eliminated or substituted, are per update.
 namespace motorcade::perf {
 
 struct GraphFigures {

@@ -24,13 +24,12 @@ GraphRun runGraph(const PoseGraph& graph, const IncrementalSolver::Params& param
 /// How the solver takes edges to poses of long ago, which bend everything in between.
 struct ClosureRun {
   std::size_t first_update = 0;  // with such an edge
-  std::optional<std::size_t>
-      updates_until_settled;          // after the first: chi2 within 0.1 % of the optimum of what is there by then
+  /// After the first: until chi2 is within 0.1 % of the optimum of the graph so far.
+  std::optional<std::size_t> updates_until_settled;
   std::size_t unsettled_updates = 0;  // from the first on
   double worst_excess_percent = 0;
 };
-/// The first update with an edge to a pose more than 50 frames back; empty where there is none, or the graph has no
-/// frames.
+/// The first update with an edge to a pose more than 50 frames back; empty where the graph has none, or has no frames.
 std::optional<std::size_t> firstClosure(const PoseGraph& graph);
 ClosureRun runClosures(const PoseGraph& graph, const IncrementalSolver::Params& params, std::size_t first_update);
 

@@ -30,9 +30,9 @@ class Drive {
  public:
   /// Memory for the costs of so many frames is there from the start, so that the process does not grow by it.
   Drive(const IncrementalSolver::Params& params, int window_frames, int frames)
-      : solver_(params), stream_(solver_, static_cast<std::size_t>(window_frames)) {
+      : solver_(params), stream_(solver_, window_frames) {
     for (auto* costs : {&update_ms_, &retire_ms_, &eliminated_scalars_, &substituted_scalars_}) {
-      costs->assign(static_cast<std::size_t>(frames), 0);
+      costs->assign(frames, 0);
       costs->clear();
     }
   }
@@ -117,7 +117,7 @@ MultibodyAging measureAging(Drive& old, MultibodyScene& scene, const Incremental
     young.update(frame);
   }
   const auto compared = static_cast<std::size_t>(warm_up);
-  const std::size_t compared_old = compared + static_cast<std::size_t>(options.frames);
+  const std::size_t compared_old = compared + options.frames;
   return {.old_ms = old.updateTimes_ms(compared_old).median,
           .young_ms = young.updateTimes_ms(compared).median,
           .old_scalars = old.eliminatedScalars(compared_old).median,

@@ -40,8 +40,8 @@ struct MultibodyRun {
   std::optional<MultibodyAging> aging;  // after the last of the frames; empty where everything is kept
   Quantiles update_ms;                  // of all
   std::size_t problems = 0;             // that updates reported
-  double chi2_excess_percent =
-      0;  // at the end, over what Gauss-Newton reaches from there, of one per row of the factors in the window
+  /// At the end, over what Gauss-Newton reaches from there, of one per row of the factors in the window.
+  double chi2_excess_percent = 0;
 
   /// Median time of an update in the last bin over that around frame 1000, as the machine's load allows; empty for
   /// shorter runs.

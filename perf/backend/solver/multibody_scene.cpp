@@ -26,8 +26,7 @@ SE3 bodyInRoadAxes() {
 
 }  // namespace
 
-MultibodyScene::MultibodyScene(int objects, std::uint64_t seed)
-    : random_(seed), vehicles_(static_cast<std::size_t>(objects)) {}
+MultibodyScene::MultibodyScene(int objects, std::uint64_t seed) : random_(seed), vehicles_(objects) {}
 
 double MultibodyScene::uniform(double from, double to) {
   return std::uniform_real_distribution<double>(from, to)(random_);

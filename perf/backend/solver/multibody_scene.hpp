@@ -17,18 +17,18 @@ struct MotionSigma {
 /// What is measured in one frame, and where the camera really is.
 struct SimulatedFrame {
   struct Object {
-    bool is_new;  // takes the place of one that is gone
+    bool is_new;  // takes the slot of one that is gone
     SE3 T_cam_body;
     SE3 T_before_now;  // its motion since the frame before; not of a new one
   };
   SE3 T_world_cam;              // true
   SE3 T_previous_now;           // odometry
-  std::vector<Object> objects;  // a place keeps its object until it is gone
-  std::vector<SE3> encounters;  // the pose of the object in place 2 i + 1 from the one in place 2 i
+  std::vector<Object> objects;  // a slot keeps its object until it is gone
+  std::vector<SE3> encounters;  // the pose of the object in slot 2 i + 1 from the one in slot 2 i
 };
 
 /// A camera on an endless winding road, with a given number of vehicles in view: each drives along for 60 to 200
-/// frames, then another takes its place. Ten frames a second, about a meter per frame. Seeded.
+/// frames, then another replaces it. Ten frames a second, about a meter per frame. Seeded.
 class MultibodyScene {
  public:
   static constexpr double kFrame_s = 0.1;

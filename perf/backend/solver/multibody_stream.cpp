@@ -59,8 +59,8 @@ void MultibodyStream::addCamera(const SimulatedFrame& frame) {
 }
 
 void MultibodyStream::startObject(Object& object, const SimulatedFrame::Object& seen) {
-  if (object.anchor.valid())
-    records_[records_.size() - 2].of_frame.push_back(object.anchor);  // its last frame was the one before
+  // The last frame of the object before it was the previous one.
+  if (object.anchor.valid()) records_[records_.size() - 2].of_frame.push_back(object.anchor);
   const SE3 T_world_body = (solver_.pose(records_.back().x) * seen.T_cam_body).normalized();
   object = {.anchor = solver_.addVariable(T_world_body), .z_before_last = {}, .z_last = solver_.addVariable(SE3{})};
   addPrior(object.anchor, T_world_body, {kProduct.anchor_sigma_m, kProduct.anchor_sigma_rad});

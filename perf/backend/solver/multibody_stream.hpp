@@ -9,9 +9,9 @@
 
 namespace motorcade::perf {
 
-/// Feeds a solver with simulated frames, as the product's smoother does with measured ones: the same variables, factors
-/// and losses; a window of frames, beyond which poses are marginalized, and an object's anchor with the last of its
-/// poses.
+/// Feeds a solver with simulated frames, as the smoother of `motorcade run` does with measured ones: the same
+/// variables, factors and losses, and a window of frames, beyond which poses are marginalized; an object's anchor goes
+/// with its last pose.
 class MultibodyStream {
  public:
   /// A window of 0 keeps everything.

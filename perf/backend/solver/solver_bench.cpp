@@ -13,7 +13,7 @@
 #include "perf/backend/solver/bench_report.hpp"
 #include "perf/backend/solver/solver_options.hpp"
 
-/// Measures the incremental solver: on public pose graphs, beside batch solutions, and on simulated drives of any
+/// Measures the incremental solver on public pose graphs, beside batch solutions, and on simulated drives of any
 /// length.
 namespace motorcade::perf {
 namespace {

@@ -32,7 +32,7 @@ TEST(Optimizer, ObjectsAreBetterThanRawAndThanTheFilter) {
     SimulatedDrive drive(seed, {});
     FilterBackend filter({});
     filtered += error_m(runDrive(filter, drive).finals);
-    // Raw: what the front-end saw, put at the chained camera.
+    // Raw: what the front-end measured, from the camera of chained odometry.
     SimulatedDrive again(seed, {});
     SE3 T_world_cam;
     std::vector<FrameEstimate> seen;
@@ -73,7 +73,7 @@ double objectNees(const std::vector<FrameEstimate>& estimates, const SimulatedDr
     if (i % 5 != 0) continue;
     for (const auto& object : frame.objects) {
       if (!object.covariance) continue;
-      const SE3 truth = drive.camera(i).inverse() * drive.object(static_cast<std::size_t>(object.track.value - 100), i);
+      const SE3 truth = drive.camera(i).inverse() * drive.object(object.track.value - 100, i);
       const Vector6d error = (truth.inverse() * frame.T_world_cam.inverse() * object.T_world_body).log();
       sum += error.dot(object.covariance->llt().solve(error)) / 6;
       ++count;
@@ -98,8 +98,8 @@ double cameraNees(const std::vector<FrameEstimate>& estimates, const SimulatedDr
 }
 
 TEST(Optimizer, CovariancesAreHonest) {
-  // Vehicles that really follow the motion model would need a random drive; at constant twist the errors are a little
-  // below the covariance.
+  // Only vehicles on random drives would follow the motion model; at constant twist errors are a little below the
+  // covariance.
   double object = 0, camera = 0, without_objects = 0;
   constexpr int kSeeds = 30;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
@@ -131,8 +131,7 @@ TEST(Optimizer, AnErrorThatLastsIsNotTakenForManyMeasurements) {
   }
   std::cout << "NEES per dimension: errors known to last " << told_nees << ", taken as independent " << untold_nees
             << "\n";
-  // An estimate that rests on less than a long series, as at the ends of a track, knows more than the inflation grants
-  // it.
+  // At the ends of a track, where an estimate rests on a short series, the inflation is larger than its errors.
   EXPECT_GT(told_nees, 0.2);
   EXPECT_LT(told_nees, 1.3);
   EXPECT_GT(untold_nees, 3.0);
@@ -146,7 +145,7 @@ double stepError_m(const std::vector<FrameEstimate>& estimates, const SimulatedD
     for (const auto& before : estimates[i - 1].objects)
       for (const auto& now : estimates[i].objects) {
         if (now.track != before.track) continue;
-        const auto vehicle = static_cast<std::size_t>(now.track.value - 100);
+        const std::size_t vehicle = now.track.value - 100;
         const int frame = static_cast<int>(i);
         const SE3 truth = drive.object(vehicle, frame - 1).inverse() * drive.object(vehicle, frame);
         sum += (truth.inverse() * before.T_world_body.inverse() * now.T_world_body).translation().squaredNorm();

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "backend/smoother/optimizer.hpp"
 #include "tests/backend/simulated_drive.hpp"
 #include "tests/support/matchers.hpp"
 
@@ -48,9 +49,9 @@ void expectSameCamera(const TrajectoryGraph& graph, const TrajectoryGraph& expec
         << "frame " << frame.value;
 }
 
-/// Whose anchors have no prior worth the name.
-Optimizer::Params withoutAnchors() {
-  Optimizer::Params params;
+/// Anchors have no prior.
+SmootherParams withoutAnchors() {
+  SmootherParams params;
   params.anchor_sigma_m = params.anchor_sigma_rad = std::numeric_limits<double>::infinity();
   params.use_object_encounter = false;
   params.mismatch_tolerance = params.jacobian_drift_sigmas = params.substitution_tolerance = 0;
@@ -58,7 +59,7 @@ Optimizer::Params withoutAnchors() {
 }
 
 TEST(TrajectoryGraph, AnObjectWhoseAnchorNothingConstrainsIsDroppedByName) {
-  Optimizer::Params params = withoutAnchors();
+  SmootherParams params = withoutAnchors();
   params.use_camera_encounter = false;
   TrajectoryGraph graph(params), camera_alone(params);
   const auto problems = drive(graph, [](int, FrameMeasurements&) {});
@@ -142,7 +143,7 @@ TEST(TrajectoryGraph, EveryMeasurementThatIsNoNumberIsNamed) {
 
 TEST(TrajectoryGraph, SaysNothingOfGoodDrives) {
   for (int switches = 0; switches < 16; ++switches) {
-    Optimizer::Params params;
+    SmootherParams params;
     params.use_motion = (switches & 1) != 0;
     params.use_smoothness = (switches & 2) != 0;
     params.use_camera_encounter = (switches & 4) != 0;

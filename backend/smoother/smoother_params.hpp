@@ -1,0 +1,66 @@
+#pragma once
+
+#include <vector>
+
+#include "core/parameters.hpp"
+#include "core/robust_loss.hpp"
+
+namespace motorcade {
+
+enum class RelinearizationPolicy {
+  kEveryN,  // reorder and relinearize everything every `relinearize_every_updates` (the paper)
+  kFluid,   // correct the linear models that are off, in each update
+};
+
+/// Parameters of the smoother: of its graph, its solver and its published estimates.
+struct SmootherParams {
+  int window_frames = 1000;  // a frame is final when it leaves the window; 0 keeps everything
+
+  /// Kinds of factors. Camera odometry is always on.
+  bool use_motion = true, use_smoothness = true, use_camera_encounter = true, use_object_encounter = true;
+
+  /// Losses act on whitened residual norms of six dimensions.
+  RobustLoss encounter_loss = RobustLoss::kHuber, motion_loss = RobustLoss::kHuber;
+  double encounter_loss_scale = 4.5, motion_loss_scale = 4.5;
+  /// Factors on the variances of the front-end's covariances: 1 takes them as they are. Odometry of successive frames
+  /// reuses points, so that its errors add up to more than their variances; 1.5 makes ten frames' motion consistent
+  /// on rendered scenes.
+  double odometry_variance_scale = 1.5, encounter_variance_scale = 1.0, motion_variance_scale = 1.0;
+  /// Time for which an error of an object's points lasts in encounters and motions: each frame measures the object with
+  /// the same errors of the points' positions on the body. A measurement counts as the share of an independent one that
+  /// it is; 0 takes all as independent.
+  double object_correlation_s = 3.0;
+
+  /// Gauge of the camera's and of each object's graph, and the weak prior of an anchor.
+  double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
+  double object_origin_sigma_m = 1e-3, object_origin_sigma_rad = 1e-4;
+  double anchor_sigma_m = 100.0, anchor_sigma_rad = 3.0;
+
+  /// Smooth motion: white noise on acceleration, as the standard deviation of the velocity's change after one second.
+  double acceleration_along_mps2 = 1.5, acceleration_sideways_mps2 = 0.5, acceleration_vertical_mps2 = 0.3;
+  double acceleration_yaw_radps2 = 0.07, acceleration_tilt_radps2 = 0.03;
+
+  /// Share of two camera encounters' information that goes to the encounter of the two objects.
+  double object_encounter_share = 0.2;
+  /// Which pairs get an encounter: objects at most this far apart, each with at most so many others.
+  double object_encounter_distance_m = 15.0;
+  int object_encounter_partners = 1;
+
+  /// A correction of an object's whole track would look like motion when published online. So the published pose moves
+  /// as the object does, and corrections come in over this time; 0 publishes each pose as it is estimated.
+  double online_correction_s = 0.5;
+
+  RelinearizationPolicy policy = RelinearizationPolicy::kFluid;
+  int relinearize_every_updates = 50;  // of kEveryN
+  /// Of kFluid: see IncrementalSolver::Params.
+  double mismatch_tolerance = 0.02, jacobian_drift_sigmas = 0.3, substitution_tolerance = 0.02;
+  int iterations_per_update = 2, budget_scalars = 0;
+  double budget_ms = 0;       // for live drives: replay would not be reproducible
+  int final_iterations = 10;  // at most, when the drive has ended
+
+  bool compute_covariances = true;
+};
+
+std::vector<Parameter> parametersOf(SmootherParams& params);
+
+}  // namespace motorcade
