@@ -8,7 +8,7 @@
 #include "backend/elimination/affected_order.hpp"
 #include "backend/elimination/elimination_tree.hpp"
 #include "backend/graph/factor_graph.hpp"
-#include "backend/solver/solver_explanations.hpp"
+#include "backend/solver/problem_reporter.hpp"
 #include "backend/solver/solver_problem.hpp"
 #include "core/messages.hpp"
 

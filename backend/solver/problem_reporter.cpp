@@ -1,10 +1,10 @@
-#include "backend/solver/solver_explanations.hpp"
+#include "backend/solver/problem_reporter.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "backend/solver/null_motion.hpp"
+#include "backend/solver/null_space.hpp"
 
 namespace motorcade {
 namespace {

@@ -1,4 +1,4 @@
-#include "backend/solver/null_motion.hpp"
+#include "backend/solver/null_space.hpp"
 
 #include <algorithm>
 #include <cmath>
