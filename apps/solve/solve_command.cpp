@@ -17,7 +17,7 @@ IncrementalSolver::Params solverParams(const SolveOptions& options) {
     if (options.policy != "every") throw UsageError("--every goes with --policy every");
     params.batch_every_updates = options.batch_every_updates;
   }
-  params.budget_scalars = options.budget_scalars;
+  params.budget.scalars = options.budget_scalars;
   return params;
 }
 

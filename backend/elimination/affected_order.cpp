@@ -30,18 +30,16 @@ std::span<const VariableId> AffectedOrder::operator()(std::span<const VariableId
 void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
   const int last = static_cast<int>(variables_.size()) - 1;  // CCOLAMD wants groups below the number of columns
   group_.assign(variables_.size(), 0);
-  ++search_;
-  reached_in_search_.resize(graph_.slots(), 0);
+  reached_.reset(graph_.slots());
   distance_.resize(graph_.slots());
   queue_.clear();
   std::size_t missing = variables_.size();
   const auto reach = [&](VariableId v, int distance) {
-    if (reached_in_search_[v.value] == search_) return;
-    reached_in_search_[v.value] = search_;
+    if (!reached_.insert(v.value)) return;
     distance_[v.value] = distance;
     queue_.push_back(v);
-    const auto column = static_cast<std::size_t>(column_of_[v.value]);
-    if (column >= variables_.size() || variables_[column] != v) return;
+    const int column = column_of_[v.value];
+    if (column > last || variables_[column] != v) return;
     group_[column] = std::min(kBands - static_cast<int>(std::bit_width(static_cast<unsigned>(distance))), last);
     --missing;
   };

@@ -6,14 +6,15 @@
 #include "backend/elimination/elimination_tree.hpp"
 #include "backend/elimination/ordering.hpp"
 #include "backend/graph/factor_graph.hpp"
+#include "backend/graph/mark_set.hpp"
 
 namespace motorcade {
 
 /// Orders the variables that an update eliminates anew: with little fill, and the nearer to the newest measurements,
 /// the later.
 ///
-/// The next measurements will touch variables near those that were touched now (a vehicle drives on, and meets the
-/// neighbors of the places that it met). What stands near the root is cheap to touch, so the order goes by bands of
+/// The next measurements will touch variables near those that were touched now (a vehicle drives on, and observes what
+/// lies close to what it observed). What stands near the root is cheap to touch, so the order goes by bands of
 /// distance in the factor graph, each twice as wide as the one before; within a band, CCOLAMD orders for little fill.
 class AffectedOrder {
  public:
@@ -36,9 +37,8 @@ class AffectedOrder {
   std::vector<int> column_of_;  // per variable; stale for those not at hand
   std::vector<int> row_, group_;
   std::vector<VariableId> queue_;
-  std::vector<int> distance_;                     // per variable: in the search at hand, if it was reached
-  std::vector<std::uint32_t> reached_in_search_;  // per variable
-  std::uint32_t search_ = 0;
+  std::vector<int> distance_;  // per variable: in the search at hand, if it was reached
+  MarkSet reached_;            // variables
 };
 
 }  // namespace motorcade

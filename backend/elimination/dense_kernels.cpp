@@ -5,45 +5,19 @@
 #include <cmath>
 #include <limits>
 
+#include "backend/elimination/lanes.hpp"
+
 namespace motorcade {
+
+using namespace lanes;
+
 namespace {
 
-typedef double Vec __attribute__((vector_size(32)));
-typedef double UnalignedVec __attribute__((vector_size(32), may_alias, aligned(8)));
-
-constexpr int kLanes = 4;
 constexpr int kTileVecs = 3;  // 12 x 4 tiles: 12 sums, 3 vectors of A and one of B fill the 16 registers
-constexpr int kMaxDepth =
-    48;  // columns that an outer product takes at once: what stays in the first-level caches of data and pages
-
-Vec load(const double* from) { return *reinterpret_cast<const UnalignedVec*>(from); }
-void store(double* to, Vec value) { *reinterpret_cast<UnalignedVec*>(to) = value; }
-Vec broadcast(double value) { return Vec{value, value, value, value}; }
-double sum(Vec v) { return (v[0] + v[2]) + (v[1] + v[3]); }
-
-Vec loadFirst(const double* from, int count) {
-  switch (count) {
-    case 1:
-      return Vec{from[0], 0, 0, 0};
-    case 2:
-      return Vec{from[0], from[1], 0, 0};
-    case 3:
-      return Vec{from[0], from[1], from[2], 0};
-    default:
-      return load(from);
-  }
-}
+/// Columns that an outer product takes at once: what stays in the first-level caches of data and pages.
+constexpr int kMaxDepth = 48;
 
 int vecsFor(int rows) { return (rows + kLanes - 1) / kLanes; }
-
-/// Calls `f.template operator()<n>()` with the number n of 1..kMax as a constant.
-template <int kMax, class F>
-[[gnu::always_inline]] inline void withConstant(int n, const F& f) {
-  if constexpr (kMax > 1) {
-    if (n < kMax) return withConstant<kMax - 1>(n, f);
-  }
-  f.template operator()<kMax>();
-}
 
 /// Walks down `vecs` vectors of rows in tiles: `f.template operator()<height>(first)`. Four are two and two, as one
 /// alone makes the sums wait for each other.
@@ -156,14 +130,15 @@ struct Triangle {
 /// Eliminates N columns from `first` on: left-looking, each tile takes all updates by earlier columns at once. Returns
 /// the largest ratio of a diagonal entry to its pivot, at least 1.
 template <int N>
-double factorizeColumns(double* panel, int ld, int rows, int first, std::vector<int>& singular) {
-  double* const columns = panel + first * ld;
+double factorizeColumns(const Panel& panel, int first, std::vector<int>& singular) {
+  const int ld = panel.ld, rows = panel.rows;
+  double* const columns = panel.data + first * ld;
   Triangle<N> triangle;
   forTiles(0, vecsFor(rows - first), [&]<int V>(int vec) {
     const int row = first + vec * kLanes;
     Tile<V, N> tile;
     tile.loadFrom(columns + row, ld);
-    tile.subtractProduct(panel + row, panel + first, ld, first);
+    tile.subtractProduct(panel.data + row, panel.data + first, ld, first);
     if (vec == 0) {
       double diagonal[N];
       for (int c = 0; c < N; ++c) diagonal[c] = columns[first + c + c * ld];
@@ -238,71 +213,14 @@ void addProduct(const double* jacobian, int stride, int cols, double* h, int ldh
     withConstant<kLanes - 1>(cols - i, [&]<int kCount>() { addRowsOfProduct<K, kCount>(jacobian, stride, i, h, ldh); });
 }
 
-/// sums[c] += m(:, c)^T x over n rows.
-template <int N>
-[[gnu::always_inline]] inline void addDots(const double* m, int ld, const double* x, int n, double (&sums)[N]) {
-  Vec partial[N]{};
-  int i = 0;
-  for (; i + kLanes <= n; i += kLanes) {
-    const Vec x_i = load(x + i);
-#pragma GCC unroll 4
-    for (int c = 0; c < N; ++c) partial[c] += load(m + i + c * ld) * x_i;
-  }
-  for (int c = 0; c < N; ++c) sums[c] += sum(partial[c]);
-  for (; i < n; ++i)
-    for (int c = 0; c < N; ++c) sums[c] += m[i + c * ld] * x[i];
-}
-
-/// N scalars from `first` on, when those after them are solved.
-template <int N>
-void backSubstituteColumns(const double* panel, int ld, int rows, int columns, int first, const double* x_separator,
-                           double* x_frontal) {
-  const double* const L = panel + first * ld;
-  double sums[N];
-  double inverse[N];
-  for (int c = 0; c < N; ++c) {
-    sums[c] = L[rows - 1 + c * ld];
-    inverse[c] = 1 / L[first + c + c * ld];
-  }
-  addDots<N>(L + columns, ld, x_separator, rows - 1 - columns, sums);
-  addDots<N>(L + first + N, ld, x_frontal + first + N, columns - first - N, sums);
-  for (int c = N - 1; c >= 0; --c) {
-    x_frontal[first + c] = -sums[c] * inverse[c];
-    for (int r = 0; r < c; ++r) sums[r] += L[first + c + r * ld] * x_frontal[first + c];
-  }
-}
-
-/// Solves for N entries of d from `first` on, in place, and takes their part out of the entries of g below.
-template <int N>
-void forwardSubstituteColumns(const double* panel, int ld, int rows, int first, double* g) {
-  const double* const L = panel + first * ld;
-  double d[N];
-  double inverse[N];
-  for (int c = 0; c < N; ++c) inverse[c] = 1 / L[first + c + c * ld];
-  for (int c = 0; c < N; ++c) {
-    double rest = g[first + c];
-    for (int b = 0; b < c; ++b) rest -= L[first + c + b * ld] * d[b];
-    g[first + c] = d[c] = rest * inverse[c];
-  }
-  int i = first + N;
-  for (; i + kLanes <= rows - 1; i += kLanes) {
-    Vec rest = load(g + i);
-#pragma GCC unroll 4
-    for (int c = 0; c < N; ++c) rest -= load(L + i + c * ld) * broadcast(d[c]);
-    store(g + i, rest);
-  }
-  for (; i < rows - 1; ++i)
-    for (int c = 0; c < N; ++c) g[i] -= L[i + c * ld] * d[c];
-}
-
 }  // namespace
 
-double factorizePanel(double* panel, int ld, int rows, int columns, std::vector<int>& singular) {
-  assert(ld % kLanes == 0 && ld >= rows && rows > columns);
+double factorizePanel(const Panel& panel, std::vector<int>& singular) {
+  assert(panel.ld % kLanes == 0 && panel.ld >= panel.rows && panel.rows > panel.columns);
   double largest_growth = 1;
-  for (int first = 0; first < columns; first += kLanes) {
-    withConstant<kLanes>(std::min(columns - first, kLanes), [&]<int N>() {
-      largest_growth = std::max(largest_growth, factorizeColumns<N>(panel, ld, rows, first, singular));
+  for (int first = 0; first < panel.columns; first += kLanes) {
+    withConstant<kLanes>(std::min(panel.columns - first, kLanes), [&]<int N>() {
+      largest_growth = std::max(largest_growth, factorizeColumns<N>(panel, first, singular));
     });
   }
   return 1 / largest_growth;
@@ -324,28 +242,6 @@ void addJacobianProduct(const double* jacobian, int rows, int cols, double* h, i
   for (; row + 6 <= rows; row += 6) addProduct<6>(jacobian + row, rows, cols, h, ldh);
   for (; row + 3 <= rows; row += 3) addProduct<3>(jacobian + row, rows, cols, h, ldh);
   for (; row < rows; ++row) addProduct<1>(jacobian + row, rows, cols, h, ldh);
-}
-
-void backSubstitute(const double* panel, int ld, int rows, int columns, const double* x_separator, double* x_frontal) {
-  // The odd columns come last, that is first in the panel, so that the solved scalars are whole vectors.
-  for (int end = columns; end > 0; end -= kLanes) {
-    withConstant<kLanes>(std::min(end, kLanes), [&]<int N>() {
-      backSubstituteColumns<N>(panel, ld, rows, columns, end - N, x_separator, x_frontal);
-    });
-  }
-}
-
-void forwardSubstitute(double* panel, int ld, int rows, int columns, std::span<const int> singular, double* g,
-                       double& c) {
-  for (int first = 0; first < columns; first += kLanes) {
-    withConstant<kLanes>(std::min(columns - first, kLanes),
-                         [&]<int N>() { forwardSubstituteColumns<N>(panel, ld, rows, first, g); });
-  }
-  for (const int k : singular) g[k] = 0;  // it has touched nothing: its column is zero below the pivot
-  for (int k = 0; k < columns; ++k) {
-    panel[rows - 1 + k * ld] = g[k];
-    c -= g[k] * g[k];
-  }
 }
 
 }  // namespace motorcade

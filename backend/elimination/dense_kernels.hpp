@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 namespace motorcade {
@@ -15,17 +14,25 @@ namespace motorcade {
 /// outside of ld * columns is touched, and nothing is allocated. Large matrices are slower when ld is a multiple of
 /// 512, as their columns compete for the same cache lines.
 
+/// The leading dimension for so many rows.
+constexpr int padded(int rows) { return (rows + 3) / 4 * 4; }
+
+/// A panel in memory. Its leading columns x columns block belongs to the eliminated scalars (lower triangle); below lie
+/// the couplings to the separator and, in the last row, the right-hand side.
+struct Panel {
+  double* data;
+  int ld, rows, columns;
+};
+
 /// A pivot is singular when not above this times its diagonal entry before elimination: rounding leaves about 1e-16.
 constexpr double kSingularPivot = 1e-13;
 
-/// Factorizes a panel in place. Its leading columns x columns block holds the information of the eliminated scalars
-/// (lower triangle); below lie the couplings to the separator and, in the last row, the right-hand side: [H11; H21;
-/// g^T] becomes [L11; L21; d^T].
+/// Factorizes a panel of information in place: [H11; H21; g^T] becomes [L11; L21; d^T].
 ///
 /// A singular pivot, or one not finite, becomes 1 and the column below it zero, so that the scalar's delta is zero; its
 /// index is appended to `singular`. Returns the smallest ratio of a pivot to its diagonal entry before elimination
 /// among the others, at most 1.
-double factorizePanel(double* panel, int ld, int rows, int columns, std::vector<int>& singular);
+double factorizePanel(const Panel& panel, std::vector<int>& singular);
 
 /// C -= A A^T, lower triangle. A is n x k and may be the lower rows of a panel: of its padding nothing past the panel's
 /// end is read.
@@ -33,13 +40,5 @@ void subtractOuterProduct(double* c, int ldc, const double* a, int lda, int n, i
 
 /// H += J^T J, lower triangle, of cols x cols. J is rows x cols without padding.
 void addJacobianProduct(const double* jacobian, int rows, int cols, double* h, int ldh);
-
-/// Solves L11^T x_frontal = -(d + L21^T x_separator), with d in the panel's last row.
-void backSubstitute(const double* panel, int ld, int rows, int columns, const double* x_separator, double* x_frontal);
-
-/// Eliminates with a new right-hand side g of rows - 1 entries, frontal ones first: d = L11^-1 g1 replaces g1 and the
-/// panel's last row, g2 -= L21 d, and c -= d^T d. The d of the `singular` scalars that the factorization found is zero.
-void forwardSubstitute(double* panel, int ld, int rows, int columns, std::span<const int> singular, double* g,
-                       double& c);
 
 }  // namespace motorcade

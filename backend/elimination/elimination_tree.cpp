@@ -1,33 +1,11 @@
 #include "backend/elimination/elimination_tree.hpp"
 
 #include <algorithm>
-#include <cassert>
 
-#include "backend/elimination/dense_kernels.hpp"
+#include "backend/elimination/dense_substitution.hpp"
+#include "backend/graph/sort_unique.hpp"
 
 namespace motorcade {
-namespace {
-
-std::size_t panelLength(const Clique& c) { return c.panelStride() * c.frontal_size; }
-std::size_t remainderLength(const Clique& c) { return c.separatorSize() * (c.separatorSize() + 1) / 2; }
-
-/// With the 4 x 4 blocks on the diagonal whole, as the kernels read them.
-void clearLowerTriangle(double* matrix, int stride, int columns) {
-  for (int j = 0; j < columns; ++j, matrix += stride) std::fill(matrix + j / 4 * 4, matrix + stride, 0.0);
-}
-
-/// Mostly the six or three scalars of a pose.
-inline void addTo(double* to, const double* from, int count) {
-  if (count == 6) {
-    for (int i = 0; i < 6; ++i) to[i] += from[i];
-  } else if (count == 3) {
-    for (int i = 0; i < 3; ++i) to[i] += from[i];
-  } else {
-    for (int i = 0; i < count; ++i) to[i] += from[i];
-  }
-}
-
-}  // namespace
 
 int EliminationTree::cliqueOf(VariableId v) const {
   return static_cast<std::size_t>(v.value) < clique_of_.size() ? clique_of_[v.value] : -1;
@@ -52,6 +30,30 @@ void EliminationTree::appendCliquesWith(VariableId v, std::vector<int>& found) c
       if (std::ranges::find((*this)[child].separator(), v) != (*this)[child].separator().end()) found.push_back(child);
 }
 
+std::vector<int> EliminationTree::withAncestors(std::vector<int> cliques) const {
+  sortUnique(cliques);
+  std::vector<int> all = cliques;
+  for (const int start : cliques)
+    for (int c = (*this)[start].parent; c >= 0; c = (*this)[c].parent) {
+      if (std::ranges::binary_search(cliques, c)) break;  // its ancestors are added by its own turn
+      all.push_back(c);
+    }
+  sortUnique(all);
+  return all;
+}
+
+std::vector<int> EliminationTree::cliques() const {
+  std::vector<int> alive;
+  for (int c = 0; c < static_cast<int>(slots()); ++c)
+    if ((*this)[c].alive) alive.push_back(c);
+  return alive;
+}
+
+int EliminationTree::rootOf(int clique) const {
+  while ((*this)[clique].parent >= 0) clique = (*this)[clique].parent;
+  return clique;
+}
+
 void EliminationTree::Removed::clear() {
   variables.clear();
   factors.clear();
@@ -62,7 +64,7 @@ void EliminationTree::remove(std::span<const int> cliques, Removed& removed) {
   leaving_.resize(cliques_.size(), 0);
   for (const int id : cliques) leaving_[id] = 1;
   for (const int id : cliques) {
-    Clique& clique = cliques_[id];
+    const Clique& clique = cliques_[id];
     for (const VariableId v : clique.frontalVariables()) {
       removed.variables.push_back(v);
       clique_of_[v.value] = -1;
@@ -71,13 +73,7 @@ void EliminationTree::remove(std::span<const int> cliques, Removed& removed) {
     for (int child = clique.first_child; child >= 0; child = cliques_[child].next_sibling)
       if (!leaving_[child]) removed.orphans.push_back(child);
     const bool below_one_that_stays = clique.parent >= 0 && !leaving_[clique.parent];
-    if (below_one_that_stays) {
-      if (clique.previous_sibling >= 0)
-        cliques_[clique.previous_sibling].next_sibling = clique.next_sibling;
-      else
-        cliques_[clique.parent].first_child = clique.next_sibling;
-      if (clique.next_sibling >= 0) cliques_[clique.next_sibling].previous_sibling = clique.previous_sibling;
-    }
+    if (below_one_that_stays) cutOff(clique);
   }
   for (const int orphan : removed.orphans) {
     Clique& clique = cliques_[orphan];
@@ -92,29 +88,26 @@ void EliminationTree::remove(std::span<const int> cliques, Removed& removed) {
   std::ranges::sort(removed.variables, {}, [&](VariableId v) { return sequence_[v.value]; });
 }
 
+/// Takes a clique out of its parent's children.
+void EliminationTree::cutOff(const Clique& clique) {
+  if (clique.previous_sibling >= 0)
+    cliques_[clique.previous_sibling].next_sibling = clique.next_sibling;
+  else
+    cliques_[clique.parent].first_child = clique.next_sibling;
+  if (clique.next_sibling >= 0) cliques_[clique.next_sibling].previous_sibling = clique.previous_sibling;
+}
+
 void EliminationTree::release(Clique& clique) {
-  pool_.give(clique.panel, panelLength(clique));
-  pool_.give(clique.remainder, remainderLength(clique));
-  pool_.give(clique.carry, clique.separatorSize());
+  pool_.give(clique.panel);
+  pool_.give(clique.update_matrix);
+  pool_.give(clique.contribution);
   clique.variables.clear();
   clique.row_in_parent.clear();
   clique.factors.clear();
   clique.singular.clear();
-  clique.panel = clique.remainder = clique.carry = nullptr;
+  clique.panel = clique.update_matrix = clique.contribution = nullptr;
   clique.parent = clique.first_child = clique.next_sibling = clique.previous_sibling = -1;
   clique.alive = false;
-}
-
-int EliminationTree::newClique() {
-  int id = static_cast<int>(cliques_.size());
-  if (free_.empty()) {
-    cliques_.emplace_back();
-  } else {
-    id = free_.back();
-    free_.pop_back();
-  }
-  cliques_[id].alive = true;
-  return id;
 }
 
 void EliminationTree::attach(int orphan, int parent) {
@@ -127,10 +120,10 @@ void EliminationTree::attach(int orphan, int parent) {
   child.row_in_parent.clear();
   int at = 0;
   for (const VariableId v : above.variables) {
-    offset_[v.value] = at;
+    position_[v.value] = at;
     at += graph_.sizeOf(v);
   }
-  for (const VariableId v : child.separator()) child.row_in_parent.push_back(offset_[v.value]);
+  for (const VariableId v : child.separator()) child.row_in_parent.push_back(position_[v.value]);
 }
 
 void EliminationTree::forget(VariableId v) {
@@ -140,52 +133,22 @@ void EliminationTree::forget(VariableId v) {
 
 void EliminationTree::removeFactor(int owner, FactorId factor) { std::erase(cliques_[owner].factors, factor); }
 
-void EliminationTree::clearFindings() {
-  singular_.clear();
-  weakest_ = {};
-}
-
 void EliminationTree::eliminate(const Elimination& problem, std::vector<int>& created) {
   clique_of_.resize(graph_.slots(), -1);
   sequence_.resize(graph_.slots(), -1);
-  offset_.resize(graph_.slots(), -1);
+  position_.resize(graph_.slots(), -1);
   if (problem.renumber)
     for (const VariableId v : problem.order) sequence_[v.value] = next_sequence_++;
-
-  const int count = static_cast<int>(problem.order.size());
-  auto& position = offset_;
-  scalars_.clear();
-  for (const VariableId v : problem.order)
-    position[v.value] = static_cast<int>(scalars_.size()), scalars_.push_back(graph_.sizeOf(v));
-  for (const VariableId v : problem.boundary)
-    position[v.value] = static_cast<int>(scalars_.size()), scalars_.push_back(graph_.sizeOf(v));
-  pattern_.begin(count, static_cast<int>(problem.boundary.size()));
-  const auto addTerm = [&](std::span<const VariableId> variables) {
-    term_positions_.clear();
-    for (const VariableId v : variables) term_positions_.push_back(position[v.value]);
-    pattern_.addTerm(term_positions_);
-  };
-  for (const FactorId f : problem.factors) addTerm(graph_.factor(f).variables());
-  for (const int orphan : problem.orphans) addTerm((*this)[orphan].separator());
-  pattern_.analyze(scalars_);
+  findPattern(problem);
 
   group_clique_.clear();
-  const std::size_t first = created.size();
-  for (const auto& group : pattern_.groups()) {
-    const int id = newClique();
-    group_clique_.push_back(id);
-    created.push_back(id);
-    Clique& clique = cliques_[id];
-    clique.frontals = group.frontals;
-    for (const int p : pattern_.positions(group))
-      clique.variables.push_back(p < count ? problem.order[p] : problem.boundary[p - count]);
-    for (const VariableId v : clique.frontalVariables()) clique_of_[v.value] = id;
-    layOut(clique);
-  }
+  for (const auto& group : pattern_.groups()) group_clique_.push_back(addClique(problem, group));
+  const auto cliqueOfTerm = [&](std::size_t term) {
+    return group_clique_[pattern_.groupOfTerm(static_cast<int>(term))];
+  };
   for (std::size_t f = 0; f < problem.factors.size(); ++f)
-    cliques_[group_clique_[pattern_.groupOfTerm(static_cast<int>(f))]].factors.push_back(problem.factors[f]);
-  // From here on `offset_` serves the fronts.
-  for (std::size_t g = 0; g < pattern_.groups().size(); ++g) {
+    cliques_[cliqueOfTerm(f)].factors.push_back(problem.factors[f]);
+  for (std::size_t g = 0; g < group_clique_.size(); ++g) {
     const int above = pattern_.groups()[g].parent, parent = above < 0 ? problem.parent : group_clique_[above];
     if (parent >= 0)
       attach(group_clique_[g], parent);
@@ -193,20 +156,60 @@ void EliminationTree::eliminate(const Elimination& problem, std::vector<int>& cr
       roots_.push_back(group_clique_[g]);
   }
   for (std::size_t o = 0; o < problem.orphans.size(); ++o)
-    attach(problem.orphans[o], group_clique_[pattern_.groupOfTerm(static_cast<int>(problem.factors.size() + o))]);
-  for (std::size_t i = created.size(); i-- > first;) refresh(created[i]);
+    attach(problem.orphans[o], cliqueOfTerm(problem.factors.size() + o));
+  for (std::size_t g = group_clique_.size(); g-- > 0;) refresh(group_clique_[g]);
+  created.insert(created.end(), group_clique_.begin(), group_clique_.end());
+}
+
+/// The terms are the factors, then the separators of the orphans.
+void EliminationTree::findPattern(const Elimination& problem) {
+  scalars_.clear();
+  for (const auto& variables : {problem.order, problem.boundary})
+    for (const VariableId v : variables) {
+      position_[v.value] = static_cast<int>(scalars_.size());
+      scalars_.push_back(graph_.sizeOf(v));
+    }
+  pattern_.begin(static_cast<int>(problem.order.size()), static_cast<int>(problem.boundary.size()));
+  const auto addTerm = [&](std::span<const VariableId> variables) {
+    term_positions_.clear();
+    for (const VariableId v : variables) term_positions_.push_back(position_[v.value]);
+    pattern_.addTerm(term_positions_);
+  };
+  for (const FactorId f : problem.factors) addTerm(graph_.factor(f).variables());
+  for (const int orphan : problem.orphans) addTerm((*this)[orphan].separator());
+  pattern_.analyze(scalars_);
+}
+
+int EliminationTree::addClique(const Elimination& problem, const EliminationPattern::Group& group) {
+  const int id = takeSlot(), count = static_cast<int>(problem.order.size());
+  Clique& clique = cliques_[id];
+  clique.alive = true;
+  clique.frontals = group.frontals;
+  for (const int p : pattern_.positions(group))
+    clique.variables.push_back(p < count ? problem.order[p] : problem.boundary[p - count]);
+  for (const VariableId v : clique.frontalVariables()) clique_of_[v.value] = id;
+  layOut(clique);
+  return id;
+}
+
+int EliminationTree::takeSlot() {
+  if (free_.empty()) {
+    cliques_.emplace_back();
+    return static_cast<int>(cliques_.size()) - 1;
+  }
+  const int id = free_.back();
+  free_.pop_back();
+  return id;
 }
 
 /// Sizes and memory of a clique from its variables.
 void EliminationTree::layOut(Clique& clique) {
   clique.frontal_size = clique.size = 0;
-  for (std::size_t i = 0; i < clique.variables.size(); ++i) {
-    clique.size += graph_.sizeOf(clique.variables[i]);
-    if (static_cast<int>(i) < clique.frontals) clique.frontal_size = clique.size;
-  }
-  clique.panel = pool_.take(panelLength(clique));
-  clique.remainder = pool_.take(remainderLength(clique));
-  clique.carry = pool_.take(clique.separatorSize());
+  for (const VariableId v : clique.frontalVariables()) clique.frontal_size += graph_.sizeOf(v);
+  for (const VariableId v : clique.variables) clique.size += graph_.sizeOf(v);
+  clique.panel = pool_.take(clique.panelLength());
+  clique.update_matrix = pool_.take(clique.updateMatrixLength());
+  clique.contribution = pool_.take(clique.separatorSize());
 }
 
 Eigen::MatrixXd EliminationTree::marginal(std::span<const VariableId> eliminated, std::span<const VariableId> separator,
@@ -217,144 +220,14 @@ Eigen::MatrixXd EliminationTree::marginal(std::span<const VariableId> eliminated
   clique.factors.assign(factors.begin(), factors.end());
   clique.frontals = static_cast<int>(eliminated.size());
   layOut(clique);
-  eliminateFront(clique);
-  const int rows = clique.separatorSize() + 1;
-  const Eigen::MatrixXd result = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(
-      remainder_.data(), rows, rows, Eigen::OuterStride<>(remainder_stride_));
+  front_.eliminate(clique, {});
   release(clique);
-  return result;
+  return front_.schurComplement();
 }
 
 void EliminationTree::refresh(int id) {
-  Clique& clique = cliques_[id];
-  eliminateFront(clique);
-  eliminated_scalars_ += clique.frontal_size;
-}
-
-/// Gathers the front, factorizes it, and holds what has no information.
-void EliminationTree::eliminateFront(Clique& clique) {
-  const int n = clique.frontal_size, rest = clique.separatorSize(), stride = clique.panelStride();
-  remainder_stride_ = (rest + 1 + 3) / 4 * 4;
-  if (const std::size_t length = remainder_stride_ * (rest + 1); remainder_.size() < length) remainder_.resize(length);
-  clearLowerTriangle(clique.panel, stride, n);
-  clearLowerTriangle(remainder_.data(), remainder_stride_, rest + 1);
-  int at = 0;
-  for (const VariableId v : clique.variables) {
-    offset_[v.value] = at;
-    at += graph_.sizeOf(v);
-  }
-  for (const FactorId f : clique.factors) addFactorTo(clique, f);
-  for (int child = clique.first_child; child >= 0; child = cliques_[child].next_sibling)
-    addChildTo(clique, cliques_[child]);
-
-  clique.singular.clear();
-  const double ratio = factorizePanel(clique.panel, stride, clique.size + 1, n, clique.singular);
-  subtractOuterProduct(remainder_.data(), remainder_stride_, clique.panel + n, stride, rest + 1, n);
-  packRemainder(clique);
-  if (ratio < weakest_.ratio) weakest_ = {.variable = clique.variables.front(), .ratio = ratio};
-  for (const int column : clique.singular) holdSingular(clique, column);
-}
-
-void EliminationTree::packRemainder(Clique& clique) const {
-  const int rest = clique.separatorSize();
-  const double* from = remainder_.data();
-  double* to = clique.remainder;
-  for (int j = 0; j < rest; ++j, from += remainder_stride_) {
-    to = std::copy(from + j, from + rest, to);
-    clique.carry[j] = from[rest];
-  }
-}
-
-/// Keeps the x of a scalar without information where the estimate stands.
-void EliminationTree::holdSingular(Clique& clique, int column) {
-  std::size_t v = 0;
-  int component = column;
-  while (component >= graph_.sizeOf(clique.variables[v])) component -= graph_.sizeOf(clique.variables[v++]);
-  const VariableId variable = clique.variables[v];
-  singular_.push_back({variable, component});
-  clique.panel[column * clique.panelStride() + clique.size] = -graph_[variable].x[component];
-}
-
-/// A column of the front's lower triangle, such that [row] is the entry.
-double* EliminationTree::column(Clique& clique, int column) {
-  const int n = clique.frontal_size;
-  if (column < n) return clique.panel + column * clique.panelStride();
-  return remainder_.data() + (column - n) * remainder_stride_ - n;
-}
-
-/// Adds the lower triangle of a small symmetric matrix whose rows are given in spans; `source` gives its columns.
-template <class ColumnOf>
-void EliminationTree::addSymmetric(Clique& clique, const ColumnOf& source, std::span<const RowSpan> spans) {
-  for (std::size_t b = 0; b < spans.size(); ++b) {
-    const RowSpan columns = spans[b];
-    const std::span<const RowSpan> below = spans.subspan(b + 1);
-    for (int j = 0; j < columns.size; ++j) {
-      const double* from = source(columns.from + j);
-      double* to = column(clique, columns.to + j);
-      addTo(to + columns.to + j, from + columns.from + j, columns.size - j);
-      for (const RowSpan& rows : below) {
-        if (rows.to > columns.to)
-          addTo(to + rows.to, from + rows.from, rows.size);
-        else  // above the diagonal
-          for (int i = 0; i < rows.size; ++i) column(clique, rows.to + i)[columns.to + j] += from[rows.from + i];
-      }
-    }
-  }
-}
-
-void EliminationTree::addFactorTo(Clique& clique, FactorId id) {
-  const Factor& factor = graph_.factor(id);
-  const auto term = graph_.term(id);
-  spans_.clear();
-  int from = 0;
-  for (const VariableId v : factor.variables()) {
-    spans_.push_back({from, offset_[v.value], graph_.sizeOf(v)});
-    from += graph_.sizeOf(v);
-  }
-  spans_.push_back({from, clique.size, 1});
-  if (factor.form() == Factor::Form::kInformation) {
-    addSymmetric(
-        clique, [&](int j) { return term.data() + j * term.rows(); }, spans_);
-    return;
-  }
-  const int columns = static_cast<int>(term.cols()), stride = (columns + 3) / 4 * 4;
-  product_.assign(columns * stride, 0.0);
-  addJacobianProduct(term.data(), static_cast<int>(term.rows()), columns, product_.data(), stride);
-  addSymmetric(
-      clique, [&](int j) { return product_.data() + j * stride; }, spans_);
-}
-
-void EliminationTree::addChildTo(Clique& clique, const Clique& child) {
-  spans_.clear();
-  int from = 0;
-  const auto separator = child.separator();
-  for (std::size_t i = 0; i < separator.size(); ++i) {
-    const int to = child.row_in_parent[i], size = graph_.sizeOf(separator[i]);
-    if (!spans_.empty() && spans_.back().to + spans_.back().size == to)
-      spans_.back().size += size;
-    else
-      spans_.push_back({from, to, size});
-    from += size;
-  }
-  splitAtFrontals(clique.frontal_size);
-  addSymmetric(
-      clique, [&](int j) { return child.remainderColumn(j); }, spans_);
-  // The right-hand side, which `carry` holds when it changed alone.
-  for (const RowSpan& span : spans_)
-    for (int i = 0; i < span.size; ++i) column(clique, span.to + i)[clique.size] += child.carry[span.from + i];
-}
-
-/// A span must not reach across the border between panel and remainder.
-void EliminationTree::splitAtFrontals(int frontal_size) {
-  for (std::size_t i = 0; i < spans_.size(); ++i) {
-    RowSpan& span = spans_[i];
-    const int inside = frontal_size - span.to;
-    if (inside <= 0 || inside >= span.size) continue;
-    const RowSpan rest{span.from + inside, span.to + inside, span.size - inside};
-    span.size = inside;
-    spans_.insert(spans_.begin() + static_cast<std::ptrdiff_t>(i) + 1, rest);
-    return;
-  }
+  front_.eliminate(cliques_[id], cliques_);
+  eliminated_scalars_ += (*this)[id].frontal_size;
 }
 
 void EliminationTree::shiftRightHandSide(int id, std::span<double> change, std::span<double> parent_change) {
@@ -364,10 +237,9 @@ void EliminationTree::shiftRightHandSide(int id, std::span<double> change, std::
   former_.resize(n);
   double* last_row = clique.panel + clique.size;
   for (int j = 0; j < n; ++j) former_[j] = last_row[j * stride];
-  double cost = 0;  // nobody asks for it
-  forwardSubstitute(clique.panel, stride, clique.size + 1, n, clique.singular, change.data(), cost);
+  forwardSubstitute(clique.panelView(), clique.singular, change.data());
   for (int j = 0; j < n; ++j) last_row[j * stride] += former_[j];
-  for (int i = 0; i < rest; ++i) clique.carry[i] += change[n + i];
+  for (int i = 0; i < rest; ++i) clique.contribution[i] += change[n + i];
   if (parent_change.empty()) return;  // none, or one that is eliminated anew
   int from = n;
   const auto separator = clique.separator();

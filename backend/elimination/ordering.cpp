@@ -7,8 +7,6 @@
 #include <ccolamd.h>
 
 namespace motorcade {
-namespace {}  // namespace
-
 void Ordering::begin(int columns) {
   columns_ = columns;
   rows_ = 0;

@@ -62,7 +62,7 @@ double* BlockPool::take(std::size_t doubles) {
   return reinterpret_cast<double*>(block);
 }
 
-void BlockPool::give(double* data, std::size_t) {
+void BlockPool::give(double* data) {
   if (!data) return;
   auto* block = reinterpret_cast<Idle*>(data);
   Tag whole = block->tag();

@@ -15,8 +15,8 @@ class BlockPool {
  public:
   /// At least `doubles` numbers, uninitialized.
   double* take(std::size_t doubles);
-  /// Returns a block; `doubles` as when it was taken.
-  void give(double* block, std::size_t doubles);
+  /// Returns a block, or nothing.
+  void give(double* block);
 
   std::size_t heldBytes() const { return held_bytes_; }  // of all chunks
   std::size_t usedBytes() const { return used_bytes_; }  // of the blocks that are out

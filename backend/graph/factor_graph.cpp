@@ -8,6 +8,9 @@
 namespace motorcade {
 namespace {
 
+/// Of the residuals: without noise the tolerances that are relative to it do not vanish.
+constexpr double kLeastMeanSquare = 1e-8;
+
 /// A slot of `slots` that is free, or a new one at the end.
 template <class IdType, class Slot>
 IdType takeSlot(std::vector<IdType>& free, std::vector<Slot>& slots) {
@@ -85,8 +88,7 @@ void FactorGraph::moveLinearizationPoint(VariableId id) {
 double FactorGraph::turnBetween(const Variable& variable, const Coordinates& from, const Coordinates& to) {
   if (std::holds_alternative<SmallVector>(variable.applied_estimate)) return 0;
   double squared = 0;
-  for (std::size_t i = variable.size == 3 ? 2 : 3; i < static_cast<std::size_t>(variable.size); ++i)
-    squared += (to[i] - from[i]) * (to[i] - from[i]);
+  for (int i = variable.size == 3 ? 2 : 3; i < variable.size; ++i) squared += (to[i] - from[i]) * (to[i] - from[i]);
   return std::sqrt(squared);
 }
 
@@ -98,7 +100,7 @@ double FactorGraph::mismatchBound(VariableId id) const {
   const Variable& variable = (*this)[id];
   if (std::holds_alternative<SmallVector>(variable.applied_estimate)) return std::numeric_limits<double>::infinity();
   double sigmas_squared = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(variable.size); ++i) {
+  for (int i = 0; i < variable.size; ++i) {
     const double step = variable.x[i] - variable.x_compared[i];
     sigmas_squared += step * step * variable.information[i];
   }
@@ -174,11 +176,10 @@ void FactorGraph::shiftToCoordinates(const Factor& factor, Term term) {
 std::optional<FactorId> FactorGraph::addFactor(std::unique_ptr<const Factor> factor) {
   int columns = 1;
   for (const VariableId v : factor->variables()) columns += sizeOf(v);
-  const auto size = static_cast<std::size_t>(factor->rows() * columns);
-  double* data = terms_.take(size);
+  double* data = terms_.take(factor->rows() * columns);
   const Term term(data, factor->rows(), columns);
   if (!evaluate(*factor, term)) {
-    terms_.give(data, size);
+    terms_.give(data);
     return std::nullopt;
   }
   const FactorId id = takeSlot(free_factors_, factors_);
@@ -207,7 +208,7 @@ void FactorGraph::removeFactor(FactorId id) {
   for (const VariableId v : slot.factor->variables()) std::erase((*this)[v].factors, id);
   setCost(slot, 0);
   if (slot.factor->form() == Factor::Form::kJacobian) --residual_count_;
-  terms_.give(slot.term, static_cast<std::size_t>(slot.factor->rows() * slot.columns));
+  terms_.give(slot.term);
   slot.factor = nullptr;
   slot.term = nullptr;
   free_factors_.push_back(id);
@@ -216,7 +217,7 @@ void FactorGraph::removeFactor(FactorId id) {
 void FactorGraph::linearize(FactorId id) {
   auto& slot = factors_[id.value];
   const Factor& factor = *slot.factor;
-  matrix_.resize(static_cast<std::size_t>(factor.rows() * slot.columns));
+  matrix_.resize(factor.rows() * slot.columns);
   const Term fresh(matrix_.data(), factor.rows(), slot.columns);
   if (!evaluate(factor, fresh)) return;
   setCost(slot, costOf(factor, fresh));
@@ -230,7 +231,7 @@ FactorGraph::Mismatch FactorGraph::mismatch(FactorId id) {
   const Term model = term(id);
   if (factor.form() == Factor::Form::kInformation) return informationMismatch(id);
   apply(factor);
-  residual_.resize(static_cast<std::size_t>(factor.rows()));
+  residual_.resize(factor.rows());
   Column r(residual_.data(), factor.rows());
   factor.residual(valuesOf(factor, &Variable::applied_estimate), r);
   setCost(factors_[id.value], r.squaredNorm());
@@ -245,8 +246,8 @@ FactorGraph::Mismatch FactorGraph::informationMismatch(FactorId id) {
   const Factor& factor = *slot(id).factor;
   const Term model = term(id);
   const Eigen::Index n = model.cols() - 1;
-  matrix_.resize(static_cast<std::size_t>(model.size()));
-  residual_.assign(static_cast<std::size_t>(n), 0.0);
+  matrix_.resize(model.size());
+  residual_.assign(n, 0.0);
   Term fresh(matrix_.data(), model.rows(), model.cols());
   if (!evaluate(factor, fresh)) return {.norm = 0, .r = residual_};
   setCost(factors_[id.value], costOf(factor, fresh));
@@ -280,8 +281,9 @@ void FactorGraph::setCost(LinearizedFactor& slot, double cost) {
   slot.cost = cost;
 }
 
-double FactorGraph::meanSquareResidual() const {
-  return residual_count_ == 0 ? 0 : residual_cost_ / static_cast<double>(residual_count_);
+double FactorGraph::rmsResidual() const {
+  const double mean_square = residual_count_ == 0 ? 0 : residual_cost_ / static_cast<double>(residual_count_);
+  return std::sqrt(std::max(mean_square, kLeastMeanSquare));
 }
 
 bool FactorGraph::contains(VariableId id) const {

@@ -87,8 +87,9 @@ class FactorGraph {
   void addDrift(FactorId id, double mismatch) { factors_[id.value].drift += mismatch; }
   /// Sum of the factors' squared residuals, each at the estimates when it was last looked at.
   double totalCost() const { return total_cost_; }
-  /// Over the factors with residuals: the cost of a marginal prior counts everything that ever retired into it.
-  double meanSquareResidual() const;
+  /// Root mean square of the residuals' norms, in standard deviations, over the factors with residuals: the cost of a
+  /// marginal prior counts everything that ever retired into it. It is the scale of all tolerances.
+  double rmsResidual() const;
 
   int sizeOf(VariableId id) const { return (*this)[id].size; }
   Value estimate(VariableId id) const;

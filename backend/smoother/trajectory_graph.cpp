@@ -21,17 +21,16 @@ IncrementalSolver::Params solverParams(const SmootherParams& params) {
   return {.policy = params.policy == RelinearizationPolicy::kFluid ? IncrementalSolver::Policy::kFluid
                                                                    : IncrementalSolver::Policy::kEveryN,
           .batch_every_updates = params.relinearize_every_updates,
-          .mismatch_tolerance = params.mismatch_tolerance,
-          .jacobian_drift_sigmas = params.jacobian_drift_sigmas,
-          .substitution_tolerance = params.substitution_tolerance,
           // No allowances: a window costs little, and objects that little ties down sway when only part of them is
           // relinearized.
-          .urgent_flops = std::numeric_limits<double>::infinity(),
-          .polish_flops = std::numeric_limits<double>::infinity(),
+          .relinearization = {.mismatch_tolerance = params.mismatch_tolerance,
+                              .jacobian_drift_sigmas = params.jacobian_drift_sigmas,
+                              .urgent_flops = std::numeric_limits<double>::infinity(),
+                              .polish_flops = std::numeric_limits<double>::infinity()},
+          .substitution_tolerance = params.substitution_tolerance,
           .iterations_per_update = params.iterations_per_update,
           .iterated_scalars = 0,
-          .budget_scalars = params.budget_scalars,
-          .budget_ms = params.budget_ms};
+          .budget = {.scalars = params.budget_scalars, .ms = params.budget_ms}};
 }
 
 /// True for a problem of a variable, false for that of a factor that was left out.

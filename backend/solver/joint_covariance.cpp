@@ -1,70 +1,99 @@
+#include "backend/solver/joint_covariance.hpp"
+
 #include <algorithm>
 
-#include "backend/solver/incremental_solver.hpp"
-
 namespace motorcade {
+namespace {
+
+/// The cliques from some variables up to the root, children first, and where their frontal variables stand in a vector
+/// of all their frontal scalars.
+struct Path {
+  std::vector<int> cliques;
+  std::vector<int> row;  // per variable: its first scalar, -1 for those that are not on the path
+  int rows = 0;
+};
+
+Path pathFrom(const FactorGraph& graph, const EliminationTree& tree, std::span<const VariableId> variables) {
+  std::vector<int> start;
+  for (const VariableId v : variables) start.push_back(tree.cliqueOf(v));
+  Path path{.cliques = tree.withAncestors(std::move(start)), .row = std::vector<int>(graph.slots(), -1)};
+  std::ranges::sort(path.cliques, {}, [&](int c) { return tree.sequence(c); });
+  for (const int c : path.cliques)
+    for (const VariableId v : tree[c].frontalVariables()) {
+      path.row[v.value] = path.rows;
+      path.rows += graph.sizeOf(v);
+    }
+  return path;
+}
+
+/// The columns of the identity that belong to the variables, in the rows of the path.
+Eigen::MatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables) {
+  int columns = 0;
+  for (const VariableId v : variables) columns += graph.sizeOf(v);
+  Eigen::MatrixXd chosen = Eigen::MatrixXd::Zero(path.rows, columns);
+  int column = 0;
+  for (const VariableId v : variables) {
+    chosen.block(path.row[v.value], column, graph.sizeOf(v), graph.sizeOf(v)).setIdentity();
+    column += graph.sizeOf(v);
+  }
+  return chosen;
+}
 
 /// With the information H = L L^T and E the chosen columns of the identity, E^T H^-1 E = Y^T Y, Y = L^-1 E. Forward
 /// substitution meets only the cliques from the chosen variables up to the root; no back-substitution is needed.
-std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(std::span<const VariableId> variables) const {
-  std::vector<int> start;
-  for (const VariableId v : variables) {
-    if (tree_.cliqueOf(v) < 0) return std::nullopt;
-    start.push_back(tree_.cliqueOf(v));
-  }
-  std::vector<int> path = withAncestors(std::move(start));
-  std::ranges::sort(path, {}, [&](int c) { return tree_.sequence(c); });
-
-  std::vector<int> row(graph_.slots(), -1);
-  int rows = 0, columns = 0;
-  for (const int c : path)
-    for (const VariableId v : tree_[c].frontalVariables()) {
-      row[v.value] = rows;
-      rows += graph_.sizeOf(v);
-    }
-  for (const VariableId v : variables) columns += graph_.sizeOf(v);
-  Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(rows, columns);  // right-hand side that is left after the cliques so far
-  int column = 0;
-  for (const VariableId v : variables) {
-    rest.block(row[v.value], column, graph_.sizeOf(v), graph_.sizeOf(v)).setIdentity();
-    column += graph_.sizeOf(v);
-  }
-
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(columns, columns);
-  for (const int c : path) {
-    const Clique& clique = tree_[c];
+/// `rest` holds E, and what is left of it after the cliques so far.
+std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const EliminationTree& tree, const Path& path,
+                                                Eigen::MatrixXd rest) {
+  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(rest.cols(), rest.cols());
+  for (const int c : path.cliques) {
+    const Clique& clique = tree[c];
     if (!clique.singular.empty()) return std::nullopt;
     const int n = clique.frontal_size;
-    const Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>> L(clique.panel, clique.size, n,
-                                                                       Eigen::OuterStride<>(clique.panelStride()));
-    auto y = rest.middleRows(row[clique.variables.front().value], n);
+    const auto L = clique.factor();
+    auto y = rest.middleRows(path.row[clique.variables.front().value], n);
     L.topRows(n).triangularView<Eigen::Lower>().solveInPlace(y);
-    covariance.selfadjointView<Eigen::Lower>().rankUpdate(y.transpose());
+    square.selfadjointView<Eigen::Lower>().rankUpdate(y.transpose());
     const Eigen::MatrixXd passed = L.bottomRows(clique.separatorSize()) * y;
     int at = 0;
     for (const VariableId v : clique.separator()) {
-      rest.middleRows(row[v.value], graph_.sizeOf(v)) -= passed.middleRows(at, graph_.sizeOf(v));
-      at += graph_.sizeOf(v);
+      rest.middleRows(path.row[v.value], graph.sizeOf(v)) -= passed.middleRows(at, graph.sizeOf(v));
+      at += graph.sizeOf(v);
     }
   }
-  covariance.triangularView<Eigen::StrictlyUpper>() = covariance.transpose();
-  if (!covariance.allFinite()) return std::nullopt;
-  // From steps in the world's axes to right perturbations.
-  column = 0;
+  square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
+  return square;
+}
+
+template <int N>
+void turnBlock(Eigen::MatrixXd& covariance, const Eigen::Matrix<double, N, N>& R, int at) {
+  covariance.middleRows<N>(at) = (R.transpose() * covariance.middleRows<N>(at)).eval();
+  covariance.middleCols<N>(at) = (covariance.middleCols<N>(at) * R).eval();
+}
+
+/// From steps in the world's axes to right perturbations.
+void turnToOwnAxes(const FactorGraph& graph, std::span<const VariableId> variables, Eigen::MatrixXd& covariance) {
+  int at = 0;
   for (const VariableId v : variables) {
-    const auto turn = [&]<int N>(const Eigen::Matrix<double, N, N>& R, int at) {
-      covariance.middleRows<N>(at) = (R.transpose() * covariance.middleRows<N>(at)).eval();
-      covariance.middleCols<N>(at) = (covariance.middleCols<N>(at) * R).eval();
-    };
-    const Value value = graph_.estimate(v);
+    const Value value = graph.estimate(v);
     if (const auto* pose = std::get_if<SE3>(&value)) {
-      turn(pose->rotation(), column);
-      turn(pose->rotation(), column + 3);
+      turnBlock<3>(covariance, pose->rotation(), at);
+      turnBlock<3>(covariance, pose->rotation(), at + 3);
     } else if (const auto* planar = std::get_if<SE2>(&value)) {
-      turn(planar->rotation(), column);
+      turnBlock<2>(covariance, planar->rotation(), at);
     }
-    column += graph_.sizeOf(v);
+    at += graph.sizeOf(v);
   }
+}
+
+}  // namespace
+
+std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
+                                               std::span<const VariableId> variables) {
+  if (std::ranges::any_of(variables, [&](VariableId v) { return tree.cliqueOf(v) < 0; })) return std::nullopt;
+  const Path path = pathFrom(graph, tree, variables);
+  auto covariance = squareOfSolution(graph, tree, path, chosenColumns(graph, path, variables));
+  if (!covariance || !covariance->allFinite()) return std::nullopt;
+  turnToOwnAxes(graph, variables, *covariance);
   return covariance;
 }
 

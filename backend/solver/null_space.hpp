@@ -11,28 +11,30 @@ struct FrontalScalar {
   int clique = 0, column = 0;
 };
 
-/// How a graph moves along what a scalar's elimination found without information: the scalar by one, those that are
-/// eliminated later not at all, those eliminated earlier so that the cost rises least.
-struct NullMotion {
+/// A direction of the whole system that (nearly) no factor constrains, which shows as a scalar that was eliminated with
+/// (nearly) no information: that scalar moves by one, those that are eliminated later do not move, and those eliminated
+/// earlier move so that the cost rises least.
+struct NullSpaceDirection {
   struct Step {
     VariableId variable;
     SmallVector step;  // in the world's axes
   };
-  enum class Seen {
-    kByNone,    // no factor's cost changes
-    kByFew,     // some factor's does
+  enum class Constraint {
+    kNone,      // no factor's cost changes along the direction
+    kWeak,      // some factor's cost rises
     kNegative,  // the cost falls: information matrices are indefinite
   };
-  VariableId held;
-  std::vector<Step> steps;  // of those that move, the held variable first
-  Seen seen = Seen::kByNone;
+  VariableId held;          // whose scalar it is: the solver keeps it where it is
+  std::vector<Step> steps;  // of the variables that move
+  Constraint constraint = Constraint::kNone;
 };
 
-/// Scalars of a clique whose pivots were found singular, or have lost against their diagonal entries by more than
-/// `ratio`.
-void appendWeakScalars(const EliminationTree& tree, int clique, double ratio, std::vector<FrontalScalar>& found);
+/// Scalars of a clique whose pivots were found singular, or are smaller than `ratio` times their diagonal entries
+/// before elimination.
+std::vector<FrontalScalar> weakScalars(const EliminationTree& tree, int clique, double ratio);
 
 /// Costs as much as the part of the tree that moves.
-NullMotion nullMotion(const FactorGraph& graph, const EliminationTree& tree, const FrontalScalar& scalar);
+NullSpaceDirection nullSpaceDirection(const FactorGraph& graph, const EliminationTree& tree,
+                                      const FrontalScalar& scalar);
 
 }  // namespace motorcade

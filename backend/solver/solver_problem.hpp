@@ -36,8 +36,8 @@ struct SolverProblem {
 /// One word: "missing_prior".
 std::string_view nameOf(SolverProblem::Kind kind);
 
-/// A sentence on what is wrong, what the solver did, and the mend, with `name` giving a variable's name. The variable
-/// may be gone since.
+/// A sentence on what is wrong, what the solver did, and how to fix it, with `name` giving a variable's name. The
+/// variable may be gone since.
 std::string describe(const SolverProblem& problem, const FactorGraph& graph,
                      const std::function<std::string(VariableId)>& name);
 

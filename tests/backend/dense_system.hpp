@@ -14,7 +14,9 @@ namespace motorcade::test {
 
 /// Thresholds at zero: the solver corrects and relinearizes whatever moved.
 inline constexpr IncrementalSolver::Params kExact{
-    .mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0, .substitution_tolerance = 0};
+    .relinearization = {.mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0},
+    .substitution_tolerance = 0,
+    .budget = {}};
 
 /// Dense Gauss-Newton over the factors of a graph, written independently of the solver.
 class DenseSystem {

@@ -149,8 +149,8 @@ class RandomWorld {
     return from.index() == to.index();
   }
 
-  /// A measurement that involves both: a relative pose, a observation, or a difference of positions. A `sure` one is no
-  /// outlier and has no loss.
+  /// A measurement that involves both: a relative pose, an observation, or a difference of positions. A `sure` one is
+  /// no outlier and has no loss.
   std::unique_ptr<const Factor> between(VariableId a, VariableId b, bool sure) {
     const Value &from = truth(a), &to = truth(b);
     if (std::holds_alternative<SE3>(from) && std::holds_alternative<SE3>(to)) return betweenInSpace(a, b, sure);

@@ -22,32 +22,34 @@ void addSolverOptions(CLI::App& app, IncrementalSolver::Params& params) {
       ->transform(CLI::CheckedTransformer(kPolicies))
       ->group("Solver");
   add("--every", params.batch_every_updates, "N of --policy every");
-  add("--mismatch-tolerance", params.mismatch_tolerance,
+  add("--mismatch-tolerance", params.relinearization.mismatch_tolerance,
       "Of a linear model, over the root mean square of the residuals");
-  add("--jacobian-drift", params.jacobian_drift_sigmas,
+  add("--jacobian-drift", params.relinearization.jacobian_drift_sigmas,
       "Summed mismatch of a factor at which its variables are relinearized");
-  add("--relinearize", params.relinearize_rad, "Turn of a variable at which it is relinearized [rad]");
+  add("--relinearize", params.relinearization.relinearize_rad, "Turn of a variable at which it is relinearized [rad]");
   add("--substitution-tolerance", params.substitution_tolerance, "Steps below that do not spread");
-  add("--urgent-flops", params.urgent_flops, "Work per update that goes into relinearization as soon as possible");
-  add("--polish-flops", params.polish_flops, "Work per update that goes into relinearization at leisure");
+  add("--urgent-flops", params.relinearization.urgent_flops,
+      "Work per update that goes into relinearization as soon as possible");
+  add("--polish-flops", params.relinearization.polish_flops,
+      "Work per update that goes into relinearization at leisure");
   add("--iterations", params.iterations_per_update, "Gauss-Newton steps per update, at most");
   add("--iterated-scalars", params.iterated_scalars,
       "Substituted in an update, up to which it may take a further step; 0: no limit");
-  add("--budget", params.budget_scalars, "Scalars eliminated per update beyond what new factors ask for; 0: no limit");
+  add("--budget", params.budget.scalars, "Scalars eliminated per update beyond what new factors ask for; 0: no limit");
 }
 
 nlohmann::ordered_json jsonOf(const IncrementalSolver::Params& params) {
   return {{"policy", params.policy == IncrementalSolver::Policy::kFluid ? "fluid" : "every"},
           {"batch_every_updates", params.batch_every_updates},
-          {"mismatch_tolerance", params.mismatch_tolerance},
-          {"jacobian_drift_sigmas", params.jacobian_drift_sigmas},
-          {"relinearize_rad", params.relinearize_rad},
+          {"mismatch_tolerance", params.relinearization.mismatch_tolerance},
+          {"jacobian_drift_sigmas", params.relinearization.jacobian_drift_sigmas},
+          {"relinearize_rad", params.relinearization.relinearize_rad},
           {"substitution_tolerance", params.substitution_tolerance},
-          {"urgent_flops", params.urgent_flops},
-          {"polish_flops", params.polish_flops},
+          {"urgent_flops", params.relinearization.urgent_flops},
+          {"polish_flops", params.relinearization.polish_flops},
           {"iterations_per_update", params.iterations_per_update},
           {"iterated_scalars", params.iterated_scalars},
-          {"budget_scalars", params.budget_scalars}};
+          {"budget_scalars", params.budget.scalars}};
 }
 
 }  // namespace motorcade::perf

@@ -35,7 +35,7 @@ TEST(BlockPool, BlocksThatAreOutNeverOverlap) {
   for (int i = 0; i < 3000; ++i) {
     if (!out.empty() && below(noise, 5) < 2) {
       std::swap(out[below(noise, out.size())], out.back());
-      pool.give(out.back().data, out.back().doubles);
+      pool.give(out.back().data);
       out.pop_back();
       continue;
     }
@@ -57,7 +57,7 @@ TEST(BlockPool, GivesTheSameMemoryOutAgain) {
   }
   const std::size_t held = pool.heldBytes(), used = pool.usedBytes();
   for (int round = 0; round < 20; ++round) {
-    for (const Block& block : out) pool.give(block.data, block.doubles);
+    for (const Block& block : out) pool.give(block.data);
     EXPECT_EQ(pool.usedBytes(), 0U);
     for (Block& block : out) block.data = pool.take(block.doubles);
     EXPECT_EQ(pool.heldBytes(), held);
@@ -71,7 +71,7 @@ TEST(BlockPool, NeighborsThatComeBackAreOneBlockAgain) {
     std::array<double*, 3> blocks{};
     for (double*& block : blocks) block = pool.take(100);
     const double* end = pool.take(100);
-    for (const int i : order) pool.give(blocks[i], 100);
+    for (const int i : order) pool.give(blocks[i]);
     EXPECT_EQ(pool.take(310), blocks[0]);
     EXPECT_GT(pool.take(1), end);  // nothing is left below
   }
@@ -89,7 +89,7 @@ TEST(BlockPool, HoldsLittleMoreThanTheLargestDemand) {
                       doubles = usual / 2 + below(noise, usual);
     if (demand_bytes + doubles * sizeof(double) > kLargest_bytes) {
       std::swap(out[below(noise, out.size())], out.back());
-      pool.give(out.back().data, out.back().doubles);
+      pool.give(out.back().data);
       demand_bytes -= out.back().doubles * sizeof(double);
       out.pop_back();
     } else {
@@ -114,7 +114,7 @@ TEST(BlockPool, TakesNothingBackForNothing) {
   BlockPool pool;
   pool.take(10);
   const std::size_t used = pool.usedBytes();
-  pool.give(nullptr, 10);
+  pool.give(nullptr);
   EXPECT_EQ(pool.usedBytes(), used);
   EXPECT_NE(pool.take(10), nullptr);
 }

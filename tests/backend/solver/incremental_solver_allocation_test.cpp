@@ -63,7 +63,7 @@ int allocationsOfTwoHundredSteadyUpdates(const IncrementalSolver::Params& params
 }
 
 constexpr IncrementalSolver::Params kRelinearizesAll{
-    .mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0};
+    .relinearization = {.mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0}, .budget = {}};
 
 TEST(IncrementalSolverAllocation, TheCounterSeesVectorsAndEigen) {
   allocations = 0;

@@ -37,10 +37,10 @@ std::int64_t scalarsThatNewFactorsAskFor(const IncrementalSolver& solver, const 
 IncrementalSolver::Params withBudget(std::int64_t scalars) {
   IncrementalSolver::Params params = kExact;
   // Not zero: rounding would keep something stale for ever.
-  params.mismatch_tolerance = 1e-10;
-  params.jacobian_drift_sigmas = 1e-7;
-  params.relinearize_rad = 1e-6;
-  params.budget_scalars = scalars;
+  params.relinearization.mismatch_tolerance = 1e-10;
+  params.relinearization.jacobian_drift_sigmas = 1e-7;
+  params.relinearization.relinearize_rad = 1e-6;
+  params.budget.scalars = scalars;
   return params;
 }
 
@@ -133,7 +133,7 @@ TEST(IncrementalSolverBudget, ABudgetBelowTheWholeGetsThereToo) {
 
 TEST(IncrementalSolverBudget, ATimeNextToZeroPutsOffAllButTheNewMeasurement) {
   IncrementalSolver::Params params = withBudget(0);
-  params.budget_ms = 1e-9;
+  params.budget.ms = 1e-9;
   IncrementalSolver solver(params);
   MultibodyGraph graph(solver, 1, 2);
   for (int i = 0; i < 20; ++i) {

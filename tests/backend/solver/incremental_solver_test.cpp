@@ -57,7 +57,7 @@ TEST(IncrementalSolver, FoldingLeavesTheFactorOfTheWholeInformation) {
     IncrementalSolver::Params params = kExact;
     params.policy = policy;
     params.batch_every_updates = 1000;  // folding only
-    params.mismatch_tolerance = 1e9;
+    params.relinearization.mismatch_tolerance = 1e9;
     IncrementalSolver solver(params);
     MultibodyGraph graph(solver, 3, 2);
     for (int i = 0; i < 10; ++i) {

@@ -57,7 +57,7 @@ Sizes drive(IncrementalSolver& solver, MultibodyGraph& graph, int from, int to) 
   return sizes;
 }
 
-TEST(SolverRetirement, ADriveOfTwoThousandFramesCostsNoMoreThanItsWindowAndEndsAtTheBatchSolution) {
+TEST(Retirement, ADriveOfTwoThousandFramesCostsNoMoreThanItsWindowAndEndsAtTheBatchSolution) {
   IncrementalSolver solver({});
   MultibodyGraph graph(solver, 1, 1);
   drive(solver, graph, 1, 100);
@@ -79,7 +79,7 @@ TEST(SolverRetirement, ADriveOfTwoThousandFramesCostsNoMoreThanItsWindowAndEndsA
 }
 
 /// Where a variable lies in the tree, or in which company it leaves, makes no difference to those that stay.
-TEST(SolverRetirement, AnyVariablesMayLeaveWithoutChangingTheOthers) {
+TEST(Retirement, AnyVariablesMayLeaveWithoutChangingTheOthers) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     IncrementalSolver solver(kExact);
     MultibodyGraph graph(solver, seed, 2);
@@ -112,10 +112,12 @@ TEST(SolverRetirement, AnyVariablesMayLeaveWithoutChangingTheOthers) {
 }
 
 /// Ids are given out again at once: nothing that was noted about the one that left may fall on the one that comes.
-TEST(SolverRetirement, NewOnesMayTakeTheIdsOfThoseThatLeft) {
+TEST(Retirement, NewOnesMayTakeTheIdsOfThoseThatLeft) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     IncrementalSolver solver(
-        {.mismatch_tolerance = 1e-6, .jacobian_drift_sigmas = 1e9, .relinearize_rad = 1e9, .iterations_per_update = 1});
+        {.relinearization = {.mismatch_tolerance = 1e-6, .jacobian_drift_sigmas = 1e9, .relinearize_rad = 1e9},
+         .iterations_per_update = 1,
+         .budget = {}});
     MultibodyGraph graph(solver, seed, 2);
     for (int i = 0; i < 8; ++i) {
       graph.addFrame();

@@ -1,0 +1,169 @@
+#include "backend/elimination/front.hpp"
+
+#include <algorithm>
+
+namespace motorcade {
+namespace {
+
+/// With the 4 x 4 blocks on the diagonal whole, as the kernels read them.
+void clearLowerTriangle(double* matrix, int stride, int columns) {
+  for (int j = 0; j < columns; ++j, matrix += stride) std::fill(matrix + j / 4 * 4, matrix + stride, 0.0);
+}
+
+/// Mostly the six or three scalars of a pose.
+inline void addTo(double* to, const double* from, int count) {
+  if (count == 6) {
+    for (int i = 0; i < 6; ++i) to[i] += from[i];
+  } else if (count == 3) {
+    for (int i = 0; i < 3; ++i) to[i] += from[i];
+  } else {
+    for (int i = 0; i < count; ++i) to[i] += from[i];
+  }
+}
+
+}  // namespace
+
+void Front::eliminate(Clique& clique, std::span<const Clique> cliques) {
+  begin(clique);
+  for (const FactorId f : clique.factors) addFactor(clique, f);
+  for (int child = clique.first_child; child >= 0; child = cliques[child].next_sibling)
+    addChild(clique, cliques[child]);
+
+  const int n = clique.frontal_size;
+  clique.singular.clear();
+  const double ratio = factorizePanel(clique.panelView(), clique.singular);
+  subtractOuterProduct(update_matrix_.data(), update_stride_, clique.panel + n, clique.panelStride(), update_size_, n);
+  packUpdateMatrix(clique);
+  if (ratio < weakest_.ratio) weakest_ = {.variable = clique.variables.front(), .ratio = ratio};
+  for (const int column : clique.singular) holdSingular(clique, column);
+}
+
+/// An empty front of the clique's size.
+void Front::begin(Clique& clique) {
+  update_size_ = clique.separatorSize() + 1;
+  update_stride_ = padded(update_size_);
+  const std::size_t length = std::size_t(update_stride_) * update_size_;
+  if (update_matrix_.size() < length) update_matrix_.resize(length);
+  clearLowerTriangle(clique.panel, clique.panelStride(), clique.frontal_size);
+  clearLowerTriangle(update_matrix_.data(), update_stride_, update_size_);
+  offset_.resize(graph_.slots());
+  int at = 0;
+  for (const VariableId v : clique.variables) {
+    offset_[v.value] = at;
+    at += graph_.sizeOf(v);
+  }
+}
+
+void Front::addFactor(Clique& clique, FactorId id) {
+  const Factor& factor = graph_.factor(id);
+  const auto term = graph_.term(id);
+  spans_.clear();
+  int from = 0;
+  for (const VariableId v : factor.variables()) {
+    spans_.push_back({from, offset_[v.value], graph_.sizeOf(v)});
+    from += graph_.sizeOf(v);
+  }
+  spans_.push_back({from, clique.size, 1});
+  if (factor.form() == Factor::Form::kInformation) {
+    addSymmetric(
+        clique, [&](int j) { return term.data() + j * term.rows(); }, spans_);
+    return;
+  }
+  const int columns = static_cast<int>(term.cols()), stride = padded(columns);
+  product_.assign(columns * stride, 0.0);
+  addJacobianProduct(term.data(), static_cast<int>(term.rows()), columns, product_.data(), stride);
+  addSymmetric(
+      clique, [&](int j) { return product_.data() + j * stride; }, spans_);
+}
+
+void Front::addChild(Clique& clique, const Clique& child) {
+  spans_.clear();
+  int from = 0;
+  const auto separator = child.separator();
+  for (std::size_t i = 0; i < separator.size(); ++i) {
+    const int to = child.row_in_parent[i], size = graph_.sizeOf(separator[i]);
+    if (!spans_.empty() && spans_.back().to + spans_.back().size == to)
+      spans_.back().size += size;
+    else
+      spans_.push_back({from, to, size});
+    from += size;
+  }
+  splitAtFrontals(clique.frontal_size);
+  addSymmetric(
+      clique, [&](int j) { return child.updateMatrixColumn(j); }, spans_);
+  // The right-hand side, which `contribution` holds when it changed alone.
+  for (const RowSpan& span : spans_)
+    for (int i = 0; i < span.size; ++i) column(clique, span.to + i)[clique.size] += child.contribution[span.from + i];
+}
+
+/// A span must not reach across the border between panel and update matrix.
+void Front::splitAtFrontals(int frontal_size) {
+  for (std::size_t i = 0; i < spans_.size(); ++i) {
+    RowSpan& span = spans_[i];
+    const int inside = frontal_size - span.to;
+    if (inside <= 0 || inside >= span.size) continue;
+    const RowSpan rest{span.from + inside, span.to + inside, span.size - inside};
+    span.size = inside;
+    spans_.insert(spans_.begin() + i + 1, rest);
+    return;
+  }
+}
+
+/// Adds the lower triangle of a small symmetric matrix whose rows are given in spans; `source` gives its columns.
+template <class ColumnOf>
+void Front::addSymmetric(Clique& clique, const ColumnOf& source, std::span<const RowSpan> spans) {
+  for (std::size_t b = 0; b < spans.size(); ++b) {
+    const RowSpan columns = spans[b];
+    const std::span<const RowSpan> below = spans.subspan(b + 1);
+    for (int j = 0; j < columns.size; ++j) {
+      const double* from = source(columns.from + j);
+      double* to = column(clique, columns.to + j);
+      addTo(to + columns.to + j, from + columns.from + j, columns.size - j);
+      for (const RowSpan& rows : below) {
+        if (rows.to > columns.to)
+          addTo(to + rows.to, from + rows.from, rows.size);
+        else  // above the diagonal
+          for (int i = 0; i < rows.size; ++i) column(clique, rows.to + i)[columns.to + j] += from[rows.from + i];
+      }
+    }
+  }
+}
+
+/// A column of the front's lower triangle, such that [row] is the entry.
+double* Front::column(Clique& clique, int column) {
+  const int n = clique.frontal_size;
+  if (column < n) return clique.panel + column * clique.panelStride();
+  return update_matrix_.data() + (column - n) * update_stride_ - n;
+}
+
+void Front::packUpdateMatrix(Clique& clique) const {
+  const int rest = clique.separatorSize();
+  const double* from = update_matrix_.data();
+  double* to = clique.update_matrix;
+  for (int j = 0; j < rest; ++j, from += update_stride_) {
+    to = std::copy(from + j, from + rest, to);
+    clique.contribution[j] = from[rest];
+  }
+}
+
+/// Keeps the x of a scalar without information where the estimate stands.
+void Front::holdSingular(Clique& clique, int column) {
+  std::size_t v = 0;
+  int component = column;
+  while (component >= graph_.sizeOf(clique.variables[v])) component -= graph_.sizeOf(clique.variables[v++]);
+  const VariableId variable = clique.variables[v];
+  singular_.push_back({variable, component});
+  clique.panel[column * clique.panelStride() + clique.size] = -graph_[variable].x[component];
+}
+
+Eigen::MatrixXd Front::schurComplement() const {
+  return Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>(update_matrix_.data(), update_size_, update_size_,
+                                                                    Eigen::OuterStride<>(update_stride_));
+}
+
+void Front::clearFindings() {
+  singular_.clear();
+  weakest_ = {};
+}
+
+}  // namespace motorcade

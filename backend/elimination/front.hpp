@@ -1,0 +1,65 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "backend/elimination/clique.hpp"
+#include "backend/graph/factor_graph.hpp"
+
+namespace motorcade {
+
+/// A scalar that no factor constrains; its x stays where the estimate stands.
+struct SingularScalar {
+  VariableId variable;
+  int component = 0;
+};
+
+/// The smallest pivot of those so far.
+struct WeakPivot {
+  VariableId variable;
+  double ratio = 1;  // of the pivot to its diagonal before elimination
+};
+
+/// The dense work of an elimination, a clique at a time: gathers its front [H g; g^T c] from the linear models of its
+/// factors and from what its children pass on, and factorizes it.
+class Front {
+ public:
+  explicit Front(const FactorGraph& graph) : graph_(graph) {}
+
+  /// `cliques` holds the children, which have been eliminated.
+  void eliminate(Clique& clique, std::span<const Clique> cliques);
+  /// [H g; g^T c], lower triangle, that the newest clique leaves on its separator.
+  Eigen::MatrixXd schurComplement() const;
+
+  /// Since the last call of `clearFindings`.
+  const std::vector<SingularScalar>& singular() const { return singular_; }
+  const WeakPivot& weakestPivot() const { return weakest_; }
+  void clearFindings();
+
+ private:
+  struct RowSpan {
+    int from, to, size;  // scalars from `from` of a small matrix go to `to` of the front
+  };
+
+  void begin(Clique& clique);
+  void addFactor(Clique& clique, FactorId id);
+  void addChild(Clique& clique, const Clique& child);
+  template <class ColumnOf>
+  void addSymmetric(Clique& clique, const ColumnOf& source, std::span<const RowSpan> spans);
+  void splitAtFrontals(int frontal_size);
+  double* column(Clique& clique, int column);
+  void packUpdateMatrix(Clique& clique) const;
+  void holdSingular(Clique& clique, int column);
+
+  const FactorGraph& graph_;
+  std::vector<SingularScalar> singular_;
+  WeakPivot weakest_;
+  std::vector<int> offset_;  // per variable: its first scalar in the front at hand
+  std::vector<RowSpan> spans_;
+  std::vector<double> product_;
+  /// [H g; g^T c] on the separator, until it is packed.
+  std::vector<double, Eigen::aligned_allocator<double>> update_matrix_;
+  int update_size_ = 0, update_stride_ = 0;
+};
+
+}  // namespace motorcade

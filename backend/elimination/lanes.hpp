@@ -1,0 +1,41 @@
+#pragma once
+
+/// Vectors of four doubles for the dense kernels, which alone include this. GCC's vector extension turns them into the
+/// processor's instructions.
+namespace motorcade::lanes {
+
+typedef double Vec __attribute__((vector_size(32)));
+typedef double UnalignedVec __attribute__((vector_size(32), may_alias, aligned(8)));
+
+/// Numbers in a vector of AVX.
+constexpr int kLanes = 4;
+
+inline Vec load(const double* from) { return *reinterpret_cast<const UnalignedVec*>(from); }
+inline void store(double* to, Vec value) { *reinterpret_cast<UnalignedVec*>(to) = value; }
+inline Vec broadcast(double value) { return Vec{value, value, value, value}; }
+inline double sum(Vec v) { return (v[0] + v[2]) + (v[1] + v[3]); }
+
+/// The first `count` of four numbers and zeros; reads nothing past them.
+inline Vec loadFirst(const double* from, int count) {
+  switch (count) {
+    case 1:
+      return Vec{from[0], 0, 0, 0};
+    case 2:
+      return Vec{from[0], from[1], 0, 0};
+    case 3:
+      return Vec{from[0], from[1], from[2], 0};
+    default:
+      return load(from);
+  }
+}
+
+/// Calls `f.template operator()<n>()` with the number n of 1..kMax as a constant.
+template <int kMax, class F>
+[[gnu::always_inline]] inline void withConstant(int n, const F& f) {
+  if constexpr (kMax > 1) {
+    if (n < kMax) return withConstant<kMax - 1>(n, f);
+  }
+  f.template operator()<kMax>();
+}
+
+}  // namespace motorcade::lanes

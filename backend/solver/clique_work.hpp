@@ -1,0 +1,57 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "backend/elimination/elimination_tree.hpp"
+
+namespace motorcade {
+
+/// What a step of the solver does with each clique. A change of a clique reaches all cliques above it, up to the root;
+/// a clique with more than one kind of work gets the most thorough.
+class CliqueWork {
+ public:
+  enum class Kind : char {
+    kNone,
+    kShift,    // gets a new right-hand side
+    kRefresh,  // is eliminated anew where it stands
+    kRemoved,  // leaves the tree, its variables are eliminated in a new order
+    kNew,      // was eliminated in this step
+  };
+
+  explicit CliqueWork(EliminationTree& tree) : tree_(tree) {}
+
+  /// Begins a step: no clique has work.
+  void begin();
+  void markRemoved(int clique);
+  void markRefresh(int clique) { mark(clique, Kind::kRefresh); }
+  /// The change of the clique's right-hand side, in the rows of its front, to add to before the next mark. Empty when
+  /// the clique is eliminated anew.
+  std::span<double> markShift(int clique);
+
+  /// Shifts and refreshes what is marked so, children before parents.
+  void apply();
+  /// The marked cliques of which the tree can take leave now; they have no more work.
+  std::span<const int> releaseRemoved();
+  void markNew(std::span<const int> cliques);
+  /// The clique was solved.
+  void finish(int clique) { kind_[clique] = Kind::kNone; }
+
+  bool has(int clique) const { return kind_[clique] != Kind::kNone; }
+  /// The clique is eliminated anew in any case.
+  bool isEliminated(int clique) const { return kind_[clique] >= Kind::kRefresh; }
+  std::span<const int> removed() const { return removed_; }
+
+ private:
+  void mark(int clique, Kind kind);
+  std::span<double> changeOf(int clique);
+
+  EliminationTree& tree_;
+  std::vector<Kind> kind_;  // per clique
+  std::vector<int> dirty_;  // cliques to shift or refresh
+  std::vector<int> removed_;
+  std::vector<double> changes_;            // of right-hand sides
+  std::vector<std::size_t> change_begin_;  // per clique: where its change lies in `changes_`
+};
+
+}  // namespace motorcade

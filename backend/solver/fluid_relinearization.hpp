@@ -1,0 +1,90 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "backend/elimination/elimination_tree.hpp"
+#include "backend/graph/mark_set.hpp"
+#include "backend/solver/clique_work.hpp"
+#include "backend/solver/elimination_budget.hpp"
+
+namespace motorcade {
+
+/// Fluid relinearization: finds the linear models that are off after a step, and corrects them in the next one.
+///
+/// Residuals are told from Jacobians. Where a residual is off, its right-hand side is corrected, which costs a
+/// substitution. Where variables have turned since their Jacobians were taken, these are taken anew, which costs an
+/// elimination of the cliques above: the worst first, as far as the allowances and the budget reach.
+class FluidRelinearization {
+ public:
+  /// Zero tolerances are exact.
+  struct Params {
+    /// Of a linear model, over the root mean square of the residuals.
+    double mismatch_tolerance = 0.05;
+    /// Summed mismatch of a factor at which its variables are relinearized.
+    double jacobian_drift_sigmas = 0.5;
+    /// Turn of a variable at which it is relinearized as soon as possible; from a fifth of it on, at leisure.
+    double relinearize_rad = 0.05;
+    double urgent_flops = 4e7;  // allowance per step for relinearization as soon as possible
+    double polish_flops = 1e6;  // and at leisure
+  };
+  struct Corrections {
+    int relinearized_variables = 0, relinearized_factors = 0, corrected_factors = 0;
+  };
+
+  FluidRelinearization(const Params& params, FactorGraph& graph, const EliminationTree& tree, CliqueWork& work,
+                       EliminationBudget& budget)
+      : params_(params), graph_(graph), tree_(tree), work_(work), budget_(budget) {}
+
+  /// Finds the models that are off after a step that moved these variables.
+  void compareModels(std::span<const VariableId> moved);
+  /// Corrects them, and marks the work that this is. `new_factors` are not in the tree yet.
+  Corrections correctModels(std::span<const FactorId> new_factors);
+  /// Everything has been relinearized.
+  void clear();
+
+  bool anyModelOff() const { return !off_.empty(); }
+  /// Variables whose relinearization was put off.
+  std::size_t deferred() const { return stale_.size(); }
+
+ private:
+  struct OffModel {
+    FactorId factor;
+    double mismatch = 0;
+  };
+  /// How far the budget and the allowances reach.
+  enum class Reach : char { kWithin, kBeyondAllowance, kBeyondBudget };
+  struct EliminationCost {
+    std::int64_t scalars = 0;
+    double flops = 0;
+  };
+
+  void markStale(VariableId v, double turn_rad);
+  bool isStale(VariableId v) const { return staleness_rad_[v.value] > 0; }
+  void markDrifted();
+  void relinearizeStale();
+  void relinearizeWhatIsFree();
+  Reach relinearizeWorst();
+  Reach relinearizeRegion(VariableId worst, double& flops_left);
+  Reach relinearizeWithin(VariableId v, double& flops_left);
+  EliminationCost costOfRelinearizing(VariableId v);
+  void relinearize(VariableId v);
+  void correctResidual(FactorId id);
+
+  Params params_;
+  FactorGraph& graph_;
+  const EliminationTree& tree_;
+  CliqueWork& work_;
+  EliminationBudget& budget_;
+  std::vector<OffModel> off_;          // models to correct in the next step
+  std::vector<VariableId> stale_;      // whose linearization points are off
+  std::vector<double> staleness_rad_;  // per variable: its turn when it became stale, 0 when it is not
+  Corrections corrections_;            // of the step at hand
+  std::vector<FactorId> relinearized_;
+  MarkSet compared_, new_factors_, is_relinearized_;  // factors
+  std::vector<VariableId> region_;
+  MarkSet in_region_;  // variables
+  MarkSet counted_;    // cliques
+};
+
+}  // namespace motorcade

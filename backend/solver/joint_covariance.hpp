@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "backend/elimination/elimination_tree.hpp"
+
+namespace motorcade {
+
+/// Joint covariance of right perturbations of the variables, stacked, from R. Empty when the system is singular there.
+/// Costs as much as the cliques from the variables up to the root.
+std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
+                                               std::span<const VariableId> variables);
+
+}  // namespace motorcade

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "backend/elimination/elimination_tree.hpp"
+
+namespace motorcade {
+
+/// How variables leave the solver: marginalized when they are old, dropped when they went wrong. Both want a tree that
+/// holds all variables and factors of the graph.
+class Retirement {
+ public:
+  Retirement(FactorGraph& graph, EliminationTree& tree) : graph_(graph), tree_(tree) {}
+
+  /// Marginalizes the variables: what they know stays as a factor on their neighbors, and the solution does not change.
+  void marginalize(std::span<const VariableId> variables);
+  /// Removes the variables with all that was measured of them. Returns the cliques that were eliminated anew, up to the
+  /// roots, whose solution changes; they last until the next call.
+  std::span<const int> drop(std::span<const VariableId> variables);
+
+ private:
+  /// A connected part of the tree whose cliques hold variables that retire. Any change of order inside it leaves what
+  /// it passes to its parent as it is, so that retiring costs only this part, wherever it lies.
+  struct Part {
+    std::vector<int> cliques;
+    std::vector<VariableId> boundary;
+    int parent = -1;
+  };
+
+  std::vector<Part> partsWith(std::span<const VariableId> variables) const;
+  void retirePart(const Part& part, std::span<const VariableId> gone);
+  void eliminateAgain(const Part& part, const std::vector<VariableId>& order, const std::vector<FactorId>& factors);
+  std::vector<FactorId> factorsOf(std::span<const VariableId> variables) const;
+  std::vector<FactorId> removedFactorsWithout(const std::vector<FactorId>& factors) const;
+  void forget(std::span<const VariableId> variables);
+
+  FactorGraph& graph_;
+  EliminationTree& tree_;
+  EliminationTree::Removed removed_;
+  std::vector<int> created_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,157 @@
+#include "backend/elimination/affected_order.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/backend/random_factors.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::RandomWorld;
+using testing::UnorderedElementsAreArray;
+
+/// A long chain with a few shortcuts, and what an update would eliminate anew of it.
+struct Scene {
+  Scene(std::uint64_t seed, std::size_t count) : world(seed, RandomWorld::Kind::kPlane) {
+    for (std::size_t i = 0; i < count; ++i) {
+      variables.push_back(world.addVariable(graph));
+      graph.addFactor(world.prior(variables.back()));
+      if (i > 0) graph.addFactor(world.between(variables[i - 1], variables[i], true));
+      if (i > 0 && i % 9 == 0) graph.addFactor(world.between(variables[world.below(i)], variables[i], true));
+    }
+    removed.variables = variables;
+    removed.factors = graph.factors();
+  }
+
+  /// Eliminates everything, and takes the top out again, from these variables' cliques on.
+  void keepTopAbove(std::span<const VariableId> touched) {
+    std::vector<int> created, cliques;
+    const auto order = affected_order(removed.variables, removed.factors, {}, {});
+    tree.eliminate({.order = order, .boundary = {}, .factors = removed.factors, .orphans = {}}, created);
+    for (const VariableId v : touched) cliques.push_back(tree.cliqueOf(v));
+    removed.clear();
+    tree.remove(tree.withAncestors(cliques), removed);
+  }
+
+  std::vector<VariableId> order(std::span<const VariableId> touched) {
+    const auto order = affected_order(removed.variables, removed.factors, removed.orphans, touched);
+    return {order.begin(), order.end()};
+  }
+
+  std::vector<VariableId> draw(std::size_t count) {
+    std::set<VariableId> drawn;
+    while (drawn.size() < count) drawn.insert(variables[world.below(variables.size())]);
+    return {drawn.begin(), drawn.end()};
+  }
+
+  RandomWorld world;
+  FactorGraph graph;
+  EliminationTree tree{graph};
+  AffectedOrder affected_order{graph, tree};
+  EliminationTree::Removed removed;
+  std::vector<VariableId> variables;
+};
+
+/// Factors between each variable and the nearest touched one, by relaxation until nothing changes.
+std::vector<int> distances(const Scene& scene, std::span<const VariableId> touched) {
+  constexpr int kFar = 1 << 20;
+  std::vector<int> distance(scene.graph.slots(), kFar);
+  for (const VariableId v : touched) distance[v.value] = 0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const FactorId f : scene.graph.factors())
+      for (const VariableId u : scene.graph.factor(f).variables())
+        for (const VariableId v : scene.graph.factor(f).variables())
+          if (distance[u.value] + 1 < distance[v.value]) {
+            distance[v.value] = distance[u.value] + 1;
+            changed = true;
+          }
+  }
+  return distance;
+}
+
+/// The bands end at distances 0, 1, 3, 7 and 15; all beyond is one.
+int bandOf(int distance) {
+  int band = 0;
+  for (const int last : {0, 1, 3, 7, 15}) band += distance > last;
+  return band;
+}
+
+void expectNearerIsLater(const Scene& scene, std::span<const VariableId> order, std::span<const VariableId> touched) {
+  EXPECT_THAT(order, UnorderedElementsAreArray(scene.removed.variables));
+  const auto distance = distances(scene, touched);
+  for (std::size_t i = 1; i < order.size(); ++i)
+    EXPECT_GE(bandOf(distance[order[i - 1].value]), bandOf(distance[order[i].value])) << "position " << i;
+}
+
+TEST(AffectedOrder, TheNearerToWhatWasTouchedTheLater) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Scene scene(seed, 80);
+    const auto touched = scene.draw(1 + seed % 3);
+    expectNearerIsLater(scene, scene.order(touched), touched);
+  }
+}
+
+TEST(AffectedOrder, DistancesGoThroughTheWholeGraph) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Scene scene(seed, 80);
+    const auto touched = scene.draw(8);
+    scene.keepTopAbove(touched);
+    ASSERT_GT(scene.removed.variables.size(), 6U);  // fewer cannot be told apart in six bands
+    expectNearerIsLater(scene, scene.order(touched), touched);
+  }
+}
+
+TEST(AffectedOrder, DoesNotDependOnCallsBefore) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Scene used(seed, 40), fresh(seed, 40);
+    const auto touched = used.draw(2), same = fresh.draw(2);
+    ASSERT_EQ(touched, same);
+    used.order(std::vector{used.variables[3]});
+    used.affected_order(std::span(used.variables).first(5), {}, {}, touched);
+    EXPECT_EQ(used.order(touched), fresh.order(touched)) << "seed " << seed;
+  }
+}
+
+/// Entries of R beyond the diagonal, by elimination on the graph of the terms.
+std::size_t entriesOfFactor(const Scene& scene, std::span<const VariableId> order) {
+  std::vector<std::set<VariableId>> neighbors(scene.graph.slots());
+  const auto join = [&](const auto& variables) {
+    for (const VariableId u : variables)
+      for (const VariableId v : variables)
+        if (u != v) neighbors[u.value].insert(v);
+  };
+  for (const FactorId f : scene.removed.factors) join(scene.graph.factor(f).variables());
+  for (const int orphan : scene.removed.orphans) join(scene.tree[orphan].separator());
+  std::size_t entries = 0;
+  for (const VariableId v : order) {
+    entries += neighbors[v.value].size();
+    join(neighbors[v.value]);
+    for (const VariableId u : neighbors[v.value]) neighbors[u.value].erase(v);
+  }
+  return entries;
+}
+
+TEST(AffectedOrder, WithinABandThereIsLittleFill) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Scene scene(seed, 60);
+    if (seed % 2 == 1) scene.keepTopAbove(scene.draw(8));
+    const auto entries = entriesOfFactor(scene, scene.order({}));
+    std::vector<VariableId> shuffled = scene.removed.variables;
+    for (int trial = 0; trial < 50; ++trial) {
+      for (std::size_t i = shuffled.size(); i > 1; --i) std::swap(shuffled[i - 1], shuffled[scene.world.below(i)]);
+      EXPECT_LE(entries, entriesOfFactor(scene, shuffled)) << "seed " << seed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace motorcade
