@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/constant_twist.hpp"
 #include "core/parameters.hpp"
 #include "core/robust_loss.hpp"
 
@@ -36,9 +37,9 @@ struct SmootherParams {
   double object_origin_sigma_m = 1e-3, object_origin_sigma_rad = 1e-4;
   double anchor_sigma_m = 100.0, anchor_sigma_rad = 3.0;
 
-  /// Smooth motion: white noise on acceleration, as the standard deviation of the velocity's change after one second.
-  double acceleration_along_mps2 = 1.5, acceleration_sideways_mps2 = 0.5, acceleration_vertical_mps2 = 0.3;
-  double acceleration_yaw_radps2 = 0.07, acceleration_tilt_radps2 = 0.03;
+  /// Of the smooth motion factors.
+  AccelerationNoise acceleration{
+      .along_mps2 = 1.5, .sideways_mps2 = 0.5, .vertical_mps2 = 0.3, .yaw_radps2 = 0.07, .tilt_radps2 = 0.03};
 
   /// Share of two camera encounters' information that goes to the encounter of the two objects.
   double object_encounter_share = 0.2;
