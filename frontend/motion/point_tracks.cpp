@@ -68,7 +68,6 @@ std::optional<KnownPoint> PointTracks::knownPoint(const PointTrack& track, const
 void PointTracks::update(const OpticalFlow& flow, const std::vector<std::optional<StereoObservation>>& observed,
                          const CameraTrail& trail) {
   const auto tracks = tracksOf(flow);
-  const Image& now = flow.features->left.levels.front();
   step_ = trail.newest().step;
   updated_.resize(tracks.size());
   forEachItem(tracks.size(), [&](std::size_t i) {
@@ -80,16 +79,16 @@ void PointTracks::update(const OpticalFlow& flow, const std::vector<std::optiona
     }
     if (!observed[i]) return;
     track.add({step_, observed[i]->uvd_px, observed[i]->sigma_px});
-    fit(track, trail, now);
+    fit(track, trail, *flow.features);
   });
   const std::int64_t oldest_kept = step_ - params_.max_missed_frames;
   std::erase_if(updated_, [&](const PointTrack& t) { return t.count == 0 || t.newest().step < oldest_kept; });
   std::swap(tracks_, updated_);
-  left_ = now;
+  features_ = flow.features;
 }
 
 /// What the observations of a track up to now tell.
-void PointTracks::fit(PointTrack& track, const CameraTrail& trail, const Image& now) const {
+void PointTracks::fit(PointTrack& track, const CameraTrail& trail, const Features& now) const {
   const auto at_rest = scene_flow_.fitStatic(track, trail);
   const double degrees_of_freedom = std::max(1.0, 3.0 * track.count - 3.0);
   track.p_static_cam.reset();
@@ -104,18 +103,20 @@ void PointTracks::fit(PointTrack& track, const CameraTrail& trail, const Image& 
 
 /// Is its patch also found where it would be at rest? Looked for both ways, because something else may hide its
 /// position at rest in one of the two images.
-bool PointTracks::isFoundAtRest(const PointTrack& track, const CameraTrail& trail, const Image& now) const {
+bool PointTracks::isFoundAtRest(const PointTrack& track, const CameraTrail& trail, const Features& now) const {
   const auto* before = track.find(step_ - 1);
   const auto* relation = trail.find(step_ - 1);
   if (!before || !relation) return false;
+  const Image &left_now = now.left.levels.front(), &left_before = features_->left.levels.front();
   const Eigen::Vector3d uvd_now = track.newest().uvd_px.cast<double>(), uvd_before = before->uvd_px.cast<double>();
   const auto found = [&](const Eigen::Vector3d& uvd, const SE3& T_other_this, const FollowedPatch& patch) {
     const Eigen::Vector3d p = camera_.triangulate(uvd), p_other = T_other_this * p;
     const auto at_rest = camera_.project(p_other);
     return at_rest && isAlsoFoundAtRest(patch, at_rest->head<2>(), p.z() / p_other.z());
   };
-  return found(uvd_now, relation->T_then_now, {now, left_, uvd_now.head<2>(), uvd_before.head<2>()}) ||
-         found(uvd_before, relation->T_then_now.inverse(), {left_, now, uvd_before.head<2>(), uvd_now.head<2>()});
+  return found(uvd_now, relation->T_then_now, {left_now, left_before, uvd_now.head<2>(), uvd_before.head<2>()}) ||
+         found(uvd_before, relation->T_then_now.inverse(),
+               {left_before, left_now, uvd_before.head<2>(), uvd_now.head<2>()});
 }
 
 void PointTracks::setLabels(std::span<const ScenePoint> points) {

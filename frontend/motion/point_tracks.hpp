@@ -8,7 +8,6 @@
 
 #include <Eigen/Core>
 
-#include "core/image.hpp"
 #include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/matching/circular_matching.hpp"
@@ -65,8 +64,8 @@ class PointTracks {
 
   std::vector<int> tracksOf(const OpticalFlow& flow) const;
   std::optional<KnownPoint> knownPoint(const PointTrack& track, const CameraTrail& trail) const;
-  void fit(PointTrack& track, const CameraTrail& trail, const Image& now) const;
-  bool isFoundAtRest(const PointTrack& track, const CameraTrail& trail, const Image& now) const;
+  void fit(PointTrack& track, const CameraTrail& trail, const Features& now) const;
+  bool isFoundAtRest(const PointTrack& track, const CameraTrail& trail, const Features& now) const;
 
   Params params_;
   StereoCamera camera_;
@@ -74,7 +73,7 @@ class PointTracks {
   std::vector<PointTrack> tracks_;   // ordered by point
   std::vector<PointTrack> updated_;  // memory for the next update
   std::int64_t step_ = -1;           // of the last update
-  Image left_;                       // of the last update
+  FeaturesPtr features_;             // of the last update
 };
 
 std::vector<Parameter> parametersOf(PointTracks::Params& params);
