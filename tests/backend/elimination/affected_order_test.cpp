@@ -16,14 +16,14 @@ namespace {
 using test::RandomWorld;
 using testing::UnorderedElementsAreArray;
 
-/// A long chain with a few shortcuts, and what an update would eliminate anew of it.
+/// A long chain with a few short cuts, and what an update would eliminate anew of it.
 struct Scene {
   Scene(std::uint64_t seed, std::size_t count) : world(seed, RandomWorld::Kind::kPlane) {
     for (std::size_t i = 0; i < count; ++i) {
       variables.push_back(world.addVariable(graph));
       graph.addFactor(world.prior(variables.back()));
       if (i > 0) graph.addFactor(world.between(variables[i - 1], variables[i], true));
-      if (i > 0 && i % 9 == 0) graph.addFactor(world.between(variables[world.below(i)], variables[i], true));
+      if (i > 6 && i % 9 == 0) graph.addFactor(world.between(variables[i - 2 - world.below(5)], variables[i], true));
     }
     removed.variables = variables;
     removed.factors = graph.factors();
@@ -91,12 +91,15 @@ void expectNearerIsLater(const Scene& scene, std::span<const VariableId> order, 
 }
 
 TEST(AffectedOrder, TheNearerToWhatWasTouchedTheLater) {
+  std::set<int> bands;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Scene scene(seed, 80);
     const auto touched = scene.draw(1 + seed % 3);
     expectNearerIsLater(scene, scene.order(touched), touched);
+    for (const int distance : distances(scene, touched)) bands.insert(bandOf(distance));
   }
+  EXPECT_EQ(bands.size(), 6U) << "some band was never tried";
 }
 
 TEST(AffectedOrder, DistancesGoThroughTheWholeGraph) {
@@ -121,36 +124,62 @@ TEST(AffectedOrder, DoesNotDependOnCallsBefore) {
   }
 }
 
-/// Entries of R beyond the diagonal, by elimination on the graph of the terms.
-std::size_t entriesOfFactor(const Scene& scene, std::span<const VariableId> order) {
-  std::vector<std::set<VariableId>> neighbors(scene.graph.slots());
-  const auto join = [&](const auto& variables) {
+/// The graph of the terms over the variables at hand.
+class TermGraph {
+ public:
+  explicit TermGraph(const Scene& scene) : neighbors_(scene.graph.slots()) {
+    for (const FactorId f : scene.removed.factors) join(scene.graph.factor(f).variables());
+    for (const int orphan : scene.removed.orphans) join(scene.tree[orphan].separator());
+  }
+  std::size_t degree(VariableId v) const { return neighbors_[v.value].size(); }
+  void eliminate(VariableId v) {
+    join(neighbors_[v.value]);
+    for (const VariableId u : neighbors_[v.value]) neighbors_[u.value].erase(v);
+  }
+
+ private:
+  template <class Variables>
+  void join(const Variables& variables) {
     for (const VariableId u : variables)
       for (const VariableId v : variables)
-        if (u != v) neighbors[u.value].insert(v);
-  };
-  for (const FactorId f : scene.removed.factors) join(scene.graph.factor(f).variables());
-  for (const int orphan : scene.removed.orphans) join(scene.tree[orphan].separator());
-  std::size_t entries = 0;
-  for (const VariableId v : order) {
-    entries += neighbors[v.value].size();
-    join(neighbors[v.value]);
-    for (const VariableId u : neighbors[v.value]) neighbors[u.value].erase(v);
+        if (u != v) neighbors_[u.value].insert(v);
   }
-  return entries;
+  std::vector<std::set<VariableId>> neighbors_;
+};
+
+/// Blocks of R beyond the diagonal.
+std::size_t blocksOfFactor(const Scene& scene, std::span<const VariableId> order) {
+  TermGraph graph(scene);
+  std::size_t blocks = 0;
+  for (const VariableId v : order) {
+    blocks += graph.degree(v);
+    graph.eliminate(v);
+  }
+  return blocks;
+}
+
+std::vector<VariableId> minimumDegreeOrder(const Scene& scene) {
+  TermGraph graph(scene);
+  std::vector<VariableId> left = scene.removed.variables, order;
+  while (!left.empty()) {
+    const auto least = std::ranges::min_element(left, {}, [&](VariableId v) { return graph.degree(v); });
+    graph.eliminate(*least);
+    order.push_back(*least);
+    left.erase(least);
+  }
+  return order;
 }
 
 TEST(AffectedOrder, WithinABandThereIsLittleFill) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    Scene scene(seed, 60);
-    if (seed % 2 == 1) scene.keepTopAbove(scene.draw(8));
-    const auto entries = entriesOfFactor(scene, scene.order({}));
-    std::vector<VariableId> shuffled = scene.removed.variables;
-    for (int trial = 0; trial < 50; ++trial) {
-      for (std::size_t i = shuffled.size(); i > 1; --i) std::swap(shuffled[i - 1], shuffled[scene.world.below(i)]);
-      EXPECT_LE(entries, entriesOfFactor(scene, shuffled)) << "seed " << seed;
-    }
+  std::size_t blocks = 0, least = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Scene scene(seed, 120);
+    if (seed % 4 != 0) scene.keepTopAbove(scene.draw(20));
+    blocks += blocksOfFactor(scene, scene.order({}));
+    least += blocksOfFactor(scene, minimumDegreeOrder(scene));
   }
+  // The exact degrees of the reference do better than approximate ones, if by little.
+  EXPECT_LT(static_cast<double>(blocks), 1.05 * static_cast<double>(least));
 }
 
 }  // namespace
