@@ -119,11 +119,10 @@ void smallerEigenvalues(const ColumnMoments& moments, int first, int last, float
 
 /// True for the greatest value within the minimum distance; of equal ones for the first in reading order.
 bool isMaximum(const RowRing<float>& response, int x, int y) {
-  constexpr int radius = kMinDistance_px;
   const float value = response.row(y)[x];
-  for (int dy = -radius; dy <= radius; ++dy) {
+  for (int dy = -kMinDistance_px; dy <= kMinDistance_px; ++dy) {
     const float* row = response.row(y + dy) + x;
-    for (int dx = -radius; dx <= radius; ++dx) {
+    for (int dx = -kMinDistance_px; dx <= kMinDistance_px; ++dx) {
       const bool earlier = dy < 0 || (dy == 0 && dx < 0);
       if (row[dx] > value || (earlier && row[dx] == value)) return false;
     }
@@ -185,28 +184,27 @@ bool strongerInCell(const Candidate& a, const Candidate& b) {
 std::vector<Candidate> findCandidates(const Image& image, int first_center, int end_center,
                                       const CornerDetector::Params& params) {
   const int width = image.width();
-  constexpr int radius = kMinDistance_px, border = kBorder_px;
   std::vector<Candidate> candidates;
   constexpr double kMomentScale = Gradients::kScale * Gradients::kScale * kWindowPixels;
   const auto threshold = static_cast<float>(params.min_score * params.min_score * kMomentScale);
   const int columns = (width + kCell_px - 1) / kCell_px;
   Gradients gradients(image);
   ColumnMoments moments(width);
-  RowRing<float> response(2 * radius + 1, width);
+  RowRing<float> response(2 * kMinDistance_px + 1, width);
   std::vector<std::uint8_t> marks(width + sizeof(std::uint64_t), 0);
-  const int first_row = first_center - radius, end_row = end_center + radius;
+  const int first_row = first_center - kMinDistance_px, end_row = end_center + kMinDistance_px;
   for (int y = first_row - kHalfWindow_px; y < first_row + kHalfWindow_px; ++y)
     gradients.advanceTo(y), moments.slideTo(gradients, y);
   for (int y = first_row; y < end_row; ++y) {
     gradients.advanceTo(y + kHalfWindow_px);
     moments.slideTo(gradients, y + kHalfWindow_px);
-    smallerEigenvalues(moments, border - radius, width - border + radius, response.row(y));
-    const int center = y - radius;
+    smallerEigenvalues(moments, kBorder_px - kMinDistance_px, width - kBorder_px + kMinDistance_px, response.row(y));
+    const int center = y - kMinDistance_px;
     if (center < first_center) continue;
-    markPeaks(response, center, border, width - border, threshold, marks.data());
-    for (int x = border; x < width - border; ++x) {
+    markPeaks(response, center, kBorder_px, width - kBorder_px, threshold, marks.data());
+    for (int x = kBorder_px; x < width - kBorder_px; ++x) {
       x = nextMark(marks, x);
-      if (x >= width - border || !isMaximum(response, x, center)) continue;
+      if (x >= width - kBorder_px || !isMaximum(response, x, center)) continue;
       const auto score = static_cast<float>(std::sqrt(response.row(center)[x] / kMomentScale));
       if (score < kMinScoreOverGrain * grainAround(image, x, center)) continue;
       candidates.push_back(

@@ -226,7 +226,8 @@ std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right
     start_px = searchAround(left, right, u_px, v_px, predicted_disparity_px, params.search_radius_px);
 
   constexpr float kConverged_px = 0.02F, kMaxShift_px = 2;
-  constexpr float kMaxSlope = static_cast<float>(kMaxShearShift_px) / static_cast<float>(kPatchWindow_px / 2);
+  constexpr int kHalf_px = kPatchWindow_px / 2;
+  constexpr float kMaxSlope = static_cast<float>(kMaxShearShift_px) / static_cast<float>(kHalf_px);
   float u_right = u - static_cast<float>(start_px), slope = 0;
   const float first_guess = u_right;
   for (int iteration = 0; iteration < kMaxDisparityIterations; ++iteration) {

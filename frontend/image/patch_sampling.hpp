@@ -102,6 +102,7 @@ class SampleColumns {
   /// `last_px`, which is inside the image.
   SampleColumns(const std::array<float, kWordLanes>& positions_px, int last_px) {
     for (int i = 0; i < kWordLanes; ++i) {
+      // NOLINTNEXTLINE(bugprone-incorrect-roundings): positions are not negative
       const int position = static_cast<int>(positions_px[i] * kSampleLevels + 0.5F);
       const int pixel = std::min(position >> kSampleBits, last_px - 1), right_weight = position - pixel * kSampleLevels;
       if (i == 0) first_group_ = pixel;

@@ -23,7 +23,7 @@ enum class PatchDeformation { kScale, kSlope };
 /// whatever the gain and bias of J. The planes hold integers that are neither normalized, free of their mean nor
 /// orthogonal: the sums over them are corrected for that.
 struct PatchTemplate {
-  PatchTemplate() {}  // leaves the planes as they are: they are filled at once
+  PatchTemplate() {}  // NOLINT(modernize-use-equals-default): that would clear the planes, which are filled at once
   static constexpr int kStride = 16;
   static constexpr float kOtherUnit = 1.0F / 8;  // gray levels that a word of the other image's samples counts
   using Plane = std::array<std::int16_t, kStride * kMaxPatchWindow_px>;  // zero to the right of the window

@@ -13,9 +13,9 @@ namespace {
 constexpr int kColumnLanes = 2 * kWordLanes;  // columns that sixteen neighboring windows may span
 
 /// Compares a window with sixteen neighboring ones at a time.
-template <WindowSize kSize>
+template <WindowSize Size>
 class Differences {
-  static constexpr int kColumns = kSize.columns, kRows = kSize.rows, kPixels = kColumns * kRows;
+  static constexpr int kColumns = Size.columns, kRows = Size.rows, kPixels = kColumns * kRows;
   static_assert(kColumns - 1 <= kColumnLanes - kWordLanes);
   static_assert(kPixels * UINT8_MAX <= INT16_MAX);  // a word holds the sum over a window
 
@@ -59,9 +59,9 @@ class Differences {
   int sum_ = 0;
 };
 
-template <WindowSize kSize>
+template <WindowSize Size>
 void fillCosts(const Window& window, const std::uint8_t* from, std::ptrdiff_t stride, std::span<std::uint16_t> costs) {
-  const Differences<kSize> differences(window);
+  const Differences<Size> differences(window);
   const int count = static_cast<int>(costs.size());
   for (int first = 0; first < count; first += kWordLanes) {
     const Words cost = differences(from + first, stride);
