@@ -18,13 +18,13 @@ class AugmentingPaths {
       : cost_(cost),
         forbidden_(forbidden),
         columns_(static_cast<int>(cost.cols() + cost.rows())),
-        row_price_(static_cast<std::size_t>(cost.rows()), 0.0),
-        column_price_(static_cast<std::size_t>(columns_), 0.0),
-        row_of_(static_cast<std::size_t>(columns_), -1) {}
+        row_price_(cost.rows(), 0.0),
+        column_price_(columns_, 0.0),
+        row_of_(columns_, -1) {}
 
   std::vector<int> solve() {
     for (int row = 0; row < cost_.rows(); ++row) enter(row);
-    std::vector<int> column_of(static_cast<std::size_t>(cost_.rows()), -1);
+    std::vector<int> column_of(cost_.rows(), -1);
     for (int column = 0; column < cost_.cols(); ++column) {
       const int row = row_of_[column];
       if (row >= 0) column_of[row] = column;
@@ -41,10 +41,9 @@ class AugmentingPaths {
   }
 
   void enter(int new_row) {
-    const auto count = static_cast<std::size_t>(columns_);
-    std::vector<double> distance(count, kInfinity);
-    std::vector<int> came_from(count, -1);  // the column before on the path; -1 is the new row itself
-    std::vector<bool> settled(count, false);
+    std::vector<double> distance(columns_, kInfinity);
+    std::vector<int> came_from(columns_, -1);  // the column before on the path; -1 is the new row itself
+    std::vector<bool> settled(columns_, false);
     int row = new_row, column = -1;
     double reached = 0;
     do {
@@ -65,12 +64,11 @@ class AugmentingPaths {
   void relax(int row, int column, double reached, const std::vector<bool>& settled, std::vector<double>& distance,
              std::vector<int>& came_from) const {
     for (int next = 0; next < columns_; ++next) {
-      const auto j = static_cast<std::size_t>(next);
-      if (settled[j]) continue;
-      const double through = reached + costOf(row, next) - row_price_[row] - column_price_[j];
-      if (through < distance[j]) {
-        distance[j] = through;
-        came_from[j] = column;
+      if (settled[next]) continue;
+      const double through = reached + costOf(row, next) - row_price_[row] - column_price_[next];
+      if (through < distance[next]) {
+        distance[next] = through;
+        came_from[next] = column;
       }
     }
   }
@@ -78,8 +76,8 @@ class AugmentingPaths {
   int nearest(const std::vector<double>& distance, const std::vector<bool>& settled) const {
     int best = -1;
     for (int column = 0; column < columns_; ++column) {
-      const auto j = static_cast<std::size_t>(column);
-      if (!settled[j] && distance[j] < kInfinity && (best < 0 || distance[j] < distance[best])) best = column;
+      if (!settled[column] && distance[column] < kInfinity && (best < 0 || distance[column] < distance[best]))
+        best = column;
     }
     return best;
   }

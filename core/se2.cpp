@@ -6,14 +6,18 @@
 namespace motorcade {
 namespace {
 
+/// Below these angles a Taylor series is exact to double precision; the inverse loses more digits to cancellation.
+constexpr double kSmallAngle_rad = 1e-4, kSmallAngleOfInverse_rad = 1e-3;
+
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2 * std::numbers::pi); }
 
 /// V with exp(rho, phi) = (phi, V rho): V = [a -b; b a], a = sin(phi) / phi, b = (1 - cos(phi)) / phi.
 struct LeftJacobian {
   double a, b;
   explicit LeftJacobian(double phi)
-      : a(std::abs(phi) < 1e-4 ? 1 - phi * phi / 6 : std::sin(phi) / phi),
-        b(std::abs(phi) < 1e-4 ? phi / 2 - phi * phi * phi / 24 : 2 * std::sin(phi / 2) * std::sin(phi / 2) / phi) {}
+      : a(std::abs(phi) < kSmallAngle_rad ? 1 - phi * phi / 6 : std::sin(phi) / phi),
+        b(std::abs(phi) < kSmallAngle_rad ? phi / 2 - phi * phi * phi / 24
+                                          : 2 * std::sin(phi / 2) * std::sin(phi / 2) / phi) {}
 };
 
 }  // namespace
@@ -51,10 +55,10 @@ Eigen::Matrix3d SE2::adjoint() const {
 }
 
 Eigen::Matrix3d rightJacobianInverseSE2(const Eigen::Vector3d& xi) {
-  // As a power series in ad: Jr^-1 = I + ad / 2 + (1 - h) / phi^2 ad^2 with h = (phi / 2) cot(phi / 2); ad^3 = -phi^2
-  // ad.
+  // A power series in ad, with ad^3 = -phi^2 ad: Jr^-1 = I + ad / 2 + (1 - h) / phi^2 ad^2, h = (phi / 2) cot(phi / 2).
   const double phi = xi[2], half = phi / 2;
-  const double s = std::abs(phi) < 1e-3 ? 1.0 / 12 + phi * phi / 720 : (1 - half / std::tan(half)) / (phi * phi);
+  const double s =
+      std::abs(phi) < kSmallAngleOfInverse_rad ? 1.0 / 12 + phi * phi / 720 : (1 - half / std::tan(half)) / (phi * phi);
   Eigen::Matrix3d ad;
   ad << 0, -phi, xi[1], phi, 0, -xi[0], 0, 0, 0;
   return Eigen::Matrix3d::Identity() + 0.5 * ad + s * ad * ad;

@@ -8,7 +8,10 @@
 namespace motorcade {
 namespace {
 
-constexpr double kSmallAngle_rad = 1e-4;  // below it the Taylor series is exact to double precision
+/// Below these angles a Taylor series is exact to double precision. The closed forms of the inverse and of the coupling
+/// lose more digits to cancellation, and so leave off earlier.
+constexpr double kSmallAngle_rad = 1e-4, kSmallAngleOfInverse_rad = 1e-3, kSmallAngleOfCoupling_rad = 1e-2;
+constexpr double kSmallHalfAngle = 1e-8;  // norm of a quaternion's vector below which its logarithm is linear
 
 /// Coefficients a = sin(t)/t, b = (1 - cos(t))/t^2, c = (t - sin(t))/t^3 of Rodrigues' formulae.
 struct RodriguesCoefficients {
@@ -33,7 +36,7 @@ Eigen::Matrix3d leftJacobianInverseSO3(const Eigen::Vector3d& phi) {
   const Eigen::Matrix3d W = hat(phi);
   const double t2 = theta * theta;
   double k = 1.0 / 12.0 + t2 / 720.0;
-  if (theta >= 1e-3) k = 1.0 / t2 - (1.0 + std::cos(theta)) / (2.0 * theta * std::sin(theta));
+  if (theta >= kSmallAngleOfInverse_rad) k = 1.0 / t2 - (1.0 + std::cos(theta)) / (2.0 * theta * std::sin(theta));
   return Eigen::Matrix3d::Identity() - 0.5 * W + k * W * W;
 }
 
@@ -41,7 +44,7 @@ Eigen::Matrix3d leftJacobianInverseSO3(const Eigen::Vector3d& phi) {
 Eigen::Matrix3d leftJacobianCoupling(const Eigen::Vector3d& rho, const Eigen::Vector3d& phi) {
   const double t = phi.norm(), t2 = t * t;
   double a = 1.0 / 6.0 - t2 / 120.0, b = 1.0 / 24.0 - t2 / 720.0, c = 1.0 / 120.0 - t2 / 2520.0;
-  if (t >= 1e-2) {
+  if (t >= kSmallAngleOfCoupling_rad) {
     const double s = std::sin(t), co = std::cos(t);
     a = (t - s) / (t2 * t);
     b = (t2 + 2.0 * co - 2.0) / (2.0 * t2 * t2);
@@ -76,7 +79,7 @@ Eigen::Vector3d logSO3(const Eigen::Matrix3d& rotation) {
   Eigen::Quaterniond q(rotation);
   if (q.w() < 0) q.coeffs() = -q.coeffs();
   const double n = q.vec().norm();
-  if (n < 1e-8) return 2.0 / q.w() * q.vec();
+  if (n < kSmallHalfAngle) return 2.0 / q.w() * q.vec();
   return 2.0 * std::atan2(n, q.w()) / n * q.vec();
 }
 

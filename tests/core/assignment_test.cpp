@@ -14,7 +14,7 @@ constexpr double kForbidden = 10;
 double totalCost(const Eigen::MatrixXd& cost, const std::vector<int>& columns) {
   double total = 0;
   for (std::size_t row = 0; row < columns.size(); ++row)
-    total += columns[row] < 0 ? kForbidden : cost(static_cast<int>(row), columns[row]);
+    total += columns[row] < 0 ? kForbidden : cost(row, columns[row]);
   return total;
 }
 
@@ -43,7 +43,7 @@ TEST(AssignMinCost, EqualsBruteForceOnRandomMatrices) {
     for (std::size_t row = 0; row < columns.size(); ++row) {
       if (columns[row] < 0) continue;
       EXPECT_TRUE(used.insert(columns[row]).second) << "a column was given twice";
-      EXPECT_LT(cost(static_cast<int>(row), columns[row]), kForbidden);
+      EXPECT_LT(cost(row, columns[row]), kForbidden);
     }
     std::set<int> none;
     EXPECT_NEAR(totalCost(cost, columns), bruteForce(cost, 0, none), 1e-9);

@@ -61,7 +61,8 @@ TEST(ImagePool, ServesMoreImagesAndSizesThanItKeeps) {
   for (std::size_t i = 0; i < images.size(); ++i) ASSERT_EQ(images[i].at(0, 0), i % 251);
 }
 
-/// Each thread writes its own number all over its images, and hands every other one to the next thread to let go of.
+/// Each thread writes its own number all over its images, and hands every other one to the next thread, which releases
+/// it.
 TEST(ImagePool, NoTwoThreadsEverHoldTheSameBuffer) {
   constexpr int kThreads = 4, kRounds = 2000;
   ImagePool pool;
@@ -84,8 +85,8 @@ TEST(ImagePool, NoTwoThreadsEverHoldTheSameBuffer) {
   }
   for (auto& left : handed) delete left.load();
   EXPECT_EQ(spoilt, 0);
-  EXPECT_LT(pool.buffersMade(),
-            std::size_t{kRounds} / 10);  // a search may miss a buffer that comes back behind it, now and then
+  constexpr std::size_t kMissed = kRounds / 10;  // a search may miss a buffer that is put back meanwhile
+  EXPECT_LT(pool.buffersMade(), kMissed);
 }
 
 }  // namespace
