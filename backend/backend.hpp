@@ -6,9 +6,6 @@
 
 namespace motorcade {
 
-/// A camera's covariance is that of its motion over this many frames: the drift of an absolute pose has no bound.
-inline constexpr int kCameraCovarianceFrames = 10;
-
 /// Measurements to trajectories. Call in frame order: a back-end remembers all frames of its window.
 class Backend {
  public:

@@ -29,7 +29,7 @@ function(motorcade_library folder)
 endfunction()
 
 # What nearly every file includes is parsed once: by core for itself and the front-end, whose flags are the same, and by the back-end for
-# the others. Nobody may rely on it: files include what they use, and .ci/lint compiles without it.
+# the others. No file may rely on it: each includes what it uses, and .ci/lint compiles without it.
 function(motorcade_precompiled_headers folder)
   if(folder STREQUAL core OR folder STREQUAL backend)
     target_precompile_headers(motorcade_${folder} PRIVATE
@@ -59,10 +59,10 @@ function(motorcade_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wold-style-cast -Werror
     -Wno-array-bounds)  # GCC 12 mistakes Eigen's vector loads from 3-vectors for overruns
-  # Nobody reads errno after a square root or traps a floating-point exception: this lets such loops become vector code, with the same values.
+  # Errno is not read after a square root, and no floating-point exception is trapped: such loops become vector code, with the same values.
   target_compile_options(${target} PRIVATE -fno-math-errno -fno-trapping-math)
   if(MOTORCADE_PORTABLE)
-    # Vectors of 32 bytes pass between functions of one file only, so that nobody depends on how.
+    # Vectors of 32 bytes pass between functions of one file only, so that no caller depends on how.
     target_compile_options(${target} PRIVATE -Wno-psabi)
   else()
     # Public: Eigen's alignment and inlined kernels must agree between the library and its users.

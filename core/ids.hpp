@@ -10,8 +10,8 @@ namespace motorcade {
 template <class Tag>
 struct Id {
   std::int64_t value = -1;
-  constexpr auto operator<=>(const Id&) const =
-      default;  // NOLINT(modernize-use-nullptr): the comparison the compiler writes
+  // NOLINTNEXTLINE(modernize-use-nullptr): the check misreads the comparison that the compiler writes
+  constexpr auto operator<=>(const Id&) const = default;
   constexpr bool valid() const { return value >= 0; }
 };
 

@@ -5,14 +5,16 @@
 #include <new>
 #include <utility>
 
-#include "core/idle_places.hpp"
+#include "core/idle_slots.hpp"
 
 namespace motorcade {
 namespace {
 
 constexpr std::align_val_t kAlignment{64};
 constexpr std::size_t kHeader_bytes = 128;  // before the pixels: for the shared pointer's counts
-constexpr std::size_t kTail_bytes = 32;
+constexpr std::size_t kTail_bytes = 32;     // readable after the last row
+constexpr int kRowAlignment_bytes = 32;     // of a vector of AVX
+constexpr std::size_t kSizes = 16;          // distinct sizes whose buffers are kept; others go back to the heap
 
 }  // namespace
 
@@ -46,8 +48,8 @@ class ImagePool::Shelf {
 
  private:
   struct Row {
-    std::atomic<std::size_t> bytes{0};  // 0: nobody's yet
-    IdlePlaces<std::byte> idle;         // what finds no place goes back to the heap
+    std::atomic<std::size_t> bytes{0};  // size of its buffers; 0 while the row is unused
+    IdleSlots<std::byte> idle;          // buffers beyond its slots go back to the heap
   };
 
   Row* rowOf(std::size_t bytes) {
@@ -61,11 +63,11 @@ class ImagePool::Shelf {
   }
   static void release(std::byte* buffer) { ::operator delete(buffer, kAlignment); }
 
-  std::array<Row, 16> rows_;
+  std::array<Row, kSizes> rows_;
   std::atomic<std::size_t> made_{0};
 };
 
-/// Lays the counts of a shared pointer into the header of the buffer that it shares. They are the last to be let go of:
+/// Lays the counts of a shared pointer into the header of the buffer that it shares. They are the last to be released:
 /// then the buffer is idle.
 template <class T>
 struct ImagePool::InHeader {
@@ -93,7 +95,7 @@ struct ImagePool::InHeader {
 ImagePool::ImagePool() : shelf_(std::make_shared<Shelf>()) {}
 
 Image ImagePool::acquire(int width, int height) {
-  const int stride = (width + 31) / 32 * 32;
+  const int stride = (width + kRowAlignment_bytes - 1) / kRowAlignment_bytes * kRowAlignment_bytes;
   const auto bytes = kHeader_bytes + static_cast<std::size_t>(stride) * static_cast<std::size_t>(height) + kTail_bytes;
   std::byte* buffer = shelf_->take(bytes);
   const auto keep = [](std::uint8_t*) {};

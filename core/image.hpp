@@ -30,7 +30,7 @@ class Image {
 };
 
 /// Hands out images and takes their buffers back when the last view is gone, so that a steady stream of frames touches
-/// no fresh memory. Any thread may acquire images and let go of them, without locks, and once the stream is warm
+/// no fresh memory. Any thread may acquire and release images, without locks, and once the stream is warm
 /// without the heap.
 class ImagePool {
  public:

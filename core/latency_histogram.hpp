@@ -15,8 +15,7 @@ class LatencyHistogram {
   std::int64_t count() const { return count_; }
   double mean_ms() const;
   double max_ms() const { return max_ms_; }
-  /// Smallest bucket bound that `fraction` (0 to 1) of the durations do not exceed, never above the maximum; 0 when
-  /// empty.
+  /// Smallest bucket bound that `fraction` (0 to 1) of the durations do not exceed, at most the maximum; 0 when empty.
   double percentile_ms(double fraction) const;
 
  private:

@@ -10,7 +10,7 @@
 namespace motorcade {
 
 /// Hands the newest value from one producer thread to one consumer thread: three slots, of which each side owns one and
-/// the third is exchanged. The producer never waits; a value that nobody took is replaced by the next one.
+/// the third is exchanged. The producer never waits; an unread value is replaced by the next one.
 template <class T>
 class Mailbox {
  public:
@@ -66,8 +66,8 @@ class Mailbox {
   static constexpr std::uint32_t kSlot = 3, kFresh = 4;
   static constexpr std::size_t kCacheLine = 64;
   std::array<T, 3> slots_{};
-  alignas(kCacheLine) std::atomic<std::uint32_t> middle_{
-      1};                                     // slot that nobody owns, and whether it holds an unread value
+  /// The slot that neither side owns, and whether it holds an unread value.
+  alignas(kCacheLine) std::atomic<std::uint32_t> middle_{1};
   alignas(kCacheLine) std::size_t back_ = 0;  // producer only
   std::atomic<std::int64_t> overwritten_{0};
   alignas(kCacheLine) std::size_t front_ = 2;  // consumer only

@@ -72,8 +72,8 @@ struct FrameMeasurements {
   FrameId frame;
   Timestamp stamp;
   FrameStatus status = FrameStatus::kGood;
-  /// Ego-motion T_cam(previous)_cam(now); predicted, with a wide covariance, unless the status is kGood. Identity in
-  /// the first frame.
+  /// Ego-motion T_cam(previous)_cam(now), identity in the first frame; predicted, with a wide covariance, unless the
+  /// status is kGood.
   SE3 T_previous_now;
   Matrix6d odometry_covariance = Matrix6d::Identity();
   /// Objects of this frame. An object that was confirmed now brings its earlier observations along, oldest first,
@@ -96,14 +96,17 @@ struct ObjectEstimate {
   std::optional<Matrix6d> covariance;  // of T_cam_body of the same frame
 };
 
-/// The camera and the objects in one frame: *online* when it is published with the newest frame, *final* when it leaves
-/// the window.
+/// A camera's covariance is that of its motion over this many frames: the drift of an absolute pose has no bound.
+inline constexpr int kCameraCovarianceFrames = 10;
+
+/// The camera and the objects in one frame: *online* as published when it is the newest, *final* when it leaves the
+/// window.
 struct FrameEstimate {
   FrameId frame;
   Timestamp stamp;
   FrameStatus status = FrameStatus::kGood;
   SE3 T_world_cam;
-  std::optional<Matrix6d> camera_covariance;  // of T_cam(10 frames earlier)_cam(now)
+  std::optional<Matrix6d> camera_covariance;  // of T_cam(before)_cam(now), kCameraCovarianceFrames apart
   std::vector<ObjectEstimate> objects;        // ordered by track
 };
 

@@ -2,29 +2,28 @@
 
 #include <memory>
 
-#include "core/idle_places.hpp"
+#include "core/idle_slots.hpp"
 
 namespace motorcade {
 
-/// Hands out objects and takes them back when their last pointer is gone, as they are: what they hold on the heap
-/// serves again. Any thread may acquire objects and let go of them, without locks. The objects outlive the pool while
-/// somebody holds them.
+/// Hands out objects and takes them back, unchanged, when their last pointer is gone, so that the memory they hold is
+/// used again. Any thread may acquire and release objects, without locks. An object that is in use outlives the pool.
 template <class T>
 class ObjectPool {
  public:
-  /// An object in the state in which it was let go of, or a new one.
+  /// An object in the state in which it was released, or a new one.
   std::shared_ptr<T> acquire() {
-    T* idle = shelf_->places.take();
-    return {idle ? idle : new T, [shelf = shelf_](T* object) {
-              if (!shelf->places.putBack(object)) delete object;
+    T* object = shelf_->idle.take();
+    return {object ? object : new T, [shelf = shelf_](T* released) {
+              if (!shelf->idle.putBack(released)) delete released;
             }};
   }
 
  private:
   struct Shelf {
-    IdlePlaces<T> places;
+    IdleSlots<T> idle;
     ~Shelf() {
-      while (T* idle = places.take()) delete idle;
+      while (T* object = idle.take()) delete object;
     }
   };
   std::shared_ptr<Shelf> shelf_ = std::make_shared<Shelf>();

@@ -58,8 +58,8 @@ std::vector<ParameterProblem> problemsOf(Params params) {
   return problemsIn(parametersOf(params));
 }
 
-/// For constructors: hands the parameters on. Throws std::invalid_argument, naming the parameter and its range, when
-/// one is out of it.
+/// For constructors: returns the parameters. Throws std::invalid_argument, naming parameter and range, when one is out
+/// of its range.
 template <class Params>
 const Params& requireValid(const Params& params) {
   const auto problems = problemsOf(params);

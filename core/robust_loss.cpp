@@ -19,21 +19,4 @@ double robustWeight(RobustLoss loss, double residual, double scale) {
   return 1.0;
 }
 
-double robustCost(RobustLoss loss, double residual, double scale) {
-  const double r = std::abs(residual), x = r / scale;
-  switch (loss) {
-    case RobustLoss::kNone:
-      return 0.5 * r * r;
-    case RobustLoss::kHuber:
-      return x <= 1.0 ? 0.5 * r * r : scale * (r - 0.5 * scale);
-    case RobustLoss::kCauchy:
-      return 0.5 * scale * scale * std::log1p(x * x);
-    case RobustLoss::kTukey: {
-      const double y = 1.0 - x * x;
-      return scale * scale / 6.0 * (x < 1.0 ? 1.0 - y * y * y : 1.0);
-    }
-  }
-  return 0.5 * r * r;
-}
-
 }  // namespace motorcade

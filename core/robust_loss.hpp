@@ -8,7 +8,4 @@ enum class RobustLoss { kNone, kHuber, kCauchy, kTukey };
 /// Weight rho'(r) / r of a residual norm r, both relative to `scale` (where the loss leaves the quadratic).
 double robustWeight(RobustLoss loss, double residual, double scale);
 
-/// rho(r), for cost comparisons; equal to 0.5 * r^2 near zero.
-double robustCost(RobustLoss loss, double residual, double scale);
-
 }  // namespace motorcade

@@ -110,6 +110,8 @@ Matrix6d rightJacobianInverseSE3(const Vector6d& xi) {
   return blocks(J, -J * leftJacobianCoupling(rho, phi) * J);
 }
 
+bool isFinite(const SE3& T) { return T.rotation().allFinite() && T.translation().allFinite(); }
+
 SE3 scaledMotion(const SE3& motion, double factor) { return SE3::exp(factor * motion.log()); }
 
 }  // namespace motorcade

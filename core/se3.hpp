@@ -51,6 +51,9 @@ class SE3 {
 Matrix6d rightJacobianSE3(const Vector6d& xi);
 Matrix6d rightJacobianInverseSE3(const Vector6d& xi);
 
+/// No number in it is infinite or undefined.
+bool isFinite(const SE3& T);
+
 /// The motion that `motion` becomes when its duration is scaled by `factor`, at constant twist.
 SE3 scaledMotion(const SE3& motion, double factor);
 

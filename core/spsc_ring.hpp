@@ -13,8 +13,7 @@
 namespace motorcade {
 
 /// Bounded lock-free queue from one producer thread to one consumer thread.
-/// Each side may wait for the other; `close` (from any thread) ends every wait. What was pushed before can still be
-/// popped.
+/// Each side may wait for the other; `close` (from any thread) ends every wait. What was pushed before can be popped.
 template <class T>
 class SpscRing {
  public:

@@ -14,7 +14,7 @@ namespace motorcade {
 /// Which two of KITTI's four cameras a sequence uses: 0 and 1 are gray, 2 and 3 color.
 enum class CameraPair { kGray, kColor };
 
-/// The content of a KITTI calibration, whatever its spelling. What the file does not tell is empty.
+/// The content of a KITTI calibration, whatever its spelling. What the file does not give is empty.
 struct Calibration {
   using Projection = Eigen::Matrix<double, 3, 4>;
   std::filesystem::path file{};
@@ -34,8 +34,8 @@ struct Calibration {
 /// Reads `calib.txt` of the plain, tracking and odometry layouts, in both spellings of its keys.
 Calibration readCalibration(const std::filesystem::path& file);
 
-/// Reads `calib_cam_to_cam.txt` and, where they are there, `calib_velo_to_cam.txt` and `calib_imu_to_velo.txt` of a raw
-/// date folder.
+/// Reads `calib_cam_to_cam.txt` of a raw date folder and, where they are there, `calib_velo_to_cam.txt` and
+/// `calib_imu_to_velo.txt`.
 Calibration readRawCalibration(const std::filesystem::path& date_folder);
 
 }  // namespace motorcade

@@ -8,8 +8,7 @@
 #include "io/labels.hpp"
 #include "io/sequence.hpp"
 
-/// The truth of a sequence, in its own conventions turned into ours: `world` is the first left camera of the images'
-/// pair.
+/// The truth of a sequence, converted to our conventions: `world` is the first left camera of the images' pair.
 namespace motorcade {
 
 /// How oxts packets and images are brought together. The two are up to 5 ms apart.
@@ -29,8 +28,7 @@ struct CameraTruth {
   std::vector<SE3> T_world_cam;  // one per frame
   std::string source;            // for reports: which file, in what form
 };
-/// From `poses.txt` where it is there, else, or when the uninterpolated form is asked for, from oxts. Empty when there
-/// is neither.
+/// From `poses.txt`; where that is missing, or the uninterpolated form is asked for, from oxts. Empty without either.
 std::optional<CameraTruth> readCameraTruth(const Sequence& sequence, OxtsTimes times = OxtsTimes::kInterpolated);
 
 /// A labeled object in one frame.

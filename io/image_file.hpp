@@ -7,7 +7,7 @@
 
 #include "core/image.hpp"
 
-/// Images in files. Formats are told by content, sizes are checked in the header before anything is allocated.
+/// Images in files. Formats are recognized by content, sizes are checked in the header before anything is allocated.
 /// Reading throws InputError, writing OutputError, both naming the file.
 namespace motorcade {
 
@@ -35,7 +35,7 @@ struct Gray16Image {
 
 /// True when the file's name says image (png, jpg, jpeg, pgm).
 bool hasImageName(const std::filesystem::path& file);
-/// Told from the first bytes; unknown also when the file cannot be read.
+/// Recognized by the first bytes; unknown also when the file cannot be read.
 ImageFormat imageFormat(const std::filesystem::path& file);
 /// From the header alone. Refuses sizes below 16 or above 16384 in either direction.
 ImageSize readImageSize(const std::filesystem::path& file);
@@ -45,7 +45,7 @@ Image readImage(const std::filesystem::path& file, ImagePool& pool);
 /// A gray PNG of 16 bits; one of 8 bits is widened without scaling.
 Gray16Image readPng16(const std::filesystem::path& file);
 
-/// `fast` trades a larger file for time.
+/// kFast trades a larger file for time.
 enum class PngEffort { kFast, kSmall };
 void writePng(const std::filesystem::path& file, const Image& image, PngEffort effort = PngEffort::kFast);
 void writePng16(const std::filesystem::path& file, const Gray16Image& image, PngEffort effort = PngEffort::kFast);

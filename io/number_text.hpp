@@ -6,8 +6,7 @@
 
 namespace motorcade {
 
-/// Appends `value` with `decimals` digits after the point; the same bytes for the same value on every machine and
-/// locale.
+/// Appends `value` with `decimals` digits after the point: the same bytes on every machine and in every locale.
 inline void appendFixed(std::string& text, double value, int decimals) {
   char buffer[400];
   const auto end = std::to_chars(buffer, buffer + sizeof(buffer), value + 0.0, std::chars_format::fixed, decimals).ptr;

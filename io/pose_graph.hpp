@@ -12,8 +12,7 @@
 
 namespace motorcade {
 
-/// A pose graph as g2o files state it: poses in the plane or poses in space, never both, and measured motions between
-/// them.
+/// A pose graph as in g2o files: poses, either all in the plane or all in space, and measured motions between them.
 struct PoseGraph {
   using Pose = std::variant<SE3, SE2>;
   /// 3x3 in the plane, 6x6 in space, translation first; positive definite. Without a heap allocation.
@@ -34,7 +33,7 @@ struct PoseGraph {
     enum class Kind { kNotFinite, kNotPositiveDefinite, kDuplicateVertex, kSelfEdge, kRepeatedEdge };
     Kind kind;
     int line;
-    std::string name;    // of whom: "pose 17", "edge from pose 3 to pose 4"
+    std::string name;    // its subject: "pose 17", "edge from pose 3 to pose 4"
     std::string detail;  // names the line and what became of it
     std::vector<std::int64_t> poses;
   };

@@ -77,8 +77,7 @@ struct RunFolder {
   bool complete() const { return !summary_json.empty(); }
 };
 
-/// Reads a run folder; throws InputError naming file and line. A line that was cut off when the run was killed is left
-/// out.
+/// Reads a run folder; throws InputError naming file and line. A last line that was cut off by a kill is ignored.
 RunFolder readRunFolder(const std::filesystem::path& folder);
 
 }  // namespace motorcade

@@ -50,13 +50,16 @@ struct Sequence {
 };
 
 /// Finds out what lies in a folder:
-///   plain     image_0 + image_1, image_00 + image_01, image_2 + image_3, image_02 + image_03 or left + right;
-///   calib.txt odometry  a plain folder sequences/NN whose poses are in poses/NN.txt tracking
-///   .../training/image_02/0003, or .../training/0003 for short; calib/0003.txt, oxts/0003.txt, label_02/0003.txt raw
-///   DATE/DATE_drive_NNNN_sync with image_00/data; DATE/calib_cam_to_cam.txt
+///   plain     calib.txt and two folders of images: image_0 + image_1, image_00 + image_01,
+///             image_2 + image_3, image_02 + image_03 or left + right
+///   odometry  a plain folder sequences/NN whose poses are in poses/NN.txt
+///   tracking  .../training/image_02/0003, or .../training/0003 for short;
+///             calib/0003.txt, oxts/0003.txt, label_02/0003.txt
+///   raw       DATE/DATE_drive_NNNN_sync with image_00/data; DATE/calib_cam_to_cam.txt
+///
 /// Where gray and color images are both there, the gray ones are taken. Without a file of times, frames come at
-/// `fps_hz`. Throws InputError naming the file and what to do about it. Single images are not read: a damaged one
-/// becomes a rejected frame later.
+/// `fps_hz`. Throws InputError naming the file and how to fix it. Single images are not read: a damaged one becomes a
+/// rejected frame later.
 Sequence openSequence(const std::filesystem::path& folder, double fps_hz = 10);
 
 }  // namespace motorcade

@@ -13,8 +13,8 @@
 namespace motorcade {
 
 /// Decodes a sequence's images on a thread of its own, a bounded number of pairs ahead of whoever takes them.
-/// Takes frames from one thread only. A pair that cannot be read, or has the wrong size, comes out with its `problem`
-/// told and no images.
+/// Takes frames from one thread only. A pair that cannot be read, or has the wrong size, comes out without images and
+/// with its `problem`.
 class SequenceDecoder {
  public:
   struct Params {

@@ -19,7 +19,7 @@ struct TextLine {
 /// What to do with a last line that has no line end: a program that was killed may have left half a line.
 enum class LastLine { kKeep, kDropIfCut };
 
-/// The lines of a file that are not blank. Accepts both line ends and a byte order mark; throws InputError when the
+/// The lines of a file that are not blank. Accepts both line ends and a byte order mark. Throws InputError when the
 /// file cannot be read.
 std::vector<TextLine> readLines(const std::filesystem::path& file, LastLine last_line = LastLine::kKeep);
 

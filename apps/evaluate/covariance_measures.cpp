@@ -10,7 +10,6 @@
 namespace motorcade {
 namespace {
 
-constexpr std::int64_t kCameraSpan = 10;    // frames between the poses of a camera covariance
 constexpr std::int64_t kEveryFrames = 5;    // errors of neighboring frames are nearly the same
 constexpr double kChiSquare95 = 12.591587;  // 95 % quantile, 6 degrees of freedom
 
@@ -38,9 +37,10 @@ CovarianceErrors cameraCovarianceErrors(const std::vector<ComparedFrame>& frames
   CovarianceErrors errors;
   for (const auto& row : rows) {
     const std::int64_t now = frames.empty() ? -1 : row.frame.value - frames.front().frame.value;
-    if (row.track.valid() || row.frame.value % kEveryFrames != 0 || now < kCameraSpan || now >= std::ssize(frames))
+    if (row.track.valid() || row.frame.value % kEveryFrames != 0 || now < kCameraCovarianceFrames ||
+        now >= std::ssize(frames))
       continue;
-    const auto &to = frames[now], &from = frames[now - kCameraSpan];
+    const auto &to = frames[now], &from = frames[now - kCameraCovarianceFrames];
     add(errors, from.T_world_cam.inverse() * to.T_world_cam, from.T_world_cam_true.inverse() * to.T_world_cam_true,
         row.covariance);
   }

@@ -13,7 +13,7 @@ struct CovarianceErrors {
   double coverage_95 = 0;  // share inside the 95 % region
 };
 
-/// The camera's motion over the last ten frames.
+/// The camera's motion over kCameraCovarianceFrames.
 CovarianceErrors cameraCovarianceErrors(const std::vector<ComparedFrame>& frames,
                                         const std::vector<RunFolder::CovarianceRow>& rows);
 /// Objects relative to the camera of the same frame, without each track's constant offset between body and box frame.

@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "core/is_finite.hpp"
+#include "core/se3.hpp"
 
 namespace motorcade {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "backend/smoother/object_pairs.hpp"
-#include "core/is_finite.hpp"
+#include "core/se3.hpp"
 #include "core/unknown_motion.hpp"
 
 namespace motorcade {

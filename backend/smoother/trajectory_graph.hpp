@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "backend/backend.hpp"
 #include "backend/smoother/factors.hpp"
 #include "backend/smoother/smoother_params.hpp"
 #include "backend/solver/incremental_solver.hpp"

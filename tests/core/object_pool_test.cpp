@@ -22,7 +22,7 @@ TEST(ObjectPool, AnObjectComesBackWithWhatItHolds) {
   EXPECT_EQ(pool.acquire()->values.data(), memory);
 }
 
-TEST(ObjectPool, NobodyGetsWhatIsStillHeld) {
+TEST(ObjectPool, AnObjectInUseIsNotHandedOutAgain) {
   ObjectPool<Numbers> pool;
   const auto first = pool.acquire(), copy = first, second = pool.acquire();
   EXPECT_NE(first, second);

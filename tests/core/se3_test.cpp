@@ -1,5 +1,6 @@
 #include "core/se3.hpp"
 
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -70,6 +71,13 @@ TEST(SE3, ScaledMotionComposesToTheWhole) {
     const SE3 half = scaledMotion(SE3::exp(xi), 0.5);
     EXPECT_THAT(half * half, IsNearPose(SE3::exp(xi), 1e-9));
   }
+}
+
+TEST(SE3, IsFiniteWhenAllItsNumbersAre) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(isFinite(SE3(Eigen::Matrix3d::Identity(), {1e300, 0, 0})));
+  EXPECT_FALSE(isFinite(SE3(Eigen::Matrix3d::Identity(), {0, kInfinity, 0})));
+  EXPECT_FALSE(isFinite(SE3(kNan * Eigen::Matrix3d::Identity(), {0, 0, 0})));
 }
 
 }  // namespace

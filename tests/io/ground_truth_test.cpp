@@ -33,8 +33,7 @@ TEST(GroundTruth, OxtsGiveTheReferencePosesInBothForms) {
   Sequence sequence = openSequence(kData / "kitti_tracking_0003");
   const auto uninterpolated = readCameraTruth(sequence, OxtsTimes::kUninterpolated);
   ASSERT_TRUE(uninterpolated);
-  constexpr double kPrinted =
-      2e-4;  // the reference has ten digits, over a path of 170 m; rotations in the calibration have seven
+  constexpr double kPrinted = 2e-4;  // the reference has ten digits over 170 m, the calibration's rotations seven
   EXPECT_LT(largestDifference(uninterpolated->T_world_cam,
                               readKittiPoses(kData / "kitti_tracking_0003/poses_oxts_uninterpolated.txt")),
             kPrinted);
@@ -131,8 +130,8 @@ TEST(GroundTruth, ColorPairMovesLabelsAndPosesIntoItsLeftCamera) {
   const auto truths = readObjectTruths(sequence, *readCameraTruth(sequence));
   ASSERT_EQ(truths->objects.size(), 1u);
   EXPECT_EQ(truths->ignored.size(), 1u);
-  EXPECT_NEAR(truths->objects[0].T_cam_object.translation().x(), 2.1,
-              1e-12);  // 70 px / 700 px further right as seen from camera 2
+  constexpr double kX_m = 2.1;  // camera 2 sees it 70 px / 700 px further right
+  EXPECT_NEAR(truths->objects[0].T_cam_object.translation().x(), kX_m, 1e-12);
   EXPECT_EQ(truths->objects[0].occluded, 1);
 }
 

@@ -76,7 +76,7 @@ class SimulatedTraffic {
   }
 
  private:
-  using Place = std::pair<int, int>;  // (car or -1 for the street, point)
+  using ScenePointIndex = std::pair<int, int>;  // (car or -1 for the street, point)
 
   static SE3 poseOf(const SimulatedCar& car) {
     Eigen::Matrix3d upright;  // columns: ahead = world z, left = -world x, up = -world y
@@ -109,24 +109,25 @@ class SimulatedTraffic {
   void seeCar(std::size_t c, int frame) {
     const bool gone = frame >= cars_[c].gone_from && frame < cars_[c].gone_until;
     const SE3 T_cam_car = carInCamera(c, frame);
-    const Eigen::Vector3d eye = T_cam_car.inverse() * Eigen::Vector3d(0, 0, 0);
+    const Eigen::Vector3d p_body_cam = T_cam_car.inverse() * Eigen::Vector3d(0, 0, 0);
     for (std::size_t i = 0; i < points_of_car_[c].size(); ++i) {
       const Eigen::Vector3d& p = points_of_car_[c][i];
       const bool on_end = std::abs(p.x()) == 2.1;
-      const bool faces_us = on_end ? p.x() * eye.x() > p.x() * p.x() : p.y() * eye.y() > p.y() * p.y();
-      see({static_cast<int>(c), static_cast<int>(i)}, T_cam_car * p, !gone && faces_us);
+      const bool faces_camera =
+          on_end ? p.x() * p_body_cam.x() > p.x() * p.x() : p.y() * p_body_cam.y() > p.y() * p.y();
+      see({static_cast<int>(c), static_cast<int>(i)}, T_cam_car * p, !gone && faces_camera);
     }
   }
 
   /// Extends the point's track; a point that comes back gets a new name.
-  void see(Place place, const Eigen::Vector3d& p_cam, bool visible) {
+  void see(ScenePointIndex index, const Eigen::Vector3d& p_cam, bool visible) {
     const auto uvd = visible ? look(p_cam, noise_) : std::nullopt;
     if (!uvd) {
-      name_.erase(place);
+      name_.erase(index);
       return;
     }
-    const auto [at, born] = name_.try_emplace(place, PointId{next_point_});
-    next_point_ += born;
+    const auto [at, created] = name_.try_emplace(index, PointId{next_point_});
+    next_point_ += created;
     PointTrack& track = seen_[at->second];
     track.point = at->second;
     track.add({trail_.newest().step, uvd->cast<float>(), kObservationSigma_px.cast<float>()});
@@ -156,7 +157,7 @@ class SimulatedTraffic {
   std::vector<std::vector<Eigen::Vector3d>> points_of_car_;
   std::vector<Eigen::Vector3d> street_;
   CameraTrail trail_;
-  std::map<Place, PointId> name_;
+  std::map<ScenePointIndex, PointId> name_;
   std::map<PointId, PointTrack> seen_;
   std::int64_t next_point_ = 0;
 };
