@@ -23,7 +23,7 @@ measure() {  # NAME SEQUENCE [OPTIONS ...]
       $1 == "memory" && NF == 21 { printf "%-22s %8s %8s %8s %8s %8s %8s %8s\n", name, cpu, $4, $7, $10, $13, $16, $19 }'
 }
 
-printf '%-22s %8s %8s %8s %8s %8s %8s %8s\n' "CPU ms per frame" all prepare stereo flow motion tracking optim.
+printf '%-22s %8s %8s %8s %8s %8s %8s %8s\n' "CPU ms per frame" all prepare stereo flow segment. tracking optim.
 for size in 621x187 878x265 1242x375; do measure "overtake $size" "$(rendered overtake $size 28)"; done
 for tracks in 250 500 1000 2000; do
   measure "$tracks tracks at most" "$data/kitti_tracking_0003" --range 0:60 --set frontend.optical_flow.max_tracks=$tracks

@@ -55,15 +55,15 @@ HeldDrive seenFaster(const OverloadOptions& options, std::size_t frames, std::si
   return HeldDrive(faster);
 }
 
-/// The stages, of which motion takes `pause` longer in one frame.
+/// The stages, of which scene flow segmentation takes `pause` longer in one frame.
 Stages withStall(Stages stages, FrameId frame, std::chrono::duration<double> pause) {
-  stages.scene_flow_segmentation = [motion = std::move(stages.scene_flow_segmentation), frame, pause, done = false](
+  stages.scene_flow_segmentation = [segment = std::move(stages.scene_flow_segmentation), frame, pause, done = false](
                                        const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow) mutable {
     if (!done && flow->features->frame->frame >= frame) {
       done = true;
       std::this_thread::sleep_for(pause);
     }
-    return motion(stereo, flow);
+    return segment(stereo, flow);
   };
   return stages;
 }
@@ -130,8 +130,8 @@ class OverloadBench {
       latencies_ms.push_back(result.timing.latency_ms());
     };
     const auto run = play(*playHeld(drive), live_, std::move(stages), {.rate_hz = camera_hz, .observer = observer});
-    const bool accounted =
-        report(stalling == Stalling::kConsumer ? "0.5 x, consumer stalls" : "0.5 x, motion stalls", camera_hz, run);
+    const bool accounted = report(
+        stalling == Stalling::kConsumer ? "0.5 x, consumer stalls" : "0.5 x, segmentation stalls", camera_hz, run);
     std::printf("    from the stall on:");
     for (std::size_t i = 0; i < std::min<std::size_t>(latencies_ms.size(), 12); ++i)
       std::printf(" %.0f", latencies_ms[i]);
