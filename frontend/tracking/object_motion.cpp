@@ -223,7 +223,7 @@ ObjectObservation ObjectMotionEstimator::firstObservation(const TrackedObject& o
 }
 
 std::vector<Parameter> parametersOf(ObjectMotionEstimator::Params& params) {
-  return {numberParameter("min_points", params.min_points, {2, 10},
+  return {numberParameter("min_points", params.min_points, {2, 7},
                           "fewer follow objects farther away, more follow them more surely")};
 }
 
