@@ -39,13 +39,14 @@ std::vector<SE3> mercatorPoses(const std::vector<OxtsPacket>& packets) {
   std::vector<SE3> poses;
   const double scale_m = kEarthRadius_m * (packets.empty() ? 1.0 : std::cos(packets.front().latitude_deg * kRadPerDeg));
   for (const auto& p : packets) {
-    const Eigen::Vector3d place_m{scale_m * p.longitude_deg * kRadPerDeg,
-                                  scale_m * std::log(std::tan((90 + p.latitude_deg) * kRadPerDeg / 2)), p.altitude_m};
+    const Eigen::Vector3d position_m{scale_m * p.longitude_deg * kRadPerDeg,
+                                     scale_m * std::log(std::tan((90 + p.latitude_deg) * kRadPerDeg / 2)),
+                                     p.altitude_m};
     using Eigen::AngleAxisd, Eigen::Vector3d;
     const Eigen::Quaterniond attitude = AngleAxisd(p.yaw_rad, Vector3d::UnitZ()) *
                                         AngleAxisd(p.pitch_rad, Vector3d::UnitY()) *
                                         AngleAxisd(p.roll_rad, Vector3d::UnitX());
-    poses.push_back({attitude.toRotationMatrix(), place_m});
+    poses.emplace_back(attitude.toRotationMatrix(), position_m);
   }
   return poses;
 }
@@ -68,6 +69,7 @@ std::vector<SE3> interpolated(const std::vector<SE3>& poses, const Sequence::Tru
                      std::to_string(poses.size()) + " packets");
   }
   std::vector<SE3> result;
+  result.reserve(image_stamps.size());
   for (const Timestamp stamp : image_stamps) result.push_back(poseAt(stamp, poses, packet_stamps));
   return result;
 }

@@ -63,16 +63,17 @@ RoadNetwork::RoadNetwork(std::vector<Road> roads) : roads_(std::move(roads)), al
       const Eigen::Vector2d& p = samples[i].position;
       const int column = static_cast<int>((p.x() - origin_x_m_) / kCell_m),
                 row = static_cast<int>((p.y() - origin_y_m_) / kCell_m);
+      const auto keepIfNearest = [&](int x, int y) {
+        const int index = y * columns_ + x;
+        const double d2 =
+            (p - Eigen::Vector2d(origin_x_m_ + (x + 0.5) * kCell_m, origin_y_m_ + (y + 0.5) * kCell_m)).squaredNorm();
+        if (d2 >= nearest[index]) return;
+        if (nearest[index] == std::numeric_limits<double>::max()) cells_[index].push_back({r, i});
+        cells_[index].back().sample = i;
+        nearest[index] = d2;
+      };
       for (int y = std::max(0, row - reach); y <= std::min(rows_ - 1, row + reach); ++y)
-        for (int x = std::max(0, column - reach); x <= std::min(columns_ - 1, column + reach); ++x) {
-          const int index = y * columns_ + x;
-          const double d2 =
-              (p - Eigen::Vector2d(origin_x_m_ + (x + 0.5) * kCell_m, origin_y_m_ + (y + 0.5) * kCell_m)).squaredNorm();
-          if (d2 >= nearest[index]) continue;
-          if (nearest[index] == std::numeric_limits<double>::max()) cells_[index].push_back({r, i});
-          cells_[index].back().sample = i;
-          nearest[index] = d2;
-        }
+        for (int x = std::max(0, column - reach); x <= std::min(columns_ - 1, column + reach); ++x) keepIfNearest(x, y);
     }
   }
 }

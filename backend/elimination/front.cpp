@@ -119,12 +119,11 @@ void Front::addSymmetric(Clique& clique, const ColumnOf& source, std::span<const
       const double* from = source(columns.from + j);
       double* to = column(clique, columns.to + j);
       addTo(to + columns.to + j, from + columns.from + j, columns.size - j);
-      for (const RowSpan& rows : below) {
-        if (rows.to > columns.to)
-          addTo(to + rows.to, from + rows.from, rows.size);
-        else  // above the diagonal
-          for (int i = 0; i < rows.size; ++i) column(clique, rows.to + i)[columns.to + j] += from[rows.from + i];
-      }
+      const auto addTransposed = [&](const RowSpan& rows) {  // what lies above the diagonal
+        for (int i = 0; i < rows.size; ++i) column(clique, rows.to + i)[columns.to + j] += from[rows.from + i];
+      };
+      for (const RowSpan& rows : below)
+        rows.to > columns.to ? addTo(to + rows.to, from + rows.from, rows.size) : addTransposed(rows);
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "frontend/motion/point_tracks.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "frontend/matching/ambiguous_texture.hpp"
@@ -119,10 +120,16 @@ bool PointTracks::isFoundAtRest(const PointTrack& track, const CameraTrail& trai
                {left_before, left_now, uvd_before.head<2>(), uvd_now.head<2>()});
 }
 
+std::vector<std::reference_wrapper<const PointTrack>> PointTracks::observedNow() const {
+  std::vector<std::reference_wrapper<const PointTrack>> observed;
+  std::ranges::copy_if(tracks_, std::back_inserter(observed), [&](const PointTrack& t) { return isObservedNow(t); });
+  return observed;
+}
+
 void PointTracks::setLabels(std::span<const ScenePoint> points) {
   auto point = points.begin();
   for (auto& track : tracks_)
-    if (ObservedAt{step_}(track)) track.label = (point++)->label;
+    if (isObservedNow(track)) track.label = (point++)->label;
 }
 
 std::vector<StereoCorrespondence> PointTracks::atRestSince(std::int64_t step) const {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
-#include <ranges>
 #include <span>
 #include <vector>
 
@@ -44,8 +44,9 @@ class PointTracks {
   void update(const OpticalFlow& flow, const std::vector<std::optional<StereoObservation>>& observed,
               const CameraTrail& trail);
 
-  /// The tracks that the last update extended, ordered by point: one per item of `observed` that is not empty.
-  auto observedNow() const { return std::views::filter(tracks_, ObservedAt{step_}); }
+  /// The tracks that the last update extended, ordered by point: one per item of `observed` that is not empty. Valid
+  /// until the next update.
+  std::vector<std::reference_wrapper<const PointTrack>> observedNow() const;
 
   /// `points` are those of `observedNow`, with the labels that the segmentation gave them.
   void setLabels(std::span<const ScenePoint> points);
@@ -57,10 +58,7 @@ class PointTracks {
   void shiftDisparities(float change_px);
 
  private:
-  struct ObservedAt {
-    std::int64_t step;
-    bool operator()(const PointTrack& track) const { return track.newest().step == step; }
-  };
+  bool isObservedNow(const PointTrack& track) const { return track.newest().step == step_; }
 
   std::vector<int> tracksOf(const OpticalFlow& flow) const;
   std::optional<KnownPoint> knownPoint(const PointTrack& track, const CameraTrail& trail) const;

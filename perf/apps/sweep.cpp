@@ -110,16 +110,19 @@ int sweep(const SweepOptions& options) {
   std::vector<Cell> cells;
   std::optional<ResultDigests> reference;
   bool same = true;
+  const auto measure = [&](Cell& cell) {
+    for (int repetition = 0; repetition < options.repeat; ++repetition) {
+      Playback run = playOnce(cell, material, options);
+      if (!reference) reference = run.digests;
+      same = sameResults(cell, run.digests, *reference) && same;
+      if (repetition == 0 || run.wall_s < cell.best.wall_s) cell.best = std::move(run);
+    }
+  };
   for (const std::string& source : options.sources) {
     for (const int threads : options.threads) {
       for (const int in_flight : options.in_flight) {
         Cell cell{.source = source, .threads = threads, .in_flight = in_flight, .best = {}};
-        for (int repetition = 0; repetition < options.repeat; ++repetition) {
-          Playback run = playOnce(cell, material, options);
-          if (!reference) reference = run.digests;
-          same = sameResults(cell, run.digests, *reference) && same;
-          if (repetition == 0 || run.wall_s < cell.best.wall_s) cell.best = std::move(run);
-        }
+        measure(cell);
         print(cell, material.decoding_cpu_ms);
         cells.push_back(std::move(cell));
       }

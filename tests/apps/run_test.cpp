@@ -68,7 +68,7 @@ class Run : public testing::Test {
 
   /// A copy of the rendered drive with one image cut short.
   fs::path damagedSequence() {
-    const fs::path copy = folder_ / "damaged";
+    fs::path copy = folder_ / "damaged";
     fs::copy(kSequence, copy, fs::copy_options::recursive);
     for (const auto& entry : fs::directory_iterator(copy / "image_0"))
       if (entry.path().stem() == "000003") fs::resize_file(entry.path(), 100);

@@ -3,7 +3,10 @@
 #include <fstream>
 #include <iterator>
 #include <numeric>
+#include <string>
+#include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "apps/synth/ground_truth.hpp"
@@ -159,6 +162,14 @@ TEST(SynthRenderer, NoiseDiffersBetweenTheEyesAndHasTheSizeAskedFor) {
   EXPECT_FALSE(std::equal(left.begin(), left.begin() + 100, right.begin()));
 }
 
+std::vector<Eigen::Vector2d> pixelsOf(const Rendering& rendering, int object) {
+  std::vector<Eigen::Vector2d> pixels;
+  for (int y = 0; y < kCamera.height_px; ++y)
+    for (int x = 0; x < kCamera.width_px; ++x)
+      if (rendering.object[indexOf(x, y)] == object) pixels.emplace_back(x, y);
+  return pixels;
+}
+
 TEST(SynthGroundTruth, LabelsAgreeWithPosesAndMasks) {
   for (const char* name : {"overtake", "urban", "convoy"}) {
     const Scene scene = makeScene(name, 4);
@@ -176,14 +187,10 @@ TEST(SynthGroundTruth, LabelsAgreeWithPosesAndMasks) {
         EXPECT_GT(uvd->y(), label.top_px);
         EXPECT_LT(uvd->y(), label.bottom_px);
       }
-      for (int y = 0; y < kCamera.height_px; ++y)
-        for (int x = 0; x < kCamera.width_px; ++x) {
-          if (left.object[indexOf(x, y)] != label.id) continue;
-          ASSERT_GE(x, label.left_px - 0.01) << name << " " << label.id;
-          ASSERT_LE(x, label.right_px + 0.01) << name << " " << label.id;
-          ASSERT_GE(y, label.top_px - 0.01) << name << " " << label.id;
-          ASSERT_LE(y, label.bottom_px + 0.01) << name << " " << label.id;
-        }
+      const Eigen::AlignedBox2d box(Eigen::Vector2d(label.left_px - 0.01, label.top_px - 0.01),
+                                    Eigen::Vector2d(label.right_px + 0.01, label.bottom_px + 0.01));
+      for (const Eigen::Vector2d& pixel : pixelsOf(left, label.id))
+        ASSERT_TRUE(box.contains(pixel)) << name << " " << label.id << " at " << pixel.transpose();
     }
   }
 }
@@ -214,6 +221,15 @@ TEST(SynthSequence, MoversCanBeLeftOut) {
   EXPECT_EQ(with.placed().size() - without.placed().size(), scene.movers.size());
 }
 
+/// Two vehicles by their ids, empty when none touch.
+std::string touchingPair(const std::vector<Placed>& vehicles) {
+  for (std::size_t i = 0; i < vehicles.size(); ++i)
+    for (std::size_t j = 0; j < vehicles.size(); ++j)
+      if (i != j && overlap(vehicles[i], vehicles[j], 0.1))
+        return std::to_string(vehicles[i].id) + " and " + std::to_string(vehicles[j].id);
+  return {};
+}
+
 TEST(SynthScenes, VehiclesNeverTouch) {
   const auto ego_model = std::make_shared<Model>();
   ego_model->length_m = 4.2F;
@@ -223,17 +239,12 @@ TEST(SynthScenes, VehiclesNeverTouch) {
       const Scene scene = makeScene(name, seed);
       for (int k = 0; k < scene.frames; k += 4) {
         const FrameScene frame(scene, k, true);
-        std::vector<Placed> vehicles;
-        for (const auto& placed : frame.placed())
-          if (placed.id >= 0) vehicles.push_back(placed);
         Placed ego;
         ego.model = ego_model;
         ego.T_map_body = scene.ego.trajectory.T_map_body(scene.time_s(k));
-        vehicles.push_back(ego);
-        for (std::size_t i = 0; i < vehicles.size(); ++i)
-          for (std::size_t j = 0; j < vehicles.size(); ++j)
-            ASSERT_FALSE(i != j && overlap(vehicles[i], vehicles[j], 0.1))
-                << name << " seed " << seed << " frame " << k << ": " << vehicles[i].id << " and " << vehicles[j].id;
+        std::vector<Placed> vehicles{ego};
+        std::ranges::copy_if(frame.placed(), std::back_inserter(vehicles), [](const Placed& p) { return p.id >= 0; });
+        ASSERT_EQ(touchingPair(vehicles), "") << name << " seed " << seed << " frame " << k;
       }
     }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -44,17 +45,13 @@ inline std::optional<std::set<std::array<int, 2>>> delaunayEdgesByDefinition(con
       for (int k = j + 1; k < n; ++k) {
         const Whole orientation = turn(at(i), at(j), at(k));
         if (orientation == 0) return std::nullopt;
-        bool empty = true, touched = false;
-        for (int l = 0; empty && l < n; ++l) {
-          if (l == i || l == j || l == k) continue;
-          const Whole side =
-              orientation > 0 ? circleSide(at(i), at(j), at(k), at(l)) : circleSide(at(i), at(k), at(j), at(l));
-          empty = side <= 0;
-          touched |= side == 0;
-        }
-        if (!empty) continue;
-        if (touched) return std::nullopt;
-        edges.insert({{i, j}, {i, k}, {j, k}});
+        Whole nearest = -1;  // positive with a point inside the circle, zero with one on it
+        for (int l = 0; nearest <= 0 && l < n; ++l)
+          if (l != i && l != j && l != k)
+            nearest = std::max(nearest, orientation > 0 ? circleSide(at(i), at(j), at(k), at(l))
+                                                        : circleSide(at(i), at(k), at(j), at(l)));
+        if (nearest == 0) return std::nullopt;
+        if (nearest < 0) edges.insert({{i, j}, {i, k}, {j, k}});
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -63,15 +64,16 @@ std::vector<int> distances(const Scene& scene, std::span<const VariableId> touch
   constexpr int kFar = 1 << 20;
   std::vector<int> distance(scene.graph.slots(), kFar);
   for (const VariableId v : touched) distance[v.value] = 0;
-  for (bool changed = true; changed;) {
-    changed = false;
+  bool changed = true;
+  const auto shorten = [&](VariableId from, VariableId to) {
+    if (distance[from.value] + 1 >= distance[to.value]) return;
+    distance[to.value] = distance[from.value] + 1;
+    changed = true;
+  };
+  while (std::exchange(changed, false)) {
     for (const FactorId f : scene.graph.factors())
       for (const VariableId u : scene.graph.factor(f).variables())
-        for (const VariableId v : scene.graph.factor(f).variables())
-          if (distance[u.value] + 1 < distance[v.value]) {
-            distance[v.value] = distance[u.value] + 1;
-            changed = true;
-          }
+        for (const VariableId v : scene.graph.factor(f).variables()) shorten(u, v);
   }
   return distance;
 }

@@ -30,6 +30,13 @@ TEST(IncrementalSolver, ConvergesToTheBatchSolutionOfRandomMultibodyGraphs) {
   }
 }
 
+void removeSomeObjectEncounters(IncrementalSolver& solver, MultibodyGraph& graph) {
+  for (const FactorId f : solver.graph().factors()) {
+    if (solver.graph().factor(f).variables().size() != 4 || graph.random().below(3) != 0) continue;
+    if (dynamic_cast<const ObjectEncounterFactor*>(&solver.graph().factor(f))) solver.removeFactor(f);
+  }
+}
+
 TEST(IncrementalSolver, StaysEqualToBatchWhenFactorsAndVariablesComeAndGo) {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     IncrementalSolver solver(kExact);
@@ -37,12 +44,7 @@ TEST(IncrementalSolver, StaysEqualToBatchWhenFactorsAndVariablesComeAndGo) {
     for (int i = 0; i < 30; ++i) {
       graph.addFrame();
       // Object-object encounters may go at any time: nothing hangs on them alone.
-      if (i % 5 == 4) {
-        for (const FactorId f : solver.graph().factors()) {
-          if (solver.graph().factor(f).variables().size() != 4 || graph.random().below(3) != 0) continue;
-          if (dynamic_cast<const ObjectEncounterFactor*>(&solver.graph().factor(f))) solver.removeFactor(f);
-        }
-      }
+      if (i % 5 == 4) removeSomeObjectEncounters(solver, graph);
       solver.update();
       if (i >= 8) solver.retire(graph.takeOldest());
     }

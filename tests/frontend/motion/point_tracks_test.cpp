@@ -116,7 +116,7 @@ TEST(PointTracks, ATrackEndsWhenOpticalFlowNoLongerFollowsItsPoint) {
   EXPECT_FALSE(drive.known(kA));
   drive.observe({kA, kB});
   EXPECT_EQ(drive.observedNow(), (std::vector{kA, kB}));
-  EXPECT_EQ((*drive.tracks.observedNow().begin()).count, 1);
+  EXPECT_EQ(drive.tracks.observedNow().front().get().count, 1);
 }
 
 TEST(PointTracks, NothingIsKnownOfAPointThatTheTrailHasForgotten) {
@@ -148,7 +148,7 @@ TEST(PointTracks, AllDisparitiesFollowTheOffset) {
   const double before_px = drive.known(kA)->disparity_px;
   drive.tracks.shiftDisparities(0.5F);
   EXPECT_NEAR(drive.known(kA)->disparity_px, before_px + 0.5, 1e-5);
-  const PointTrack& track = *drive.tracks.observedNow().begin();
+  const PointTrack& track = drive.tracks.observedNow().front();
   EXPECT_NEAR(track.oldest().uvd_px.z(), kRig.project(kPoint)->z() + 0.5, 1e-4);
 }
 
