@@ -22,7 +22,7 @@ namespace {
 const StereoCamera kCamera = kittiCamera(414, 125);
 const RenderOptions kNoNoise{.threads = 2, .noise_levels = 0, .equal_gains = true};
 
-std::size_t indexOf(int x, int y) { return static_cast<std::size_t>(y * kCamera.width_px + x); }
+int indexOf(int x, int y) { return y * kCamera.width_px + x; }
 
 Eigen::Vector3d behindPixel(const Rendering& left, int x, int y) {
   return kCamera.triangulate({static_cast<double>(x), static_cast<double>(y),
@@ -257,9 +257,9 @@ TEST(SynthScenes, EverythingMovesSmoothly) {
     for (const auto& mover : scene.movers) trajectories.push_back(mover.trajectory);
     for (const auto& trajectory : trajectories) {
       const auto acceleration = [&](double t) -> Eigen::Vector3d {
-        constexpr double h = 0.05;
+        constexpr double kH_s = 0.05;
         const auto p = [&](double at) { return trajectory.T_map_body(at).translation(); };
-        return (p(t + h) - 2 * p(t) + p(t - h)) / (h * h);
+        return (p(t + kH_s) - 2 * p(t) + p(t - kH_s)) / (kH_s * kH_s);
       };
       for (double t = 0.1; t < scene.frames * scene.frame_s; t += 0.1) {
         EXPECT_LT(acceleration(t).norm(), kMaxAcceleration) << name << " at " << t;

@@ -40,7 +40,7 @@ class Drive {
     std::vector<std::optional<StereoObservation>> observed;
     for (const PointId point : points) {
       const Eigen::Vector3d p = p_cam(point);
-      observed.push_back(StereoObservation{kRig.project(p)->cast<float>(), Eigen::Vector3f::Constant(0.3F)});
+      observed.emplace_back(StereoObservation{kRig.project(p)->cast<float>(), Eigen::Vector3f::Constant(0.3F)});
       if (point == missing) observed.back().reset();
     }
     tracks.update(flow(points), observed, trail);
