@@ -34,7 +34,7 @@ class TwoSurfaces {
     for (int i = 0; i < kWallPoints + kCarPoints; ++i) {
       const Eigen::Vector3f uvd = uvd_px({i}, frame).cast<float>();
       features->corners.push_back({uvd.x(), uvd.y(), 1});
-      matches->of_corner.push_back(StereoMatch{uvd.z(), 0.2F});
+      matches->of_corner.emplace_back(StereoMatch{uvd.z(), 0.2F});
     }
     matches->features = features;
     return matches;

@@ -29,7 +29,7 @@ class TemporaryFolder {
 
   /// Writes a file, with the folders that it needs.
   std::filesystem::path write(const std::filesystem::path& name, std::string_view content) const {
-    const auto file = path_ / name;
+    auto file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
     std::ofstream(file, std::ios::binary) << content;
     return file;

@@ -35,7 +35,7 @@ struct Views {
       if (!o) continue;
       known.push_back(KnownPoint{kRig.triangulate(*kRig.project(p)), test::triangulationCovariance(*kRig.project(p)),
                                  kRig.project(p)->z(), false});
-      observed.push_back(StereoObservation{o->uvd_px.cast<float>(), o->sigma_px.cast<float>()});
+      observed.emplace_back(StereoObservation{o->uvd_px.cast<float>(), o->sigma_px.cast<float>()});
       if (known.size() % 10 == 0) known.back().reset();
       if (known.size() % 10 == 5) observed.back().reset();
     }
