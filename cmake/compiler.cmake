@@ -12,7 +12,7 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   add_compile_options(-fpch-preprocess)
 endif()
 # The compiler's own garbage collection costs an eighth of its time at the default of 128 MB.
-add_compile_options(--param=ggc-min-heapsize=1000000)
+add_compile_options($<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
 
 # One library per folder: `motorcade_library(core a.cpp b.cpp)` makes motorcade_core and motorcade::core.
 function(motorcade_library folder)
