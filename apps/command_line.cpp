@@ -42,6 +42,8 @@ void addRun(CLI::App& app, Action& action) {
   command->callback([options, &action] { action = [options] { return runSequence(*options); }; });
 }
 
+constexpr double kMostRigOffset_px = 64;  // far beyond what a rectification can be off and a matcher can bridge
+
 void addSynth(CLI::App& app, Action& action) {
   const auto options = std::make_shared<SynthOptions>();
   CLI::App* command = app.add_subcommand("synth", "Render a stereo sequence with exact ground truth");
@@ -55,6 +57,15 @@ void addSynth(CLI::App& app, Action& action) {
   command->add_option("--threads", options->threads, "rendering threads; all processors when absent")
       ->check(CLI::PositiveNumber);
   command->add_flag("--without-movers", options->without_movers, "the same scene without its moving vehicles");
+  const CLI::Range offsets(-kMostRigOffset_px, kMostRigOffset_px);
+  command
+      ->add_option("--disparity-offset", options->rig_error.disparity_offset_px,
+                   "true minus measured disparity, of a rig that is off by a constant: calib.txt stays as it is [px]")
+      ->check(offsets);
+  command
+      ->add_option("--row-offset", options->rig_error.row_offset_px,
+                   "rows by which the right image's content lies too low; calib.txt stays as it is [px]")
+      ->check(offsets);
   command->callback([options, &action] { action = [options] { return runSynth(*options); }; });
 }
 

@@ -30,6 +30,14 @@ void makeFolders(const fs::path& folder) {
   }
 }
 
+/// The right camera as it really is: its principal point lies elsewhere than the calibration says.
+StereoCamera rightCamera(const WriteOptions& options) {
+  StereoCamera camera = options.camera;
+  camera.cx_px += options.rig_error.disparity_offset_px;
+  camera.cy_px += options.rig_error.row_offset_px;
+  return camera;
+}
+
 /// The gray pair as P0 and P1; P2 and P3 repeat it for readers that ask for the color pair.
 void writeCalibration(const fs::path& file, const StereoCamera& c) {
   std::string text;
@@ -94,7 +102,7 @@ void writeSequence(const Scene& scene, const fs::path& folder, const WriteOption
   for (int k = 0; k < frames; ++k) {
     const FrameScene frame(scene, k, options.with_movers);
     const Rendering left = render(frame, options.camera, StereoSide::kLeft, options.render);
-    const Rendering right = render(frame, options.camera, StereoSide::kRight, options.render);
+    const Rendering right = render(frame, rightCamera(options), StereoSide::kRight, options.render);
     const std::string name = format("%06d.png", k);
     writePng(folder / "image_0" / name, left.image);
     writePng(folder / "image_1" / name, right.image);

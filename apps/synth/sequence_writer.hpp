@@ -8,15 +8,23 @@
 
 namespace motorcade::synth {
 
+/// By how much the images of a rig disagree with its calibration: a rectification that is off by a constant.
+struct RigError {
+  double disparity_offset_px = 0;  // true minus measured disparity: the right image's content lies too far right
+  double row_offset_px = 0;        // the right image's content lies too low
+};
+
 struct WriteOptions {
   int frames = 0;  // 0: as many as the scene has
   bool with_movers = true;
   StereoCamera camera = kittiCamera();
+  RigError rig_error;
   RenderOptions render;
   std::function<void(int done, int frames)> progress;  // called after each frame
 };
 
-/// Renders a scene into a folder in the plain KITTI layout, ground truth included.
+/// Renders a scene into a folder in the plain KITTI layout, ground truth included. Calibration and truth are those of
+/// the camera without the rig's error.
 /// Throws OutputError, naming the file, when something cannot be written.
 void writeSequence(const Scene& scene, const std::filesystem::path& folder, const WriteOptions& options);
 

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include "apps/synth/scene_builder.hpp"
-#include "apps/synth/sequence_writer.hpp"
 #include "io/errors.hpp"
 
 namespace motorcade {
@@ -46,6 +45,7 @@ int runSynth(const SynthOptions& options) {
   writing.frames = options.frames;
   writing.with_movers = !options.without_movers;
   writing.camera = camera;
+  writing.rig_error = options.rig_error;
   writing.render.threads =
       options.threads > 0 ? options.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const auto start = std::chrono::steady_clock::now();

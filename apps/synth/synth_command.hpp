@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/synth/sequence_writer.hpp"
+
 namespace motorcade {
 
 struct SynthOptions {
@@ -11,6 +13,7 @@ struct SynthOptions {
   int frames = 0, threads = 0;   // 0: the scene's own length, all processors
   std::uint32_t seed = 1;
   bool without_movers = false;
+  synth::RigError rig_error;
 };
 
 /// The scenes that there are.
