@@ -5,7 +5,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "apps/evaluate/object_measures.hpp"
+#include "apps/evaluate/object_positions.hpp"
 
 namespace motorcade {
 namespace {

@@ -21,11 +21,17 @@ std::optional<TrajectoryErrors> cameraErrors(const std::vector<ComparedFrame>& f
 }
 
 KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
-  return {.frames = frames.size(),
-          .camera = cameraErrors(frames),
-          .objects = objectErrors(frames),
-          .motion = motionErrors(frames),
-          .detection = detectionErrors(frames)};
+  KindEvaluation kind{.frames = frames.size(),
+                      .camera = cameraErrors(frames),
+                      .objects = objectErrors(frames),
+                      .mean_positions = {},
+                      .motion = motionErrors(frames),
+                      .detection = detectionErrors(frames)};
+  std::vector<PositionErrors> positions;
+  for (const auto& object : kind.objects)
+    if (object.positions) positions.push_back(*object.positions);
+  kind.mean_positions = meanOf(positions);
+  return kind;
 }
 
 CameraTruth neededTruth(const Sequence& sequence, bool uninterpolated) {
@@ -52,18 +58,7 @@ std::vector<SE3> baselinePoses(const std::filesystem::path& file, std::int64_t f
 
 void compareCameras(Evaluation& evaluation, const KindEvaluation& baseline) {
   if (!evaluation.final.camera || !baseline.camera) return;
-  evaluation.against_baseline.push_back({"camera", evaluation.final.camera->ate_m.rmse, baseline.camera->ate_m.rmse});
-}
-
-void compareObjects(Evaluation& evaluation, const KindEvaluation& baseline) {
-  std::map<std::int64_t, const ObjectErrors*> theirs;
-  for (const auto& object : baseline.objects) theirs[object.label] = &object;
-  for (const auto& ours : evaluation.final.objects) {
-    const auto found = theirs.find(ours.label);
-    if (found == theirs.end() || !ours.trajectory || !found->second->trajectory) continue;
-    evaluation.against_baseline.push_back(
-        {"object " + std::to_string(ours.label), ours.trajectory->ate_m.rmse, found->second->trajectory->ate_m.rmse});
-  }
+  evaluation.camera_against_baseline = {evaluation.final.camera->ate_m.rmse, baseline.camera->ate_m.rmse};
 }
 
 void countFrames(Evaluation& evaluation, const RunFolder& run) {
@@ -98,6 +93,11 @@ std::string truthRow(const TrueObject& object) {
 
 }  // namespace
 
+double Evaluation::latencyQuantile_ms(double part) const {
+  if (latency_ms.empty()) return 0;
+  return latency_ms[static_cast<std::size_t>(part * static_cast<double>(latency_ms.size() - 1) + 0.5)];
+}
+
 KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequence, OxtsTimes times) {
   const CameraTruth camera = neededTruth(sequence, times == OxtsTimes::kUninterpolated);
   return evaluateFrames(compareFrames({poses, {}}, 0, camera, nullptr, sequence.stamps));
@@ -129,9 +129,9 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   }
   if (!options.baseline_run.empty()) {
     const RunFolder other = readRunFolder(options.baseline_run);
-    const KindEvaluation theirs = evaluateFrames(compare(other.final, other.first_frame));
-    if (options.baseline.empty()) compareCameras(evaluation, theirs);
-    compareObjects(evaluation, theirs);
+    const auto theirs = compare(other.final, other.first_frame);
+    if (options.baseline.empty()) compareCameras(evaluation, evaluateFrames(theirs));
+    evaluation.objects_against_baseline = compareRuns(followedLabels(final), followedLabels(theirs));
   }
   if (!options.export_truth.empty()) exportTruth(options.export_truth, sequence, camera, truths);
   return evaluation;

@@ -7,6 +7,7 @@
 
 #include "apps/evaluate/covariance_measures.hpp"
 #include "apps/evaluate/object_measures.hpp"
+#include "apps/evaluate/run_comparison.hpp"
 #include "apps/evaluate/trajectory_error.hpp"
 #include "io/run_folder.hpp"
 #include "io/sequence.hpp"
@@ -28,13 +29,13 @@ struct KindEvaluation {
   std::size_t frames = 0;
   std::optional<TrajectoryErrors> camera;
   std::vector<ObjectErrors> objects;
+  MeanPositionErrors mean_positions;
   MotionErrors motion;
   DetectionErrors detection;
 };
 
-/// (ATE_baseline - ATE_ours) / ATE_baseline of final estimates, SE(3) aligned RMSE.
+/// (ATE_baseline - ATE_ours) / ATE_baseline of the camera's final path, SE(3) aligned RMSE.
 struct RelativeError {
-  std::string what;  // camera, or object and its label
   double ours_m = 0, baseline_m = 0;
   double relative() const { return baseline_m > 0 ? (baseline_m - ours_m) / baseline_m : 0; }
 };
@@ -48,8 +49,10 @@ struct Evaluation {
   std::string camera_source, object_source;  // the latter empty without labels
   KindEvaluation final, online;
   CovarianceErrors camera_covariance, object_covariance;
-  std::vector<RelativeError> against_baseline;
-  std::vector<double> latency_ms;  // sorted
+  std::optional<RelativeError> camera_against_baseline;
+  std::optional<RunComparison> objects_against_baseline;  // final estimates
+  std::vector<double> latency_ms;                         // sorted
+  double latencyQuantile_ms(double part) const;
 };
 
 /// Measures a run against the truth of its sequence. Throws InputError where one of them cannot be read or is missing.

@@ -20,6 +20,7 @@ struct TrueObject {
   double speed_mps = 0;     // over +/-3 frames
   int visible_before = 0;   // counted frames of this label before this one
   double range_m() const;   // from the camera, on the ground
+  bool asked() const { return counted && moving; }
 };
 
 /// One row of the run and the label that it was matched to.

@@ -12,8 +12,6 @@ namespace {
 constexpr double kNear_m = 30, kFar_m = 50;  // bounds of the two ranges that recall is counted in
 constexpr double kSigmas95 = 1.96;           // half the width of the 95 % interval of a Gaussian
 
-bool asked(const TrueObject& object) { return object.counted && object.moving; }
-
 /// A match of a reported row with a label that is asked for.
 struct Pair {
   const ComparedFrame* frame;
@@ -27,7 +25,7 @@ std::vector<Pair> askedPairs(const std::vector<ComparedFrame>& frames) {
     for (const auto& row : frame.rows) {
       if (row.object < 0 || !row.reported()) continue;
       const TrueObject& object = frame.objects[row.object];
-      if (asked(object)) pairs.push_back({&frame, &object, &row});
+      if (object.asked()) pairs.push_back({&frame, &object, &row});
     }
   }
   return pairs;
@@ -41,20 +39,11 @@ SE3 motionError(const Pair& before, const Pair& now) {
   return now.object->truth.T_world_object.inverse() * H * before.object->truth.T_world_object;
 }
 
-/// The pairs of the track that followed a label longest, and how many there were.
-std::pair<std::vector<Pair>, int> longestTrack(const std::vector<Pair>& pairs) {
-  std::map<TrackId, std::vector<Pair>> tracks;
-  for (const auto& pair : pairs) tracks[pair.row->row.object.track].push_back(pair);
-  const auto longest = std::ranges::max_element(tracks, {}, [](const auto& track) { return track.second.size(); });
-  return longest == tracks.end() ? std::pair(std::vector<Pair>(), 0)
-                                 : std::pair(longest->second, static_cast<int>(tracks.size()));
-}
-
-std::optional<TrajectoryErrors> bodyTrajectoryErrors(const std::vector<Pair>& pairs) {
+std::optional<TrajectoryErrors> bodyTrajectoryErrors(const FollowedLabel& followed) {
   std::vector<SE3> bodies, labels;
-  for (const auto& pair : pairs) {
-    bodies.push_back(pair.row->row.object.T_world_body);
-    labels.push_back(pair.object->truth.T_world_object);
+  for (const auto& frame : followed.frames) {
+    bodies.push_back(frame.T_world_body);
+    labels.push_back(frame.T_world_label);
   }
   auto errors = trajectoryErrors(bodies, labels);
   if (!errors) return errors;
@@ -127,7 +116,7 @@ void countLabels(const ComparedFrame& frame, DetectionErrors& errors) {
     if (row.reported()) found.insert(row.object);
   for (std::size_t j = 0; j < frame.objects.size(); ++j) {
     const TrueObject& object = frame.objects[j];
-    if (!asked(object) || object.range_m() > kFar_m) continue;
+    if (!object.asked() || object.range_m() > kFar_m) continue;
     const bool is_found = found.contains(static_cast<int>(j)), near = object.range_m() <= kNear_m;
     count(near ? errors.within_30m : errors.from_30_to_50m, is_found);
     constexpr int kFirstFrames = 4;  // in which a tracker may still be confirming the object
@@ -138,13 +127,13 @@ void countLabels(const ComparedFrame& frame, DetectionErrors& errors) {
 
 void addToHota(const ComparedFrame& frame, HotaSums& sums) {
   for (const auto& object : frame.objects) {
-    if (!asked(object) || object.range_m() > kFar_m) continue;
+    if (!object.asked() || object.range_m() > kFar_m) continue;
     ++sums.labels;
     ++sums.label_frames[object.truth.id];
   }
   for (const auto& row : frame.rows) {
     const TrueObject* object = row.object < 0 ? nullptr : &frame.objects[row.object];
-    const bool of_interest = object && asked(*object) && object->range_m() <= kFar_m;
+    const bool of_interest = object && object->asked() && object->range_m() <= kFar_m;
     if (object && object->ever_moves && !of_interest) continue;  // counts neither as right nor as wrong
     ++sums.rows;
     ++sums.track_frames[row.row.object.track];
@@ -153,19 +142,6 @@ void addToHota(const ComparedFrame& frame, HotaSums& sums) {
 }
 
 }  // namespace
-
-SE3 bodyOffset(const std::vector<SE3>& bodies, const std::vector<SE3>& labels) {
-  if (bodies.empty()) return {};
-  // The tangent-space mean, starting at the middle pair; three rounds suffice for spreads of some degrees.
-  constexpr int kRounds = 3;
-  SE3 mean = bodies[bodies.size() / 2].inverse() * labels[bodies.size() / 2];
-  for (int round = 0; round < kRounds; ++round) {
-    Vector6d step = Vector6d::Zero();
-    for (std::size_t i = 0; i < bodies.size(); ++i) step += (mean.inverse() * bodies[i].inverse() * labels[i]).log();
-    mean = mean * SE3::exp(step / static_cast<double>(bodies.size()));
-  }
-  return mean;
-}
 
 MotionErrors motionErrors(const std::vector<ComparedFrame>& frames, std::optional<std::int64_t> label) {
   std::map<std::pair<std::int64_t, TrackId>, Pair> last;
@@ -200,22 +176,26 @@ std::vector<ObjectErrors> objectErrors(const std::vector<ComparedFrame>& frames)
   std::map<std::int64_t, ObjectErrors> by_label;
   for (const auto& frame : frames) {
     for (const auto& object : frame.objects) {
-      if (!asked(object)) continue;
+      if (!object.asked()) continue;
       ObjectErrors& errors = by_label[object.truth.id];
       errors.label = object.truth.id;
       errors.type = object.truth.type;
       ++errors.labeled_frames;
     }
   }
-  std::map<std::int64_t, std::vector<Pair>> pairs;
-  for (const auto& pair : askedPairs(frames)) pairs[pair.object->truth.id].push_back(pair);
+  std::map<std::int64_t, FollowedLabel> longest;
+  for (const auto& followed : followedLabels(frames)) {
+    ObjectErrors& errors = by_label[followed.label];
+    errors.followed_frames += static_cast<int>(followed.frames.size());
+    ++errors.tracks;
+    if (longest[followed.label].frames.size() < followed.frames.size()) longest[followed.label] = followed;
+  }
   std::vector<ObjectErrors> result;
   for (auto& [label, errors] : by_label) {
-    const auto [track, count_of_tracks] = longestTrack(pairs[label]);
-    errors.followed_frames = static_cast<int>(pairs[label].size());
-    errors.tracks = count_of_tracks;
-    if (!track.empty()) errors.track = track.front().row->row.object.track;
-    errors.trajectory = bodyTrajectoryErrors(track);
+    const FollowedLabel& followed = longest[label];
+    errors.track = followed.track;
+    errors.trajectory = bodyTrajectoryErrors(followed);
+    errors.positions = positionErrors(followed);
     errors.motion = motionErrors(frames, label);
     result.push_back(std::move(errors));
   }

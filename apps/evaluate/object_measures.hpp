@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/evaluate/object_matching.hpp"
+#include "apps/evaluate/object_positions.hpp"
 #include "apps/evaluate/trajectory_error.hpp"
 
 /// How well objects were found, followed and measured. All over labels that are counted and move.
@@ -29,6 +30,7 @@ struct ObjectErrors {
   int tracks = 0;
   /// Of the body's origin, SE(3) aligned; "first pose" aligns by the body frame at the first match.
   std::optional<TrajectoryErrors> trajectory;
+  std::optional<PositionErrors> positions;
   MotionErrors motion;
 };
 
@@ -50,8 +52,5 @@ struct DetectionErrors {
 MotionErrors motionErrors(const std::vector<ComparedFrame>& frames, std::optional<std::int64_t> label = {});
 std::vector<ObjectErrors> objectErrors(const std::vector<ComparedFrame>& frames);
 DetectionErrors detectionErrors(const std::vector<ComparedFrame>& frames);
-
-/// The constant X that brings estimated body frames to the labels' box frames, label = body * X, averaged over pairs.
-SE3 bodyOffset(const std::vector<SE3>& bodies, const std::vector<SE3>& labels);
 
 }  // namespace motorcade

@@ -237,9 +237,12 @@ TEST_F(EvaluateDrive, BaselinesGiveRelativeErrors) {
   options_.baseline = folder_ / "filter/camera_final.txt";
   options_.baseline_run = folder_ / "filter";
   const Evaluation evaluation = evaluateRun(options_);
-  ASSERT_EQ(evaluation.against_baseline.size(), 2u);
-  for (const auto& r : evaluation.against_baseline) EXPECT_NEAR(r.relative(), 0.5, 0.01) << r.what;  // half the bend
-  EXPECT_EQ(evaluation.against_baseline[1].what, "object 7");
+  EXPECT_NEAR(evaluation.camera_against_baseline->relative(), 0.5, 0.01);  // half the bend
+  ASSERT_EQ(evaluation.objects_against_baseline->objects.size(), 1U);
+  const ComparedObject& object = evaluation.objects_against_baseline->objects[0];
+  EXPECT_EQ(object.label, 7);
+  EXPECT_NEAR(object.relativeError(static_cast<std::size_t>(PositionKind::kAligned)), 0.5, 0.01);
+  EXPECT_NEAR(object.relativeError(static_cast<std::size_t>(PositionKind::kWorldOffsetRemoved)), 0.5, 0.01);
   folder_.write("short.txt", kittiLine(SE3()) + "\n");
   options_.baseline = folder_ / "short.txt";
   EXPECT_THAT(messageOf<InputError>([&] { evaluateRun(options_); }), HasSubstr("short.txt"));

@@ -1,0 +1,155 @@
+#include <nlohmann/json.hpp>
+
+#include "apps/evaluate/report.hpp"
+
+namespace motorcade {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json jsonOf(const Statistics& s) {
+  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"max", s.max}, {"count", s.count}};
+}
+
+Json jsonOf(const std::optional<TrajectoryErrors>& errors) {
+  if (!errors) return nullptr;
+  return {{"ate_m", jsonOf(errors->ate_m)},       {"ate_first_pose_m", jsonOf(errors->ate_first_pose_m)},
+          {"are_deg", jsonOf(errors->are_deg)},   {"rpe_t_m", jsonOf(errors->rpe_m)},
+          {"rpe_r_deg", jsonOf(errors->rpe_deg)}, {"end_error_percent", errors->end_percent},
+          {"path_length_m", errors->length_m}};
+}
+
+Json jsonOf(const MotionErrors& errors) {
+  return {{"me_t_m", jsonOf(errors.me_m)},
+          {"me_r_deg", jsonOf(errors.me_deg)},
+          {"speed_error_mps", jsonOf(errors.speed_mps)},
+          {"speed_bias_mps", errors.speed_bias_mps},
+          {"speed_coverage_95", errors.speed_coverage}};
+}
+
+Json jsonOf(const DetectionCounts& counts) {
+  return {{"labels", counts.labels}, {"found", counts.found}, {"recall", counts.recall()}};
+}
+
+Json jsonOf(const DetectionErrors& errors) {
+  return {{"within_30m", jsonOf(errors.within_30m)},
+          {"from_30_to_50m", jsonOf(errors.from_30_to_50m)},
+          {"within_30m_from_fifth_frame", jsonOf(errors.within_30m_from_fifth)},
+          {"from_30_to_50m_from_fifth_frame", jsonOf(errors.from_30_to_50m_from_fifth)},
+          {"rows", errors.rows},
+          {"false_rows", errors.false_rows},
+          {"false_rows_unlabeled", errors.false_rows_unlabeled},
+          {"false_rows_in_dont_care", errors.false_rows_in_ignored},
+          {"id_switches", errors.id_switches},
+          {"mota", errors.mota},
+          {"hota", errors.hota},
+          {"det_a", errors.det_a},
+          {"ass_a", errors.ass_a}};
+}
+
+Json jsonOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+/// A number per kind of position, by the kinds' names.
+template <class NumberOf>
+Json byPositionKind(const NumberOf& number_of) {
+  Json json;
+  for (std::size_t kind = 0; kind < kPositionKinds; ++kind) json[kPositionKindNames[kind]] = number_of(kind);
+  return json;
+}
+
+Json jsonOf(const std::optional<PositionErrors>& errors) {
+  if (!errors) return nullptr;
+  return {{"frames", errors->frames},
+          {"ate_m", byPositionKind([&](std::size_t kind) { return jsonOf(errors->ate_m[kind]); })},
+          {"are_deg", jsonOf(errors->are_deg)},
+          {"are_as_seen_deg", jsonOf(errors->are_as_seen_deg)},
+          {"origin_drift_m", errors->origin_drift_m ? jsonOf(*errors->origin_drift_m) : Json()}};
+}
+
+Json jsonOf(const MeanPositionErrors& mean) {
+  return {{"objects", mean.objects},
+          {"least_frames", kLeastFramesOfMean},
+          {"ate_rmse_m", byPositionKind([&](std::size_t kind) { return mean.ate_m[kind]; })},
+          {"are_rmse_deg", mean.are_deg},
+          {"are_as_seen_rmse_deg", mean.are_as_seen_deg},
+          {"largest_origin_drift_m", jsonOf(mean.largest_drift_m)}};
+}
+
+Json jsonOf(const RelativeError& error) {
+  return {{"ate_ours_m", error.ours_m}, {"ate_baseline_m", error.baseline_m}, {"relative_error", error.relative()}};
+}
+
+Json jsonOf(const ComparedObject& object) {
+  return {{"label", object.label},
+          {"track_id", object.track.value},
+          {"baseline_track_id", object.baseline_track.value},
+          {"common_frames", object.ours.frames},
+          {"relative_error", byPositionKind([&](std::size_t kind) { return object.relativeError(kind); })},
+          {"ours", jsonOf(std::optional(object.ours))},
+          {"baseline", jsonOf(std::optional(object.baseline))}};
+}
+
+Json jsonOf(const RunComparison& comparison) {
+  Json each = Json::array();
+  for (const auto& object : comparison.objects) each.push_back(jsonOf(object));
+  return {
+      {"objects_of_mean", comparison.objects_of_mean},
+      {"least_frames", kLeastFramesOfMean},
+      {"mean_relative_error", byPositionKind([&](std::size_t kind) { return comparison.mean_relative_error[kind]; })},
+      {"objects", std::move(each)}};
+}
+
+Json jsonOf(const ObjectErrors& object) {
+  return {{"label", object.label},
+          {"type", object.type},
+          {"track_id", object.track.value},
+          {"labeled_frames", object.labeled_frames},
+          {"followed_frames", object.followed_frames},
+          {"tracks", object.tracks},
+          {"trajectory", jsonOf(object.trajectory)},
+          {"position", jsonOf(object.positions)},
+          {"motion", jsonOf(object.motion)}};
+}
+
+Json jsonOf(const KindEvaluation& kind, bool with_objects) {
+  Json json = {{"frames", kind.frames}, {"camera", jsonOf(kind.camera)}};
+  if (!with_objects) return json;
+  json["objects"] = Json::array();
+  for (const auto& object : kind.objects) json["objects"].push_back(jsonOf(object));
+  json["objects_mean"] = jsonOf(kind.mean_positions);
+  json["motion"] = jsonOf(kind.motion);
+  json["detection"] = jsonOf(kind.detection);
+  return json;
+}
+
+Json jsonOf(const CovarianceErrors& errors) {
+  return {{"samples", errors.samples}, {"mean_nees", errors.mean_nees}, {"coverage_95", errors.coverage_95}};
+}
+
+}  // namespace
+
+std::string jsonOf(const Evaluation& e) {
+  const bool with_objects = !e.object_source.empty();
+  Json json = {{"run", e.run.string()},
+               {"sequence", e.sequence.string()},
+               {"complete", e.complete},
+               {"first_frame", e.first_frame},
+               {"frames", e.frames_run},
+               {"lost", e.lost},
+               {"rejected", e.rejected},
+               {"dropped", e.dropped},
+               {"truth", {{"camera", e.camera_source}, {"objects", e.object_source}}},
+               {"final", jsonOf(e.final, with_objects)},
+               {"online", jsonOf(e.online, with_objects)},
+               {"covariance", {{"camera", jsonOf(e.camera_covariance)}, {"objects", jsonOf(e.object_covariance)}}},
+               {"latency_ms",
+                {{"p50", e.latencyQuantile_ms(0.5)},
+                 {"p95", e.latencyQuantile_ms(0.95)},
+                 {"p99", e.latencyQuantile_ms(0.99)},
+                 {"max", e.latencyQuantile_ms(1)}}}};
+  json["baseline"] = {{"camera", e.camera_against_baseline ? jsonOf(*e.camera_against_baseline) : Json()},
+                      {"objects", e.objects_against_baseline ? jsonOf(*e.objects_against_baseline) : Json()}};
+  return json.dump(2);
+}
+
+}  // namespace motorcade

@@ -1,0 +1,154 @@
+#include <cstdarg>
+#include <cstdio>
+
+#include "apps/evaluate/report.hpp"
+
+namespace motorcade {
+namespace {
+
+[[gnu::format(printf, 2, 3)]] void print(std::string& text, const char* format, ...) {
+  char line[256];
+  std::va_list arguments;
+  va_start(arguments, format);
+  const int length = std::vsnprintf(line, sizeof(line), format, arguments);
+  va_end(arguments);
+  text.append(line, std::min<std::size_t>(static_cast<std::size_t>(length), sizeof(line) - 1));
+}
+
+void printHead(std::string& text, const Evaluation& e) {
+  print(text, "run       %s%s\n", e.run.c_str(), e.complete ? "" : "  (did not complete)");
+  print(text, "sequence  %s\n", e.sequence.c_str());
+  print(text, "frames    %zu from frame %lld; lost %d, rejected %d, dropped %d\n", e.frames_run,
+        static_cast<long long>(e.first_frame), e.lost, e.rejected, e.dropped);
+  print(text, "truth     camera from %s%s%s\n", e.camera_source.c_str(),
+        e.object_source.empty() ? "" : ", objects from ", e.object_source.c_str());
+}
+
+void printCameraLine(std::string& text, const char* kind, const std::optional<TrajectoryErrors>& errors) {
+  if (!errors) return print(text, "  %-8s too few poses\n", kind);
+  print(text, "  %-8s %7.3f %7.3f %7.3f  %9.3f  %6.2f %%  %7.4f / %6.4f  %7.4f / %6.4f  %7.3f\n", kind,
+        errors->ate_m.rmse, errors->ate_m.mean, errors->ate_m.median, errors->ate_first_pose_m.rmse,
+        errors->end_percent, errors->rpe_m.rmse, errors->rpe_m.median, errors->rpe_deg.rmse, errors->rpe_deg.median,
+        errors->are_deg.mean);
+}
+
+void printCamera(std::string& text, const Evaluation& e) {
+  print(text,
+        "\ncamera     ATE m, SE(3) aligned    ATE first  end error  RPE_t m            RPE_r deg         ARE deg\n");
+  print(text,
+        "              rmse    mean  median  pose rmse                rmse / median     rmse / median     mean\n");
+  printCameraLine(text, "final", e.final.camera);
+  printCameraLine(text, "online", e.online.camera);
+}
+
+void printObjectHead(std::string& text) {
+  print(text,
+        "\nmoving objects (final)   frames     ids   position m rmse: aligned / offset removed /  ARE    "
+        "origin drift m       ME_t m         ME_r deg       speed m/s\n");
+  print(text,
+        "  label  type             followed        as seen, offset removed               deg    "
+        "along   up      across  mean / rmse    mean / rmse    rmse    bias\n");
+}
+
+void printObject(std::string& text, const ObjectErrors& object) {
+  print(text, "  %-6lld %-14s %5d/%-5d %4d", static_cast<long long>(object.label), object.type.c_str(),
+        object.followed_frames, object.labeled_frames, object.tracks);
+  if (!object.positions) return print(text, "\n");
+  const PositionErrors& p = *object.positions;
+  const MotionErrors& m = object.motion;
+  print(text, "  %7.3f / %7.3f / %7.3f      %6.2f", p.of(PositionKind::kAligned).rmse,
+        p.of(PositionKind::kWorldOffsetRemoved).rmse, p.of(PositionKind::kAsSeenOffsetRemoved).rmse, p.are_deg.rmse);
+  const Eigen::Vector3d drift = p.origin_drift_m.value_or(Eigen::Vector3d::Zero());
+  print(text, "  %6.3f  %6.3f  %6.3f", drift.x(), drift.y(), drift.z());
+  print(text, "  %5.3f / %5.3f  %5.2f / %5.2f  %5.2f  %+6.2f\n", m.me_m.mean, m.me_m.rmse, m.me_deg.mean, m.me_deg.rmse,
+        m.speed_mps.rmse, m.speed_bias_mps);
+}
+
+void printObjects(std::string& text, const KindEvaluation& kind) {
+  printObjectHead(text);
+  for (const auto& object : kind.objects) printObject(text, object);
+  const MeanPositionErrors& mean = kind.mean_positions;
+  print(text, "  mean of %-3d objects (largest drift)   ", mean.objects);
+  const auto at = [&](PositionKind position) { return mean.ate_m[static_cast<std::size_t>(position)]; };
+  print(text, "  %7.3f / %7.3f / %7.3f      %6.2f", at(PositionKind::kAligned), at(PositionKind::kWorldOffsetRemoved),
+        at(PositionKind::kAsSeenOffsetRemoved), mean.are_deg);
+  print(text, "  %6.3f  %6.3f  %6.3f\n", mean.largest_drift_m.x(), mean.largest_drift_m.y(), mean.largest_drift_m.z());
+}
+
+void printDetectionLine(std::string& text, const char* kind, const KindEvaluation& k, bool from_fifth) {
+  const auto& near = from_fifth ? k.detection.within_30m_from_fifth : k.detection.within_30m;
+  const auto& far = from_fifth ? k.detection.from_30_to_50m_from_fifth : k.detection.from_30_to_50m;
+  print(text, "  %-8s %5.1f %% (%d/%d)  %5.1f %% (%d/%d)", kind, 100 * near.recall(), near.found, near.labels,
+        100 * far.recall(), far.found, far.labels);
+  print(text, "  %d of %d", k.detection.false_rows, k.detection.rows);
+  if (k.detection.false_rows > 0)
+    print(text, " (%d unlabeled, %d in DontCare)", k.detection.false_rows_unlabeled, k.detection.false_rows_in_ignored);
+  print(text, "  %d  %.3f  %.3f  %.3f / %.3f  %.2f / %.2f  %.2f\n", k.detection.id_switches, k.detection.mota,
+        k.detection.hota, k.motion.me_m.mean, k.motion.me_m.rmse, k.motion.me_deg.mean, k.motion.me_deg.rmse,
+        k.motion.speed_mps.rmse);
+}
+
+void printDetection(std::string& text, const Evaluation& e) {
+  print(text,
+        "\ndetection: recall to 30 m, 30-50 m, false rows, id switches, MOTA, HOTA, ME_t m mean / rmse, ME_r deg mean "
+        "/ rmse, speed rmse "
+        "m/s\n");
+  printDetectionLine(text, "final", e.final, false);
+  printDetectionLine(text, "online", e.online, true);
+  print(text, "  (online: recall from a label's fifth visible frame on)\n");
+}
+
+void printComparedLine(std::string& text, const ComparedObject& object) {
+  print(text, "  object %-6lld %4zu", static_cast<long long>(object.label), object.ours.frames);
+  for (const PositionKind position :
+       {PositionKind::kAligned, PositionKind::kWorldOffsetRemoved, PositionKind::kAsSeenOffsetRemoved})
+    print(text, "  %7.3f %7.3f %+6.1f %%", object.ours.of(position).rmse, object.baseline.of(position).rmse,
+          100 * object.relativeError(static_cast<std::size_t>(position)));
+  text += '\n';
+}
+
+void printComparison(std::string& text, const Evaluation& e) {
+  if (e.camera_against_baseline || e.objects_against_baseline)
+    print(text, "\nagainst the baseline: (ATE_baseline - ATE_ours) / ATE_baseline\n");
+  if (const auto& r = e.camera_against_baseline)
+    print(text, "  camera %26.3f %7.3f %+6.1f %%\n", r->ours_m, r->baseline_m, 100 * r->relative());
+  if (!e.objects_against_baseline) return;
+  const RunComparison& comparison = *e.objects_against_baseline;
+  print(text, "  common frames       aligned                   world, offset removed     as seen, offset removed\n");
+  for (const auto& object : comparison.objects) printComparedLine(text, object);
+  const auto at = [&](PositionKind position) {
+    return 100 * comparison.mean_relative_error[static_cast<std::size_t>(position)];
+  };
+  print(text, "  mean of %-3d objects %21.1f %% %24.1f %% %24.1f %%\n", comparison.objects_of_mean,
+        at(PositionKind::kAligned), at(PositionKind::kWorldOffsetRemoved), at(PositionKind::kAsSeenOffsetRemoved));
+}
+
+void printRest(std::string& text, const Evaluation& e) {
+  for (const auto& [name, errors] :
+       {std::pair("camera", &e.camera_covariance), std::pair("objects", &e.object_covariance)}) {
+    if (errors->samples == 0) continue;
+    print(text, "\ncovariance of %s: %.1f %% inside the 95 %% region, mean NEES %.2f (6 is consistent), %d samples",
+          name, 100 * errors->coverage_95, errors->mean_nees, errors->samples);
+  }
+  if (e.camera_covariance.samples + e.object_covariance.samples > 0) text += '\n';
+  printComparison(text, e);
+  if (e.latency_ms.empty()) return;
+  print(text, "\nlatency from image to result, ms: p50 %.1f, p95 %.1f, p99 %.1f, max %.1f\n", e.latencyQuantile_ms(0.5),
+        e.latencyQuantile_ms(0.95), e.latencyQuantile_ms(0.99), e.latency_ms.back());
+}
+
+}  // namespace
+
+std::string tableOf(const Evaluation& evaluation) {
+  std::string text;
+  printHead(text, evaluation);
+  printCamera(text, evaluation);
+  if (!evaluation.object_source.empty()) {
+    printObjects(text, evaluation.final);
+    printDetection(text, evaluation);
+  }
+  printRest(text, evaluation);
+  return text;
+}
+
+}  // namespace motorcade
