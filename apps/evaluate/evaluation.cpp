@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "apps/evaluate/mounting.hpp"
 #include "io/errors.hpp"
 #include "io/line_file.hpp"
 #include "io/number_text.hpp"
@@ -11,18 +12,38 @@
 namespace motorcade {
 namespace {
 
-std::optional<TrajectoryErrors> cameraErrors(const std::vector<ComparedFrame>& frames) {
-  std::vector<SE3> estimate, truth;
-  for (const auto& frame : frames) {
-    estimate.push_back(frame.T_world_cam);
-    truth.push_back(frame.T_world_cam_true);
+struct CameraPaths {
+  explicit CameraPaths(const std::vector<ComparedFrame>& frames) {
+    for (const auto& frame : frames) {
+      estimate.push_back(frame.T_world_cam);
+      truth.push_back(frame.T_world_cam_true);
+    }
   }
-  return trajectoryErrors(estimate, truth);
+  std::vector<SE3> estimate, truth;
+};
+
+std::optional<TrajectoryErrors> cameraErrors(const std::vector<ComparedFrame>& frames) {
+  const CameraPaths paths(frames);
+  return trajectoryErrors(paths.estimate, paths.truth);
+}
+
+/// Rendered drives come with the objects' exact poses; the truth of real ones is another instrument's.
+bool mayBeMountedWrongly(const Sequence& sequence) { return sequence.truth.object_poses.empty(); }
+
+void removeMounting(Evaluation& evaluation, const std::vector<ComparedFrame>& final,
+                    const std::vector<ComparedFrame>& online) {
+  const CameraPaths of_final(final), of_online(online);
+  const CameraPaths& fitted = final.empty() ? of_online : of_final;
+  const SE3 T_true_cam = fitMounting(fitted.estimate, fitted.truth);
+  evaluation.mounting = T_true_cam;
+  evaluation.final.camera_mounted = trajectoryErrors(of_final.estimate, withMounting(of_final.truth, T_true_cam));
+  evaluation.online.camera_mounted = trajectoryErrors(of_online.estimate, withMounting(of_online.truth, T_true_cam));
 }
 
 KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
   KindEvaluation kind{.frames = frames.size(),
                       .camera = cameraErrors(frames),
+                      .camera_mounted = {},
                       .objects = objectErrors(frames),
                       .mean_positions = {},
                       .motion = motionErrors(frames),
@@ -120,6 +141,7 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   const auto online = compare(run.online, run.first_frame), final = compare(run.final, run.first_frame);
   evaluation.online = evaluateFrames(online);
   evaluation.final = evaluateFrames(final);
+  if (mayBeMountedWrongly(sequence)) removeMounting(evaluation, final, online);
   evaluation.camera_covariance = cameraCovarianceErrors(online, run.covariances);
   evaluation.object_covariance = objectCovarianceErrors(online, run.covariances);
   if (!options.baseline.empty()) {

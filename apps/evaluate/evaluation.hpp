@@ -28,6 +28,7 @@ struct EvaluateOptions {
 struct KindEvaluation {
   std::size_t frames = 0;
   std::optional<TrajectoryErrors> camera;
+  std::optional<TrajectoryErrors> camera_mounted;  // without the truth's mounting error, where it may have one
   std::vector<ObjectErrors> objects;
   MeanPositionErrors mean_positions;
   MotionErrors motion;
@@ -48,6 +49,7 @@ struct Evaluation {
   int lost = 0, rejected = 0, dropped = 0;
   std::string camera_source, object_source;  // the latter empty without labels
   KindEvaluation final, online;
+  std::optional<SE3> mounting;  // T_true_cam, fitted to the final path; empty where the truth is exact
   CovarianceErrors camera_covariance, object_covariance;
   std::optional<RelativeError> camera_against_baseline;
   std::optional<RunComparison> objects_against_baseline;  // final estimates

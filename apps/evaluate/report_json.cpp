@@ -112,7 +112,8 @@ Json jsonOf(const ObjectErrors& object) {
 }
 
 Json jsonOf(const KindEvaluation& kind, bool with_objects) {
-  Json json = {{"frames", kind.frames}, {"camera", jsonOf(kind.camera)}};
+  Json json = {
+      {"frames", kind.frames}, {"camera", jsonOf(kind.camera)}, {"camera_mounted", jsonOf(kind.camera_mounted)}};
   if (!with_objects) return json;
   json["objects"] = Json::array();
   for (const auto& object : kind.objects) json["objects"].push_back(jsonOf(object));
@@ -120,6 +121,10 @@ Json jsonOf(const KindEvaluation& kind, bool with_objects) {
   json["motion"] = jsonOf(kind.motion);
   json["detection"] = jsonOf(kind.detection);
   return json;
+}
+
+Json jsonOf(const SE3& T) {
+  return {{"rotation_rad", jsonOf(logSO3(T.rotation()))}, {"translation_m", jsonOf(T.translation())}};
 }
 
 Json jsonOf(const CovarianceErrors& errors) {
@@ -139,6 +144,7 @@ std::string jsonOf(const Evaluation& e) {
                {"rejected", e.rejected},
                {"dropped", e.dropped},
                {"truth", {{"camera", e.camera_source}, {"objects", e.object_source}}},
+               {"mounting", e.mounting ? jsonOf(*e.mounting) : Json()},
                {"final", jsonOf(e.final, with_objects)},
                {"online", jsonOf(e.online, with_objects)},
                {"covariance", {{"camera", jsonOf(e.camera_covariance)}, {"objects", jsonOf(e.object_covariance)}}},

@@ -1,5 +1,6 @@
 #include <cstdarg>
 #include <cstdio>
+#include <numbers>
 
 #include "apps/evaluate/report.hpp"
 
@@ -39,6 +40,14 @@ void printCamera(std::string& text, const Evaluation& e) {
         "              rmse    mean  median  pose rmse                rmse / median     rmse / median     mean\n");
   printCameraLine(text, "final", e.final.camera);
   printCameraLine(text, "online", e.online.camera);
+  if (!e.mounting) return;
+  const Eigen::Vector3d turn_deg = logSO3(e.mounting->rotation()) * 180 / std::numbers::pi,
+                        arm_m = e.mounting->translation();
+  print(text,
+        "without the truth's mounting, a rotation of (%.2f %.2f %.2f) deg and a lever arm of (%.2f %.2f %.2f) m:\n",
+        turn_deg.x(), turn_deg.y(), turn_deg.z(), arm_m.x(), arm_m.y(), arm_m.z());
+  printCameraLine(text, "final", e.final.camera_mounted);
+  printCameraLine(text, "online", e.online.camera_mounted);
 }
 
 void printObjectHead(std::string& text) {
