@@ -80,6 +80,9 @@ void addEvaluate(CLI::App& app, Action& action) {
                       "KITTI pose lines of another camera trajectory, for the relative error");
   command->add_option("--baseline-run", options->baseline_run,
                       "Run folder of another method, for the relative error of the objects");
+  command->add_option("--half-run", options->half_run,
+                      "Run folder of the same drive from the other half of the points: do the two differ as their "
+                      "covariances say");
   command->add_option("--export-truth", options->export_truth,
                       "Folder for the true trajectories of camera and objects");
   command->add_option("--json", options->json, "File for all measures as JSON");

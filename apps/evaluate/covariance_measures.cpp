@@ -1,81 +1,143 @@
 #include "apps/evaluate/covariance_measures.hpp"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "apps/evaluate/object_positions.hpp"
+#include "core/assignment.hpp"
 
 namespace motorcade {
 namespace {
 
-constexpr std::int64_t kEveryFrames = 5;    // errors of neighboring frames are nearly the same
-constexpr double kChiSquare95 = 12.591587;  // 95 % quantile, 6 degrees of freedom
+constexpr std::int64_t kEveryFrames = 5;
 
-void add(CovarianceErrors& errors, const SE3& estimate, const SE3& truth, const Matrix6d& covariance) {
-  const Eigen::LLT<Matrix6d> cholesky(covariance);
-  if (cholesky.info() != Eigen::Success) return;
-  const Vector6d xi = (estimate.inverse() * truth).log();
-  const double nees = xi.dot(cholesky.solve(xi));
-  errors.mean_nees += nees;
-  errors.coverage_95 += nees <= kChiSquare95;
-  ++errors.samples;
+bool isTaken(FrameId frame) { return frame.value % kEveryFrames == 0; }
+
+using CovarianceOf = std::map<std::pair<TrackId, FrameId>, Matrix6d>;
+
+CovarianceOf byTrackAndFrame(const CovarianceRows& rows) {
+  CovarianceOf covariances;
+  for (const auto& row : rows) covariances[{row.track, row.frame}] = row.covariance;
+  return covariances;
 }
 
-CovarianceErrors averaged(CovarianceErrors errors) {
-  if (errors.samples == 0) return errors;
-  errors.mean_nees /= errors.samples;
-  errors.coverage_95 /= errors.samples;
-  return errors;
+/// The frames of one pair of body frames: a track with a label, or two tracks.
+struct SeenTrack {
+  std::vector<SeenTwice> seen;
+  std::vector<FrameId> frames;
+};
+
+template <class Key>
+std::vector<ErrorSample> samplesOf(const std::map<Key, SeenTrack>& tracks) {
+  std::vector<ErrorSample> samples;
+  for (const auto& [key, track] : tracks) {
+    if (track.frames.size() < kLeastFramesOfMean) continue;
+    const auto errors = errorsWithoutOffset(track.seen);
+    for (std::size_t i = 0; i < errors.size(); ++i)
+      if (isTaken(track.frames[i])) samples.push_back(errors[i]);
+  }
+  return samples;
+}
+
+/// A run's online estimates, ready to be asked by frame.
+struct HalfRun {
+  explicit HalfRun(const RunFolder& run) : folder(run), covariances(byTrackAndFrame(run.covariances)) {
+    for (const auto& row : run.online.objects)
+      if (covariances.contains({row.object.track, row.frame})) rows[row.frame].push_back(&row.object);
+  }
+  std::int64_t frames() const { return std::ssize(folder.online.camera); }
+  const SE3& T_world_cam(FrameId frame) const { return folder.online.camera[frame.value - folder.first_frame]; }
+  const Matrix6d* covarianceOf(TrackId track, FrameId frame) const {
+    const auto found = covariances.find({track, frame});
+    return found == covariances.end() ? nullptr : &found->second;
+  }
+  SE3 motionTo(FrameId now) const {
+    return T_world_cam({now.value - kCameraCovarianceFrames}).inverse() * T_world_cam(now);
+  }
+  SE3 T_cam_body(const ObjectEstimate& object, FrameId frame) const {
+    return T_world_cam(frame).inverse() * object.T_world_body;
+  }
+
+  const RunFolder& folder;
+  CovarianceOf covariances;
+  std::map<FrameId, std::vector<const ObjectEstimate*>> rows;
+};
+
+std::vector<ErrorSample> cameraDifferences(const HalfRun& a, const HalfRun& b) {
+  std::vector<ErrorSample> samples;
+  const std::int64_t first = a.folder.first_frame, end = first + std::min(a.frames(), b.frames());
+  for (FrameId now{first + kCameraCovarianceFrames}; now.value < end; ++now.value) {
+    const Matrix6d *of_a = a.covarianceOf({}, now), *of_b = b.covarianceOf({}, now);
+    if (!isTaken(now) || !of_a || !of_b) continue;
+    samples.push_back({(a.motionTo(now).inverse() * b.motionTo(now)).log(), *of_a + *of_b});
+  }
+  return samples;
+}
+
+using TrackPair = std::pair<TrackId, TrackId>;
+
+/// Adds the objects that both runs see in a frame.
+void addSeenByBoth(const HalfRun& a, const HalfRun& b, FrameId frame, std::map<TrackPair, SeenTrack>& tracks) {
+  constexpr double kGate_m = 3;  // less than between two cars
+  const auto of_a = a.rows.find(frame), of_b = b.rows.find(frame);
+  if (of_a == a.rows.end() || of_b == b.rows.end()) return;
+  const auto &rows_a = of_a->second, &rows_b = of_b->second;
+  Eigen::MatrixXd cost_m(rows_a.size(), rows_b.size());
+  for (std::size_t i = 0; i < rows_a.size(); ++i)
+    for (std::size_t j = 0; j < rows_b.size(); ++j)
+      cost_m(i, j) =
+          (a.T_cam_body(*rows_a[i], frame).translation() - b.T_cam_body(*rows_b[j], frame).translation()).norm();
+  const auto columns = assignMinCost(cost_m, kGate_m);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i] < 0) continue;
+    const ObjectEstimate &mine = *rows_a[i], &theirs = *rows_b[columns[i]];
+    SeenTrack& track = tracks[{mine.track, theirs.track}];
+    track.seen.push_back({a.T_cam_body(mine, frame), b.T_cam_body(theirs, frame), *a.covarianceOf(mine.track, frame),
+                          *b.covarianceOf(theirs.track, frame)});
+    track.frames.push_back(frame);
+  }
 }
 
 }  // namespace
 
-CovarianceErrors cameraCovarianceErrors(const std::vector<ComparedFrame>& frames,
-                                        const std::vector<RunFolder::CovarianceRow>& rows) {
-  CovarianceErrors errors;
+std::vector<ErrorSample> cameraErrorSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows,
+                                            const SE3& T_true_cam) {
+  std::vector<ErrorSample> samples;
   for (const auto& row : rows) {
     const std::int64_t now = frames.empty() ? -1 : row.frame.value - frames.front().frame.value;
-    if (row.track.valid() || row.frame.value % kEveryFrames != 0 || now < kCameraCovarianceFrames ||
-        now >= std::ssize(frames))
+    if (row.track.valid() || !isTaken(row.frame) || now < kCameraCovarianceFrames || now >= std::ssize(frames))
       continue;
     const auto &to = frames[now], &from = frames[now - kCameraCovarianceFrames];
-    add(errors, from.T_world_cam.inverse() * to.T_world_cam, from.T_world_cam_true.inverse() * to.T_world_cam_true,
-        row.covariance);
+    const SE3 estimate = from.T_world_cam.inverse() * to.T_world_cam,
+              truth = (from.T_world_cam_true * T_true_cam).inverse() * to.T_world_cam_true * T_true_cam;
+    samples.push_back({(estimate.inverse() * truth).log(), row.covariance});
   }
-  return averaged(errors);
+  return samples;
 }
 
-CovarianceErrors objectCovarianceErrors(const std::vector<ComparedFrame>& frames,
-                                        const std::vector<RunFolder::CovarianceRow>& rows) {
-  struct FollowedObject {
-    std::vector<SE3> bodies, boxes;  // seen from the camera
-    std::vector<FrameId> frames;
-  };
-  std::map<TrackId, FollowedObject> tracks;
+std::vector<ErrorSample> objectErrorSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows) {
+  const CovarianceOf covariances = byTrackAndFrame(rows);
+  std::map<std::pair<TrackId, std::int64_t>, SeenTrack> tracks;
   for (const auto& frame : frames) {
     for (const auto& row : frame.rows) {
-      if (row.object < 0 || !frame.objects[row.object].ever_moves) continue;
-      FollowedObject& track = tracks[row.row.object.track];
-      track.bodies.push_back(frame.T_world_cam.inverse() * row.row.object.T_world_body);
-      track.boxes.push_back(frame.objects[row.object].truth.T_cam_object);
+      const auto covariance = covariances.find({row.row.object.track, frame.frame});
+      if (row.object < 0 || !frame.objects[row.object].ever_moves || covariance == covariances.end()) continue;
+      const ObjectTruth& truth = frame.objects[row.object].truth;
+      SeenTrack& track = tracks[{row.row.object.track, truth.id}];
+      track.seen.push_back(
+          {frame.T_world_cam.inverse() * row.row.object.T_world_body, truth.T_cam_object, covariance->second});
       track.frames.push_back(frame.frame);
     }
   }
-  std::map<std::pair<TrackId, FrameId>, Matrix6d> covariances;
-  for (const auto& row : rows)
-    if (row.track.valid() && row.frame.value % kEveryFrames == 0) covariances[{row.track, row.frame}] = row.covariance;
-  CovarianceErrors errors;
-  for (const auto& [id, track] : tracks) {
-    const SE3 T_box_body = bodyOffset(track.bodies, track.boxes).inverse();
-    for (std::size_t i = 0; i < track.frames.size(); ++i) {
-      const auto covariance = covariances.find({id, track.frames[i]});
-      if (covariance != covariances.end())
-        add(errors, track.bodies[i], track.boxes[i] * T_box_body, covariance->second);
-    }
-  }
-  return averaged(errors);
+  return samplesOf(tracks);
+}
+
+HalfErrors compareHalves(const RunFolder& a, const RunFolder& b) {
+  const HalfRun half_a(a), half_b(b);
+  std::map<TrackPair, SeenTrack> tracks;
+  for (const auto& [frame, rows] : half_a.rows) addSeenByBoth(half_a, half_b, frame, tracks);
+  return {.camera = consistencyOf(cameraDifferences(half_a, half_b)), .objects = consistencyOf(samplesOf(tracks))};
 }
 
 }  // namespace motorcade

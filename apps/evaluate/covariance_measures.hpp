@@ -2,22 +2,28 @@
 
 #include <vector>
 
+#include "apps/evaluate/consistency.hpp"
 #include "apps/evaluate/object_matching.hpp"
 
+/// The covariances of a run against the truth: over every fifth frame, as errors of neighboring frames are nearly the
+/// same.
 namespace motorcade {
 
-/// Whether errors are as large as the covariances say: over every fifth frame, 6 degrees of freedom each.
-struct CovarianceErrors {
-  int samples = 0;
-  double mean_nees = 0;    // normalized estimation error squared; 6 when consistent
-  double coverage_95 = 0;  // share inside the 95 % region
-};
+using CovarianceRows = std::vector<RunFolder::CovarianceRow>;
 
-/// The camera's motion over kCameraCovarianceFrames.
-CovarianceErrors cameraCovarianceErrors(const std::vector<ComparedFrame>& frames,
-                                        const std::vector<RunFolder::CovarianceRow>& rows);
-/// Objects relative to the camera of the same frame, without each track's constant offset between body and box frame.
-CovarianceErrors objectCovarianceErrors(const std::vector<ComparedFrame>& frames,
-                                        const std::vector<RunFolder::CovarianceRow>& rows);
+/// Errors of the camera's motion over kCameraCovarianceFrames; the truth's path is T_world_true * T_true_cam.
+std::vector<ErrorSample> cameraErrorSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows,
+                                            const SE3& T_true_cam = {});
+
+/// Errors of objects relative to the camera of the same frame, without the constant offset between body and label of
+/// each track. Tracks with fewer than `kLeastFramesOfMean` frames are left out: the offset takes their errors away.
+std::vector<ErrorSample> objectErrorSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows);
+
+/// Two runs of one drive whose measurements are independent: their difference has the sum of their covariances.
+struct HalfErrors {
+  CovarianceErrors camera, objects;
+};
+/// Objects are matched by their distance as seen from the camera. No truth is needed.
+HalfErrors compareHalves(const RunFolder& a, const RunFolder& b);
 
 }  // namespace motorcade

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 
 #include "apps/evaluate/mounting.hpp"
 #include "io/errors.hpp"
@@ -38,6 +39,17 @@ void removeMounting(Evaluation& evaluation, const std::vector<ComparedFrame>& fi
   evaluation.mounting = T_true_cam;
   evaluation.final.camera_mounted = trajectoryErrors(of_final.estimate, withMounting(of_final.truth, T_true_cam));
   evaluation.online.camera_mounted = trajectoryErrors(of_online.estimate, withMounting(of_online.truth, T_true_cam));
+}
+
+void evaluateCovariances(Evaluation& evaluation, const std::vector<ComparedFrame>& online, const CovarianceRows& rows) {
+  evaluation.camera_covariance = consistencyOf(cameraErrorSamples(online, rows));
+  evaluation.object_covariance = consistencyOf(objectErrorSamples(online, rows));
+  if (!evaluation.mounting) return;
+  auto samples = cameraErrorSamples(online, rows, *evaluation.mounting);
+  evaluation.camera_mounted_covariance = consistencyOf(samples);
+  constexpr double kGyroscopes_rad = 0.01 * std::numbers::pi / 180;  // of KITTI's inertial unit over some frames
+  for (auto& sample : samples) sample.covariance.diagonal().tail<3>().array() += kGyroscopes_rad * kGyroscopes_rad;
+  evaluation.camera_truth_covariance = consistencyOf(samples);
 }
 
 KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
@@ -142,8 +154,8 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   evaluation.online = evaluateFrames(online);
   evaluation.final = evaluateFrames(final);
   if (mayBeMountedWrongly(sequence)) removeMounting(evaluation, final, online);
-  evaluation.camera_covariance = cameraCovarianceErrors(online, run.covariances);
-  evaluation.object_covariance = objectCovarianceErrors(online, run.covariances);
+  evaluateCovariances(evaluation, online, run.covariances);
+  if (!options.half_run.empty()) evaluation.half_errors = compareHalves(run, readRunFolder(options.half_run));
   if (!options.baseline.empty()) {
     const auto poses =
         baselinePoses(options.baseline, run.first_frame, run.final.camera.size(), sequence.frames.size());

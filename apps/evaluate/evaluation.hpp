@@ -20,6 +20,7 @@ struct EvaluateOptions {
   bool uninterpolated = false;         // oxts packet k for image k
   std::filesystem::path baseline;      // camera poses to compare with; empty for none
   std::filesystem::path baseline_run;  // run folder to compare objects with; empty for none
+  std::filesystem::path half_run;      // run folder of the same drive from other points; empty for none
   std::filesystem::path export_truth;  // folder for the true trajectories; empty for none
   std::filesystem::path json;          // empty for none
 };
@@ -51,6 +52,9 @@ struct Evaluation {
   KindEvaluation final, online;
   std::optional<SE3> mounting;  // T_true_cam, fitted to the final path; empty where the truth is exact
   CovarianceErrors camera_covariance, object_covariance;
+  std::optional<CovarianceErrors> camera_mounted_covariance;  // without the truth's mounting error
+  std::optional<CovarianceErrors> camera_truth_covariance;    // also with the noise of the truth's rotation added
+  std::optional<HalfErrors> half_errors;                      // against the other half's run
   std::optional<RelativeError> camera_against_baseline;
   std::optional<RunComparison> objects_against_baseline;  // final estimates
   std::vector<double> latency_ms;                         // sorted

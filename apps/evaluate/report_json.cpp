@@ -127,8 +127,28 @@ Json jsonOf(const SE3& T) {
   return {{"rotation_rad", jsonOf(logSO3(T.rotation()))}, {"translation_m", jsonOf(T.translation())}};
 }
 
+Json jsonOf(const NormalizedErrors& errors) {
+  return {{"mean_nees", errors.mean_nees}, {"median_nees", errors.median_nees}, {"coverage_95", errors.coverage_95}};
+}
+
 Json jsonOf(const CovarianceErrors& errors) {
-  return {{"samples", errors.samples}, {"mean_nees", errors.mean_nees}, {"coverage_95", errors.coverage_95}};
+  Json json = {{"samples", errors.samples}};
+  json.update(jsonOf(errors.pose));
+  json["position"] = jsonOf(errors.position);
+  json["rotation"] = jsonOf(errors.rotation);
+  return json;
+}
+
+Json covarianceJson(const Evaluation& e) {
+  const auto orNull = [](const auto& errors) { return errors ? jsonOf(*errors) : Json(); };
+  Json json = {{"camera", jsonOf(e.camera_covariance)},
+               {"camera_mounted", orNull(e.camera_mounted_covariance)},
+               {"camera_mounted_with_truth_noise", orNull(e.camera_truth_covariance)},
+               {"objects", jsonOf(e.object_covariance)},
+               {"halves", nullptr}};
+  if (e.half_errors)
+    json["halves"] = {{"camera", jsonOf(e.half_errors->camera)}, {"objects", jsonOf(e.half_errors->objects)}};
+  return json;
 }
 
 }  // namespace
@@ -147,7 +167,7 @@ std::string jsonOf(const Evaluation& e) {
                {"mounting", e.mounting ? jsonOf(*e.mounting) : Json()},
                {"final", jsonOf(e.final, with_objects)},
                {"online", jsonOf(e.online, with_objects)},
-               {"covariance", {{"camera", jsonOf(e.camera_covariance)}, {"objects", jsonOf(e.object_covariance)}}},
+               {"covariance", covarianceJson(e)},
                {"latency_ms",
                 {{"p50", e.latencyQuantile_ms(0.5)},
                  {"p95", e.latencyQuantile_ms(0.95)},

@@ -107,6 +107,34 @@ void printDetection(std::string& text, const Evaluation& e) {
   print(text, "  (online: recall from a label's fifth visible frame on)\n");
 }
 
+void printCovarianceLine(std::string& text, const char* what, const CovarianceErrors& errors) {
+  if (errors.samples == 0) return;
+  print(text, "  %-26s %7d", what, errors.samples);
+  for (const NormalizedErrors* of : {&errors.pose, &errors.position, &errors.rotation})
+    print(text, "  %9.2f %9.2f %6.1f %%", of->mean_nees, of->median_nees, 100 * of->coverage_95);
+  text += '\n';
+}
+
+void printCovariances(std::string& text, const Evaluation& e) {
+  std::string lines;
+  printCovarianceLine(lines, "camera", e.camera_covariance);
+  if (e.camera_mounted_covariance) printCovarianceLine(lines, "camera, without mounting", *e.camera_mounted_covariance);
+  if (e.camera_truth_covariance) printCovarianceLine(lines, "  and truth's gyroscopes", *e.camera_truth_covariance);
+  printCovarianceLine(lines, "objects", e.object_covariance);
+  if (e.half_errors) {
+    printCovarianceLine(lines, "camera, of two halves", e.half_errors->camera);
+    printCovarianceLine(lines, "objects, of two halves", e.half_errors->objects);
+  }
+  if (lines.empty()) return;
+  print(text,
+        "\ncovariances                  samples  pose: NEES mean, median,   position: NEES mean, median,   "
+        "rotation: NEES mean, median\n");
+  print(text,
+        "  consistent:                         6.00      5.35   95.0 %%       3.00      2.37   95.0 %%"
+        "       3.00      2.37   95.0 %%  in the 95 %% region\n");
+  text += lines;
+}
+
 void printComparedLine(std::string& text, const ComparedObject& object) {
   print(text, "  object %-6lld %4zu", static_cast<long long>(object.label), object.ours.frames);
   for (const PositionKind position :
@@ -133,13 +161,7 @@ void printComparison(std::string& text, const Evaluation& e) {
 }
 
 void printRest(std::string& text, const Evaluation& e) {
-  for (const auto& [name, errors] :
-       {std::pair("camera", &e.camera_covariance), std::pair("objects", &e.object_covariance)}) {
-    if (errors->samples == 0) continue;
-    print(text, "\ncovariance of %s: %.1f %% inside the 95 %% region, mean NEES %.2f (6 is consistent), %d samples",
-          name, 100 * errors->coverage_95, errors->mean_nees, errors->samples);
-  }
-  if (e.camera_covariance.samples + e.object_covariance.samples > 0) text += '\n';
+  printCovariances(text, e);
   printComparison(text, e);
   if (e.latency_ms.empty()) return;
   print(text, "\nlatency from image to result, ms: p50 %.1f, p95 %.1f, p99 %.1f, max %.1f\n", e.latencyQuantile_ms(0.5),

@@ -174,8 +174,8 @@ TEST_F(EvaluateDrive, APerfectRunHasNoErrors) {
   EXPECT_EQ(evaluation.final.detection.within_30m_from_fifth.labels, kFrames - 4);
   EXPECT_DOUBLE_EQ(evaluation.final.detection.mota, 1);
   EXPECT_EQ(evaluation.final.detection.false_rows, 0);
-  EXPECT_DOUBLE_EQ(evaluation.camera_covariance.coverage_95, 1);
-  EXPECT_DOUBLE_EQ(evaluation.object_covariance.coverage_95, 1);
+  EXPECT_DOUBLE_EQ(evaluation.camera_covariance.pose.coverage_95, 1);
+  EXPECT_DOUBLE_EQ(evaluation.object_covariance.pose.coverage_95, 1);
 }
 
 TEST_F(EvaluateDrive, MissesSwitchesAndFalseRowsAreCounted) {
