@@ -75,14 +75,14 @@ for scene in overtake highway urban static crossing lead stop_and_go convoy circ
 done
 
 table() {  # KIND HEAD ...: one row for every drive and back-end
-  local kind=$1 name drive backend files
+  local shown=$1 name drive backend files
   shift
   printf '|'; printf ' %s |' "$@"; printf '\n|'; printf ' --- |%.0s' "$@"; printf '\n'
   for drive in "${drives[@]}"; do
     for backend in $backends; do
       files=()
       for name in ${evaluations[$drive]}; do files+=("$out/$backend/$name.json"); done
-      jq -rs --arg name "$drive" --arg backend "$backend" --arg table "$kind" -f perf/accuracy.jq "${files[@]}"
+      jq -rs --arg name "$drive" --arg backend "$backend" --arg table "$shown" -f perf/accuracy.jq "${files[@]}"
     done
   done
   echo
