@@ -1,6 +1,7 @@
 #include "apps/evaluate/evaluation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 
@@ -128,7 +129,7 @@ std::string truthRow(const TrueObject& object) {
 
 double Evaluation::latencyQuantile_ms(double part) const {
   if (latency_ms.empty()) return 0;
-  return latency_ms[static_cast<std::size_t>(part * static_cast<double>(latency_ms.size() - 1) + 0.5)];
+  return latency_ms[std::lround(part * static_cast<double>(latency_ms.size() - 1))];
 }
 
 KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequence, OxtsTimes times) {

@@ -56,7 +56,7 @@ TEST(PositionErrors, SeenFromTheCameraItsDriftDoesNotMatter) {
 
 TEST(PositionErrors, AlignmentTakesOutAPathThatIsMovedAsAWhole) {
   const SE3 moved(expSO3({0, 0.2, 0.1}), {3, 1, -2});
-  const auto errors = positionErrors(followedByHand(0, 30, fixedOrigin, [&](int) { return moved; }));
+  const auto errors = positionErrors(followedByHand(0, 30, fixedOrigin, [&](int) { return SE3(moved); }));
   EXPECT_GT(rmseOf(*errors, PositionKind::kWorldOffsetRemoved), 1);
   EXPECT_LT(rmseOf(*errors, PositionKind::kAligned), kOffset_m.norm());
   EXPECT_FALSE(positionErrors(followedByHand(0, 1, fixedOrigin))) << "one frame has no path";
