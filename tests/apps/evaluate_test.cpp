@@ -16,6 +16,7 @@
 namespace motorcade {
 namespace {
 
+using namespace nlohmann::literals;
 using test::messageOf;
 using testing::HasSubstr;
 
@@ -283,6 +284,23 @@ TEST_F(EvaluateDrive, ASequenceWithoutTruthIsRefused) {
   writeRun("run", 0, 3, [](int, FrameEstimate&) {});
   std::filesystem::remove(folder_ / "drive/poses.txt");
   EXPECT_THAT(messageOf<InputError>([&] { evaluateRun(options_); }), HasSubstr("no ground truth"));
+}
+
+TEST_F(EvaluateDrive, TheJsonHasEveryMeasureOfTheAccuracyTables) {
+  writeRun("run", 0, kFrames, [](int, FrameEstimate&) {});
+  options_.baseline_run = options_.half_run = options_.run;
+  const auto json = nlohmann::json::parse(jsonOf(evaluateRun(options_)));
+  constexpr double kDigitsOfTheFiles = 1e-5;
+  EXPECT_NEAR(json.at("/final/camera_mounted/ate_m/rmse"_json_pointer), 0, kDigitsOfTheFiles);
+  EXPECT_NEAR(json.at("/online/objects/0/position/ate_m/as_seen_offset_removed/rmse"_json_pointer), 0,
+              kDigitsOfTheFiles);
+  EXPECT_NEAR(json.at("/final/objects_mean/ate_rmse_m/world_offset_removed"_json_pointer), 0, kDigitsOfTheFiles);
+  EXPECT_NEAR(json.at("/final/objects_mean/largest_origin_drift_m/0"_json_pointer), 0, kDigitsOfTheFiles);
+  EXPECT_EQ(json.at("/baseline/objects/objects_of_mean"_json_pointer), 1);
+  EXPECT_NEAR(json.at("/baseline/objects/mean_relative_error/aligned"_json_pointer), 0, kDigitsOfTheFiles);
+  for (const char* of : {"camera", "camera_mounted", "camera_mounted_with_truth_noise", "objects"})
+    EXPECT_EQ(json.at("covariance").at(of).at("rotation").at("coverage_95"), 1) << of;
+  EXPECT_GT(json.at("/covariance/halves/objects/samples"_json_pointer), 0);
 }
 
 }  // namespace
