@@ -46,6 +46,13 @@ struct Box {
 
 enum class ObjectState { kMoving, kStopped, kPredicted };
 
+/// A followed point in one stereo pair: left pixel and disparity as measured, without any disparity offset.
+struct PointMeasurement {
+  PointId point;
+  Eigen::Vector3f uvd_px;
+  Eigen::Vector3f sigma_px;  // independent standard deviations of u, v, d
+};
+
 /// One frame's measurements of one object, relative to the camera of that frame.
 struct ObjectObservation {
   TrackId track;
@@ -65,6 +72,7 @@ struct ObjectObservation {
   std::optional<Motion> motion;
   /// Velocity of the body's origin relative to the world, in the camera's axes [m/s], as the front-end sees it.
   Eigen::Vector3d velocity_cam_mps = Eigen::Vector3d::Zero();
+  std::vector<PointMeasurement> measured;  // the body's points that agree with its motion, ordered by point
 };
 
 /// What the front-end measured in one frame: all that the back-end needs.
@@ -76,6 +84,10 @@ struct FrameMeasurements {
   /// status is kGood.
   SE3 T_previous_now;
   Matrix6d odometry_covariance = Matrix6d::Identity();
+  /// Points at rest, ordered by point: none of an object's.
+  std::vector<PointMeasurement> at_rest;
+  /// True minus measured disparity, as the front-end assumes it.
+  double disparity_offset_px = 0;
   /// Objects of this frame. An object that was confirmed now brings its earlier observations along, oldest first,
   /// before its own of this frame.
   std::vector<ObjectObservation> objects;

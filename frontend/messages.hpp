@@ -115,7 +115,7 @@ struct SceneMotion {
   SE3 T_previous_now;
   Matrix6d odometry_covariance = Matrix6d::Identity();
   int ego_inliers = 0;
-  double disparity_offset_px = 0;  // in use after this frame: true minus measured disparity
+  double disparity_offset_px = 0;  // true minus measured disparity; the points' disparities contain it
   GroundPlane ground;
   std::vector<ScenePoint> points;  // ordered by point id
   std::vector<Segment> segments;   // moving and unknown ones; the static rest is not listed

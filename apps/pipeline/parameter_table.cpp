@@ -9,7 +9,7 @@ namespace {
 
 Parameter backendKind(BackendParams& backend) {
   return choiceParameter<BackendKind>("kind", backend.kind,
-                                      {{"smoother", BackendKind::kSmoother}, {"filter", BackendKind::kFilter}},
+                                      {{"joint", BackendKind::kJoint}, {"smoother", BackendKind::kSmoother}, {"filter", BackendKind::kFilter}},
                                       "the smoother is more exact; the filter is the paper's baseline");
 }
 

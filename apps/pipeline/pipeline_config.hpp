@@ -2,6 +2,7 @@
 
 #include "apps/pipeline/pipeline_params.hpp"
 #include "backend/filter/filter_backend.hpp"
+#include "backend/joint/joint_backend.hpp"
 #include "backend/smoother/optimizer.hpp"
 #include "frontend/features/feature_preparation.hpp"
 #include "frontend/matching/optical_flow.hpp"
@@ -12,12 +13,14 @@
 namespace motorcade {
 
 enum class BackendKind {
+  kJoint,     // camera, objects and points in one estimate
   kSmoother,  // the incremental smoother over camera and objects
   kFilter,    // the paper's baseline: chained odometry and one Kalman filter per object
 };
 
 struct BackendParams {
-  BackendKind kind = BackendKind::kSmoother;
+  BackendKind kind = BackendKind::kJoint;
+  JointBackend::Params joint;
   Optimizer::Params smoother;
   FilterBackend::Params filter;
 };

@@ -7,7 +7,8 @@
 namespace motorcade {
 namespace {
 
-std::unique_ptr<Backend> makeBackend(const BackendParams& params) {
+std::unique_ptr<Backend> makeBackend(const BackendParams& params, const StereoCamera& camera) {
+  if (params.kind == BackendKind::kJoint) return std::make_unique<JointBackend>(params.joint, camera);
   if (params.kind == BackendKind::kFilter) return std::make_unique<FilterBackend>(params.filter);
   return std::make_unique<Optimizer>(params.smoother);
 }
@@ -21,7 +22,7 @@ Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
   const auto flow = std::make_shared<OpticalFlowTracker>(config.optical_flow);
   const auto motion = std::make_shared<SceneFlowSegmentation>(config.scene_flow_segmentation, camera);
   const auto tracking = std::make_shared<ObjectTracker>(config.tracking, camera);
-  const std::shared_ptr<Backend> backend = makeBackend(config.backend);
+  const std::shared_ptr<Backend> backend = makeBackend(config.backend, camera);
   return {.prepare = [prepare](const StereoFramePtr& frame) { return (*prepare)(frame); },
           .stereo_matching = [stereo](const FeaturesPtr& features) { return (*stereo)(features); },
           .optical_flow = [flow](const FeaturesPtr& features) { return (*flow)(features); },

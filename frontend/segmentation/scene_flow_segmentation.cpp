@@ -35,8 +35,8 @@ SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo,
   motion->segments = segmenter_(motion->points, violates_geometry, motion->ground);
 
   tracks_.setLabels(motion->points);
-  calibrateDisparity();
   motion->disparity_offset_px = disparity_offset_.offset_px();
+  calibrateDisparity();
   return motion;
 }
 

@@ -25,6 +25,11 @@ Box imageBox(const std::vector<const ScenePoint*>& points) {
 
 }  // namespace
 
+PointMeasurement measurementOf(const ScenePoint& point, double disparity_offset_px) {
+  const Eigen::Vector3d uvd_px = point.uvd_px - Eigen::Vector3d(0, 0, disparity_offset_px);
+  return {.point = point.point, .uvd_px = uvd_px.cast<float>(), .sigma_px = point.sigma_px.cast<float>()};
+}
+
 const ScenePoint* findPoint(const SceneMotion& scene, PointId point) {
   const auto at = std::lower_bound(scene.points.begin(), scene.points.end(), point,
                                    [](const ScenePoint& p, PointId id) { return p.point < id; });
@@ -80,7 +85,8 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
   }
   object.T_cam_body = agreement->fit.T_cam_ref;
   object.kinematics.acceptPose((T_world_cam * object.T_cam_body).normalized(), agreement->fit.covariance);
-  ObjectObservation observation = measureEncounter(object, agreement->inliers, object.T_cam_body);
+  ObjectObservation observation =
+      measureEncounter(object, agreement->inliers, object.T_cam_body, scene.disparity_offset_px);
   if (previous_scene) measureMotion(object, agreement->inliers, scene, *previous_scene, observation);
   refinePoints(object, agreement->inliers);
   dropMisfits(object, agreement->seen, agreement->chi2);
@@ -92,7 +98,7 @@ std::optional<ObjectObservation> ObjectMotionEstimator::lookBack(const TrackedOb
                                                                  const PosePrior& prior) const {
   const auto agreement = agree(object, earlier, prior);
   if (!agreement || !agreement->enough) return std::nullopt;
-  return measureEncounter(object, agreement->inliers, agreement->fit.T_cam_ref);
+  return measureEncounter(object, agreement->inliers, agreement->fit.T_cam_ref, earlier.disparity_offset_px);
 }
 
 std::optional<ObjectObservation> ObjectMotionEstimator::visibleEvidence(const TrackedObject& object,
@@ -137,7 +143,7 @@ void ObjectMotionEstimator::dropMisfits(TrackedObject& object, const std::vector
 
 ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& object,
                                                           const std::vector<Observation>& inliers,
-                                                          const SE3& T_cam_body) const {
+                                                          const SE3& T_cam_body, double disparity_offset_px) const {
   const bool split = static_cast<int>(inliers.size()) >= params_.split_points;
   std::vector<PoseObservation> observations;
   std::vector<const ScenePoint*> visible;
@@ -149,6 +155,7 @@ ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& o
   const auto fit = fitPose(camera_, PoseObservations(observations), T_cam_body, params_.fit, &weak);
   ObjectObservation observation;
   observation.points = static_cast<int>(inliers.size());
+  for (const ScenePoint* p : visible) observation.measured.push_back(measurementOf(*p, disparity_offset_px));
   observation.box = imageBox(visible);
   observation.T_cam_body = fit ? fit->T_cam_ref : T_cam_body;
   observation.encounter_covariance = fit ? fit->covariance : Matrix6d(weak.information.inverse());
@@ -206,13 +213,14 @@ ObjectObservation ObjectMotionEstimator::firstObservation(const TrackedObject& o
   const auto seen = observations(object, scene);
   std::vector<PoseObservation> observations;
   std::vector<const ScenePoint*> visible;
+  ObjectObservation observation;
   for (const auto& s : seen) {
     visible.push_back(s.now);
+    observation.measured.push_back(measurementOf(*s.now, scene.disparity_offset_px));
     PoseObservation o = observe(object.points[s.body_point], *s.now);
     o.covariance_ref.setZero();  // the points were put into the body frame from these very observations
     observations.push_back(o);
   }
-  ObjectObservation observation;
   observation.points = static_cast<int>(seen.size());
   observation.box = imageBox(visible);
   observation.T_cam_body = object.T_cam_body;

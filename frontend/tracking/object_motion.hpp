@@ -69,7 +69,7 @@ class ObjectMotionEstimator {
   std::optional<Agreement> agree(const TrackedObject& object, const SceneMotion& scene, const PosePrior& prior) const;
   void dropMisfits(TrackedObject& object, const std::vector<Observation>& seen, const std::vector<double>& chi2) const;
   ObjectObservation measureEncounter(const TrackedObject& object, const std::vector<Observation>& inliers,
-                                     const SE3& T_cam_body) const;
+                                     const SE3& T_cam_body, double disparity_offset_px) const;
   void measureMotion(const TrackedObject& object, const std::vector<Observation>& inliers, const SceneMotion& scene,
                      const SceneMotion& previous_scene, ObjectObservation& observation) const;
   void refinePoints(TrackedObject& object, const std::vector<Observation>& inliers) const;
@@ -77,6 +77,9 @@ class ObjectMotionEstimator {
   Params params_;
   StereoCamera camera_;
 };
+
+/// The point as it was measured: without the disparity offset that its disparity contains.
+PointMeasurement measurementOf(const ScenePoint& point, double disparity_offset_px);
 
 /// The point of a scene by id, or null.
 const ScenePoint* findPoint(const SceneMotion& scene, PointId point);

@@ -44,6 +44,8 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   matchSegments(*scene);
   mergeDuplicates(objects_);
   removeEnded(*measurements);
+  measurements->disparity_offset_px = scene->disparity_offset_px;
+  measurements->at_rest = pointsAtRest(*scene);
   std::ranges::stable_sort(measurements->objects, {}, &ObjectObservation::track);
   previous_scene_ = scene;
   look_back_.remember(scene, T_world_cam_);
@@ -173,6 +175,18 @@ void ObjectTracker::matchSegments(const SceneMotion& scene) {
 void ObjectTracker::reappear(TrackedObject& object, const Segment& segment) const {
   object.kinematics.fusePosition(object.last_middle_body, T_world_cam_ * segment.centroid_cam, kReappearanceSpread_m);
   object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
+}
+
+/// Points that agree with a static world and belong to no object.
+std::vector<PointMeasurement> ObjectTracker::pointsAtRest(const SceneMotion& scene) const {
+  std::vector<PointMeasurement> at_rest;
+  for (const ScenePoint& p : scene.points) {
+    const bool rests = (p.ego_inlier || p.age == 1) && p.label != PointLabel::kMoving;
+    if (!rests) continue;
+    if (std::ranges::any_of(objects_, [&](const auto& o) { return o.find(p.point) != nullptr; })) continue;
+    at_rest.push_back(measurementOf(p, scene.disparity_offset_px));
+  }
+  return at_rest;
 }
 
 void ObjectTracker::removeEnded(FrameMeasurements& measurements) {

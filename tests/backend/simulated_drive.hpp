@@ -54,7 +54,9 @@ class SimulatedDrive {
   }
 
   FrameMeasurementsPtr measure(int frame) {
-    FrameMeasurements m{.frame = {frame}, .stamp = stamp(frame), .T_previous_now = {}, .objects = {}, .ended = {}};
+    FrameMeasurements m;
+    m.frame = {frame};
+    m.stamp = stamp(frame);
     m.odometry_covariance = covariance(options_.odometry_sigma_m, options_.odometry_sigma_rad);
     if (frame > 0)
       m.T_previous_now = camera(frame - 1).inverse() * camera(frame) *

@@ -1,0 +1,99 @@
+#include "backend/joint/body_points.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace motorcade {
+namespace {
+
+constexpr int kMaxGap_frames = 3;  // without a view of a point, whose track then ends
+constexpr int kColumns = 8, kRows = 4;  // of the grid over the image in which landmarks are spread
+
+}  // namespace
+
+void BodyPoints::observe(FrameId frame, std::span<const PointMeasurement> points) {
+  newest_ = frame;
+  for (const PointMeasurement& p : points) {
+    Candidate& candidate = candidates_[p.point];
+    LandmarkTrack& track = candidate.track;
+    track.point = p.point;
+    track.views.push_back({frame, p.uvd_px, p.sigma_px});
+    if (static_cast<int>(track.views.size()) <= params_.window_frames) continue;
+    if (candidate.chosen) {
+      const LandmarkTrack::View newest = track.views.back();
+      track.views.pop_back();
+      end(candidate);
+      track.views = {newest};
+    } else {
+      track.views.erase(track.views.begin());
+    }
+  }
+  for (auto it = candidates_.begin(); it != candidates_.end();) {
+    const bool lost = frame.value - it->second.track.views.back().frame.value > kMaxGap_frames;
+    if (lost && it->second.chosen) end(it->second);
+    it = lost ? candidates_.erase(it) : std::next(it);
+  }
+  choose();
+}
+
+void BodyPoints::end(Candidate& candidate) {
+  if (candidate.track.views.size() >= 2)
+    ended_.push_back({candidate.track.point, std::move(candidate.track.views)});
+  candidate.track.views.clear();
+}
+
+void BodyPoints::forget(std::span<const PointMeasurement> points) {
+  for (const PointMeasurement& p : points) candidates_.erase(p.point);
+}
+
+int BodyPoints::cellOf(const Candidate& candidate) const {
+  const Eigen::Vector3f& uvd_px = candidate.track.views.back().uvd_px;
+  const int column = static_cast<int>(uvd_px.x()) * kColumns / std::max(params_.image_width_px, 1);
+  const int row = static_cast<int>(uvd_px.y()) * kRows / std::max(params_.image_height_px, 1);
+  return std::clamp(row, 0, kRows - 1) * kColumns + std::clamp(column, 0, kColumns - 1);
+}
+
+/// Fills up the landmarks: the longest tracks first, cell by cell of the image in turn.
+void BodyPoints::choose() {
+  std::vector<std::vector<Candidate*>> cells(kColumns * kRows);
+  std::vector<int> held(kColumns * kRows, 0);
+  int left = params_.max_landmarks;
+  for (auto& [point, candidate] : candidates_) {
+    if (candidate.track.views.back().frame != newest_) continue;
+    const int cell = cellOf(candidate);
+    if (candidate.chosen)
+      ++held[cell], --left;
+    else if (candidate.track.views.size() >= 2)
+      cells[cell].push_back(&candidate);
+  }
+  for (auto& cell : cells)
+    std::ranges::stable_sort(cell, std::greater{}, [](const Candidate* c) { return c->track.views.size(); });
+  for (int level = 1; left > 0; ++level) {
+    bool any = false;
+    for (std::size_t c = 0; c < cells.size() && left > 0; ++c) {
+      if (cells[c].empty()) continue;
+      any = true;
+      if (held[c] >= level) continue;
+      cells[c].front()->chosen = true;
+      cells[c].erase(cells[c].begin());
+      ++held[c], --left;
+    }
+    if (!any) break;
+  }
+}
+
+std::vector<LandmarkTrack> BodyPoints::takeEnded() { return std::exchange(ended_, {}); }
+
+std::vector<const LandmarkTrack*> BodyPoints::current() const {
+  std::vector<const LandmarkTrack*> tracks;
+  for (const auto& [point, candidate] : candidates_)
+    if (candidate.chosen && candidate.track.views.size() >= 2) tracks.push_back(&candidate.track);
+  return tracks;
+}
+
+int BodyPoints::seenNow() const {
+  return static_cast<int>(std::ranges::count_if(
+      current(), [&](const LandmarkTrack* track) { return track->views.back().frame == newest_; }));
+}
+
+}  // namespace motorcade

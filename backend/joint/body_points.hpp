@@ -1,0 +1,60 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "core/messages.hpp"
+
+namespace motorcade {
+
+/// Observations of one point of a body in successive frames. Each observation is in one track only.
+struct LandmarkTrack {
+  PointId point;
+  struct View {
+    FrameId frame;
+    Eigen::Vector3f uvd_px, sigma_px;
+  };
+  std::vector<View> views;  // oldest first
+};
+
+/// Chooses the landmarks of a body and cuts their tracks: a track ends when its point is lost or when it has as many
+/// views as the window has frames, and the point's next view begins a new one. Nothing is counted twice.
+class BodyPoints {
+ public:
+  struct Params {
+    int window_frames = 10;   // of a track
+    int max_landmarks = 300;  // followed at a time
+    int image_width_px = 0, image_height_px = 0;
+  };
+  explicit BodyPoints(const Params& params) : params_(params) {}
+
+  /// The body's points in one frame, in frame order, ordered by point.
+  void observe(FrameId frame, std::span<const PointMeasurement> points);
+  /// The points belong to another body: their tracks that have not ended are forgotten.
+  void forget(std::span<const PointMeasurement> points);
+
+  /// Tracks that ended since the last call, with two views and more.
+  std::vector<LandmarkTrack> takeEnded();
+  /// The chosen landmarks whose tracks go on, with two views and more.
+  std::vector<const LandmarkTrack*> current() const;
+  /// Of the chosen landmarks, how many were seen in the newest frame and before.
+  int seenNow() const;
+
+ private:
+  struct Candidate {
+    LandmarkTrack track;
+    bool chosen = false;
+  };
+  void end(Candidate& candidate);
+  void choose();
+  int cellOf(const Candidate& candidate) const;
+
+  Params params_;
+  FrameId newest_;
+  std::map<PointId, Candidate> candidates_;
+  std::vector<LandmarkTrack> ended_;
+};
+
+}  // namespace motorcade

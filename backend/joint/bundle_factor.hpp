@@ -1,0 +1,71 @@
+#pragma once
+
+#include <vector>
+
+#include "backend/graph/factor.hpp"
+#include "backend/joint/landmark.hpp"
+
+namespace motorcade {
+
+/// Landmarks of one body with their views: landmark i has views [first_view[i], first_view[i + 1]), oldest first.
+struct LandmarkViews {
+  std::vector<LandmarkView> views;
+  std::vector<int> first_view{0};
+  int count() const { return static_cast<int>(first_view.size()) - 1; }
+  std::span<const LandmarkView> of(int landmark) const {
+    return std::span(views).subspan(first_view[landmark], first_view[landmark + 1] - first_view[landmark]);
+  }
+};
+
+/// Sums of squared whitened residuals, and how many the landmarks' own unknowns leave: equal where the noise is as
+/// claimed.
+struct ResidualLevels {
+  double uv_sum = 0, uv_count = 0, d_sum = 0, d_count = 0;
+};
+
+/// What image measurements of one body say of the camera's motion around it, its landmarks eliminated (Schur
+/// complement): with r_jk = Sigma^-1/2 [ y_jk + offset e_d - pi(T_k l_j) ],
+///   H = sum(A'A - A'B (B'B)^-1 B'A)
+/// around the poses T_k = T_cam_body and the disparity offset at which they were linearized.
+struct EliminatedLandmarks {
+  std::vector<SE3> T_cam_body;  // of each frame
+  double offset_px = 0;
+  /// Full symmetric [H g; g' c] in (left perturbations of T_cam_body frame by frame, offset).
+  Eigen::MatrixXd system;
+  ResidualLevels levels;
+};
+EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
+                                       const LandmarkViews& landmarks, std::vector<SE3> T_cam_body,
+                                       double offset_px);
+
+/// Eliminated landmarks as a factor on the poses from which their body was seen. It knows nothing but motions relative
+/// to the last frame, D_k = T_cam(k)_body T_cam(last)_body^-1, and so stays what it is where everything moves as one:
+///   e_k = log(D_k D_k(linearized)^-1),  cost = [e; offset; 1]' system [e; offset; 1]
+class BundleFactor final : public Factor {
+ public:
+  struct Variables {
+    std::vector<VariableId> cameras;  // of the frames
+    std::vector<VariableId> bodies;   // the same frames' T_world_body, or none: the landmarks rest in the world
+    VariableId offset;
+    std::vector<VariableId> all() const;
+  };
+
+  BundleFactor(const Variables& variables, EliminatedLandmarks landmarks);
+
+  void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
+  void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const override;
+
+  /// T_cam_body of the frames by the factor's variables.
+  std::vector<SE3> relativePoses(std::span<const Value* const> values) const;
+  const EliminatedLandmarks& landmarks() const { return landmarks_; }
+
+ private:
+  Eigen::MatrixXd systemAt(std::span<const SE3> T_cam_body, double offset_px) const;
+
+  int frames_;
+  bool moving_;
+  EliminatedLandmarks landmarks_;
+  std::vector<SE3> D_inverse_;  // of D at the linearization
+};
+
+}  // namespace motorcade

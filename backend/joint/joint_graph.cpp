@@ -1,0 +1,330 @@
+#include "backend/joint/joint_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "backend/graph/sort_unique.hpp"
+#include "backend/smoother/factors.hpp"
+#include "core/unknown_motion.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr int kFewStatic = 20;  // landmarks seen now and before: with fewer the front-end's odometry helps
+
+IncrementalSolver::Params solverParams(const JointParams& params) {
+  return {.policy = IncrementalSolver::Policy::kFluid,
+          .batch_every_updates = 50,
+          .relinearization = {.mismatch_tolerance = params.mismatch_tolerance,
+                              .jacobian_drift_sigmas = params.jacobian_drift_sigmas,
+                              .urgent_flops = std::numeric_limits<double>::infinity(),
+                              .polish_flops = std::numeric_limits<double>::infinity()},
+          .substitution_tolerance = params.substitution_tolerance,
+          .iterations_per_update = params.iterations_per_update,
+          .iterated_scalars = 0,
+          .budget = {.scalars = params.budget_scalars, .ms = params.budget_ms}};
+}
+
+Vector6d sigmas(double sigma_m, double sigma_rad) {
+  Vector6d sigma;
+  sigma << Eigen::Vector3d::Constant(sigma_m), Eigen::Vector3d::Constant(sigma_rad);
+  return sigma;
+}
+
+bool concernsVariable(SolverProblem::Kind kind) {
+  using Kind = SolverProblem::Kind;
+  return kind != Kind::kNotFinite && kind != Kind::kUnknownVariable && kind != Kind::kRepeatedVariable;
+}
+
+BodyPoints::Params pointParams(const JointParams& params, const StereoCamera& camera, int max_landmarks) {
+  return {.window_frames = params.track_frames,
+          .max_landmarks = max_landmarks,
+          .image_width_px = camera.width_px,
+          .image_height_px = camera.height_px};
+}
+
+}  // namespace
+
+void NoiseLevel::learn(const ResidualLevels& levels) {
+  constexpr double kMemory = 4000;  // observations
+  const double keep = std::max(0.0, 1 - levels.d_count / kMemory);
+  sums_.uv_sum = keep * sums_.uv_sum + uv() * uv() * levels.uv_sum;
+  sums_.uv_count = keep * sums_.uv_count + levels.uv_count;
+  sums_.d_sum = keep * sums_.d_sum + d() * d() * levels.d_sum;
+  sums_.d_count = keep * sums_.d_count + levels.d_count;
+}
+double NoiseLevel::uv() const {
+  constexpr double kPrior = 100;
+  return std::sqrt((kPrior + sums_.uv_sum) / (kPrior + sums_.uv_count));
+}
+double NoiseLevel::d() const {
+  constexpr double kPrior = 50;
+  return std::sqrt((kPrior + sums_.d_sum) / (kPrior + sums_.d_count));
+}
+
+JointGraph::JointGraph(const JointParams& params, const StereoCamera& camera)
+    : params_(params),
+      camera_(camera),
+      solver_(solverParams(params)),
+      world_{.points = BodyPoints(pointParams(params, camera, params.max_static_landmarks)), .noise = {}, .current = {}} {
+  const SmallVector zero = SmallVector::Zero(1);
+  offset_ = solver_.addVariable(zero);
+  addPrior(offset_, zero, SmallVector::Constant(1, std::max(params.offset_sigma_px, 1e-4)));
+}
+
+double JointGraph::offset_px() const { return std::get<SmallVector>(solver_.estimate(offset_))[0]; }
+
+double JointGraph::offsetSigma_px() const {
+  const auto covariance = solver_.jointCovariance(std::span(&offset_, 1));
+  return covariance ? std::sqrt((*covariance)(0, 0)) : params_.offset_sigma_px;
+}
+
+void JointGraph::add(const FrameMeasurements& measurements) {
+  problems_.clear();
+  addCamera(measurements);
+  if (params_.use_objects)
+    for (const ObjectObservation& seen : measurements.objects)
+      if (frames_.contains(seen.frame) && isFinite(seen.T_cam_body)) addObservation(seen);
+  addPoints(world_, nullptr);
+  for (const TrackId id : measurements.ended)
+    if (const auto it = objects_.find(id); it != objects_.end()) it->second.points.points.observe(measurements.frame, {});
+  for (auto& [id, object] : objects_) addPoints(object.points, &object);
+  dropTroubled(solver_.update());
+}
+
+void JointGraph::addCamera(const FrameMeasurements& m) {
+  const SE3 T_previous_now = isFinite(m.T_previous_now) ? m.T_previous_now : SE3{};
+  JointCamera camera{.stamp = m.stamp, .status = m.status, .x = {}, .covariance = {}};
+  if (frames_.empty()) {
+    camera.x = solver_.addVariable(SE3{});
+    addPrior(camera.x, SE3{}, sigmas(params_.first_pose_sigma_m, params_.first_pose_sigma_rad));
+    world_.points.observe(m.frame, m.at_rest);
+  } else {
+    const VariableId before = frames_.rbegin()->second.x;
+    camera.x = solver_.addVariable((solver_.pose(before) * T_previous_now).normalized());
+    world_.points.observe(m.frame, m.at_rest);
+    if (m.status != FrameStatus::kGood || world_.points.seenNow() < kFewStatic) addOdometry(m, before, camera.x);
+  }
+  for (const ObjectObservation& seen : m.objects) world_.points.forget(seen.measured);
+  frames_.emplace(m.frame, camera);
+}
+
+void JointGraph::addOdometry(const FrameMeasurements& m, VariableId before, VariableId now) {
+  auto root = squareRootInformation(m.odometry_covariance);
+  if (!root) root = squareRootInformation(unknownMotionCovariance());
+  const PoseNoise noise{.sqrt_information = *root};
+  solver_.addFactor(std::make_unique<MotionFactor>(std::array{before, now}, MotionModel{m.T_previous_now}, noise));
+}
+
+JointObject& JointGraph::objectOf(TrackId id) {
+  const auto it = objects_.find(id);
+  if (it != objects_.end()) return it->second;
+  const BodyPoints::Params points = pointParams(params_, camera_, params_.max_object_landmarks);
+  return objects_.emplace(id, JointObject{.lever = {}, .records = {}, .points = {BodyPoints(points), {}, {}}})
+      .first->second;
+}
+
+void JointGraph::addObservation(const ObjectObservation& seen) {
+  JointObject& object = objectOf(seen.track);
+  if (object.records.contains(seen.frame)) return;
+  const auto last = object.records.empty() ? object.records.end() : std::prev(object.records.end());
+  const JointRecord* before = last != object.records.end() && last->second.T.valid() ? &last->second : nullptr;
+  JointRecord& record = object.records[seen.frame];
+  record.seen = seen;
+  record.seen.measured.clear();
+  record.stamp = frames_.at(seen.frame).stamp;
+  if (before)
+    continueObject(object, *before, record);
+  else if (seen.state == ObjectState::kPredicted)
+    return;  // nothing to predict from
+  else
+    beginObject(object, record);
+  object.points.points.observe(seen.frame, seen.measured);
+}
+
+void JointGraph::beginObject(JointObject& object, JointRecord& record) {
+  const SE3 T_world_cam = solver_.pose(frames_.at(record.seen.frame).x);
+  const SE3 T_world_body = (T_world_cam * record.seen.T_cam_body).normalized();
+  record.T = solver_.addVariable(T_world_body);
+  Vector6d twist = Vector6d::Zero();
+  twist.head<3>() = record.seen.T_cam_body.rotation().transpose() * record.seen.velocity_cam_mps;
+  record.w = solver_.addVariable(SmallVector(twist));
+  addPrior(record.T, T_world_body, sigmas(params_.object_origin_sigma_m, params_.object_axes_sigma_rad));
+  addPrior(record.w, twist, sigmas(params_.twist_sigma_mps, params_.twist_sigma_radps));
+  object.lever = solver_.addVariable(SmallVector(SmallVector::Zero(1)));
+  addPrior(object.lever, SmallVector::Zero(1), SmallVector::Constant(1, params_.lever_sigma_m));
+  if (params_.use_rolling)
+    solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.lever, params_.rolling));
+}
+
+void JointGraph::continueObject(JointObject& object, const JointRecord& before, JointRecord& record) {
+  const double dt_s = secondsBetween(before.stamp, record.stamp);
+  const SmallVector twist = std::get<SmallVector>(solver_.estimate(before.w));
+  const Vector6d step = dt_s * twist;
+  record.T = solver_.addVariable((solver_.pose(before.T) * SE3::exp(step)).normalized());
+  record.w = solver_.addVariable(twist);
+  solver_.addFactor(std::make_unique<ConstantTwistFactor>(
+      ConstantTwistFactor::Variables{before.T, before.w, record.T, record.w}, dt_s, params_.acceleration.density()));
+  if (params_.use_rolling)
+    solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.lever, params_.rolling));
+}
+
+/// Tracks that ended become a factor for good; the factor over those that go on is made anew.
+void JointGraph::addPoints(JointPoints& body, const JointObject* object) {
+  if (body.current) solver_.removeFactor(*body.current);
+  body.current.reset();
+  const std::vector<LandmarkTrack> ended = body.points.takeEnded();
+  if (object && !object->lever.valid()) return;
+  std::vector<const LandmarkTrack*> tracks;
+  for (const LandmarkTrack& track : ended) tracks.push_back(&track);
+  if (const auto id = addBundle(tracks, body.noise, object))
+    body.noise.learn(dynamic_cast<const BundleFactor&>(solver_.graph().factor(*id)).landmarks().levels);
+  body.current = addBundle(body.points.current(), body.noise, object);
+}
+
+std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTrack*>& tracks, const NoiseLevel& noise,
+                                              const JointObject* object) {
+  const auto inGraph = [&](FrameId frame) {
+    if (!frames_.contains(frame)) return false;
+    const auto record = object ? object->records.find(frame) : decltype(object->records.begin()){};
+    return !object || (record != object->records.end() && record->second.T.valid());
+  };
+  std::vector<FrameId> frames;
+  for (const LandmarkTrack* track : tracks)
+    for (const auto& view : track->views)
+      if (inGraph(view.frame)) frames.push_back(view.frame);
+  sortUnique(frames);
+  LandmarkViews landmarks;
+  for (const LandmarkTrack* track : tracks) {
+    const std::size_t first = landmarks.views.size();
+    for (const auto& view : track->views) {
+      const auto at = std::ranges::lower_bound(frames, view.frame);
+      if (at == frames.end() || *at != view.frame) continue;
+      Eigen::Vector3d sigma_px = view.sigma_px.cast<double>();
+      sigma_px.head<2>() *= noise.uv();
+      sigma_px.z() *= noise.d();
+      landmarks.views.push_back(
+          {static_cast<int>(at - frames.begin()), view.uvd_px.cast<double>(), sigma_px.cwiseInverse()});
+    }
+    if (landmarks.views.size() < first + 2)
+      landmarks.views.resize(first);
+    else
+      landmarks.first_view.push_back(static_cast<int>(landmarks.views.size()));
+  }
+  if (landmarks.count() == 0) return std::nullopt;
+  BundleFactor::Variables variables{.cameras = {}, .bodies = {}, .offset = offset_};
+  for (const FrameId frame : frames) {
+    variables.cameras.push_back(frames_.at(frame).x);
+    if (object) variables.bodies.push_back(object->records.at(frame).T);
+  }
+  std::vector<SE3> T_cam_body;
+  for (const FrameId frame : frames) {
+    const SE3 T_cam_world = solver_.pose(frames_.at(frame).x).inverse();
+    T_cam_body.push_back(object ? T_cam_world * solver_.pose(object->records.at(frame).T) : T_cam_world);
+  }
+  return solver_.addFactor(std::make_unique<BundleFactor>(
+      variables, eliminateLandmarks(camera_, landmark_noise_, landmarks, std::move(T_cam_body), offset_px())));
+}
+
+void JointGraph::addPrior(VariableId v, const SE3& mean, const Vector6d& sigma) {
+  const PoseNoise noise{.sqrt_information = sigma.cwiseInverse().asDiagonal()};
+  solver_.addFactor(std::make_unique<PriorFactor>(std::array{v}, PriorModel{mean}, noise));
+}
+
+void JointGraph::addPrior(VariableId v, const SmallVector& mean, const SmallVector& sigma) {
+  solver_.addFactor(std::make_unique<VectorPriorFactor>(v, mean, sigma));
+}
+
+SE3 JointGraph::objectPose(const JointObject& object, FrameId frame) const {
+  const JointRecord& record = object.records.at(frame);
+  if (record.frozen) return *record.frozen;
+  if (record.T.valid()) return solver_.pose(record.T).normalized();
+  return (solver_.pose(frames_.at(frame).x) * record.seen.T_cam_body).normalized();
+}
+
+Eigen::Vector3d JointGraph::objectVelocity_mps(const JointObject& object, FrameId frame) const {
+  const JointRecord& record = object.records.at(frame);
+  if (!record.w.valid()) return solver_.pose(frames_.at(frame).x).rotation() * record.seen.velocity_cam_mps;
+  return solver_.pose(record.T).rotation() * std::get<SmallVector>(solver_.estimate(record.w)).head<3>();
+}
+
+std::vector<VariableId> JointGraph::variablesOf(const JointObject& object) const {
+  std::vector<VariableId> variables;
+  if (object.lever.valid()) variables.push_back(object.lever);
+  for (const auto& [frame, record] : object.records)
+    if (record.T.valid()) variables.insert(variables.end(), {record.T, record.w});
+  return variables;
+}
+
+std::optional<TrackId> JointGraph::objectOf(VariableId v) const {
+  for (const auto& [id, object] : objects_)
+    if (std::ranges::count(variablesOf(object), v) > 0) return id;
+  return std::nullopt;
+}
+
+std::string JointGraph::nameOf(VariableId v) const {
+  if (v == offset_) return "disparity offset";
+  for (const auto& [frame, camera] : frames_)
+    if (camera.x == v) return "camera pose of frame " + std::to_string(frame.value);
+  for (const auto& [id, object] : objects_) {
+    if (object.lever == v) return "lever of object " + std::to_string(id.value);
+    for (const auto& [frame, record] : object.records) {
+      const std::string of = " of object " + std::to_string(id.value) + " in frame " + std::to_string(frame.value);
+      if (record.T == v) return "pose" + of;
+      if (record.w == v) return "twist" + of;
+    }
+  }
+  return "a variable that is gone";
+}
+
+void JointGraph::dropTroubled(const IncrementalSolver::Report& report) {
+  std::vector<SolverProblem> found = report.problems;
+  while (!found.empty()) {
+    std::vector<TrackId> troubled;
+    for (const SolverProblem& problem : found) {
+      const auto object = concernsVariable(problem.kind) ? objectOf(problem.variable) : std::nullopt;
+      if (object) troubled.push_back(*object);
+      const std::string text = describe(problem, solver_.graph(), [&](VariableId v) { return nameOf(v); });
+      problems_.push_back(object ? "object " + std::to_string(object->value) + " is dropped: " + text : text);
+    }
+    found.clear();
+    for (const TrackId id : troubled) {
+      JointObject& object = objects_.at(id);
+      if (!object.lever.valid()) continue;  // dropped just now
+      const auto& after = solver_.drop(variablesOf(object));
+      found.insert(found.end(), after.problems.begin(), after.problems.end());
+      object.lever = {};
+      object.points.current.reset();
+      for (auto& [frame, record] : object.records) record.T = record.w = {};
+    }
+  }
+}
+
+void JointGraph::retireOldest() {
+  const auto [oldest, camera] = *frames_.begin();
+  std::vector<VariableId> retired{camera.x};
+  for (auto it = objects_.begin(); it != objects_.end();) {
+    JointObject& object = it->second;
+    object.records.erase(object.records.begin(), object.records.lower_bound(oldest));
+    const auto record = object.records.find(oldest);
+    if (record != object.records.end()) {
+      record->second.frozen = objectPose(object, oldest);
+      if (record->second.T.valid()) retired.insert(retired.end(), {record->second.T, record->second.w});
+      record->second.T = record->second.w = {};
+    }
+    const bool over = object.records.empty() || object.records.rbegin()->first <= oldest;
+    if (over && object.lever.valid()) retired.push_back(object.lever);
+    it = over ? objects_.erase(it) : std::next(it);
+  }
+  solver_.retire(retired);
+  frames_.erase(frames_.begin());
+}
+
+void JointGraph::converge() {
+  constexpr double kConverged = 1e-6;  // m or rad: far below what is published
+  problems_.clear();
+  dropTroubled(solver_.converge(params_.final_iterations, kConverged));
+}
+
+}  // namespace motorcade

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backend/joint/body_points.hpp"
+#include "backend/joint/bundle_factor.hpp"
+#include "backend/joint/joint_params.hpp"
+#include "backend/solver/incremental_solver.hpp"
+#include "core/messages.hpp"
+
+namespace motorcade {
+
+/// The camera in one frame of the window.
+struct JointCamera {
+  Timestamp stamp;
+  FrameStatus status = FrameStatus::kGood;
+  VariableId x;
+  std::optional<Matrix6d> covariance;  // as last computed
+};
+
+/// An object in one frame of the window.
+struct JointRecord {
+  ObjectObservation seen;  // without the points
+  Timestamp stamp;
+  VariableId T, w;  // T_world_body and twist; invalid when the frame's pose is not in the graph
+  std::optional<SE3> frozen;  // T_world_body when the pose has left the window
+  std::optional<Matrix6d> covariance;
+  std::optional<double> speed_sigma_mps;
+};
+
+/// Running noise levels of a body's observations, as factors on the standard deviations that the front-end claims.
+class NoiseLevel {
+ public:
+  void learn(const ResidualLevels& levels);
+  double uv() const;
+  double d() const;
+
+ private:
+  ResidualLevels sums_{};
+};
+
+/// What is known of the points of a body, and the factor over those that are followed now.
+struct JointPoints {
+  BodyPoints points;
+  NoiseLevel noise;
+  std::optional<FactorId> current;
+};
+
+struct JointObject {
+  VariableId lever;  // invalid before the first observation and after a drop
+  std::map<FrameId, JointRecord> records;
+  JointPoints points;
+};
+
+/// Bundle adjustment in body frames, the world being body 0: turns the measurements of frames into variables and
+/// factors, and remembers which is which.
+class JointGraph {
+ public:
+  JointGraph(const JointParams& params, const StereoCamera& camera);
+
+  /// Adds a frame with its objects, and updates the solver.
+  void add(const FrameMeasurements& measurements);
+  const std::vector<std::string>& problems() const { return problems_; }
+  void retireOldest();
+  void converge();
+
+  const std::map<FrameId, JointCamera>& frames() const { return frames_; }
+  const std::map<TrackId, JointObject>& objects() const { return objects_; }
+  std::map<FrameId, JointCamera>& frames() { return frames_; }
+  std::map<TrackId, JointObject>& objects() { return objects_; }
+  const IncrementalSolver& solver() const { return solver_; }
+  double offset_px() const;
+  double offsetSigma_px() const;
+
+  SE3 objectPose(const JointObject& object, FrameId frame) const;
+  Eigen::Vector3d objectVelocity_mps(const JointObject& object, FrameId frame) const;
+
+ private:
+  void addCamera(const FrameMeasurements& measurements);
+  void addOdometry(const FrameMeasurements& measurements, VariableId before, VariableId now);
+  void addObservation(const ObjectObservation& seen);
+  void beginObject(JointObject& object, JointRecord& record);
+  void continueObject(JointObject& object, const JointRecord& before, JointRecord& record);
+  void addPoints(JointPoints& body, const JointObject* object);
+  std::optional<FactorId> addBundle(const std::vector<const LandmarkTrack*>& tracks, const NoiseLevel& noise,
+                                    const JointObject* object);
+  JointObject& objectOf(TrackId id);
+  void addPrior(VariableId v, const SE3& mean, const Vector6d& sigma);
+  void addPrior(VariableId v, const SmallVector& mean, const SmallVector& sigma);
+  void dropTroubled(const IncrementalSolver::Report& report);
+  std::vector<VariableId> variablesOf(const JointObject& object) const;
+  std::optional<TrackId> objectOf(VariableId v) const;
+  std::string nameOf(VariableId v) const;
+
+  JointParams params_;
+  StereoCamera camera_;
+  LandmarkNoise landmark_noise_;
+  IncrementalSolver solver_;
+  VariableId offset_;
+  JointPoints world_;
+  std::map<FrameId, JointCamera> frames_;
+  std::map<TrackId, JointObject> objects_;
+  std::vector<std::string> problems_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,67 @@
+#include "backend/joint/landmark.hpp"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+namespace motorcade {
+namespace {
+
+constexpr int kIterations = 2;               // from the newest view: converged to 1e-3 px
+constexpr double kLeastDisparity_px = 0.3;   // a landmark with less is at infinity
+constexpr double kLeastSharedSigma_px = 1e-3;
+
+}  // namespace
+
+bool LandmarkFit::operator()(std::span<const LandmarkView> views) {
+  landmark_ << views.back().uvd_px + Eigen::Vector3d(0, 0, offset_px_), 0;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    if (!linearize(views, false)) return false;
+    landmark_ -= V_.llt().solve(gradient_);
+  }
+  return linearize(views, true);
+}
+
+bool LandmarkFit::linearize(std::span<const LandmarkView> views, bool with_poses) {
+  if (!(landmark_[2] > kLeastDisparity_px)) return false;
+  const SE3 T_body_cam = T_cam_body_[views.back().frame].inverse();
+  const Eigen::Vector3d uvd_px = landmark_.head<3>(), p_body = T_body_cam * camera_.triangulate(uvd_px);
+  const Eigen::Matrix3d G = T_body_cam.rotation() * camera_.triangulationJacobian(uvd_px);
+  linear_.clear();
+  V_.setZero();
+  gradient_.setZero();
+  for (const LandmarkView& view : views)
+    if (!linearizeView(view, p_body, G, with_poses)) return false;
+  const double shared = 1 / std::max(noise_.shared_disparity_sigma_px, kLeastSharedSigma_px);
+  V_(3, 3) += shared * shared;
+  gradient_[3] += shared * shared * landmark_[3];
+  return true;
+}
+
+/// `G` = d(p_body) / d(u, v, d of the newest view).
+bool LandmarkFit::linearizeView(const LandmarkView& view, const Eigen::Vector3d& p_body, const Eigen::Matrix3d& G,
+                                bool with_poses) {
+  const SE3& T = T_cam_body_[view.frame];
+  const Eigen::Vector3d p_cam = T * p_body;
+  const auto predicted = camera_.project(p_cam);
+  if (!predicted) return false;
+  LinearView& linear = linear_.emplace_back();
+  linear.r = view.uvd_px - *predicted;
+  linear.r.z() += offset_px_ - landmark_[3];
+  linear.r.array() *= view.inverse_sigma.array();
+  const double root_weight = std::sqrt(robustWeight(noise_.loss, linear.r.norm(), noise_.loss_scale));
+  const Eigen::Vector3d whiten = root_weight * view.inverse_sigma;
+  linear.r *= root_weight;
+  const Eigen::Matrix3d J = -(whiten.asDiagonal() * camera_.projectionJacobian(p_cam));
+  linear.B.leftCols<3>().noalias() = J * (T.rotation() * G);
+  linear.B.col(3) << 0, 0, -whiten.z();
+  V_.noalias() += linear.B.transpose() * linear.B;
+  gradient_.noalias() += linear.B.transpose() * linear.r;
+  if (!with_poses) return true;
+  linear.A.leftCols<3>() = J;
+  linear.A.rightCols<3>().noalias() = -J * hat(p_cam);
+  linear.D = whiten.z();
+  return true;
+}
+
+}  // namespace motorcade

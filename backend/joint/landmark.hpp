@@ -1,0 +1,72 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+#include <cstdlib>
+
+#include <Eigen/Core>
+
+#include "core/robust_loss.hpp"
+#include "core/se3.hpp"
+#include "core/stereo_camera.hpp"
+
+namespace motorcade {
+
+/// One observation of a landmark: `frame` counts the frames of the factor that holds it.
+struct LandmarkView {
+  int frame = 0;
+  Eigen::Vector3d uvd_px;
+  Eigen::Vector3d inverse_sigma;  // of u, v, d [1/px]
+};
+
+/// How observations of landmarks count.
+struct LandmarkNoise {
+  RobustLoss loss = getenv("JL") ? RobustLoss(atoi(getenv("JL"))) : RobustLoss::kCauchy;
+  double loss_scale = getenv("JS") ? atof(getenv("JS")) : 1.5;  // of an observation's whitened norm: three dimensions
+  /// Of an error that all disparities of a landmark share, as its texture is matched with the same bias in each frame.
+  double shared_disparity_sigma_px = getenv("JB") ? atof(getenv("JB")) : 0.1;
+};
+
+/// A landmark's unknowns, where its last view is: (u, v, d) there and the error that its disparities share.
+using Vector4d = Eigen::Vector4d;
+using Matrix4d = Eigen::Matrix4d;
+
+/// An observation's linear model: whitened and weighted residual and Jacobians by (pose of the body seen from the
+/// camera, perturbed on the left; landmark). The Jacobian by the disparity offset is (0, 0, D).
+struct LinearView {
+  Eigen::Vector3d r;
+  Eigen::Matrix<double, 3, 6> A;
+  Eigen::Matrix<double, 3, 4> B;
+  double D = 0;
+};
+
+/// Fits landmarks to their views from known poses (variable projection: poses move, landmarks follow).
+class LandmarkFit {
+ public:
+  /// `T_cam_body` of each frame, in which the landmark rests in the body. The offset is added to all disparities.
+  LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise, std::span<const SE3> T_cam_body, double offset_px)
+      : camera_(camera), noise_(noise), T_cam_body_(T_cam_body), offset_px_(offset_px) {}
+
+  /// False when a view would lie behind its camera or the landmark is at infinity.
+  bool operator()(std::span<const LandmarkView> views);
+
+  std::span<const LinearView> views() const { return linear_; }
+  const Matrix4d& information() const { return V_; }
+  double sharedError_px() const { return landmark_[3]; }
+  double sharedErrorSigma_px() const { return noise_.shared_disparity_sigma_px; }
+
+ private:
+  bool linearize(std::span<const LandmarkView> views, bool with_poses);
+  bool linearizeView(const LandmarkView& view, const Eigen::Vector3d& p_body, const Eigen::Matrix3d& G, bool with_poses);
+
+  const StereoCamera& camera_;
+  LandmarkNoise noise_;
+  std::span<const SE3> T_cam_body_;
+  double offset_px_;
+  Vector4d landmark_, gradient_;
+  Matrix4d V_;
+  std::vector<LinearView> linear_;
+};
+
+}  // namespace motorcade

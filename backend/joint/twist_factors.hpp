@@ -1,0 +1,56 @@
+#pragma once
+
+#include "backend/graph/factor.hpp"
+#include "core/constant_twist.hpp"
+
+/// How vehicles move between frames.
+namespace motorcade {
+
+/// White noise on acceleration between the poses and twists of a body at two moments (Barfoot, State Estimation for
+/// Robotics, 2017, section 11.1, mirrored to right perturbations): with xi = log(T_a^-1 T_b),
+///   r = [xi - dt w_a; Jr^-1(xi) w_b - w_a],   covariance q (dt^3/3, dt^2/2; dt^2/2, dt)
+/// where Jr^-1(xi) w ~ w + 1/2 ad(xi) w, as vehicles turn little between frames.
+class ConstantTwistFactor final : public Factor {
+ public:
+  struct Variables {
+    VariableId T_a, w_a, T_b, w_b;
+  };
+  ConstantTwistFactor(const Variables& variables, double dt_s, const Vector6d& acceleration_density);
+
+  void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
+  void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const override;
+
+ private:
+  double dt_s_;
+  Vector6d root_;  // of the information per axis
+};
+
+/// How far a vehicle departs from rolling: standard deviations of the velocity across its own axis and of its climbing.
+struct RollingNoise {
+  double sideways_mps = 0.3, vertical_mps = 0.2;
+};
+
+/// A vehicle rolls: no side slip of the point `lever` behind its origin, where its rear axle may be, and no climbing:
+///   r = [(v_y - lever turn_z) / sideways; v_z / vertical]
+class RollingFactor final : public Factor {
+ public:
+  RollingFactor(VariableId w, VariableId lever, const RollingNoise& noise);
+  void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
+  void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const override;
+
+ private:
+  RollingNoise noise_;
+};
+
+/// Holds a vector at a mean, by independent standard deviations: r = (v - mean) / sigma.
+class VectorPriorFactor final : public Factor {
+ public:
+  VectorPriorFactor(VariableId v, const SmallVector& mean, const SmallVector& sigma);
+  void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
+  void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const override;
+
+ private:
+  SmallVector mean_, inverse_sigma_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,137 @@
+#include "backend/joint/bundle_factor.hpp"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/matchers.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::IsNear;
+
+const StereoCamera kCamera{
+    .fx_px = 720, .fy_px = 720, .cx_px = 620, .cy_px = 188, .baseline_m = 0.54, .width_px = 1242, .height_px = 376};
+
+/// A body seen in a few frames by a camera that moves, with the values of the factor's variables.
+struct Scene {
+  static constexpr int kFrames = 4, kLandmarks = 12;
+  std::vector<Value> values;
+  std::unique_ptr<BundleFactor> factor;
+  LandmarkViews landmarks;
+  LandmarkNoise noise;
+
+  Scene(bool moving, double noise_px, LandmarkNoise landmark_noise, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0, 1);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<SE3> x, T;
+    for (int k = 0; k < kFrames; ++k) {
+      Vector6d camera, body;
+      camera << 0.1 * k, 0.02 * k, 1.1 * k, 0.01 * k, 0.02 * k, 0.005 * k;
+      body << 0.8 * k, 0.1 * k, 0, 0.01 * k, 0, 0.05 * k;
+      x.push_back(SE3(expSO3({0.1, 0.2, 0.3}), {5, 1, 2}) * SE3::exp(camera));
+      T.push_back(moving ? x[0] * SE3(expSO3({1.2, -1.0, 1.1}), {2, 1, 16}) * SE3::exp(body) : SE3{});
+    }
+    const double offset_px = 0.3;
+    for (int j = 0; j < kLandmarks; ++j) {
+      const Eigen::Vector3d p_cam(4 * uniform(random), uniform(random), 16 + 5 * uniform(random));
+      const Eigen::Vector3d p_body = T[0].inverse() * (x[0] * p_cam);
+      for (int k = 0; k < kFrames; ++k) {
+        if (j % 4 == k) continue;
+        Eigen::Vector3d uvd_px = *kCamera.project(x[k].inverse() * (T[k] * p_body));
+        uvd_px.z() -= offset_px;
+        for (double& value : uvd_px) value += noise_px * normal(random);
+        landmarks.views.push_back({k, uvd_px, {4, 4, 3}});
+      }
+      landmarks.first_view.push_back(static_cast<int>(landmarks.views.size()));
+    }
+    BundleFactor::Variables variables{.cameras = {}, .bodies = {}, .offset = {2 * kFrames}};
+    std::vector<SE3> T_cam_body;
+    for (int k = 0; k < kFrames; ++k) {
+      variables.cameras.push_back({k}), values.emplace_back(x[k]);
+      T_cam_body.push_back(x[k].inverse() * T[k]);
+    }
+    for (int k = 0; moving && k < kFrames; ++k) variables.bodies.push_back({kFrames + k}), values.emplace_back(T[k]);
+    values.emplace_back(SmallVector(SmallVector::Constant(1, offset_px)));
+    factor = std::make_unique<BundleFactor>(
+        variables, eliminateLandmarks(kCamera, landmark_noise, landmarks, T_cam_body, offset_px));
+    noise = landmark_noise;
+  }
+  /// Of the landmarks fitted anew at the present values.
+  double freshCost() const {
+    const auto fresh = eliminateLandmarks(kCamera, noise, landmarks, factor->relativePoses(pointers()),
+                                          std::get<SmallVector>(values.back())[0]);
+    return fresh.system(fresh.system.rows() - 1, fresh.system.cols() - 1);
+  }
+  std::vector<const Value*> pointers() const {
+    std::vector<const Value*> pointers;
+    for (const Value& value : values) pointers.push_back(&value);
+    return pointers;
+  }
+  int dimension() const { return factor->rows() - 1; }
+  Eigen::MatrixXd linearize() const {
+    Eigen::MatrixXd term(factor->rows(), factor->rows());
+    factor->linearize(pointers(), term);
+    return term;
+  }
+  double cost() const { return linearize()(dimension(), dimension()); }
+  void move(int coordinate, double step) {
+    for (Value& value : values) {
+      if (coordinate < motorcade::dimension(value)) {
+        SmallVector delta = SmallVector::Zero(motorcade::dimension(value));
+        delta[coordinate] = step;
+        value = retract(value, delta);
+        return;
+      }
+      coordinate -= motorcade::dimension(value);
+    }
+  }
+};
+
+class BundleFactorOf : public testing::TestWithParam<bool> {};
+
+TEST_P(BundleFactorOf, NoResidualsAtTheTruth) {
+  const Scene scene(GetParam(), 0, {}, 1);
+  const Eigen::MatrixXd term = scene.linearize();
+  EXPECT_LT(scene.cost(), 1e-12);
+  EXPECT_LT(term.row(scene.dimension()).norm(), 1e-6);
+}
+
+TEST_P(BundleFactorOf, GradientMatchesFiniteDifferencesOfTheCost) {
+  Scene scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2);
+  const Eigen::MatrixXd term = scene.linearize();
+  for (int i = 0; i < scene.dimension(); ++i) {
+    constexpr double kStep = 1e-4;
+    Scene plus = Scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2), minus = Scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2);
+    plus.move(i, kStep), minus.move(i, -kStep);
+    const double numeric = (plus.freshCost() - minus.freshCost()) / (4 * kStep);
+    EXPECT_NEAR(term(scene.dimension(), i), numeric, 1e-3 * (1 + std::abs(numeric))) << i;
+    const double curvature = (plus.freshCost() + minus.freshCost() - 2 * scene.freshCost()) / (2 * kStep * kStep);
+    EXPECT_NEAR(term(i, i), curvature, 0.03 * term(i, i) + 1) << i;
+  }
+  EXPECT_THAT(term, IsNear(Eigen::MatrixXd(term.transpose()), 1e-9));
+}
+
+TEST_P(BundleFactorOf, TheQuadraticHoldsAwayFromItsLinearization) {
+  Scene scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 3);
+  const double before = scene.cost();
+  for (int i = 0; i < scene.dimension(); ++i) scene.move(i, i % 2 == 0 ? 2e-3 : -1e-3);
+  EXPECT_GT(scene.freshCost(), 1.05 * before);
+  EXPECT_NEAR(scene.cost(), scene.freshCost(), 0.02 * (scene.freshCost() - before));
+}
+
+TEST_P(BundleFactorOf, KnowsNothingOfWhereTheWholeIs) {
+  Scene scene(GetParam(), 0.2, {}, 4);
+  const double before = scene.cost();
+  const SE3 anywhere(expSO3({0.4, -1, 2}), {100, -30, 7});
+  for (Value& value : scene.values)
+    if (auto* pose = std::get_if<SE3>(&value)) *pose = anywhere * *pose;
+  EXPECT_NEAR(scene.cost(), before, 1e-6 * before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, BundleFactorOf, testing::Bool());
+
+}  // namespace
+}  // namespace motorcade
