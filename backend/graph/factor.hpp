@@ -16,7 +16,7 @@ class Factor {
   /// the right-hand side.
   enum class Form {
     kJacobian,     // [J | r], whitened: cost |J delta + r|^2
-    kInformation,  // lower triangle of the symmetric [H g; g^T c]: cost delta^T H delta + 2 g^T delta + c
+    kInformation,  // symmetric [H g; g^T c]: cost delta^T H delta + 2 g^T delta + c, exact in its vectors
   };
 
   /// `rows` of the matrix that `linearize` fills.
@@ -37,6 +37,13 @@ class Factor {
   /// Of Form::kJacobian only: the last column of `linearize`, the whitened and weighted residual, without the
   /// Jacobian's cost.
   virtual void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const = 0;
+
+  /// Of Form::kInformation only: g and c of `linearize`, stacked, where they can be had without H.
+  virtual void gradient(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> g_c) const {
+    Eigen::MatrixXd term(rows_, rows_);
+    linearize(values, term);
+    g_c = term.row(rows_ - 1);
+  }
 
  private:
   std::vector<VariableId> variables_;

@@ -146,6 +146,20 @@ void FactorGraph::turnToWorldAxes(const Factor& factor, Term term) const {
   }
 }
 
+/// The same of a gradient at the applied estimates.
+void FactorGraph::turnToWorldAxes(const Factor& factor, Eigen::Ref<Eigen::VectorXd> gradient) const {
+  Eigen::Index at = 0;
+  for (const VariableId v : factor.variables()) {
+    const Value& value = (*this)[v].applied_estimate;
+    if (const auto* pose = std::get_if<SE3>(&value))
+      for (const Eigen::Index k : {at, at + 3})
+        gradient.segment<3>(k) = (pose->rotation() * gradient.segment<3>(k)).eval();
+    if (const auto* planar = std::get_if<SE2>(&value))
+      gradient.segment<2>(at) = (planar->rotation() * gradient.segment<2>(at)).eval();
+    at += sizeOf(v);
+  }
+}
+
 /// Fills `term` in steps from the applied estimates. False when it is not finite.
 bool FactorGraph::evaluate(const Factor& factor, Term term) {
   apply(factor);
@@ -246,17 +260,23 @@ FactorGraph::Mismatch FactorGraph::informationMismatch(FactorId id) {
   const Factor& factor = *slot(id).factor;
   const Term model = term(id);
   const Eigen::Index n = model.cols() - 1;
-  matrix_.resize(model.size());
-  residual_.assign(n, 0.0);
-  Term fresh(matrix_.data(), model.rows(), model.cols());
-  if (!evaluate(factor, fresh)) return {.norm = 0, .r = residual_};
-  setCost(factors_[id.value], costOf(factor, fresh));
-  Column difference(residual_.data(), n);
-  difference = fresh.row(n).head(n) - model.row(n).head(n);
-  difference.noalias() -= model.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * appliedCoordinates(factor);
+  apply(factor);
+  residual_.assign(n + 1, 0.0);
+  Column difference(residual_.data(), n + 1);
+  factor.gradient(valuesOf(factor, &Variable::applied_estimate), difference);
+  turnToWorldAxes(factor, difference.head(n));
+  if (!std::isfinite(difference.squaredNorm())) {
+    residual_.assign(n, 0.0);
+    return {.norm = 0, .r = residual_};
+  }
+  setCost(factors_[id.value], difference[n]);
+  residual_.resize(n);
+  Column change(residual_.data(), n);
+  change -= model.row(n).head(n);
+  change.noalias() -= model.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * appliedCoordinates(factor);
   double squared = 0;
   for (Eigen::Index i = 0; i < n; ++i)
-    if (fresh(i, i) > 0) squared += difference[i] * difference[i] / fresh(i, i);
+    if (model(i, i) > 0) squared += change[i] * change[i] / model(i, i);
   return {.norm = std::sqrt(squared), .r = residual_};
 }
 

@@ -58,6 +58,7 @@ class FactorGraph {
   /// since they were last compared: mismatch comes from turning and grows with turn times step. Infinite for vectors,
   /// of whose factors nothing is known.
   double mismatchBound(VariableId id) const;
+  bool isVector(VariableId id) const { return std::holds_alternative<SmallVector>((*this)[id].applied_estimate); }
   void markCompared(VariableId id) { (*this)[id].x_compared = (*this)[id].x; }
   /// Applies all x, and begins them at zero again: all models must be linearized anew.
   void restartCoordinates();
@@ -118,6 +119,7 @@ class FactorGraph {
   std::span<const Value* const> valuesOf(const Factor& factor, Value Variable::*member);
   Eigen::Map<Eigen::VectorXd> appliedCoordinates(const Factor& factor);
   void turnToWorldAxes(const Factor& factor, Term term) const;
+  void turnToWorldAxes(const Factor& factor, Eigen::Ref<Eigen::VectorXd> gradient) const;
   bool evaluate(const Factor& factor, Term term);
   void shiftToCoordinates(const Factor& factor, Term term);
   Mismatch informationMismatch(FactorId id);

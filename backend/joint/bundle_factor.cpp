@@ -63,18 +63,10 @@ EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const Landmar
   return result;
 }
 
-std::vector<VariableId> BundleFactor::Variables::all() const {
-  std::vector<VariableId> all = cameras;
-  all.insert(all.end(), bodies.begin(), bodies.end());
-  all.push_back(offset);
-  return all;
-}
-
-BundleFactor::BundleFactor(const Variables& variables, EliminatedLandmarks landmarks)
-    : Factor(variables.all(), Form::kInformation,
-             static_cast<int>(6 * (variables.cameras.size() + variables.bodies.size())) + kRest),
-      frames_(static_cast<int>(variables.cameras.size())),
-      moving_(!variables.bodies.empty()),
+BundleFactor::BundleFactor(Poses kind, std::vector<VariableId> poses, VariableId offset, EliminatedLandmarks landmarks)
+    : Factor((poses.push_back(offset), poses), Form::kInformation, static_cast<int>(landmarks.system.rows())),
+      kind_(kind),
+      frames_(static_cast<int>(landmarks.T_cam_body.size())),
       landmarks_(std::move(landmarks)) {
   const SE3 last = landmarks_.T_cam_body.back().inverse();
   for (const SE3& T : landmarks_.T_cam_body) D_inverse_.push_back((T * last).inverse());
@@ -84,65 +76,92 @@ void BundleFactor::residual(std::span<const Value* const>, Eigen::Ref<Eigen::Vec
   assert(false && "a quadratic in information form has no residual");
 }
 
-std::vector<SE3> BundleFactor::relativePoses(std::span<const Value* const> values) const {
+std::vector<SE3> BundleFactor::posesFromCamera(std::span<const Value* const> values) const {
   std::vector<SE3> T_cam_body;
   for (int k = 0; k < frames_; ++k) {
-    const SE3 T_cam_world = std::get<SE3>(*values[k]).inverse();
-    T_cam_body.push_back(moving_ ? T_cam_world * std::get<SE3>(*values[frames_ + k]) : T_cam_world);
+    const auto& pose = std::get<SE3>(*values[k]);
+    T_cam_body.push_back(kind_ == Poses::kWorldCam ? pose.inverse() : pose);
   }
   return T_cam_body;
 }
 
-/// [H g; g' c] in left perturbations of T_cam_body at these values.
-Eigen::MatrixXd BundleFactor::systemAt(std::span<const SE3> T_cam_body, double offset_px) const {
-  const int last = 6 * (frames_ - 1), size = static_cast<int>(landmarks_.system.rows());
-  Eigen::MatrixXd system = landmarks_.system;
-  Eigen::VectorXd e = Eigen::VectorXd::Zero(size - 1);
-  e[size - kRest] = offset_px - landmarks_.offset_px;
+BundleFactor::Displacement BundleFactor::displacement(std::span<const SE3> T_cam_body, double offset_px) const {
+  Displacement d{.e = Eigen::VectorXd::Zero(landmarks_.system.rows() - 1), .J = {}, .J_last = {}};
+  d.e[6 * frames_] = offset_px - landmarks_.offset_px;
   const SE3 T_body_last = T_cam_body.back().inverse();
-  std::vector<Matrix6d> J_last(frames_ - 1);  // d e_k / d (perturbation of the last pose)
   for (int k = 0; k + 1 < frames_; ++k) {
     const SE3 D = T_cam_body[k] * T_body_last;
-    e.segment<6>(6 * k) = (D * D_inverse_[k]).log();
-    J_last[k] = -D.adjoint();
+    const Vector6d e = (D * D_inverse_[k]).log();
+    d.e.segment<6>(6 * k) = e;
+    d.J.push_back(rightJacobianInverseSE3(-e));
+    d.J_last.push_back(-D.adjoint());
   }
-  // The last pose has no column of its own: all motions are relative to it.
+  return d;
+}
+
+Eigen::VectorXd BundleFactor::gradientAt(const Eigen::VectorXd& e) const {
+  const Eigen::Index n = e.size(), last = 6 * (frames_ - 1);
+  const auto g0 = landmarks_.system.col(n);
+  Eigen::VectorXd g_c(n + 1);
+  g_c.head(n).noalias() = landmarks_.system.topLeftCorner(n, n) * e;
+  g_c[n] = g0[n] + e.dot(g_c.head(n)) + 2 * e.dot(g0.head(n));
+  g_c.head(n) += g0.head(n);
+  g_c.segment<6>(last).setZero();  // all motions are relative to the last pose
+  return g_c;
+}
+
+/// [H g; g' c] in left perturbations of T_cam_body.
+Eigen::MatrixXd BundleFactor::systemAt(const Displacement& d) const {
+  const int last = 6 * (frames_ - 1), size = static_cast<int>(landmarks_.system.rows());
+  Eigen::MatrixXd system = landmarks_.system;
+  system.col(size - 1) = gradientAt(d.e);
+  system.row(size - 1) = system.col(size - 1).transpose();
   system.middleCols<6>(last).setZero();
   system.middleRows<6>(last).setZero();
-  const Eigen::VectorXd shift = system.topLeftCorner(size - 1, size - 1) * e;
-  system(size - 1, size - 1) += e.dot(shift) + 2 * e.dot(system.col(size - 1).head(size - 1));
-  system.col(size - 1).head(size - 1) += shift;
-  system.row(size - 1).head(size - 1) = system.col(size - 1).head(size - 1).transpose();
   for (int k = 0; k + 1 < frames_; ++k) {
-    Vector6d minus = -e.segment<6>(6 * k);
-    const Matrix6d J = rightJacobianInverseSE3(minus);
-    system.middleCols<6>(6 * k) = (system.middleCols<6>(6 * k) * J).eval();
-    system.middleRows<6>(6 * k) = (J.transpose() * system.middleRows<6>(6 * k)).eval();
+    system.middleCols<6>(6 * k) = (system.middleCols<6>(6 * k) * d.J[k]).eval();
+    system.middleCols<6>(last).noalias() += system.middleCols<6>(6 * k) * d.J_last[k];
   }
-  for (int k = 0; k + 1 < frames_; ++k) system.middleCols<6>(last).noalias() += system.middleCols<6>(6 * k) * J_last[k];
-  for (int k = 0; k + 1 < frames_; ++k)
-    system.middleRows<6>(last).noalias() += J_last[k].transpose() * system.middleRows<6>(6 * k);
+  for (int k = 0; k + 1 < frames_; ++k) {
+    system.middleRows<6>(6 * k) = (d.J[k].transpose() * system.middleRows<6>(6 * k)).eval();
+    system.middleRows<6>(last).noalias() += d.J_last[k].transpose() * system.middleRows<6>(6 * k);
+  }
   return system;
 }
 
-/// From left perturbations e of T_cam_body = x^-1 T to right ones of x and T: e = Ad(T_cam_body) dT - dx.
-void BundleFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
-  const std::vector<SE3> T_cam_body = relativePoses(values);
-  const Eigen::MatrixXd system = systemAt(T_cam_body, std::get<SmallVector>(*values.back())[0]);
-  const int n = 6 * frames_, rest = static_cast<int>(term.rows()) - kRest;
-  term.topLeftCorner(n, n) = system.topLeftCorner(n, n);
-  term.block(rest, 0, kRest, n) = -system.bottomLeftCorner(kRest, n);
-  term.bottomRightCorner<kRest, kRest>() = system.bottomRightCorner<kRest, kRest>();
-  if (moving_) {
-    Eigen::MatrixXd turned(n + kRest, n);  // system * Ad
-    for (int k = 0; k < frames_; ++k)
-      turned.middleCols<6>(6 * k).noalias() = system.middleCols<6>(6 * k) * T_cam_body[k].adjoint();
-    for (int k = 0; k < frames_; ++k)
-      term.block(n + 6 * k, n, 6, n).noalias() = T_cam_body[k].adjoint().transpose() * turned.middleRows<6>(6 * k);
-    term.block(n, 0, n, n) = -turned.topRows(n).transpose();
-    term.block(rest, n, kRest, n) = turned.bottomRows(kRest);
+/// Left perturbations e of T_cam_body by right ones d of the variables: e = -d of the camera's pose in the world,
+/// e = Ad(T_cam_body) d of the body's.
+void BundleFactor::gradient(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> g_c) const {
+  const std::vector<SE3> T_cam_body = posesFromCamera(values);
+  const Displacement d = displacement(T_cam_body, std::get<SmallVector>(*values.back())[0]);
+  g_c = gradientAt(d.e);
+  const int n = 6 * frames_, last = n - 6;
+  for (int k = 0; k + 1 < frames_; ++k) {
+    g_c.segment<6>(6 * k) = (d.J[k].transpose() * g_c.segment<6>(6 * k)).eval();
+    g_c.segment<6>(last).noalias() += d.J_last[k].transpose() * g_c.segment<6>(6 * k);
   }
-  term.triangularView<Eigen::StrictlyUpper>() = term.transpose();
+  if (kind_ == Poses::kWorldCam) {
+    g_c.head(n) *= -1;
+    return;
+  }
+  for (int k = 0; k < frames_; ++k)
+    g_c.segment<6>(6 * k) = (T_cam_body[k].adjoint().transpose() * g_c.segment<6>(6 * k)).eval();
+}
+
+void BundleFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
+  const std::vector<SE3> T_cam_body = posesFromCamera(values);
+  term = systemAt(displacement(T_cam_body, std::get<SmallVector>(*values.back())[0]));
+  const int n = 6 * frames_;
+  if (kind_ == Poses::kWorldCam) {
+    term.bottomLeftCorner<kRest, Eigen::Dynamic>(kRest, n) *= -1;
+    term.topRightCorner<Eigen::Dynamic, kRest>(n, kRest) *= -1;
+    return;
+  }
+  for (int k = 0; k < frames_; ++k) {
+    const Matrix6d Ad = T_cam_body[k].adjoint();
+    term.middleCols<6>(6 * k) = (term.middleCols<6>(6 * k) * Ad).eval();
+    term.middleRows<6>(6 * k) = (Ad.transpose() * term.middleRows<6>(6 * k)).eval();
+  }
 }
 
 }  // namespace motorcade

@@ -43,27 +43,34 @@ EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const Landmar
 ///   e_k = log(D_k D_k(linearized)^-1),  cost = [e; offset; 1]' system [e; offset; 1]
 class BundleFactor final : public Factor {
  public:
-  struct Variables {
-    std::vector<VariableId> cameras;  // of the frames
-    std::vector<VariableId> bodies;   // the same frames' T_world_body, or none: the landmarks rest in the world
-    VariableId offset;
-    std::vector<VariableId> all() const;
-  };
+  /// What the poses of the frames are: the camera's in the world, in which the landmarks rest, or the body's seen from
+  /// the camera.
+  enum class Poses { kWorldCam, kCamBody };
 
-  BundleFactor(const Variables& variables, EliminatedLandmarks landmarks);
+  BundleFactor(Poses kind, std::vector<VariableId> poses, VariableId offset, EliminatedLandmarks landmarks);
 
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
   void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const override;
 
+  void gradient(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> g_c) const override;
+
   /// T_cam_body of the frames by the factor's variables.
-  std::vector<SE3> relativePoses(std::span<const Value* const> values) const;
+  std::vector<SE3> posesFromCamera(std::span<const Value* const> values) const;
   const EliminatedLandmarks& landmarks() const { return landmarks_; }
 
  private:
-  Eigen::MatrixXd systemAt(std::span<const SE3> T_cam_body, double offset_px) const;
+  /// Motions relative to the last frame against those at the linearization.
+  struct Displacement {
+    Eigen::VectorXd e;             // [log(D_k D_k(linearized)^-1) of each frame but the last; 0; offset]
+    std::vector<Matrix6d> J, J_last;  // of each e_k by left perturbations of its own pose and, before J, of the last one
+  };
+  Displacement displacement(std::span<const SE3> T_cam_body, double offset_px) const;
+  /// [g; c] in displacements.
+  Eigen::VectorXd gradientAt(const Eigen::VectorXd& e) const;
+  Eigen::MatrixXd systemAt(const Displacement& d) const;
 
+  Poses kind_;
   int frames_;
-  bool moving_;
   EliminatedLandmarks landmarks_;
   std::vector<SE3> D_inverse_;  // of D at the linearization
 };

@@ -4,24 +4,37 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "backend/joint/joint_graph.hpp"
+#include "backend/joint/joint_reader.hpp"
+#include "backend/smoother/continuous_poses.hpp"
 
 namespace motorcade {
+namespace {
+
+constexpr int kCovarianceLagFrames = 10;  // final covariances are taken so much later; what comes after adds little
+
+}  // namespace
 
 class JointBackend::Estimator {
  public:
-  Estimator(const Params& params, const StereoCamera& camera) : params_(params), graph_(params_, camera) {}
+  Estimator(const Params& params, const StereoCamera& camera)
+      : params_(params), graph_(params_, camera), reader_(graph_), continuous_(params.online_correction_s) {}
 
   EstimatesPtr add(const FrameMeasurements& measurements) {
     graph_.add(measurements);
     Estimates estimates{.online = {}, .finals = {}, .counters = {}, .problems = graph_.problems()};
     if (getenv("JOINT_LOG"))
-      std::fprintf(stderr, "%ld offset %.4f +- %.4f at_rest %zu objects %zu chi2 %.1f problems %zu\n", measurements.frame.value,
-                   graph_.offset_px(), graph_.offsetSigma_px(), measurements.at_rest.size(),
-                   measurements.objects.size(), graph_.solver().counters().chi2, graph_.problems().size());
-    estimates.online = read(measurements.frame);
+      std::fprintf(stderr, "%ld offset %.4f +- %.4f at_rest %zu objects %zu chi2 %.1f noise %.2f %.2f problems %zu\n",
+                   measurements.frame.value, graph_.offset_px(), graph_.offsetSigma_px(), measurements.at_rest.size(),
+                   measurements.objects.size(), graph_.solver().counters().chi2, graph_.noise().uv(), graph_.noise().d(),
+                   graph_.problems().size());
+    if (params_.compute_covariances) {
+      if (const auto settled = lagged()) graph_.keep(*settled, reader_.covariances(*settled));
+      graph_.keep(measurements.frame, reader_.covariances(measurements.frame));
+    }
+    estimates.online = reader_.read(measurements.frame);
+    continuous_(estimates.online, [this](TrackId track, FrameId frame) { return earlierPose(track, frame); });
     while (params_.window_frames > 0 && graph_.frames().size() > static_cast<std::size_t>(params_.window_frames)) {
-      estimates.finals.push_back(read(graph_.frames().begin()->first));
+      estimates.finals.push_back(reader_.read(graph_.frames().begin()->first));
       graph_.retireOldest();
     }
     estimates.counters = graph_.solver().counters();
@@ -31,40 +44,35 @@ class JointBackend::Estimator {
   std::vector<FrameEstimate> finish() {
     std::vector<FrameEstimate> finals;
     if (graph_.frames().empty()) return finals;
-    if (!getenv("JOINT_NOCONV")) graph_.converge();
-    for (const auto& [frame, camera] : graph_.frames()) finals.push_back(read(frame));
+    graph_.converge();
+    int left = static_cast<int>(graph_.frames().size());
+    for (const auto& [frame, camera] : graph_.frames()) {
+      if (params_.compute_covariances && left-- <= kCovarianceLagFrames) graph_.keep(frame, reader_.covariances(frame));
+      finals.push_back(reader_.read(frame));
+    }
     return finals;
   }
 
  private:
-  FrameEstimate read(FrameId frame) const {
-    const JointCamera& camera = graph_.frames().at(frame);
-    FrameEstimate estimate{.frame = frame,
-                           .stamp = camera.stamp,
-                           .status = camera.status,
-                           .T_world_cam = graph_.solver().pose(camera.x).normalized(),
-                           .camera_covariance = camera.covariance,
-                           .objects = {}};
-    for (const auto& [id, object] : graph_.objects())
-      if (object.records.contains(frame)) estimate.objects.push_back(readObject(id, object, frame));
-    return estimate;
+  /// The frame whose final covariances are due.
+  std::optional<FrameId> lagged() const {
+    auto it = graph_.frames().rbegin();
+    for (int i = 0; i < kCovarianceLagFrames; ++i)
+      if (it == graph_.frames().rend() || ++it == graph_.frames().rend()) return std::nullopt;
+    return it->first;
   }
 
-  ObjectEstimate readObject(TrackId id, const JointObject& object, FrameId frame) const {
-    constexpr double kUnknownSpeedSigma_mps = 10.0;  // of a single observation
-    const JointRecord& record = object.records.at(frame);
-    return {.track = id,
-            .state = record.seen.state,
-            .T_world_body = graph_.objectPose(object, frame),
-            .velocity_world_mps = graph_.objectVelocity_mps(object, frame),
-            .speed_sigma_mps = record.speed_sigma_mps.value_or(kUnknownSpeedSigma_mps),
-            .points = record.seen.points,
-            .box = record.seen.box,
-            .covariance = record.covariance};
+  std::optional<SE3> earlierPose(TrackId track, FrameId frame) const {
+    const auto object = graph_.objects().find(track);
+    if (object == graph_.objects().end() || !object->second.records.contains(frame)) return std::nullopt;
+    if (!graph_.frames().contains(frame)) return std::nullopt;
+    return graph_.objectPose(object->second, frame);
   }
 
   Params params_;
   JointGraph graph_;
+  JointReader reader_;
+  ContinuousPoses continuous_;
 };
 
 JointBackend::JointBackend(const Params& params, const StereoCamera& camera)

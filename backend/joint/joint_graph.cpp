@@ -11,6 +11,7 @@
 namespace motorcade {
 namespace {
 
+constexpr int kFramesPerFactor = 5;  // tracks that ended in so many frames share one
 constexpr int kFewStatic = 20;  // landmarks seen now and before: with fewer the front-end's odometry helps
 
 IncrementalSolver::Params solverParams(const JointParams& params) {
@@ -67,7 +68,7 @@ JointGraph::JointGraph(const JointParams& params, const StereoCamera& camera)
     : params_(params),
       camera_(camera),
       solver_(solverParams(params)),
-      world_{.points = BodyPoints(pointParams(params, camera, params.max_static_landmarks)), .noise = {}, .current = {}} {
+      world_{.points = BodyPoints(pointParams(params, camera, params.max_static_landmarks)), .noise = {}, .ended = {}, .current = {}} {
   const SmallVector zero = SmallVector::Zero(1);
   offset_ = solver_.addVariable(zero);
   addPrior(offset_, zero, SmallVector::Constant(1, std::max(params.offset_sigma_px, 1e-4)));
@@ -95,7 +96,7 @@ void JointGraph::add(const FrameMeasurements& measurements) {
 
 void JointGraph::addCamera(const FrameMeasurements& m) {
   const SE3 T_previous_now = isFinite(m.T_previous_now) ? m.T_previous_now : SE3{};
-  JointCamera camera{.stamp = m.stamp, .status = m.status, .x = {}, .covariance = {}};
+  JointCamera camera{.stamp = m.stamp, .status = m.status, .x = {}, .weak = false, .covariance = {}};
   if (frames_.empty()) {
     camera.x = solver_.addVariable(SE3{});
     addPrior(camera.x, SE3{}, sigmas(params_.first_pose_sigma_m, params_.first_pose_sigma_rad));
@@ -104,7 +105,8 @@ void JointGraph::addCamera(const FrameMeasurements& m) {
     const VariableId before = frames_.rbegin()->second.x;
     camera.x = solver_.addVariable((solver_.pose(before) * T_previous_now).normalized());
     world_.points.observe(m.frame, m.at_rest);
-    if (m.status != FrameStatus::kGood || world_.points.seenNow() < kFewStatic) addOdometry(m, before, camera.x);
+    camera.weak = m.status != FrameStatus::kGood || world_.points.seenNow() < kFewStatic;
+    if (camera.weak) addOdometry(m, before, camera.x);
   }
   for (const ObjectObservation& seen : m.objects) world_.points.forget(seen.measured);
   frames_.emplace(m.frame, camera);
@@ -121,7 +123,7 @@ JointObject& JointGraph::objectOf(TrackId id) {
   const auto it = objects_.find(id);
   if (it != objects_.end()) return it->second;
   const BodyPoints::Params points = pointParams(params_, camera_, params_.max_object_landmarks);
-  return objects_.emplace(id, JointObject{.lever = {}, .records = {}, .points = {BodyPoints(points), {}, {}}})
+  return objects_.emplace(id, JointObject{.lever = {}, .records = {}, .points = {BodyPoints(points), {}, {}, {}}})
       .first->second;
 }
 
@@ -129,7 +131,7 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
   JointObject& object = objectOf(seen.track);
   if (object.records.contains(seen.frame)) return;
   const auto last = object.records.empty() ? object.records.end() : std::prev(object.records.end());
-  const JointRecord* before = last != object.records.end() && last->second.T.valid() ? &last->second : nullptr;
+  const JointRecord* before = last != object.records.end() && last->second.c.valid() ? &last->second : nullptr;
   JointRecord& record = object.records[seen.frame];
   record.seen = seen;
   record.seen.measured.clear();
@@ -144,13 +146,12 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
 }
 
 void JointGraph::beginObject(JointObject& object, JointRecord& record) {
-  const SE3 T_world_cam = solver_.pose(frames_.at(record.seen.frame).x);
-  const SE3 T_world_body = (T_world_cam * record.seen.T_cam_body).normalized();
-  record.T = solver_.addVariable(T_world_body);
+  const SE3& T_cam_body = record.seen.T_cam_body;
+  record.c = solver_.addVariable(T_cam_body);
   Vector6d twist = Vector6d::Zero();
-  twist.head<3>() = record.seen.T_cam_body.rotation().transpose() * record.seen.velocity_cam_mps;
+  twist.head<3>() = T_cam_body.rotation().transpose() * record.seen.velocity_cam_mps;
   record.w = solver_.addVariable(SmallVector(twist));
-  addPrior(record.T, T_world_body, sigmas(params_.object_origin_sigma_m, params_.object_axes_sigma_rad));
+  addPrior(record.c, T_cam_body, sigmas(params_.object_origin_sigma_m, params_.object_axes_sigma_rad));
   addPrior(record.w, twist, sigmas(params_.twist_sigma_mps, params_.twist_sigma_radps));
   object.lever = solver_.addVariable(SmallVector(SmallVector::Zero(1)));
   addPrior(object.lever, SmallVector::Zero(1), SmallVector::Constant(1, params_.lever_sigma_m));
@@ -162,25 +163,37 @@ void JointGraph::continueObject(JointObject& object, const JointRecord& before, 
   const double dt_s = secondsBetween(before.stamp, record.stamp);
   const SmallVector twist = std::get<SmallVector>(solver_.estimate(before.w));
   const Vector6d step = dt_s * twist;
-  record.T = solver_.addVariable((solver_.pose(before.T) * SE3::exp(step)).normalized());
+  const JointCamera &camera_before = frames_.at(before.seen.frame), &camera = frames_.at(record.seen.frame);
+  const SE3 u = solver_.pose(camera_before.x).inverse() * solver_.pose(camera.x);
+  record.c = solver_.addVariable((u.inverse() * solver_.pose(before.c) * SE3::exp(step)).normalized());
   record.w = solver_.addVariable(twist);
-  solver_.addFactor(std::make_unique<ConstantTwistFactor>(
-      ConstantTwistFactor::Variables{before.T, before.w, record.T, record.w}, dt_s, params_.acceleration.density()));
+  ConstantTwistFactor::Variables variables{
+      .c_a = before.c, .w_a = before.w, .c_b = record.c, .w_b = record.w, .x_a = {}, .x_b = {}};
+  if (camera.weak) variables.x_a = camera_before.x, variables.x_b = camera.x;
+  solver_.addFactor(std::make_unique<ConstantTwistFactor>(variables, u, dt_s, params_.acceleration.density()));
   if (params_.use_rolling)
     solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.lever, params_.rolling));
 }
 
-/// Tracks that ended become a factor for good; the factor over those that go on is made anew.
+/// The factor over the tracks that go on, and over those that ended lately, is made anew in each frame.
 void JointGraph::addPoints(JointPoints& body, const JointObject* object) {
   if (body.current) solver_.removeFactor(*body.current);
   body.current.reset();
-  const std::vector<LandmarkTrack> ended = body.points.takeEnded();
-  if (object && !object->lever.valid()) return;
+  std::ranges::move(body.points.takeEnded(), std::back_inserter(body.ended));
+  if (object && !object->lever.valid()) return body.ended.clear();
+  if (frames_.rbegin()->first.value % kFramesPerFactor == 0) closeEnded(body, object);
+  std::vector<const LandmarkTrack*> tracks = body.points.current();
+  for (const LandmarkTrack& track : body.ended) tracks.push_back(&track);
+  body.current = addBundle(tracks, body.noise, object);
+}
+
+/// Tracks that ended become a factor for good.
+void JointGraph::closeEnded(JointPoints& body, const JointObject* object) {
   std::vector<const LandmarkTrack*> tracks;
-  for (const LandmarkTrack& track : ended) tracks.push_back(&track);
+  for (const LandmarkTrack& track : body.ended) tracks.push_back(&track);
   if (const auto id = addBundle(tracks, body.noise, object))
     body.noise.learn(dynamic_cast<const BundleFactor&>(solver_.graph().factor(*id)).landmarks().levels);
-  body.current = addBundle(body.points.current(), body.noise, object);
+  body.ended.clear();
 }
 
 std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTrack*>& tracks, const NoiseLevel& noise,
@@ -188,7 +201,7 @@ std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTr
   const auto inGraph = [&](FrameId frame) {
     if (!frames_.contains(frame)) return false;
     const auto record = object ? object->records.find(frame) : decltype(object->records.begin()){};
-    return !object || (record != object->records.end() && record->second.T.valid());
+    return !object || (record != object->records.end() && record->second.c.valid());
   };
   std::vector<FrameId> frames;
   for (const LandmarkTrack* track : tracks)
@@ -213,18 +226,15 @@ std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTr
       landmarks.first_view.push_back(static_cast<int>(landmarks.views.size()));
   }
   if (landmarks.count() == 0) return std::nullopt;
-  BundleFactor::Variables variables{.cameras = {}, .bodies = {}, .offset = offset_};
-  for (const FrameId frame : frames) {
-    variables.cameras.push_back(frames_.at(frame).x);
-    if (object) variables.bodies.push_back(object->records.at(frame).T);
-  }
+  std::vector<VariableId> poses;
   std::vector<SE3> T_cam_body;
   for (const FrameId frame : frames) {
-    const SE3 T_cam_world = solver_.pose(frames_.at(frame).x).inverse();
-    T_cam_body.push_back(object ? T_cam_world * solver_.pose(object->records.at(frame).T) : T_cam_world);
+    poses.push_back(object ? object->records.at(frame).c : frames_.at(frame).x);
+    T_cam_body.push_back(object ? solver_.pose(poses.back()) : solver_.pose(poses.back()).inverse());
   }
   return solver_.addFactor(std::make_unique<BundleFactor>(
-      variables, eliminateLandmarks(camera_, landmark_noise_, landmarks, std::move(T_cam_body), offset_px())));
+      object ? BundleFactor::Poses::kCamBody : BundleFactor::Poses::kWorldCam, std::move(poses), offset_,
+      eliminateLandmarks(camera_, landmark_noise_, landmarks, std::move(T_cam_body), offset_px())));
 }
 
 void JointGraph::addPrior(VariableId v, const SE3& mean, const Vector6d& sigma) {
@@ -239,21 +249,21 @@ void JointGraph::addPrior(VariableId v, const SmallVector& mean, const SmallVect
 SE3 JointGraph::objectPose(const JointObject& object, FrameId frame) const {
   const JointRecord& record = object.records.at(frame);
   if (record.frozen) return *record.frozen;
-  if (record.T.valid()) return solver_.pose(record.T).normalized();
-  return (solver_.pose(frames_.at(frame).x) * record.seen.T_cam_body).normalized();
+  const SE3 T_cam_body = record.c.valid() ? solver_.pose(record.c) : record.seen.T_cam_body;
+  return (solver_.pose(frames_.at(frame).x) * T_cam_body).normalized();
 }
 
 Eigen::Vector3d JointGraph::objectVelocity_mps(const JointObject& object, FrameId frame) const {
   const JointRecord& record = object.records.at(frame);
   if (!record.w.valid()) return solver_.pose(frames_.at(frame).x).rotation() * record.seen.velocity_cam_mps;
-  return solver_.pose(record.T).rotation() * std::get<SmallVector>(solver_.estimate(record.w)).head<3>();
+  return objectPose(object, frame).rotation() * std::get<SmallVector>(solver_.estimate(record.w)).head<3>();
 }
 
 std::vector<VariableId> JointGraph::variablesOf(const JointObject& object) const {
   std::vector<VariableId> variables;
   if (object.lever.valid()) variables.push_back(object.lever);
   for (const auto& [frame, record] : object.records)
-    if (record.T.valid()) variables.insert(variables.end(), {record.T, record.w});
+    if (record.c.valid()) variables.insert(variables.end(), {record.c, record.w});
   return variables;
 }
 
@@ -271,7 +281,7 @@ std::string JointGraph::nameOf(VariableId v) const {
     if (object.lever == v) return "lever of object " + std::to_string(id.value);
     for (const auto& [frame, record] : object.records) {
       const std::string of = " of object " + std::to_string(id.value) + " in frame " + std::to_string(frame.value);
-      if (record.T == v) return "pose" + of;
+      if (record.c == v) return "pose" + of;
       if (record.w == v) return "twist" + of;
     }
   }
@@ -296,7 +306,7 @@ void JointGraph::dropTroubled(const IncrementalSolver::Report& report) {
       found.insert(found.end(), after.problems.begin(), after.problems.end());
       object.lever = {};
       object.points.current.reset();
-      for (auto& [frame, record] : object.records) record.T = record.w = {};
+      for (auto& [frame, record] : object.records) record.c = record.w = {};
     }
   }
 }
@@ -310,8 +320,8 @@ void JointGraph::retireOldest() {
     const auto record = object.records.find(oldest);
     if (record != object.records.end()) {
       record->second.frozen = objectPose(object, oldest);
-      if (record->second.T.valid()) retired.insert(retired.end(), {record->second.T, record->second.w});
-      record->second.T = record->second.w = {};
+      if (record->second.c.valid()) retired.insert(retired.end(), {record->second.c, record->second.w});
+      record->second.c = record->second.w = {};
     }
     const bool over = object.records.empty() || object.records.rbegin()->first <= oldest;
     if (over && object.lever.valid()) retired.push_back(object.lever);
@@ -319,6 +329,15 @@ void JointGraph::retireOldest() {
   }
   solver_.retire(retired);
   frames_.erase(frames_.begin());
+}
+
+void JointGraph::keep(FrameId frame, const JointCovariances& covariances) {
+  if (covariances.camera) frames_.at(frame).covariance = covariances.camera;
+  for (const JointCovariances::Object& object : covariances.objects) {
+    JointRecord& record = objects_.at(object.track).records.at(frame);
+    record.covariance = object.T_cam_body;
+    record.speed_sigma_mps = object.speed_sigma_mps;
+  }
 }
 
 void JointGraph::converge() {

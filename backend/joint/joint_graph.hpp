@@ -18,6 +18,7 @@ struct JointCamera {
   Timestamp stamp;
   FrameStatus status = FrameStatus::kGood;
   VariableId x;
+  bool weak = false;  // the points at rest hardly tell how it moved since the frame before
   std::optional<Matrix6d> covariance;  // as last computed
 };
 
@@ -25,7 +26,7 @@ struct JointCamera {
 struct JointRecord {
   ObjectObservation seen;  // without the points
   Timestamp stamp;
-  VariableId T, w;  // T_world_body and twist; invalid when the frame's pose is not in the graph
+  VariableId c, w;  // T_cam_body and twist; invalid when the frame's pose is not in the graph
   std::optional<SE3> frozen;  // T_world_body when the pose has left the window
   std::optional<Matrix6d> covariance;
   std::optional<double> speed_sigma_mps;
@@ -46,13 +47,25 @@ class NoiseLevel {
 struct JointPoints {
   BodyPoints points;
   NoiseLevel noise;
-  std::optional<FactorId> current;
+  std::vector<LandmarkTrack> ended;  // whose factor is still to be made
+  std::optional<FactorId> current;   // of these and of the tracks that go on
 };
 
 struct JointObject {
   VariableId lever;  // invalid before the first observation and after a drop
   std::map<FrameId, JointRecord> records;
   JointPoints points;
+};
+
+/// Covariances of one frame, as far as its graph determines them.
+struct JointCovariances {
+  struct Object {
+    TrackId track;
+    Matrix6d T_cam_body;  // covariance of the pose seen from the camera, right perturbation
+    double speed_sigma_mps = 0;
+  };
+  std::optional<Matrix6d> camera;  // of T_cam(before)_cam(now), kCameraCovarianceFrames apart
+  std::vector<Object> objects;
 };
 
 /// Bundle adjustment in body frames, the world being body 0: turns the measurements of frames into variables and
@@ -69,11 +82,12 @@ class JointGraph {
 
   const std::map<FrameId, JointCamera>& frames() const { return frames_; }
   const std::map<TrackId, JointObject>& objects() const { return objects_; }
-  std::map<FrameId, JointCamera>& frames() { return frames_; }
-  std::map<TrackId, JointObject>& objects() { return objects_; }
+  /// Keeps covariances in the records of their frame, in place of those that were kept before.
+  void keep(FrameId frame, const JointCovariances& covariances);
   const IncrementalSolver& solver() const { return solver_; }
   double offset_px() const;
   double offsetSigma_px() const;
+  const NoiseLevel& noise() const { return world_.noise; }
 
   SE3 objectPose(const JointObject& object, FrameId frame) const;
   Eigen::Vector3d objectVelocity_mps(const JointObject& object, FrameId frame) const;
@@ -85,6 +99,7 @@ class JointGraph {
   void beginObject(JointObject& object, JointRecord& record);
   void continueObject(JointObject& object, const JointRecord& before, JointRecord& record);
   void addPoints(JointPoints& body, const JointObject* object);
+  void closeEnded(JointPoints& body, const JointObject* object);
   std::optional<FactorId> addBundle(const std::vector<const LandmarkTrack*>& tracks, const NoiseLevel& noise,
                                     const JointObject* object);
   JointObject& objectOf(TrackId id);

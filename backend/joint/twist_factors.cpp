@@ -15,39 +15,60 @@ Matrix6d ad(const Vector6d& xi) {
 
 Vector6d twistOf(const Value& value) { return std::get<SmallVector>(value); }
 
+std::vector<VariableId> variablesOf(const ConstantTwistFactor::Variables& v) {
+  std::vector<VariableId> variables{v.c_a, v.w_a, v.c_b, v.w_b};
+  if (v.x_a.valid()) variables.insert(variables.end(), {v.x_a, v.x_b});
+  return variables;
+}
+
 /// Sideways velocity of the point `lever` behind the origin, and vertical velocity.
 Eigen::Vector2d departure_mps(const Vector6d& w, double lever_m) { return {w[1] - lever_m * w[5], w[2]}; }
 
 }  // namespace
 
-ConstantTwistFactor::ConstantTwistFactor(const Variables& v, double dt_s, const Vector6d& acceleration_density)
-    : Factor({v.T_a, v.w_a, v.T_b, v.w_b}, Form::kJacobian, 12),
+ConstantTwistFactor::ConstantTwistFactor(const Variables& v, const SE3& u, double dt_s,
+                                         const Vector6d& acceleration_density)
+    : Factor(variablesOf(v), Form::kJacobian, 12),
+      u_(u),
       dt_s_(dt_s),
       root_(acceleration_density.cwiseSqrt().cwiseInverse()) {}
 
+SE3 ConstantTwistFactor::cameraMotion(std::span<const Value* const> values) const {
+  if (values.size() == 4) return u_;
+  return std::get<SE3>(*values[4]).inverse() * std::get<SE3>(*values[5]);
+}
+
 void ConstantTwistFactor::residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const {
-  const Vector6d xi = (std::get<SE3>(*values[0]).inverse() * std::get<SE3>(*values[2])).log();
-  const Vector6d w_a = twistOf(*values[1]), w_b = twistOf(*values[3]);
+  const SE3 motion = std::get<SE3>(*values[0]).inverse() * cameraMotion(values) * std::get<SE3>(*values[2]);
+  const Vector6d xi = motion.log(), w_a = twistOf(*values[1]), w_b = twistOf(*values[3]);
   const Vector6d moved = xi - dt_s_ * w_a, changed = w_b + 0.5 * ad(xi) * w_b - w_a;
   // The Cholesky factor of the inverse of (dt^3/3, dt^2/2; dt^2/2, dt).
-  r.head<6>() =
-      root_.cwiseProduct(std::sqrt(12 / (dt_s_ * dt_s_ * dt_s_)) * moved - std::sqrt(3 / dt_s_) * changed);
+  r.head<6>() = root_.cwiseProduct(std::sqrt(12 / (dt_s_ * dt_s_ * dt_s_)) * moved - std::sqrt(3 / dt_s_) * changed);
   r.tail<6>() = root_.cwiseProduct(changed) / std::sqrt(dt_s_);
 }
 
 void ConstantTwistFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
-  const SE3 T_a_b = std::get<SE3>(*values[0]).inverse() * std::get<SE3>(*values[2]);
-  const Vector6d xi = T_a_b.log(), w_b = twistOf(*values[3]);
-  using Matrix6x24d = Eigen::Matrix<double, 6, 24>;
-  Matrix6x24d moved, changed;
-  const Matrix6d J_b = rightJacobianInverseSE3(xi), J_a = -J_b * T_a_b.inverse().adjoint();
-  const Matrix6d turned = -0.5 * ad(w_b);
-  moved << J_a, -dt_s_ * Matrix6d::Identity(), J_b, Matrix6d::Zero();
-  changed << turned * J_a, -Matrix6d::Identity(), turned * J_b, Matrix6d::Identity() + 0.5 * ad(xi);
-  term.topLeftCorner<6, 24>() =
+  const SE3 &c_a = std::get<SE3>(*values[0]), &c_b = std::get<SE3>(*values[2]);
+  const SE3 motion = c_a.inverse() * cameraMotion(values) * c_b;
+  const Vector6d xi = motion.log(), w_b = twistOf(*values[3]);
+  const Matrix6d J_b = rightJacobianInverseSE3(xi), J_a = -J_b * motion.inverse().adjoint();
+  const int n = static_cast<int>(term.cols()) - 1;
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 36> moved(6, n), changed(6, n);
+  moved.setZero();
+  moved.middleCols<6>(0) = J_a;
+  moved.middleCols<6>(12) = J_b;
+  if (n == 36) {
+    moved.middleCols<6>(24).noalias() = J_a * c_a.inverse().adjoint();
+    moved.middleCols<6>(30).noalias() = J_b * c_b.inverse().adjoint();
+  }
+  changed.noalias() = -0.5 * ad(w_b) * moved;
+  moved.middleCols<6>(6) = -dt_s_ * Matrix6d::Identity();
+  changed.middleCols<6>(6) = -Matrix6d::Identity();
+  changed.middleCols<6>(18) = Matrix6d::Identity() + 0.5 * ad(xi);
+  term.topLeftCorner(6, n) =
       root_.asDiagonal() * (std::sqrt(12 / (dt_s_ * dt_s_ * dt_s_)) * moved - std::sqrt(3 / dt_s_) * changed);
-  term.bottomLeftCorner<6, 24>() = root_.asDiagonal() * changed / std::sqrt(dt_s_);
-  residual(values, term.col(24));
+  term.bottomLeftCorner(6, n) = root_.asDiagonal() * changed / std::sqrt(dt_s_);
+  residual(values, term.col(n));
 }
 
 RollingFactor::RollingFactor(VariableId w, VariableId lever, const RollingNoise& noise)

@@ -7,20 +7,26 @@
 namespace motorcade {
 
 /// White noise on acceleration between the poses and twists of a body at two moments (Barfoot, State Estimation for
-/// Robotics, 2017, section 11.1, mirrored to right perturbations): with xi = log(T_a^-1 T_b),
+/// Robotics, 2017, section 11.1, mirrored to right perturbations). With the body's poses c seen from the camera, the
+/// camera's motion u between them and xi = log(c_a^-1 u c_b),
 ///   r = [xi - dt w_a; Jr^-1(xi) w_b - w_a],   covariance q (dt^3/3, dt^2/2; dt^2/2, dt)
 /// where Jr^-1(xi) w ~ w + 1/2 ad(xi) w, as vehicles turn little between frames.
 class ConstantTwistFactor final : public Factor {
  public:
   struct Variables {
-    VariableId T_a, w_a, T_b, w_b;
+    VariableId c_a, w_a, c_b, w_b;
+    VariableId x_a, x_b;  // the camera's poses, u = x_a^-1 x_b; invalid where u is known
   };
-  ConstantTwistFactor(const Variables& variables, double dt_s, const Vector6d& acceleration_density);
+  /// `u` is used where the camera's poses are no variables.
+  ConstantTwistFactor(const Variables& variables, const SE3& u, double dt_s, const Vector6d& acceleration_density);
 
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
   void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const override;
 
  private:
+  SE3 cameraMotion(std::span<const Value* const> values) const;
+
+  SE3 u_;
   double dt_s_;
   Vector6d root_;  // of the information per axis
 };

@@ -37,6 +37,7 @@ void FluidRelinearization::compareModels(std::span<const VariableId> moved) {
     if (graph_.mismatchBound(v) < kComparedShare * tolerance) continue;
     graph_.markCompared(v);
     for (const FactorId f : graph_[v].factors) {
+      if (graph_.isVector(v) && graph_.factor(f).form() == Factor::Form::kInformation) continue;
       if (!compared_.insert(f.value)) continue;
       const double norm = graph_.mismatch(f).norm;
       if (norm > tolerance) off_.push_back({f, norm});

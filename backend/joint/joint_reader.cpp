@@ -1,0 +1,79 @@
+#include "backend/joint/joint_reader.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "core/constant_twist.hpp"
+
+namespace motorcade {
+namespace {
+
+using Matrix6x12d = Eigen::Matrix<double, 6, 12>;
+
+}  // namespace
+
+JointCovariances JointReader::covariances(FrameId frame) const {
+  JointCovariances covariances{.camera = cameraCovariance(frame), .objects = {}};
+  for (const auto& [id, object] : graph_.objects()) {
+    const auto record = object.records.find(frame);
+    if (record == object.records.end()) continue;
+    if (const auto covariance = objectCovariance(id, record->second)) covariances.objects.push_back(*covariance);
+  }
+  return covariances;
+}
+
+std::optional<Matrix6d> JointReader::cameraCovariance(FrameId frame) const {
+  const auto now = graph_.frames().find(frame),
+             before = graph_.frames().find(FrameId{frame.value - kCameraCovarianceFrames});
+  if (before == graph_.frames().end()) return std::nullopt;
+  const std::array variables{before->second.x, now->second.x};
+  const auto joint = graph_.solver().jointCovariance(variables);
+  if (!joint) return std::nullopt;
+  // x_b^-1 x_n with both perturbed: exp(-Ad(T_n_b) xi_b + xi_n)
+  const SE3 T_before_now = graph_.solver().pose(before->second.x).inverse() * graph_.solver().pose(now->second.x);
+  Matrix6x12d J;
+  J << -T_before_now.inverse().adjoint(), Matrix6d::Identity();
+  return J * *joint * J.transpose();
+}
+
+/// Of the pose seen from the camera, which is a variable, and of the speed, the length of the twist's velocity.
+std::optional<JointCovariances::Object> JointReader::objectCovariance(TrackId id, const JointRecord& record) const {
+  constexpr double kStanding_mps = 1e-9;  // slower, there is no direction
+  if (!record.c.valid()) return std::nullopt;
+  const std::array variables{record.c, record.w};
+  const auto joint = graph_.solver().jointCovariance(variables);
+  if (!joint) return std::nullopt;
+  const Eigen::Vector3d velocity = std::get<SmallVector>(graph_.solver().estimate(record.w)).head<3>();
+  const Eigen::Vector3d direction = velocity.norm() > kStanding_mps ? velocity.normalized() : Eigen::Vector3d::UnitX();
+  const double variance = direction.dot(joint->block<3, 3>(6, 6) * direction);
+  return JointCovariances::Object{
+      .track = id, .T_cam_body = joint->topLeftCorner<6, 6>(), .speed_sigma_mps = std::sqrt(std::max(0.0, variance))};
+}
+
+FrameEstimate JointReader::read(FrameId frame) const {
+  const JointCamera& camera = graph_.frames().at(frame);
+  FrameEstimate estimate{.frame = frame,
+                         .stamp = camera.stamp,
+                         .status = camera.status,
+                         .T_world_cam = graph_.solver().pose(camera.x).normalized(),
+                         .camera_covariance = camera.covariance,
+                         .objects = {}};
+  for (const auto& [id, object] : graph_.objects())
+    if (object.records.contains(frame)) estimate.objects.push_back(readObject(id, object, frame));
+  return estimate;
+}
+
+ObjectEstimate JointReader::readObject(TrackId id, const JointObject& object, FrameId frame) const {
+  constexpr double kUnknownSpeedSigma_mps = 10.0;  // of a single observation
+  const JointRecord& record = object.records.at(frame);
+  return {.track = id,
+          .state = record.seen.state,
+          .T_world_body = graph_.objectPose(object, frame),
+          .velocity_world_mps = graph_.objectVelocity_mps(object, frame),
+          .speed_sigma_mps = record.speed_sigma_mps.value_or(kUnknownSpeedSigma_mps),
+          .points = record.seen.points,
+          .box = record.seen.box,
+          .covariance = record.covariance};
+}
+
+}  // namespace motorcade
