@@ -10,24 +10,61 @@ namespace {
 constexpr int kLandmark = 4;  // unknowns of a landmark
 constexpr int kRest = 2;      // columns of the offset and of the right-hand side
 
-/// Adds a landmark's views to the lower triangle of [A D r]'[A D r], and their coupling with the landmark to W.
-void addViews(std::span<const LandmarkView> views, std::span<const LinearView> linear, Eigen::MatrixXd& system,
-              Eigen::Ref<Eigen::MatrixXd> W) {
-  const int one = static_cast<int>(system.rows()) - 1, offset = one - 1;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const LinearView& l = linear[i];
-    const int at = 6 * views[i].frame;
-    system.block<6, 6>(at, at).noalias() += l.A.transpose() * l.A;
-    system.block<1, 6>(offset, at) += l.D * l.A.row(2);
-    system.block<1, 6>(one, at).noalias() += l.r.transpose() * l.A;
-    system(offset, offset) += l.D * l.D;
-    system(one, offset) += l.D * l.r.z();
-    system(one, one) += l.r.squaredNorm();
-    W.middleRows<6>(at).noalias() = l.A.transpose() * l.B;
-    W.row(offset) += l.D * l.B.row(2);
-    W.row(one).noalias() += l.r.transpose() * l.B;
+using Matrix64d = Eigen::Matrix<double, 6, kLandmark>;
+using Matrix24d = Eigen::Matrix<double, kRest, kLandmark>;
+
+/// Sums up landmarks, one after the other, in the lower triangle of the system that their elimination leaves.
+class LandmarkSum {
+ public:
+  explicit LandmarkSum(int frames)
+      : frames_(frames), system_(Eigen::MatrixXd::Zero(6 * frames + kRest, 6 * frames + kRest)) {}
+
+  void add(std::span<const LandmarkView> views, const LandmarkFit& fit) {
+    const auto linear = fit.views();
+    Matrix24d W_rest = Matrix24d::Zero();
+    W_.resize(views.size());
+    for (std::size_t i = 0; i < views.size(); ++i) addView(views[i], linear[i], W_[i], W_rest);
+    const double shared = fit.sharedError_px() / fit.sharedErrorSigma_px();
+    system_(rest() + 1, rest() + 1) += shared * shared;
+    W_rest(1, 3) += shared / fit.sharedErrorSigma_px();
+    // Y = W L^-T with the landmark's information L L^T, so that W (L L^T)^-1 W^T = Y Y^T.
+    const Matrix4d L = fit.information().llt().matrixL();
+    const Matrix4d right = L.triangularView<Eigen::Lower>().solve(Matrix4d::Identity()).transpose();
+    for (Matrix64d& W : W_) W = (W * right).eval();
+    subtract(views, W_rest * right);
   }
-}
+
+  Eigen::MatrixXd symmetric() const { return system_.selfadjointView<Eigen::Lower>(); }
+
+ private:
+  int rest() const { return 6 * frames_; }
+
+  void addView(const LandmarkView& view, const LinearView& l, Matrix64d& W, Matrix24d& W_rest) {
+    const int at = 6 * view.frame;
+    system_.block<6, 6>(at, at).noalias() += l.A.transpose() * l.A;
+    system_.block<1, 6>(rest(), at) += l.D * l.A.row(2);
+    system_.block<1, 6>(rest() + 1, at).noalias() += l.r.transpose() * l.A;
+    system_(rest(), rest()) += l.D * l.D;
+    system_(rest() + 1, rest()) += l.D * l.r.z();
+    system_(rest() + 1, rest() + 1) += l.r.squaredNorm();
+    W.noalias() = l.A.transpose() * l.B;
+    W_rest.row(0) += l.D * l.B.row(2);
+    W_rest.row(1).noalias() += l.r.transpose() * l.B;
+  }
+
+  void subtract(std::span<const LandmarkView> views, const Matrix24d& Y_rest) {
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      for (std::size_t j = 0; j <= i; ++j)
+        system_.block<6, 6>(6 * views[i].frame, 6 * views[j].frame).noalias() -= W_[i].lazyProduct(W_[j].transpose());
+      system_.block<kRest, 6>(rest(), 6 * views[i].frame).noalias() -= Y_rest.lazyProduct(W_[i].transpose());
+    }
+    system_.bottomRightCorner<kRest, kRest>().noalias() -= Y_rest.lazyProduct(Y_rest.transpose());
+  }
+
+  int frames_;
+  Eigen::MatrixXd system_;
+  std::vector<Matrix64d> W_;  // of the landmark at hand, view by view
+};
 
 void addLevels(std::span<const LinearView> linear, ResidualLevels& levels) {
   for (const LinearView& l : linear) {
@@ -45,21 +82,13 @@ EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const Landmar
                                        double offset_px) {
   EliminatedLandmarks result{.T_cam_body = std::move(T_cam_body), .offset_px = offset_px, .system = {}, .levels = {}};
   LandmarkFit fit(camera, noise, result.T_cam_body, offset_px);
-  const int size = 6 * static_cast<int>(result.T_cam_body.size()) + kRest;
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(size, size);
-  Eigen::MatrixXd Y = Eigen::MatrixXd::Zero(size, kLandmark * landmarks.count());
+  LandmarkSum sum(static_cast<int>(result.T_cam_body.size()));
   for (int j = 0; j < landmarks.count(); ++j) {
     if (!fit(landmarks.of(j))) continue;
-    auto W = Y.middleCols<kLandmark>(kLandmark * j);
-    addViews(landmarks.of(j), fit.views(), system, W);
+    sum.add(landmarks.of(j), fit);
     addLevels(fit.views(), result.levels);
-    const double shared = fit.sharedError_px() / fit.sharedErrorSigma_px();
-    system(size - 1, size - 1) += shared * shared;
-    W(size - 1, 3) += shared / fit.sharedErrorSigma_px();
-    fit.information().llt().matrixU().solveInPlace<Eigen::OnTheRight>(W);
   }
-  system.selfadjointView<Eigen::Lower>().rankUpdate(Y, -1.0);
-  result.system = system.selfadjointView<Eigen::Lower>();
+  result.system = sum.symmetric();
   return result;
 }
 

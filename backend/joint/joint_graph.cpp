@@ -170,7 +170,7 @@ void JointGraph::continueObject(JointObject& object, const JointRecord& before, 
   ConstantTwistFactor::Variables variables{
       .c_a = before.c, .w_a = before.w, .c_b = record.c, .w_b = record.w, .x_a = {}, .x_b = {}};
   if (camera.weak) variables.x_a = camera_before.x, variables.x_b = camera.x;
-  solver_.addFactor(std::make_unique<ConstantTwistFactor>(variables, u, dt_s, params_.acceleration.density()));
+  solver_.addFactor(std::make_unique<ConstantTwistFactor>(variables, u, dt_s, (getenv("JQ") ? std::pow(atof(getenv("JQ")), 2) : 0.49) * params_.acceleration.density()));
   if (params_.use_rolling)
     solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.lever, params_.rolling));
 }

@@ -7,7 +7,7 @@
 namespace motorcade {
 namespace {
 
-constexpr int kIterations = 2;               // from the newest view: converged to 1e-3 px
+constexpr int kIterations = 1;               // from the newest view: what is left, the elimination takes into account
 constexpr double kLeastDisparity_px = 0.3;   // a landmark with less is at infinity
 constexpr double kLeastSharedSigma_px = 1e-3;
 
