@@ -11,6 +11,12 @@
 namespace motorcade {
 namespace {
 
+constexpr double kHeldSigma_px = 1e-3;   // of the offset of a rig that is taken as calibrated
+constexpr double kClearSigma_px = 0.1;   // of an observed offset, from which on it is looked at
+constexpr double kDistortion_px = 0.5;   // what looks like an offset up to here may be distortion
+constexpr double kOffsetStep_px = 0.1;   // of the offset, after which landmarks are eliminated anew
+constexpr int kFirstLook_frames = 8;     // after which the offset is looked at
+constexpr int kCalibration_frames = 100; // of the drive, in which the offset may be found
 constexpr int kFramesPerFactor = 5;  // tracks that ended in so many frames share one
 constexpr int kFewStatic = 20;  // landmarks seen now and before: with fewer the front-end's odometry helps
 
@@ -31,6 +37,12 @@ Vector6d sigmas(double sigma_m, double sigma_rad) {
   Vector6d sigma;
   sigma << Eigen::Vector3d::Constant(sigma_m), Eigen::Vector3d::Constant(sigma_rad);
   return sigma;
+}
+
+std::vector<const LandmarkTrack*> pointersTo(const std::vector<LandmarkTrack>& tracks) {
+  std::vector<const LandmarkTrack*> pointers;
+  for (const LandmarkTrack& track : tracks) pointers.push_back(&track);
+  return pointers;
 }
 
 bool concernsVariable(SolverProblem::Kind kind) {
@@ -67,18 +79,74 @@ double NoiseLevel::d() const {
 JointGraph::JointGraph(const JointParams& params, const StereoCamera& camera)
     : params_(params),
       camera_(camera),
+      static_noise_{.shared_disparity_sigma_px = params.static_disparity_sigma_px},
+      object_noise_{.shared_disparity_sigma_px = params.object_disparity_sigma_px},
       solver_(solverParams(params)),
-      world_{.points = BodyPoints(pointParams(params, camera, params.max_static_landmarks)), .noise = {}, .ended = {}, .current = {}} {
+      world_{.points = BodyPoints(pointParams(params, camera, params.max_static_landmarks)), .noise = {}, .ended = {}, .current = {}, .closed = {}} {
   const SmallVector zero = SmallVector::Zero(1);
   offset_ = solver_.addVariable(zero);
-  addPrior(offset_, zero, SmallVector::Constant(1, std::max(params.offset_sigma_px, 1e-4)));
+  holdOffset(kHeldSigma_px);
+}
+
+void JointGraph::holdOffset(double sigma_px) {
+  if (offset_prior_) solver_.removeFactor(*offset_prior_);
+  offset_prior_ = solver_.addFactor(std::make_unique<VectorPriorFactor>(
+      offset_, SmallVector(SmallVector::Zero(1)), SmallVector(SmallVector::Constant(1, sigma_px))));
+}
+
+/// What the landmarks alone say of the offset: the posterior without its prior.
+std::optional<double> JointGraph::observedOffset_px() const {
+  const auto covariance = solver_.jointCovariance(std::span(&offset_, 1));
+  if (!covariance) return std::nullopt;
+  const double posterior = 1 / (*covariance)(0, 0), observed = posterior - 1 / (kHeldSigma_px * kHeldSigma_px);
+  if (observed < 1 / (kClearSigma_px * kClearSigma_px)) return std::nullopt;
+  return offset_px() * posterior / observed;
+}
+
+/// A rig is taken as calibrated until the landmarks of its first frames clearly say that it is not; only then does its
+/// offset move. Lens distortions alone look like an offset of 0.2 to 0.4 px on real rigs (it depends on where in the
+/// image the points are), and correcting that makes paths worse.
+void JointGraph::calibrate() {
+  if (params_.max_offset_px <= 0) return;
+  const std::int64_t age = frames_.rbegin()->first.value - first_frame_.value;
+  if (!offset_free_ && age >= kFirstLook_frames && age <= kCalibration_frames) {
+    const auto observed_px = observedOffset_px();
+    if (observed_px && std::abs(*observed_px) > kDistortion_px) {
+      offset_free_ = true;
+      holdOffset(params_.max_offset_px);
+      dropTroubled(solver_.update());
+    }
+  }
+  if (std::abs(offset_px() - linearized_offset_px_) > kOffsetStep_px) linearizeLandmarksAnew();
+  if (age > kCalibration_frames) forgetClosed([](const ClosedTracks&) { return true; });
+}
+
+/// Landmarks were eliminated at another offset.
+void JointGraph::linearizeLandmarksAnew() {
+  linearized_offset_px_ = offset_px();
+  relinearizeClosed(world_, nullptr);
+  for (auto& [id, object] : objects_)
+    if (object.lever.valid()) relinearizeClosed(object.points, &object);
+  dropTroubled(solver_.update());
+}
+
+void JointGraph::relinearizeClosed(JointPoints& body, const JointObject* object) {
+  for (ClosedTracks& closed : body.closed) {
+    solver_.removeFactor(closed.factor);
+    if (const auto id = addBundle(pointersTo(closed.tracks), body.noise, object)) closed.factor = *id;
+  }
+}
+
+void JointGraph::forgetClosed(const std::function<bool(const ClosedTracks&)>& forgotten) {
+  std::erase_if(world_.closed, forgotten);
+  for (auto& [id, object] : objects_) std::erase_if(object.points.closed, forgotten);
 }
 
 double JointGraph::offset_px() const { return std::get<SmallVector>(solver_.estimate(offset_))[0]; }
 
 double JointGraph::offsetSigma_px() const {
   const auto covariance = solver_.jointCovariance(std::span(&offset_, 1));
-  return covariance ? std::sqrt((*covariance)(0, 0)) : params_.offset_sigma_px;
+  return covariance ? std::sqrt((*covariance)(0, 0)) : params_.max_offset_px;
 }
 
 void JointGraph::add(const FrameMeasurements& measurements) {
@@ -92,11 +160,13 @@ void JointGraph::add(const FrameMeasurements& measurements) {
     if (const auto it = objects_.find(id); it != objects_.end()) it->second.points.points.observe(measurements.frame, {});
   for (auto& [id, object] : objects_) addPoints(object.points, &object);
   dropTroubled(solver_.update());
+  calibrate();
 }
 
 void JointGraph::addCamera(const FrameMeasurements& m) {
   const SE3 T_previous_now = isFinite(m.T_previous_now) ? m.T_previous_now : SE3{};
   JointCamera camera{.stamp = m.stamp, .status = m.status, .x = {}, .weak = false, .covariance = {}};
+  if (!first_frame_.valid()) first_frame_ = m.frame;
   if (frames_.empty()) {
     camera.x = solver_.addVariable(SE3{});
     addPrior(camera.x, SE3{}, sigmas(params_.first_pose_sigma_m, params_.first_pose_sigma_rad));
@@ -123,7 +193,7 @@ JointObject& JointGraph::objectOf(TrackId id) {
   const auto it = objects_.find(id);
   if (it != objects_.end()) return it->second;
   const BodyPoints::Params points = pointParams(params_, camera_, params_.max_object_landmarks);
-  return objects_.emplace(id, JointObject{.lever = {}, .records = {}, .points = {BodyPoints(points), {}, {}, {}}})
+  return objects_.emplace(id, JointObject{.lever = {}, .records = {}, .points = {BodyPoints(points), {}, {}, {}, {}}})
       .first->second;
 }
 
@@ -170,7 +240,7 @@ void JointGraph::continueObject(JointObject& object, const JointRecord& before, 
   ConstantTwistFactor::Variables variables{
       .c_a = before.c, .w_a = before.w, .c_b = record.c, .w_b = record.w, .x_a = {}, .x_b = {}};
   if (camera.weak) variables.x_a = camera_before.x, variables.x_b = camera.x;
-  solver_.addFactor(std::make_unique<ConstantTwistFactor>(variables, u, dt_s, (getenv("JQ") ? std::pow(atof(getenv("JQ")), 2) : 0.49) * params_.acceleration.density()));
+  solver_.addFactor(std::make_unique<ConstantTwistFactor>(variables, u, dt_s, params_.acceleration.density()));
   if (params_.use_rolling)
     solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.lever, params_.rolling));
 }
@@ -183,16 +253,19 @@ void JointGraph::addPoints(JointPoints& body, const JointObject* object) {
   if (object && !object->lever.valid()) return body.ended.clear();
   if (frames_.rbegin()->first.value % kFramesPerFactor == 0) closeEnded(body, object);
   std::vector<const LandmarkTrack*> tracks = body.points.current();
-  for (const LandmarkTrack& track : body.ended) tracks.push_back(&track);
+  std::ranges::copy(pointersTo(body.ended), std::back_inserter(tracks));
   body.current = addBundle(tracks, body.noise, object);
 }
 
 /// Tracks that ended become a factor for good.
 void JointGraph::closeEnded(JointPoints& body, const JointObject* object) {
-  std::vector<const LandmarkTrack*> tracks;
-  for (const LandmarkTrack& track : body.ended) tracks.push_back(&track);
-  if (const auto id = addBundle(tracks, body.noise, object))
-    body.noise.learn(dynamic_cast<const BundleFactor&>(solver_.graph().factor(*id)).landmarks().levels);
+  if (const auto id = addBundle(pointersTo(body.ended), body.noise, object)) {
+    const auto& factor = dynamic_cast<const BundleFactor&>(solver_.graph().factor(*id));
+    body.noise.learn(factor.landmarks().levels);
+    FrameId first = body.ended.front().views.front().frame;
+    for (const LandmarkTrack& track : body.ended) first = std::min(first, track.views.front().frame);
+    body.closed.push_back({*id, first, std::move(body.ended)});
+  }
   body.ended.clear();
 }
 
@@ -234,7 +307,7 @@ std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTr
   }
   return solver_.addFactor(std::make_unique<BundleFactor>(
       object ? BundleFactor::Poses::kCamBody : BundleFactor::Poses::kWorldCam, std::move(poses), offset_,
-      eliminateLandmarks(camera_, landmark_noise_, landmarks, std::move(T_cam_body), offset_px())));
+      eliminateLandmarks(camera_, object ? object_noise_ : static_noise_, landmarks, std::move(T_cam_body), offset_px())));
 }
 
 void JointGraph::addPrior(VariableId v, const SE3& mean, const Vector6d& sigma) {
@@ -306,6 +379,7 @@ void JointGraph::dropTroubled(const IncrementalSolver::Report& report) {
       found.insert(found.end(), after.problems.begin(), after.problems.end());
       object.lever = {};
       object.points.current.reset();
+      object.points.closed.clear();
       for (auto& [frame, record] : object.records) record.c = record.w = {};
     }
   }
@@ -327,6 +401,7 @@ void JointGraph::retireOldest() {
     if (over && object.lever.valid()) retired.push_back(object.lever);
     it = over ? objects_.erase(it) : std::next(it);
   }
+  forgetClosed([oldest = oldest](const ClosedTracks& closed) { return closed.first <= oldest; });
   solver_.retire(retired);
   frames_.erase(frames_.begin());
 }

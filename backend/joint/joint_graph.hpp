@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -43,12 +44,20 @@ class NoiseLevel {
   ResidualLevels sums_{};
 };
 
+/// Tracks that ended, and the factor that holds them.
+struct ClosedTracks {
+  FactorId factor;
+  FrameId first;  // of their views
+  std::vector<LandmarkTrack> tracks;
+};
+
 /// What is known of the points of a body, and the factor over those that are followed now.
 struct JointPoints {
   BodyPoints points;
   NoiseLevel noise;
   std::vector<LandmarkTrack> ended;  // whose factor is still to be made
   std::optional<FactorId> current;   // of these and of the tracks that go on
+  std::vector<ClosedTracks> closed;  // while the offset may still move
 };
 
 struct JointObject {
@@ -102,6 +111,12 @@ class JointGraph {
   void closeEnded(JointPoints& body, const JointObject* object);
   std::optional<FactorId> addBundle(const std::vector<const LandmarkTrack*>& tracks, const NoiseLevel& noise,
                                     const JointObject* object);
+  void holdOffset(double sigma_px);
+  std::optional<double> observedOffset_px() const;
+  void calibrate();
+  void linearizeLandmarksAnew();
+  void relinearizeClosed(JointPoints& body, const JointObject* object);
+  void forgetClosed(const std::function<bool(const ClosedTracks&)>& forgotten);
   JointObject& objectOf(TrackId id);
   void addPrior(VariableId v, const SE3& mean, const Vector6d& sigma);
   void addPrior(VariableId v, const SmallVector& mean, const SmallVector& sigma);
@@ -112,9 +127,13 @@ class JointGraph {
 
   JointParams params_;
   StereoCamera camera_;
-  LandmarkNoise landmark_noise_;
+  LandmarkNoise static_noise_, object_noise_;
   IncrementalSolver solver_;
   VariableId offset_;
+  std::optional<FactorId> offset_prior_;
+  bool offset_free_ = false;
+  double linearized_offset_px_ = 0;
+  FrameId first_frame_;
   JointPoints world_;
   std::map<FrameId, JointCamera> frames_;
   std::map<TrackId, JointObject> objects_;

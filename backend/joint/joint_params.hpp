@@ -12,11 +12,13 @@ namespace motorcade {
 struct JointParams {
   int window_frames = 1000;  // a frame is final when it leaves the window; 0 keeps everything
 
-  int track_frames = getenv("JW") ? atoi(getenv("JW")) : 10;           // views of a landmark's track
-  int max_static_landmarks = getenv("JN") ? atoi(getenv("JN")) : 800;  // followed at a time
+  int track_frames = 10;           // views of a landmark's track
+  int max_static_landmarks = 500;  // followed at a time
   int max_object_landmarks = 60;   // of each object
 
-  double offset_sigma_px = getenv("JO") ? atof(getenv("JO")) : 0.001;  // prior of the disparity offset; 0 holds it at zero
+  /// Of an error that all disparities of a landmark share, as its texture is matched with the same bias in each frame.
+  double static_disparity_sigma_px = 0.3, object_disparity_sigma_px = 0.1;
+  double max_offset_px = 1.0;  // standard deviation of the disparity offset of a rig that is not calibrated; 0 trusts it
 
 
   /// Whether objects' points, and the way vehicles move, are used.
@@ -29,11 +31,11 @@ struct JointParams {
   double lever_sigma_m = 2;
 
   AccelerationNoise acceleration{
-      .along_mps2 = 1.5, .sideways_mps2 = 0.5, .vertical_mps2 = 0.3, .yaw_radps2 = 0.07, .tilt_radps2 = 0.03};
+      .along_mps2 = 1.5, .sideways_mps2 = 0.3, .vertical_mps2 = 0.2, .yaw_radps2 = 0.07, .tilt_radps2 = 0.02};
   RollingNoise rolling;
 
-  double mismatch_tolerance = getenv("JM") ? atof(getenv("JM")) : 0.05, jacobian_drift_sigmas = 0.5, substitution_tolerance = 0.05;
-  int iterations_per_update = getenv("JI") ? atoi(getenv("JI")) : 2, budget_scalars = 0;
+  double mismatch_tolerance = 0.05, jacobian_drift_sigmas = 0.5, substitution_tolerance = 0.05;
+  int iterations_per_update = 2, budget_scalars = 0;
   double budget_ms = 0;
   int final_iterations = 10;
   double online_correction_s = 0.5;

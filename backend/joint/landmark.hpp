@@ -3,7 +3,6 @@
 #include <optional>
 #include <span>
 #include <vector>
-#include <cstdlib>
 
 #include <Eigen/Core>
 
@@ -22,10 +21,10 @@ struct LandmarkView {
 
 /// How observations of landmarks count.
 struct LandmarkNoise {
-  RobustLoss loss = getenv("JL") ? RobustLoss(atoi(getenv("JL"))) : RobustLoss::kCauchy;
-  double loss_scale = getenv("JS") ? atof(getenv("JS")) : 1.5;  // of an observation's whitened norm: three dimensions
+  RobustLoss loss = RobustLoss::kCauchy;
+  double loss_scale = 1.5;  // of an observation's whitened norm: three dimensions
   /// Of an error that all disparities of a landmark share, as its texture is matched with the same bias in each frame.
-  double shared_disparity_sigma_px = getenv("JB") ? atof(getenv("JB")) : 0.1;
+  double shared_disparity_sigma_px = 0.1;
 };
 
 /// A landmark's unknowns, where its last view is: (u, v, d) there and the error that its disparities share.

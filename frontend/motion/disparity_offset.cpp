@@ -19,6 +19,9 @@ constexpr double kInflation = 3.0;    // of a window's variance: neighboring win
 constexpr int kIterations = 4;        // Gauss-Newton from the motion as estimated: converged to 1e-4 px
 constexpr double kMaxStep = 10;       // (m, rad, px): a longer one diverges
 
+constexpr double kFarOff_px = 0.5;    // a rig that is off so far hides more of the scene than moving depths do,
+constexpr double kFastRate_px = 0.1;  // and is followed fast
+
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
@@ -99,7 +102,9 @@ void DisparityOffsetEstimator::learn(std::span<const StereoCorrespondence> point
 }
 
 double DisparityOffsetEstimator::advance() {
-  const double change = std::clamp(estimate_px_ - in_use_px_, -params_.max_rate_px, params_.max_rate_px);
+  const double gap_px = estimate_px_ - in_use_px_;
+  const double rate_px = std::abs(gap_px) > kFarOff_px ? kFastRate_px : params_.max_rate_px;
+  const double change = std::clamp(gap_px, -rate_px, rate_px);
   in_use_px_ += change;
   return change;
 }
