@@ -127,6 +127,8 @@ struct SolverCounters {
   std::int64_t updates = 0, relinearizations = 0, reorderings = 0, batch_solves = 0;
   std::int64_t variables = 0, factors = 0, retired_variables = 0;
   double chi2 = 0;
+  /// True minus measured disparity, of back-ends that estimate it.
+  double disparity_offset_px = 0, disparity_offset_sigma_px = 0;
 };
 
 /// The back-end's answer to one frame.

@@ -38,6 +38,7 @@ std::vector<ConfigurationKey> parameterTable(PipelineConfig& config) {
   add("frontend.object_motion", parametersOf(config.tracking.motion));
   add("backend", {backendKind(config.backend)});
   add("backend", parametersOf(config.backend.smoother));
+  add("backend.joint", parametersOf(config.backend.joint));
   return table;
 }
 

@@ -7,8 +7,20 @@
 namespace motorcade {
 namespace {
 
+/// With what the back-ends have in common, which has one key for all.
+JointParams jointParams(const BackendParams& params) {
+  JointParams joint = params.joint;
+  joint.window_frames = params.smoother.window_frames;
+  joint.budget_scalars = params.smoother.budget_scalars;
+  joint.budget_ms = params.smoother.budget_ms;
+  joint.online_correction_s = params.smoother.online_correction_s;
+  joint.compute_covariances = params.smoother.compute_covariances;
+  joint.use_smoothness = params.smoother.use_smoothness;
+  return joint;
+}
+
 std::unique_ptr<Backend> makeBackend(const BackendParams& params, const StereoCamera& camera) {
-  if (params.kind == BackendKind::kJoint) return std::make_unique<JointBackend>(params.joint, camera);
+  if (params.kind == BackendKind::kJoint) return std::make_unique<JointBackend>(jointParams(params), camera);
   if (params.kind == BackendKind::kFilter) return std::make_unique<FilterBackend>(params.filter);
   return std::make_unique<Optimizer>(params.smoother);
 }

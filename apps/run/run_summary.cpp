@@ -31,7 +31,9 @@ Json toJson(const SolverCounters& solver) {
           {"variables", solver.variables},
           {"factors", solver.factors},
           {"retired_variables", solver.retired_variables},
-          {"chi2", solver.chi2}};
+          {"chi2", solver.chi2},
+          {"disparity_offset_px", solver.disparity_offset_px},
+          {"disparity_offset_sigma_px", solver.disparity_offset_sigma_px}};
 }
 
 Json toJson(const QueueMark& queue) {

@@ -6,7 +6,7 @@
 namespace motorcade {
 namespace {
 
-constexpr int kMaxGap_frames = 3;  // without a view of a point, whose track then ends
+constexpr int kMaxGap_frames = 3;       // without a view of a point, whose track then ends
 constexpr int kColumns = 8, kRows = 4;  // of the grid over the image in which landmarks are spread
 
 }  // namespace
@@ -14,6 +14,7 @@ constexpr int kColumns = 8, kRows = 4;  // of the grid over the image in which l
 void BodyPoints::observe(FrameId frame, std::span<const PointMeasurement> points) {
   newest_ = frame;
   for (const PointMeasurement& p : points) {
+    if (params_.half > 0 && p.point.value % 2 != params_.half % 2) continue;
     Candidate& candidate = candidates_[p.point];
     LandmarkTrack& track = candidate.track;
     track.point = p.point;
@@ -37,8 +38,7 @@ void BodyPoints::observe(FrameId frame, std::span<const PointMeasurement> points
 }
 
 void BodyPoints::end(Candidate& candidate) {
-  if (candidate.track.views.size() >= 2)
-    ended_.push_back({candidate.track.point, std::move(candidate.track.views)});
+  if (candidate.track.views.size() >= 2) ended_.push_back({candidate.track.point, std::move(candidate.track.views)});
   candidate.track.views.clear();
 }
 

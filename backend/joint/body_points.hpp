@@ -26,6 +26,7 @@ class BodyPoints {
   struct Params {
     int window_frames = 10;   // of a track
     int max_landmarks = 300;  // followed at a time
+    int half = 0;             // 1 and 2 take the points with odd and even ids only
     int image_width_px = 0, image_height_px = 0;
   };
   explicit BodyPoints(const Params& params) : params_(params) {}

@@ -78,8 +78,7 @@ void addLevels(std::span<const LinearView> linear, ResidualLevels& levels) {
 }  // namespace
 
 EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
-                                       const LandmarkViews& landmarks, std::vector<SE3> T_cam_body,
-                                       double offset_px) {
+                                       const LandmarkViews& landmarks, std::vector<SE3> T_cam_body, double offset_px) {
   EliminatedLandmarks result{.T_cam_body = std::move(T_cam_body), .offset_px = offset_px, .system = {}, .levels = {}};
   LandmarkFit fit(camera, noise, result.T_cam_body, offset_px);
   LandmarkSum sum(static_cast<int>(result.T_cam_body.size()));

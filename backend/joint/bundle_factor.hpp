@@ -35,8 +35,7 @@ struct EliminatedLandmarks {
   ResidualLevels levels;
 };
 EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
-                                       const LandmarkViews& landmarks, std::vector<SE3> T_cam_body,
-                                       double offset_px);
+                                       const LandmarkViews& landmarks, std::vector<SE3> T_cam_body, double offset_px);
 
 /// Eliminated landmarks as a factor on the poses from which their body was seen. It knows nothing but motions relative
 /// to the last frame, D_k = T_cam(k)_body T_cam(last)_body^-1, and so stays what it is where everything moves as one:
@@ -61,8 +60,9 @@ class BundleFactor final : public Factor {
  private:
   /// Motions relative to the last frame against those at the linearization.
   struct Displacement {
-    Eigen::VectorXd e;             // [log(D_k D_k(linearized)^-1) of each frame but the last; 0; offset]
-    std::vector<Matrix6d> J, J_last;  // of each e_k by left perturbations of its own pose and, before J, of the last one
+    Eigen::VectorXd e;  // [log(D_k D_k(linearized)^-1) of each frame but the last; 0; offset]
+    std::vector<Matrix6d> J,
+        J_last;  // of each e_k by left perturbations of its own pose and, before J, of the last one
   };
   Displacement displacement(std::span<const SE3> T_cam_body, double offset_px) const;
   /// [g; c] in displacements.

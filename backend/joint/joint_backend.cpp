@@ -1,9 +1,5 @@
 #include "backend/joint/joint_backend.hpp"
 
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-
 #include "backend/joint/joint_reader.hpp"
 #include "backend/smoother/continuous_poses.hpp"
 
@@ -17,16 +13,14 @@ constexpr int kCovarianceLagFrames = 10;  // final covariances are taken so much
 class JointBackend::Estimator {
  public:
   Estimator(const Params& params, const StereoCamera& camera)
-      : params_(params), graph_(params_, camera), reader_(graph_), continuous_(params.online_correction_s) {}
+      : params_(requireValid(params)),
+        graph_(params_, camera),
+        reader_(graph_),
+        continuous_(params.online_correction_s) {}
 
   EstimatesPtr add(const FrameMeasurements& measurements) {
     graph_.add(measurements);
     Estimates estimates{.online = {}, .finals = {}, .counters = {}, .problems = graph_.problems()};
-    if (getenv("JOINT_LOG"))
-      std::fprintf(stderr, "%ld offset %.4f +- %.4f at_rest %zu objects %zu chi2 %.1f noise %.2f %.2f problems %zu\n",
-                   measurements.frame.value, graph_.offset_px(), graph_.offsetSigma_px(), measurements.at_rest.size(),
-                   measurements.objects.size(), graph_.solver().counters().chi2, graph_.noise().uv(), graph_.noise().d(),
-                   graph_.problems().size());
     if (params_.compute_covariances) {
       if (const auto settled = lagged()) graph_.keep(*settled, reader_.covariances(*settled));
       graph_.keep(measurements.frame, reader_.covariances(measurements.frame));
@@ -38,6 +32,8 @@ class JointBackend::Estimator {
       graph_.retireOldest();
     }
     estimates.counters = graph_.solver().counters();
+    estimates.counters.disparity_offset_px = graph_.offset_px();
+    estimates.counters.disparity_offset_sigma_px = graph_.offsetSigma_px();
     return std::make_shared<const Estimates>(std::move(estimates));
   }
 

@@ -11,14 +11,15 @@
 namespace motorcade {
 namespace {
 
-constexpr double kHeldSigma_px = 1e-3;   // of the offset of a rig that is taken as calibrated
-constexpr double kClearSigma_px = 0.1;   // of an observed offset, from which on it is looked at
-constexpr double kDistortion_px = 0.5;   // what looks like an offset up to here may be distortion
-constexpr double kOffsetStep_px = 0.1;   // of the offset, after which landmarks are eliminated anew
-constexpr int kFirstLook_frames = 8;     // after which the offset is looked at
-constexpr int kCalibration_frames = 100; // of the drive, in which the offset may be found
-constexpr int kFramesPerFactor = 5;  // tracks that ended in so many frames share one
-constexpr int kFewStatic = 20;  // landmarks seen now and before: with fewer the front-end's odometry helps
+constexpr double kHeldSigma_px = 1e-3;    // of the offset of a rig that is taken as calibrated
+constexpr double kClearSigma_px = 0.1;    // of an observed offset, from which on it is looked at
+constexpr double kDistortion_px = 0.5;    // what looks like an offset up to here may be distortion
+constexpr double kOffsetStep_px = 0.1;    // of the offset, after which landmarks are eliminated anew
+constexpr int kFirstLook_frames = 8;      // after which the offset is looked at
+constexpr int kCalibration_frames = 100;  // of the drive, in which the offset may be found
+constexpr int kFramesPerFactor = 5;       // tracks that ended in so many frames share one
+constexpr double kFreeMotion = 1e6;       // times the accelerations' variance: nothing is known of how objects move
+constexpr int kFewStatic = 20;            // landmarks seen now and before: with fewer the front-end's odometry helps
 
 IncrementalSolver::Params solverParams(const JointParams& params) {
   return {.policy = IncrementalSolver::Policy::kFluid,
@@ -53,36 +54,22 @@ bool concernsVariable(SolverProblem::Kind kind) {
 BodyPoints::Params pointParams(const JointParams& params, const StereoCamera& camera, int max_landmarks) {
   return {.window_frames = params.track_frames,
           .max_landmarks = max_landmarks,
+          .half = params.point_half,
           .image_width_px = camera.width_px,
           .image_height_px = camera.height_px};
 }
 
 }  // namespace
 
-void NoiseLevel::learn(const ResidualLevels& levels) {
-  constexpr double kMemory = 4000;  // observations
-  const double keep = std::max(0.0, 1 - levels.d_count / kMemory);
-  sums_.uv_sum = keep * sums_.uv_sum + uv() * uv() * levels.uv_sum;
-  sums_.uv_count = keep * sums_.uv_count + levels.uv_count;
-  sums_.d_sum = keep * sums_.d_sum + d() * d() * levels.d_sum;
-  sums_.d_count = keep * sums_.d_count + levels.d_count;
-}
-double NoiseLevel::uv() const {
-  constexpr double kPrior = 100;
-  return std::sqrt((kPrior + sums_.uv_sum) / (kPrior + sums_.uv_count));
-}
-double NoiseLevel::d() const {
-  constexpr double kPrior = 50;
-  return std::sqrt((kPrior + sums_.d_sum) / (kPrior + sums_.d_count));
-}
-
 JointGraph::JointGraph(const JointParams& params, const StereoCamera& camera)
     : params_(params),
       camera_(camera),
-      static_noise_{.shared_disparity_sigma_px = params.static_disparity_sigma_px},
-      object_noise_{.shared_disparity_sigma_px = params.object_disparity_sigma_px},
       solver_(solverParams(params)),
-      world_{.points = BodyPoints(pointParams(params, camera, params.max_static_landmarks)), .noise = {}, .ended = {}, .current = {}, .closed = {}} {
+      world_{.points = BodyPoints(pointParams(params, camera, params.max_static_landmarks)),
+             .noise = {},
+             .ended = {},
+             .current = {},
+             .closed = {}} {
   const SmallVector zero = SmallVector::Zero(1);
   offset_ = solver_.addVariable(zero);
   holdOffset(kHeldSigma_px);
@@ -107,13 +94,13 @@ std::optional<double> JointGraph::observedOffset_px() const {
 /// offset move. Lens distortions alone look like an offset of 0.2 to 0.4 px on real rigs (it depends on where in the
 /// image the points are), and correcting that makes paths worse.
 void JointGraph::calibrate() {
-  if (params_.max_offset_px <= 0) return;
+  if (params_.offset_sigma_px <= 0) return;
   const std::int64_t age = frames_.rbegin()->first.value - first_frame_.value;
   if (!offset_free_ && age >= kFirstLook_frames && age <= kCalibration_frames) {
     const auto observed_px = observedOffset_px();
     if (observed_px && std::abs(*observed_px) > kDistortion_px) {
       offset_free_ = true;
-      holdOffset(params_.max_offset_px);
+      holdOffset(params_.offset_sigma_px);
       dropTroubled(solver_.update());
     }
   }
@@ -146,7 +133,7 @@ double JointGraph::offset_px() const { return std::get<SmallVector>(solver_.esti
 
 double JointGraph::offsetSigma_px() const {
   const auto covariance = solver_.jointCovariance(std::span(&offset_, 1));
-  return covariance ? std::sqrt((*covariance)(0, 0)) : params_.max_offset_px;
+  return covariance ? std::sqrt((*covariance)(0, 0)) : kHeldSigma_px;
 }
 
 void JointGraph::add(const FrameMeasurements& measurements) {
@@ -157,7 +144,8 @@ void JointGraph::add(const FrameMeasurements& measurements) {
       if (frames_.contains(seen.frame) && isFinite(seen.T_cam_body)) addObservation(seen);
   addPoints(world_, nullptr);
   for (const TrackId id : measurements.ended)
-    if (const auto it = objects_.find(id); it != objects_.end()) it->second.points.points.observe(measurements.frame, {});
+    if (const auto it = objects_.find(id); it != objects_.end())
+      it->second.points.points.observe(measurements.frame, {});
   for (auto& [id, object] : objects_) addPoints(object.points, &object);
   dropTroubled(solver_.update());
   calibrate();
@@ -225,7 +213,7 @@ void JointGraph::beginObject(JointObject& object, JointRecord& record) {
   addPrior(record.w, twist, sigmas(params_.twist_sigma_mps, params_.twist_sigma_radps));
   object.lever = solver_.addVariable(SmallVector(SmallVector::Zero(1)));
   addPrior(object.lever, SmallVector::Zero(1), SmallVector::Constant(1, params_.lever_sigma_m));
-  if (params_.use_rolling)
+  if (params_.use_smoothness)
     solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.lever, params_.rolling));
 }
 
@@ -240,8 +228,9 @@ void JointGraph::continueObject(JointObject& object, const JointRecord& before, 
   ConstantTwistFactor::Variables variables{
       .c_a = before.c, .w_a = before.w, .c_b = record.c, .w_b = record.w, .x_a = {}, .x_b = {}};
   if (camera.weak) variables.x_a = camera_before.x, variables.x_b = camera.x;
-  solver_.addFactor(std::make_unique<ConstantTwistFactor>(variables, u, dt_s, params_.acceleration.density()));
-  if (params_.use_rolling)
+  const Vector6d density = (params_.use_smoothness ? 1.0 : kFreeMotion) * params_.acceleration.density();
+  solver_.addFactor(std::make_unique<ConstantTwistFactor>(variables, u, dt_s, density));
+  if (params_.use_smoothness)
     solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.lever, params_.rolling));
 }
 
@@ -307,7 +296,8 @@ std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTr
   }
   return solver_.addFactor(std::make_unique<BundleFactor>(
       object ? BundleFactor::Poses::kCamBody : BundleFactor::Poses::kWorldCam, std::move(poses), offset_,
-      eliminateLandmarks(camera_, object ? object_noise_ : static_noise_, landmarks, std::move(T_cam_body), offset_px())));
+      eliminateLandmarks(camera_, object ? params_.object_noise : params_.static_noise, landmarks,
+                         std::move(T_cam_body), offset_px())));
 }
 
 void JointGraph::addPrior(VariableId v, const SE3& mean, const Vector6d& sigma) {

@@ -9,6 +9,7 @@
 #include "backend/joint/body_points.hpp"
 #include "backend/joint/bundle_factor.hpp"
 #include "backend/joint/joint_params.hpp"
+#include "backend/joint/noise_level.hpp"
 #include "backend/solver/incremental_solver.hpp"
 #include "core/messages.hpp"
 
@@ -19,7 +20,7 @@ struct JointCamera {
   Timestamp stamp;
   FrameStatus status = FrameStatus::kGood;
   VariableId x;
-  bool weak = false;  // the points at rest hardly tell how it moved since the frame before
+  bool weak = false;                   // the points at rest hardly tell how it moved since the frame before
   std::optional<Matrix6d> covariance;  // as last computed
 };
 
@@ -27,21 +28,10 @@ struct JointCamera {
 struct JointRecord {
   ObjectObservation seen;  // without the points
   Timestamp stamp;
-  VariableId c, w;  // T_cam_body and twist; invalid when the frame's pose is not in the graph
+  VariableId c, w;            // T_cam_body and twist; invalid when the frame's pose is not in the graph
   std::optional<SE3> frozen;  // T_world_body when the pose has left the window
   std::optional<Matrix6d> covariance;
   std::optional<double> speed_sigma_mps;
-};
-
-/// Running noise levels of a body's observations, as factors on the standard deviations that the front-end claims.
-class NoiseLevel {
- public:
-  void learn(const ResidualLevels& levels);
-  double uv() const;
-  double d() const;
-
- private:
-  ResidualLevels sums_{};
 };
 
 /// Tracks that ended, and the factor that holds them.
@@ -96,7 +86,6 @@ class JointGraph {
   const IncrementalSolver& solver() const { return solver_; }
   double offset_px() const;
   double offsetSigma_px() const;
-  const NoiseLevel& noise() const { return world_.noise; }
 
   SE3 objectPose(const JointObject& object, FrameId frame) const;
   Eigen::Vector3d objectVelocity_mps(const JointObject& object, FrameId frame) const;
@@ -127,7 +116,6 @@ class JointGraph {
 
   JointParams params_;
   StereoCamera camera_;
-  LandmarkNoise static_noise_, object_noise_;
   IncrementalSolver solver_;
   VariableId offset_;
   std::optional<FactorId> offset_prior_;

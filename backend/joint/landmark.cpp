@@ -7,8 +7,8 @@
 namespace motorcade {
 namespace {
 
-constexpr int kIterations = 1;               // from the newest view: what is left, the elimination takes into account
-constexpr double kLeastDisparity_px = 0.3;   // a landmark with less is at infinity
+constexpr int kIterations = 1;              // from the newest view: what is left, the elimination takes into account
+constexpr double kLeastDisparity_px = 0.3;  // a landmark with less is at infinity
 constexpr double kLeastSharedSigma_px = 1e-3;
 
 }  // namespace

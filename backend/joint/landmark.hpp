@@ -23,7 +23,7 @@ struct LandmarkView {
 struct LandmarkNoise {
   RobustLoss loss = RobustLoss::kCauchy;
   double loss_scale = 1.5;  // of an observation's whitened norm: three dimensions
-  /// Of an error that all disparities of a landmark share, as its texture is matched with the same bias in each frame.
+  /// Of an error that all disparities of a landmark share.
   double shared_disparity_sigma_px = 0.1;
 };
 
@@ -57,7 +57,8 @@ class LandmarkFit {
 
  private:
   bool linearize(std::span<const LandmarkView> views, bool with_poses);
-  bool linearizeView(const LandmarkView& view, const Eigen::Vector3d& p_body, const Eigen::Matrix3d& G, bool with_poses);
+  bool linearizeView(const LandmarkView& view, const Eigen::Vector3d& p_body, const Eigen::Matrix3d& G,
+                     bool with_poses);
 
   const StereoCamera& camera_;
   LandmarkNoise noise_;

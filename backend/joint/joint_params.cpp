@@ -1,0 +1,17 @@
+#include "backend/joint/joint_params.hpp"
+
+namespace motorcade {
+
+std::vector<Parameter> parametersOf(JointParams& params) {
+  return {numberParameter("track_frames", params.track_frames, {3, 30},
+                          "longer tracks tell more of slow motion, at the square of the cost"),
+          numberParameter("max_static_landmarks", params.max_static_landmarks, {50, 2000},
+                          "more are more exact, at proportional cost"),
+          numberParameter("offset_sigma_px", params.offset_sigma_px, {0, 5},
+                          "how far the disparities of a rig that is not calibrated may be off; 0 trusts every rig"),
+          switchParameter("use_objects", params.use_objects, "off follows the camera alone"),
+          numberParameter("point_half", params.point_half, {0, 2},
+                          "1 and 2 use one half of the points each, to see how far both agree; 0 uses all")};
+}
+
+}  // namespace motorcade

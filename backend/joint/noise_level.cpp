@@ -1,0 +1,32 @@
+#include "backend/joint/noise_level.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace motorcade {
+namespace {
+
+/// Mean square of a residual under the weights of LandmarkNoise, per dimension, where the noise is Gaussian and as
+/// claimed: E[w r^2] / 3 with w = 1 / (1 + r^2 / 1.5^2) over three dimensions, from 3e5 samples.
+constexpr double kGaussianLevel = 0.3685;
+
+}  // namespace
+
+void NoiseLevel::learn(const ResidualLevels& levels) {
+  constexpr double kMemory = 4000;  // observations
+  const double keep = std::max(0.0, 1 - levels.d_count / kMemory), uv2 = uv() * uv(), d2 = d() * d();
+  sums_.uv_sum = keep * sums_.uv_sum + uv2 * levels.uv_sum / kGaussianLevel;
+  sums_.uv_count = keep * sums_.uv_count + levels.uv_count;
+  sums_.d_sum = keep * sums_.d_sum + d2 * levels.d_sum / kGaussianLevel;
+  sums_.d_count = keep * sums_.d_count + levels.d_count;
+}
+double NoiseLevel::uv() const {
+  constexpr double kPrior = 100;
+  return std::sqrt((kPrior + sums_.uv_sum) / (kPrior + sums_.uv_count));
+}
+double NoiseLevel::d() const {
+  constexpr double kPrior = 50;
+  return std::sqrt((kPrior + sums_.d_sum) / (kPrior + sums_.d_count));
+}
+
+}  // namespace motorcade
