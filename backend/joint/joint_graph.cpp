@@ -4,22 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include "backend/graph/sort_unique.hpp"
 #include "backend/smoother/factors.hpp"
 #include "core/unknown_motion.hpp"
 
 namespace motorcade {
 namespace {
 
-constexpr double kHeldSigma_px = 1e-3;    // of the offset of a rig that is taken as calibrated
-constexpr double kClearSigma_px = 0.1;    // of an observed offset, from which on it is looked at
-constexpr double kDistortion_px = 0.5;    // what looks like an offset up to here may be distortion
-constexpr double kOffsetStep_px = 0.1;    // of the offset, after which landmarks are eliminated anew
-constexpr int kFirstLook_frames = 8;      // after which the offset is looked at
-constexpr int kCalibration_frames = 100;  // of the drive, in which the offset may be found
-constexpr int kFramesPerFactor = 5;       // tracks that ended in so many frames share one
-constexpr double kFreeMotion = 1e6;       // times the accelerations' variance: nothing is known of how objects move
-constexpr int kFewStatic = 20;            // landmarks seen now and before: with fewer the front-end's odometry helps
+constexpr double kFreeMotion = 1e6;  // times the accelerations' variance: nothing is known of how objects move
+constexpr int kFewStatic = 20;       // landmarks seen now and before: with fewer the front-end's odometry helps
 
 IncrementalSolver::Params solverParams(const JointParams& params) {
   return {.policy = IncrementalSolver::Policy::kFluid,
@@ -38,12 +30,6 @@ Vector6d sigmas(double sigma_m, double sigma_rad) {
   Vector6d sigma;
   sigma << Eigen::Vector3d::Constant(sigma_m), Eigen::Vector3d::Constant(sigma_rad);
   return sigma;
-}
-
-std::vector<const LandmarkTrack*> pointersTo(const std::vector<LandmarkTrack>& tracks) {
-  std::vector<const LandmarkTrack*> pointers;
-  for (const LandmarkTrack& track : tracks) pointers.push_back(&track);
-  return pointers;
 }
 
 bool concernsVariable(SolverProblem::Kind kind) {
@@ -72,68 +58,7 @@ JointGraph::JointGraph(const JointParams& params, const StereoCamera& camera)
              .closed = {}} {
   const SmallVector zero = SmallVector::Zero(1);
   offset_ = solver_.addVariable(zero);
-  holdOffset(kHeldSigma_px);
-}
-
-void JointGraph::holdOffset(double sigma_px) {
-  if (offset_prior_) solver_.removeFactor(*offset_prior_);
-  offset_prior_ = solver_.addFactor(std::make_unique<VectorPriorFactor>(
-      offset_, SmallVector(SmallVector::Zero(1)), SmallVector(SmallVector::Constant(1, sigma_px))));
-}
-
-/// What the landmarks alone say of the offset: the posterior without its prior.
-std::optional<double> JointGraph::observedOffset_px() const {
-  const auto covariance = solver_.jointCovariance(std::span(&offset_, 1));
-  if (!covariance) return std::nullopt;
-  const double posterior = 1 / (*covariance)(0, 0), observed = posterior - 1 / (kHeldSigma_px * kHeldSigma_px);
-  if (observed < 1 / (kClearSigma_px * kClearSigma_px)) return std::nullopt;
-  return offset_px() * posterior / observed;
-}
-
-/// A rig is taken as calibrated until the landmarks of its first frames clearly say that it is not; only then does its
-/// offset move. Lens distortions alone look like an offset of 0.2 to 0.4 px on real rigs (it depends on where in the
-/// image the points are), and correcting that makes paths worse.
-void JointGraph::calibrate() {
-  if (params_.offset_sigma_px <= 0) return;
-  const std::int64_t age = frames_.rbegin()->first.value - first_frame_.value;
-  if (!offset_free_ && age >= kFirstLook_frames && age <= kCalibration_frames) {
-    const auto observed_px = observedOffset_px();
-    if (observed_px && std::abs(*observed_px) > kDistortion_px) {
-      offset_free_ = true;
-      holdOffset(params_.offset_sigma_px);
-      dropTroubled(solver_.update());
-    }
-  }
-  if (std::abs(offset_px() - linearized_offset_px_) > kOffsetStep_px) linearizeLandmarksAnew();
-  if (age > kCalibration_frames) forgetClosed([](const ClosedTracks&) { return true; });
-}
-
-/// Landmarks were eliminated at another offset.
-void JointGraph::linearizeLandmarksAnew() {
-  linearized_offset_px_ = offset_px();
-  relinearizeClosed(world_, nullptr);
-  for (auto& [id, object] : objects_)
-    if (object.lever.valid()) relinearizeClosed(object.points, &object);
-  dropTroubled(solver_.update());
-}
-
-void JointGraph::relinearizeClosed(JointPoints& body, const JointObject* object) {
-  for (ClosedTracks& closed : body.closed) {
-    solver_.removeFactor(closed.factor);
-    if (const auto id = addBundle(pointersTo(closed.tracks), body.noise, object)) closed.factor = *id;
-  }
-}
-
-void JointGraph::forgetClosed(const std::function<bool(const ClosedTracks&)>& forgotten) {
-  std::erase_if(world_.closed, forgotten);
-  for (auto& [id, object] : objects_) std::erase_if(object.points.closed, forgotten);
-}
-
-double JointGraph::offset_px() const { return std::get<SmallVector>(solver_.estimate(offset_))[0]; }
-
-double JointGraph::offsetSigma_px() const {
-  const auto covariance = solver_.jointCovariance(std::span(&offset_, 1));
-  return covariance ? std::sqrt((*covariance)(0, 0)) : kHeldSigma_px;
+  holdOffset();
 }
 
 void JointGraph::add(const FrameMeasurements& measurements) {
@@ -232,72 +157,6 @@ void JointGraph::continueObject(JointObject& object, const JointRecord& before, 
   solver_.addFactor(std::make_unique<ConstantTwistFactor>(variables, u, dt_s, density));
   if (params_.use_smoothness)
     solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.lever, params_.rolling));
-}
-
-/// The factor over the tracks that go on, and over those that ended lately, is made anew in each frame.
-void JointGraph::addPoints(JointPoints& body, const JointObject* object) {
-  if (body.current) solver_.removeFactor(*body.current);
-  body.current.reset();
-  std::ranges::move(body.points.takeEnded(), std::back_inserter(body.ended));
-  if (object && !object->lever.valid()) return body.ended.clear();
-  if (frames_.rbegin()->first.value % kFramesPerFactor == 0) closeEnded(body, object);
-  std::vector<const LandmarkTrack*> tracks = body.points.current();
-  std::ranges::copy(pointersTo(body.ended), std::back_inserter(tracks));
-  body.current = addBundle(tracks, body.noise, object);
-}
-
-/// Tracks that ended become a factor for good.
-void JointGraph::closeEnded(JointPoints& body, const JointObject* object) {
-  if (const auto id = addBundle(pointersTo(body.ended), body.noise, object)) {
-    const auto& factor = dynamic_cast<const BundleFactor&>(solver_.graph().factor(*id));
-    body.noise.learn(factor.landmarks().levels);
-    FrameId first = body.ended.front().views.front().frame;
-    for (const LandmarkTrack& track : body.ended) first = std::min(first, track.views.front().frame);
-    body.closed.push_back({*id, first, std::move(body.ended)});
-  }
-  body.ended.clear();
-}
-
-std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTrack*>& tracks, const NoiseLevel& noise,
-                                              const JointObject* object) {
-  const auto inGraph = [&](FrameId frame) {
-    if (!frames_.contains(frame)) return false;
-    const auto record = object ? object->records.find(frame) : decltype(object->records.begin()){};
-    return !object || (record != object->records.end() && record->second.c.valid());
-  };
-  std::vector<FrameId> frames;
-  for (const LandmarkTrack* track : tracks)
-    for (const auto& view : track->views)
-      if (inGraph(view.frame)) frames.push_back(view.frame);
-  sortUnique(frames);
-  LandmarkViews landmarks;
-  for (const LandmarkTrack* track : tracks) {
-    const std::size_t first = landmarks.views.size();
-    for (const auto& view : track->views) {
-      const auto at = std::ranges::lower_bound(frames, view.frame);
-      if (at == frames.end() || *at != view.frame) continue;
-      Eigen::Vector3d sigma_px = view.sigma_px.cast<double>();
-      sigma_px.head<2>() *= noise.uv();
-      sigma_px.z() *= noise.d();
-      landmarks.views.push_back(
-          {static_cast<int>(at - frames.begin()), view.uvd_px.cast<double>(), sigma_px.cwiseInverse()});
-    }
-    if (landmarks.views.size() < first + 2)
-      landmarks.views.resize(first);
-    else
-      landmarks.first_view.push_back(static_cast<int>(landmarks.views.size()));
-  }
-  if (landmarks.count() == 0) return std::nullopt;
-  std::vector<VariableId> poses;
-  std::vector<SE3> T_cam_body;
-  for (const FrameId frame : frames) {
-    poses.push_back(object ? object->records.at(frame).c : frames_.at(frame).x);
-    T_cam_body.push_back(object ? solver_.pose(poses.back()) : solver_.pose(poses.back()).inverse());
-  }
-  return solver_.addFactor(std::make_unique<BundleFactor>(
-      object ? BundleFactor::Poses::kCamBody : BundleFactor::Poses::kWorldCam, std::move(poses), offset_,
-      eliminateLandmarks(camera_, object ? params_.object_noise : params_.static_noise, landmarks,
-                         std::move(T_cam_body), offset_px())));
 }
 
 void JointGraph::addPrior(VariableId v, const SE3& mean, const Vector6d& sigma) {

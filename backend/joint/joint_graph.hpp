@@ -100,7 +100,8 @@ class JointGraph {
   void closeEnded(JointPoints& body, const JointObject* object);
   std::optional<FactorId> addBundle(const std::vector<const LandmarkTrack*>& tracks, const NoiseLevel& noise,
                                     const JointObject* object);
-  void holdOffset(double sigma_px);
+  void holdOffset();
+  void setOffsetPrior(double sigma_px);
   std::optional<double> observedOffset_px() const;
   void calibrate();
   void linearizeLandmarksAnew();

@@ -105,7 +105,8 @@ TEST_P(BundleFactorOf, GradientMatchesFiniteDifferencesOfTheCost) {
   const Eigen::MatrixXd term = scene.linearize();
   for (int i = 0; i < scene.dimension(); ++i) {
     constexpr double kStep = 1e-4;
-    Scene plus = Scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2), minus = Scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2);
+    Scene plus = Scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2),
+          minus = Scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2);
     plus.move(i, kStep), minus.move(i, -kStep);
     const double numeric = (plus.freshCost() - minus.freshCost()) / (4 * kStep);
     EXPECT_NEAR(term(scene.dimension(), i), numeric, 1e-3 * (1 + std::abs(numeric))) << i;

@@ -1,0 +1,126 @@
+#include "backend/joint/twist_factors.hpp"
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include "tests/backend/random_graphs.hpp"
+#include "tests/support/matchers.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::IsNear;
+using test::RandomPoses;
+
+constexpr double kDt_s = 0.1;
+const Vector6d kDensity = (Vector6d() << 2, 0.3, 0.1, 0.01, 0.01, 0.05).finished();
+
+std::vector<const Value*> pointersTo(const std::vector<Value>& values) {
+  std::vector<const Value*> pointers;
+  for (const Value& value : values) pointers.push_back(&value);
+  return pointers;
+}
+
+Eigen::VectorXd residualOf(const Factor& factor, const std::vector<Value>& values) {
+  Eigen::VectorXd r(factor.rows());
+  factor.residual(pointersTo(values), r);
+  return r;
+}
+
+/// Central differences of the residual, variable by variable.
+Eigen::MatrixXd numericJacobian(const Factor& factor, const std::vector<Value>& values) {
+  constexpr double kStep = 1e-6;
+  Eigen::MatrixXd J(factor.rows(), 0);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    for (int i = 0; i < dimension(values[k]); ++i) {
+      SmallVector step = SmallVector::Zero(dimension(values[k]));
+      step[i] = kStep;
+      auto plus = values, minus = values;
+      plus[k] = retract(values[k], step);
+      minus[k] = retract(values[k], -step);
+      J.conservativeResize(Eigen::NoChange, J.cols() + 1);
+      J.rightCols<1>() = (residualOf(factor, plus) - residualOf(factor, minus)) / (2 * kStep);
+    }
+  return J;
+}
+
+void expectJacobianOfResidual(const Factor& factor, const std::vector<Value>& values) {
+  const Eigen::MatrixXd numeric = numericJacobian(factor, values);
+  Eigen::MatrixXd term(factor.rows(), numeric.cols() + 1);
+  factor.linearize(pointersTo(values), term);
+  const double scale = numeric.cwiseAbs().maxCoeff();
+  EXPECT_THAT(Eigen::MatrixXd(term.leftCols(numeric.cols()) / scale), IsNear(Eigen::MatrixXd(numeric / scale), 1e-5));
+  EXPECT_THAT(Eigen::VectorXd(term.rightCols<1>()), IsNear(residualOf(factor, values), 1e-9));
+}
+
+/// A vehicle on an arc of constant twist, seen from a moving camera: (c_a, w, c_b, w, x_a, x_b).
+std::vector<Value> arc(RandomPoses& random) {
+  Vector6d w;
+  w << 12, 0.2, 0.1, 0.02, 0.01, 0.3;
+  const SE3 T_a = random.pose(10, 0.5), T_b = T_a * SE3::exp(kDt_s * w);
+  const SE3 x_a = random.pose(5, 0.3), x_b = x_a * random.pose(1, 0.1);
+  return {x_a.inverse() * T_a, SmallVector(w), x_b.inverse() * T_b, SmallVector(w), x_a, x_b};
+}
+
+ConstantTwistFactor::Variables variables(bool with_camera) {
+  ConstantTwistFactor::Variables v{.c_a = {0}, .w_a = {1}, .c_b = {2}, .w_b = {3}, .x_a = {}, .x_b = {}};
+  if (with_camera) v.x_a = {4}, v.x_b = {5};
+  return v;
+}
+
+TEST(ConstantTwistFactor, HasNoResidualOnAnArc) {
+  RandomPoses random(1);
+  const std::vector<Value> values = arc(random);
+  const ConstantTwistFactor factor(variables(true), SE3{}, kDt_s, kDensity);
+  EXPECT_LT(residualOf(factor, values).norm(), 1e-6);
+}
+
+TEST(ConstantTwistFactor, JacobianMatchesFiniteDifferences) {
+  RandomPoses random(2);
+  for (int i = 0; i < 10; ++i) {
+    std::vector<Value> values = arc(random);
+    values[2] = std::get<SE3>(values[2]) * random.pose(0.05, 0.01);
+    expectJacobianOfResidual(ConstantTwistFactor(variables(true), SE3{}, kDt_s, kDensity), values);
+    const SE3 u = std::get<SE3>(values[4]).inverse() * std::get<SE3>(values[5]);
+    values.resize(4);
+    expectJacobianOfResidual(ConstantTwistFactor(variables(false), u, kDt_s, kDensity), values);
+  }
+}
+
+/// A change of the twist by one standard deviation of what the noise makes of it costs one: (dt^3/3, dt^2/2; dt^2/2,
+/// dt).
+TEST(ConstantTwistFactor, WhitensByTheIntegratedNoise) {
+  const ConstantTwistFactor factor(variables(false), SE3{}, kDt_s, kDensity);
+  Eigen::Matrix2d Q;
+  Q << kDt_s * kDt_s * kDt_s / 3, kDt_s * kDt_s / 2, kDt_s * kDt_s / 2, kDt_s;
+  const Eigen::Vector2d error(0.02, 0.3);  // of position and velocity along the second axis
+  Vector6d moved = Vector6d::Zero(), changed = Vector6d::Zero();
+  moved[1] = error[0], changed[1] = error[1];
+  const std::vector<Value> values{SE3{}, SmallVector(Vector6d::Zero()), SE3::exp(moved), SmallVector(changed)};
+  EXPECT_NEAR(residualOf(factor, values).squaredNorm(), error.dot(Q.inverse() * error) / kDensity[1], 1e-6);
+}
+
+TEST(RollingFactor, JacobianMatchesFiniteDifferences) {
+  const RollingFactor factor({0}, {1}, {});
+  expectJacobianOfResidual(factor, {SmallVector((Vector6d() << 9, 0.4, 0.1, 0, 0.1, 0.3).finished()),
+                                    SmallVector(SmallVector::Constant(1, 1.3))});
+}
+
+TEST(RollingFactor, HasNoResidualWhereTheRearAxleDoesNotSlip) {
+  const double lever_m = 1.5, turn_radps = 0.4;
+  Vector6d w = Vector6d::Zero();
+  w[0] = 8, w[5] = turn_radps, w[1] = lever_m * turn_radps;
+  const RollingFactor factor({0}, {1}, {});
+  EXPECT_LT(residualOf(factor, {SmallVector(w), SmallVector(SmallVector::Constant(1, lever_m))}).norm(), 1e-12);
+  EXPECT_GT(residualOf(factor, {SmallVector(w), SmallVector(SmallVector::Constant(1, -lever_m))}).norm(), 1);
+}
+
+TEST(VectorPriorFactor, CountsInStandardDeviations) {
+  const VectorPriorFactor factor({0}, SmallVector::Constant(2, 1.0), SmallVector::Constant(2, 0.5));
+  const std::vector<Value> values{SmallVector(SmallVector::Constant(2, 2.0))};
+  EXPECT_THAT(residualOf(factor, values), IsNear(Eigen::VectorXd(Eigen::VectorXd::Constant(2, 2.0)), 1e-12));
+  expectJacobianOfResidual(factor, values);
+}
+
+}  // namespace
+}  // namespace motorcade
