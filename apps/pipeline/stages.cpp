@@ -9,8 +9,9 @@ namespace {
 
 std::unique_ptr<Backend> makeBackend(const BackendParams& params, const StereoCamera& camera) {
   if (params.kind == BackendKind::kJoint) return std::make_unique<JointBackend>(params.joint, camera);
-  if (params.kind == BackendKind::kFilter) return std::make_unique<FilterBackend>(params.filter);
-  return std::make_unique<Optimizer>(params.smoother);
+  if (params.kind == BackendKind::kFilter) return std::make_unique<FilterBackend>(params.filter, camera);
+  if (params.kind == BackendKind::kFilterMap) return std::make_unique<MapFilterBackend>(params.filter);
+  return std::make_unique<PoseGraphBackend>(params.smoother, camera);
 }
 
 }  // namespace
