@@ -33,6 +33,12 @@ void addRun(CLI::App& app, Action& action) {
                     "Behave like a camera that does not wait: the newest pair wins, others are dropped");
   command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
   command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
+  command
+      ->add_option(
+          "--camera", options->camera,
+          "KITTI pose lines of another camera trajectory, one per frame of the sequence, for backend.kind filter, "
+          "filter_map or pose_graph")
+      ->type_name("POSES.txt");
   command->add_option("--config", options->config, "Parameters; see effective_config.toml of any run")
       ->type_name("FILE.toml");
   command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")

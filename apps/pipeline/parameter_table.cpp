@@ -9,8 +9,12 @@ namespace {
 
 Parameter backendKind(BackendParams& backend) {
   return choiceParameter<BackendKind>("kind", backend.kind,
-                                      {{"joint", BackendKind::kJoint}, {"smoother", BackendKind::kSmoother}, {"filter", BackendKind::kFilter}},
-                                      "the smoother is more exact; the filter is the paper's baseline");
+                                      {{"joint", BackendKind::kJoint},
+                                       {"pose_graph", BackendKind::kPoseGraph},
+                                       {"filter", BackendKind::kFilter},
+                                       {"filter_map", BackendKind::kFilterMap}},
+                                      "joint is the most exact; pose_graph is the paper's graph, filter its baseline, "
+                                      "filter_map that on averaged maps of the objects");
 }
 
 }  // namespace

@@ -2,8 +2,9 @@
 
 #include "apps/pipeline/pipeline_params.hpp"
 #include "backend/filter/filter_backend.hpp"
+#include "backend/filter/map_filter_backend.hpp"
 #include "backend/joint/joint_backend.hpp"
-#include "backend/smoother/optimizer.hpp"
+#include "backend/smoother/pose_graph_backend.hpp"
 #include "frontend/features/feature_preparation.hpp"
 #include "frontend/matching/optical_flow.hpp"
 #include "frontend/matching/stereo_matcher.hpp"
@@ -13,15 +14,16 @@
 namespace motorcade {
 
 enum class BackendKind {
-  kJoint,     // camera, objects and points in one estimate
-  kSmoother,  // the incremental smoother over camera and objects
-  kFilter,    // the paper's baseline: chained odometry and one Kalman filter per object
+  kJoint,      // camera, objects and points in one estimate
+  kPoseGraph,  // the paper: the incremental smoother over poses of camera and objects
+  kFilter,     // the paper's baseline: chained odometry and one Kalman filter per object, on frame-to-frame motions
+  kFilterMap,  // the same on the poses of the front-end's averaged maps of the objects
 };
 
 struct BackendParams {
   BackendKind kind = BackendKind::kJoint;
   JointBackend::Params joint;
-  Optimizer::Params smoother;
+  PoseGraphBackend::Params smoother;
   FilterBackend::Params filter;
 };
 

@@ -21,8 +21,9 @@ JointParams jointParams(const BackendParams& params) {
 
 std::unique_ptr<Backend> makeBackend(const BackendParams& params, const StereoCamera& camera) {
   if (params.kind == BackendKind::kJoint) return std::make_unique<JointBackend>(jointParams(params), camera);
-  if (params.kind == BackendKind::kFilter) return std::make_unique<FilterBackend>(params.filter);
-  return std::make_unique<Optimizer>(params.smoother);
+  if (params.kind == BackendKind::kFilter) return std::make_unique<FilterBackend>(params.filter, camera);
+  if (params.kind == BackendKind::kFilterMap) return std::make_unique<MapFilterBackend>(params.filter);
+  return std::make_unique<PoseGraphBackend>(params.smoother, camera);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -13,6 +14,7 @@
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/feeder.hpp"
+#include "apps/run/other_camera.hpp"
 #include "apps/run/progress.hpp"
 #include "apps/run/run_options.hpp"
 #include "apps/run/run_summary.hpp"
@@ -95,8 +97,8 @@ class Recorder {
 };
 
 /// Runs the frames through the pipeline and writes all results but the summary.
-void follow(const Sequence& sequence, const FrameRange& range, const PipelineConfig& config, RunFolderWriter& folder,
-            RunSummary& summary) {
+void follow(const Sequence& sequence, const FrameRange& range, const PipelineConfig& config, Stages stages,
+            RunFolderWriter& folder, RunSummary& summary) {
   StopSignals signals;
   std::optional<CameraClock> clock;
   if (summary.rate_hz) clock.emplace(*summary.rate_hz / summary.capture_rate_hz, 1 / summary.capture_rate_hz);
@@ -105,7 +107,7 @@ void follow(const Sequence& sequence, const FrameRange& range, const PipelineCon
   if (clock && config.pipeline.policy == InputPolicy::kLive)
     decoding.wanted = [&](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };
   SequenceDecoder decoder(sequence, range, decoding);
-  Pipeline pipeline(config.pipeline, makeStages(config, sequence.camera), logToSpdlog);
+  Pipeline pipeline(config.pipeline, std::move(stages), logToSpdlog);
   const auto start = std::chrono::steady_clock::now();
   Recorder recorder(folder, range.size());
   {
@@ -138,6 +140,8 @@ int runSequence(const RunOptions& options) {
   const auto rate_hz = replayRate_hz(options, config.pipeline.policy);
   const Sequence sequence = openSequence(options.sequence, options.fps_hz);
   const FrameRange range = selectedFrames(options, sequence);
+  Stages stages = makeStages(config, sequence.camera);
+  if (auto other_camera = otherCamera(options, config, sequence)) replaceOdometry(stages, *std::move(other_camera));
   announce(sequence, range, options.fps_hz);
 
   RunFolderWriter folder(options.out);
@@ -148,7 +152,7 @@ int runSequence(const RunOptions& options) {
   summary.layout = sequence.layout;
   summary.rate_hz = rate_hz;
   summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
-  follow(sequence, range, config, folder, summary);
+  follow(sequence, range, config, std::move(stages), folder, summary);
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));
   std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);

@@ -20,6 +20,7 @@ struct RunOptions {
   std::optional<int> threads;
   std::string frames;  // A:B
   std::filesystem::path config;
+  std::filesystem::path camera;          // KITTI pose lines
   std::vector<std::string> assignments;  // key=value
   std::string require;                   // tracked=FRACTION
 };

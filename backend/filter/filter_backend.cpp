@@ -3,113 +3,100 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 
+#include "backend/filter/filter_estimates.hpp"
+#include "backend/motion/body_view.hpp"
+#include "backend/motion/camera_path.hpp"
 #include "core/se3.hpp"
 
 namespace motorcade {
-namespace {
-
-constexpr std::size_t kKeptFrames = 64;  // past camera poses, for observations from before a confirmation
-
-}  // namespace
 
 struct FilterBackend::State {
-  struct Camera {
-    Timestamp stamp;
-    SE3 T_world_cam, T_previous_now;
-    Matrix6d odometry_covariance;
+  /// As of the object's last observation; predicted frames are read from a copy of the filter.
+  struct Object {
+    ObjectFilter filter;
+    SE3 T_world_body;  // the end of the chain
+    FrameId frame;
+    std::vector<PointMeasurement> points;
+    double disparity_offset_px;
   };
   Params params;
-  std::map<FrameId, Camera> cameras;
-  std::map<TrackId, ObjectFilter> filters;
-  double innovations = 0;
+  StereoCamera camera;
+  CameraPath path;
+  std::map<TrackId, Object> objects;
   SolverCounters counters;
 
-  void addCamera(const FrameMeasurements& m) {
-    const SE3 T_previous_now = isFinite(m.T_previous_now) ? m.T_previous_now : SE3{};
-    const SE3 T_world_cam =
-        cameras.empty() ? SE3{} : (cameras.rbegin()->second.T_world_cam * T_previous_now).normalized();
-    cameras[m.frame] = {m.stamp, T_world_cam, T_previous_now, m.odometry_covariance};
-    if (cameras.size() > kKeptFrames) cameras.erase(cameras.begin());
+  /// The filter at the time of the observation; empty for an object that is not there yet.
+  std::optional<ObjectFilter> observe(const ObjectObservation& seen, double disparity_offset_px) {
+    const auto* at = path.find(seen.frame);
+    const bool predicted = seen.state == ObjectState::kPredicted;
+    const auto found = objects.find(seen.track);
+    if (!at) return std::nullopt;
+    if (found != objects.end()) {
+      if (!predicted) follow(found->second, seen, *at, disparity_offset_px);
+      ObjectFilter now = found->second.filter;
+      now.predict(at->stamp);
+      return now;
+    }
+    if (predicted || !isFinite(seen.T_cam_body) || !seen.encounter_covariance.allFinite()) return std::nullopt;
+    const SE3 T_world_body = at->T_world_cam * seen.T_cam_body;
+    const ObjectFilter filter(params, at->stamp, T_world_body, seen.encounter_covariance);
+    objects.insert({seen.track, {filter, T_world_body, seen.frame, seen.measured, disparity_offset_px}});
+    return filter;
   }
 
-  /// Chained over the last frames; the same frames' odometry is taken as independent.
-  std::optional<Matrix6d> cameraCovariance(FrameId frame) const {
-    const auto from = cameras.find(FrameId{frame.value - kCameraCovarianceFrames});
-    if (from == cameras.end()) return std::nullopt;
-    Matrix6d covariance = Matrix6d::Zero();
-    for (auto it = std::next(from); it != cameras.end(); ++it) {
-      const Matrix6d through = it->second.T_previous_now.inverse().adjoint();
-      covariance = (through * covariance * through.transpose() + it->second.odometry_covariance).eval();
+  void follow(Object& object, const ObjectObservation& seen, const CameraPath::Camera& at, double disparity_offset_px) {
+    object.filter.predict(at.stamp);
+    if (const auto motion = measureMotion(object, seen, at, disparity_offset_px)) {
+      object.T_world_body = (object.T_world_body * motion->T_before_now).normalized();
+      if (const auto normalized = object.filter.correct(object.T_world_body, motion->covariance)) {
+        counters.chi2 += 6 * *normalized;
+        ++counters.factors;
+      }
+    } else {
+      object.T_world_body = object.filter.pose();  // the chain is broken, and goes on from where the object is expected
     }
-    return covariance;
+    object.frame = seen.frame;
+    object.points = seen.measured;
+    object.disparity_offset_px = disparity_offset_px;
   }
 
-  void observe(const ObjectObservation& observation) {
-    const auto camera = cameras.find(observation.frame);
-    if (camera == cameras.end() || !isFinite(observation.T_cam_body)) return;
-    const SE3 T_world_body = camera->second.T_world_cam * observation.T_cam_body;
-    const auto filter = filters.find(observation.track);
-    if (filter == filters.end()) {
-      if (observation.encounter_covariance.allFinite())
-        filters.emplace(observation.track,
-                        ObjectFilter(params, camera->second.stamp, T_world_body, observation.encounter_covariance));
-      return;
-    }
-    filter->second.predict(camera->second.stamp);
-    if (observation.state == ObjectState::kPredicted) return;
-    if (const auto normalized = filter->second.correct(T_world_body, observation.encounter_covariance)) {
-      innovations += *normalized;
-      ++counters.factors;
-    }
-  }
-
-  ObjectEstimate read(const ObjectObservation& observation) const {
-    const ObjectFilter& filter = filters.at(observation.track);
-    return {.track = observation.track,
-            .state = observation.state,
-            .T_world_body = filter.pose(),
-            .velocity_world_mps = filter.velocityWorld_mps(),
-            .speed_sigma_mps = filter.speedSigma_mps(),
-            .points = observation.points,
-            .box = observation.box,
-            .covariance = filter.poseCovariance()};
+  std::optional<ObjectObservation::Motion> measureMotion(const Object& object, const ObjectObservation& seen,
+                                                         const CameraPath::Camera& at,
+                                                         double disparity_offset_px) const {
+    const auto* then = path.find(object.frame);
+    if (!then) return std::nullopt;
+    const BodyView before{object.frame, object.points, object.disparity_offset_px,
+                          then->T_world_cam.inverse() * object.T_world_body};
+    const BodyView now{seen.frame, seen.measured, disparity_offset_px, at.T_world_cam.inverse() * object.filter.pose()};
+    return motionBetween(camera, before, now, path, [](PointId) { return true; });
   }
 };
 
-FilterBackend::FilterBackend(const Params& params) : state_(std::make_unique<State>()) { state_->params = params; }
+FilterBackend::FilterBackend(const Params& params, const StereoCamera& camera) : state_(std::make_unique<State>()) {
+  state_->params = params;
+  state_->camera = camera;
+}
 FilterBackend::~FilterBackend() = default;
 
 EstimatesPtr FilterBackend::operator()(const FrameMeasurementsPtr& measurements) {
   const FrameMeasurements& m = *measurements;
-  state_->addCamera(m);
-  Estimates estimates{.online = {.frame = m.frame,
-                                 .stamp = m.stamp,
-                                 .status = m.status,
-                                 .T_world_cam = state_->cameras.at(m.frame).T_world_cam,
-                                 .camera_covariance = state_->cameraCovariance(m.frame),
-                                 .objects = {}},
-                      .finals = {},
-                      .counters = {}};
-  for (const ObjectObservation& observation : m.objects) {
-    state_->observe(observation);
-    if (observation.frame == m.frame && state_->filters.contains(observation.track))
-      estimates.online.objects.push_back(state_->read(observation));
+  state_->path.add(m);
+  Estimates estimates{.online = cameraEstimate(m, state_->path), .finals = {}, .counters = {}};
+  for (const ObjectObservation& seen : m.objects) {
+    const auto filter = state_->observe(seen, m.disparity_offset_px);
+    if (filter && seen.frame == m.frame) estimates.online.objects.push_back(objectEstimate(seen, *filter));
   }
   std::ranges::sort(estimates.online.objects, {}, &ObjectEstimate::track);
-  for (const TrackId track : m.ended) state_->filters.erase(track);
+  for (const TrackId track : m.ended) state_->objects.erase(track);
   ++state_->counters.updates;
-  state_->counters.variables = static_cast<std::int64_t>(state_->filters.size());
-  state_->counters.chi2 = 6 * state_->innovations;
+  state_->counters.variables = static_cast<std::int64_t>(state_->objects.size());
   estimates.counters = state_->counters;
   estimates.finals = {estimates.online};
   return std::make_shared<const Estimates>(std::move(estimates));
 }
 
 std::vector<FrameEstimate> FilterBackend::finish() { return {}; }
-
-double FilterBackend::meanNormalizedInnovation() const {
-  return state_->counters.factors > 0 ? state_->innovations / static_cast<double>(state_->counters.factors) : 0;
-}
 
 }  // namespace motorcade

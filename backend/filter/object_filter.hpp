@@ -13,7 +13,7 @@ class ObjectFilter {
  public:
   struct Params {
     AccelerationNoise acceleration{
-        .along_mps2 = 2.0, .sideways_mps2 = 0.5, .vertical_mps2 = 0.3, .yaw_radps2 = 0.3, .tilt_radps2 = 0.1};
+        .along_mps2 = 2.0, .sideways_mps2 = 0.5, .vertical_mps2 = 0.3, .yaw_radps2 = 0.1, .tilt_radps2 = 0.03};
     double initial_speed_sigma_mps = 10.0, initial_turn_rate_sigma_radps = 0.3;
     /// Scales the process noise of each object so that its normalized innovation squared stays near 1 per dimension.
     bool adapt_process_noise = true;

@@ -92,10 +92,4 @@ PoseNoise smoothMotionNoise(const AccelerationNoise& acceleration, double dt_bef
   return {.sqrt_information = variance.cwiseSqrt().cwiseInverse().asDiagonal()};
 }
 
-double correlatedSeriesInflation(double dt_s, double correlation_time_s) {
-  if (!(dt_s > 0) || !(correlation_time_s > 0)) return 1;
-  const double rho = std::exp(-dt_s / correlation_time_s);
-  return (1 + rho) / (1 - rho);
-}
-
 }  // namespace motorcade

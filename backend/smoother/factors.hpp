@@ -61,9 +61,4 @@ using SmoothMotionFactor = PoseFactor<SmoothMotionModel, 3>;
 /// variance over many intervals.
 PoseNoise smoothMotionNoise(const AccelerationNoise& acceleration, double dt_before_s, double dt_after_s);
 
-/// Factor on the variance of a measurement that is one of a series, dt apart, whose errors decay as exp(-t / time): the
-/// mean of n has (1 + rho) / (1 - rho) times the variance of the mean of n independent ones, with
-/// rho = exp(-dt / time) (Priestley, Spectral analysis and time series, 1981, section 5.3.2).
-double correlatedSeriesInflation(double dt_s, double correlation_time_s);
-
 }  // namespace motorcade

@@ -23,9 +23,7 @@ std::vector<Parameter> parametersOf(SmootherParams& params) {
       switchParameter("factors.use_camera_encounter", params.use_camera_encounter,
                       "poses of objects seen from the camera"),
       switchParameter("factors.use_object_encounter", params.use_object_encounter,
-                      "poses of objects relative to each other"),
-      numberParameter("factors.object_correlation_s", params.object_correlation_s, {0, 30},
-                      "how long an error of an object's points lasts: longer is smoother, shorter follows maneuvers")};
+                      "poses of objects relative to each other")};
 }
 
 }  // namespace motorcade

@@ -23,14 +23,6 @@ struct SmootherParams {
   /// Losses act on whitened residual norms of six dimensions.
   RobustLoss encounter_loss = RobustLoss::kHuber, motion_loss = RobustLoss::kHuber;
   double encounter_loss_scale = 4.5, motion_loss_scale = 4.5;
-  /// Factors on the variances of the front-end's covariances: 1 takes them as they are. Odometry of successive frames
-  /// reuses points, so that its errors add up to more than their variances; 1.5 makes ten frames' motion consistent
-  /// on rendered scenes.
-  double odometry_variance_scale = 1.5, encounter_variance_scale = 1.0, motion_variance_scale = 1.0;
-  /// Time for which an error of an object's points lasts in encounters and motions: each frame measures the object with
-  /// the same errors of the points' positions on the body. A measurement counts as the share of an independent one that
-  /// it is; 0 takes all as independent.
-  double object_correlation_s = 3.0;
 
   /// Gauge of the camera's and of each object's graph, and the weak prior of an anchor.
   double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
@@ -39,7 +31,7 @@ struct SmootherParams {
 
   /// Of the smooth motion factors.
   AccelerationNoise acceleration{
-      .along_mps2 = 1.5, .sideways_mps2 = 0.5, .vertical_mps2 = 0.3, .yaw_radps2 = 0.07, .tilt_radps2 = 0.03};
+      .along_mps2 = 1.0, .sideways_mps2 = 0.5, .vertical_mps2 = 0.3, .yaw_radps2 = 0.07, .tilt_radps2 = 0.03};
 
   /// Share of two camera encounters' information that goes to the encounter of the two objects.
   double object_encounter_share = 0.2;

@@ -39,14 +39,9 @@ bool concernsVariable(SolverProblem::Kind kind) {
   return kind != Kind::kNotFinite && kind != Kind::kUnknownVariable && kind != Kind::kRepeatedVariable;
 }
 
-constexpr double kUsualInterval_s = 0.1;  // between frames, until there are two
-
 }  // namespace
 
-TrajectoryGraph::TrajectoryGraph(const SmootherParams& params)
-    : params_(params),
-      series_inflation_(correlatedSeriesInflation(kUsualInterval_s, params.object_correlation_s)),
-      solver_(solverParams(params)) {}
+TrajectoryGraph::TrajectoryGraph(const SmootherParams& params) : params_(params), solver_(solverParams(params)) {}
 
 void TrajectoryGraph::add(const FrameMeasurements& measurements) {
   problems_.clear();
@@ -90,7 +85,7 @@ void TrajectoryGraph::addCamera(const FrameMeasurements& measurements) {
     const VariableId before = frames_.rbegin()->second.x;
     const SE3 T_previous_now = isFinite(measurements.T_previous_now) ? measurements.T_previous_now : SE3{};
     record.x = solver_.addVariable(solver_.pose(before) * T_previous_now);
-    const auto root = squareRootInformation(params_.odometry_variance_scale * measurements.odometry_covariance);
+    const auto root = squareRootInformation(measurements.odometry_covariance);
     PoseNoise noise = isotropic(kUnknownMotion_m, kUnknownMotion_rad);
     if (root && isFinite(measurements.T_previous_now))
       noise.sqrt_information = *root;
@@ -99,10 +94,6 @@ void TrajectoryGraph::addCamera(const FrameMeasurements& measurements) {
                           std::string(isFinite(measurements.T_previous_now) ? "measured" : "standing still") +
                           ", and next to unknown");
     solver_.addFactor(std::make_unique<MotionFactor>(std::array{before, record.x}, MotionModel{T_previous_now}, noise));
-  }
-  if (!frames_.empty()) {
-    const double dt_s = secondsBetween(frames_.rbegin()->second.stamp, measurements.stamp);
-    series_inflation_ = correlatedSeriesInflation(dt_s, params_.object_correlation_s);
   }
   frames_.emplace(measurements.frame, record);
 }
@@ -159,7 +150,7 @@ bool TrajectoryGraph::addMotion(const ObjectTrack& track, const ObjectRecord& re
   const auto& motion = *record.seen.motion;
   const auto before = track.records.find(motion.since);
   if (before == track.records.end() || !before->second.z.valid()) return false;
-  const auto root = squareRootInformation(series_inflation_ * params_.motion_variance_scale * motion.covariance);
+  const auto root = squareRootInformation(motion.covariance);
   if (!root) {
     leftOut(record.seen, "its motion, whose covariance is not positive definite,");
     return false;
@@ -189,8 +180,7 @@ bool TrajectoryGraph::addSmoothness(const ObjectTrack& track, FrameId frame) {
 }
 
 bool TrajectoryGraph::addCameraEncounter(const ObjectTrack& track, const ObjectRecord& record, double share) {
-  const auto root = squareRootInformation(series_inflation_ * params_.encounter_variance_scale / share *
-                                          record.seen.encounter_covariance);
+  const auto root = squareRootInformation(record.seen.encounter_covariance / share);
   if (!root) {
     leftOut(record.seen, "its pose, whose covariance is not positive definite,");
     return false;
@@ -208,8 +198,7 @@ void TrajectoryGraph::addObjectEncounter(const ObjectObservation& m, const Objec
                                          double share_n) {
   const ObjectTrack &track_m = tracks_.at(m.track), &track_n = tracks_.at(n.track);
   const VariableId z_m = track_m.records.at(m.frame).z, z_n = track_n.records.at(n.frame).z;
-  const double scale = series_inflation_ * params_.encounter_variance_scale;
-  const RelativePose relative = relativePose(m, n, scale / share_m, scale / share_n);
+  const RelativePose relative = relativePose(m, n, 1 / share_m, 1 / share_n);
   const auto root = squareRootInformation(relative.covariance);
   if (!root || !z_m.valid() || !z_n.valid()) return;
   const PoseNoise noise{

@@ -92,7 +92,6 @@ class TrajectoryGraph {
   void leftOut(const ObjectObservation& seen, const std::string& what);
 
   SmootherParams params_;
-  double series_inflation_;  // of the variances of an object's measurements, at the rate of the newest frames
   IncrementalSolver solver_;
   std::map<FrameId, CameraRecord> frames_;
   std::map<TrackId, ObjectTrack> tracks_;

@@ -125,9 +125,24 @@ TEST_F(Run, FollowsItsOwnEffectiveConfiguration) {
   expectSame("first", "second");
 }
 
-TEST_F(Run, RunsTheOtherDetectorAndTheOtherBackend) {
+TEST_F(Run, RunsTheOtherDetectorAndTheOtherBackends) {
   EXPECT_EQ(run("sift", "--set frontend.detector=sift --require tracked=0.8"), 0) << contentOf(errors());
-  EXPECT_EQ(run("filter", "--set backend=filter --require tracked=0.9"), 0) << contentOf(errors());
+  for (const std::string backend : {"filter", "filter_map", "pose_graph"})
+    EXPECT_EQ(run(backend, "--set backend=" + backend + " --require tracked=0.9"), 0) << contentOf(errors());
+}
+
+TEST_F(Run, TakesAnotherCameraPathWhereTheBackendUsesOne) {
+  ASSERT_EQ(run("first", "--set backend=filter"), 0) << contentOf(errors());
+  const std::string camera = " --camera " + (out("first") / "camera_final.txt").string();
+  ASSERT_EQ(run("second", "--set backend=filter" + camera), 0) << contentOf(errors());
+  const auto first = readRunFolder(out("first")).final.camera, second = readRunFolder(out("second")).final.camera;
+  constexpr double kPrinted_m = 1e-6;  // nine digits
+  EXPECT_NEAR((first.back().translation() - second.back().translation()).norm(), 0, kPrinted_m);
+  EXPECT_EQ(run("joint", "--set backend=joint" + camera), 2);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("--camera"));
+  std::ofstream(out("short.txt")) << "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  EXPECT_EQ(run("short", "--set backend=filter --camera " + out("short.txt").string()), 3);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("1 poses"));
 }
 
 TEST_F(Run, ReordersAndRelinearizesEveryNUpdates) {

@@ -31,11 +31,11 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
 /// folder itself (messages, the back-end's interface) comes before all rooms.
 const std::map<std::string, std::vector<std::string>> kRooms{
     {"frontend", {"image", "geometry", "features", "matching", "motion", "segmentation", "tracking"}},
-    {"backend", {"graph", "elimination", "solver", "smoother"}},
+    {"backend", {"graph", "elimination", "solver", "motion", "smoother", "joint"}},
 };
 
 /// Rooms that stand beside the flow, with those of their folder that they may include besides themselves.
-const std::map<std::string, std::set<std::string>> kSideRooms{{"backend/filter", {}}};
+const std::map<std::string, std::set<std::string>> kSideRooms{{"backend/filter", {"motion"}}};
 
 /// Calls `visit(file, included)` for each include of a folder's sources.
 void forEachInclude(const std::string& folder,

@@ -25,7 +25,6 @@ class SimulatedDrive {
         {{2, 1, 15}, 0, 9, 0.0, 0, 1000}, {{-4, 1, 30}, 0, 6, 0.15, 0, 1000}, {{4, 1, 25}, 0.2, 8, -0.05, 5, 45}};
     double dt_s = 0.1;
     double encounter_sigma_m = 0.25, encounter_sigma_rad = 0.03;
-    double encounter_correlation_s = 0;  // for which an error lasts
     double motion_sigma_m = 0.08, motion_sigma_rad = 0.01;
     double odometry_sigma_m = 0.02, odometry_sigma_rad = 0.002;
     int confirmed_after = 0;  // frames: observations up to then come with the confirmation
@@ -89,7 +88,8 @@ class SimulatedDrive {
     seen.track = track(v);
     seen.frame = {frame};
     seen.points = 40;
-    seen.T_cam_body = camera(frame).inverse() * object(v, frame) * encounterError(v);
+    seen.T_cam_body = camera(frame).inverse() * object(v, frame) *
+                      random_.pose(options_.encounter_sigma_m, options_.encounter_sigma_rad);
     seen.encounter_covariance = covariance(options_.encounter_sigma_m, options_.encounter_sigma_rad);
     if (frame > options_.vehicles[v].first_frame)
       seen.motion = {.since = {frame - 1},
@@ -99,19 +99,8 @@ class SimulatedDrive {
     return seen;
   }
 
-  /// Gauss-Markov of first order, with the same variance at all times.
-  SE3 encounterError(std::size_t v) {
-    const SE3 fresh = random_.pose(options_.encounter_sigma_m, options_.encounter_sigma_rad);
-    if (!(options_.encounter_correlation_s > 0)) return fresh;
-    const double rho = std::exp(-options_.dt_s / options_.encounter_correlation_s);
-    const auto [error, is_first] = encounter_error_.try_emplace(v, fresh.log());
-    if (!is_first) error->second = rho * error->second + std::sqrt(1 - rho * rho) * fresh.log();
-    return SE3::exp(error->second);
-  }
-
   Options options_;
   RandomPoses random_;
-  std::map<std::size_t, Vector6d> encounter_error_;
   std::map<std::size_t, std::vector<ObjectObservation>> backlog_;
 };
 
@@ -121,7 +110,8 @@ struct DriveResult {
   SolverCounters counters;
 };
 
-inline DriveResult runDrive(Backend& backend, SimulatedDrive& drive) {
+template <class Drive>
+DriveResult runDrive(Backend& backend, Drive& drive) {
   DriveResult result;
   for (int i = 0; i < drive.options().frames; ++i) {
     const auto estimates = backend(drive.measure(i));
@@ -147,6 +137,23 @@ inline double objectError_m(const std::vector<FrameEstimate>& estimates, const S
       ++count;
     }
   return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+/// Error of the objects' published steps from frame to frame, RMS [m].
+inline double stepError_m(const std::vector<FrameEstimate>& estimates, const SimulatedDrive& drive) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 1; i < estimates.size(); ++i)
+    for (const auto& before : estimates[i - 1].objects)
+      for (const auto& now : estimates[i].objects) {
+        if (now.track != before.track) continue;
+        const std::size_t vehicle = now.track.value - 100;
+        const int frame = static_cast<int>(i);
+        const SE3 truth = drive.object(vehicle, frame - 1).inverse() * drive.object(vehicle, frame);
+        sum += (truth.inverse() * before.T_world_body.inverse() * now.T_world_body).translation().squaredNorm();
+        ++count;
+      }
+  return std::sqrt(sum / count);
 }
 
 }  // namespace motorcade::test

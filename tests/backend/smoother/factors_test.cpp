@@ -89,18 +89,6 @@ TEST(SmoothMotionNoise, GrowsWithTheTimeBetweenFrames) {
   EXPECT_NEAR(1 / short_step.sqrt_information(5, 5), 0.3 * std::sqrt(0.1), 1e-12);
 }
 
-TEST(CorrelatedSeriesInflation, IsThatOfTheMeanOfALongSeries) {
-  constexpr double kDt_s = 0.1, kTime_s = 0.5;
-  constexpr int kLength = 4000;
-  double variance = 1.0 / kLength;  // of the mean of a series of variance 1: the sum of all its correlations
-  for (int lag = 1; lag < kLength; ++lag)
-    variance += 2.0 * (kLength - lag) * std::exp(-lag * kDt_s / kTime_s) / kLength / kLength;
-  constexpr double kEnds = 0.05;  // the ends of the series count for less
-  EXPECT_NEAR(kLength * variance, correlatedSeriesInflation(kDt_s, kTime_s), kEnds);
-  EXPECT_EQ(correlatedSeriesInflation(kDt_s, 0), 1);
-  EXPECT_NEAR(correlatedSeriesInflation(100 * kTime_s, kTime_s), 1, 1e-12);
-}
-
 TEST(EncounterResiduals, VanishAtTheMeasuredPoses) {
   RandomPoses random(6);
   const auto p = randomPoses<4>(random);

@@ -1,0 +1,26 @@
+#include "backend/filter/filter_estimates.hpp"
+
+namespace motorcade {
+
+FrameEstimate cameraEstimate(const FrameMeasurements& measurements, const CameraPath& path) {
+  const FrameId frame = measurements.frame;
+  return {.frame = frame,
+          .stamp = measurements.stamp,
+          .status = measurements.status,
+          .T_world_cam = path.find(frame)->T_world_cam,
+          .camera_covariance = path.covarianceSince(FrameId{frame.value - kCameraCovarianceFrames}, frame),
+          .objects = {}};
+}
+
+ObjectEstimate objectEstimate(const ObjectObservation& observation, const ObjectFilter& filter) {
+  return {.track = observation.track,
+          .state = observation.state,
+          .T_world_body = filter.pose(),
+          .velocity_world_mps = filter.velocityWorld_mps(),
+          .speed_sigma_mps = filter.speedSigma_mps(),
+          .points = observation.points,
+          .box = observation.box,
+          .covariance = filter.poseCovariance()};
+}
+
+}  // namespace motorcade

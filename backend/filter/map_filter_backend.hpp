@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+
+#include "backend/backend.hpp"
+#include "backend/filter/object_filter.hpp"
+
+namespace motorcade {
+
+/// Odometry is chained, and every object has a constant-velocity extended Kalman filter of its own (pose and body
+/// twist) on the front-end's poses, which come from a map of the object's points averaged over frames: more than the
+/// paper's baseline has. Frames are final as soon as they are published.
+class MapFilterBackend final : public Backend {
+ public:
+  using Params = ObjectFilter::Params;
+
+  explicit MapFilterBackend(const Params& params);
+  ~MapFilterBackend() override;
+
+  EstimatesPtr operator()(const FrameMeasurementsPtr& measurements) override;
+  std::vector<FrameEstimate> finish() override;
+
+  /// Mean normalized innovation squared per dimension, over all objects so far: 1 when the noise is well tuned.
+  double meanNormalizedInnovation() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "core/messages.hpp"
+
+namespace motorcade {
+
+/// The camera's path as odometry tells it, frame by frame: of the last frames, enough for observations from before an
+/// object's confirmation.
+class CameraPath {
+ public:
+  struct Camera {
+    Timestamp stamp;
+    SE3 T_world_cam, T_previous_now;
+    Matrix6d odometry_covariance;
+  };
+
+  /// Call in frame order. A motion that is no number is taken as standing still.
+  void add(const FrameMeasurements& measurements);
+  /// Null for a frame that is gone or was never added.
+  const Camera* find(FrameId frame) const;
+  /// Covariance of T_cam(since)_cam(now) by right perturbation, the steps taken as independent; empty when the path
+  /// does not reach so far back.
+  std::optional<Matrix6d> covarianceSince(FrameId since, FrameId now) const;
+
+ private:
+  std::map<FrameId, Camera> cameras_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/stereo_camera.hpp"
+#include "tests/backend/simulated_drive.hpp"
+#include "tests/support/noise.hpp"
+
+namespace motorcade::test {
+
+inline const StereoCamera kPointRig{720, 720, 620, 188, 0.54, 1242, 375};
+
+/// A simulated drive whose objects come as points with noise, in place of poses: a point is seen for some frames and
+/// then replaced by another one. Only where a body's frame lies at first is told.
+class PointDrive {
+ public:
+  struct Options {
+    int points = 40;       // of each object
+    int life_frames = 15;  // of a point
+    double sigma_px = 0.25;
+    SimulatedDrive::Options drive;
+  };
+  PointDrive(std::uint64_t seed, const Options& options)
+      : drive_(seed, options.drive), noise_(seed), points_(options) {}
+
+  const SimulatedDrive::Options& options() const { return drive_.options(); }
+  const SimulatedDrive& truth() const { return drive_; }
+
+  FrameMeasurementsPtr measure(int frame) {
+    FrameMeasurements m = *drive_.measure(frame);
+    for (ObjectObservation& seen : m.objects) {
+      const auto vehicle = static_cast<std::size_t>(seen.track.value - 100);
+      const int at = static_cast<int>(seen.frame.value);
+      seen.T_cam_body = drive_.camera(at).inverse() * drive_.object(vehicle, at);
+      seen.motion.reset();
+      look(seen, vehicle, at);
+    }
+    return std::make_shared<const FrameMeasurements>(std::move(m));
+  }
+
+ private:
+  void look(ObjectObservation& seen, std::size_t vehicle, int frame) {
+    for (int k = 0; k < points_.points; ++k) {
+      const int generation = (frame + k) / points_.life_frames;
+      const std::int64_t id = (static_cast<std::int64_t>(vehicle) * 1000 + generation) * points_.points + k;
+      Noise shape(static_cast<std::uint64_t>(id));
+      const auto uvd = kPointRig.project(seen.T_cam_body * shape.inBox({-2, -0.9, 0}, {2, 0.9, 1.5}));
+      if (!uvd) continue;
+      const Eigen::Vector3d sigma_px = Eigen::Vector3d::Constant(points_.sigma_px);
+      const Eigen::Vector3d seen_px = *uvd + noise_.gaussian(sigma_px);
+      seen.measured.push_back({{id}, seen_px.cast<float>(), sigma_px.cast<float>()});
+    }
+    std::ranges::sort(seen.measured, {}, &PointMeasurement::point);
+  }
+
+  SimulatedDrive drive_;
+  Noise noise_;
+  Options points_;
+};
+
+}  // namespace motorcade::test
