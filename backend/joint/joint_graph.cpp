@@ -61,19 +61,29 @@ JointGraph::JointGraph(const JointParams& params, const StereoCamera& camera)
   holdOffset();
 }
 
+/// The camera first: objects are predicted, and their motion is told from the camera's, by where it was then found.
 void JointGraph::add(const FrameMeasurements& measurements) {
   problems_.clear();
   addCamera(measurements);
-  if (params_.use_objects)
-    for (const ObjectObservation& seen : measurements.objects)
-      if (frames_.contains(seen.frame) && isFinite(seen.T_cam_body)) addObservation(seen);
   addPoints(world_, nullptr);
+  dropTroubled(solver_.update());
+  addObjects(measurements);
+  calibrate();
+}
+
+void JointGraph::addObjects(const FrameMeasurements& measurements) {
+  if (!params_.use_objects) return;
+  for (const ObjectObservation& seen : measurements.objects)
+    if (frames_.contains(seen.frame) && isFinite(seen.T_cam_body)) addObservation(seen);
   for (const TrackId id : measurements.ended)
     if (const auto it = objects_.find(id); it != objects_.end())
       it->second.points.points.observe(measurements.frame, {});
-  for (auto& [id, object] : objects_) addPoints(object.points, &object);
+  if (objects_.empty()) return;
+  for (auto& [id, object] : objects_) {
+    settleMotion(object, measurements.frame);
+    addPoints(object.points, &object);
+  }
   dropTroubled(solver_.update());
-  calibrate();
 }
 
 void JointGraph::addCamera(const FrameMeasurements& m) {
@@ -146,17 +156,38 @@ void JointGraph::continueObject(JointObject& object, const JointRecord& before, 
   const double dt_s = secondsBetween(before.stamp, record.stamp);
   const SmallVector twist = std::get<SmallVector>(solver_.estimate(before.w));
   const Vector6d step = dt_s * twist;
-  const JointCamera &camera_before = frames_.at(before.seen.frame), &camera = frames_.at(record.seen.frame);
-  const SE3 u = solver_.pose(camera_before.x).inverse() * solver_.pose(camera.x);
+  const SE3 u = cameraMotion(before, record);
   record.c = solver_.addVariable((u.inverse() * solver_.pose(before.c) * SE3::exp(step)).normalized());
   record.w = solver_.addVariable(twist);
-  ConstantTwistFactor::Variables variables{
-      .c_a = before.c, .w_a = before.w, .c_b = record.c, .w_b = record.w, .x_a = {}, .x_b = {}};
-  if (camera.weak) variables.x_a = camera_before.x, variables.x_b = camera.x;
-  const Vector6d density = (params_.use_smoothness ? 1.0 : kFreeMotion) * params_.acceleration.density();
-  solver_.addFactor(std::make_unique<ConstantTwistFactor>(variables, u, dt_s, density));
+  addMotion(before, record);
   if (params_.use_smoothness)
     solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.lever, params_.rolling));
+}
+
+SE3 JointGraph::cameraMotion(const JointRecord& before, const JointRecord& now) const {
+  return solver_.pose(frames_.at(before.seen.frame).x).inverse() * solver_.pose(frames_.at(now.seen.frame).x);
+}
+
+/// Where the points at rest tell how the camera moved, they tell it a thousand times as well as an object could, whose
+/// acceleration is unknown: the camera's motion enters as known, and objects remain independent of each other.
+void JointGraph::addMotion(const JointRecord& before, JointRecord& now) {
+  ConstantTwistFactor::Variables variables{
+      .c_a = before.c, .w_a = before.w, .c_b = now.c, .w_b = now.w, .x_a = {}, .x_b = {}};
+  const JointCamera& camera = frames_.at(now.seen.frame);
+  if (camera.weak) variables.x_a = frames_.at(before.seen.frame).x, variables.x_b = camera.x;
+  const Vector6d density = (params_.use_smoothness ? 1.0 : kFreeMotion) * params_.acceleration.density();
+  now.motion = solver_.addFactor(std::make_unique<ConstantTwistFactor>(
+      variables, cameraMotion(before, now), secondsBetween(before.stamp, now.stamp), density));
+}
+
+/// The camera's motion is known better when its window has passed: an object's motion then is told from it anew.
+void JointGraph::settleMotion(JointObject& object, FrameId newest) {
+  const auto now = object.records.find(FrameId{newest.value - params_.track_frames});
+  if (now == object.records.end() || now == object.records.begin() || !now->second.motion) return;
+  const JointRecord& before = std::prev(now)->second;
+  if (!before.c.valid() || !now->second.c.valid() || !frames_.contains(before.seen.frame)) return;
+  solver_.removeFactor(*now->second.motion);
+  addMotion(before, now->second);
 }
 
 void JointGraph::addPrior(VariableId v, const SE3& mean, const Vector6d& sigma) {
@@ -229,7 +260,7 @@ void JointGraph::dropTroubled(const IncrementalSolver::Report& report) {
       object.lever = {};
       object.points.current.reset();
       object.points.closed.clear();
-      for (auto& [frame, record] : object.records) record.c = record.w = {};
+      for (auto& [frame, record] : object.records) record.c = record.w = {}, record.motion.reset();
     }
   }
 }
@@ -245,6 +276,7 @@ void JointGraph::retireOldest() {
       record->second.frozen = objectPose(object, oldest);
       if (record->second.c.valid()) retired.insert(retired.end(), {record->second.c, record->second.w});
       record->second.c = record->second.w = {};
+      if (const auto next = std::next(record); next != object.records.end()) next->second.motion.reset();
     }
     const bool over = object.records.empty() || object.records.rbegin()->first <= oldest;
     if (over && object.lever.valid()) retired.push_back(object.lever);

@@ -28,8 +28,9 @@ struct JointCamera {
 struct JointRecord {
   ObjectObservation seen;  // without the points
   Timestamp stamp;
-  VariableId c, w;            // T_cam_body and twist; invalid when the frame's pose is not in the graph
-  std::optional<SE3> frozen;  // T_world_body when the pose has left the window
+  VariableId c, w;                 // T_cam_body and twist; invalid when the frame's pose is not in the graph
+  std::optional<FactorId> motion;  // since the record before
+  std::optional<SE3> frozen;       // T_world_body when the pose has left the window
   std::optional<Matrix6d> covariance;
   std::optional<double> speed_sigma_mps;
 };
@@ -94,6 +95,10 @@ class JointGraph {
   void addCamera(const FrameMeasurements& measurements);
   void addOdometry(const FrameMeasurements& measurements, VariableId before, VariableId now);
   void addObservation(const ObjectObservation& seen);
+  void addObjects(const FrameMeasurements& measurements);
+  SE3 cameraMotion(const JointRecord& before, const JointRecord& now) const;
+  void addMotion(const JointRecord& before, JointRecord& now);
+  void settleMotion(JointObject& object, FrameId newest);
   void beginObject(JointObject& object, JointRecord& record);
   void continueObject(JointObject& object, const JointRecord& before, JointRecord& record);
   void addPoints(JointPoints& body, const JointObject* object);

@@ -21,6 +21,8 @@ class PointDrive {
     int points = 40;       // of each object
     int life_frames = 15;  // of a point
     double sigma_px = 0.25;
+    int static_points = 0;  // points at rest, replaced likewise
+    double offset_px = 0;   // true minus measured disparity
     SimulatedDrive::Options drive;
   };
   PointDrive(std::uint64_t seed, const Options& options)
@@ -38,10 +40,31 @@ class PointDrive {
       seen.motion.reset();
       look(seen, vehicle, at);
     }
+    lookAround(m, frame);
     return std::make_shared<const FrameMeasurements>(std::move(m));
   }
 
  private:
+  /// Points at rest around where the camera was when they were seen first.
+  void lookAround(FrameMeasurements& m, int frame) {
+    for (int k = 0; k < points_.static_points; ++k) {
+      const int generation = (frame + k) / points_.life_frames;
+      const std::int64_t id = 1'000'000 + static_cast<std::int64_t>(generation) * points_.static_points + k;
+      Noise place(static_cast<std::uint64_t>(id));
+      const SE3 T_world_then = drive_.camera(std::max(0, generation * points_.life_frames - k));
+      const Eigen::Vector3d p_world = T_world_then * place.inBox({-15, -3, 20}, {15, 1.6, 70});
+      if (const auto uvd = kPointRig.project(drive_.camera(frame).inverse() * p_world))
+        m.at_rest.push_back(see({id}, *uvd));
+    }
+    std::ranges::sort(m.at_rest, {}, &PointMeasurement::point);
+  }
+
+  PointMeasurement see(PointId id, const Eigen::Vector3d& uvd_px) {
+    const Eigen::Vector3d sigma_px = Eigen::Vector3d::Constant(points_.sigma_px);
+    const Eigen::Vector3d seen_px = uvd_px - Eigen::Vector3d(0, 0, points_.offset_px) + noise_.gaussian(sigma_px);
+    return {id, seen_px.cast<float>(), sigma_px.cast<float>()};
+  }
+
   void look(ObjectObservation& seen, std::size_t vehicle, int frame) {
     for (int k = 0; k < points_.points; ++k) {
       const int generation = (frame + k) / points_.life_frames;
@@ -49,9 +72,7 @@ class PointDrive {
       Noise shape(static_cast<std::uint64_t>(id));
       const auto uvd = kPointRig.project(seen.T_cam_body * shape.inBox({-2, -0.9, 0}, {2, 0.9, 1.5}));
       if (!uvd) continue;
-      const Eigen::Vector3d sigma_px = Eigen::Vector3d::Constant(points_.sigma_px);
-      const Eigen::Vector3d seen_px = *uvd + noise_.gaussian(sigma_px);
-      seen.measured.push_back({{id}, seen_px.cast<float>(), sigma_px.cast<float>()});
+      seen.measured.push_back(see({id}, *uvd));
     }
     std::ranges::sort(seen.measured, {}, &PointMeasurement::point);
   }

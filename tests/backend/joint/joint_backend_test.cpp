@@ -1,0 +1,152 @@
+#include "backend/joint/joint_backend.hpp"
+
+#include <algorithm>
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+#include "backend/filter/filter_backend.hpp"
+#include "backend/smoother/pose_graph_backend.hpp"
+#include "tests/backend/point_drive.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::kPointRig;
+using test::PointDrive;
+
+const PointDrive::Options kStreet{.static_points = 150,
+                                  .drive = {.odometry_sigma_m = 0.02, .odometry_sigma_rad = 0.001}};
+
+/// Mean distance of the camera from where it was.
+double cameraError_m(const std::vector<FrameEstimate>& finals, const test::SimulatedDrive& truth) {
+  double sum = 0;
+  for (const FrameEstimate& f : finals)
+    sum += (f.T_world_cam.translation() - truth.camera(static_cast<int>(f.frame.value)).translation()).norm();
+  return sum / static_cast<double>(finals.size());
+}
+
+struct Errors {
+  double camera_m = 0, position_m = 0, step_m = 0;
+};
+
+template <class Make>
+Errors errorsOf(const Make& make, const PointDrive::Options& options) {
+  constexpr int kSeeds = 3;
+  Errors errors;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    PointDrive drive(seed, options);
+    const auto backend = make();
+    const auto finals = test::runDrive(*backend, drive).finals;
+    errors.camera_m += cameraError_m(finals, drive.truth()) / kSeeds;
+    errors.position_m += test::objectError_m(finals, drive.truth()) / kSeeds;
+    errors.step_m += test::stepError_m(finals, drive.truth()) / kSeeds;
+  }
+  std::cout << "camera " << errors.camera_m << " m, position " << errors.position_m << " m, step " << errors.step_m
+            << " m\n";
+  return errors;
+}
+
+Errors errorsOf(const JointParams& params, const PointDrive::Options& options = kStreet) {
+  return errorsOf([&] { return std::make_unique<JointBackend>(params, kPointRig); }, options);
+}
+
+TEST(JointBackend, IsBetterThanBothBaselines) {
+  const Errors joint = errorsOf(JointParams{});
+  const Errors graph =
+      errorsOf([] { return std::make_unique<PoseGraphBackend>(PoseGraphBackend::Params{}, kPointRig); }, kStreet);
+  const Errors filter =
+      errorsOf([] { return std::make_unique<FilterBackend>(FilterBackend::Params{}, kPointRig); }, kStreet);
+  EXPECT_LT(joint.camera_m, 0.5 * graph.camera_m);
+  EXPECT_LT(joint.position_m, 0.65 * filter.position_m);
+  EXPECT_LT(joint.position_m, graph.position_m);
+  EXPECT_LT(joint.step_m, filter.step_m);
+}
+
+TEST(JointBackend, KnowledgeOfHowVehiclesMoveHelps) {
+  JointParams rough;
+  rough.use_smoothness = false;
+  EXPECT_LT(errorsOf(JointParams{}).step_m, 0.8 * errorsOf(rough).step_m);
+}
+
+TEST(JointBackend, LongerTracksHelp) {
+  JointParams brief;
+  brief.track_frames = 3;
+  EXPECT_LT(errorsOf(JointParams{}).camera_m, 0.9 * errorsOf(brief).camera_m);
+}
+
+TEST(JointBackend, WithoutPointsTheCameraFollowsTheOdometry) {
+  PointDrive drive(1, {.points = 0, .drive = {.odometry_sigma_m = 0.01, .odometry_sigma_rad = 0.0005}});
+  JointBackend backend(JointParams{}, kPointRig);
+  const auto finals = test::runDrive(backend, drive).finals;
+  ASSERT_EQ(finals.size(), 60U);
+  EXPECT_LT(cameraError_m(finals, drive.truth()), 1.0);
+}
+
+class JointBackendOffset : public testing::TestWithParam<double> {};
+
+TEST_P(JointBackendOffset, ComesOut) {
+  PointDrive::Options options = kStreet;
+  options.offset_px = GetParam();
+  PointDrive drive(3, options);
+  JointBackend backend(JointParams{}, kPointRig);
+  double offset_px = 0;
+  for (int frame = 0; frame < 50; ++frame) offset_px = backend(drive.measure(frame))->counters.disparity_offset_px;
+  EXPECT_NEAR(offset_px, GetParam(), GetParam() == 0 ? 0.02 : 0.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rigs, JointBackendOffset, testing::Values(0.0, 1.2, -0.6));
+
+TEST(JointBackend, TrustsARigWhenToldTo) {
+  PointDrive::Options options = kStreet;
+  options.offset_px = 1.2;
+  JointParams trusting;
+  trusting.offset_sigma_px = 0;
+  EXPECT_LT(errorsOf(JointParams{}, options).camera_m, 0.5 * errorsOf(trusting, options).camera_m);
+}
+
+/// What leaves the window is as good as a batch solution over the whole drive makes it.
+TEST(JointBackend, FinalsOfAShortWindowAreThoseOfABatchSolution) {
+  PointDrive once(4, kStreet), again(4, kStreet);
+  JointParams sliding, batch;
+  sliding.window_frames = 30;
+  sliding.final_iterations = 0;
+  batch.window_frames = 0;
+  batch.final_iterations = 20;
+  JointBackend one(sliding, kPointRig), other(batch, kPointRig);
+  const auto finals = test::runDrive(one, once).finals, best = test::runDrive(other, again).finals;
+  ASSERT_EQ(finals.size(), best.size());
+  for (std::size_t i = 1; i < finals.size(); ++i) {
+    const SE3 step = finals[i - 1].T_world_cam.inverse() * finals[i].T_world_cam;
+    const SE3 best_step = best[i - 1].T_world_cam.inverse() * best[i].T_world_cam;
+    EXPECT_LT((step.translation() - best_step.translation()).norm(), 0.002) << i;
+  }
+  EXPECT_NEAR(test::objectError_m(finals, once.truth()), test::objectError_m(best, again.truth()), 0.02);
+}
+
+/// Normalized errors of the camera's motion over ten frames: six where the covariances are right, less where the noise
+/// that they allow for (an error that all disparities of a landmark share) is not there.
+TEST(JointBackend, CovariancesOfTheCameraAreOfTheSizeOfItsErrors) {
+  double nees = 0;
+  int count = 0;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    PointDrive drive(seed, kStreet);
+    JointBackend backend(JointParams{}, kPointRig);
+    const auto finals = test::runDrive(backend, drive).finals;
+    for (std::size_t k = 19; k < finals.size(); k += 10) {
+      const int now = static_cast<int>(k), then = now - kCameraCovarianceFrames;
+      const SE3 truth = drive.truth().camera(then).inverse() * drive.truth().camera(now);
+      const SE3 motion = finals[then].T_world_cam.inverse() * finals[now].T_world_cam;
+      const Vector6d error = (truth.inverse() * motion).log();
+      ASSERT_TRUE(finals[now].camera_covariance);
+      nees += error.dot(finals[now].camera_covariance->llt().solve(error));
+      ++count;
+    }
+  }
+  std::cout << "mean normalized error " << nees / count << " of " << count << "\n";
+  EXPECT_GT(nees / count, 1.5);
+  EXPECT_LT(nees / count, 9);
+}
+
+}  // namespace
+}  // namespace motorcade

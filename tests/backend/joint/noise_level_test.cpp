@@ -1,0 +1,43 @@
+#include "backend/joint/noise_level.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/robust_loss.hpp"
+#include "tests/support/noise.hpp"
+
+namespace motorcade {
+namespace {
+
+/// Residuals of Gaussian noise that is `truth` times what the front-end claims, weighted as a landmark's by a level.
+ResidualLevels levelsOf(double truth, const NoiseLevel& level, test::Noise& noise) {
+  const LandmarkNoise landmark;
+  ResidualLevels levels;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d r = truth * Eigen::Vector3d(noise.gaussian() / level.uv(), noise.gaussian() / level.uv(),
+                                                      noise.gaussian() / level.d());
+    const double weight = robustWeight(landmark.loss, r.norm(), landmark.loss_scale);
+    levels.uv_sum += weight * r.head<2>().squaredNorm();
+    levels.d_sum += weight * r.z() * r.z();
+    levels.uv_count += 2;
+    levels.d_count += 1;
+  }
+  return levels;
+}
+
+TEST(NoiseLevel, FindsTheNoise) {
+  for (const double truth : {0.5, 1.0, 2.0}) {
+    test::Noise noise(1);
+    NoiseLevel level;
+    for (int i = 0; i < 40; ++i) level.learn(levelsOf(truth, level, noise));
+    EXPECT_NEAR(level.uv(), truth, 0.06 * truth);
+    EXPECT_NEAR(level.d(), truth, 0.06 * truth);
+  }
+}
+
+TEST(NoiseLevel, BeginsAsClaimed) {
+  EXPECT_DOUBLE_EQ(NoiseLevel{}.uv(), 1);
+  EXPECT_DOUBLE_EQ(NoiseLevel{}.d(), 1);
+}
+
+}  // namespace
+}  // namespace motorcade
