@@ -72,7 +72,6 @@ void JointGraph::add(const FrameMeasurements& measurements) {
 }
 
 void JointGraph::addObjects(const FrameMeasurements& measurements) {
-  if (!params_.use_objects) return;
   for (const ObjectObservation& seen : measurements.objects)
     if (frames_.contains(seen.frame) && isFinite(seen.T_cam_body)) addObservation(seen);
   for (const TrackId id : measurements.ended)

@@ -23,7 +23,7 @@ struct JointParams {
   LandmarkNoise object_noise{.shared_disparity_sigma_px = 0.2};
   double offset_sigma_px = 1.0;  // prior of the disparity offset of a rig that is found to be off; 0 trusts every rig
 
-  bool use_objects = true, use_smoothness = true;
+  bool use_smoothness = true;
 
   double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
   /// Gauge of an object: its frame at birth. The axes may turn a little, until they lie along the travel.

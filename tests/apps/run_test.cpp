@@ -146,7 +146,10 @@ TEST_F(Run, TakesAnotherCameraPathWhereTheBackendUsesOne) {
 }
 
 TEST_F(Run, ReordersAndRelinearizesEveryNUpdates) {
-  ASSERT_EQ(run("every", "--set backend.relinearization=every --set backend.relinearize_every_updates=3"), 0)
+  ASSERT_EQ(run("every",
+                "--set backend.kind=pose_graph --set backend.relinearization=every "
+                "--set backend.relinearize_every_updates=3"),
+            0)
       << contentOf(errors());
   EXPECT_GT(summary("every")["solver"]["relinearizations"], 0);
   EXPECT_GT(summary("every")["solver"]["reorderings"], 0);
@@ -260,11 +263,11 @@ TEST_F(RealRun, WritesTheSameBytesForEveryNumberOfThreads) {
 }
 
 TEST_F(RealRun, ChangesTheObjectsWhenAKindOfFactorIsSwitchedOff) {
-  ASSERT_EQ(run("all", "--frames 0:40", drive_), 0) << contentOf(errors());
+  const std::string graph = "--frames 0:40 --set backend.kind=pose_graph ";
+  ASSERT_EQ(run("all", graph, drive_), 0) << contentOf(errors());
   const std::string objects = contentOf(out("all") / "objects_final.csv");
   for (const std::string kind : {"motion", "smoothness", "camera_encounter", "object_encounter"}) {
-    ASSERT_EQ(run(kind, "--frames 0:40 --set backend.factors.use_" + kind + "=false", drive_), 0)
-        << contentOf(errors());
+    ASSERT_EQ(run(kind, graph + "--set backend.factors.use_" + kind + "=false", drive_), 0) << contentOf(errors());
     EXPECT_FALSE(contentOf(out(kind) / "objects_final.csv") == objects) << kind;
   }
 }
