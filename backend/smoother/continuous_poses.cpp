@@ -9,8 +9,8 @@ void ContinuousPoses::operator()(FrameEstimate& online, const EarlierPose& earli
   std::map<TrackId, Published> published;
   for (ObjectEstimate& object : online.objects) {
     const auto last = last_.find(object.track);
-    const auto then = last == last_.end() || !(correction_s_ > 0) ? std::nullopt
-                                                                  : earlier(object.track, last->second.frame);
+    const auto then =
+        last == last_.end() || !(correction_s_ > 0) ? std::nullopt : earlier(object.track, last->second.frame);
     if (then) {
       const SE3 predicted = object.T_world_body * then->inverse() * last->second.T_world_body;
       const double share = 1 - std::exp(-secondsBetween(last->second.stamp, online.stamp) / correction_s_);
