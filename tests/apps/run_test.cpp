@@ -267,6 +267,7 @@ TEST_F(RealRun, ChangesTheObjectsWhenAKindOfFactorIsSwitchedOff) {
   ASSERT_EQ(run("all", graph, drive_), 0) << contentOf(errors());
   const std::string objects = contentOf(out("all") / "objects_final.csv");
   for (const std::string kind : {"motion", "smoothness", "camera_encounter", "object_encounter"}) {
+    // NOLINTNEXTLINE(performance-inefficient-string-concatenation): four times in a test
     ASSERT_EQ(run(kind, graph + "--set backend.factors.use_" + kind + "=false", drive_), 0) << contentOf(errors());
     EXPECT_FALSE(contentOf(out(kind) / "objects_final.csv") == objects) << kind;
   }

@@ -96,6 +96,7 @@ TEST(Architecture, IncludesFollowTheArrowsBetweenRooms) {
     std::vector<std::string> against;
     forEachInclude(folder, [&, &folder = folder](const std::string& file, const std::string& included) {
       if (included.starts_with(folder + "/") && !roomsBelow(folder, roomOf(file)).contains(roomOf(included)))
+        // NOLINTNEXTLINE(performance-inefficient-string-concatenation): in a test
         against.push_back(file + " includes " + included);
     });
     EXPECT_THAT(against, IsEmpty());
@@ -107,6 +108,7 @@ TEST(Architecture, EveryFolderInsideAFolderIsARoom) {
     for (const auto& entry : fs::directory_iterator(fs::path(MOTORCADE_SOURCE_DIR) / folder)) {
       const std::string room = entry.path().filename().string();
       if (!entry.is_directory()) continue;
+      // NOLINTNEXTLINE(performance-inefficient-string-concatenation): in a test
       EXPECT_TRUE(kSideRooms.contains(folder + "/" + room) || std::ranges::find(rooms, room) != rooms.end()) << room;
     }
   }

@@ -4,12 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/matchers.hpp"
-
 namespace motorcade {
 namespace {
-
-using test::IsNear;
 
 const StereoCamera kCamera{
     .fx_px = 720, .fy_px = 720, .cx_px = 620, .cy_px = 188, .baseline_m = 0.54, .width_px = 1242, .height_px = 376};
