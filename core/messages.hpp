@@ -84,8 +84,9 @@ struct FrameMeasurements {
   /// status is kGood.
   SE3 T_previous_now;
   Matrix6d odometry_covariance = Matrix6d::Identity();
-  /// Points at rest, ordered by point: none of an object's.
-  std::vector<PointMeasurement> at_rest;
+  /// Points at rest, and those of which it is not known yet to what they belong; both ordered by point, and none of an
+  /// object's.
+  std::vector<PointMeasurement> at_rest, undecided;
   /// True minus measured disparity, as the front-end assumes it.
   double disparity_offset_px = 0;
   /// Objects of this frame. An object that was confirmed now brings its earlier observations along, oldest first,

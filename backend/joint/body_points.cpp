@@ -11,15 +11,19 @@ constexpr int kColumns = 8, kRows = 4;  // of the grid over the image in which l
 
 }  // namespace
 
-void BodyPoints::observe(FrameId frame, std::span<const PointMeasurement> points) {
+bool isLost(const LandmarkTrack::View& newest, FrameId now) { return now.value - newest.frame.value > kMaxGap_frames; }
+
+void BodyPoints::observe(FrameId frame, std::span<const PointMeasurement> points, const EarlierViews& earlier) {
   newest_ = frame;
   for (const PointMeasurement& p : points) {
     if (params_.half > 0 && p.point.value % 2 != params_.half % 2) continue;
-    Candidate& candidate = candidates_[p.point];
+    const auto [at, is_new] = candidates_.try_emplace(p.point);
+    Candidate& candidate = at->second;
     LandmarkTrack& track = candidate.track;
-    track.point = p.point;
+    if (is_new) track.point = p.point;
+    if (is_new && earlier) track.views = earlier(p.point);
     track.views.push_back({frame, p.uvd_px, p.sigma_px});
-    if (static_cast<int>(track.views.size()) <= params_.window_frames) continue;
+    if (static_cast<int>(track.views.size()) <= params_.max_views) continue;
     if (candidate.chosen) {
       const LandmarkTrack::View newest = track.views.back();
       track.views.pop_back();
@@ -30,7 +34,7 @@ void BodyPoints::observe(FrameId frame, std::span<const PointMeasurement> points
     }
   }
   for (auto it = candidates_.begin(); it != candidates_.end();) {
-    const bool lost = frame.value - it->second.track.views.back().frame.value > kMaxGap_frames;
+    const bool lost = isLost(it->second.track.views.back(), frame);
     if (lost && it->second.chosen) end(it->second);
     it = lost ? candidates_.erase(it) : std::next(it);
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <deque>
+#include <functional>
 #include <map>
 #include <span>
 #include <vector>
@@ -19,20 +19,26 @@ struct LandmarkTrack {
   std::vector<View> views;  // oldest first
 };
 
+/// A point that was not seen for so long that its track has ended.
+bool isLost(const LandmarkTrack::View& newest, FrameId now);
+
 /// Chooses the landmarks of a body and cuts their tracks: a track ends when its point is lost or when it has as many
-/// views as the window has frames, and the point's next view begins a new one. Nothing is counted twice.
+/// views as it may have, and the point's next view begins a new one. Nothing is counted twice.
 class BodyPoints {
  public:
   struct Params {
-    int window_frames = 10;   // of a track
+    int max_views = 10;       // of a track
     int max_landmarks = 300;  // followed at a time
     int half = 0;             // 1 and 2 take the points with odd and even ids only
     int image_width_px = 0, image_height_px = 0;
   };
   explicit BodyPoints(const Params& params) : params_(params) {}
 
+  /// Views that a point had before it was known to be the body's, oldest first.
+  using EarlierViews = std::function<std::vector<LandmarkTrack::View>(PointId)>;
+
   /// The body's points in one frame, in frame order, ordered by point.
-  void observe(FrameId frame, std::span<const PointMeasurement> points);
+  void observe(FrameId frame, std::span<const PointMeasurement> points, const EarlierViews& earlier = {});
   /// The points belong to another body: their tracks that have not ended are forgotten.
   void forget(std::span<const PointMeasurement> points);
 

@@ -11,6 +11,7 @@ namespace motorcade {
 namespace {
 
 constexpr double kFreeMotion = 1e6;  // times the accelerations' variance: nothing is known of how objects move
+constexpr int kEarlierViews = 3;     // of a point before its body was known: older ones may be of another
 constexpr int kFewStatic = 20;       // landmarks seen now and before: with fewer the front-end's odometry helps
 
 IncrementalSolver::Params solverParams(const JointParams& params) {
@@ -26,9 +27,9 @@ IncrementalSolver::Params solverParams(const JointParams& params) {
           .budget = {.scalars = params.budget_scalars, .ms = params.budget_ms}};
 }
 
-Vector6d sigmas(double sigma_m, double sigma_rad) {
+Vector6d sigmas(double sigma_m, double tilt_rad, double yaw_rad) {
   Vector6d sigma;
-  sigma << Eigen::Vector3d::Constant(sigma_m), Eigen::Vector3d::Constant(sigma_rad);
+  sigma << Eigen::Vector3d::Constant(sigma_m), tilt_rad, tilt_rad, yaw_rad;
   return sigma;
 }
 
@@ -37,8 +38,9 @@ bool concernsVariable(SolverProblem::Kind kind) {
   return kind != Kind::kNotFinite && kind != Kind::kUnknownVariable && kind != Kind::kRepeatedVariable;
 }
 
-BodyPoints::Params pointParams(const JointParams& params, const StereoCamera& camera, int max_landmarks) {
-  return {.window_frames = params.track_frames,
+BodyPoints::Params pointParams(const JointParams& params, const StereoCamera& camera, int max_views,
+                               int max_landmarks) {
+  return {.max_views = max_views,
           .max_landmarks = max_landmarks,
           .half = params.point_half,
           .image_width_px = camera.width_px,
@@ -51,11 +53,12 @@ JointGraph::JointGraph(const JointParams& params, const StereoCamera& camera)
     : params_(params),
       camera_(camera),
       solver_(solverParams(params)),
-      world_{.points = BodyPoints(pointParams(params, camera, params.max_static_landmarks)),
+      world_{.points = BodyPoints(pointParams(params, camera, params.track_frames, params.max_static_landmarks)),
              .noise = {},
              .ended = {},
              .current = {},
-             .closed = {}} {
+             .closed = {}},
+      undecided_(kEarlierViews) {
   const SmallVector zero = SmallVector::Zero(1);
   offset_ = solver_.addVariable(zero);
   holdOffset();
@@ -68,6 +71,7 @@ void JointGraph::add(const FrameMeasurements& measurements) {
   addPoints(world_, nullptr);
   dropTroubled(solver_.update());
   addObjects(measurements);
+  undecided_.observe(measurements.frame, measurements.undecided);
   calibrate();
 }
 
@@ -91,17 +95,26 @@ void JointGraph::addCamera(const FrameMeasurements& m) {
   if (!first_frame_.valid()) first_frame_ = m.frame;
   if (frames_.empty()) {
     camera.x = solver_.addVariable(SE3{});
-    addPrior(camera.x, SE3{}, sigmas(params_.first_pose_sigma_m, params_.first_pose_sigma_rad));
-    world_.points.observe(m.frame, m.at_rest);
+    addPrior(camera.x, SE3{},
+             sigmas(params_.first_pose_sigma_m, params_.first_pose_sigma_rad, params_.first_pose_sigma_rad));
+    observeAtRest(m);
   } else {
     const VariableId before = frames_.rbegin()->second.x;
     camera.x = solver_.addVariable((solver_.pose(before) * T_previous_now).normalized());
-    world_.points.observe(m.frame, m.at_rest);
+    observeAtRest(m);
     camera.weak = m.status != FrameStatus::kGood || world_.points.seenNow() < kFewStatic;
     if (camera.weak) addOdometry(m, before, camera.x);
   }
   for (const ObjectObservation& seen : m.objects) world_.points.forget(seen.measured);
   frames_.emplace(m.frame, camera);
+}
+
+/// A point that rests from its second view on did so in the first; one that became so later did not.
+void JointGraph::observeAtRest(const FrameMeasurements& m) {
+  world_.points.observe(m.frame, m.at_rest, [&](PointId point) {
+    auto views = undecided_.take(point, m.frame);
+    return views.size() == 1 ? std::move(views) : std::vector<LandmarkTrack::View>{};
+  });
 }
 
 void JointGraph::addOdometry(const FrameMeasurements& m, VariableId before, VariableId now) {
@@ -114,7 +127,8 @@ void JointGraph::addOdometry(const FrameMeasurements& m, VariableId before, Vari
 JointObject& JointGraph::objectOf(TrackId id) {
   const auto it = objects_.find(id);
   if (it != objects_.end()) return it->second;
-  const BodyPoints::Params points = pointParams(params_, camera_, params_.max_object_landmarks);
+  const BodyPoints::Params points =
+      pointParams(params_, camera_, params_.object_track_frames, params_.max_object_landmarks);
   return objects_.emplace(id, JointObject{.lever = {}, .records = {}, .points = {BodyPoints(points), {}, {}, {}, {}}})
       .first->second;
 }
@@ -134,7 +148,8 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
     return;  // nothing to predict from
   else
     beginObject(object, record);
-  object.points.points.observe(seen.frame, seen.measured);
+  object.points.points.observe(seen.frame, seen.measured,
+                               [&](PointId point) { return undecided_.take(point, seen.frame); });
 }
 
 void JointGraph::beginObject(JointObject& object, JointRecord& record) {
@@ -143,8 +158,10 @@ void JointGraph::beginObject(JointObject& object, JointRecord& record) {
   Vector6d twist = Vector6d::Zero();
   twist.head<3>() = T_cam_body.rotation().transpose() * record.seen.velocity_cam_mps;
   record.w = solver_.addVariable(SmallVector(twist));
-  addPrior(record.c, T_cam_body, sigmas(params_.object_origin_sigma_m, params_.object_axes_sigma_rad));
-  addPrior(record.w, twist, sigmas(params_.twist_sigma_mps, params_.twist_sigma_radps));
+  addPrior(record.c, T_cam_body,
+           sigmas(params_.object_origin_sigma_m, params_.object_tilt_sigma_rad, params_.object_yaw_sigma_rad));
+  addPrior(record.w, twist,
+           sigmas(params_.twist_sigma_mps, params_.tilt_rate_sigma_radps, params_.yaw_rate_sigma_radps));
   object.lever = solver_.addVariable(SmallVector(SmallVector::Zero(1)));
   addPrior(object.lever, SmallVector::Zero(1), SmallVector::Constant(1, params_.lever_sigma_m));
   if (params_.use_smoothness)

@@ -10,6 +10,7 @@
 #include "backend/joint/bundle_factor.hpp"
 #include "backend/joint/joint_params.hpp"
 #include "backend/joint/noise_level.hpp"
+#include "backend/joint/undecided_points.hpp"
 #include "backend/solver/incremental_solver.hpp"
 #include "core/messages.hpp"
 
@@ -93,6 +94,7 @@ class JointGraph {
 
  private:
   void addCamera(const FrameMeasurements& measurements);
+  void observeAtRest(const FrameMeasurements& measurements);
   void addOdometry(const FrameMeasurements& measurements, VariableId before, VariableId now);
   void addObservation(const ObjectObservation& seen);
   void addObjects(const FrameMeasurements& measurements);
@@ -129,6 +131,7 @@ class JointGraph {
   double linearized_offset_px_ = 0;
   FrameId first_frame_;
   JointPoints world_;
+  UndecidedPoints undecided_;
   std::map<FrameId, JointCamera> frames_;
   std::map<TrackId, JointObject> objects_;
   std::vector<std::string> problems_;

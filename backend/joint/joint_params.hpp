@@ -11,10 +11,11 @@ namespace motorcade {
 
 /// Parameters of the joint estimate of camera, objects and points.
 struct JointParams {
-  int track_frames = 10;           // views of a landmark, after which its track is cut
-  int max_static_landmarks = 400;  // followed at a time
-  int max_object_landmarks = 60;   // of each object
-  int point_half = 0;              // 1 and 2 use the points with odd and even ids only, to compare both; 0 uses all
+  /// Views of a landmark, after which its track is cut. Vehicles are followed by few points, and each that is followed
+  /// for long keeps the body's frame where it is.
+  int track_frames = 10, object_track_frames = 20;
+  int max_static_landmarks = 400, max_object_landmarks = 30;  // followed at a time, of each object
+  int point_half = 0;  // 1 and 2 use the points with odd and even ids only, to compare both; 0 uses all
 
   /// Texture is matched with about the same bias in each frame: standard deviation of the error that all disparities of
   /// a landmark share. Points at rest are seen at the slanted edges of all kinds of things, those of a vehicle mostly
@@ -27,12 +28,13 @@ struct JointParams {
 
   double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
   /// Gauge of an object: its frame at birth. The axes may turn a little, until they lie along the travel.
-  double object_origin_sigma_m = 1e-3, object_axes_sigma_rad = 0.1;
-  double twist_sigma_mps = 20, twist_sigma_radps = 1;  // of an object's first twist
+  double object_origin_sigma_m = 1e-3, object_yaw_sigma_rad = 0.1, object_tilt_sigma_rad = 0.03;
+  /// Of an object's first twist: a vehicle may be fast, but hardly turns.
+  double twist_sigma_mps = 20, yaw_rate_sigma_radps = 0.2, tilt_rate_sigma_radps = 0.05;
   double lever_sigma_m = 2;
 
   AccelerationNoise acceleration{
-      .along_mps2 = 1.5, .sideways_mps2 = 0.3, .vertical_mps2 = 0.2, .yaw_radps2 = 0.07, .tilt_radps2 = 0.02};
+      .along_mps2 = 0.7, .sideways_mps2 = 0.3, .vertical_mps2 = 0.1, .yaw_radps2 = 0.05, .tilt_radps2 = 0.01};
   RollingNoise rolling;
 
   /// See SmootherParams: one key sets both.

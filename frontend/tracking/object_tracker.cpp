@@ -45,7 +45,7 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   mergeDuplicates(objects_);
   removeEnded(*measurements);
   measurements->disparity_offset_px = scene->disparity_offset_px;
-  measurements->at_rest = pointsAtRest(*scene);
+  addOtherPoints(*scene, *measurements);
   std::ranges::stable_sort(measurements->objects, {}, &ObjectObservation::track);
   previous_scene_ = scene;
   look_back_.remember(scene, T_world_cam_);
@@ -177,16 +177,19 @@ void ObjectTracker::reappear(TrackedObject& object, const Segment& segment) cons
   object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
 }
 
-/// Points that agree with a static world and belong to no object.
-std::vector<PointMeasurement> ObjectTracker::pointsAtRest(const SceneMotion& scene) const {
-  std::vector<PointMeasurement> at_rest;
+/// Points that agree with a static world and belong to no object, and those of which more views must tell.
+void ObjectTracker::addOtherPoints(const SceneMotion& scene, FrameMeasurements& measurements) const {
+  std::vector<PointId> of_objects;
+  for (const ObjectObservation& seen : measurements.objects)
+    if (seen.frame == scene.frame)
+      for (const PointMeasurement& p : seen.measured) of_objects.push_back(p.point);
+  std::ranges::sort(of_objects);
   for (const ScenePoint& p : scene.points) {
-    const bool rests = (p.ego_inlier || p.age == 1) && p.label != PointLabel::kMoving;
-    if (!rests) continue;
-    if (std::ranges::any_of(objects_, [&](const auto& o) { return o.find(p.point) != nullptr; })) continue;
-    at_rest.push_back(measurementOf(p, scene.disparity_offset_px));
+    if (std::ranges::binary_search(of_objects, p.point)) continue;
+    const bool rests = p.ego_inlier && p.label != PointLabel::kMoving &&
+                       std::ranges::none_of(objects_, [&](const auto& o) { return o.find(p.point) != nullptr; });
+    (rests ? measurements.at_rest : measurements.undecided).push_back(measurementOf(p, scene.disparity_offset_px));
   }
-  return at_rest;
 }
 
 void ObjectTracker::removeEnded(FrameMeasurements& measurements) {

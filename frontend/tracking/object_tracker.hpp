@@ -47,7 +47,7 @@ class ObjectTracker {
   void reappear(TrackedObject& object, const Segment& segment) const;
   bool isOutOfReach(const TrackedObject& object) const;
   void removeEnded(FrameMeasurements& measurements);
-  std::vector<PointMeasurement> pointsAtRest(const SceneMotion& scene) const;
+  void addOtherPoints(const SceneMotion& scene, FrameMeasurements& measurements) const;
 
   Params params_;
   StereoCamera camera_;

@@ -6,11 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include "backend/joint/undecided_points.hpp"
+
 namespace motorcade {
 namespace {
 
 constexpr BodyPoints::Params kParams{
-    .window_frames = 5, .max_landmarks = 40, .half = 0, .image_width_px = 800, .image_height_px = 400};
+    .max_views = 5, .max_landmarks = 40, .half = 0, .image_width_px = 800, .image_height_px = 400};
 
 PointMeasurement point(int id, float u_px = 100, float v_px = 100) {
   return {.point = {id}, .uvd_px = {u_px, v_px, 10}, .sigma_px = {0.2F, 0.2F, 0.2F}};
@@ -50,6 +52,24 @@ TEST(BodyPoints, EndsATrackWhosePointIsLost) {
   for (int frame = 3; frame < 8; ++frame) points.observe({frame}, {});
   EXPECT_TRUE(points.current().empty());
   EXPECT_EQ(points.takeEnded().size(), 1U);
+}
+
+TEST(BodyPoints, BringsAlongWhatWasSeenOfNewPointsBefore) {
+  BodyPoints points(kParams);
+  UndecidedPoints undecided(3);
+  for (int frame = 0; frame < 5; ++frame) undecided.observe({frame}, std::vector{point(7), point(8)});
+  points.observe({5}, std::vector{point(7)}, [&](PointId p) { return undecided.take(p, {5}); });
+  ASSERT_EQ(points.current().size(), 1U);
+  EXPECT_EQ(points.current().front()->views.size(), 4U);  // the latest three, and its own
+  EXPECT_TRUE(undecided.take({7}, {6}).empty());
+  EXPECT_EQ(undecided.take({8}, {4}).size(), 2U);  // of frames 2 and 3
+}
+
+TEST(UndecidedPoints, ForgetsPointsThatWereLost) {
+  UndecidedPoints undecided(3);
+  undecided.observe({0}, std::vector{point(7)});
+  for (int frame = 1; frame < 6; ++frame) undecided.observe({frame}, {});
+  EXPECT_TRUE(undecided.take({7}, {6}).empty());
 }
 
 TEST(BodyPoints, SpreadsLandmarksOverTheImage) {

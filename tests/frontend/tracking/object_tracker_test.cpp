@@ -59,6 +59,26 @@ struct Drive {
   }
 };
 
+TEST(ObjectTracker, HandsOverEachPointOnceAndThoseOfAVehicleBeforeItIsKnown) {
+  const Drive drive({{.z_m = 14, .speed_mps = 12}}, 8, 12);
+  std::set<PointId> undecided, of_vehicles;
+  for (const auto& f : drive.frames) {
+    std::set<PointId> seen;
+    const auto areNew = [&](const auto& points) {
+      return std::ranges::all_of(points, [&](const PointMeasurement& p) { return seen.insert(p.point).second; });
+    };
+    EXPECT_TRUE(areNew(f->at_rest));
+    EXPECT_TRUE(areNew(f->undecided));
+    for (const auto& o : f->objects) {
+      EXPECT_TRUE(o.frame != f->frame || areNew(o.measured));
+      for (const auto& p : o.measured) of_vehicles.insert(p.point);
+    }
+    for (const auto& p : f->undecided) undecided.insert(p.point);
+  }
+  ASSERT_FALSE(of_vehicles.empty());
+  EXPECT_TRUE(std::ranges::includes(undecided, of_vehicles));
+}
+
 TEST(ObjectTracker, ALeadCarKeepsOneIdForLife) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const Drive drive({{.x_m = 0.5, .z_m = 14, .speed_mps = 10}}, 10, 40, seed);

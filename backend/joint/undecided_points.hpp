@@ -1,0 +1,28 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "backend/joint/body_points.hpp"
+
+namespace motorcade {
+
+/// The latest views of points of which it is not known yet to what body they belong. Nobody can tell from a point's
+/// first view, and a vehicle's points are known by how they move: their first views would be lost.
+class UndecidedPoints {
+ public:
+  /// Keeps `most_views` of each point.
+  explicit UndecidedPoints(int most_views) : most_views_(most_views) {}
+
+  void observe(FrameId frame, std::span<const PointMeasurement> points);
+  /// The views of a point before `frame`, oldest first, now that its body is known; they are kept no longer.
+  std::vector<LandmarkTrack::View> take(PointId point, FrameId frame);
+
+ private:
+  int most_views_;
+  std::map<PointId, std::deque<LandmarkTrack::View>> views_;
+};
+
+}  // namespace motorcade
