@@ -75,6 +75,27 @@ void addLevels(std::span<const LinearView> linear, ResidualLevels& levels) {
   levels.d_count += static_cast<double>(linear.size() - 1);
 }
 
+/// Residuals added up by half of the image and frame, for ResidualLevels.
+class CommonSums {
+ public:
+  CommonSums(double middle_px, std::size_t frames)
+      : middle_px_(middle_px), sums_(2 * frames, Eigen::Vector3d::Zero()) {}
+
+  void add(std::span<const LandmarkView> views, std::span<const LinearView> linear) {
+    for (std::size_t i = 0; i < views.size(); ++i)
+      sums_[2 * views[i].frame + (views[i].uvd_px.x() > middle_px_ ? 1 : 0)] += linear[i].r;
+  }
+  double squares() const {
+    double squares = 0;
+    for (const Eigen::Vector3d& sum : sums_) squares += sum.squaredNorm();
+    return squares;
+  }
+
+ private:
+  double middle_px_;
+  std::vector<Eigen::Vector3d> sums_;
+};
+
 }  // namespace
 
 EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
@@ -82,11 +103,14 @@ EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const Landmar
   EliminatedLandmarks result{.T_cam_body = std::move(T_cam_body), .offset_px = offset_px, .system = {}, .levels = {}};
   LandmarkFit fit(camera, noise, result.T_cam_body, offset_px);
   LandmarkSum sum(static_cast<int>(result.T_cam_body.size()));
+  CommonSums common(0.5 * camera.width_px, result.T_cam_body.size());
   for (int j = 0; j < landmarks.count(); ++j) {
     if (!fit(landmarks.of(j))) continue;
     sum.add(landmarks.of(j), fit);
     addLevels(fit.views(), result.levels);
+    common.add(landmarks.of(j), fit.views());
   }
+  result.levels.common_sum = common.squares();
   result.system = sum.symmetric();
   return result;
 }

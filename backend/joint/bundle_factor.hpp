@@ -21,6 +21,9 @@ struct LandmarkViews {
 /// claimed.
 struct ResidualLevels {
   double uv_sum = 0, uv_count = 0, d_sum = 0, d_count = 0;
+  /// Sum of the squares of what the residuals in one half of the image and in one frame add up to: as much as the sums
+  /// above where they are independent, and more where they have causes in common, as errors of the rectification are.
+  double common_sum = 0;
 };
 
 /// What image measurements of one body say of the camera's motion around it, its landmarks eliminated (Schur

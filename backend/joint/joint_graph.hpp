@@ -86,6 +86,8 @@ class JointGraph {
   /// Keeps covariances in the records of their frame, in place of those that were kept before.
   void keep(FrameId frame, const JointCovariances& covariances);
   const IncrementalSolver& solver() const { return solver_; }
+  /// See NoiseLevel: of the points at rest.
+  double designEffect() const { return world_.noise.designEffect(); }
   double offset_px() const;
   double offsetSigma_px() const;
 

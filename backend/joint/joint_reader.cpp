@@ -33,7 +33,7 @@ std::optional<Matrix6d> JointReader::cameraCovariance(FrameId frame) const {
   const SE3 T_before_now = graph_.solver().pose(before->second.x).inverse() * graph_.solver().pose(now->second.x);
   Matrix6x12d J;
   J << -T_before_now.inverse().adjoint(), Matrix6d::Identity();
-  return J * *joint * J.transpose();
+  return graph_.designEffect() * J * *joint * J.transpose();
 }
 
 /// Of the pose seen from the camera, which is a variable, and of the speed, the length of the twist's velocity.
@@ -45,9 +45,11 @@ std::optional<JointCovariances::Object> JointReader::objectCovariance(TrackId id
   if (!joint) return std::nullopt;
   const Eigen::Vector3d velocity = std::get<SmallVector>(graph_.solver().estimate(record.w)).head<3>();
   const Eigen::Vector3d direction = velocity.norm() > kStanding_mps ? velocity.normalized() : Eigen::Vector3d::UnitX();
-  const double variance = direction.dot(joint->block<3, 3>(6, 6) * direction);
-  return JointCovariances::Object{
-      .track = id, .T_cam_body = joint->topLeftCorner<6, 6>(), .speed_sigma_mps = std::sqrt(std::max(0.0, variance))};
+  const Eigen::Matrix<double, 12, 12> covariance = graph_.designEffect() * *joint;
+  const double variance = direction.dot(covariance.block<3, 3>(6, 6) * direction);
+  return JointCovariances::Object{.track = id,
+                                  .T_cam_body = covariance.topLeftCorner<6, 6>(),
+                                  .speed_sigma_mps = std::sqrt(std::max(0.0, variance))};
 }
 
 FrameEstimate JointReader::read(FrameId frame) const {

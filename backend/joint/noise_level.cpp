@@ -19,11 +19,20 @@ void NoiseLevel::learn(const ResidualLevels& levels) {
   sums_.uv_count = keep * sums_.uv_count + levels.uv_count;
   sums_.d_sum = keep * sums_.d_sum + d2 * levels.d_sum / kGaussianLevel;
   sums_.d_count = keep * sums_.d_count + levels.d_count;
+  sums_.common_sum = keep * sums_.common_sum + levels.common_sum;
+  residual_sum_ = keep * residual_sum_ + levels.uv_sum + levels.d_sum;
 }
+
+double NoiseLevel::designEffect() const {
+  constexpr double kPrior = 300;  // squared residuals of which nothing is in common
+  return std::max(1.0, (kPrior + sums_.common_sum) / (kPrior + residual_sum_));
+}
+
 double NoiseLevel::uv() const {
   constexpr double kPrior = 100;
   return std::sqrt((kPrior + sums_.uv_sum) / (kPrior + sums_.uv_count));
 }
+
 double NoiseLevel::d() const {
   constexpr double kPrior = 50;
   return std::sqrt((kPrior + sums_.d_sum) / (kPrior + sums_.d_count));

@@ -10,9 +10,13 @@ class NoiseLevel {
   void learn(const ResidualLevels& levels);
   double uv() const;
   double d() const;
+  /// By how much variances grow as residuals have causes in common (design effect of cluster samples: Kish, Survey
+  /// Sampling, 1965); at least 1.
+  double designEffect() const;
 
  private:
   ResidualLevels sums_{};
+  double residual_sum_ = 0;  // as the common sum counts them
 };
 
 }  // namespace motorcade

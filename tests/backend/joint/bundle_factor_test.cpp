@@ -137,6 +137,22 @@ TEST_P(BundleFactorOf, KnowsNothingOfWhereTheWholeIs) {
   EXPECT_NEAR(scene.cost(), before, 1e-6 * before);
 }
 
+/// An error of all points in one half of the image, in one frame after the other to either side.
+TEST_P(BundleFactorOf, SeesResidualsThatHaveACauseInCommon) {
+  Scene scene(GetParam(), 0.1, {}, 6);
+  const auto commonShare = [&] {
+    const auto levels = eliminateLandmarks(kCamera, {.loss = RobustLoss::kNone}, scene.landmarks,
+                                           scene.factor->posesFromCamera(scene.pointers()), 0.3)
+                            .levels;
+    return levels.common_sum / (levels.uv_sum + levels.d_sum);
+  };
+  const double independent = commonShare();
+  for (LandmarkView& view : scene.landmarks.views)
+    if (view.uvd_px.x() < 0.5 * kCamera.width_px) view.uvd_px.y() += view.frame % 2 == 0 ? 0.5 : -0.5;
+  EXPECT_LT(independent, 1);
+  EXPECT_GT(commonShare(), 1.5);
+}
+
 INSTANTIATE_TEST_SUITE_P(Bodies, BundleFactorOf, testing::Bool());
 
 }  // namespace

@@ -34,9 +34,20 @@ TEST(NoiseLevel, FindsTheNoise) {
   }
 }
 
+TEST(NoiseLevel, SeesWhatResidualsHaveInCommon) {
+  NoiseLevel independent, common;
+  for (int i = 0; i < 40; ++i) {
+    independent.learn({.uv_sum = 2000, .uv_count = 2000, .d_sum = 1000, .d_count = 1000, .common_sum = 2800});
+    common.learn({.uv_sum = 2000, .uv_count = 2000, .d_sum = 1000, .d_count = 1000, .common_sum = 15000});
+  }
+  EXPECT_DOUBLE_EQ(independent.designEffect(), 1);
+  EXPECT_NEAR(common.designEffect(), 5, 0.2);
+}
+
 TEST(NoiseLevel, BeginsAsClaimed) {
   EXPECT_DOUBLE_EQ(NoiseLevel{}.uv(), 1);
   EXPECT_DOUBLE_EQ(NoiseLevel{}.d(), 1);
+  EXPECT_DOUBLE_EQ(NoiseLevel{}.designEffect(), 1);
 }
 
 }  // namespace
