@@ -129,7 +129,10 @@ JointObject& JointGraph::objectOf(TrackId id) {
   if (it != objects_.end()) return it->second;
   const BodyPoints::Params points =
       pointParams(params_, camera_, params_.object_track_frames, params_.max_object_landmarks);
-  return objects_.emplace(id, JointObject{.lever = {}, .records = {}, .points = {BodyPoints(points), {}, {}, {}, {}}})
+  return objects_
+      .emplace(id, JointObject{.lever = {},
+                               .records = {},
+                               .points = {BodyPoints(points), NoiseLevel::like(world_.noise), {}, {}, {}}})
       .first->second;
 }
 

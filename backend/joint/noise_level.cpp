@@ -12,6 +12,13 @@ constexpr double kGaussianLevel = 0.3685;
 
 }  // namespace
 
+NoiseLevel NoiseLevel::like(const NoiseLevel& known) {
+  NoiseLevel level;
+  level.first_uv2_ = known.uv() * known.uv();
+  level.first_d2_ = known.d() * known.d();
+  return level;
+}
+
 void NoiseLevel::learn(const ResidualLevels& levels) {
   constexpr double kMemory = 4000;  // observations
   const double keep = std::max(0.0, 1 - levels.d_count / kMemory), uv2 = uv() * uv(), d2 = d() * d();
@@ -30,12 +37,12 @@ double NoiseLevel::designEffect() const {
 
 double NoiseLevel::uv() const {
   constexpr double kPrior = 100;
-  return std::sqrt((kPrior + sums_.uv_sum) / (kPrior + sums_.uv_count));
+  return std::sqrt((kPrior * first_uv2_ + sums_.uv_sum) / (kPrior + sums_.uv_count));
 }
 
 double NoiseLevel::d() const {
   constexpr double kPrior = 50;
-  return std::sqrt((kPrior + sums_.d_sum) / (kPrior + sums_.d_count));
+  return std::sqrt((kPrior * first_d2_ + sums_.d_sum) / (kPrior + sums_.d_count));
 }
 
 }  // namespace motorcade

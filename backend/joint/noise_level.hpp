@@ -7,6 +7,10 @@ namespace motorcade {
 /// Running noise levels of a body's observations, as factors on the standard deviations that the front-end claims.
 class NoiseLevel {
  public:
+  NoiseLevel() = default;
+  /// Of another body in the same images: begins as `known` and learns on its own.
+  static NoiseLevel like(const NoiseLevel& known);
+
   void learn(const ResidualLevels& levels);
   double uv() const;
   double d() const;
@@ -15,6 +19,7 @@ class NoiseLevel {
   double designEffect() const;
 
  private:
+  double first_uv2_ = 1, first_d2_ = 1;  // of variances, until enough is seen
   ResidualLevels sums_{};
   double residual_sum_ = 0;  // as the common sum counts them
 };

@@ -44,6 +44,18 @@ TEST(NoiseLevel, SeesWhatResidualsHaveInCommon) {
   EXPECT_NEAR(common.designEffect(), 5, 0.2);
 }
 
+TEST(NoiseLevel, OfAnotherBodyBeginsAsThatOfTheImageAndLearnsItsOwn) {
+  test::Noise noise(1);
+  NoiseLevel world;
+  for (int i = 0; i < 40; ++i) world.learn(levelsOf(0.5, world, noise));
+  NoiseLevel body = NoiseLevel::like(world);
+  EXPECT_DOUBLE_EQ(body.uv(), world.uv());
+  EXPECT_DOUBLE_EQ(body.d(), world.d());
+  for (int i = 0; i < 40; ++i) body.learn(levelsOf(1.5, body, noise));
+  EXPECT_NEAR(body.uv(), 1.5, 0.1);
+  EXPECT_NEAR(body.d(), 1.5, 0.1);
+}
+
 TEST(NoiseLevel, BeginsAsClaimed) {
   EXPECT_DOUBLE_EQ(NoiseLevel{}.uv(), 1);
   EXPECT_DOUBLE_EQ(NoiseLevel{}.d(), 1);
