@@ -71,6 +71,7 @@ void addLevels(std::span<const LinearView> linear, ResidualLevels& levels) {
     levels.uv_sum += l.r.head<2>().squaredNorm();
     levels.d_sum += l.r.z() * l.r.z();
   }
+  for (std::size_t i = 1; i < linear.size(); ++i) levels.successive_sum += linear[i - 1].r.dot(linear[i].r);
   levels.uv_count += 2.0 * static_cast<double>(linear.size() - 1);
   levels.d_count += static_cast<double>(linear.size() - 1);
 }

@@ -24,6 +24,7 @@ struct ResidualLevels {
   /// Sum of the squares of what the residuals in one half of the image and in one frame add up to: as much as the sums
   /// above where they are independent, and more where they have causes in common, as errors of the rectification are.
   double common_sum = 0;
+  double successive_sum = 0;  // of the products of residuals of a landmark's successive views
 };
 
 /// What image measurements of one body say of the camera's motion around it, its landmarks eliminated (Schur

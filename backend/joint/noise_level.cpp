@@ -27,12 +27,14 @@ void NoiseLevel::learn(const ResidualLevels& levels) {
   sums_.d_sum = keep * sums_.d_sum + d2 * levels.d_sum / kGaussianLevel;
   sums_.d_count = keep * sums_.d_count + levels.d_count;
   sums_.common_sum = keep * sums_.common_sum + levels.common_sum;
+  sums_.successive_sum = keep * sums_.successive_sum + levels.successive_sum;
   residual_sum_ = keep * residual_sum_ + levels.uv_sum + levels.d_sum;
 }
 
 double NoiseLevel::designEffect() const {
-  constexpr double kPrior = 300;  // squared residuals of which nothing is in common
-  return std::max(1.0, (kPrior + sums_.common_sum) / (kPrior + residual_sum_));
+  constexpr double kPrior = 300;  // squared residuals that are independent
+  const double all = kPrior + residual_sum_, common = (kPrior + sums_.common_sum) / all;
+  return std::max(1.0, common) * (1 + std::max(0.0, sums_.successive_sum / all));
 }
 
 double NoiseLevel::uv() const {

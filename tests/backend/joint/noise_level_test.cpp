@@ -35,13 +35,20 @@ TEST(NoiseLevel, FindsTheNoise) {
 }
 
 TEST(NoiseLevel, SeesWhatResidualsHaveInCommon) {
-  NoiseLevel independent, common;
-  for (int i = 0; i < 40; ++i) {
-    independent.learn({.uv_sum = 2000, .uv_count = 2000, .d_sum = 1000, .d_count = 1000, .common_sum = 2800});
-    common.learn({.uv_sum = 2000, .uv_count = 2000, .d_sum = 1000, .d_count = 1000, .common_sum = 15000});
-  }
-  EXPECT_DOUBLE_EQ(independent.designEffect(), 1);
-  EXPECT_NEAR(common.designEffect(), 5, 0.2);
+  const auto effectOf = [](double common_sum, double successive_sum) {
+    NoiseLevel level;
+    for (int i = 0; i < 40; ++i)
+      level.learn({.uv_sum = 2000,
+                   .uv_count = 2000,
+                   .d_sum = 1000,
+                   .d_count = 1000,
+                   .common_sum = common_sum,
+                   .successive_sum = successive_sum});
+    return level.designEffect();
+  };
+  EXPECT_DOUBLE_EQ(effectOf(2800, -100), 1);
+  EXPECT_NEAR(effectOf(15000, 0), 5, 0.2);
+  EXPECT_NEAR(effectOf(3000, 1200), 1.4, 0.02);
 }
 
 TEST(NoiseLevel, OfAnotherBodyBeginsAsThatOfTheImageAndLearnsItsOwn) {
