@@ -11,7 +11,7 @@ namespace motorcade {
 namespace {
 
 constexpr double kFreeMotion = 1e6;  // times the accelerations' variance: nothing is known of how objects move
-constexpr int kEarlierViews = 3;     // of a point before its body was known: older ones may be of another
+constexpr int kEarlierViews = 3;     // of a point whose body is found: one that took longer may be of two
 constexpr int kFewStatic = 20;       // landmarks seen now and before: with fewer the front-end's odometry helps
 
 IncrementalSolver::Params solverParams(const JointParams& params) {
@@ -58,7 +58,7 @@ JointGraph::JointGraph(const JointParams& params, const StereoCamera& camera)
              .ended = {},
              .current = {},
              .closed = {}},
-      undecided_(kEarlierViews) {
+      undecided_(kEarlierViews + 1) {
   const SmallVector zero = SmallVector::Zero(1);
   offset_ = solver_.addVariable(zero);
   holdOffset();
@@ -111,10 +111,7 @@ void JointGraph::addCamera(const FrameMeasurements& m) {
 
 /// A point that rests from its second view on did so in the first; one that became so later did not.
 void JointGraph::observeAtRest(const FrameMeasurements& m) {
-  world_.points.observe(m.frame, m.at_rest, [&](PointId point) {
-    auto views = undecided_.take(point, m.frame);
-    return views.size() == 1 ? std::move(views) : std::vector<LandmarkTrack::View>{};
-  });
+  world_.points.observe(m.frame, m.at_rest, [&](PointId point) { return undecided_.take(point, m.frame, 1); });
 }
 
 void JointGraph::addOdometry(const FrameMeasurements& m, VariableId before, VariableId now) {
@@ -152,7 +149,7 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
   else
     beginObject(object, record);
   object.points.points.observe(seen.frame, seen.measured,
-                               [&](PointId point) { return undecided_.take(point, seen.frame); });
+                               [&](PointId point) { return undecided_.take(point, seen.frame, kEarlierViews); });
 }
 
 void JointGraph::beginObject(JointObject& object, JointRecord& record) {

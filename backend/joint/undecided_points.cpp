@@ -11,12 +11,13 @@ void UndecidedPoints::observe(FrameId frame, std::span<const PointMeasurement> p
   std::erase_if(views_, [&](const auto& point) { return isLost(point.second.back(), frame); });
 }
 
-std::vector<LandmarkTrack::View> UndecidedPoints::take(PointId point, FrameId frame) {
+std::vector<LandmarkTrack::View> UndecidedPoints::take(PointId point, FrameId frame, int most) {
   const auto known = views_.find(point);
   if (known == views_.end()) return {};
   std::vector<LandmarkTrack::View> views(known->second.begin(), known->second.end());
   views_.erase(known);
   std::erase_if(views, [&](const LandmarkTrack::View& view) { return view.frame >= frame; });
+  if (static_cast<int>(views.size()) > most) views.clear();
   return views;
 }
 

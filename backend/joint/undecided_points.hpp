@@ -17,8 +17,9 @@ class UndecidedPoints {
   explicit UndecidedPoints(int most_views) : most_views_(most_views) {}
 
   void observe(FrameId frame, std::span<const PointMeasurement> points);
-  /// The views of a point before `frame`, oldest first, now that its body is known; they are kept no longer.
-  std::vector<LandmarkTrack::View> take(PointId point, FrameId frame);
+  /// The views of a point before `frame`, oldest first, now that its body is known; they are kept no longer. None when
+  /// there were more than `most`: what does not show soon where it belongs may not belong there from the start.
+  std::vector<LandmarkTrack::View> take(PointId point, FrameId frame, int most);
 
  private:
   int most_views_;

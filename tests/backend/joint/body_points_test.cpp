@@ -56,20 +56,21 @@ TEST(BodyPoints, EndsATrackWhosePointIsLost) {
 
 TEST(BodyPoints, BringsAlongWhatWasSeenOfNewPointsBefore) {
   BodyPoints points(kParams);
-  UndecidedPoints undecided(3);
-  for (int frame = 0; frame < 5; ++frame) undecided.observe({frame}, std::vector{point(7), point(8)});
-  points.observe({5}, std::vector{point(7)}, [&](PointId p) { return undecided.take(p, {5}); });
+  UndecidedPoints undecided(4);
+  for (int frame = 2; frame < 5; ++frame) undecided.observe({frame}, std::vector{point(7), point(8)});
+  points.observe({5}, std::vector{point(7)}, [&](PointId p) { return undecided.take(p, {5}, 3); });
   ASSERT_EQ(points.current().size(), 1U);
-  EXPECT_EQ(points.current().front()->views.size(), 4U);  // the latest three, and its own
-  EXPECT_TRUE(undecided.take({7}, {6}).empty());
-  EXPECT_EQ(undecided.take({8}, {4}).size(), 2U);  // of frames 2 and 3
+  EXPECT_EQ(points.current().front()->views.size(), 4U);
+  EXPECT_TRUE(undecided.take({7}, {6}, 3).empty());
+  EXPECT_EQ(undecided.take({8}, {4}, 3).size(), 2U);  // of frames 2 and 3
 }
 
-TEST(UndecidedPoints, ForgetsPointsThatWereLost) {
-  UndecidedPoints undecided(3);
+TEST(UndecidedPoints, ForgetsPointsThatWereLostOrLongUndecided) {
+  UndecidedPoints undecided(4);
   undecided.observe({0}, std::vector{point(7)});
-  for (int frame = 1; frame < 6; ++frame) undecided.observe({frame}, {});
-  EXPECT_TRUE(undecided.take({7}, {6}).empty());
+  for (int frame = 1; frame < 6; ++frame) undecided.observe({frame}, std::vector{point(8)});
+  EXPECT_TRUE(undecided.take({7}, {6}, 3).empty());
+  EXPECT_TRUE(undecided.take({8}, {6}, 3).empty());
 }
 
 TEST(BodyPoints, SpreadsLandmarksOverTheImage) {
