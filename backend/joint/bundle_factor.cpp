@@ -1,8 +1,12 @@
 #include "backend/joint/bundle_factor.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <numeric>
 
 #include <Eigen/Cholesky>
+
+#include "backend/elimination/dense_kernels.hpp"
 
 namespace motorcade {
 namespace {
@@ -10,68 +14,87 @@ namespace {
 constexpr int kLandmark = 4;  // unknowns of a landmark
 constexpr int kRest = 2;      // columns of the offset and of the right-hand side
 
-using Matrix64d = Eigen::Matrix<double, 6, kLandmark>;
-using Matrix24d = Eigen::Matrix<double, kRest, kLandmark>;
+using Matrix8d = Eigen::Matrix<double, 6 + kRest, 6 + kRest>;
+using Matrix84d = Eigen::Matrix<double, 6 + kRest, kLandmark>;
 
-/// Sums up landmarks, one after the other, in the lower triangle of the system that their elimination leaves.
+/// Sums up the system that the elimination of landmarks leaves. They come in the order of their first frames: several
+/// are subtracted at a time, from the first's first frame on.
 class LandmarkSum {
  public:
   explicit LandmarkSum(int frames)
-      : frames_(frames), system_(Eigen::MatrixXd::Zero(6 * frames + kRest, 6 * frames + kRest)) {}
+      : own_(frames, Matrix8d::Zero()),
+        size_(6 * frames + kRest),
+        stride_(padded(size_)),
+        Y_(std::size_t(stride_) * kColumns, 0.0),
+        system_(std::size_t(stride_) * size_, 0.0) {}
 
   void add(std::span<const LandmarkView> views, const LandmarkFit& fit) {
-    const auto linear = fit.views();
-    Matrix24d W_rest = Matrix24d::Zero();
-    W_.resize(views.size());
-    for (std::size_t i = 0; i < views.size(); ++i) addView(views[i], linear[i], W_[i], W_rest);
-    const double shared = fit.sharedError_px() / fit.sharedErrorSigma_px();
-    system_(rest() + 1, rest() + 1) += shared * shared;
-    W_rest(1, 3) += shared / fit.sharedErrorSigma_px();
+    if (columns_ == kColumns) subtract();
+    if (columns_ == 0) first_row_ = 6 * views.front().frame / 4 * 4;  // rows come in fours
     // Y = W L^-T with the landmark's information L L^T, so that W (L L^T)^-1 W^T = Y Y^T.
     const Matrix4d L = fit.information().llt().matrixL();
     const Matrix4d right = L.triangularView<Eigen::Lower>().solve(Matrix4d::Identity()).transpose();
-    for (Matrix64d& W : W_) W = (W * right).eval();
-    subtract(views, W_rest * right);
+    Eigen::Map<Eigen::MatrixXd> Y(Y_.data() + std::size_t(columns_) * stride_, stride_, kLandmark);
+    const double shared = fit.sharedError_px() / fit.sharedErrorSigma_px();
+    shared_squared_ += shared * shared;
+    Y.row(size_ - 1) = shared / fit.sharedErrorSigma_px() * right.row(3);
+    const auto linear = fit.views();
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      own_[views[i].frame].noalias() += linear[i].J.transpose() * linear[i].J;
+      const Eigen::Matrix<double, 3, kLandmark, Eigen::RowMajor> B = linear[i].B * right;
+      const Matrix84d W = linear[i].J.transpose() * B;
+      Y.block<6, kLandmark>(6 * views[i].frame, 0) = W.topRows<6>();
+      Y.block<kRest, kLandmark>(size_ - kRest, 0) += W.bottomRows<kRest>();
+    }
+    columns_ += kLandmark;
   }
 
-  Eigen::MatrixXd symmetric() const { return system_.selfadjointView<Eigen::Lower>(); }
+  Eigen::MatrixXd symmetric() {
+    subtract();
+    Eigen::MatrixXd system = Eigen::Map<Eigen::MatrixXd>(system_.data(), stride_, size_).topRows(size_);
+    const int rest = size_ - kRest;
+    for (int at = 0; at < rest; at += 6) {
+      const Matrix8d& own = own_[at / 6];
+      system.block<6, 6>(at, at) += own.topLeftCorner<6, 6>();
+      system.block<kRest, 6>(rest, at) += own.bottomLeftCorner<kRest, 6>();
+      system.bottomRightCorner<kRest, kRest>() += own.bottomRightCorner<kRest, kRest>();
+    }
+    system(rest + 1, rest + 1) += shared_squared_;
+    system.triangularView<Eigen::StrictlyUpper>() = system.transpose();
+    return system;
+  }
 
  private:
-  int rest() const { return 6 * frames_; }
+  static constexpr int kColumns = 12 * kLandmark;
 
-  void addView(const LandmarkView& view, const LinearView& l, Matrix64d& W, Matrix24d& W_rest) {
-    const int at = 6 * view.frame;
-    system_.block<6, 6>(at, at).noalias() += l.A.transpose() * l.A;
-    system_.block<1, 6>(rest(), at) += l.D * l.A.row(2);
-    system_.block<1, 6>(rest() + 1, at).noalias() += l.r.transpose() * l.A;
-    system_(rest(), rest()) += l.D * l.D;
-    system_(rest() + 1, rest()) += l.D * l.r.z();
-    system_(rest() + 1, rest() + 1) += l.r.squaredNorm();
-    W.noalias() = l.A.transpose() * l.B;
-    W_rest.row(0) += l.D * l.B.row(2);
-    W_rest.row(1).noalias() += l.r.transpose() * l.B;
+  void subtract() {
+    if (columns_ == 0) return;
+    double* const corner = system_.data() + first_row_ + std::size_t(first_row_) * stride_;
+    subtractOuterProduct(corner, stride_, Y_.data() + first_row_, stride_, size_ - first_row_, columns_);
+    std::ranges::fill(Y_, 0.0);
+    columns_ = 0;
   }
 
-  void subtract(std::span<const LandmarkView> views, const Matrix24d& Y_rest) {
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      for (std::size_t j = 0; j <= i; ++j)
-        system_.block<6, 6>(6 * views[i].frame, 6 * views[j].frame).noalias() -= W_[i].lazyProduct(W_[j].transpose());
-      system_.block<kRest, 6>(rest(), 6 * views[i].frame).noalias() -= Y_rest.lazyProduct(W_[i].transpose());
-    }
-    system_.bottomRightCorner<kRest, kRest>().noalias() -= Y_rest.lazyProduct(Y_rest.transpose());
-  }
-
-  int frames_;
-  Eigen::MatrixXd system_;
-  std::vector<Matrix64d> W_;  // of the landmark at hand, view by view
+  std::vector<Matrix8d> own_;  // J' J of each frame, J = [A D r]
+  double shared_squared_ = 0;
+  int size_, stride_, columns_ = 0, first_row_ = 0;
+  std::vector<double> Y_, system_;  // the landmarks that are still to be subtracted; lower triangle
 };
+
+/// Landmarks in the order of their first frames.
+std::vector<int> byFirstFrame(const LandmarkViews& landmarks) {
+  std::vector<int> order(landmarks.count());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](int j) { return landmarks.of(j).front().frame; });
+  return order;
+}
 
 void addLevels(std::span<const LinearView> linear, ResidualLevels& levels) {
   for (const LinearView& l : linear) {
-    levels.uv_sum += l.r.head<2>().squaredNorm();
-    levels.d_sum += l.r.z() * l.r.z();
+    levels.uv_sum += l.r().head<2>().squaredNorm();
+    levels.d_sum += l.r().z() * l.r().z();
   }
-  for (std::size_t i = 1; i < linear.size(); ++i) levels.successive_sum += linear[i - 1].r.dot(linear[i].r);
+  for (std::size_t i = 1; i < linear.size(); ++i) levels.successive_sum += linear[i - 1].r().dot(linear[i].r());
   levels.uv_count += 2.0 * static_cast<double>(linear.size() - 1);
   levels.d_count += static_cast<double>(linear.size() - 1);
 }
@@ -84,7 +107,7 @@ class CommonSums {
 
   void add(std::span<const LandmarkView> views, std::span<const LinearView> linear) {
     for (std::size_t i = 0; i < views.size(); ++i)
-      sums_[2 * views[i].frame + (views[i].uvd_px.x() > middle_px_ ? 1 : 0)] += linear[i].r;
+      sums_[2 * views[i].frame + (views[i].uvd_px.x() > middle_px_ ? 1 : 0)] += linear[i].r();
   }
   double squares() const {
     double squares = 0;
@@ -105,7 +128,7 @@ EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const Landmar
   LandmarkFit fit(camera, noise, result.T_cam_body, offset_px);
   LandmarkSum sum(static_cast<int>(result.T_cam_body.size()));
   CommonSums common(0.5 * camera.width_px, result.T_cam_body.size());
-  for (int j = 0; j < landmarks.count(); ++j) {
+  for (const int j : byFirstFrame(landmarks)) {
     if (!fit(landmarks.of(j))) continue;
     sum.add(landmarks.of(j), fit);
     addLevels(fit.views(), result.levels);

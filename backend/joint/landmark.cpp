@@ -45,22 +45,23 @@ bool LandmarkFit::linearizeView(const LandmarkView& view, const Eigen::Vector3d&
   const Eigen::Vector3d p_cam = T * p_body;
   const auto predicted = camera_.project(p_cam);
   if (!predicted) return false;
-  LinearView& linear = linear_.emplace_back();
-  linear.r = view.uvd_px - *predicted;
-  linear.r.z() += offset_px_ - landmark_[3];
-  linear.r.array() *= view.inverse_sigma.array();
-  const double root_weight = std::sqrt(robustWeight(noise_.loss, linear.r.norm(), noise_.loss_scale));
+  Eigen::Vector3d r = view.uvd_px - *predicted;
+  r.z() += offset_px_ - landmark_[3];
+  r.array() *= view.inverse_sigma.array();
+  const double root_weight = std::sqrt(robustWeight(noise_.loss, r.norm(), noise_.loss_scale));
   const Eigen::Vector3d whiten = root_weight * view.inverse_sigma;
-  linear.r *= root_weight;
+  r *= root_weight;
   const Eigen::Matrix3d J = -(whiten.asDiagonal() * camera_.projectionJacobian(p_cam));
+  LinearView& linear = linear_.emplace_back();
   linear.B.leftCols<3>().noalias() = J * (T.rotation() * G);
   linear.B.col(3) << 0, 0, -whiten.z();
   V_.noalias() += linear.B.transpose() * linear.B;
-  gradient_.noalias() += linear.B.transpose() * linear.r;
+  gradient_.noalias() += linear.B.transpose() * r;
+  linear.J.col(7) = r;
   if (!with_poses) return true;
-  linear.A.leftCols<3>() = J;
-  linear.A.rightCols<3>().noalias() = -J * hat(p_cam);
-  linear.D = whiten.z();
+  linear.J.leftCols<3>() = J;
+  linear.J.middleCols<3>(3).noalias() = -J * hat(p_cam);
+  linear.J.col(6) << 0, 0, whiten.z();
   return true;
 }
 

@@ -31,13 +31,14 @@ struct LandmarkNoise {
 using Vector4d = Eigen::Vector4d;
 using Matrix4d = Eigen::Matrix4d;
 
-/// An observation's linear model: whitened and weighted residual and Jacobians by (pose of the body seen from the
-/// camera, perturbed on the left; landmark). The Jacobian by the disparity offset is (0, 0, D).
+/// An observation's linear model, whitened and weighted. Rows are contiguous: what is summed up are products J' J, J'
+/// B.
 struct LinearView {
-  Eigen::Vector3d r;
-  Eigen::Matrix<double, 3, 6> A;
-  Eigen::Matrix<double, 3, 4> B;
-  double D = 0;
+  /// [A D r] with the Jacobians by the pose of the body seen from the camera, perturbed on the left, and by the
+  /// disparity offset, and the residual.
+  Eigen::Matrix<double, 3, 8, Eigen::RowMajor> J;
+  Eigen::Matrix<double, 3, 4, Eigen::RowMajor> B;  // by the landmark
+  auto r() const { return J.col(7); }
 };
 
 /// Fits landmarks to their views from known poses (variable projection: poses move, landmarks follow).
