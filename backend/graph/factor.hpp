@@ -16,7 +16,8 @@ class Factor {
   /// the right-hand side.
   enum class Form {
     kJacobian,     // [J | r], whitened: cost |J delta + r|^2
-    kInformation,  // symmetric [H g; g^T c]: cost delta^T H delta + 2 g^T delta + c, exact in its vectors
+    kInformation,  // lower triangle of symmetric [H g; g^T c]: cost delta^T H delta + 2 g^T delta + c, exact in its
+                   // vectors
   };
 
   /// `rows` of the matrix that `linearize` fills.

@@ -25,6 +25,30 @@ IdType takeSlot(std::vector<IdType>& free, std::vector<Slot>& slots) {
 
 using Column = Eigen::Map<Eigen::VectorXd>;
 
+/// Columns M <- M R^T from a row on.
+template <int N>
+void turnColumns(FactorGraph::Term term, Eigen::Index column, Eigen::Index row, const Eigen::Matrix<double, N, N>& R) {
+  for (Eigen::Index i = row; i < term.rows(); ++i)
+    term.row(i).segment<N>(column) = (term.row(i).segment<N>(column) * R.transpose()).eval();
+}
+
+/// Rows and columns from `at` on of a symmetric matrix: R M R^T.
+template <int N>
+void turnLowerTriangle(FactorGraph::Term term, Eigen::Index at, const Eigen::Matrix<double, N, N>& R) {
+  for (Eigen::Index j = 0; j < at; ++j) term.col(j).segment<N>(at) = (R * term.col(j).segment<N>(at)).eval();
+  const Eigen::Matrix<double, N, N> own = term.block<N, N>(at, at).template selfadjointView<Eigen::Lower>();
+  term.block<N, N>(at, at) = R * own * R.transpose();
+  turnColumns<N>(term, at, at + N, R);
+}
+
+/// No entry is infinite or undefined, nor too large to square, as the elimination does.
+bool canBeSquared(const Factor& factor, const FactorGraph::Term& term) {
+  if (factor.form() == Factor::Form::kJacobian) return std::isfinite(term.squaredNorm());
+  double sum = 0;
+  for (Eigen::Index j = 0; j < term.cols(); ++j) sum += term.col(j).tail(term.rows() - j).squaredNorm();
+  return std::isfinite(sum);
+}
+
 SmallVector step(const FactorGraph::Variable& variable) {
   SmallVector d(variable.size);
   for (int i = 0; i < variable.size; ++i) d[i] = variable.x[i] - variable.x_applied[i];
@@ -125,23 +149,25 @@ Column FactorGraph::appliedCoordinates(const Factor& factor) {
 
 /// From right perturbations to steps in the world's axes: to first order rho = R^T dp, phi = R^T dphi.
 void FactorGraph::turnToWorldAxes(const Factor& factor, Term term) const {
-  const bool both_sides = factor.form() == Factor::Form::kInformation;
+  if (factor.form() == Factor::Form::kInformation) return turnBothSides(factor, term);
   Eigen::Index at = 0;
   for (const VariableId v : factor.variables()) {
-    const Value& value = both_sides ? (*this)[v].applied_estimate : (*this)[v].linearization_point;
-    if (const auto* pose = std::get_if<SE3>(&value)) {
-      const Eigen::Matrix3d& R = pose->rotation();
-      for (const Eigen::Index k : {at, at + 3}) {
-        for (Eigen::Index i = 0; i < term.rows(); ++i)
-          term.row(i).segment<3>(k) = (term.row(i).segment<3>(k) * R.transpose()).eval();
-        if (both_sides) term.middleRows<3>(k) = (R * term.middleRows<3>(k)).eval();
-      }
-    } else if (const auto* planar = std::get_if<SE2>(&value)) {
-      const Eigen::Matrix2d R = planar->rotation();
-      for (Eigen::Index i = 0; i < term.rows(); ++i)
-        term.row(i).segment<2>(at) = (term.row(i).segment<2>(at) * R.transpose()).eval();
-      if (both_sides) term.middleRows<2>(at) = (R * term.middleRows<2>(at)).eval();
-    }
+    const Value& value = (*this)[v].linearization_point;
+    if (const auto* pose = std::get_if<SE3>(&value))
+      for (const Eigen::Index k : {at, at + 3}) turnColumns<3>(term, k, 0, pose->rotation());
+    if (const auto* planar = std::get_if<SE2>(&value)) turnColumns<2>(term, at, 0, planar->rotation());
+    at += sizeOf(v);
+  }
+}
+
+/// The same of information, in its lower triangle.
+void FactorGraph::turnBothSides(const Factor& factor, Term term) const {
+  Eigen::Index at = 0;
+  for (const VariableId v : factor.variables()) {
+    const Value& value = (*this)[v].applied_estimate;
+    if (const auto* pose = std::get_if<SE3>(&value))
+      for (const Eigen::Index k : {at, at + 3}) turnLowerTriangle<3>(term, k, pose->rotation());
+    if (const auto* planar = std::get_if<SE2>(&value)) turnLowerTriangle<2>(term, at, planar->rotation());
     at += sizeOf(v);
   }
 }
@@ -170,8 +196,7 @@ bool FactorGraph::evaluate(const Factor& factor, Term term) {
     factor.linearize(valuesOf(factor, &Variable::applied_estimate), term);
   }
   turnToWorldAxes(factor, term);
-  return std::isfinite(
-      term.squaredNorm());  // an infinity or NaN anywhere spoils the sum; the elimination needs the squares
+  return canBeSquared(factor, term);
 }
 
 /// From steps to coordinates: the model's right-hand side at x = 0.

@@ -41,7 +41,7 @@ class FactorGraph {
     Value linearization_point;   // where the Jacobians of all its factors are taken
     std::vector<FactorId> factors;
   };
-  /// [J | r] or [H g; g^T c] in the coordinates, column-major.
+  /// [J | r] or the lower triangle of [H g; g^T c] in the coordinates, column-major.
   using Term = Eigen::Map<Eigen::MatrixXd>;
 
   VariableId addVariable(const Value& initial);
@@ -119,6 +119,7 @@ class FactorGraph {
   std::span<const Value* const> valuesOf(const Factor& factor, Value Variable::*member);
   Eigen::Map<Eigen::VectorXd> appliedCoordinates(const Factor& factor);
   void turnToWorldAxes(const Factor& factor, Term term) const;
+  void turnBothSides(const Factor& factor, Term term) const;
   void turnToWorldAxes(const Factor& factor, Eigen::Ref<Eigen::VectorXd> gradient) const;
   bool evaluate(const Factor& factor, Term term);
   void shiftToCoordinates(const Factor& factor, Term term);

@@ -14,6 +14,8 @@ namespace {
 constexpr int kLandmark = 4;  // unknowns of a landmark
 constexpr int kRest = 2;      // columns of the offset and of the right-hand side
 
+constexpr double kStill = 1e-9;  // m and rad: of a displacement whose Jacobian is 1
+
 using Matrix8d = Eigen::Matrix<double, 6 + kRest, 6 + kRest>;
 using Matrix84d = Eigen::Matrix<double, 6 + kRest, kLandmark>;
 
@@ -161,16 +163,24 @@ std::vector<SE3> BundleFactor::posesFromCamera(std::span<const Value* const> val
   return T_cam_body;
 }
 
-BundleFactor::Displacement BundleFactor::displacement(std::span<const SE3> T_cam_body, double offset_px) const {
+BundleFactor::Displacement BundleFactor::displacement(std::span<const Value* const> values) const {
+  const std::vector<SE3> T_cam_body = posesFromCamera(values);
   Displacement d{.e = Eigen::VectorXd::Zero(landmarks_.system.rows() - 1), .J = {}, .J_last = {}};
-  d.e[6 * frames_] = offset_px - landmarks_.offset_px;
+  d.e[6 * frames_] = std::get<SmallVector>(*values.back())[0] - landmarks_.offset_px;
   const SE3 T_body_last = T_cam_body.back().inverse();
   for (int k = 0; k + 1 < frames_; ++k) {
     const SE3 D = T_cam_body[k] * T_body_last;
     const Vector6d e = (D * D_inverse_[k]).log();
     d.e.segment<6>(6 * k) = e;
-    d.J.push_back(rightJacobianInverseSE3(-e));
-    d.J_last.push_back(-D.adjoint());
+    const bool still = e.squaredNorm() < kStill * kStill;
+    const Matrix6d J_left = still ? Matrix6d::Identity() : rightJacobianInverseSE3(-e);
+    if (kind_ == Poses::kCamBody) {
+      d.J.push_back(J_left * T_cam_body[k].adjoint());
+      d.J_last.push_back(Matrix6d::Identity());
+    } else {
+      d.J.push_back(-J_left);
+      d.J_last.push_back(D.adjoint());
+    }
   }
   return d;
 }
@@ -186,58 +196,61 @@ Eigen::VectorXd BundleFactor::gradientAt(const Eigen::VectorXd& e) const {
   return g_c;
 }
 
-/// [H g; g' c] in left perturbations of T_cam_body.
-Eigen::MatrixXd BundleFactor::systemAt(const Displacement& d) const {
-  const int last = 6 * (frames_ - 1), size = static_cast<int>(landmarks_.system.rows());
-  Eigen::MatrixXd system = landmarks_.system;
-  system.col(size - 1) = gradientAt(d.e);
-  system.row(size - 1) = system.col(size - 1).transpose();
-  system.middleCols<6>(last).setZero();
-  system.middleRows<6>(last).setZero();
-  for (int k = 0; k + 1 < frames_; ++k) {
-    system.middleCols<6>(6 * k) = (system.middleCols<6>(6 * k) * d.J[k]).eval();
-    system.middleCols<6>(last).noalias() += system.middleCols<6>(6 * k) * d.J_last[k];
-  }
-  for (int k = 0; k + 1 < frames_; ++k) {
-    system.middleRows<6>(6 * k) = (d.J[k].transpose() * system.middleRows<6>(6 * k)).eval();
-    system.middleRows<6>(last).noalias() += d.J_last[k].transpose() * system.middleRows<6>(6 * k);
-  }
-  return system;
-}
-
-/// Left perturbations e of T_cam_body by right ones d of the variables: e = -d of the camera's pose in the world,
-/// e = Ad(T_cam_body) d of the body's.
 void BundleFactor::gradient(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> g_c) const {
-  const std::vector<SE3> T_cam_body = posesFromCamera(values);
-  const Displacement d = displacement(T_cam_body, std::get<SmallVector>(*values.back())[0]);
+  const Displacement d = displacement(values);
   g_c = gradientAt(d.e);
-  const int n = 6 * frames_, last = n - 6;
+  const int last = 6 * (frames_ - 1);
   for (int k = 0; k + 1 < frames_; ++k) {
-    g_c.segment<6>(6 * k) = (d.J[k].transpose() * g_c.segment<6>(6 * k)).eval();
-    g_c.segment<6>(last).noalias() += d.J_last[k].transpose() * g_c.segment<6>(6 * k);
+    const Vector6d g = d.J[k].transpose() * g_c.segment<6>(6 * k);
+    g_c.segment<6>(6 * k) = g;
+    g_c.segment<6>(last).noalias() -= d.J_last[k].transpose() * g;
   }
-  if (kind_ == Poses::kWorldCam) {
-    g_c.head(n) *= -1;
-    return;
-  }
-  for (int k = 0; k < frames_; ++k)
-    g_c.segment<6>(6 * k) = (T_cam_body[k].adjoint().transpose() * g_c.segment<6>(6 * k)).eval();
 }
 
 void BundleFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
-  const std::vector<SE3> T_cam_body = posesFromCamera(values);
-  term = systemAt(displacement(T_cam_body, std::get<SmallVector>(*values.back())[0]));
-  const int n = 6 * frames_;
-  if (kind_ == Poses::kWorldCam) {
-    term.bottomLeftCorner<kRest, Eigen::Dynamic>(kRest, n) *= -1;
-    term.topRightCorner<Eigen::Dynamic, kRest>(n, kRest) *= -1;
-    return;
+  const Displacement d = displacement(values);
+  fillPoses(d, term);
+  const int last = 6 * (frames_ - 1), rest = last + 6;
+  Eigen::Matrix<double, kRest, Eigen::Dynamic> offset_g(kRest, rest + 1);
+  const Eigen::VectorXd g_c = gradientAt(d.e);
+  offset_g << landmarks_.system.row(rest).head(rest + 1), g_c.head(rest + 1).transpose();
+  Eigen::Matrix<double, kRest, 6> of_last = Eigen::Matrix<double, kRest, 6>::Zero();
+  for (int k = 0; k + 1 < frames_; ++k) {
+    const Eigen::Matrix<double, kRest, 6> own = offset_g.middleCols<6>(6 * k) * d.J[k];
+    term.block<kRest, 6>(rest, 6 * k) = own;
+    of_last.noalias() -= own * d.J_last[k];
   }
-  for (int k = 0; k < frames_; ++k) {
-    const Matrix6d Ad = T_cam_body[k].adjoint();
-    term.middleCols<6>(6 * k) = (term.middleCols<6>(6 * k) * Ad).eval();
-    term.middleRows<6>(6 * k) = (Ad.transpose() * term.middleRows<6>(6 * k)).eval();
+  term.block<kRest, 6>(rest, last) = of_last;
+  term.block<kRest, 1>(rest, rest) = offset_g.col(rest);
+  term(rest + 1, rest + 1) = g_c[rest + 1];
+}
+
+/// The poses' part of the lower triangle: J' H J block by block, and the last pose's rows as sums of the others'.
+void BundleFactor::fillPoses(const Displacement& d, Eigen::Ref<Eigen::MatrixXd> term) const {
+  const int others = frames_ - 1;
+  const bool alike = kind_ == Poses::kCamBody;  // all J_last are 1
+  std::vector<Matrix6d> sums(others, Matrix6d::Zero());
+  for (int j = 0; j < others; ++j)
+    for (int i = j; i < others; ++i) {
+      const Matrix6d H = landmarks_.system.block<6, 6>(6 * i, 6 * j);
+      const Matrix6d H_J = H * d.J[j], block = d.J[i].transpose() * H_J;
+      term.block<6, 6>(6 * i, 6 * j) = block;
+      if (alike)
+        sums[j] += block;
+      else
+        sums[j].noalias() += d.J_last[i].transpose() * block;
+      if (i == j) continue;
+      if (alike)
+        sums[i] += block.transpose();
+      else
+        sums[i].noalias() += (block * d.J_last[j]).transpose();
+    }
+  Matrix6d last = Matrix6d::Zero();
+  for (int j = 0; j < others; ++j) {
+    term.block<6, 6>(6 * others, 6 * j) = -sums[j];
+    last.noalias() += sums[j] * d.J_last[j];
   }
+  term.block<6, 6>(6 * others, 6 * others) = last;
 }
 
 }  // namespace motorcade

@@ -52,6 +52,7 @@ class BundleFactor final : public Factor {
 
   BundleFactor(Poses kind, std::vector<VariableId> poses, VariableId offset, EliminatedLandmarks landmarks);
 
+  /// Fills the lower triangle.
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
   void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const override;
 
@@ -62,16 +63,17 @@ class BundleFactor final : public Factor {
   const EliminatedLandmarks& landmarks() const { return landmarks_; }
 
  private:
-  /// Motions relative to the last frame against those at the linearization.
+  /// Motions relative to the last frame against those at the linearization, and how they change with right
+  /// perturbations of the poses:
+  ///   d(e_k) = J_k (d_k - J_last_k d_last)
   struct Displacement {
     Eigen::VectorXd e;  // [log(D_k D_k(linearized)^-1) of each frame but the last; 0; offset]
-    std::vector<Matrix6d> J,
-        J_last;  // of each e_k by left perturbations of its own pose and, before J, of the last one
+    std::vector<Matrix6d> J, J_last;
   };
-  Displacement displacement(std::span<const SE3> T_cam_body, double offset_px) const;
+  Displacement displacement(std::span<const Value* const> values) const;
   /// [g; c] in displacements.
   Eigen::VectorXd gradientAt(const Eigen::VectorXd& e) const;
-  Eigen::MatrixXd systemAt(const Displacement& d) const;
+  void fillPoses(const Displacement& d, Eigen::Ref<Eigen::MatrixXd> term) const;
 
   Poses kind_;
   int frames_;
