@@ -34,7 +34,7 @@ struct JointParams {
   double lever_sigma_m = 2;
 
   AccelerationNoise acceleration{
-      .along_mps2 = 0.6, .sideways_mps2 = 0.3, .vertical_mps2 = 0.1, .yaw_radps2 = 0.05, .tilt_radps2 = 0.01};
+      .along_mps2 = 1.0, .sideways_mps2 = 0.3, .vertical_mps2 = 0.1, .yaw_radps2 = 0.05, .tilt_radps2 = 0.01};
   RollingNoise rolling;
 
   /// See SmootherParams: one key sets both.
