@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "backend/graph/turned_term.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -24,22 +26,6 @@ IdType takeSlot(std::vector<IdType>& free, std::vector<Slot>& slots) {
 }
 
 using Column = Eigen::Map<Eigen::VectorXd>;
-
-/// Columns M <- M R^T from a row on.
-template <int N>
-void turnColumns(FactorGraph::Term term, Eigen::Index column, Eigen::Index row, const Eigen::Matrix<double, N, N>& R) {
-  for (Eigen::Index i = row; i < term.rows(); ++i)
-    term.row(i).segment<N>(column) = (term.row(i).segment<N>(column) * R.transpose()).eval();
-}
-
-/// Rows and columns from `at` on of a symmetric matrix: R M R^T.
-template <int N>
-void turnLowerTriangle(FactorGraph::Term term, Eigen::Index at, const Eigen::Matrix<double, N, N>& R) {
-  for (Eigen::Index j = 0; j < at; ++j) term.col(j).segment<N>(at) = (R * term.col(j).segment<N>(at)).eval();
-  const Eigen::Matrix<double, N, N> own = term.block<N, N>(at, at).template selfadjointView<Eigen::Lower>();
-  term.block<N, N>(at, at) = R * own * R.transpose();
-  turnColumns<N>(term, at, at + N, R);
-}
 
 /// No entry is infinite or undefined, nor too large to square, as the elimination does.
 bool canBeSquared(const Factor& factor, const FactorGraph::Term& term) {
