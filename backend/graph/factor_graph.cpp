@@ -134,7 +134,7 @@ Column FactorGraph::appliedCoordinates(const Factor& factor) {
 }
 
 /// From right perturbations to steps in the world's axes: to first order rho = R^T dp, phi = R^T dphi.
-void FactorGraph::turnToWorldAxes(const Factor& factor, Term term) const {
+void FactorGraph::turnToWorldAxes(const Factor& factor, Term& term) const {
   if (factor.form() == Factor::Form::kInformation) return turnBothSides(factor, term);
   Eigen::Index at = 0;
   for (const VariableId v : factor.variables()) {
@@ -147,7 +147,7 @@ void FactorGraph::turnToWorldAxes(const Factor& factor, Term term) const {
 }
 
 /// The same of information, in its lower triangle.
-void FactorGraph::turnBothSides(const Factor& factor, Term term) const {
+void FactorGraph::turnBothSides(const Factor& factor, Term& term) const {
   Eigen::Index at = 0;
   for (const VariableId v : factor.variables()) {
     const Value& value = (*this)[v].applied_estimate;

@@ -118,8 +118,8 @@ class FactorGraph {
   static double turnBetween(const Variable& variable, const Coordinates& from, const Coordinates& to);
   std::span<const Value* const> valuesOf(const Factor& factor, Value Variable::*member);
   Eigen::Map<Eigen::VectorXd> appliedCoordinates(const Factor& factor);
-  void turnToWorldAxes(const Factor& factor, Term term) const;
-  void turnBothSides(const Factor& factor, Term term) const;
+  void turnToWorldAxes(const Factor& factor, Term& term) const;
+  void turnBothSides(const Factor& factor, Term& term) const;
   void turnToWorldAxes(const Factor& factor, Eigen::Ref<Eigen::VectorXd> gradient) const;
   bool evaluate(const Factor& factor, Term term);
   void shiftToCoordinates(const Factor& factor, Term term);
