@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -21,6 +22,10 @@ class PointDrive {
     int points = 40;       // of each object
     int life_frames = 15;  // of a point
     double sigma_px = 0.25;
+    double claimed = 1;          // standard deviation that is told, over the true one
+    double common_sigma_px = 0;  // of an error that all points in one half of an image share
+    int undecided_frames = 0;    // from an object's point being seen first to it being known as the object's
+    bool tells_undecided = true;
     int static_points = 0;  // points at rest, replaced likewise
     double offset_px = 0;   // true minus measured disparity
     SimulatedDrive::Options drive;
@@ -33,14 +38,17 @@ class PointDrive {
 
   FrameMeasurementsPtr measure(int frame) {
     FrameMeasurements m = *drive_.measure(frame);
+    drawCommonErrors();
     for (ObjectObservation& seen : m.objects) {
       const auto vehicle = static_cast<std::size_t>(seen.track.value - 100);
       const int at = static_cast<int>(seen.frame.value);
       seen.T_cam_body = drive_.camera(at).inverse() * drive_.object(vehicle, at);
       seen.motion.reset();
-      look(seen, vehicle, at);
+      look(seen, vehicle, at, m.undecided);
     }
     lookAround(m, frame);
+    std::ranges::sort(m.undecided, {}, &PointMeasurement::point);
+    if (!points_.tells_undecided) m.undecided.clear();
     return std::make_shared<const FrameMeasurements>(std::move(m));
   }
 
@@ -59,20 +67,29 @@ class PointDrive {
     std::ranges::sort(m.at_rest, {}, &PointMeasurement::point);
   }
 
-  PointMeasurement see(PointId id, const Eigen::Vector3d& uvd_px) {
-    const Eigen::Vector3d sigma_px = Eigen::Vector3d::Constant(points_.sigma_px);
-    const Eigen::Vector3d seen_px = uvd_px - Eigen::Vector3d(0, 0, points_.offset_px) + noise_.gaussian(sigma_px);
-    return {id, seen_px.cast<float>(), sigma_px.cast<float>()};
+  void drawCommonErrors() {
+    if (points_.common_sigma_px <= 0) return;
+    const Eigen::Vector3d sigma_px = Eigen::Vector3d::Constant(points_.common_sigma_px);
+    for (Eigen::Vector3d& error_px : common_px_) error_px = noise_.gaussian(sigma_px);
   }
 
-  void look(ObjectObservation& seen, std::size_t vehicle, int frame) {
+  PointMeasurement see(PointId id, const Eigen::Vector3d& uvd_px) {
+    const Eigen::Vector3d sigma_px = Eigen::Vector3d::Constant(points_.sigma_px);
+    const Eigen::Vector3d common_px = common_px_[uvd_px.x() > 0.5 * kPointRig.width_px ? 1 : 0];
+    const Eigen::Vector3d seen_px =
+        uvd_px - Eigen::Vector3d(0, 0, points_.offset_px) + common_px + noise_.gaussian(sigma_px);
+    return {id, seen_px.cast<float>(), (points_.claimed * sigma_px).cast<float>()};
+  }
+
+  void look(ObjectObservation& seen, std::size_t vehicle, int frame, std::vector<PointMeasurement>& undecided) {
     for (int k = 0; k < points_.points; ++k) {
       const int generation = (frame + k) / points_.life_frames;
       const std::int64_t id = (static_cast<std::int64_t>(vehicle) * 1000 + generation) * points_.points + k;
       Noise shape(static_cast<std::uint64_t>(id));
       const auto uvd = kPointRig.project(seen.T_cam_body * shape.inBox({-2, -0.9, 0}, {2, 0.9, 1.5}));
       if (!uvd) continue;
-      seen.measured.push_back(see({id}, *uvd));
+      const bool known = (frame + k) % points_.life_frames >= points_.undecided_frames;
+      (known ? seen.measured : undecided).push_back(see({id}, *uvd));
     }
     std::ranges::sort(seen.measured, {}, &PointMeasurement::point);
   }
@@ -80,6 +97,7 @@ class PointDrive {
   SimulatedDrive drive_;
   Noise noise_;
   Options points_;
+  std::array<Eigen::Vector3d, 2> common_px_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of this frame
 };
 
 }  // namespace motorcade::test
