@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backend/graph/sort_unique.hpp"
 #include "backend/joint/joint_graph.hpp"
 
 namespace motorcade {
@@ -22,6 +21,42 @@ std::vector<const LandmarkTrack*> pointersTo(const std::vector<LandmarkTrack>& t
   for (const LandmarkTrack& track : tracks) pointers.push_back(&track);
   return pointers;
 }
+
+/// The frames of tracks, which are few and near each other, as far as the graph holds them.
+class FrameIndex {
+ public:
+  FrameIndex(const std::vector<const LandmarkTrack*>& tracks, const std::function<bool(FrameId)>& in_graph)
+      : first_(tracks.front()->views.front().frame) {
+    FrameId last = first_;
+    for (const LandmarkTrack* track : tracks) {
+      first_ = std::min(first_, track->views.front().frame);
+      last = std::max(last, track->views.back().frame);
+    }
+    of_.assign(last.value - first_.value + 1, kNone);
+    for (const LandmarkTrack* track : tracks)
+      for (const auto& view : track->views) of_[view.frame.value - first_.value] = kSeen;
+    for (int i = 0; i < static_cast<int>(of_.size()); ++i) {
+      const FrameId frame{first_.value + i};
+      if (of_[i] == kNone || !in_graph(frame)) {
+        of_[i] = kNone;
+      } else {
+        of_[i] = static_cast<int>(frames_.size());
+        frames_.push_back(frame);
+      }
+    }
+  }
+
+  const std::vector<FrameId>& frames() const { return frames_; }
+  /// The place of a track's frame among `frames`, negative when the graph does not hold it.
+  int of(FrameId frame) const { return of_[frame.value - first_.value]; }
+
+ private:
+  static constexpr int kNone = -1, kSeen = 0;
+
+  FrameId first_;
+  std::vector<FrameId> frames_;
+  std::vector<int> of_;
+};
 
 }  // namespace
 
@@ -51,27 +86,22 @@ void JointGraph::closeEnded(JointPoints& body, const JointObject* object) {
 
 std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTrack*>& tracks, const NoiseLevel& noise,
                                               const JointObject* object) {
-  const auto inGraph = [&](FrameId frame) {
+  if (tracks.empty()) return std::nullopt;
+  const FrameIndex index(tracks, [&](FrameId frame) {
     if (!frames_.contains(frame)) return false;
     const auto record = object ? object->records.find(frame) : decltype(object->records.begin()){};
     return !object || (record != object->records.end() && record->second.c.valid());
-  };
-  std::vector<FrameId> frames;
-  for (const LandmarkTrack* track : tracks)
-    for (const auto& view : track->views)
-      if (inGraph(view.frame)) frames.push_back(view.frame);
-  sortUnique(frames);
+  });
   LandmarkViews landmarks;
   for (const LandmarkTrack* track : tracks) {
     const std::size_t first = landmarks.views.size();
     for (const auto& view : track->views) {
-      const auto at = std::ranges::lower_bound(frames, view.frame);
-      if (at == frames.end() || *at != view.frame) continue;
+      const int at = index.of(view.frame);
+      if (at < 0) continue;
       Eigen::Vector3d sigma_px = view.sigma_px.cast<double>();
       sigma_px.head<2>() *= noise.uv();
       sigma_px.z() *= noise.d();
-      landmarks.views.push_back(
-          {static_cast<int>(at - frames.begin()), view.uvd_px.cast<double>(), sigma_px.cwiseInverse()});
+      landmarks.views.push_back({at, view.uvd_px.cast<double>(), sigma_px.cwiseInverse()});
     }
     if (landmarks.views.size() < first + 2)
       landmarks.views.resize(first);
@@ -81,7 +111,7 @@ std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTr
   if (landmarks.count() == 0) return std::nullopt;
   std::vector<VariableId> poses;
   std::vector<SE3> T_cam_body;
-  for (const FrameId frame : frames) {
+  for (const FrameId frame : index.frames()) {
     poses.push_back(object ? object->records.at(frame).c : frames_.at(frame).x);
     T_cam_body.push_back(object ? solver_.pose(poses.back()) : solver_.pose(poses.back()).inverse());
   }

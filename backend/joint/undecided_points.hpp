@@ -1,7 +1,5 @@
 #pragma once
 
-#include <deque>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -16,6 +14,7 @@ class UndecidedPoints {
   /// Keeps `most_views` of each point.
   explicit UndecidedPoints(int most_views) : most_views_(most_views) {}
 
+  /// The points that are undecided in one frame, in frame order, ordered by point.
   void observe(FrameId frame, std::span<const PointMeasurement> points);
   /// The views of a point before `frame`, oldest first, now that its body is known; they are kept no longer. None when
   /// there were more than `most`: what does not show soon where it belongs may not belong there from the start.
@@ -23,7 +22,8 @@ class UndecidedPoints {
 
  private:
   int most_views_;
-  std::map<PointId, std::deque<LandmarkTrack::View>> views_;
+  std::vector<LandmarkTrack> known_;   // ordered by point; without views when they were taken
+  std::vector<LandmarkTrack> merged_;  // memory for the next frame
 };
 
 }  // namespace motorcade
