@@ -42,7 +42,7 @@ void BodyPoints::observe(FrameId frame, std::span<const PointMeasurement> points
 }
 
 void BodyPoints::end(Candidate& candidate) {
-  if (candidate.track.views.size() >= 2) ended_.push_back({candidate.track.point, std::move(candidate.track.views)});
+  if (candidate.track.views.size() >= 2) ended_.push_back(std::move(candidate.track));
   candidate.track.views.clear();
 }
 
@@ -88,14 +88,14 @@ void BodyPoints::choose() {
 
 std::vector<LandmarkTrack> BodyPoints::takeEnded() { return std::exchange(ended_, {}); }
 
-std::vector<const LandmarkTrack*> BodyPoints::current() const {
-  std::vector<const LandmarkTrack*> tracks;
-  for (const auto& [point, candidate] : candidates_)
+std::vector<LandmarkTrack*> BodyPoints::current() {
+  std::vector<LandmarkTrack*> tracks;
+  for (auto& [point, candidate] : candidates_)
     if (candidate.chosen && candidate.track.views.size() >= 2) tracks.push_back(&candidate.track);
   return tracks;
 }
 
-int BodyPoints::seenNow() const {
+int BodyPoints::seenNow() {
   return static_cast<int>(std::ranges::count_if(
       current(), [&](const LandmarkTrack* track) { return track->views.back().frame == newest_; }));
 }

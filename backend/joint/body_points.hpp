@@ -2,9 +2,11 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "backend/joint/landmark.hpp"
 #include "core/messages.hpp"
 
 namespace motorcade {
@@ -17,6 +19,7 @@ struct LandmarkTrack {
     Eigen::Vector3f uvd_px, sigma_px;
   };
   std::vector<View> views;  // oldest first
+  std::optional<LandmarkEstimate> estimate{};  // when it was fitted last
 };
 
 /// A point that was not seen for so long that its track has ended.
@@ -45,9 +48,9 @@ class BodyPoints {
   /// Tracks that ended since the last call, with two views and more.
   std::vector<LandmarkTrack> takeEnded();
   /// The chosen landmarks whose tracks go on, with two views and more.
-  std::vector<const LandmarkTrack*> current() const;
+  std::vector<LandmarkTrack*> current();
   /// Of the chosen landmarks, how many were seen in the newest frame and before.
-  int seenNow() const;
+  int seenNow();
 
  private:
   struct Candidate {

@@ -18,6 +18,7 @@ constexpr double kStill = 1e-9;  // m and rad: of a displacement whose Jacobian 
 
 using Matrix8d = Eigen::Matrix<double, 6 + kRest, 6 + kRest>;
 using Matrix84d = Eigen::Matrix<double, 6 + kRest, kLandmark>;
+using Matrix24d = Eigen::Matrix<double, kRest, kLandmark>;
 
 /// Sums up the system that the elimination of landmarks leaves. They come in the order of their first frames: several
 /// are subtracted at a time, from the first's first frame on.
@@ -34,20 +35,28 @@ class LandmarkSum {
     if (columns_ == kColumns) subtract();
     if (columns_ == 0) first_row_ = 6 * views.front().frame / 4 * 4;  // rows come in fours
     // Y = W L^-T with the landmark's information L L^T, so that W (L L^T)^-1 W^T = Y Y^T.
-    const Matrix4d L = fit.information().llt().matrixL();
-    const Matrix4d right = L.triangularView<Eigen::Lower>().solve(Matrix4d::Identity()).transpose();
+    const Matrix4d L = fit.information().matrixL();
+    Matrix4d right;  // L^-T, row by row: Eigen unrolls the solution for a vector only
+    for (int i = 0; i < kLandmark; ++i)
+      right.row(i) = L.triangularView<Eigen::Lower>().solve(Vector4d::Unit(i).eval()).transpose();
     Eigen::Map<Eigen::MatrixXd> Y(Y_.data() + std::size_t(columns_) * stride_, stride_, kLandmark);
     const double shared = fit.sharedError_px() / fit.sharedErrorSigma_px();
     shared_squared_ += shared * shared;
-    Y.row(size_ - 1) = shared / fit.sharedErrorSigma_px() * right.row(3);
+    Matrix24d rest = Matrix24d::Zero();
+    rest.row(kRest - 1) = shared / fit.sharedErrorSigma_px() * right.row(3);
     const auto linear = fit.views();
+    int row = first_row_;
     for (std::size_t i = 0; i < views.size(); ++i) {
       own_[views[i].frame].noalias() += linear[i].J.transpose() * linear[i].J;
       const Eigen::Matrix<double, 3, kLandmark, Eigen::RowMajor> B = linear[i].B * right;
       const Matrix84d W = linear[i].J.transpose() * B;
-      Y.block<6, kLandmark>(6 * views[i].frame, 0) = W.topRows<6>();
-      Y.block<kRest, kLandmark>(size_ - kRest, 0) += W.bottomRows<kRest>();
+      Y.middleRows(row, 6 * views[i].frame - row).setZero();
+      Y.middleRows<6>(6 * views[i].frame) = W.topRows<6>();
+      row = 6 * views[i].frame + 6;
+      rest += W.bottomRows<kRest>();
     }
+    Y.middleRows(row, size_ - kRest - row).setZero();
+    Y.middleRows<kRest>(size_ - kRest) = rest;
     columns_ += kLandmark;
   }
 
@@ -73,7 +82,6 @@ class LandmarkSum {
     if (columns_ == 0) return;
     double* const corner = system_.data() + first_row_ + std::size_t(first_row_) * stride_;
     subtractOuterProduct(corner, stride_, Y_.data() + first_row_, stride_, size_ - first_row_, columns_);
-    std::ranges::fill(Y_, 0.0);
     columns_ = 0;
   }
 
@@ -126,12 +134,15 @@ class CommonSums {
 
 EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
                                        const LandmarkViews& landmarks, std::vector<SE3> T_cam_body, double offset_px) {
-  EliminatedLandmarks result{.T_cam_body = std::move(T_cam_body), .offset_px = offset_px, .system = {}, .levels = {}};
+  EliminatedLandmarks result{
+      .T_cam_body = std::move(T_cam_body), .offset_px = offset_px, .system = {}, .levels = {}, .estimates = {}};
+  result.estimates.resize(landmarks.count());
   LandmarkFit fit(camera, noise, result.T_cam_body, offset_px);
   LandmarkSum sum(static_cast<int>(result.T_cam_body.size()));
   CommonSums common(0.5 * camera.width_px, result.T_cam_body.size());
   for (const int j : byFirstFrame(landmarks)) {
-    if (!fit(landmarks.of(j))) continue;
+    if (!fit(landmarks.of(j), landmarks.before.empty() ? std::nullopt : landmarks.before[j])) continue;
+    result.estimates[j] = fit.estimate();
     sum.add(landmarks.of(j), fit);
     addLevels(fit.views(), result.levels);
     common.add(landmarks.of(j), fit.views());

@@ -11,6 +11,7 @@ namespace motorcade {
 struct LandmarkViews {
   std::vector<LandmarkView> views;
   std::vector<int> first_view{0};
+  std::vector<std::optional<LandmarkEstimate>> before;  // of each landmark, or none at all
   int count() const { return static_cast<int>(first_view.size()) - 1; }
   std::span<const LandmarkView> of(int landmark) const {
     return std::span(views).subspan(first_view[landmark], first_view[landmark + 1] - first_view[landmark]);
@@ -37,6 +38,7 @@ struct EliminatedLandmarks {
   /// Full symmetric [H g; g' c] in (left perturbations of T_cam_body frame by frame, offset).
   Eigen::MatrixXd system;
   ResidualLevels levels;
+  std::vector<std::optional<LandmarkEstimate>> estimates;  // of each landmark that could be fitted
 };
 EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
                                        const LandmarkViews& landmarks, std::vector<SE3> T_cam_body, double offset_px);

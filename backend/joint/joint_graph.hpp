@@ -107,7 +107,7 @@ class JointGraph {
   void continueObject(JointObject& object, const JointRecord& before, JointRecord& record);
   void addPoints(JointPoints& body, const JointObject* object);
   void closeEnded(JointPoints& body, const JointObject* object);
-  std::optional<FactorId> addBundle(const std::vector<const LandmarkTrack*>& tracks, const NoiseLevel& noise,
+  std::optional<FactorId> addBundle(const std::vector<LandmarkTrack*>& tracks, const NoiseLevel& noise,
                                     const JointObject* object);
   void holdOffset();
   void setOffsetPrior(double sigma_px);

@@ -16,16 +16,16 @@ constexpr int kFirstLook_frames = 8;      // after which the offset is looked at
 constexpr int kCalibration_frames = 100;  // of the drive, in which the offset may be found
 constexpr int kFramesPerFactor = 5;       // tracks that ended in so many frames share one
 
-std::vector<const LandmarkTrack*> pointersTo(const std::vector<LandmarkTrack>& tracks) {
-  std::vector<const LandmarkTrack*> pointers;
-  for (const LandmarkTrack& track : tracks) pointers.push_back(&track);
+std::vector<LandmarkTrack*> pointersTo(std::vector<LandmarkTrack>& tracks) {
+  std::vector<LandmarkTrack*> pointers;
+  for (LandmarkTrack& track : tracks) pointers.push_back(&track);
   return pointers;
 }
 
 /// The frames of tracks, which are few and near each other, as far as the graph holds them.
 class FrameIndex {
  public:
-  FrameIndex(const std::vector<const LandmarkTrack*>& tracks, const std::function<bool(FrameId)>& in_graph)
+  FrameIndex(const std::vector<LandmarkTrack*>& tracks, const std::function<bool(FrameId)>& in_graph)
       : first_(tracks.front()->views.front().frame) {
     FrameId last = first_;
     for (const LandmarkTrack* track : tracks) {
@@ -67,7 +67,7 @@ void JointGraph::addPoints(JointPoints& body, const JointObject* object) {
   std::ranges::move(body.points.takeEnded(), std::back_inserter(body.ended));
   if (object && !object->lever.valid()) return body.ended.clear();
   if (frames_.rbegin()->first.value % kFramesPerFactor == 0) closeEnded(body, object);
-  std::vector<const LandmarkTrack*> tracks = body.points.current();
+  std::vector<LandmarkTrack*> tracks = body.points.current();
   std::ranges::copy(pointersTo(body.ended), std::back_inserter(tracks));
   body.current = addBundle(tracks, body.noise, object);
 }
@@ -84,7 +84,7 @@ void JointGraph::closeEnded(JointPoints& body, const JointObject* object) {
   body.ended.clear();
 }
 
-std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTrack*>& tracks, const NoiseLevel& noise,
+std::optional<FactorId> JointGraph::addBundle(const std::vector<LandmarkTrack*>& tracks, const NoiseLevel& noise,
                                               const JointObject* object) {
   if (tracks.empty()) return std::nullopt;
   const FrameIndex index(tracks, [&](FrameId frame) {
@@ -93,7 +93,8 @@ std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTr
     return !object || (record != object->records.end() && record->second.c.valid());
   });
   LandmarkViews landmarks;
-  for (const LandmarkTrack* track : tracks) {
+  std::vector<LandmarkTrack*> landmark_tracks;
+  for (LandmarkTrack* track : tracks) {
     const std::size_t first = landmarks.views.size();
     for (const auto& view : track->views) {
       const int at = index.of(view.frame);
@@ -103,10 +104,13 @@ std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTr
       sigma_px.z() *= noise.d();
       landmarks.views.push_back({at, view.uvd_px.cast<double>(), sigma_px.cwiseInverse()});
     }
-    if (landmarks.views.size() < first + 2)
+    if (landmarks.views.size() < first + 2) {
       landmarks.views.resize(first);
-    else
-      landmarks.first_view.push_back(static_cast<int>(landmarks.views.size()));
+      continue;
+    }
+    landmarks.first_view.push_back(static_cast<int>(landmarks.views.size()));
+    if (!object) landmarks.before.push_back(track->estimate);  // a vehicle's points may slide: from the newest view
+    landmark_tracks.push_back(track);
   }
   if (landmarks.count() == 0) return std::nullopt;
   std::vector<VariableId> poses;
@@ -115,10 +119,12 @@ std::optional<FactorId> JointGraph::addBundle(const std::vector<const LandmarkTr
     poses.push_back(object ? object->records.at(frame).c : frames_.at(frame).x);
     T_cam_body.push_back(object ? solver_.pose(poses.back()) : solver_.pose(poses.back()).inverse());
   }
-  return solver_.addFactor(std::make_unique<BundleFactor>(
-      object ? BundleFactor::Poses::kCamBody : BundleFactor::Poses::kWorldCam, std::move(poses), offset_,
-      eliminateLandmarks(camera_, object ? params_.object_noise : params_.static_noise, landmarks,
-                         std::move(T_cam_body), offset_px())));
+  EliminatedLandmarks eliminated = eliminateLandmarks(camera_, object ? params_.object_noise : params_.static_noise,
+                                                      landmarks, std::move(T_cam_body), offset_px());
+  for (std::size_t i = 0; i < landmark_tracks.size(); ++i) landmark_tracks[i]->estimate = eliminated.estimates[i];
+  return solver_.addFactor(
+      std::make_unique<BundleFactor>(object ? BundleFactor::Poses::kCamBody : BundleFactor::Poses::kWorldCam,
+                                     std::move(poses), offset_, std::move(eliminated)));
 }
 
 void JointGraph::holdOffset() { setOffsetPrior(kHeldSigma_px); }

@@ -44,7 +44,7 @@ struct JointParams {
 
   /// See IncrementalSolver::Params.
   double mismatch_tolerance = 0.05, jacobian_drift_sigmas = 0.5, substitution_tolerance = 0.05;
-  int iterations_per_update = 2;
+  int iterations_per_update = 1;
   int final_iterations = 2;  // when the drive has ended: the updates leave little to do
 };
 

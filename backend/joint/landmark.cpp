@@ -2,29 +2,41 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 namespace motorcade {
 namespace {
 
-constexpr int kIterations = 1;              // from the newest view: what is left, the elimination takes into account
 constexpr double kLeastDisparity_px = 0.3;  // a landmark with less is at infinity
 constexpr double kLeastSharedSigma_px = 1e-3;
 
 }  // namespace
 
-bool LandmarkFit::operator()(std::span<const LandmarkView> views) {
-  landmark_ << views.back().uvd_px + Eigen::Vector3d(0, 0, offset_px_), 0;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
+/// Two steps from the newest view, or one from an estimate: what is left, the elimination takes into account.
+bool LandmarkFit::operator()(std::span<const LandmarkView> views, const std::optional<LandmarkEstimate>& before) {
+  newest_frame_ = views.back().frame;
+  if (!before || !beginFrom(*before)) {
+    landmark_ << views.back().uvd_px + Eigen::Vector3d(0, 0, offset_px_), 0;
     if (!linearize(views, false)) return false;
-    landmark_ -= V_.llt().solve(gradient_);
+    landmark_ -= llt_.solve(gradient_);
   }
   return linearize(views, true);
 }
 
+bool LandmarkFit::beginFrom(const LandmarkEstimate& before) {
+  const auto uvd_px = camera_.project(T_cam_body_[newest_frame_] * before.p_body);
+  if (!uvd_px) return false;
+  landmark_ << *uvd_px, before.shared_error_px;
+  return true;
+}
+
+std::optional<LandmarkEstimate> LandmarkFit::estimate() const {
+  const Vector4d landmark = landmark_ - llt_.solve(gradient_);
+  if (!(landmark[2] > kLeastDisparity_px)) return std::nullopt;
+  return LandmarkEstimate{T_cam_body_[newest_frame_].inverse() * camera_.triangulate(landmark.head<3>()), landmark[3]};
+}
+
 bool LandmarkFit::linearize(std::span<const LandmarkView> views, bool with_poses) {
   if (!(landmark_[2] > kLeastDisparity_px)) return false;
-  const SE3 T_body_cam = T_cam_body_[views.back().frame].inverse();
+  const SE3 T_body_cam = T_cam_body_[newest_frame_].inverse();
   const Eigen::Vector3d uvd_px = landmark_.head<3>(), p_body = T_body_cam * camera_.triangulate(uvd_px);
   const Eigen::Matrix3d G = T_body_cam.rotation() * camera_.triangulationJacobian(uvd_px);
   linear_.clear();
@@ -35,6 +47,7 @@ bool LandmarkFit::linearize(std::span<const LandmarkView> views, bool with_poses
   const double shared = 1 / std::max(noise_.shared_disparity_sigma_px, kLeastSharedSigma_px);
   V_(3, 3) += shared * shared;
   gradient_[3] += shared * shared * landmark_[3];
+  llt_.compute(V_);
   return true;
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "core/robust_loss.hpp"
@@ -31,6 +32,12 @@ struct LandmarkNoise {
 using Vector4d = Eigen::Vector4d;
 using Matrix4d = Eigen::Matrix4d;
 
+/// Where a landmark was found to be, to begin from when it is fitted again.
+struct LandmarkEstimate {
+  Eigen::Vector3d p_body;
+  double shared_error_px = 0;
+};
+
 /// An observation's linear model, whitened and weighted. Rows are contiguous: what is summed up are products J' J, J'
 /// B.
 struct LinearView {
@@ -48,15 +55,19 @@ class LandmarkFit {
   LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise, std::span<const SE3> T_cam_body, double offset_px)
       : camera_(camera), noise_(noise), T_cam_body_(T_cam_body), offset_px_(offset_px) {}
 
-  /// False when a view would lie behind its camera or the landmark is at infinity.
-  bool operator()(std::span<const LandmarkView> views);
+  /// Begins from an estimate, if there is one, otherwise from the newest view. False when a view would lie behind its
+  /// camera or the landmark is at infinity.
+  bool operator()(std::span<const LandmarkView> views, const std::optional<LandmarkEstimate>& before = std::nullopt);
 
   std::span<const LinearView> views() const { return linear_; }
-  const Matrix4d& information() const { return V_; }
+  const Eigen::LLT<Matrix4d>& information() const { return llt_; }
+  /// One step on from where the landmark was linearized; empty when that is at infinity.
+  std::optional<LandmarkEstimate> estimate() const;
   double sharedError_px() const { return landmark_[3]; }
   double sharedErrorSigma_px() const { return noise_.shared_disparity_sigma_px; }
 
  private:
+  bool beginFrom(const LandmarkEstimate& before);
   bool linearize(std::span<const LandmarkView> views, bool with_poses);
   bool linearizeView(const LandmarkView& view, const Eigen::Vector3d& p_body, const Eigen::Matrix3d& G,
                      bool with_poses);
@@ -65,8 +76,10 @@ class LandmarkFit {
   LandmarkNoise noise_;
   std::span<const SE3> T_cam_body_;
   double offset_px_;
+  int newest_frame_ = 0;
   Vector4d landmark_, gradient_;
   Matrix4d V_;
+  Eigen::LLT<Matrix4d> llt_;  // of V
   std::vector<LinearView> linear_;
 };
 

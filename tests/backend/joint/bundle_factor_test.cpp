@@ -194,6 +194,23 @@ TEST_P(BundleFactorOf, ManyLandmarksAreEliminatedAsOneByOne) {
   EXPECT_LT((eliminated.system - expected).norm(), 1e-10 * expected.norm());
 }
 
+/// Robust weights follow slowly: each fit from the estimate before comes nearer.
+TEST_P(BundleFactorOf, LandmarksThatWereFoundBeforeAreFoundBetter) {
+  const Scene scene(GetParam(), 0.3, {}, 7);
+  LandmarkViews landmarks = scene.landmarks;
+  const EliminatedLandmarks& at = scene.factor->landmarks();
+  std::vector<Eigen::MatrixXd> systems;
+  for (int time = 0; time < 40; ++time) {
+    auto eliminated = eliminateLandmarks(kCamera, {}, landmarks, at.T_cam_body, at.offset_px);
+    systems.push_back(std::move(eliminated.system));
+    landmarks.before = std::move(eliminated.estimates);
+  }
+  const auto error = [&](int time) { return (systems[time] - systems.back()).norm(); };
+  EXPECT_GT(error(0), 0.05 * systems.back().norm());
+  for (int time = 0; time < 3; ++time) EXPECT_LT(error(time + 1), 0.95 * error(time)) << time;
+  EXPECT_LT(error(8), 0.3 * error(0));
+}
+
 INSTANTIATE_TEST_SUITE_P(Bodies, BundleFactorOf, testing::Bool());
 
 }  // namespace
