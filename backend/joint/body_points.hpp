@@ -18,7 +18,7 @@ struct LandmarkTrack {
     FrameId frame;
     Eigen::Vector3f uvd_px, sigma_px;
   };
-  std::vector<View> views;  // oldest first
+  std::vector<View> views;                     // oldest first
   std::optional<LandmarkEstimate> estimate{};  // when it was fitted last
 };
 
