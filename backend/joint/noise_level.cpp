@@ -33,8 +33,10 @@ void NoiseLevel::learn(const ResidualLevels& levels) {
 
 double NoiseLevel::designEffect() const {
   constexpr double kPrior = 300;  // squared residuals that are independent
+  constexpr double kMostCorrelation = 0.8;
   const double all = kPrior + residual_sum_, common = (kPrior + sums_.common_sum) / all;
-  return std::max(1.0, common) * (1 + std::max(0.0, sums_.successive_sum / all));
+  const double correlation = std::clamp(sums_.successive_sum / all, 0.0, kMostCorrelation);
+  return std::max(1.0, common) * (1 + correlation) / (1 - correlation);
 }
 
 double NoiseLevel::uv() const {

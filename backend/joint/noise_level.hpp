@@ -15,9 +15,8 @@ class NoiseLevel {
   double uv() const;
   double d() const;
   /// By how much variances grow as residuals are not independent, at least 1: by their common causes in one half of the
-  /// image (design effect of cluster samples: Kish, Survey Sampling, 1965), and by 1 + c with the correlation c of
-  /// successive ones. An autoregressive process has (1 + c) / (1 - c); but errors that persist move the landmark rather
-  /// than the body.
+  /// image (design effect of cluster samples: Kish, Survey Sampling, 1965), and by (1 + c) / (1 - c) with the
+  /// correlation c of successive ones (autoregressive process of first order).
   double designEffect() const;
 
  private:

@@ -25,6 +25,12 @@ int firstRowOf(VariableId v, const Clique& clique, const FactorGraph& graph) {
   return row;
 }
 
+/// A quadratic's term in a vector stays right wherever the vector goes. It may be in very many of them, as an offset
+/// that all measurements share is.
+bool entersLinearly(VariableId v, const Factor& factor, const FactorGraph& graph) {
+  return graph.isVector(v) && factor.form() == Factor::Form::kInformation;
+}
+
 }  // namespace
 
 void FluidRelinearization::compareModels(std::span<const VariableId> moved) {
@@ -37,7 +43,7 @@ void FluidRelinearization::compareModels(std::span<const VariableId> moved) {
     if (graph_.mismatchBound(v) < kComparedShare * tolerance) continue;
     graph_.markCompared(v);
     for (const FactorId f : graph_[v].factors) {
-      if (graph_.isVector(v) && graph_.factor(f).form() == Factor::Form::kInformation) continue;
+      if (entersLinearly(v, graph_.factor(f), graph_)) continue;
       if (!compared_.insert(f.value)) continue;
       const double norm = graph_.mismatch(f).norm;
       if (norm > tolerance) off_.push_back({f, norm});
@@ -81,10 +87,13 @@ void FluidRelinearization::clear() {
 
 /// The variables of the factors whose Jacobians drifted become stale.
 void FluidRelinearization::markDrifted() {
-  for (const OffModel& off : off_)
-    if (graph_.drift(off.factor) + off.mismatch > params_.jacobian_drift_sigmas)
-      for (const VariableId v : graph_.factor(off.factor).variables())
+  for (const OffModel& off : off_) {
+    if (graph_.drift(off.factor) + off.mismatch <= params_.jacobian_drift_sigmas) continue;
+    const Factor& factor = graph_.factor(off.factor);
+    for (const VariableId v : factor.variables())
+      if (!entersLinearly(v, factor, graph_))
         markStale(v, std::max(kDriftedShare * params_.relinearize_rad, graph_.turnSinceLinearization(v)));
+  }
 }
 
 /// The budget bounds this; what an update leaves of it is saved while the worst variable costs more.

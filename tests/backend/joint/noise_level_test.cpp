@@ -48,7 +48,7 @@ TEST(NoiseLevel, SeesWhatResidualsHaveInCommon) {
   };
   EXPECT_DOUBLE_EQ(effectOf(2800, -100), 1);
   EXPECT_NEAR(effectOf(15000, 0), 5, 0.2);
-  EXPECT_NEAR(effectOf(3000, 1200), 1.4, 0.02);
+  EXPECT_NEAR(effectOf(3000, 1200), 1.4 / 0.6, 0.07);
 }
 
 TEST(NoiseLevel, OfAnotherBodyBeginsAsThatOfTheImageAndLearnsItsOwn) {
