@@ -8,6 +8,8 @@ namespace {
 
 constexpr int kBands = 5;  // at distances 0, 1, 2 to 3, 4 to 7, 8 to 15; what is farther away comes first
 constexpr int kFarthest = (1 << (kBands - 1)) - 1;
+/// What so many factors share (an offset of all measurements) makes no two of them neighbors.
+constexpr std::size_t kShared = 100;
 
 }  // namespace
 
@@ -26,7 +28,8 @@ std::span<const VariableId> AffectedOrder::operator()(std::span<const VariableId
   return order_;
 }
 
-/// Breadth first from the touched variables through the whole graph, until all variables at hand are reached.
+/// Breadth first from the touched variables through the whole graph, but not through what very many factors share,
+/// until all variables at hand are reached.
 void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
   const int last = static_cast<int>(variables_.size()) - 1;  // CCOLAMD wants groups below the number of columns
   group_.assign(variables_.size(), 0);
@@ -47,6 +50,7 @@ void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
   for (std::size_t i = 0; i < queue_.size() && missing > 0; ++i) {
     const int distance = distance_[queue_[i].value];
     if (distance == kFarthest) break;
+    if (graph_[queue_[i]].factors.size() > kShared) continue;
     for (const FactorId f : graph_[queue_[i]].factors)
       for (const VariableId neighbor : graph_.factor(f).variables()) reach(neighbor, distance + 1);
   }

@@ -59,6 +59,7 @@ int BodyPoints::cellOf(const Candidate& candidate) const {
 
 /// Fills up the landmarks: the longest tracks first, cell by cell of the image in turn.
 void BodyPoints::choose() {
+  if (candidates_.empty()) return;
   std::vector<std::vector<Candidate*>> cells(kColumns * kRows);
   std::vector<int> held(kColumns * kRows, 0);
   int left = params_.max_landmarks;

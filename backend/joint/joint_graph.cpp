@@ -78,11 +78,10 @@ void JointGraph::add(const FrameMeasurements& measurements) {
 void JointGraph::addObjects(const FrameMeasurements& measurements) {
   for (const ObjectObservation& seen : measurements.objects)
     if (frames_.contains(seen.frame) && isFinite(seen.T_cam_body)) addObservation(seen);
-  for (const TrackId id : measurements.ended)
-    if (const auto it = objects_.find(id); it != objects_.end())
-      it->second.points.points.observe(measurements.frame, {});
   if (objects_.empty()) return;
   for (auto& [id, object] : objects_) {
+    const bool seen_now = object.records.rbegin()->first == measurements.frame;
+    if (!seen_now) object.points.points.observe(measurements.frame, {});  // its tracks end
     settleMotion(object, measurements.frame);
     addPoints(object.points, &object);
   }

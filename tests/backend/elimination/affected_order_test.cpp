@@ -115,6 +115,21 @@ TEST(AffectedOrder, DistancesGoThroughTheWholeGraph) {
   }
 }
 
+/// As an offset that all measurements share does not bring them nearer to each other.
+TEST(AffectedOrder, DistancesDoNotGoThroughWhatVeryManyFactorsShare) {
+  Scene scene(3, 200);
+  const std::vector touched{scene.variables.back()};
+  auto distance = distances(scene, touched);
+  const VariableId shared = scene.world.addVariable(scene.graph);
+  for (const VariableId v : scene.variables) scene.graph.addFactor(scene.world.between(shared, v, true));
+  distance.resize(scene.graph.slots(), 0);
+  scene.removed.variables.push_back(shared);
+  scene.removed.factors = scene.graph.factors();
+  const auto order = scene.order(std::vector{touched.front(), shared});
+  for (std::size_t i = 1; i < order.size(); ++i)
+    EXPECT_GE(bandOf(distance[order[i - 1].value]), bandOf(distance[order[i].value])) << "position " << i;
+}
+
 TEST(AffectedOrder, DoesNotDependOnCallsBefore) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Scene used(seed, 40), fresh(seed, 40);

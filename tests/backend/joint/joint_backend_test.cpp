@@ -169,5 +169,26 @@ TEST(JointBackend, FinalsOfAShortWindowAreThoseOfABatchSolution) {
   EXPECT_NEAR(test::objectError_m(finals, once.truth()), test::objectError_m(best, again.truth()), 0.02);
 }
 
+/// Objects that nobody tells of any more, neither that they are seen nor that they ended.
+TEST(JointBackend, ObjectsThatAreGoneLeaveTheWindow) {
+  constexpr int kSeen = 25;
+  PointDrive drive(2, kStreet);
+  ASSERT_GT(drive.options().frames, 2 * kSeen);
+  JointParams params;
+  params.window_frames = kSeen;
+  JointBackend backend(params, kPointRig);
+  std::size_t seen = 0, published = 0;
+  for (int i = 0; i < drive.options().frames; ++i) {
+    FrameMeasurements measured = *drive.measure(i);
+    if (i >= kSeen) measured.objects.clear();
+    seen += measured.objects.size();
+    const auto estimates = backend(std::make_shared<const FrameMeasurements>(std::move(measured)));
+    EXPECT_TRUE(estimates->problems.empty()) << "frame " << i << ": " << estimates->problems.front();
+    for (const FrameEstimate& frame : estimates->finals) published += frame.objects.size();
+  }
+  for (const FrameEstimate& frame : backend.finish()) EXPECT_TRUE(frame.objects.empty());
+  EXPECT_EQ(published, seen);
+}
+
 }  // namespace
 }  // namespace motorcade
