@@ -8,7 +8,7 @@
 namespace motorcade {
 namespace {
 
-constexpr double kHeldSigma_px = 1e-3;    // of the offset of a rig that is taken as calibrated
+constexpr double kHeldSigma_px = 1e-5;    // of a held offset: very long drives do not move it either
 constexpr double kClearSigma_px = 0.1;    // of an observed offset, from which on it is looked at
 constexpr double kDistortion_px = 0.5;    // what looks like an offset up to here may be distortion
 constexpr double kOffsetStep_px = 0.1;    // of the offset, after which landmarks are eliminated anew

@@ -72,9 +72,10 @@ void Retirement::retirePart(const Part& part, std::span<const VariableId> gone) 
   std::vector<VariableId> leaving, staying;
   for (const VariableId v : removed_.variables) (contains(gone, v) ? leaving : staying).push_back(v);
 
-  const std::vector<FactorId> factors = factorsOf(leaving);
-  std::vector<FactorId> kept = removedFactorsWithout(factors);
+  std::vector<FactorId> factors = factorsOf(leaving);
   const std::vector<VariableId> neighbors = neighborsOf(graph_, factors, leaving);
+  includeEarlierPriors(neighbors, factors);
+  std::vector<FactorId> kept = removedFactorsWithout(factors);
   auto knowledge = tree_.marginal(leaving, neighbors, factors);
   for (const FactorId f : factors) graph_.removeFactor(f);
   forget(leaving);
@@ -85,6 +86,18 @@ void Retirement::retirePart(const Part& part, std::span<const VariableId> gone) 
     if (prior && !inside) tree_.addFactor(tree_.ownerOf(graph_.factor(*prior)), *prior);
   }
   eliminateAgain(part, staying, kept);
+}
+
+/// What was left on the same variable before: of something that all share, priors would grow without end.
+void Retirement::includeEarlierPriors(std::span<const VariableId> neighbors, std::vector<FactorId>& factors) {
+  if (neighbors.size() != 1) return;
+  for (const FactorId f : graph_[neighbors.front()].factors) {
+    const Factor& factor = graph_.factor(f);
+    if (factor.variables().size() != 1 || !dynamic_cast<const MarginalFactor*>(&factor)) continue;
+    if (tree_.cliqueOf(neighbors.front()) >= 0) tree_.removeFactor(tree_.ownerOf(factor), f);
+    factors.push_back(f);
+  }
+  sortUnique(factors);
 }
 
 /// The variables of a part that stay; what was below the part hangs below it again.

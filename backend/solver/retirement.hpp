@@ -30,6 +30,7 @@ class Retirement {
 
   std::vector<Part> partsWith(std::span<const VariableId> variables) const;
   void retirePart(const Part& part, std::span<const VariableId> gone);
+  void includeEarlierPriors(std::span<const VariableId> neighbors, std::vector<FactorId>& factors);
   void eliminateAgain(const Part& part, const std::vector<VariableId>& order, const std::vector<FactorId>& factors);
   std::vector<FactorId> factorsOf(std::span<const VariableId> variables) const;
   std::vector<FactorId> removedFactorsWithout(const std::vector<FactorId>& factors) const;

@@ -4,6 +4,7 @@
 
 #include "backend/solver/incremental_solver.hpp"
 #include "tests/backend/dense_system.hpp"
+#include "tests/backend/random_factors.hpp"
 #include "tests/backend/random_graphs.hpp"
 
 namespace motorcade {
@@ -12,6 +13,7 @@ namespace {
 using test::differenceFromBatch;
 using test::kExact;
 using test::MultibodyGraph;
+using test::RandomWorld;
 using test::settle;
 
 constexpr std::size_t kWindow = 12;
@@ -108,6 +110,40 @@ TEST(Retirement, AnyVariablesMayLeaveWithoutChangingTheOthers) {
     ASSERT_TRUE(covariance && after);
     EXPECT_LT((*after - *covariance).cwiseAbs().maxCoeff(), 1e-8 * covariance->cwiseAbs().maxCoeff())
         << "seed " << seed;
+  }
+}
+
+/// As an offset of all measurements is left alone by every object that goes.
+TEST(Retirement, WhatManyLeaveOnOneVariableStaysOneFactor) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    IncrementalSolver solver(kExact), same(kExact);
+    RandomWorld world(seed, RandomWorld::Kind::kSpace), world_again(seed, RandomWorld::Kind::kSpace);
+    const auto begin = [](IncrementalSolver& s, RandomWorld& w) {
+      const VariableId shared = w.addVariable(s);
+      s.addFactor(w.prior(shared));
+      return shared;
+    };
+    const VariableId shared = begin(solver, world), shared_again = begin(same, world_again);
+    for (int i = 0; i < 30; ++i) {
+      const auto add = [](IncrementalSolver& s, RandomWorld& w, VariableId to) {
+        const VariableId v = w.addVariable(s);
+        s.addFactor(w.prior(v));
+        s.addFactor(w.between(to, v, true));
+        return v;
+      };
+      const VariableId v = add(solver, world, shared);
+      add(same, world_again, shared_again);
+      settle(solver);
+      solver.retire(std::vector{v});
+    }
+    settle(solver);
+    settle(same);
+    EXPECT_EQ(solver.graph().factorCount(), 2U);  // its own prior, and that of all others
+    EXPECT_LT(local(same.estimate(shared_again), solver.estimate(shared)).norm(), 1e-3) << "seed " << seed;
+    const auto covariance = solver.jointCovariance(std::vector{shared});
+    const auto exact = same.jointCovariance(std::vector{shared_again});
+    ASSERT_TRUE(covariance && exact);
+    EXPECT_LT((*covariance - *exact).cwiseAbs().maxCoeff(), 0.01 * exact->cwiseAbs().maxCoeff()) << "seed " << seed;
   }
 }
 
