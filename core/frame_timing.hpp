@@ -17,14 +17,17 @@ enum class Stage {
   kOpticalFlow,
   kSceneFlowSegmentation,
   kTracking,
-  kIncrementalOptimization
+  kIncrementalOptimization,
+  kObjectShapes
 };
-inline constexpr std::size_t kStageCount = 6;
+inline constexpr std::size_t kStageCount = 7;
 inline constexpr std::array<std::string_view, kStageCount> kStageNames{
-    "prepare", "stereo matching", "optical flow", "scene flow segmentation", "tracking", "incremental optimization"};
+    "prepare",  "stereo matching",          "optical flow", "scene flow segmentation",
+    "tracking", "incremental optimization", "object shapes"};
 /// The same as one word, for columns and keys of files.
 inline constexpr std::array<std::string_view, kStageCount> kStageKeys{
-    "prepare", "stereo_matching", "optical_flow", "scene_flow_segmentation", "tracking", "incremental_optimization"};
+    "prepare",  "stereo_matching",          "optical_flow", "scene_flow_segmentation",
+    "tracking", "incremental_optimization", "object_shapes"};
 
 inline std::string_view nameOf(Stage stage) { return kStageNames[static_cast<std::size_t>(stage)]; }
 

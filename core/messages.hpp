@@ -46,6 +46,27 @@ struct Box {
 
 enum class ObjectState { kMoving, kStopped, kPredicted };
 
+/// What an object is, as far as its size, height and speed tell.
+enum class ObjectKind { kUnknown, kCar, kLargeVehicle, kTwoWheeler, kPedestrian };
+
+/// The cuboid around an object, along its body's axes, with its bottom on the ground.
+struct ObjectBox {
+  Eigen::Vector3d center_body = Eigen::Vector3d::Zero();
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  // length, width, height
+  Eigen::Vector3d center_sigma_m = Eigen::Vector3d::Zero(), size_sigma_m = Eigen::Vector3d::Zero();
+  ObjectKind kind = ObjectKind::kUnknown;
+  double kind_probability = 0;
+};
+
+/// The pixels of the left image that show an object: `width` by `height` cells of `cell_px` pixels each way, the first
+/// with its upper left corner at (left_px, top_px).
+struct ObjectMask {
+  TrackId track;
+  int left_px = 0, top_px = 0, cell_px = 1, width = 0, height = 0;
+  std::vector<std::uint8_t> inside;  // row by row, 1 where the cell shows the object
+  bool at(int column, int row) const { return inside[static_cast<std::size_t>(row) * width + column] != 0; }
+};
+
 /// A followed point in one stereo pair: left pixel and disparity as measured, without any disparity offset.
 struct PointMeasurement {
   PointId point;
@@ -107,6 +128,7 @@ struct ObjectEstimate {
   int points = 0;
   Box box;
   std::optional<Matrix6d> covariance;  // of T_cam_body of the same frame
+  std::optional<ObjectBox> cuboid{};
 };
 
 /// A camera's covariance is that of its motion over this many frames: the drift of an absolute pose has no bound.
@@ -138,6 +160,7 @@ struct Estimates {
   std::vector<FrameEstimate> finals;  // frames that left the window with this update, oldest first
   SolverCounters counters;
   std::vector<std::string> problems{};  // sentences for the log: what was left out or dropped, and why
+  std::vector<ObjectMask> masks{};      // of the online estimate's objects, those whose outline was looked for
 };
 using EstimatesPtr = std::shared_ptr<const Estimates>;
 

@@ -5,6 +5,7 @@
 
 #include "io/errors.hpp"
 #include "io/number_text.hpp"
+#include "io/object_row.hpp"
 #include "io/text_file.hpp"
 #include "io/trajectory.hpp"
 
@@ -13,13 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kObjectsHeader =
-    "frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,right,"
-    "bottom";
 constexpr std::string_view kCovariancesHeaderStart = "frame,track_id";
 constexpr std::array kStatuses = {FrameStatus::kGood, FrameStatus::kLost, FrameStatus::kRejected,
                                   FrameStatus::kDropped};
-constexpr std::array kStates = {ObjectState::kMoving, ObjectState::kStopped, ObjectState::kPredicted};
 
 fs::path preparedFolder(const fs::path& folder) {
   std::error_code error;
@@ -33,31 +30,6 @@ fs::path preparedFolder(const fs::path& folder) {
     throw OutputError((folder / "summary.json").string() +
                       ": an earlier summary cannot be removed: " + error.message());
   return folder;
-}
-
-std::string objectLine(FrameId frame, const ObjectEstimate& object) {
-  std::string line;
-  line.reserve(320);
-  appendInteger(line, frame.value);
-  line += ',';
-  appendInteger(line, object.track.value);
-  line += ',';
-  line += stateName(object.state);
-  const auto add = [&](double value, int decimals) {
-    line += ',';
-    appendFixed(line, value, decimals);
-  };
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) add(object.T_world_body.rotation()(row, column), 9);
-    add(object.T_world_body.translation()[row], 6);
-  }
-  for (int axis = 0; axis < 3; ++axis) add(object.velocity_world_mps[axis], 4);
-  add(object.speed_sigma_mps, 4);
-  line += ',';
-  appendInteger(line, object.points);
-  for (const double edge_px : {object.box.left_px, object.box.top_px, object.box.right_px, object.box.bottom_px})
-    add(edge_px, 2);
-  return line;
 }
 
 std::string covarianceLine(FrameId frame, TrackId track, const Matrix6d& covariance) {
@@ -142,31 +114,14 @@ std::vector<TextLine> readTable(const fs::path& file, std::string_view header_st
   return lines;
 }
 
-template <class Value, std::size_t N>
-Value byName(FieldReader& fields, std::string_view what, const std::array<Value, N>& values,
-             std::string_view (*name)(Value)) {
-  const std::string_view word = fields.word(what);
-  const auto found = std::ranges::find(values, word, name);
-  if (found == values.end()) fields.fail("'" + std::string(word) + "' is no " + std::string(what));
-  return *found;
-}
-
 std::vector<RunFolder::ObjectRow> readObjects(const fs::path& file) {
   std::vector<RunFolder::ObjectRow> rows;
   if (!fs::exists(file)) return rows;
-  for (const auto& line : readTable(file, kObjectsHeader)) {
+  for (const auto& line : readTable(file, kObjectsHeaderStart)) {
     FieldReader fields(file, line, ',');
     RunFolder::ObjectRow row;
     row.frame.value = fields.integer("frame");
-    ObjectEstimate& object = row.object;
-    object.track.value = fields.integer("track_id");
-    object.state = byName(fields, "state", kStates, stateName);
-    object.T_world_body = fields.pose("T_world_body");
-    for (int axis = 0; axis < 3; ++axis) object.velocity_world_mps[axis] = fields.number("velocity");
-    object.speed_sigma_mps = fields.number("speed_sigma_mps");
-    object.points = static_cast<int>(fields.integer("points"));
-    for (double* edge_px : {&object.box.left_px, &object.box.top_px, &object.box.right_px, &object.box.bottom_px})
-      *edge_px = fields.number("box");
+    row.object = readObject(fields);
     fields.expectEnd();
     rows.push_back(std::move(row));
   }
@@ -199,7 +154,7 @@ std::vector<RunFolder::FrameRow> readFrames(const fs::path& file) {
     FieldReader fields(file, line, ',');
     RunFolder::FrameRow row;
     row.frame.value = fields.integer("frame");
-    row.status = byName(fields, "status", kStatuses, statusName);
+    row.status = fields.byName("status", kStatuses, statusName);
     row.stamp.ns = fields.integer("stamp_ns");
     row.latency_ms = fields.number("latency_ms");
     rows.push_back(row);
@@ -232,18 +187,6 @@ std::string_view statusName(FrameStatus status) {
       return "dropped";
   }
   return "good";
-}
-
-std::string_view stateName(ObjectState state) {
-  switch (state) {
-    case ObjectState::kMoving:
-      return "moving";
-    case ObjectState::kStopped:
-      return "stopped";
-    case ObjectState::kPredicted:
-      return "predicted";
-  }
-  return "moving";
 }
 
 RunFolderWriter::Files::Files(const fs::path& folder, const std::string& kind)

@@ -42,7 +42,6 @@ class RunFolderWriter {
 };
 
 std::string_view statusName(FrameStatus status);
-std::string_view stateName(ObjectState state);
 
 /// A run folder as read back; a run that was killed has fewer rows and no summary.
 struct RunFolder {

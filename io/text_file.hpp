@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -35,6 +37,14 @@ class FieldReader {
   std::string_view word(std::string_view what);
   double number(std::string_view what);
   std::int64_t integer(std::string_view what);
+  /// The one of `values` that has this name.
+  template <class Value, std::size_t N>
+  Value byName(std::string_view what, const std::array<Value, N>& values, std::string_view (*name)(Value)) {
+    const std::string_view text = word(what);
+    const auto found = std::ranges::find(values, text, name);
+    if (found == values.end()) fail("'" + std::string(text) + "' is no " + std::string(what));
+    return *found;
+  }
   /// Twelve numbers, row by row: R | t. The rotation must be one, and is put back onto SO(3) from its printed digits.
   SE3 pose(std::string_view what);
   bool atEnd() const { return rest_.empty() && !owes_field_; }

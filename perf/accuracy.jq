@@ -36,6 +36,14 @@ def positions_row:
    re("aligned"), re("world_offset_removed"), re("as_seen_offset_removed"),
    "\(largest(0) | fixed(2)) / \(largest(1) | fixed(2)) / \(largest(2) | fixed(2))"];
 
+def boxes_row:
+  def of(value): mean(.final.boxes_within_30m | select(.rows > 0) | value);
+  def online(value): mean(.online.boxes_within_30m | select(.rows > 0) | value);
+  def error(key; n): of(select(.rows_with_cuboid > 0) | .[key].mean) | fixed(n);
+  ["\(of(.iou_2d) | fixed(2)) / \(online(.iou_2d) | fixed(2))", (of(.over_half_2d) | percent(0)),
+   "\(of(.iou_bird) | fixed(2)) / \(online(.iou_bird) | fixed(2))", (of(.iou_3d) | fixed(2)),
+   error("center_m"; 2), error("heading_deg"; 1), error("length_m"; 2), error("width_m"; 2), error("height_m"; 2)];
+
 # Without the truth's mounting error where it may have one.
 def covariances_row:
   def camera: .covariance | .camera_mounted // .camera | select(.samples > 0);
@@ -48,5 +56,6 @@ def covariances_row:
  elif .[0].final.detection == null and $table != "covariances" then ["no labels"]
  elif $table == "objects" then objects_row
  elif $table == "positions" then positions_row
+ elif $table == "boxes" then boxes_row
  else covariances_row end) as $row |
 "| \(([$name, $backend] + $row) | map(tostring) | join(" | ")) |"

@@ -94,4 +94,6 @@ table objects drive back-end "ME_t m final / online" "ME_r deg final / online" "
   "30 to 50 m" "false rows" "id switches"
 table positions drive back-end objects "ATE m aligned" "offset removed" "as seen, offset removed" "ARE deg" "RE aligned" \
   "RE offset removed" "RE as seen, offset removed" "drift of the origin m along / up / across"
+table boxes drive back-end "IoU in the image final / online" "over .5" "IoU from above final / online" "IoU in 3D" "center m" "heading deg" \
+  "length m" "width m" "height m"
 table covariances drive back-end "camera NEES" "inside 95 %" "rotation over ten frames inside 95 %" "objects NEES" "inside 95 %"

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -81,6 +82,20 @@ void drawTag(Canvas& canvas, const Vector2d& corner, const std::string& text, Co
   canvas.text(at, text, {12, 14, 18});
 }
 
+/// The edges of an object's cuboid.
+void drawCuboid(Canvas& canvas, const DrawnRun& run, const SE3& T_cam_body, const ObjectBox& box, Color color) {
+  std::array<std::optional<Vector2d>, 8> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Vector3d to_corner(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5);
+    const auto pixels = projected({T_cam_body * (box.center_body + to_corner.cwiseProduct(box.size_m))}, run.camera);
+    if (!pixels.empty()) corners[i] = pixels.front();
+  }
+  for (int from = 0; from < 8; ++from)
+    for (const int axis : {1, 2, 4})
+      if (const int to = from | axis; to != from && corners[from] && corners[to])
+        canvas.line(*corners[from], *corners[to], color, 1.5);
+}
+
 void drawObjectInImage(Canvas& canvas, const DrawnRun& run, std::size_t frame, const ObjectEstimate& object) {
   const Color color = trackColor(object.track);
   const SE3 T_cam_world = run.T_world_cam[frame].inverse();
@@ -93,7 +108,10 @@ void drawObjectInImage(Canvas& canvas, const DrawnRun& run, std::size_t frame, c
         projected({T_cam_world * p_world, T_cam_world * (p_world + object.velocity_world_mps)}, run.camera);
     if (ends.size() == 2) canvas.arrow(ends[0], ends[1], color, 3);
   }
-  drawBox(canvas, object, color);
+  if (object.cuboid)
+    drawCuboid(canvas, run, T_cam_world * object.T_world_body, *object.cuboid, color);
+  else
+    drawBox(canvas, object, color);
 }
 
 // ---- from above ----
@@ -122,6 +140,9 @@ std::vector<Vector2d> mapped(const std::vector<Vector3d>& points_world, const SE
   for (const auto& p_world : points_world) points.push_back(map(T_cam_world * p_world));
   return points;
 }
+
+/// Stands for what a run without cuboids does not know.
+const ObjectBox kUsualCar{.size_m = {4.2, 1.8, 1.5}};
 
 /// A car's outline on the ground, its center at the pose's origin.
 std::vector<Vector2d> footprint(const SE3& T_cam_box, const Vector3d& across, double length_m, double width_m,
@@ -172,10 +193,16 @@ void drawObjectFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame,
   const Color color = trackColor(object.track);
   const SE3 T_cam_world = run.T_world_cam[frame].inverse();
   canvas.polyline(mapped(wayOf(run, object.track, frame), T_cam_world, map), color, 2.5);
-  constexpr double kLength_m = 4.2, kWidth_m = 1.8;  // of a usual car: the run does not measure sizes
-  const SE3 T_cam_body = T_cam_world * object.T_world_body;
+  const ObjectBox box = object.cuboid.value_or(kUsualCar);
+  const SE3 T_cam_body = T_cam_world * object.T_world_body,
+            T_cam_box = T_cam_body * SE3(Eigen::Matrix3d::Identity(), box.center_body);
   const double opacity = object.state == ObjectState::kPredicted ? 0.35 : 0.9;
-  canvas.fillPolygon(footprint(T_cam_body, Vector3d::UnitY(), kLength_m, kWidth_m, map), color, opacity);
+  const auto outlined = [&](double sigmas) {
+    const Vector3d grown_m = box.size_m + 2 * sigmas * (box.center_sigma_m + 0.5 * box.size_sigma_m);
+    return footprint(T_cam_box, Vector3d::UnitY(), grown_m.x(), grown_m.y(), map);
+  };
+  canvas.fillPolygon(outlined(0), color, opacity);
+  canvas.outline(outlined(1), color, 1, 0.5);
   const Vector3d p_world = object.T_world_body.translation();
   canvas.arrow(map(T_cam_world * p_world), map(T_cam_world * (p_world + object.velocity_world_mps)), color, 2.5);
   canvas.text(map(T_cam_body.translation()) + Vector2d(-8, 14),
@@ -196,7 +223,8 @@ void drawEarlierTracks(Canvas& canvas, const DrawnRun& run, std::size_t frame, c
 }
 
 void drawLegend(Canvas& canvas, const DrawnRun& run, std::size_t frame) {
-  canvas.text({12, 10}, format("frame %lld", static_cast<long long>(run.first_frame + frame)), kText);
+  canvas.text({12, 10}, format("frame %lld", static_cast<long long>(run.first_frame) + static_cast<long long>(frame)),
+              kText);
   canvas.text({12, 32}, format("camera %.1f m/s", cameraSpeed_mps(run, frame)), kText);
   const auto objects = objectsAt(run, frame);
   canvas.text(

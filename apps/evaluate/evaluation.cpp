@@ -60,7 +60,9 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
                       .objects = objectErrors(frames),
                       .mean_positions = {},
                       .motion = motionErrors(frames),
-                      .detection = detectionErrors(frames)};
+                      .detection = detectionErrors(frames),
+                      .boxes_within_30m = boxErrors(frames, 0, 30),
+                      .boxes_from_30_to_50m = boxErrors(frames, 30, 50)};
   std::vector<PositionErrors> positions;
   for (const auto& object : kind.objects)
     if (object.positions) positions.push_back(*object.positions);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/evaluate/box_measures.hpp"
 #include "apps/evaluate/covariance_measures.hpp"
 #include "apps/evaluate/object_measures.hpp"
 #include "apps/evaluate/run_comparison.hpp"
@@ -34,6 +35,7 @@ struct KindEvaluation {
   MeanPositionErrors mean_positions;
   MotionErrors motion;
   DetectionErrors detection;
+  BoxErrors boxes_within_30m, boxes_from_30_to_50m;
 };
 
 /// (ATE_baseline - ATE_ours) / ATE_baseline of the camera's final path, SE(3) aligned RMSE.

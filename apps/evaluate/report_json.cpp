@@ -111,6 +111,20 @@ Json jsonOf(const ObjectErrors& object) {
           {"motion", jsonOf(object.motion)}};
 }
 
+Json jsonOf(const BoxErrors& boxes) {
+  return {{"rows", boxes.rows},
+          {"rows_with_cuboid", boxes.rows_with_cuboid},
+          {"iou_2d", boxes.iou_2d},
+          {"over_half_2d", boxes.over_half_2d},
+          {"iou_bird", boxes.iou_bird},
+          {"iou_3d", boxes.iou_3d},
+          {"center_m", jsonOf(boxes.center_m)},
+          {"heading_deg", jsonOf(boxes.heading_deg)},
+          {"length_m", jsonOf(boxes.length_m)},
+          {"width_m", jsonOf(boxes.width_m)},
+          {"height_m", jsonOf(boxes.height_m)}};
+}
+
 Json jsonOf(const KindEvaluation& kind, bool with_objects) {
   Json json = {
       {"frames", kind.frames}, {"camera", jsonOf(kind.camera)}, {"camera_mounted", jsonOf(kind.camera_mounted)}};
@@ -120,6 +134,8 @@ Json jsonOf(const KindEvaluation& kind, bool with_objects) {
   json["objects_mean"] = jsonOf(kind.mean_positions);
   json["motion"] = jsonOf(kind.motion);
   json["detection"] = jsonOf(kind.detection);
+  json["boxes_within_30m"] = jsonOf(kind.boxes_within_30m);
+  json["boxes_from_30_to_50m"] = jsonOf(kind.boxes_from_30_to_50m);
   return json;
 }
 

@@ -108,6 +108,25 @@ void printDetection(std::string& text, const Evaluation& e) {
   print(text, "  (online: recall from a label's fifth visible frame on)\n");
 }
 
+void printBoxLine(std::string& text, const char* kind, const BoxErrors& boxes) {
+  if (boxes.rows == 0) return;
+  print(text, "  %-18s %5d  %5.2f %5.1f %%  %5.2f  %5.2f", kind, boxes.rows, boxes.iou_2d, 100 * boxes.over_half_2d,
+        boxes.iou_bird, boxes.iou_3d);
+  print(text, "  %6.2f  %6.2f  %6.2f  %6.2f  %6.2f\n", boxes.center_m.mean, boxes.heading_deg.mean, boxes.length_m.mean,
+        boxes.width_m.mean, boxes.height_m.mean);
+}
+
+void printBoxes(std::string& text, const Evaluation& e) {
+  print(text,
+        "\nboxes               rows  IoU in the image, over .5, from above, 3D; mean errors: center m, heading deg, "
+        "length, "
+        "width, height m\n");
+  printBoxLine(text, "final to 30 m", e.final.boxes_within_30m);
+  printBoxLine(text, "final 30 to 50 m", e.final.boxes_from_30_to_50m);
+  printBoxLine(text, "online to 30 m", e.online.boxes_within_30m);
+  printBoxLine(text, "online 30 to 50 m", e.online.boxes_from_30_to_50m);
+}
+
 void printCovarianceLine(std::string& text, const char* what, const CovarianceErrors& errors) {
   if (errors.samples == 0) return;
   print(text, "  %-26s %7d", what, errors.samples);
@@ -178,6 +197,7 @@ std::string tableOf(const Evaluation& evaluation) {
   if (!evaluation.object_source.empty()) {
     printObjects(text, evaluation.final);
     printDetection(text, evaluation);
+    printBoxes(text, evaluation);
   }
   printRest(text, evaluation);
   return text;

@@ -35,6 +35,7 @@ enum Edge : std::size_t {
   kFlowToSegmentation,
   kToTracking,
   kToOptimization,
+  kToShapes,
   kToPublish,
   kEdges
 };
@@ -45,7 +46,8 @@ constexpr std::array<const char*, kEdges> kEdgeNames{"admit>prepare",
                                                      "optical_flow>scene_flow_segmentation",
                                                      "scene_flow_segmentation>tracking",
                                                      "tracking>incremental_optimization",
-                                                     "incremental_optimization>publish"};
+                                                     "incremental_optimization>object_shapes",
+                                                     "object_shapes>publish"};
 
 constexpr auto kSequence = [](const Job* job) { return job->sequence; };
 constexpr auto kSequenceOfPair = [](const JobPair& pair) { return std::get<0>(pair)->sequence; };
@@ -118,7 +120,9 @@ void FlowGraph::Impl::run(std::promise<void>& wired) {
   InOrder tracking_order(graph, kSequence);
   Node tracking(graph, flow::serial, stage({kToTracking}, &StageRunner::trackObjects, {kToOptimization}));
   InOrder optimization_order(graph, kSequence);
-  Node incremental_optimization(graph, flow::serial, stage({kToOptimization}, &StageRunner::optimize, {kToPublish}));
+  Node incremental_optimization(graph, flow::serial, stage({kToOptimization}, &StageRunner::optimize, {kToShapes}));
+  InOrder shapes_order(graph, kSequence);
+  Node object_shapes(graph, flow::serial, stage({kToShapes}, &StageRunner::shapeObjects, {kToPublish}));
   InOrder publish_order(graph, kSequence);
   flow::function_node<Job*, flow::continue_msg> publish(graph, flow::serial, [this](Job* job) { this->publish(*job); });
 
@@ -133,7 +137,9 @@ void FlowGraph::Impl::run(std::promise<void>& wired) {
   flow::make_edge(tracking_order, tracking);
   flow::make_edge(tracking, optimization_order);
   flow::make_edge(optimization_order, incremental_optimization);
-  flow::make_edge(incremental_optimization, publish_order);
+  flow::make_edge(incremental_optimization, shapes_order);
+  flow::make_edge(shapes_order, object_shapes);
+  flow::make_edge(object_shapes, publish_order);
   flow::make_edge(publish_order, publish);
 
   first_node_ = &prepare;

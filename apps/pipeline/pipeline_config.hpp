@@ -9,6 +9,7 @@
 #include "frontend/matching/optical_flow.hpp"
 #include "frontend/matching/stereo_matcher.hpp"
 #include "frontend/segmentation/scene_flow_segmentation.hpp"
+#include "frontend/shape/object_shapes.hpp"
 #include "frontend/tracking/object_tracker.hpp"
 
 namespace motorcade {

@@ -40,6 +40,7 @@ PipelineResult Publisher::resultOf(Job& job) {
   if (!seen_by_backend) result.online.T_world_cam = gaps_.predict(job.timing.stamp);
   gaps_.published(result.online, seen_by_backend);
   result.finals = gaps_.completed(job.estimates->finals);
+  result.masks = job.estimates->masks;
   result.counters = job.estimates->counters;
   result.problem = takeProblems(job);
   return result;

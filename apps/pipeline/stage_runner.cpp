@@ -90,6 +90,15 @@ void StageRunner::optimize(Job& job) {
   for (const std::string& problem : job.estimates->problems) log_(LogLevel::kWarning, job.name() + ": " + problem);
 }
 
+void StageRunner::shapeObjects(Job& job) {
+  job.estimates = attempt(
+      job, Stage::kObjectShapes,
+      [&] {
+        return stages_.object_shapes({job.features, job.motion, job.measurements}, job.estimates);
+      },
+      [&] { return job.estimates; });
+}
+
 std::vector<FrameEstimate> StageRunner::finish() {
   std::vector<FrameEstimate> finals;
   const std::string problem = exceptionOf([&] { finals = stages_.finish(); });

@@ -23,6 +23,7 @@ class StageRunner {
   void segmentSceneFlow(Job& job);
   void trackObjects(Job& job);
   void optimize(Job& job);
+  void shapeObjects(Job& job);
   /// After the last frame: the estimates that are still in the window.
   std::vector<FrameEstimate> finish();
 

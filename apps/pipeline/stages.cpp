@@ -35,6 +35,7 @@ Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
   const auto flow = std::make_shared<OpticalFlowTracker>(config.optical_flow);
   const auto motion = std::make_shared<SceneFlowSegmentation>(config.scene_flow_segmentation, camera);
   const auto tracking = std::make_shared<ObjectTracker>(config.tracking, camera);
+  const auto shapes = std::make_shared<ObjectShapes>(camera);
   const std::shared_ptr<Backend> backend = makeBackend(config.backend, camera);
   return {.prepare = [prepare](const StereoFramePtr& frame) { return (*prepare)(frame); },
           .stereo_matching = [stereo](const FeaturesPtr& features) { return (*stereo)(features); },
@@ -44,7 +45,9 @@ Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
           .tracking = [tracking](const SceneMotionPtr& scene) { return (*tracking)(scene); },
           .incremental_optimization =
               [backend](const FrameMeasurementsPtr& measurements) { return (*backend)(measurements); },
-          .finish = [backend] { return backend->finish(); }};
+          .object_shapes = [shapes](const ObjectShapes::Inputs& inputs,
+                                    const EstimatesPtr& estimates) { return (*shapes)(inputs, estimates); },
+          .finish = [backend, shapes] { return shapes->finish(backend->finish()); }};
 }
 
 }  // namespace motorcade

@@ -6,6 +6,7 @@
 #include "core/messages.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
+#include "frontend/shape/object_shapes.hpp"
 
 namespace motorcade {
 
@@ -21,6 +22,7 @@ struct Stages {
   std::function<SceneMotionPtr(const StereoMatchesPtr&, const OpticalFlowPtr&)> scene_flow_segmentation;
   std::function<FrameMeasurementsPtr(const SceneMotionPtr&)> tracking;
   std::function<EstimatesPtr(const FrameMeasurementsPtr&)> incremental_optimization;
+  std::function<EstimatesPtr(const ObjectShapes::Inputs&, const EstimatesPtr&)> object_shapes;
   std::function<std::vector<FrameEstimate>()> finish;
 };
 

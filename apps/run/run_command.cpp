@@ -20,6 +20,7 @@
 #include "apps/run/run_summary.hpp"
 #include "apps/run/stop_signals.hpp"
 #include "io/errors.hpp"
+#include "io/mask_image.hpp"
 #include "io/run_folder.hpp"
 
 namespace motorcade {
@@ -62,10 +63,30 @@ void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) 
   if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
 }
 
+/// Writes a mask image per frame, for those who map what rests.
+class MaskWriter {
+ public:
+  /// Makes the folder, and empties it of masks of an earlier run.
+  MaskWriter(const std::filesystem::path& folder, const StereoCamera& camera) : folder_(folder), camera_(camera) {
+    std::error_code error;
+    std::filesystem::remove_all(folder, error);
+    std::filesystem::create_directories(folder, error);
+    if (error) throw OutputError(folder.string() + ": cannot be made a folder: " + error.message());
+  }
+  void write(const FrameEstimate& frame, const std::vector<ObjectMask>& masks) const {
+    writePng16(maskFile(folder_, frame.frame), maskImage(frame, masks, camera_.width_px, camera_.height_px));
+  }
+
+ private:
+  std::filesystem::path folder_;
+  StereoCamera camera_;
+};
+
 /// Takes the pipeline's results into the run folder.
 class Recorder {
  public:
-  Recorder(RunFolderWriter& folder, std::size_t frames) : folder_(folder), progress_(frames) {}
+  Recorder(RunFolderWriter& folder, const MaskWriter* masks, std::size_t frames)
+      : folder_(folder), masks_(masks), progress_(frames) {}
 
   void record(const PipelineResult& result) {
     for (const FrameEstimate& dropped : result.dropped) {
@@ -79,6 +100,7 @@ class Recorder {
     }
     folder_.writeTiming(result.timing);
     folder_.writeOnline(result.online);
+    if (masks_) masks_->write(result.online, result.masks);
     recordFinals(result.finals);
     if (result.online.status == FrameStatus::kGood) ++good_frames_;
     done_ += 1 + result.dropped.size();
@@ -91,6 +113,7 @@ class Recorder {
 
  private:
   RunFolderWriter& folder_;
+  const MaskWriter* masks_;
   Progress progress_;
   std::size_t done_ = 0;
   std::int64_t good_frames_ = 0;
@@ -98,7 +121,7 @@ class Recorder {
 
 /// Runs the frames through the pipeline and writes all results but the summary.
 void follow(const Sequence& sequence, const FrameRange& range, const PipelineConfig& config, Stages stages,
-            RunFolderWriter& folder, RunSummary& summary) {
+            Recorder& recorder, RunSummary& summary) {
   StopSignals signals;
   std::optional<CameraClock> clock;
   if (summary.rate_hz) clock.emplace(*summary.rate_hz / summary.capture_rate_hz, 1 / summary.capture_rate_hz);
@@ -109,7 +132,6 @@ void follow(const Sequence& sequence, const FrameRange& range, const PipelineCon
   SequenceDecoder decoder(sequence, range, decoding);
   Pipeline pipeline(config.pipeline, std::move(stages), logToSpdlog);
   const auto start = std::chrono::steady_clock::now();
-  Recorder recorder(folder, range.size());
   {
     Feeder feeder(decoder, pipeline, clock ? &*clock : nullptr);
     const auto watch = signals.watch([&feeder] { feeder.stop(); });
@@ -152,7 +174,10 @@ int runSequence(const RunOptions& options) {
   summary.layout = sequence.layout;
   summary.rate_hz = rate_hz;
   summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
-  follow(sequence, range, config, std::move(stages), folder, summary);
+  std::optional<MaskWriter> masks;
+  if (options.masks) masks.emplace(options.out / "masks", sequence.camera);
+  Recorder recorder(folder, masks ? &*masks : nullptr, range.size());
+  follow(sequence, range, config, std::move(stages), recorder, summary);
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));
   std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);

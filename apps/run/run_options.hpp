@@ -17,6 +17,7 @@ struct RunOptions {
   std::string rate;  // `max`, HZ, or empty for the default
   double fps_hz = 10;
   bool live = false;
+  bool masks = false;
   std::optional<int> threads;
   std::string frames;  // A:B
   std::filesystem::path config;

@@ -49,7 +49,7 @@ TEST_P(PipelineThreads, KeepsEveryQueueWithinTheFramesInFlight) {
     ToyStages toys{.work = unevenWork};
     Pipeline pipeline({.threads = GetParam(), .frames_in_flight = in_flight}, toys.stages());
     const Outcome run = runThrough(pipeline, framesFrom0To(60));
-    ASSERT_EQ(run.summary.queues.size(), 10u);
+    ASSERT_EQ(run.summary.queues.size(), 11u);
     for (const QueueMark& queue : run.summary.queues) {
       EXPECT_GE(queue.high_water, 1) << queue.name;
       EXPECT_LE(queue.high_water, in_flight) << queue.name;

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -10,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
+#include "io/mask_image.hpp"
 #include "io/run_folder.hpp"
 #include "tests/support/data_folder.hpp"
 
@@ -116,6 +119,36 @@ TEST_F(Run, FollowsTheCameraAndTheCarAheadOnARenderedDrive) {
   EXPECT_LT(measured["motion"]["me_t_m"]["mean"], 0.05);
   EXPECT_GT(measured["detection"]["within_30m"]["recall"], 0.9);
   EXPECT_EQ(measured["detection"]["false_rows"], 0);
+}
+
+TEST_F(Run, KnowsWhatTheCarAheadIsAndWhereItsOutlineIs) {
+  ASSERT_EQ(run("out", "--masks"), 0) << contentOf(errors());
+  const auto boxes = evaluate("out")["final"]["boxes_within_30m"];
+  ASSERT_GT(boxes["rows"], 5);
+  EXPECT_EQ(boxes["rows"], boxes["rows_with_cuboid"]);
+  EXPECT_GT(boxes["iou_2d"], 0.7);
+  EXPECT_GT(boxes["iou_bird"], 0.5);
+  for (const auto& row : readRunFolder(out("out")).final.objects) EXPECT_EQ(row.object.cuboid->kind, ObjectKind::kCar);
+
+  double iou = 0;
+  int masks = 0;
+  for (const auto& row : readRunFolder(out("out")).online.objects) {
+    const Gray16Image mask = readPng16(maskFile(out("out") / "masks", row.frame)),
+                      truth = readPng16(maskFile(kSequence / "instance", row.frame));
+    ASSERT_EQ(mask.pixels.size(), truth.pixels.size());
+    std::map<std::uint16_t, int> shown;  // by what of the truth
+    int found = 0;
+    for (std::size_t i = 0; i < mask.pixels.size(); ++i)
+      if (mask.pixels[i] == row.object.track.value + 1) ++found, ++shown[truth.pixels[i]];
+    shown.erase(0);
+    if (shown.empty()) continue;
+    const auto most = std::ranges::max_element(shown, {}, [](const auto& entry) { return entry.second; });
+    const auto size = std::ranges::count(truth.pixels, most->first);
+    iou += static_cast<double>(most->second) / static_cast<double>(found + size - most->second);
+    ++masks;
+  }
+  ASSERT_GT(masks, 5);
+  EXPECT_GT(iou / masks, 0.65);
 }
 
 TEST_F(Run, FollowsItsOwnEffectiveConfiguration) {

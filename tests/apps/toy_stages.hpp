@@ -39,9 +39,14 @@ struct ToyStages {
         .scene_flow_segmentation = [this](const StereoMatchesPtr& s, const OpticalFlowPtr& f) { return motion(s, f); },
         .tracking = [this](const SceneMotionPtr& m) { return tracking(m); },
         .incremental_optimization = [this](const FrameMeasurementsPtr& m) { return optimize(m); },
+        .object_shapes = [this](const ObjectShapes::Inputs& i, const EstimatesPtr& e) { return shape(i.scene, e); },
         .finish = [this] { return std::exchange(window, {}); }};
   }
 
+  EstimatesPtr shape(const SceneMotionPtr& motion, const EstimatesPtr& estimates) {
+    work(Stage::kObjectShapes, motion->frame);
+    return estimates;
+  }
   FeaturesPtr prepare(const StereoFramePtr& frame) {
     work(Stage::kPrepare, frame->frame);
     Features features;

@@ -30,7 +30,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
 /// The rooms of a folder in the order of the flow: a room may include those before it, and itself. What lies in the
 /// folder itself (messages, the back-end's interface) comes before all rooms.
 const std::map<std::string, std::vector<std::string>> kRooms{
-    {"frontend", {"image", "geometry", "features", "matching", "motion", "segmentation", "tracking"}},
+    {"frontend", {"image", "geometry", "features", "matching", "motion", "segmentation", "tracking", "shape"}},
     {"backend", {"graph", "elimination", "solver", "motion", "smoother", "joint"}},
 };
 

@@ -30,6 +30,13 @@ FrameEstimate estimateOf(int i) {
   object.points = 17;
   object.box = {10, 20, 110.5, 90.25};
   object.covariance = Matrix6d::Identity() * 0.01;
+  ObjectBox cuboid;
+  cuboid.center_body = {1.5, 0.25, -0.125};
+  cuboid.size_m = {4, 1.75, 1.5};
+  cuboid.size_sigma_m = {0.5, 0.1, 0.1};
+  cuboid.kind = ObjectKind::kTwoWheeler;
+  cuboid.kind_probability = 0.75;
+  if (i != 2) object.cuboid = cuboid;
   estimate.objects.push_back(object);
   estimate.camera_covariance = Matrix6d::Identity() * 0.02;
   return estimate;
@@ -70,6 +77,12 @@ TEST(RunFolder, ComesBackAsWritten) {
   EXPECT_THAT(row.object.T_world_body, IsNearPose(estimateOf(6).objects[0].T_world_body, 2e-6));  // six decimals
   EXPECT_EQ(row.object.points, 17);
   EXPECT_DOUBLE_EQ(row.object.box.right_px, 110.5);
+  ASSERT_TRUE(row.object.cuboid);
+  EXPECT_EQ(row.object.cuboid->center_body, Eigen::Vector3d(1.5, 0.25, -0.125));
+  EXPECT_EQ(row.object.cuboid->size_m, Eigen::Vector3d(4, 1.75, 1.5));
+  EXPECT_EQ(row.object.cuboid->size_sigma_m, Eigen::Vector3d(0.5, 0.1, 0.1));
+  EXPECT_EQ(row.object.cuboid->kind, ObjectKind::kTwoWheeler);
+  EXPECT_DOUBLE_EQ(row.object.cuboid->kind_probability, 0.75);
   ASSERT_EQ(run.covariances.size(), 6u);
   EXPECT_FALSE(run.covariances[0].track.valid());
   EXPECT_THAT(run.covariances[1].covariance, IsNear(Matrix6d::Identity() * 0.01, 1e-12));
@@ -83,11 +96,31 @@ TEST(RunFolder, HasTheDocumentedHeadersAndStamps) {
       folder.read("run/objects_final.csv"),
       testing::StartsWith(
           "frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,"
-          "right,bottom\n0,4,moving,"));
+          "right,bottom,box_x,box_y,box_z,length,width,height,box_x_sigma,box_y_sigma,box_z_sigma,length_sigma,"
+          "width_sigma,height_sigma,kind,kind_probability\n0,4,moving,"));
   EXPECT_THAT(folder.read("run/camera_online.tum"), testing::StartsWith("1317042651.174740992 0.000000000 "));
   EXPECT_THAT(folder.read("run/camera_final.txt"), testing::StartsWith("1.000000000e+00 0.000000000e+00 "));
   EXPECT_THAT(folder.read("run/trace.json"), AllOf(testing::StartsWith("[\n{\"name\":\"prepare\""),
                                                    HasSubstr("\"dur\":3000.000"), testing::EndsWith("]\n")));
+}
+
+TEST(RunFolder, ReadsRowsWithoutACuboidToo) {
+  const test::TemporaryFolder folder;
+  writeRun(folder / "run", 1, 2);
+  EXPECT_FALSE(readRunFolder(folder / "run").final.objects[1].object.cuboid);  // not known in that frame
+  std::string csv = folder.read("run/objects_final.csv"), earlier;
+  for (std::size_t begin = 0; begin < csv.size();) {
+    const std::size_t end = csv.find('\n', begin);
+    std::string line = csv.substr(begin, end - begin);
+    for (int column = 0; column < 14; ++column) line.resize(line.rfind(','));
+    earlier += line + '\n';
+    begin = end + 1;
+  }
+  folder.write("run/objects_final.csv", earlier);  // as earlier versions wrote it
+  const RunFolder run = readRunFolder(folder / "run");
+  ASSERT_EQ(run.final.objects.size(), 2U);
+  EXPECT_FALSE(run.final.objects[0].object.cuboid);
+  EXPECT_DOUBLE_EQ(run.final.objects[0].object.box.bottom_px, 90.25);
 }
 
 TEST(RunFolder, RejectedStampsStayOutOfTheTumFiles) {

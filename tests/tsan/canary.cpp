@@ -65,6 +65,7 @@ long raceOfStage() {
   };
   stages.tracking = [](const SceneMotionPtr&) { return std::make_shared<const FrameMeasurements>(); };
   stages.incremental_optimization = [](const FrameMeasurementsPtr&) { return std::make_shared<const Estimates>(); };
+  stages.object_shapes = [](const ObjectShapes::Inputs&, const EstimatesPtr& e) { return e; };
   stages.finish = [] { return std::vector<FrameEstimate>(); };
   Pipeline pipeline({.threads = 2}, std::move(stages));
   std::jthread producer([&pipeline] {

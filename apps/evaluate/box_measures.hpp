@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "apps/evaluate/object_matching.hpp"
+#include "apps/evaluate/trajectory_error.hpp"
+
+/// How well boxes and cuboids cover the labels': over the reported rows that were matched to labels which are asked
+/// for.
+namespace motorcade {
+
+/// Of the matched rows in one range of distances.
+struct BoxErrors {
+  int rows = 0, rows_with_cuboid = 0;
+  double iou_2d = 0, over_half_2d = 0;  // mean, and share above 1/2, in the left image
+  double iou_bird = 0, iou_3d = 0;      // means, as seen from the camera
+  /// |estimated - labeled|: middle of the footprint, heading (up to half a turn), length, width, height.
+  Statistics center_m, heading_deg, length_m, width_m, height_m;
+};
+
+BoxErrors boxErrors(const std::vector<ComparedFrame>& frames, double from_m, double to_m);
+
+/// Area of the intersection over that of the union, of two boxes in the image.
+double intersectionOverUnion(const Box& a, const Box& b);
+
+/// A cuboid as seen from above: the corners of its footprint in order, in any right-handed plane.
+using Footprint = std::vector<Eigen::Vector2d>;
+double areaOf(const Footprint& convex);
+/// Of two convex footprints with counterclockwise corners.
+double overlapArea(const Footprint& a, const Footprint& b);
+
+}  // namespace motorcade

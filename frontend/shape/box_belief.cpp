@@ -1,0 +1,136 @@
+#include "frontend/shape/box_belief.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+namespace motorcade {
+namespace {
+
+/// Usual size of a kind, and how usual it is.
+struct KindPrior {
+  ObjectKind kind;
+  Eigen::Vector3d size_m, sigma_m;  // length, width, height
+  double share;
+  double top_speed_mps;
+};
+
+/// Vans are cars here: they have their own line, as they are a size of their own.
+const std::array<KindPrior, 5> kKinds{{{ObjectKind::kCar, {4.1, 1.72, 1.55}, {0.5, 0.15, 0.15}, 0.7, 60},
+                                       {ObjectKind::kCar, {5.2, 2.0, 2.15}, {0.6, 0.2, 0.25}, 0.12, 60},
+                                       {ObjectKind::kLargeVehicle, {10.0, 2.55, 3.2}, {2.5, 0.15, 0.4}, 0.06, 40},
+                                       {ObjectKind::kTwoWheeler, {1.76, 0.6, 1.74}, {0.25, 0.12, 0.15}, 0.03, 15},
+                                       {ObjectKind::kPedestrian, {0.84, 0.66, 1.76}, {0.25, 0.15, 0.13}, 0.06, 3}}};
+
+constexpr double kRuledOut = 1e-3;     // of the likeliest kind's likelihood
+constexpr double kSpeedSlack_mps = 2;  // by which a kind is faster than usual with one standard deviation
+// The body's origin is the median of points on it, which mostly lie on the faces in view.
+constexpr double kAheadSigma_m = 2.0, kAsideSigma_m = 0.7, kBottom_m = -0.8, kBottomSigma_m = 0.5;
+
+FaceInformation priorOf(const KindPrior& kind) {
+  FaceInformation prior;
+  for (int axis = 0; axis < 3; ++axis) {
+    Vector6d size = Vector6d::Zero();
+    size[2 * axis] = -1, size[2 * axis + 1] = 1;
+    prior.add(size, kind.size_m[axis], kind.sigma_m[axis]);
+  }
+  Vector6d ahead = Vector6d::Zero(), aside = Vector6d::Zero(), bottom = Vector6d::Zero();
+  ahead[kRear] = ahead[kFront] = aside[kRight] = aside[kLeft] = 0.5;
+  bottom[kBottom] = 1;
+  prior.add(ahead, 0, std::hypot(kAheadSigma_m, 0.25 * kind.size_m.x()));
+  prior.add(aside, 0, kAsideSigma_m);
+  prior.add(bottom, kBottom_m, kBottomSigma_m);
+  return prior;
+}
+
+double logDeterminant(const Eigen::LLT<Matrix6d>& llt) { return 2 * llt.matrixLLT().diagonal().array().log().sum(); }
+
+struct Posterior {
+  BoxEstimate estimate;
+  double log_evidence = 0;
+};
+
+Posterior posteriorOf(const KindPrior& kind, const FaceInformation& evidence, double speed_mps) {
+  const FaceInformation prior = priorOf(kind);
+  FaceInformation both = prior;
+  both.add(evidence);
+  const Eigen::LLT<Matrix6d> llt(both.H), prior_llt(prior.H);
+  Posterior posterior;
+  posterior.estimate.faces = llt.solve(both.b);
+  posterior.estimate.covariance = llt.solve(Matrix6d::Identity());
+  posterior.estimate.kind = kind.kind;
+  const double misfit = both.c - both.b.dot(posterior.estimate.faces);
+  const double too_fast = std::max(0.0, speed_mps - kind.top_speed_mps) / kSpeedSlack_mps;
+  posterior.log_evidence = std::log(kind.share) - 0.5 * misfit - 0.5 * too_fast * too_fast +
+                           0.5 * (logDeterminant(prior_llt) - logDeterminant(llt));
+  return posterior;
+}
+
+}  // namespace
+
+void FaceInformation::add(const Vector6d& row, double value, double sigma) {
+  const double weight = 1 / (sigma * sigma);
+  H += weight * row * row.transpose();
+  b += weight * value * row;
+  c += weight * value * value;
+}
+
+void FaceInformation::add(const FaceInformation& more, double weight) {
+  H += weight * more.H;
+  b += weight * more.b;
+  c += weight * more.c;
+}
+
+FaceInformation FaceInformation::shifted(const Eigen::Vector3d& shift) const {
+  Vector6d by;
+  by << shift.x(), shift.x(), shift.y(), shift.y(), shift.z(), shift.z();
+  return {.H = H, .b = b + H * by, .c = c + 2 * b.dot(by) + by.dot(H * by)};
+}
+
+ObjectBox BoxEstimate::box() const {
+  ObjectBox box{.center_body = 0.5 * (least() + most()),
+                .size_m = most() - least(),
+                .center_sigma_m = {},
+                .size_sigma_m = {},
+                .kind = kind,
+                .kind_probability = kind_probability};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int lower = 2 * axis, upper = lower + 1;
+    const double sum = covariance(lower, lower) + covariance(upper, upper), cross = 2 * covariance(lower, upper);
+    box.center_sigma_m[axis] = 0.5 * std::sqrt(std::max(0.0, sum + cross));
+    box.size_sigma_m[axis] = std::sqrt(std::max(0.0, sum - cross));
+  }
+  return box;
+}
+
+BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps) {
+  std::array<Posterior, kKinds.size()> posteriors;
+  for (std::size_t i = 0; i < kKinds.size(); ++i) posteriors[i] = posteriorOf(kKinds[i], evidence, speed_mps);
+  const auto likeliest = std::ranges::max_element(posteriors, {}, &Posterior::log_evidence);
+  double all = 0, same = 0;
+  for (const Posterior& p : posteriors) {
+    const double likelihood = std::exp(p.log_evidence - likeliest->log_evidence);
+    all += likelihood;
+    if (p.estimate.kind == likeliest->estimate.kind) same += likelihood;
+  }
+  BoxEstimate estimate = likeliest->estimate;
+  const BoxEstimate& car = posteriors.front().estimate;
+  estimate.usual_least = estimate.least().cwiseMin(car.least()),
+  estimate.usual_most = estimate.most().cwiseMax(car.most());
+  estimate.possible_least = estimate.usual_least, estimate.possible_most = estimate.usual_most;
+  for (const Posterior& p : posteriors) {
+    if (p.log_evidence < likeliest->log_evidence + std::log(kRuledOut)) continue;
+    const Vector6d sigma = p.estimate.covariance.diagonal().cwiseSqrt();
+    for (int axis = 0; axis < 3; ++axis) {
+      double &least = estimate.possible_least[axis], &most = estimate.possible_most[axis];
+      least = std::min(least, p.estimate.faces[2 * axis] - sigma[2 * axis]);
+      most = std::max(most, p.estimate.faces[2 * axis + 1] + sigma[2 * axis + 1]);
+    }
+  }
+  estimate.kind_probability = same / all;
+  return estimate;
+}
+
+}  // namespace motorcade

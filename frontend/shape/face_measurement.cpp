@@ -1,0 +1,188 @@
+#include "frontend/shape/face_measurement.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace motorcade {
+namespace {
+
+constexpr double kSurfaceSigma_px = 0.5;     // of a dense disparity, in pixels of its level
+constexpr double kUneven_m = 0.15;           // how far a vehicle's sides lie from a plane
+constexpr double kIndependent = 12;          // distances of one face: its errors have much in common
+constexpr double kGrossChi = 3;              // from here on a distance counts less and less (Cauchy)
+constexpr double kLow_m = 0.2, kHigh = 0.6;  // above the road, and of the height: between, sides are upright
+constexpr double kBoundSigma_px = 1.5, kRounded_m = 0.08;  // of a bound of the outline, in pixels of its level
+constexpr double kRoadSigma_m = 0.05, kRoadSlope = 0.004;  // of the road's height, per meter away
+constexpr double kPointSigma_m = 0.3;                      // of the outermost points of an object
+constexpr double kNear_m = 1.5;                            // nearer corners are seen too much from the side
+constexpr int kEdge = 3;       // cells from the window's edge, where the window cuts the outline
+constexpr int kSamples = 400;  // of the outline's cells
+
+class FaceMeasurement {
+ public:
+  FaceMeasurement(const LevelDisparities& disparities, const Outline& outline, const ObjectView& view,
+                  const StereoCamera& camera)
+      : disparities_(disparities), outline_(outline), view_(view), camera_(camera) {}
+
+  FaceInformation operator()() {
+    addRoad();
+    addPoints();
+    addSurfaces();
+    addBounds();
+    return information_;
+  }
+
+ private:
+  void addRoad();
+  void addPoints();
+  void addSurfaces();
+  void addSurfacePoint(int column, int row, std::array<FaceInformation, 6>& of_face, std::array<double, 6>& counts);
+  void addBounds();
+  bool isCut(int column, int step) const;
+  /// One side of the outline; where it is cut, the object reaches at least so far.
+  struct Bound {
+    double at_px, sigma_px;
+    bool horizontal, least, cut;
+  };
+  void addBound(const Bound& bound);
+
+  const LevelDisparities& disparities_;
+  const Outline& outline_;
+  const ObjectView& view_;
+  const StereoCamera& camera_;
+  FaceInformation information_;
+};
+
+/// The middle of the bottom face lies on the road.
+void FaceMeasurement::addRoad() {
+  const Eigen::Vector3d down_body = view_.T_cam_body.rotation().transpose() * view_.ground.normal_cam;
+  Vector6d row;
+  row << 0.5 * down_body.x(), 0.5 * down_body.x(), 0.5 * down_body.y(), 0.5 * down_body.y(), down_body.z(), 0;
+  const double value = view_.ground.heightOf_m(view_.T_cam_body.translation());
+  information_.add(row, value, kRoadSigma_m + kRoadSlope * view_.T_cam_body.translation().norm());
+}
+
+/// The cuboid holds the points by which the object is followed.
+void FaceMeasurement::addPoints() {
+  if (!view_.points) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double least = view_.points->min()[axis], most = view_.points->max()[axis];
+    if (view_.box.faces[2 * axis] > least) information_.add(Vector6d::Unit(2 * axis), least, kPointSigma_m);
+    if (view_.box.faces[2 * axis + 1] < most) information_.add(Vector6d::Unit(2 * axis + 1), most, kPointSigma_m);
+  }
+}
+
+void FaceMeasurement::addSurfaces() {
+  std::array<FaceInformation, 6> of_face{};
+  std::array<double, 6> counts{};
+  const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(outline_.count()) / kSamples)));
+  for (int row = step / 2; row < outline_.window.height; row += step)
+    for (int column = step / 2; column < outline_.window.width; column += step)
+      if (outline_.at(column, row)) addSurfacePoint(column, row, of_face, counts);
+  for (std::size_t face = 0; face < of_face.size(); ++face)
+    if (counts[face] > 0) information_.add(of_face[face], std::min(1.0, kIndependent / counts[face]));
+}
+
+/// The ray through a cell meets an upright face at the distance that the disparity says.
+void FaceMeasurement::addSurfacePoint(int column, int row, std::array<FaceInformation, 6>& of_face,
+                                      std::array<double, 6>& counts) {
+  const auto disparity_px = disparities_.disparity_px(column, row);
+  if (!disparity_px) return;
+  const double d = *disparity_px + view_.disparity_offset_px, z = camera_.fx_px * camera_.baseline_m / d;
+  const Eigen::Vector3d ray((disparities_.u_px(column) - camera_.cx_px) / camera_.fx_px,
+                            (disparities_.v_px(row) - camera_.cy_px) / camera_.fy_px, 1);
+  const double height_m = view_.ground.heightOf_m(z * ray);
+  const BoxFaces& faces = view_.box.faces;
+  if (height_m < kLow_m || height_m > kHigh * (faces[kTop] - faces[kBottom])) return;
+  const Eigen::Matrix3d R_body_cam = view_.T_cam_body.rotation().transpose();
+  const Eigen::Vector3d origin = -R_body_cam * view_.T_cam_body.translation(), direction = R_body_cam * ray;
+  int face = -1;
+  double entry = 0;
+  for (int axis = 0; axis < 2; ++axis) {
+    if (std::abs(direction[axis]) < 1e-6) continue;
+    const int near = direction[axis] > 0 ? 2 * axis : 2 * axis + 1;
+    const double t = (faces[near] - origin[axis]) / direction[axis];
+    if (t > entry) entry = t, face = near;
+  }
+  if (face < 0) return;
+  const double along = direction[face / 2];
+  const double sigma_z = std::hypot(z * kSurfaceSigma_px * (1 << disparities_.level) / d, kUneven_m / std::abs(along));
+  const double chi = (z - entry) / sigma_z, weight = 1 / (1 + chi * chi / (kGrossChi * kGrossChi));
+  Vector6d measured = Vector6d::Zero();
+  measured[face] = 1;
+  FaceInformation one;
+  one.add(measured, origin[face / 2] + z * along, sigma_z * std::abs(along));
+  of_face[face].add(one, weight);
+  counts[face] += weight;
+}
+
+void FaceMeasurement::addBounds() {
+  const PixelWindow bounds = outline_.bounds();
+  if (bounds.empty()) return;
+  const int scale = 1 << disparities_.level;
+  const double half_cell_px = 0.5 * scale, sigma_px = kBoundSigma_px * scale;
+  const double left_px = disparities_.u_px(bounds.u0) - half_cell_px,
+               right_px = disparities_.u_px(bounds.u0 + bounds.width - 1) + half_cell_px,
+               top_px = disparities_.v_px(bounds.v0) - half_cell_px;
+  addBound({left_px, sigma_px, true, true, bounds.u0 < kEdge || isCut(bounds.u0, -1)});
+  addBound({right_px, sigma_px, true, false,
+            bounds.u0 + bounds.width > outline_.window.width - kEdge || isCut(bounds.u0 + bounds.width - 1, 1)});
+  addBound({top_px, sigma_px, false, true, bounds.v0 < kEdge});
+}
+
+/// Is what lies beside a bound of the outline nearer than the object, or as near?
+bool FaceMeasurement::isCut(int column, int step) const {
+  constexpr int kFrom = 3, kTo = 6;    // cells beside the bound; the nearest are often taken for the object's
+  constexpr double kBehind_px = -1.5;  // of the level's disparity
+  int nearer = 0, cells = 0;
+  for (int row = 0; row < outline_.window.height; ++row) {
+    if (!outline_.at(column, row)) continue;
+    const auto own = disparities_.disparity_px(column, row);
+    for (int k = kFrom; k <= kTo; ++k) {
+      const int beside = column + k * step;
+      if (beside < 0 || beside >= outline_.window.width) continue;
+      const auto other = disparities_.disparity_px(beside, row);
+      if (!own || !other) continue;
+      ++cells;
+      nearer += *other > *own + kBehind_px * (1 << disparities_.level);
+    }
+  }
+  return 2 * nearer > cells;
+}
+
+/// The cuboid's outermost corner in one direction of the image is seen at the bound.
+void FaceMeasurement::addBound(const Bound& bound) {
+  const auto [bound_px, sigma_px, horizontal, least, cut] = bound;
+  double extreme = least ? std::numeric_limits<double>::max() : std::numeric_limits<double>::lowest();
+  Vector6d row = Vector6d::Zero();
+  double depth_m = 1;
+  const BoxFaces& faces = view_.box.faces;
+  for (int corner = 0; corner < 8; ++corner) {
+    const std::array<int, 3> at{kRear + (corner & 1), kRight + (corner >> 1 & 1), kBottom + (corner >> 2 & 1)};
+    const Eigen::Vector3d p_cam = view_.T_cam_body * Eigen::Vector3d(faces[at[0]], faces[at[1]], faces[at[2]]);
+    const auto uvd_px = camera_.project(p_cam);
+    if (!uvd_px || p_cam.z() < kNear_m) return;
+    const double seen_px = horizontal ? uvd_px->x() : uvd_px->y();
+    if (least ? seen_px >= extreme : seen_px <= extreme) continue;
+    extreme = seen_px;
+    depth_m = p_cam.z();
+    const Eigen::RowVector3d J =
+        camera_.projectionJacobian(p_cam).row(horizontal ? 0 : 1) * view_.T_cam_body.rotation();
+    row.setZero();
+    for (int axis = 0; axis < 3; ++axis) row[at[axis]] = J[axis];
+  }
+  if (cut && (least ? extreme <= bound_px : extreme >= bound_px)) return;
+  const double rounded_px = kRounded_m * camera_.fx_px / depth_m;
+  information_.add(row, bound_px - extreme + row.dot(faces), std::hypot(sigma_px, rounded_px));
+}
+
+}  // namespace
+
+FaceInformation measureFaces(const LevelDisparities& disparities, const Outline& outline, const ObjectView& view,
+                             const StereoCamera& camera) {
+  return FaceMeasurement(disparities, outline, view, camera)();
+}
+
+}  // namespace motorcade

@@ -1,0 +1,244 @@
+#include "frontend/shape/object_shapes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "frontend/image/image_pyramid.hpp"
+#include "frontend/shape/face_measurement.hpp"
+
+namespace motorcade {
+namespace {
+
+/// Share of what was known that is still believed a frame later: errors of successive outlines have much in common, and
+/// the body frame may slide a little on the object.
+constexpr double kFading = 0.97;
+constexpr double kLookWeight = 0.15;          // of one outline: for the same reason, seven count as one
+constexpr std::int64_t kMemory_frames = 120;  // beyond which looks no longer count
+constexpr double kMargin = 0.2;               // of the window around the box in the image, on each side
+constexpr int kMargin_px = 8, kMostCells = 7'000, kFinestLevel = 1;
+constexpr double kBefore_m = 2;  // how far before the cuboid disparities are told apart; behind it, all are
+constexpr double kLeastSize_m = 0.2, kMostSize_m = 25;  // of an object that is believed, along each axis
+constexpr int kLeastCells = 30;                         // of an outline that is believed
+constexpr int kIterations = 2;  // of the faces, as what is seen of them depends on where they are
+
+double fading(std::int64_t frames) { return std::pow(kFading, static_cast<double>(std::abs(frames))); }
+
+/// Around the points of an object, in its body frame, without the outermost tenth at each side.
+std::optional<Eigen::AlignedBox3d> extentOf(const std::vector<PointMeasurement>& points, const StereoCamera& camera,
+                                            const SE3& T_body_cam, double disparity_offset_px) {
+  constexpr std::size_t kLeastPoints = 5;
+  std::array<std::vector<double>, 3> along;
+  for (const PointMeasurement& p : points) {
+    const Eigen::Vector3d uvd_px = p.uvd_px.cast<double>() + Eigen::Vector3d(0, 0, disparity_offset_px);
+    if (uvd_px.z() <= 0) continue;
+    const Eigen::Vector3d p_body = T_body_cam * camera.triangulate(uvd_px);
+    for (int axis = 0; axis < 3; ++axis) along[axis].push_back(p_body[axis]);
+  }
+  if (along[0].size() < kLeastPoints) return std::nullopt;
+  Eigen::AlignedBox3d extent;
+  Eigen::Vector3d least, most;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::ranges::sort(along[axis]);
+    const std::size_t left_out = along[axis].size() / 10;
+    least[axis] = along[axis][left_out], most[axis] = along[axis][along[axis].size() - 1 - left_out];
+  }
+  extent.extend(least);
+  extent.extend(most);
+  return extent;
+}
+
+/// The points that an object is found by lie on the sides that it turns to the camera.
+FaceInformation nearFaceAtPoints(const ObjectView& view) {
+  constexpr double kSigma_m = 0.6;
+  FaceInformation near;
+  if (!view.points) return near;
+  const Eigen::Vector3d direction = view.T_cam_body.rotation().transpose() * view.T_cam_body.translation();
+  const int axis = std::abs(direction.x()) > std::abs(direction.y()) ? 0 : 1;
+  if (direction[axis] > 0)
+    near.add(Vector6d::Unit(2 * axis), view.points->min()[axis], kSigma_m);
+  else
+    near.add(Vector6d::Unit(2 * axis + 1), view.points->max()[axis], kSigma_m);
+  return near;
+}
+
+ObjectMask maskOf(const Outline& outline, int level, TrackId track) {
+  const PixelWindow bounds = outline.bounds();
+  const int cell_px = 1 << level;
+  ObjectMask mask{.track = track,
+                  .left_px = (outline.window.u0 + bounds.u0) * cell_px,
+                  .top_px = (outline.window.v0 + bounds.v0) * cell_px,
+                  .cell_px = cell_px,
+                  .width = bounds.width,
+                  .height = bounds.height,
+                  .inside = {}};
+  for (int row = 0; row < bounds.height; ++row)
+    for (int column = 0; column < bounds.width; ++column)
+      mask.inside.push_back(outline.at(bounds.u0 + column, bounds.v0 + row) ? 1 : 0);
+  return mask;
+}
+
+}  // namespace
+
+EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& estimates) {
+  auto shaped = std::make_shared<Estimates>(*estimates);
+  const SE3 T_cam_world = shaped->online.T_world_cam.inverse();
+  for (ObjectEstimate& object : shaped->online.objects)
+    if (const auto known = shapes_.find(object.track); known != shapes_.end())
+      setBox(object, estimateBox(known->second.evidence, known->second.speed_mps), T_cam_world * object.T_world_body);
+  for (ObjectEstimate& object : shaped->online.objects) lookAt(object, inputs, shaped->online, shaped->masks);
+  before_ = inputs.features;
+  for (FrameEstimate& final : shaped->finals) complete(final);
+  forgetGone(*shaped);
+  return shaped;
+}
+
+void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame,
+                          std::vector<ObjectMask>& masks) {
+  const Features& features = *inputs.features;
+  const SceneMotion& scene = *inputs.scene;
+  Shape& shape = shapes_[object.track];
+  const SE3 T_cam_body = frame.T_world_cam.inverse() * object.T_world_body;
+  const bool is_new = !shape.last.valid();
+  if (!is_new) {
+    FaceInformation faded;
+    faded.add(shape.evidence, fading(frame.frame.value - shape.last.value));
+    shape.evidence = faded;
+  }
+  const bool has_before = !is_new && before_ && !before_->left.levels.empty() && before_->frame->frame == shape.last;
+  const SE3 T_cam_body_before = std::exchange(shape.T_cam_body_last, T_cam_body);
+  shape.last = frame.frame;
+  shape.speed_mps = object.velocity_world_mps.norm();
+  ObjectView view{.T_cam_body = T_cam_body,
+                  .box = estimateBox(shape.evidence, shape.speed_mps),
+                  .ground = scene.ground,
+                  .disparity_offset_px = scene.disparity_offset_px};
+  if (has_before) view.before = {&features.left, &before_->left, T_cam_body_before, scene.T_previous_now};
+  const auto observed = std::ranges::find_if(inputs.measurements->objects, [&](const ObjectObservation& o) {
+    return o.track == object.track && o.frame == frame.frame;
+  });
+  if (observed != inputs.measurements->objects.end())
+    view.points = extentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
+  if (is_new) {
+    shape.evidence = shape.first = nearFaceAtPoints(view);
+    view.box = estimateBox(shape.evidence, shape.speed_mps);
+  }
+  for (const ObjectEstimate& other : frame.objects)
+    if (other.track != object.track && other.cuboid)
+      view.others.push_back({(frame.T_world_cam.inverse() * other.T_world_body).inverse(),
+                             other.cuboid->center_body - 0.5 * other.cuboid->size_m,
+                             other.cuboid->center_body + 0.5 * other.cuboid->size_m});
+  const bool seen = object.state != ObjectState::kPredicted && features.right.levels.size() > kFinestLevel;
+  if (const auto disparities = seen ? disparitiesAround(view, features) : std::nullopt) {
+    Outline outline = findOutline(*disparities, view, camera_);
+    if (outline.count() >= kLeastCells) {
+      if (const auto look = measured(*disparities, outline, view, shape)) {
+        shape.evidence.add(*look, kLookWeight);
+        shape.looks[frame.frame] = {*look, view.T_cam_body};
+      }
+      reachDownToRoad(outline, *disparities, view, camera_);
+      masks.push_back(maskOf(outline, disparities->level, object.track));
+    }
+  }
+  setBox(object, view.box, view.T_cam_body);
+}
+
+/// What the outline says of the faces, and `view.box` with it; empty, and the box as it was, where that makes no sense.
+std::optional<FaceInformation> ObjectShapes::measured(const LevelDisparities& disparities, const Outline& outline,
+                                                      ObjectView& view, const Shape& shape) const {
+  const BoxEstimate before = view.box;
+  FaceInformation look;
+  for (int i = 0; i < kIterations; ++i) {
+    look = measureFaces(disparities, outline, view, camera_);
+    FaceInformation both = shape.evidence;
+    both.add(look, kLookWeight);
+    view.box = estimateBox(both, shape.speed_mps);
+    const Eigen::Array3d size_m = view.box.most() - view.box.least();
+    if ((size_m > kLeastSize_m).all() && (size_m < kMostSize_m).all()) continue;
+    view.box = before;
+    return std::nullopt;
+  }
+  return look;
+}
+
+/// In the window around the cuboid, at a level of the pyramid where it has few cells.
+std::optional<LevelDisparities> ObjectShapes::disparitiesAround(const ObjectView& view, const Features& features) {
+  const auto box = projectedBox(view.box.usual_least, view.box.usual_most, view.T_cam_body, camera_);
+  if (!box) return std::nullopt;
+  const double width_px = box->right_px - box->left_px, height_px = box->bottom_px - box->top_px;
+  int level = kFinestLevel;
+  const auto cells = [&] { return (1 + 2 * kMargin) * (1 + 2 * kMargin) * width_px * height_px / (1 << 2 * level); };
+  while (cells() > kMostCells && level + 1 < static_cast<int>(features.right.levels.size())) ++level;
+  const auto cell = [&](double px) { return static_cast<int>(std::floor(toLevel(static_cast<float>(px), level))); };
+  const double aside_px = kMargin * width_px + kMargin_px, above_px = kMargin * height_px + kMargin_px;
+  PixelWindow window{.u0 = cell(box->left_px - aside_px), .v0 = cell(box->top_px - above_px), .width = 0, .height = 0};
+  window.width = cell(box->right_px + aside_px) - window.u0 + 1;
+  window.height = cell(box->bottom_px + above_px) - window.v0 + 1;
+
+  double near_m = std::numeric_limits<double>::max();
+  for (int corner = 0; corner < 8; ++corner) {
+    const double z = (view.T_cam_body * cornerOf(view.box.usual_least, view.box.usual_most, corner)).z();
+    near_m = std::min(near_m, z);
+  }
+  constexpr double kNearest_m = 1.5;
+  const double fb = camera_.fx_px * camera_.baseline_m;
+  const int most_px = static_cast<int>(std::ceil(fb / std::max(near_m - kBefore_m, kNearest_m) / (1 << level))) + 1;
+  LevelDisparities disparities{
+      .level = level,
+      .map = dense_disparity_(features.left.levels[level], features.right.levels[level], window, {0, most_px + 1})};
+  if (disparities.map.window.empty()) return std::nullopt;
+  return disparities;
+}
+
+void ObjectShapes::setBox(ObjectEstimate& object, const BoxEstimate& box, const SE3& T_cam_body) const {
+  object.cuboid = box.box();
+  if (const auto in_image = projectedBox(box.least(), box.most(), T_cam_body, camera_)) object.box = *in_image;
+}
+
+std::vector<FrameEstimate> ObjectShapes::finish(std::vector<FrameEstimate> finals) {
+  for (const FrameEstimate& frame : finals) {
+    for (const ObjectEstimate& object : frame.objects) {
+      const auto shape = shapes_.find(object.track);
+      if (shape == shapes_.end()) continue;
+      const auto look = shape->second.looks.find(frame.frame);
+      if (look == shape->second.looks.end()) continue;
+      const SE3 T_cam_body = frame.T_world_cam.inverse() * object.T_world_body;
+      look->second.faces = look->second.faces.shifted((T_cam_body.inverse() * look->second.T_cam_body).translation());
+      look->second.T_cam_body = T_cam_body;
+    }
+  }
+  for (FrameEstimate& final : finals) complete(final);
+  return finals;
+}
+
+void ObjectShapes::complete(FrameEstimate& final) {
+  for (ObjectEstimate& object : final.objects) {
+    const auto shape = shapes_.find(object.track);
+    if (shape == shapes_.end()) continue;
+    const SE3 T_cam_body = final.T_world_cam.inverse() * object.T_world_body;
+    setBox(object, estimateBox(evidenceAround(shape->second, final.frame), shape->second.speed_mps), T_cam_body);
+  }
+}
+
+FaceInformation ObjectShapes::evidenceAround(const Shape& shape, FrameId frame) const {
+  FaceInformation evidence = shape.first;
+  const auto end = shape.looks.upper_bound(FrameId{frame.value + kMemory_frames});
+  for (auto it = shape.looks.lower_bound(FrameId{frame.value - kMemory_frames}); it != end; ++it)
+    evidence.add(it->second.faces, kLookWeight * fading(it->first.value - frame.value));
+  return evidence;
+}
+
+/// Looks that no final estimate will ask for any more.
+void ObjectShapes::forgetGone(const Estimates& estimates) {
+  if (estimates.finals.empty()) return;
+  const FrameId oldest{estimates.finals.back().frame.value - kMemory_frames};
+  for (auto it = shapes_.begin(); it != shapes_.end();) {
+    auto& looks = it->second.looks;
+    looks.erase(looks.begin(), looks.lower_bound(oldest));
+    it = looks.empty() && it->second.last < oldest ? shapes_.erase(it) : std::next(it);
+  }
+}
+
+}  // namespace motorcade

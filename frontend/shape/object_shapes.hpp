@@ -1,0 +1,63 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "core/stereo_camera.hpp"
+#include "frontend/messages.hpp"
+#include "frontend/shape/box_belief.hpp"
+#include "frontend/shape/dense_disparity.hpp"
+#include "frontend/shape/outline.hpp"
+
+namespace motorcade {
+
+/// The stage `object shapes`: looks densely at the image around each object, which gives its outline in this frame, and
+/// gathers what the outlines say of its cuboid. Call in frame order: it remembers the objects.
+class ObjectShapes {
+ public:
+  explicit ObjectShapes(const StereoCamera& camera) : camera_(camera) {}
+
+  /// What the frame's earlier stages made.
+  struct Inputs {
+    FeaturesPtr features;
+    SceneMotionPtr scene;
+    FrameMeasurementsPtr measurements;
+  };
+  /// The estimates with cuboids, kinds, image boxes and masks. Final estimates get theirs from what was seen before and
+  /// after their frame.
+  EstimatesPtr operator()(const Inputs& inputs, const EstimatesPtr& estimates);
+  /// The same for the frames that were still in the window when the drive ended.
+  std::vector<FrameEstimate> finish(std::vector<FrameEstimate> finals);
+
+ private:
+  /// What one frame said of an object's faces, in the body frame of that frame's online estimate.
+  struct Look {
+    FaceInformation faces;
+    SE3 T_cam_body;
+  };
+  struct Shape {
+    FaceInformation first;     // before its first outline
+    FaceInformation evidence;  // faded with age
+    double speed_mps = 0;
+    FrameId last;
+    SE3 T_cam_body_last;
+    std::map<FrameId, Look> looks;
+  };
+  void lookAt(ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame, std::vector<ObjectMask>& masks);
+  std::optional<FaceInformation> measured(const LevelDisparities& disparities, const Outline& outline, ObjectView& view,
+                                          const Shape& shape) const;
+  std::optional<LevelDisparities> disparitiesAround(const ObjectView& view, const Features& features);
+  void complete(FrameEstimate& final);
+  FaceInformation evidenceAround(const Shape& shape, FrameId frame) const;
+  void setBox(ObjectEstimate& object, const BoxEstimate& box, const SE3& T_cam_body) const;
+  void forgetGone(const Estimates& estimates);
+
+  StereoCamera camera_;
+  DenseDisparity dense_disparity_;
+  FeaturesPtr before_;
+  std::map<TrackId, Shape> shapes_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,309 @@
+#include "frontend/shape/outline.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "frontend/image/image_pyramid.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr double kDisparitySigma_px = 0.4;  // of a dense disparity, in pixels of its level
+constexpr double kGrowth_m = 0.6;  // by which an outline may pass the volume that was thought possible, along the road
+constexpr double kSlack_m = 0.2;   // beyond the volume that the cuboid may fill
+constexpr float kConnected_px = 1.0F;             // of the level: between neighbors on one surface
+constexpr double kLeastHeight_m = 0.15;           // above the road, below which a point may be the road's
+constexpr int kFringeLeft = 2, kFringeRight = 1;  // cells
+constexpr double kWheelInset_m = 0.3;             // of the wheels from the cuboid's sides
+constexpr double kLeastUsual = 0.7;               // of a piece's cells, so that it is one of the object's
+constexpr std::uint8_t kOutside = 0, kPossible = 1, kUsual = 2;  // in which volume a cell's point lies
+
+constexpr double kLeastShift = 1.5;    // cells between where the body's motion and rest take a point
+constexpr float kLeastDifference = 5;  // gray levels by which rest explains the brightness better
+
+struct Interval {
+  double begin, end;
+};
+
+/// Where a ray, origin + t * direction, is within a box; empty intervals end before they begin.
+Interval insideOf(const Eigen::Vector3d& least, const Eigen::Vector3d& most, const Eigen::Vector3d& origin,
+                  const Eigen::Vector3d& direction) {
+  Interval inside{0, 1e9};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double inverse = 1 / (std::abs(direction[axis]) > 1e-9 ? direction[axis] : 1e-9);
+    double in = (least[axis] - origin[axis]) * inverse, out = (most[axis] - origin[axis]) * inverse;
+    if (in > out) std::swap(in, out);
+    inside.begin = std::max(inside.begin, in);
+    inside.end = std::min(inside.end, out);
+  }
+  return inside;
+}
+
+/// Does a point lie in another object's cuboid?
+bool isOthers(const ObjectView& view, const Eigen::Vector3d& p_cam) {
+  return std::ranges::any_of(view.others, [&](const ObjectView::Other& other) {
+    const Eigen::Vector3d p_body = other.T_body_cam * p_cam;
+    return (p_body.array() > other.least.array()).all() && (p_body.array() < other.most.array()).all();
+  });
+}
+
+/// The cells whose points lie above the road and within the volume that the cuboid may fill, or usually fills.
+std::vector<std::uint8_t> cellsWithin(const LevelDisparities& disparities, const ObjectView& view,
+                                      const StereoCamera& camera) {
+  const PixelWindow& window = disparities.map.window;
+  std::vector<std::uint8_t> inside(static_cast<std::size_t>(window.area()), 0);
+  const Eigen::Array3d growth_m(kGrowth_m, kGrowth_m, kSlack_m);
+  const Eigen::Vector3d least = view.box.possible_least.array() - growth_m,
+                        most = view.box.possible_most.array() + growth_m,
+                        usual_least = view.box.usual_least.array() - kSlack_m,
+                        usual_most = view.box.usual_most.array() + kSlack_m;
+  const Eigen::Matrix3d R_body_cam = view.T_cam_body.rotation().transpose();
+  const Eigen::Vector3d origin = -R_body_cam * view.T_cam_body.translation();
+  const double fb = camera.fx_px * camera.baseline_m, sigma_px = kDisparitySigma_px * (1 << disparities.level);
+  for (int row = 0; row < window.height; ++row) {
+    for (int column = 0; column < window.width; ++column) {
+      const auto disparity_px = disparities.disparity_px(column, row);
+      if (!disparity_px) continue;
+      const double d = *disparity_px + view.disparity_offset_px;
+      if (d <= 0) continue;
+      const double z = fb / d, slack_m = 2 * z * sigma_px / d;
+      const Eigen::Vector3d ray((disparities.u_px(column) - camera.cx_px) / camera.fx_px,
+                                (disparities.v_px(row) - camera.cy_px) / camera.fy_px, 1);
+      if (view.ground.heightOf_m(z * ray) < kLeastHeight_m) continue;
+      const Eigen::Vector3d direction = R_body_cam * ray;
+      const auto holds = [&](const Interval& within) {
+        return within.begin <= within.end && within.end >= z - slack_m && within.begin <= z + slack_m;
+      };
+      if (!holds(insideOf(least, most, origin, direction)) || isOthers(view, z * ray)) continue;
+      const bool usual = holds(insideOf(usual_least, usual_most, origin, direction));
+      inside[static_cast<std::size_t>(row) * window.width + column] = usual ? kUsual : kPossible;
+    }
+  }
+  return inside;
+}
+
+/// Mean difference in gray levels of the 3x3 pixels around two places; empty where one is outside its image.
+std::optional<float> differenceOf(const Image& now, int u, int v, const Image& before, const Eigen::Vector2d& at) {
+  const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
+  const auto inside = [](const Image& image, int column, int row) {
+    return column >= 1 && row >= 1 && column + 1 < image.width() && row + 1 < image.height();
+  };
+  if (!inside(now, u, v) || !inside(before, x, y)) return std::nullopt;
+  int sum = 0;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) sum += std::abs(now.row(v + dy)[u + dx] - before.row(y + dy)[x + dx]);
+  return static_cast<float>(sum) / 9;
+}
+
+/// By how much better a cell's brightness moved with the scene at rest than with the body, from the frame before
+/// [gray levels]; zero where the two can hardly be told apart.
+float restsRatherThanMoves(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera,
+                           int column, int row) {
+  const ObjectView::Before& images = *view.before;
+  const double d = *disparities.disparity_px(column, row) + view.disparity_offset_px;
+  const Eigen::Vector3d p_cam = camera.triangulate({disparities.u_px(column), disparities.v_px(row), d});
+  const auto moved = camera.project(images.T_before_body * (view.T_cam_body.inverse() * p_cam)),
+             rested = camera.project(images.T_before_cam * p_cam);
+  if (!moved || !rested) return 0;
+  const double scale = 1 << disparities.level;
+  if ((*moved - *rested).head<2>().norm() < kLeastShift * scale) return 0;
+  const auto difference = [&](const Eigen::Vector3d& uvd_px) {
+    const Eigen::Vector2d at((uvd_px.x() + 0.5) / scale - 0.5, (uvd_px.y() + 0.5) / scale - 0.5);
+    const int u = disparities.map.window.u0 + column, v = disparities.map.window.v0 + row;
+    return differenceOf(images.now->levels[disparities.level], u, v, images.before->levels[disparities.level], at);
+  };
+  const auto as_moved = difference(*moved), as_rested = difference(*rested);
+  return as_moved && as_rested ? *as_moved - *as_rested : 0;
+}
+
+/// Cells around which the brightness rests rather than moves with the body.
+void dropResting(Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
+                 const StereoCamera& camera) {
+  const int width = outline.window.width, height = outline.window.height;
+  std::vector<float> evidence(outline.inside.size(), 0);
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column)
+      if (outline.at(column, row))
+        evidence[static_cast<std::size_t>(row) * width + column] =
+            restsRatherThanMoves(disparities, view, camera, column, row);
+  constexpr int kAround = 2;
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column) {
+      if (!outline.at(column, row)) continue;
+      float sum = 0;
+      int cells = 0;
+      for (int y = std::max(row - kAround, 0); y <= std::min(row + kAround, height - 1); ++y)
+        for (int x = std::max(column - kAround, 0); x <= std::min(column + kAround, width - 1); ++x)
+          sum += evidence[static_cast<std::size_t>(y) * width + x], cells += outline.at(x, y);
+      if (sum > kLeastDifference * static_cast<float>(cells))
+        outline.inside[static_cast<std::size_t>(row) * width + column] = kOutside;
+    }
+}
+
+/// A cell is what most of its 3x3 neighbors and itself are.
+void smooth(Outline& outline) {
+  const int width = outline.window.width, height = outline.window.height;
+  const std::vector<std::uint8_t> before = outline.inside;
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      int sum = 0, cells = 0;
+      for (int y = std::max(row - 1, 0); y <= std::min(row + 1, height - 1); ++y)
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, width - 1); ++x)
+          sum += before[static_cast<std::size_t>(y) * width + x] != kOutside, ++cells;
+      std::uint8_t& cell = outline.inside[static_cast<std::size_t>(row) * width + column];
+      cell = 2 * sum <= cells ? kOutside : cell == kOutside ? kPossible : cell;
+    }
+  }
+}
+
+/// Keeps the connected piece that has most in the usual volume, and those that lie there for the most part.
+void dropPieces(Outline& outline, const DisparityMap& map) {
+  const int width = outline.window.width, height = outline.window.height;
+  std::vector<int> piece(outline.inside.size(), -1), sizes, usual;
+  std::vector<int> open;
+  for (std::size_t seed = 0; seed < outline.inside.size(); ++seed) {
+    if (!outline.inside[seed] || piece[seed] >= 0) continue;
+    const int id = static_cast<int>(sizes.size());
+    sizes.push_back(0), usual.push_back(0);
+    open.assign(1, static_cast<int>(seed));
+    piece[seed] = id;
+    while (!open.empty()) {
+      const int at = open.back(), column = at % width, row = at / width;
+      open.pop_back();
+      ++sizes[id];
+      usual[id] += outline.inside[at] == kUsual;
+      const auto reach = [&](int x, int y) {
+        if (x < 0 || y < 0 || x >= width || y >= height) return;
+        const int next = y * width + x;
+        if (!outline.inside[next] || piece[next] >= 0) return;
+        const float here_px = map.disparity_px[at], there_px = map.disparity_px[next];
+        const bool known = here_px != DisparityMap::kNone && there_px != DisparityMap::kNone;
+        if (known && std::abs(here_px - there_px) > kConnected_px) return;
+        piece[next] = id;
+        open.push_back(next);
+      };
+      reach(column - 1, row), reach(column + 1, row), reach(column, row - 1), reach(column, row + 1);
+    }
+  }
+  if (sizes.empty()) return;
+  const auto main = static_cast<int>(std::ranges::max_element(usual) - usual.begin());
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    const int id = piece[i];
+    outline.inside[i] = id >= 0 && (id == main || usual[id] > kLeastUsual * sizes[id]) ? 1 : 0;
+  }
+}
+
+/// First and last cell inside of each row (or column), first beyond last where there is none.
+std::vector<std::pair<int, int>> spans(const Outline& outline, bool of_rows) {
+  const int count = of_rows ? outline.window.height : outline.window.width;
+  const int length = of_rows ? outline.window.width : outline.window.height;
+  std::vector<std::pair<int, int>> result(count, {length, -1});
+  for (int i = 0; i < count; ++i)
+    for (int k = 0; k < length; ++k)
+      if (of_rows ? outline.at(k, i) : outline.at(i, k))
+        result[i].first = std::min(result[i].first, k), result[i].second = k;
+  return result;
+}
+
+/// Windows and smooth paint give no disparity, or a wrong one: what has cells of the object on all four sides is its.
+void fillGaps(Outline& outline) {
+  const auto rows = spans(outline, true), columns = spans(outline, false);
+  for (int row = 0; row < outline.window.height; ++row)
+    for (int column = rows[row].first; column <= rows[row].second; ++column)
+      if (columns[column].first <= row && row <= columns[column].second)
+        outline.inside[static_cast<std::size_t>(row) * outline.window.width + column] = 1;
+}
+
+/// The windows that are compared make objects wider than they are; at the left, so does what only the left image sees.
+void takeOffFringe(Outline& outline) {
+  const auto rows = spans(outline, true);
+  for (int row = 0; row < outline.window.height; ++row) {
+    const int first = rows[row].first, last = rows[row].second;
+    const auto clear = [&](int from, int to) {
+      for (int column = std::max(from, first); column <= std::min(to, last); ++column)
+        outline.inside[static_cast<std::size_t>(row) * outline.window.width + column] = 0;
+    };
+    if (first > 0) clear(first, first + kFringeLeft - 1);
+    if (last + 1 < outline.window.width) clear(last - kFringeRight + 1, last);
+  }
+}
+
+}  // namespace
+
+void reachDownToRoad(Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
+                     const StereoCamera& camera) {
+  const auto columns = spans(outline, false);
+  const Eigen::Matrix3d R_body_cam = view.T_cam_body.rotation().transpose();
+  const Eigen::Vector3d origin = -R_body_cam * view.T_cam_body.translation();
+  const Eigen::Vector3d inset(kWheelInset_m, kWheelInset_m, 0);
+  for (int column = 0; column < outline.window.width; ++column) {
+    const int lowest = columns[column].second;
+    if (lowest < 0) continue;
+    for (int row = lowest + 1; row < outline.window.height; ++row) {
+      const Eigen::Vector3d ray((disparities.u_px(column) - camera.cx_px) / camera.fx_px,
+                                (disparities.v_px(row) - camera.cy_px) / camera.fy_px, 1);
+      const Interval within = insideOf(view.box.least() + inset, view.box.most() - inset, origin, R_body_cam * ray);
+      if (within.begin > within.end) break;
+      outline.inside[static_cast<std::size_t>(row) * outline.window.width + column] = 1;
+    }
+  }
+}
+
+std::optional<double> LevelDisparities::disparity_px(int column, int row) const {
+  const float d = map.at(column, row);
+  if (d == DisparityMap::kNone) return std::nullopt;
+  return static_cast<double>(d) * (1 << level);
+}
+
+double LevelDisparities::u_px(int column) const { return fromLevel(static_cast<float>(map.window.u0 + column), level); }
+double LevelDisparities::v_px(int row) const { return fromLevel(static_cast<float>(map.window.v0 + row), level); }
+
+PixelWindow Outline::bounds() const {
+  int left = window.width, right = -1, top = window.height, bottom = -1;
+  for (int row = 0; row < window.height; ++row)
+    for (int column = 0; column < window.width; ++column)
+      if (at(column, row)) {
+        left = std::min(left, column), right = std::max(right, column);
+        top = std::min(top, row), bottom = std::max(bottom, row);
+      }
+  return {left, top, right - left + 1, bottom - top + 1};
+}
+
+int Outline::count() const { return static_cast<int>(std::ranges::count(inside, 1)); }
+
+Outline findOutline(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera) {
+  Outline outline{.window = disparities.map.window, .inside = cellsWithin(disparities, view, camera)};
+  if (view.before) dropResting(outline, disparities, view, camera);
+  smooth(outline);
+  dropPieces(outline, disparities.map);
+  fillGaps(outline);
+  takeOffFringe(outline);
+  return outline;
+}
+
+Eigen::Vector3d cornerOf(const Eigen::Vector3d& least, const Eigen::Vector3d& most, int corner) {
+  return {(corner & 1 ? most : least).x(), (corner & 2 ? most : least).y(), (corner & 4 ? most : least).z()};
+}
+
+std::optional<Box> projectedBox(const Eigen::Vector3d& least, const Eigen::Vector3d& most, const SE3& T_cam_body,
+                                const StereoCamera& camera) {
+  Box box{1e9, 1e9, -1e9, -1e9};
+  for (int corner = 0; corner < 8; ++corner) {
+    Eigen::Vector3d p_cam = T_cam_body * cornerOf(least, most, corner);
+    constexpr double kNear_m = 0.5;  // what is behind the camera is cut off about there
+    p_cam.z() = std::max(p_cam.z(), kNear_m);
+    const auto uvd_px = camera.project(p_cam);
+    if (!uvd_px) continue;
+    box.left_px = std::min(box.left_px, uvd_px->x()), box.right_px = std::max(box.right_px, uvd_px->x());
+    box.top_px = std::min(box.top_px, uvd_px->y()), box.bottom_px = std::max(box.bottom_px, uvd_px->y());
+  }
+  box.left_px = std::max(box.left_px, 0.0), box.top_px = std::max(box.top_px, 0.0);
+  box.right_px = std::min(box.right_px, camera.width_px - 1.0);
+  box.bottom_px = std::min(box.bottom_px, camera.height_px - 1.0);
+  if (box.left_px >= box.right_px || box.top_px >= box.bottom_px) return std::nullopt;
+  return box;
+}
+
+}  // namespace motorcade

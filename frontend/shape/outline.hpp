@@ -1,0 +1,70 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/stereo_camera.hpp"
+#include "frontend/messages.hpp"
+#include "frontend/shape/box_belief.hpp"
+#include "frontend/shape/dense_disparity.hpp"
+
+namespace motorcade {
+
+/// How an object stands to the camera in one frame, as far as it is known before its outline.
+struct ObjectView {
+  SE3 T_cam_body;
+  BoxEstimate box;
+  GroundPlane ground;
+  double disparity_offset_px = 0;
+  struct Other {
+    SE3 T_body_cam;
+    Eigen::Vector3d least, most;
+  };
+  std::optional<Eigen::AlignedBox3d> points{};  // body frame: around the followed points, without outliers
+  /// The left images of this frame and the one before, and where the body and what rests were then.
+  struct Before {
+    const ImagePyramid *now, *before;
+    SE3 T_before_body, T_before_cam;
+  };
+  std::optional<Before> before{};
+  std::vector<Other> others{};  // cuboids of other objects, where the object cannot be
+};
+
+/// Disparities of a window at some level of the image pyramid.
+struct LevelDisparities {
+  int level = 0;
+  DisparityMap map;
+  /// Of a cell [px of full size]; empty where the images agree on none.
+  std::optional<double> disparity_px(int column, int row) const;
+  /// Middle of a column or row [px of full size].
+  double u_px(int column) const;
+  double v_px(int row) const;
+};
+
+/// Which cells of the window show the object: those that lie within its cuboid, as far as both are known, above the
+/// road. Gaps are filled and pieces beside it dropped.
+struct Outline {
+  PixelWindow window;  // of the cells
+  std::vector<std::uint8_t> inside;
+  /// Bounds of the cells inside; empty window when there are none.
+  PixelWindow bounds() const;
+  int count() const;
+  bool at(int column, int row) const { return inside[static_cast<std::size_t>(row) * window.width + column] != 0; }
+};
+
+Outline findOutline(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera);
+
+/// Box in the left image around the cuboid, cut at the image's border; empty when it does not lie in the image.
+std::optional<Box> projectedBox(const Eigen::Vector3d& least, const Eigen::Vector3d& most, const SE3& T_cam_body,
+                                const StereoCamera& camera);
+
+/// Adds the wheels and what else is too low to be told from the road: down to where the cuboid stands.
+void reachDownToRoad(Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
+                     const StereoCamera& camera);
+
+/// The corners of a cuboid, numbered 0 ... 7 by bits: the greater x, y, z.
+Eigen::Vector3d cornerOf(const Eigen::Vector3d& least, const Eigen::Vector3d& most, int corner);
+
+}  // namespace motorcade

@@ -1,0 +1,42 @@
+#include "io/mask_image.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+
+namespace motorcade {
+
+Gray16Image maskImage(const FrameEstimate& frame, const std::vector<ObjectMask>& masks, int width_px, int height_px) {
+  Gray16Image image;
+  image.width = width_px;
+  image.height = height_px;
+  image.pixels.assign(static_cast<std::size_t>(width_px) * height_px, 0);
+  const SE3 T_cam_world = frame.T_world_cam.inverse();
+  const auto distance_m = [&](const ObjectMask* mask) {
+    const auto object = std::ranges::find(frame.objects, mask->track, &ObjectEstimate::track);
+    return object == frame.objects.end() ? std::numeric_limits<double>::max()
+                                         : (T_cam_world * object->T_world_body.translation()).z();
+  };
+  std::vector<const ObjectMask*> farthest_first;
+  for (const ObjectMask& mask : masks) farthest_first.push_back(&mask);
+  std::ranges::stable_sort(farthest_first, std::ranges::greater{}, distance_m);
+  for (const ObjectMask* mask : farthest_first) {
+    const auto value = static_cast<std::uint16_t>(mask->track.value % std::numeric_limits<std::uint16_t>::max() + 1);
+    const int v_end = std::min(mask->top_px + mask->height * mask->cell_px, height_px),
+              u_end = std::min(mask->left_px + mask->width * mask->cell_px, width_px);
+    for (int v = std::max(mask->top_px, 0); v < v_end; ++v)
+      for (int u = std::max(mask->left_px, 0); u < u_end; ++u)
+        if (mask->at((u - mask->left_px) / mask->cell_px, (v - mask->top_px) / mask->cell_px))
+          image.pixels[static_cast<std::size_t>(v) * width_px + u] = value;
+  }
+  return image;
+}
+
+std::filesystem::path maskFile(const std::filesystem::path& folder, FrameId frame) {
+  std::array<char, 32> name;
+  std::snprintf(name.data(), name.size(), "%06lld.png", static_cast<long long>(frame.value));
+  return folder / name.data();
+}
+
+}  // namespace motorcade

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "io/image_file.hpp"
+
+namespace motorcade {
+
+/// What `run --masks` writes of one frame: 0 where nothing moves or nothing is known, else the number of the track plus
+/// one, of the nearest object where several overlap.
+Gray16Image maskImage(const FrameEstimate& frame, const std::vector<ObjectMask>& masks, int width_px, int height_px);
+
+/// The file of a frame's mask in the folder.
+std::filesystem::path maskFile(const std::filesystem::path& folder, FrameId frame);
+
+}  // namespace motorcade

@@ -1,0 +1,100 @@
+#include "io/object_row.hpp"
+
+#include <array>
+
+#include "io/number_text.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr std::array kStates = {ObjectState::kMoving, ObjectState::kStopped, ObjectState::kPredicted};
+constexpr std::array kKinds = {ObjectKind::kUnknown, ObjectKind::kCar, ObjectKind::kLargeVehicle,
+                               ObjectKind::kTwoWheeler, ObjectKind::kPedestrian};
+
+ObjectBox readBox(FieldReader& fields) {
+  ObjectBox box;
+  for (auto* vector : {&box.center_body, &box.size_m, &box.center_sigma_m, &box.size_sigma_m})
+    for (int axis = 0; axis < 3; ++axis) (*vector)[axis] = fields.number("cuboid");
+  box.kind = fields.byName("kind", kKinds, kindName);
+  box.kind_probability = fields.number("kind_probability");
+  return box;
+}
+
+}  // namespace
+
+std::string_view stateName(ObjectState state) {
+  switch (state) {
+    case ObjectState::kMoving:
+      return "moving";
+    case ObjectState::kStopped:
+      return "stopped";
+    case ObjectState::kPredicted:
+      return "predicted";
+  }
+  return "moving";
+}
+
+std::string_view kindName(ObjectKind kind) {
+  switch (kind) {
+    case ObjectKind::kUnknown:
+      return "unknown";
+    case ObjectKind::kCar:
+      return "car";
+    case ObjectKind::kLargeVehicle:
+      return "large_vehicle";
+    case ObjectKind::kTwoWheeler:
+      return "two_wheeler";
+    case ObjectKind::kPedestrian:
+      return "pedestrian";
+  }
+  return "unknown";
+}
+
+std::string objectLine(FrameId frame, const ObjectEstimate& object) {
+  std::string line;
+  line.reserve(420);
+  appendInteger(line, frame.value);
+  line += ',';
+  appendInteger(line, object.track.value);
+  line += ',';
+  line += stateName(object.state);
+  const auto add = [&](double value, int decimals) {
+    line += ',';
+    appendFixed(line, value, decimals);
+  };
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) add(object.T_world_body.rotation()(row, column), 9);
+    add(object.T_world_body.translation()[row], 6);
+  }
+  for (int axis = 0; axis < 3; ++axis) add(object.velocity_world_mps[axis], 4);
+  add(object.speed_sigma_mps, 4);
+  line += ',';
+  appendInteger(line, object.points);
+  for (const double edge_px : {object.box.left_px, object.box.top_px, object.box.right_px, object.box.bottom_px})
+    add(edge_px, 2);
+  const ObjectBox box = object.cuboid.value_or(ObjectBox{});
+  for (const auto* vector : {&box.center_body, &box.size_m, &box.center_sigma_m, &box.size_sigma_m})
+    for (int axis = 0; axis < 3; ++axis) add((*vector)[axis], 3);
+  line += ',';
+  line += kindName(box.kind);
+  add(box.kind_probability, 3);
+  return line;
+}
+
+ObjectEstimate readObject(FieldReader& fields) {
+  ObjectEstimate object;
+  object.track.value = fields.integer("track_id");
+  object.state = fields.byName("state", kStates, stateName);
+  object.T_world_body = fields.pose("T_world_body");
+  for (int axis = 0; axis < 3; ++axis) object.velocity_world_mps[axis] = fields.number("velocity");
+  object.speed_sigma_mps = fields.number("speed_sigma_mps");
+  object.points = static_cast<int>(fields.integer("points"));
+  for (double* edge_px : {&object.box.left_px, &object.box.top_px, &object.box.right_px, &object.box.bottom_px})
+    *edge_px = fields.number("box");
+  if (fields.atEnd()) return object;
+  const ObjectBox box = readBox(fields);
+  if (box.size_m.x() > 0) object.cuboid = box;
+  return object;
+}
+
+}  // namespace motorcade

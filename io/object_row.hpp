@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/messages.hpp"
+#include "io/text_file.hpp"
+
+/// The rows of `objects_online.csv` and `objects_final.csv` (docs/formats.md).
+namespace motorcade {
+
+/// What every header begins with: runs of earlier versions have no columns after it.
+inline constexpr std::string_view kObjectsHeaderStart =
+    "frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,right,"
+    "bottom";
+inline constexpr std::string_view kObjectsHeader =
+    "frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,right,"
+    "bottom,box_x,box_y,box_z,length,width,height,box_x_sigma,box_y_sigma,box_z_sigma,length_sigma,width_sigma,"
+    "height_sigma,kind,kind_probability";
+
+std::string_view stateName(ObjectState state);
+std::string_view kindName(ObjectKind kind);
+
+std::string objectLine(FrameId frame, const ObjectEstimate& object);
+/// All columns but the frame, which is read already. Fails with the column's name.
+ObjectEstimate readObject(FieldReader& fields);
+
+}  // namespace motorcade

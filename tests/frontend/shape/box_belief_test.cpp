@@ -1,0 +1,79 @@
+#include "frontend/shape/box_belief.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/frontend/shape/street_by_hand.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::StreetByHand;
+
+FaceInformation seen(const Eigen::Vector3d& size_m, double sigma_m) {
+  const BoxFaces faces = StreetByHand::faces(size_m);
+  FaceInformation information;
+  for (int face = 0; face < 6; ++face) information.add(Vector6d::Unit(face), faces[face], sigma_m);
+  return information;
+}
+
+TEST(BoxBelief, KindsAreToldBySizeAndSpeed) {
+  const auto kind = [](const Eigen::Vector3d& size_m, double speed_mps) {
+    return estimateBox(seen(size_m, 0.1), speed_mps).kind;
+  };
+  EXPECT_EQ(kind({4.3, 1.8, 1.5}, 15), ObjectKind::kCar);
+  EXPECT_EQ(kind({5.4, 2.0, 2.2}, 15), ObjectKind::kCar);  // a van
+  EXPECT_EQ(kind({11, 2.5, 3.3}, 15), ObjectKind::kLargeVehicle);
+  EXPECT_EQ(kind({1.8, 0.6, 1.7}, 6), ObjectKind::kTwoWheeler);
+  EXPECT_EQ(kind({0.8, 0.6, 1.75}, 1.5), ObjectKind::kPedestrian);
+  const BoxEstimate fast = estimateBox(seen({1.2, 0.65, 1.75}, 0.3), 10),
+                    slow = estimateBox(seen({1.2, 0.65, 1.75}, 0.3), 1);
+  EXPECT_EQ(fast.kind, ObjectKind::kTwoWheeler);  // nobody runs that fast
+  EXPECT_EQ(slow.kind, ObjectKind::kPedestrian);
+}
+
+TEST(BoxBelief, WithoutEvidenceThereIsACarOfUsualSize) {
+  const BoxEstimate estimate = estimateBox({}, 10);
+  EXPECT_EQ(estimate.kind, ObjectKind::kCar);
+  EXPECT_LT(estimate.kind_probability, 0.95);
+  EXPECT_NEAR(estimate.box().size_m.x(), 4, 0.5);
+  EXPECT_GT(estimate.box().center_sigma_m.x(), 1);
+}
+
+TEST(BoxBelief, HiddenFacesComeFromTheKindAndGrowSureWhenTheyAreSeen) {
+  FaceInformation rear;
+  rear.add(Vector6d::Unit(kRear), -0.2, 0.1);
+  for (const Face face : {kRight, kLeft}) rear.add(Vector6d::Unit(face), face == kLeft ? 0.9 : -0.9, 0.05);
+  rear.add(Vector6d::Unit(kBottom), -0.8, 0.05);
+  rear.add(Vector6d::Unit(kTop), 0.7, 0.05);
+  const ObjectBox hidden = estimateBox(rear, 10).box();
+  EXPECT_NEAR(hidden.size_m.x(), 4.1, 0.2);
+  EXPECT_NEAR(hidden.center_body.x(), -0.2 + 0.5 * hidden.size_m.x(), 0.1);
+  EXPECT_GT(hidden.size_sigma_m.x(), 0.3);
+  EXPECT_LT(hidden.size_sigma_m.y(), 0.1);
+  rear.add(Vector6d::Unit(kFront), 4.5, 0.1);
+  const ObjectBox found = estimateBox(rear, 10).box();
+  EXPECT_NEAR(found.size_m.x(), 4.7, 0.15);
+  EXPECT_LT(found.size_sigma_m.x(), 0.2);
+}
+
+TEST(BoxBelief, ThePossibleVolumeHoldsWhatIsNotRuledOut) {
+  const BoxEstimate unknown = estimateBox({}, 5), known = estimateBox(seen({4.3, 1.8, 1.5}, 0.05), 15);
+  EXPECT_GT((unknown.possible_most - unknown.possible_least).z(), 2);  // a large vehicle is not ruled out
+  EXPECT_LT((known.possible_most - known.possible_least).z(), 1.7);
+  EXPECT_TRUE((unknown.possible_least.array() <= unknown.usual_least.array()).all());
+  EXPECT_TRUE((unknown.possible_most.array() >= unknown.usual_most.array()).all());
+}
+
+TEST(FaceInformation, MovesWithTheBodyFrame) {
+  const Eigen::Vector3d shift(0.5, -0.2, 0.1), size_m(4, 1.7, 1.5);
+  const FaceInformation moved = seen(size_m, 0.2).shifted(shift);
+  FaceInformation expected;
+  const BoxFaces faces = StreetByHand::faces(size_m);
+  for (int face = 0; face < 6; ++face) expected.add(Vector6d::Unit(face), faces[face] + shift[face / 2], 0.2);
+  EXPECT_LT((moved.H - expected.H).norm(), 1e-9);
+  EXPECT_LT((moved.b - expected.b).norm(), 1e-9);
+  EXPECT_NEAR(moved.c, expected.c, 1e-9);
+}
+
+}  // namespace
+}  // namespace motorcade

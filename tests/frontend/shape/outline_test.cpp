@@ -1,0 +1,133 @@
+#include "frontend/shape/outline.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/frontend/shape/street_by_hand.hpp"
+#include "tests/frontend/texture.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::kRig;
+using test::StreetByHand;
+
+const Eigen::Vector3d kCar_m(4.2, 1.8, 1.5);
+constexpr PixelWindow kWindow{.u0 = 230, .v0 = 60, .width = 140, .height = 100};
+
+ObjectView viewOf(const SE3& T_cam_body, const Eigen::Vector3d& size_m) {
+  FaceInformation sure;
+  for (int face = 0; face < 6; ++face) sure.add(Vector6d::Unit(face), StreetByHand::faces(size_m)[face], 0.1);
+  return {.T_cam_body = T_cam_body,
+          .box = estimateBox(sure, 10),
+          .ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m},
+          .disparity_offset_px = 0};
+}
+
+struct Overlap {
+  int both = 0, either = 0, outside = 0;
+  double iou() const { return static_cast<double>(both) / either; }
+};
+Overlap overlapOf(const Outline& outline, const LevelDisparities& seen, const StreetByHand& street, int item) {
+  Overlap overlap;
+  for (int row = 0; row < outline.window.height; ++row)
+    for (int column = 0; column < outline.window.width; ++column) {
+      const bool truth = street.at(seen.u_px(column), seen.v_px(row)).item == item, found = outline.at(column, row);
+      overlap.both += truth && found;
+      overlap.either += truth || found;
+      overlap.outside += !truth && found;
+    }
+  return overlap;
+}
+
+class OutlineAtYaw : public testing::TestWithParam<double> {};
+
+TEST_P(OutlineAtYaw, CoversTheCarAndNotTheRoad) {
+  const SE3 T_cam_body = StreetByHand::standingAt(-0.3, 13, GetParam());
+  const StreetByHand street({{T_cam_body, StreetByHand::faces(kCar_m)}});
+  const LevelDisparities seen = street.disparities(kWindow, 1);
+  const ObjectView view = viewOf(T_cam_body, kCar_m);
+  Outline outline = findOutline(seen, view, kRig);
+  const int before = outline.count();
+  reachDownToRoad(outline, seen, view, kRig);
+  EXPECT_GT(outline.count(), before);  // what is just above the road
+  const Overlap overlap = overlapOf(outline, seen, street, 0);
+  EXPECT_GT(overlap.iou(), 0.85);
+  EXPECT_LT(overlap.outside, 0.05 * overlap.either);
+}
+
+INSTANTIATE_TEST_SUITE_P(Yaws, OutlineAtYaw, testing::Values(0.0, 0.6, 1.5));
+
+TEST(Outline, LeavesOthersAlone) {
+  const SE3 T_near = StreetByHand::standingAt(-0.6, 12), T_far = StreetByHand::standingAt(1.6, 13);
+  const StreetByHand street({{T_near, StreetByHand::faces(kCar_m)}, {T_far, StreetByHand::faces(kCar_m)}});
+  const LevelDisparities seen = street.disparities(kWindow, 1);
+  ObjectView view = viewOf(T_near, kCar_m);
+  view.box.usual_most += Eigen::Vector3d(0, 0.5, 0), view.box.possible_most = view.box.usual_most;
+  view.box.usual_least -= Eigen::Vector3d(0, 2.5, 0), view.box.possible_least = view.box.usual_least;  // over the other
+  const auto taken = [&] {
+    const Outline outline = findOutline(seen, view, kRig);
+    return overlapOf(outline, seen, street, 1).both;
+  };
+  const int without = taken();
+  const BoxFaces faces = StreetByHand::faces(kCar_m);
+  view.others.push_back({T_far.inverse(), Eigen::Vector3d(faces[0], faces[2], faces[4]).array() - 0.2,
+                         Eigen::Vector3d(faces[1], faces[3], faces[5]).array() + 0.2});
+  EXPECT_GT(without, 100);
+  EXPECT_LT(taken(), 0.1 * without);
+}
+
+/// A second car beside the first, in the volume that is thought possible: the one moved aside since the frame before,
+/// the other rests.
+TEST(Outline, LeavesOutWhatRests) {
+  constexpr int kLevel = 1;
+  const SE3 T_now = StreetByHand::standingAt(-0.6, 12), T_before = StreetByHand::standingAt(-1.0, 12),
+            T_parked = StreetByHand::standingAt(1.6, 12);
+  const StreetByHand now({{T_now, StreetByHand::faces(kCar_m)}, {T_parked, StreetByHand::faces(kCar_m)}}),
+      before({{T_before, StreetByHand::faces(kCar_m)}, {T_parked, StreetByHand::faces(kCar_m)}});
+  const test::Texture texture(3);
+  const auto pyramid = [&](const StreetByHand& street, double moved_px) {
+    ImagePyramid images;
+    for (int level = 0; level <= kLevel; ++level)  // the coarser level alone is looked at
+      images.levels.push_back(test::render(kRig.width_px >> level, kRig.height_px >> level, [&](double u, double v) {
+        const double scale = 1 << level, full_u = (u + 0.5) * scale - 0.5, full_v = (v + 0.5) * scale - 0.5;
+        return texture(u - (street.at(full_u, full_v).item == 0 ? moved_px : 0), v);
+      }));
+    return images;
+  };
+  const ImagePyramid images_now = pyramid(now, 0),
+                     images_before = pyramid(before, -kRig.fx_px * 0.4 / (12 - kCar_m.x() / 2) / (1 << kLevel));
+  const LevelDisparities seen = now.disparities(kWindow, kLevel);
+  ObjectView view = viewOf(T_now, kCar_m);
+  view.box.usual_least -= Eigen::Vector3d(0, 3.2, 0), view.box.possible_least = view.box.usual_least;
+  const Outline without = findOutline(seen, view, kRig);
+  view.before = {&images_now, &images_before, T_before, SE3{}};
+  const Outline with = findOutline(seen, view, kRig);
+  EXPECT_GT(overlapOf(without, seen, now, 1).both, 300);
+  EXPECT_LT(overlapOf(with, seen, now, 1).both, 0.3 * overlapOf(without, seen, now, 1).both);
+  EXPECT_GT(overlapOf(with, seen, now, 0).both, 0.8 * overlapOf(without, seen, now, 0).both);
+}
+
+TEST(Outline, FillsWhatGivesNoDisparity) {
+  const SE3 T_cam_body = StreetByHand::standingAt(0, 12);
+  const StreetByHand street({{T_cam_body, StreetByHand::faces(kCar_m)}});
+  LevelDisparities seen = street.disparities(kWindow, 1);
+  const ObjectView view = viewOf(T_cam_body, kCar_m);
+  const Outline whole = findOutline(seen, view, kRig);
+  const PixelWindow bounds = whole.bounds();
+  for (int row = bounds.v0 + 5; row < bounds.v0 + bounds.height - 5; ++row)  // its windows
+    for (int column = bounds.u0 + 8; column < bounds.u0 + bounds.width - 8; ++column)
+      seen.map.disparity_px[static_cast<std::size_t>(row) * kWindow.width + column] = DisparityMap::kNone;
+  EXPECT_GT(findOutline(seen, view, kRig).count(), 0.95 * whole.count());
+}
+
+TEST(Outline, BoxInTheImageHoldsTheCorners) {
+  const SE3 T_cam_body = StreetByHand::standingAt(0, 12);
+  const auto box = projectedBox({-2.1, -0.9, 0}, {2.1, 0.9, 1.5}, T_cam_body, kRig);
+  ASSERT_TRUE(box);
+  EXPECT_NEAR(box->right_px - box->left_px, kRig.fx_px * 1.8 / 9.9, 1e-6);  // the rear face is at 9.9 m
+  EXPECT_NEAR(box->bottom_px, kRig.cy_px + kRig.fy_px * 1.65 / 9.9, 1e-6);
+  EXPECT_FALSE(projectedBox({-2.1, -0.9, 0}, {2.1, 0.9, 1.5}, StreetByHand::standingAt(40, 12), kRig));
+}
+
+}  // namespace
+}  // namespace motorcade
