@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <limits>
+#include <string>
 
 namespace motorcade {
 
@@ -37,6 +38,11 @@ std::filesystem::path maskFile(const std::filesystem::path& folder, FrameId fram
   std::array<char, 32> name;
   std::snprintf(name.data(), name.size(), "%06lld.png", static_cast<long long>(frame.value));
   return folder / name.data();
+}
+
+bool isMaskFile(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  return file.extension() == ".png" && stem.size() >= 6 && stem.find_first_not_of("0123456789") == std::string::npos;
 }
 
 }  // namespace motorcade

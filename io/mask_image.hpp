@@ -14,5 +14,7 @@ Gray16Image maskImage(const FrameEstimate& frame, const std::vector<ObjectMask>&
 
 /// The file of a frame's mask in the folder.
 std::filesystem::path maskFile(const std::filesystem::path& folder, FrameId frame);
+/// Does a file have such a name?
+bool isMaskFile(const std::filesystem::path& file);
 
 }  // namespace motorcade

@@ -66,12 +66,13 @@ void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) 
 /// Writes a mask image per frame, for those who map what rests.
 class MaskWriter {
  public:
-  /// Makes the folder, and empties it of masks of an earlier run.
+  /// Makes the folder, and removes masks of an earlier run, nothing else.
   MaskWriter(const std::filesystem::path& folder, const StereoCamera& camera) : folder_(folder), camera_(camera) {
     std::error_code error;
-    std::filesystem::remove_all(folder, error);
     std::filesystem::create_directories(folder, error);
     if (error) throw OutputError(folder.string() + ": cannot be made a folder: " + error.message());
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (isMaskFile(entry.path())) std::filesystem::remove(entry.path(), error);
   }
   void write(const FrameEstimate& frame, const std::vector<ObjectMask>& masks) const {
     writePng16(maskFile(folder_, frame.frame), maskImage(frame, masks, camera_.width_px, camera_.height_px));

@@ -38,16 +38,13 @@ std::optional<Eigen::AlignedBox3d> extentOf(const std::vector<PointMeasurement>&
     for (int axis = 0; axis < 3; ++axis) along[axis].push_back(p_body[axis]);
   }
   if (along[0].size() < kLeastPoints) return std::nullopt;
-  Eigen::AlignedBox3d extent;
   Eigen::Vector3d least, most;
   for (int axis = 0; axis < 3; ++axis) {
     std::ranges::sort(along[axis]);
     const std::size_t left_out = along[axis].size() / 10;
     least[axis] = along[axis][left_out], most[axis] = along[axis][along[axis].size() - 1 - left_out];
   }
-  extent.extend(least);
-  extent.extend(most);
-  return extent;
+  return Eigen::AlignedBox3d(least, most);
 }
 
 /// The points that an object is found by lie on the sides that it turns to the camera.
@@ -90,7 +87,7 @@ EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& 
       setBox(object, estimateBox(known->second.evidence, known->second.speed_mps), T_cam_world * object.T_world_body);
   for (ObjectEstimate& object : shaped->online.objects) lookAt(object, inputs, shaped->online, shaped->masks);
   before_ = inputs.features;
-  for (FrameEstimate& final : shaped->finals) complete(final);
+  complete(shaped->finals);
   forgetGone(*shaped);
   return shaped;
 }
@@ -198,27 +195,33 @@ void ObjectShapes::setBox(ObjectEstimate& object, const BoxEstimate& box, const 
 }
 
 std::vector<FrameEstimate> ObjectShapes::finish(std::vector<FrameEstimate> finals) {
-  for (const FrameEstimate& frame : finals) {
-    for (const ObjectEstimate& object : frame.objects) {
-      const auto shape = shapes_.find(object.track);
-      if (shape == shapes_.end()) continue;
-      const auto look = shape->second.looks.find(frame.frame);
-      if (look == shape->second.looks.end()) continue;
-      const SE3 T_cam_body = frame.T_world_cam.inverse() * object.T_world_body;
-      look->second.faces = look->second.faces.shifted((T_cam_body.inverse() * look->second.T_cam_body).translation());
-      look->second.T_cam_body = T_cam_body;
-    }
-  }
-  for (FrameEstimate& final : finals) complete(final);
+  complete(finals);
   return finals;
 }
 
-void ObjectShapes::complete(FrameEstimate& final) {
-  for (ObjectEstimate& object : final.objects) {
+/// All looks of these frames first, as each frame's cuboid gathers what is around it.
+void ObjectShapes::complete(std::vector<FrameEstimate>& finals) {
+  for (const FrameEstimate& final : finals) moveLooks(final);
+  for (FrameEstimate& final : finals) {
+    for (ObjectEstimate& object : final.objects) {
+      const auto shape = shapes_.find(object.track);
+      if (shape == shapes_.end()) continue;
+      const SE3 T_cam_body = final.T_world_cam.inverse() * object.T_world_body;
+      setBox(object, estimateBox(evidenceAround(shape->second, final.frame), shape->second.speed_mps), T_cam_body);
+    }
+  }
+}
+
+/// Into the body frame of the final estimate.
+void ObjectShapes::moveLooks(const FrameEstimate& final) {
+  for (const ObjectEstimate& object : final.objects) {
     const auto shape = shapes_.find(object.track);
     if (shape == shapes_.end()) continue;
+    const auto look = shape->second.looks.find(final.frame);
+    if (look == shape->second.looks.end()) continue;
     const SE3 T_cam_body = final.T_world_cam.inverse() * object.T_world_body;
-    setBox(object, estimateBox(evidenceAround(shape->second, final.frame), shape->second.speed_mps), T_cam_body);
+    look->second.faces = look->second.faces.shifted((T_cam_body.inverse() * look->second.T_cam_body).translation());
+    look->second.T_cam_body = T_cam_body;
   }
 }
 

@@ -32,7 +32,8 @@ class ObjectShapes {
   std::vector<FrameEstimate> finish(std::vector<FrameEstimate> finals);
 
  private:
-  /// What one frame said of an object's faces, in the body frame of that frame's online estimate.
+  /// What one frame said of an object's faces, in the body frame of that frame's online estimate, and of its final
+  /// one from then on.
   struct Look {
     FaceInformation faces;
     SE3 T_cam_body;
@@ -49,7 +50,8 @@ class ObjectShapes {
   std::optional<FaceInformation> measured(const LevelDisparities& disparities, const Outline& outline, ObjectView& view,
                                           const Shape& shape) const;
   std::optional<LevelDisparities> disparitiesAround(const ObjectView& view, const Features& features);
-  void complete(FrameEstimate& final);
+  void complete(std::vector<FrameEstimate>& finals);
+  void moveLooks(const FrameEstimate& final);
   FaceInformation evidenceAround(const Shape& shape, FrameId frame) const;
   void setBox(ObjectEstimate& object, const BoxEstimate& box, const SE3& T_cam_body) const;
   void forgetGone(const Estimates& estimates);

@@ -38,6 +38,13 @@ TEST(MaskImage, HasTheTracksNumberPlusOneOfTheNearest) {
   EXPECT_EQ(at(20, 10), 0);
 }
 
+TEST(MaskImage, KnowsItsFilesByName) {
+  EXPECT_TRUE(isMaskFile(maskFile("masks", FrameId{12})));
+  EXPECT_TRUE(isMaskFile(maskFile("masks", FrameId{12345678})));
+  for (const char* other : {"masks/car.png", "masks/000012.txt", "masks/12a456.png", "masks/.png"})
+    EXPECT_FALSE(isMaskFile(other)) << other;
+}
+
 TEST(MaskImage, KeepsToTheImage) {
   FrameEstimate frame;
   frame.objects = {objectAt(3, 10)};
