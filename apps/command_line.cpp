@@ -92,6 +92,8 @@ void addEvaluate(CLI::App& app, Action& action) {
                       "covariances say");
   command->add_option("--export-truth", options->export_truth,
                       "Folder for the true trajectories of camera and objects");
+  command->add_option("--export-kitti", options->export_kitti,
+                      "Folder for the run's objects as KITTI tracking results; needs no ground truth");
   command->add_option("--json", options->json, "File for all measures as JSON");
   command->add_flag("--uninterpolated", options->uninterpolated,
                     "Take oxts packet k for image k, as published evaluations do");

@@ -24,7 +24,12 @@ struct Label {
   bool dontCare() const { return type == "DontCare"; }
 };
 
-/// Reads a label file; throws InputError naming the line. Its order is kept.
+/// Reads a label file, or a result file, whose scores are passed over; throws InputError naming the line. Its order is
+/// kept.
 std::vector<Label> readLabels(const std::filesystem::path& file);
+
+/// A line of a KITTI tracking result file, without its end: the 17 columns of a label and a score. What results are not
+/// asked for, truncation and occlusion, is -1; alpha, under which the camera sees the object, follows from the rest.
+std::string resultLine(const Label& label, double score);
 
 }  // namespace motorcade

@@ -2,12 +2,29 @@
 
 #include <iostream>
 
+#include "apps/evaluate/kitti_export.hpp"
 #include "apps/evaluate/report.hpp"
 #include "io/line_file.hpp"
 
 namespace motorcade {
+namespace {
+
+/// Exports results where asked; true when that is all, as there is no truth to measure by.
+bool exportAlone(const EvaluateOptions& options) {
+  if (options.export_kitti.empty()) return false;
+  const Sequence sequence = openSequence(options.sequence, options.fps_hz);
+  exportKitti(options.export_kitti, readRunFolder(options.run), sequence);
+  return options.json.empty() && !readCameraTruth(sequence);
+}
+
+}  // namespace
 
 int runEvaluate(const EvaluateOptions& options) {
+  if (exportAlone(options)) {
+    std::cout << "results in " << options.export_kitti.string()
+              << "; nothing is measured, as the sequence has no ground truth\n";
+    return 0;
+  }
   const Evaluation evaluation = evaluateRun(options);
   std::cout << tableOf(evaluation);
   if (!options.json.empty()) writeAtOnce(options.json, jsonOf(evaluation));

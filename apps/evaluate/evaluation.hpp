@@ -23,6 +23,7 @@ struct EvaluateOptions {
   std::filesystem::path baseline_run;  // run folder to compare objects with; empty for none
   std::filesystem::path half_run;      // run folder of the same drive from other points; empty for none
   std::filesystem::path export_truth;  // folder for the true trajectories; empty for none
+  std::filesystem::path export_kitti;  // folder for the run's objects as KITTI results; empty for none
   std::filesystem::path json;          // empty for none
 };
 

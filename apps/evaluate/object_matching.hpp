@@ -23,13 +23,18 @@ struct TrueObject {
   bool asked() const { return counted && moving; }
 };
 
+/// Does a row tell of what was seen, rather than of what was only predicted or hardly seen?
+inline bool isReported(const ObjectEstimate& object) {
+  return object.state != ObjectState::kPredicted && object.points >= 3;
+}
+
 /// One row of the run and the label that it was matched to.
 struct MatchedRow {
   RunFolder::ObjectRow row;
   int object = -1;  // index into the frame's true objects, or none
   double distance_m = 0, gate_m = 1;
   bool in_ignored_area = false;  // unmatched, mostly inside a DontCare box
-  bool reported() const { return row.object.state != ObjectState::kPredicted && row.object.points >= 3; }
+  bool reported() const { return isReported(row.object); }
 };
 
 /// A frame of the comparison. The camera poses are in the world of the run: its first frame.
