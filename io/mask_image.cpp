@@ -23,7 +23,7 @@ Gray16Image maskImage(const FrameEstimate& frame, const std::vector<ObjectMask>&
   for (const ObjectMask& mask : masks) farthest_first.push_back(&mask);
   std::ranges::stable_sort(farthest_first, std::ranges::greater{}, distance_m);
   for (const ObjectMask* mask : farthest_first) {
-    const auto value = static_cast<std::uint16_t>(mask->track.value % std::numeric_limits<std::uint16_t>::max() + 1);
+    const std::uint16_t value = maskValue(mask->track);
     const int v_end = std::min(mask->top_px + mask->height * mask->cell_px, height_px),
               u_end = std::min(mask->left_px + mask->width * mask->cell_px, width_px);
     for (int v = std::max(mask->top_px, 0); v < v_end; ++v)
@@ -32,6 +32,10 @@ Gray16Image maskImage(const FrameEstimate& frame, const std::vector<ObjectMask>&
           image.pixels[static_cast<std::size_t>(v) * width_px + u] = value;
   }
   return image;
+}
+
+std::uint16_t maskValue(TrackId track) {
+  return static_cast<std::uint16_t>(track.value % std::numeric_limits<std::uint16_t>::max() + 1);
 }
 
 std::filesystem::path maskFile(const std::filesystem::path& folder, FrameId frame) {

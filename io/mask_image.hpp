@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace motorcade {
 /// What `run --masks` writes of one frame: 0 where nothing moves or nothing is known, else the number of the track plus
 /// one, of the nearest object where several overlap.
 Gray16Image maskImage(const FrameEstimate& frame, const std::vector<ObjectMask>& masks, int width_px, int height_px);
+
+/// The value of a track's pixels there.
+std::uint16_t maskValue(TrackId track);
 
 /// The file of a frame's mask in the folder.
 std::filesystem::path maskFile(const std::filesystem::path& folder, FrameId frame);

@@ -178,6 +178,7 @@ std::optional<Sequence> openPlain(const fs::path& folder, double fps_hz) {
     sequence.truth = {.poses = poses,
                       .labels = ifExists(folder / "label_02.txt"),
                       .object_poses = ifExists(folder / "object_poses.txt"),
+                      .instances = ifExists(folder / "instance"),
                       .oxts = ifExists(folder / "oxts.txt"),
                       .oxts_timestamps = ifExists(folder / "oxts_timestamps.txt"),
                       .image_timestamps = ifExists(folder / "image_timestamps.txt")};

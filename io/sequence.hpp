@@ -33,6 +33,7 @@ struct Sequence {
     std::filesystem::path poses{};             // KITTI pose lines of the left gray camera
     std::filesystem::path labels{};            // KITTI label_02
     std::filesystem::path object_poses{};      // as in rendered sequences
+    std::filesystem::path instances{};         // folder of masks with the labels' numbers plus one, of rendered ones
     std::filesystem::path oxts{};              // a file with a line per packet, or a folder with a file per packet
     std::filesystem::path oxts_timestamps{};   // capture time of each packet
     std::filesystem::path image_timestamps{};  // capture time of each image, on the same clock

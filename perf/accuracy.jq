@@ -44,6 +44,21 @@ def boxes_row:
    "\(of(.iou_bird) | fixed(2)) / \(online(.iou_bird) | fixed(2))", (of(.iou_3d) | fixed(2)),
    error("center_m"; 2), error("heading_deg"; 1), error("length_m"; 2), error("width_m"; 2), error("height_m"; 2)];
 
+# Within 30 m, unless said otherwise.
+def tracking_row:
+  def hota(range; key): mean(.final.hota | range | select(.labels > 0) | .[key]) | fixed(2);
+  def online(range): mean(.online.hota | range | select(.labels > 0) | .hota) | fixed(2);
+  def image: .image.within_30m;
+  def above: .footprint.within_30m;
+  def masks(range; value): mean(.masks | values | range | select(.rows > 0) | value) | fixed(2);
+  def kinds(estimate): mean(estimate | .kinds_within_30m.from_tenth_row | select(.rows > 0) | .right) | percent(0);
+  def waited(key): mean(.online.first_report.within_30m.frames | counted(key)) | fixed(1);
+  ["\(hota(image; "hota")) / \(online(image))", hota(image; "det_a"), hota(image; "ass_a"), hota(image; "loc_a"),
+   hota(.image.within_50m; "hota"), "\(hota(above; "hota")) / \(online(above))",
+   masks(.within_30m; .iou), masks(.from_30_to_50m; .iou), masks(.within_30m; .boundary_px | counted("mean")),
+   "\(kinds(.final)) / \(kinds(.online))",
+   "\(waited("median")) / \(waited("mean"))" + (sum(.online.first_report.within_30m.never) | if . > 0 then "; \(.) never" else "" end)];
+
 # Without the truth's mounting error where it may have one.
 def covariances_row:
   def camera: .covariance | .camera_mounted // .camera | select(.samples > 0);
@@ -57,5 +72,6 @@ def covariances_row:
  elif $table == "objects" then objects_row
  elif $table == "positions" then positions_row
  elif $table == "boxes" then boxes_row
+ elif $table == "tracking" then tracking_row
  else covariances_row end) as $row |
 "| \(([$name, $backend] + $row) | map(tostring) | join(" | ")) |"

@@ -20,13 +20,4 @@ struct BoxErrors {
 
 BoxErrors boxErrors(const std::vector<ComparedFrame>& frames, double from_m, double to_m);
 
-/// Area of the intersection over that of the union, of two boxes in the image.
-double intersectionOverUnion(const Box& a, const Box& b);
-
-/// A cuboid as seen from above: the corners of its footprint in order, in any right-handed plane.
-using Footprint = std::vector<Eigen::Vector2d>;
-double areaOf(const Footprint& convex);
-/// Of two convex footprints with counterclockwise corners.
-double overlapArea(const Footprint& a, const Footprint& b);
-
 }  // namespace motorcade

@@ -61,8 +61,15 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
                       .mean_positions = {},
                       .motion = motionErrors(frames),
                       .detection = detectionErrors(frames),
-                      .boxes_within_30m = boxErrors(frames, 0, 30),
-                      .boxes_from_30_to_50m = boxErrors(frames, 30, 50)};
+                      .boxes_within_30m = boxErrors(frames, 0, kNear_m),
+                      .boxes_from_30_to_50m = boxErrors(frames, kNear_m, kFar_m),
+                      .image_within_30m = movingObjectsHota(frames, HotaBox::kImage, kNear_m),
+                      .image_within_50m = movingObjectsHota(frames, HotaBox::kImage, kFar_m),
+                      .footprint_within_30m = movingObjectsHota(frames, HotaBox::kFootprint, kNear_m),
+                      .footprint_within_50m = movingObjectsHota(frames, HotaBox::kFootprint, kFar_m),
+                      .kinds_within_30m = kindErrors(frames, kNear_m),
+                      .first_within_30m = firstReports(frames, kNear_m),
+                      .first_within_50m = firstReports(frames, kFar_m)};
   std::vector<PositionErrors> positions;
   for (const auto& object : kind.objects)
     if (object.positions) positions.push_back(*object.positions);
@@ -158,6 +165,8 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   evaluation.final = evaluateFrames(final);
   if (mayBeMountedWrongly(sequence)) removeMounting(evaluation, final, online);
   evaluateCovariances(evaluation, online, run.covariances);
+  if (!sequence.truth.instances.empty())
+    evaluation.masks = maskErrors(online, options.run / "masks", sequence.truth.instances);
   if (!options.half_run.empty()) evaluation.half_errors = compareHalves(run, readRunFolder(options.half_run));
   if (!options.baseline.empty()) {
     const auto poses =

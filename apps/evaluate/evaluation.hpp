@@ -7,8 +7,11 @@
 
 #include "apps/evaluate/box_measures.hpp"
 #include "apps/evaluate/covariance_measures.hpp"
+#include "apps/evaluate/kind_measures.hpp"
+#include "apps/evaluate/mask_measures.hpp"
 #include "apps/evaluate/object_measures.hpp"
 #include "apps/evaluate/run_comparison.hpp"
+#include "apps/evaluate/tracking_measures.hpp"
 #include "apps/evaluate/trajectory_error.hpp"
 #include "io/run_folder.hpp"
 #include "io/sequence.hpp"
@@ -37,6 +40,9 @@ struct KindEvaluation {
   MotionErrors motion;
   DetectionErrors detection;
   BoxErrors boxes_within_30m, boxes_from_30_to_50m;
+  Hota image_within_30m, image_within_50m, footprint_within_30m, footprint_within_50m;
+  KindErrors kinds_within_30m;
+  FirstReports first_within_30m, first_within_50m;
 };
 
 /// (ATE_baseline - ATE_ours) / ATE_baseline of the camera's final path, SE(3) aligned RMSE.
@@ -58,6 +64,7 @@ struct Evaluation {
   std::optional<CovarianceErrors> camera_mounted_covariance;  // without the truth's mounting error
   std::optional<CovarianceErrors> camera_truth_covariance;    // also with the noise of the truth's rotation added
   std::optional<HalfErrors> half_errors;                      // against the other half's run
+  std::optional<MaskEvaluation> masks;                        // where the run has some, and the truth too
   std::optional<RelativeError> camera_against_baseline;
   std::optional<RunComparison> objects_against_baseline;  // final estimates
   std::vector<double> latency_ms;                         // sorted

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/evaluate/overlap.hpp"
 #include "core/assignment.hpp"
 
 namespace motorcade {
@@ -16,8 +17,7 @@ constexpr double kMovingSpeed_mps = 1, kMovingDistance_m = 1.5;
 constexpr std::int64_t kSpeedFrames = 3;  // before and after the frame, over which a label's speed is taken
 
 bool isCounted(const ObjectTruth& truth) {
-  const bool on_foot = truth.type == "Pedestrian" || truth.type == "Person" || truth.type == "Person_sitting";
-  return !on_foot && truth.occluded <= kMaxOccluded && truth.truncated <= kMaxTruncated &&
+  return truth.occluded <= kMaxOccluded && truth.truncated <= kMaxTruncated &&
          truth.box.bottom_px - truth.box.top_px >= kMinHeight_px;
 }
 
@@ -52,12 +52,6 @@ double gateOf_m(const ObjectTruth& truth) {
   return std::max(kLeast_m, truth.size_m.z() / 2 + kPerDepth * truth.T_cam_object.translation().z());
 }
 
-double overlapArea(const Box& a, const Box& b) {
-  const double width = std::min(a.right_px, b.right_px) - std::max(a.left_px, b.left_px);
-  const double height = std::min(a.bottom_px, b.bottom_px) - std::max(a.top_px, b.top_px);
-  return std::max(0.0, width) * std::max(0.0, height);
-}
-
 bool mostlyInside(const Box& box, const Box& area) {
   constexpr double kShare = 0.5;
   return overlapArea(box, area) >= kShare * (box.right_px - box.left_px) * (box.bottom_px - box.top_px) &&
@@ -89,6 +83,19 @@ void matchRows(ComparedFrame& frame) {
 
 double TrueObject::range_m() const {
   return std::hypot(truth.T_cam_object.translation().x(), truth.T_cam_object.translation().z());
+}
+
+std::vector<AskedPair> askedPairs(const std::vector<ComparedFrame>& frames, double from_m, double to_m) {
+  std::vector<AskedPair> pairs;
+  for (const auto& frame : frames) {
+    for (const auto& row : frame.rows) {
+      if (row.object < 0 || !row.reported()) continue;
+      const TrueObject& object = frame.objects[row.object];
+      if (object.asked() && object.range_m() >= from_m && object.range_m() < to_m)
+        pairs.push_back({&frame, &object, &row});
+    }
+  }
+  return pairs;
 }
 
 std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths,

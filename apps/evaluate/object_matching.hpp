@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -10,6 +11,9 @@
 
 /// Brings a run's object rows and the labels together, frame by frame.
 namespace motorcade {
+
+/// Bounds of the two ranges that objects are measured in.
+inline constexpr double kNear_m = 30, kFar_m = 50;
 
 /// What the measures need to know of a label in one frame.
 struct TrueObject {
@@ -44,6 +48,16 @@ struct ComparedFrame {
   std::vector<TrueObject> objects;
   std::vector<MatchedRow> rows;
 };
+
+/// A match of a reported row with a label that is asked for.
+struct AskedPair {
+  const ComparedFrame* frame;
+  const TrueObject* object;
+  const MatchedRow* row;
+};
+/// All of them whose label is at least `from_m` away and nearer than `to_m`, in the order of the frames.
+std::vector<AskedPair> askedPairs(const std::vector<ComparedFrame>& frames, double from_m = 0,
+                                  double to_m = std::numeric_limits<double>::infinity());
 
 /// Labels with their motion, from all frames of the sequence. `stamps` are the frames' times.
 std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths,

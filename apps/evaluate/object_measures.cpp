@@ -9,30 +9,10 @@
 namespace motorcade {
 namespace {
 
-constexpr double kNear_m = 30, kFar_m = 50;  // bounds of the two ranges that recall is counted in
-constexpr double kSigmas95 = 1.96;           // half the width of the 95 % interval of a Gaussian
-
-/// A match of a reported row with a label that is asked for.
-struct Pair {
-  const ComparedFrame* frame;
-  const TrueObject* object;
-  const MatchedRow* row;
-};
-
-std::vector<Pair> askedPairs(const std::vector<ComparedFrame>& frames) {
-  std::vector<Pair> pairs;
-  for (const auto& frame : frames) {
-    for (const auto& row : frame.rows) {
-      if (row.object < 0 || !row.reported()) continue;
-      const TrueObject& object = frame.objects[row.object];
-      if (object.asked()) pairs.push_back({&frame, &object, &row});
-    }
-  }
-  return pairs;
-}
+constexpr double kSigmas95 = 1.96;  // half the width of the 95 % interval of a Gaussian
 
 /// E = L(k)^-1 H L(k-1) with H the estimated motion, transferred from the estimated to the true camera.
-SE3 motionError(const Pair& before, const Pair& now) {
+SE3 motionError(const AskedPair& before, const AskedPair& now) {
   const SE3 H_world = now.row->row.object.T_world_body * before.row->row.object.T_world_body.inverse();
   const SE3 H_cam = before.frame->T_world_cam.inverse() * H_world * before.frame->T_world_cam;
   const SE3 H = before.frame->T_world_cam_true * H_cam * before.frame->T_world_cam_true.inverse();
@@ -65,40 +45,6 @@ void count(DetectionCounts& counts, bool found) {
   counts.found += found;
 }
 
-/// HOTA (Luiten et al., HOTA: a higher order metric for evaluating multi-object tracking, 2021), with the similarity
-/// 1 - distance / gate and the frame's one-to-one match at every threshold.
-struct HotaSums {
-  std::map<std::int64_t, int> label_frames;
-  std::map<TrackId, int> track_frames;
-  std::vector<std::pair<Pair, double>> pairs;  // with their similarity
-  int labels = 0, rows = 0;
-
-  std::pair<double, double> at(double threshold) const {
-    std::map<std::pair<std::int64_t, TrackId>, int> together;
-    for (const auto& [pair, similarity] : pairs)
-      if (similarity >= threshold) ++together[{pair.object->truth.id, pair.row->row.object.track}];
-    int matched = 0;
-    double association = 0;
-    for (const auto& [ids, n] : together) {
-      matched += n;
-      association += n * static_cast<double>(n) / (label_frames.at(ids.first) + track_frames.at(ids.second) - n);
-    }
-    if (matched == 0) return {0, 0};
-    return {static_cast<double>(matched) / (labels + rows - matched), association / matched};
-  }
-};
-
-void setHota(DetectionErrors& errors, const HotaSums& sums) {
-  constexpr int kThresholds = 19;  // 0.05, 0.1, ... 0.95, as in the paper
-  constexpr double kStep = 0.05;
-  for (int i = 1; i <= kThresholds; ++i) {
-    const auto [det_a, ass_a] = sums.at(kStep * i);
-    errors.det_a += det_a / kThresholds;
-    errors.ass_a += ass_a / kThresholds;
-    errors.hota += std::sqrt(det_a * ass_a) / kThresholds;
-  }
-}
-
 /// False rows of one frame: of any state, on no label or on one that never moves.
 void countRows(const ComparedFrame& frame, DetectionErrors& errors) {
   for (const auto& row : frame.rows) {
@@ -125,26 +71,10 @@ void countLabels(const ComparedFrame& frame, DetectionErrors& errors) {
   }
 }
 
-void addToHota(const ComparedFrame& frame, HotaSums& sums) {
-  for (const auto& object : frame.objects) {
-    if (!object.asked() || object.range_m() > kFar_m) continue;
-    ++sums.labels;
-    ++sums.label_frames[object.truth.id];
-  }
-  for (const auto& row : frame.rows) {
-    const TrueObject* object = row.object < 0 ? nullptr : &frame.objects[row.object];
-    const bool of_interest = object && object->asked() && object->range_m() <= kFar_m;
-    if (object && object->ever_moves && !of_interest) continue;  // counts neither as right nor as wrong
-    ++sums.rows;
-    ++sums.track_frames[row.row.object.track];
-    if (of_interest) sums.pairs.push_back({Pair{&frame, object, &row}, 1 - row.distance_m / row.gate_m});
-  }
-}
-
 }  // namespace
 
 MotionErrors motionErrors(const std::vector<ComparedFrame>& frames, std::optional<std::int64_t> label) {
-  std::map<std::pair<std::int64_t, TrackId>, Pair> last;
+  std::map<std::pair<std::int64_t, TrackId>, AskedPair> last;
   std::vector<double> me_m, me_deg, speed_mps;
   int covered = 0;
   MotionErrors errors;
@@ -204,11 +134,9 @@ std::vector<ObjectErrors> objectErrors(const std::vector<ComparedFrame>& frames)
 
 DetectionErrors detectionErrors(const std::vector<ComparedFrame>& frames) {
   DetectionErrors errors;
-  HotaSums hota;
   for (const auto& frame : frames) {
     countLabels(frame, errors);
     countRows(frame, errors);
-    addToHota(frame, hota);
   }
   std::map<std::int64_t, TrackId> last_track;
   for (const auto& pair : askedPairs(frames)) {
@@ -220,7 +148,6 @@ DetectionErrors detectionErrors(const std::vector<ComparedFrame>& frames) {
   const int labels = errors.within_30m.labels + errors.from_30_to_50m.labels;
   const int missed = labels - errors.within_30m.found - errors.from_30_to_50m.found;
   errors.mota = labels > 0 ? 1 - static_cast<double>(missed + errors.false_rows + errors.id_switches) / labels : 0;
-  setHota(errors, hota);
   return errors;
 }
 

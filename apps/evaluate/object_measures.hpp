@@ -46,7 +46,7 @@ struct DetectionErrors {
   int false_rows_unlabeled = 0;   // on no label
   int false_rows_in_ignored = 0;  // of these, mostly in an area that the labels leave open
   int id_switches = 0;
-  double mota = 0, hota = 0, det_a = 0, ass_a = 0;
+  double mota = 0;
 };
 
 MotionErrors motionErrors(const std::vector<ComparedFrame>& frames, std::optional<std::int64_t> label = {});

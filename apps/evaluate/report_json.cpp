@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/evaluate/report.hpp"
+#include "io/object_row.hpp"
 
 namespace motorcade {
 namespace {
@@ -41,10 +42,44 @@ Json jsonOf(const DetectionErrors& errors) {
           {"false_rows_unlabeled", errors.false_rows_unlabeled},
           {"false_rows_in_dont_care", errors.false_rows_in_ignored},
           {"id_switches", errors.id_switches},
-          {"mota", errors.mota},
-          {"hota", errors.hota},
-          {"det_a", errors.det_a},
-          {"ass_a", errors.ass_a}};
+          {"mota", errors.mota}};
+}
+
+Json jsonOf(const Hota& hota) {
+  return {{"labels", hota.labels}, {"rows", hota.rows},     {"hota", hota.hota},   {"det_a", hota.det_a},
+          {"det_re", hota.det_re}, {"det_pr", hota.det_pr}, {"ass_a", hota.ass_a}, {"ass_re", hota.ass_re},
+          {"ass_pr", hota.ass_pr}, {"loc_a", hota.loc_a}};
+}
+
+Json jsonOf(const KindCounts& counts) {
+  Json json = {{"rows", counts.total()}, {"right", counts.shareRight()}, {"confusion", Json::object()}};
+  for (const ObjectKind label : kAllKinds) {
+    if (label == ObjectKind::kUnknown) continue;
+    for (const ObjectKind reported : kAllKinds)
+      json["confusion"][std::string(kindName(label))][std::string(kindName(reported))] = counts.of(label, reported);
+  }
+  return json;
+}
+
+Json jsonOf(const KindErrors& kinds) {
+  return {{"from_tenth_row", jsonOf(kinds.from_tenth_row)}, {"before", jsonOf(kinds.before)}};
+}
+
+Json jsonOf(const FirstReports& reports) {
+  return {{"labels", reports.labels}, {"never", reports.never}, {"frames", jsonOf(reports.frames)}};
+}
+
+Json jsonOf(const MaskErrors& masks) {
+  return {{"rows", masks.rows},
+          {"rows_with_mask", masks.rows_with_mask},
+          {"iou", masks.iou},
+          {"iou_of_masks", masks.iou_of_masks},
+          {"boundary_px", jsonOf(masks.boundary_px)}};
+}
+
+Json jsonOf(const std::optional<MaskEvaluation>& masks) {
+  if (!masks) return nullptr;
+  return {{"within_30m", jsonOf(masks->within_30m)}, {"from_30_to_50m", jsonOf(masks->from_30_to_50m)}};
 }
 
 Json jsonOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -136,6 +171,12 @@ Json jsonOf(const KindEvaluation& kind, bool with_objects) {
   json["detection"] = jsonOf(kind.detection);
   json["boxes_within_30m"] = jsonOf(kind.boxes_within_30m);
   json["boxes_from_30_to_50m"] = jsonOf(kind.boxes_from_30_to_50m);
+  json["hota"] = {
+      {"image", {{"within_30m", jsonOf(kind.image_within_30m)}, {"within_50m", jsonOf(kind.image_within_50m)}}},
+      {"footprint",
+       {{"within_30m", jsonOf(kind.footprint_within_30m)}, {"within_50m", jsonOf(kind.footprint_within_50m)}}}};
+  json["kinds_within_30m"] = jsonOf(kind.kinds_within_30m);
+  json["first_report"] = {{"within_30m", jsonOf(kind.first_within_30m)}, {"within_50m", jsonOf(kind.first_within_50m)}};
   return json;
 }
 
@@ -183,6 +224,7 @@ std::string jsonOf(const Evaluation& e) {
                {"mounting", e.mounting ? jsonOf(*e.mounting) : Json()},
                {"final", jsonOf(e.final, with_objects)},
                {"online", jsonOf(e.online, with_objects)},
+               {"masks", jsonOf(e.masks)},
                {"covariance", covarianceJson(e)},
                {"latency_ms",
                 {{"p50", e.latencyQuantile_ms(0.5)},

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "apps/evaluate/report.hpp"
+#include "io/object_row.hpp"
 
 namespace motorcade {
 namespace {
@@ -93,14 +94,13 @@ void printDetectionLine(std::string& text, const char* kind, const KindEvaluatio
   print(text, "  %d of %d", k.detection.false_rows, k.detection.rows);
   if (k.detection.false_rows > 0)
     print(text, " (%d unlabeled, %d in DontCare)", k.detection.false_rows_unlabeled, k.detection.false_rows_in_ignored);
-  print(text, "  %d  %.3f  %.3f  %.3f / %.3f  %.2f / %.2f  %.2f\n", k.detection.id_switches, k.detection.mota,
-        k.detection.hota, k.motion.me_m.mean, k.motion.me_m.rmse, k.motion.me_deg.mean, k.motion.me_deg.rmse,
-        k.motion.speed_mps.rmse);
+  print(text, "  %d  %.3f  %.3f / %.3f  %.2f / %.2f  %.2f\n", k.detection.id_switches, k.detection.mota,
+        k.motion.me_m.mean, k.motion.me_m.rmse, k.motion.me_deg.mean, k.motion.me_deg.rmse, k.motion.speed_mps.rmse);
 }
 
 void printDetection(std::string& text, const Evaluation& e) {
   print(text,
-        "\ndetection: recall to 30 m, 30-50 m, false rows, id switches, MOTA, HOTA, ME_t m mean / rmse, ME_r deg mean "
+        "\ndetection: recall to 30 m, 30-50 m, false rows, id switches, MOTA, ME_t m mean / rmse, ME_r deg mean "
         "/ rmse, speed rmse "
         "m/s\n");
   printDetectionLine(text, "final", e.final, false);
@@ -125,6 +125,87 @@ void printBoxes(std::string& text, const Evaluation& e) {
   printBoxLine(text, "final 30 to 50 m", e.final.boxes_from_30_to_50m);
   printBoxLine(text, "online to 30 m", e.online.boxes_within_30m);
   printBoxLine(text, "online 30 to 50 m", e.online.boxes_from_30_to_50m);
+}
+
+/// A section, unless it has no lines.
+void printSection(std::string& text, const std::string& head, const std::string& lines) {
+  if (!lines.empty()) text.append("\n").append(head).append("\n").append(lines);
+}
+
+void printHotaLine(std::string& text, const std::string& what, const Hota& hota) {
+  if (hota.labels == 0 && hota.rows == 0) return;
+  print(text, "  %-28s %5d %6d  %5.3f  %5.3f  %5.3f  %5.3f", what.c_str(), hota.labels, hota.rows, hota.hota,
+        hota.det_a, hota.ass_a, hota.loc_a);
+  print(text, "  %5.3f / %5.3f  %5.3f / %5.3f\n", hota.det_re, hota.det_pr, hota.ass_re, hota.ass_pr);
+}
+
+void printHotaLines(std::string& text, const std::string& kind, const KindEvaluation& k) {
+  printHotaLine(text, kind + " image to 30 m", k.image_within_30m);
+  printHotaLine(text, kind + " image to 50 m", k.image_within_50m);
+  printHotaLine(text, kind + " footprint to 30 m", k.footprint_within_30m);
+  printHotaLine(text, kind + " footprint to 50 m", k.footprint_within_50m);
+}
+
+void printHota(std::string& text, const Evaluation& e) {
+  std::string lines;
+  printHotaLines(lines, "final", e.final);
+  printHotaLines(lines, "online", e.online);
+  printSection(text,
+               "moving objects               labels   rows  HOTA   DetA   AssA   LocA   DetRe / DetPr  AssRe / AssPr",
+               lines);
+}
+
+void printFirstReportLine(std::string& text, const char* range, const FirstReports& reports) {
+  if (reports.labels == 0) return;
+  print(text, "  %-10s %3d labels, median %.1f, mean %.1f, max %.0f; %d never reported (%.0f %%)\n", range,
+        reports.labels, reports.frames.median, reports.frames.mean, reports.frames.max, reports.never,
+        100.0 * reports.never / reports.labels);
+}
+
+void printFirstReports(std::string& text, const Evaluation& e) {
+  std::string lines;
+  printFirstReportLine(lines, "to 30 m", e.online.first_within_30m);
+  printFirstReportLine(lines, "to 50 m", e.online.first_within_50m);
+  printSection(text, "frames from first visibility to first report (online)", lines);
+}
+
+void printKindCounts(std::string& text, const char* what, const KindCounts& counts) {
+  if (counts.total() == 0) return;
+  print(text, "  %s: %.1f %% of %d rows right\n", what, 100 * counts.shareRight(), counts.total());
+  for (const ObjectKind label : kAllKinds) {
+    std::string line;
+    int rows = 0;
+    for (const ObjectKind reported : kAllKinds) {
+      print(line, " %13d", counts.of(label, reported));
+      rows += counts.of(label, reported);
+    }
+    if (rows > 0) print(text, "    %-14s%s\n", std::string(kindName(label)).c_str(), line.c_str());
+  }
+}
+
+void printKinds(std::string& text, const Evaluation& e) {
+  std::string head = "kinds to 30 m, as    ", lines;
+  for (const ObjectKind kind : kAllKinds) print(head, "%11s   ", std::string(kindName(kind)).c_str());
+  printKindCounts(lines, "final, from a track's tenth row on", e.final.kinds_within_30m.from_tenth_row);
+  printKindCounts(lines, "final, before", e.final.kinds_within_30m.before);
+  printKindCounts(lines, "online, from a track's tenth row on", e.online.kinds_within_30m.from_tenth_row);
+  printKindCounts(lines, "online, before", e.online.kinds_within_30m.before);
+  printSection(text, head, lines);
+}
+
+void printMaskLine(std::string& text, const char* range, const MaskErrors& masks) {
+  if (masks.rows == 0) return;
+  print(text, "  %-18s %5d  %5d  %5.2f  %5.2f  %6.2f / %.2f\n", range, masks.rows, masks.rows_with_mask, masks.iou,
+        masks.iou_of_masks, masks.boundary_px.mean, masks.boundary_px.median);
+}
+
+void printMasks(std::string& text, const Evaluation& e) {
+  if (!e.masks) return;
+  std::string lines;
+  printMaskLine(lines, "to 30 m", e.masks->within_30m);
+  printMaskLine(lines, "30 to 50 m", e.masks->from_30_to_50m);
+  printSection(text, "masks (online)      rows, with mask; IoU of all, of masks; boundary error px mean / median",
+               lines);
 }
 
 void printCovarianceLine(std::string& text, const char* what, const CovarianceErrors& errors) {
@@ -198,6 +279,10 @@ std::string tableOf(const Evaluation& evaluation) {
     printObjects(text, evaluation.final);
     printDetection(text, evaluation);
     printBoxes(text, evaluation);
+    printHota(text, evaluation);
+    printFirstReports(text, evaluation);
+    printKinds(text, evaluation);
+    printMasks(text, evaluation);
   }
   printRest(text, evaluation);
   return text;

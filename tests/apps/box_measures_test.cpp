@@ -2,34 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/apps/compared_frame_by_hand.hpp"
+
 namespace motorcade {
 namespace {
 
-/// A label ahead, heading along the camera's z axis, and a row that places a cuboid of its size off by `aside_m`,
-/// turned by `turn_rad`.
+/// A label ahead, and a row that places a cuboid of its size off by `aside_m`, turned by `turn_rad`.
 ComparedFrame frameWith(double range_m, double aside_m, double turn_rad) {
   ComparedFrame frame;
-  TrueObject object;
-  object.counted = object.moving = object.ever_moves = true;
-  object.truth.size_m = {1.5, 2, 4};
-  Eigen::Matrix3d ahead;  // columns: x ahead along z, y down, z to the left
-  ahead << 0, 0, -1, 0, 1, 0, 1, 0, 0;
-  object.truth.T_cam_object = SE3(ahead, {0, 1.6, range_m});
-  object.truth.box = {100, 100, 200, 150};
-  frame.objects.push_back(object);
-
-  Eigen::Matrix3d upright;
-  upright << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-  MatchedRow row;
-  row.object = 0;
-  row.row.object.points = 20;
-  row.row.object.box = {100, 100, 150, 150};
-  row.row.object.T_world_body = SE3(upright * expSO3({0, 0, turn_rad}), {aside_m, 1.6, range_m});
-  ObjectBox cuboid;
-  cuboid.center_body = {0, 0, 0.75};
-  cuboid.size_m = {4, 2, 1.5};
-  row.row.object.cuboid = cuboid;
-  frame.rows.push_back(row);
+  frame.objects = {test::labelByHand(7, range_m)};
+  frame.rows = {test::rowByHand(3, 0, range_m, aside_m, turn_rad)};
+  frame.rows[0].row.object.box = {100, 100, 150, 150};
   return frame;
 }
 
@@ -63,24 +46,6 @@ TEST(BoxErrors, CountTheRowsOfTheirRangeOnly) {
   const BoxErrors errors = boxErrors({without, frameWith(20, 0, 0)}, 0, 30);
   EXPECT_EQ(errors.rows, 2);
   EXPECT_NEAR(errors.iou_bird, 1, 1e-9);  // over the rows that have one
-}
-
-TEST(OverlapArea, OfTurnedSquares) {
-  const Footprint square{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-  Footprint turned;
-  for (const Eigen::Vector2d& p : square)
-    turned.emplace_back((p.x() - p.y()) / std::sqrt(2), (p.x() + p.y()) / std::sqrt(2));
-  EXPECT_NEAR(areaOf(turned), 4, 1e-12);
-  EXPECT_NEAR(overlapArea(square, turned), 8 * (std::sqrt(2) - 1), 1e-9);  // a regular octagon
-  Footprint far = square;
-  for (Eigen::Vector2d& p : far) p.x() += 5;
-  EXPECT_EQ(overlapArea(square, far), 0);
-}
-
-TEST(IntersectionOverUnion, OfBoxes) {
-  EXPECT_NEAR(intersectionOverUnion({0, 0, 10, 10}, {5, 0, 15, 10}), 1.0 / 3, 1e-12);
-  EXPECT_EQ(intersectionOverUnion({0, 0, 10, 10}, {20, 0, 30, 10}), 0);
-  EXPECT_EQ(intersectionOverUnion({0, 0, 0, 0}, {0, 0, 0, 0}), 0);
 }
 
 }  // namespace

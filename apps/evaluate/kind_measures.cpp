@@ -1,0 +1,65 @@
+#include "apps/evaluate/kind_measures.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace motorcade {
+namespace {
+
+/// Types of KITTI's labels, and those that rendered scenes add.
+constexpr std::array<std::pair<std::string_view, ObjectKind>, 13> kTypes = {{
+    {"Car", ObjectKind::kCar},
+    {"Van", ObjectKind::kCar},
+    {"Truck", ObjectKind::kLargeVehicle},
+    {"Bus", ObjectKind::kLargeVehicle},
+    {"Tram", ObjectKind::kLargeVehicle},
+    {"Trailer", ObjectKind::kLargeVehicle},
+    {"Cyclist", ObjectKind::kTwoWheeler},
+    {"Bicycle", ObjectKind::kTwoWheeler},
+    {"Motorbike", ObjectKind::kTwoWheeler},
+    {"Motorcyclist", ObjectKind::kTwoWheeler},
+    {"Pedestrian", ObjectKind::kPedestrian},
+    {"Person", ObjectKind::kPedestrian},
+    {"Person_sitting", ObjectKind::kPedestrian},
+}};
+
+}  // namespace
+
+ObjectKind kindOfType(std::string_view type) {
+  const auto* const found = std::ranges::find(kTypes, type, &decltype(kTypes)::value_type::first);
+  return found == kTypes.end() ? ObjectKind::kUnknown : found->second;
+}
+
+int KindCounts::total() const {
+  int sum = 0;
+  for (const auto& of_label : rows)
+    for (const int count : of_label) sum += count;
+  return sum;
+}
+
+double KindCounts::shareRight() const {
+  int right = 0;
+  for (const ObjectKind kind : kAllKinds) right += of(kind, kind);
+  return right / std::max(1.0, static_cast<double>(total()));
+}
+
+KindErrors kindErrors(const std::vector<ComparedFrame>& frames, double to_m) {
+  constexpr int kRowsBefore = 9;  // of a track, until its kind is held to account
+  std::map<const MatchedRow*, int> rows_before;
+  std::map<TrackId, int> rows_of_track;
+  for (const ComparedFrame& frame : frames)
+    for (const MatchedRow& row : frame.rows) rows_before[&row] = rows_of_track[row.row.object.track]++;
+  KindErrors errors;
+  for (const auto& [frame, object, row] : askedPairs(frames, 0, to_m)) {
+    const ObjectKind label = kindOfType(object->truth.type);
+    if (label == ObjectKind::kUnknown) continue;
+    const auto& cuboid = row->row.object.cuboid;
+    const ObjectKind reported = cuboid ? cuboid->kind : ObjectKind::kUnknown;
+    KindCounts& counts = rows_before[row] >= kRowsBefore ? errors.from_tenth_row : errors.before;
+    ++counts.rows[static_cast<std::size_t>(label)][static_cast<std::size_t>(reported)];
+  }
+  return errors;
+}
+
+}  // namespace motorcade
