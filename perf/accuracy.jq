@@ -52,12 +52,15 @@ def tracking_row:
   def above: .footprint.within_30m;
   def masks(range; value): mean(.masks | values | range | select(.rows > 0) | value) | fixed(2);
   def kinds(estimate): mean(estimate | .kinds_within_30m.from_tenth_row | select(.rows > 0) | .right) | percent(0);
-  def waited(key): mean(.online.first_report.within_30m.frames | counted(key)) | fixed(1);
+  def waited(range): .online.first_report | range;
+  def frames(range; key): mean(waited(range) | .frames | counted(key)) | fixed(1);
+  def reports(range): "\(frames(range; "median")) / \(frames(range; "mean"))" +
+    (sum(waited(range) | .never) | if . > 0 then ", \(.) never" else "" end);
   ["\(hota(image; "hota")) / \(online(image))", hota(image; "det_a"), hota(image; "ass_a"), hota(image; "loc_a"),
    hota(.image.within_50m; "hota"), "\(hota(above; "hota")) / \(online(above))",
-   masks(.within_30m; .iou), masks(.from_30_to_50m; .iou), masks(.within_30m; .boundary_px | counted("mean")),
+   masks(.within_30m; .iou), masks(.from_30_to_50m; .iou), (mean(.masks | values | .within_30m.boundary_px | counted("mean")) | fixed(1)),
    "\(kinds(.final)) / \(kinds(.online))",
-   "\(waited("median")) / \(waited("mean"))" + (sum(.online.first_report.within_30m.never) | if . > 0 then "; \(.) never" else "" end)];
+   reports(.within_30m), reports(.within_50m)];
 
 # Without the truth's mounting error where it may have one.
 def covariances_row:
