@@ -125,10 +125,12 @@ struct ObjectEstimate {
   SE3 T_world_body;
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();
   double speed_sigma_mps = 0;
+  double yaw_rate_radps = 0, yaw_rate_sigma_radps = 0;  // about the body's z axis
   int points = 0;
   Box box;
   std::optional<Matrix6d> covariance;  // of T_cam_body of the same frame
   std::optional<ObjectBox> cuboid{};
+  double age_s = 0;  // since its first estimate of the same kind, online or final
 };
 
 /// A camera's covariance is that of its motion over this many frames: the drift of an absolute pose has no bound.

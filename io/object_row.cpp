@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/object_place.hpp"
 #include "io/number_text.hpp"
 
 namespace motorcade {
@@ -18,6 +19,15 @@ ObjectBox readBox(FieldReader& fields) {
   box.kind = fields.byName("kind", kKinds, kindName);
   box.kind_probability = fields.number("kind_probability");
   return box;
+}
+
+/// Columns that came later: how the object turns and how old it is, and between them what placeOf tells.
+void readMotion(FieldReader& fields, ObjectEstimate& object) {
+  for (int column = 0; column < 2; ++column) fields.number("heading");
+  object.yaw_rate_radps = fields.number("yaw_rate_radps");
+  object.yaw_rate_sigma_radps = fields.number("yaw_rate_sigma_radps");
+  for (int column = 0; column < 6; ++column) fields.number("center");
+  object.age_s = fields.number("age_s");
 }
 
 }  // namespace
@@ -52,7 +62,7 @@ std::string_view kindName(ObjectKind kind) {
 
 std::string objectLine(FrameId frame, const ObjectEstimate& object) {
   std::string line;
-  line.reserve(420);
+  line.reserve(520);
   appendInteger(line, frame.value);
   line += ',';
   appendInteger(line, object.track.value);
@@ -78,6 +88,13 @@ std::string objectLine(FrameId frame, const ObjectEstimate& object) {
   line += ',';
   line += kindName(box.kind);
   add(box.kind_probability, 3);
+  const ObjectPlace place = placeOf(object);
+  for (const double value_rad :
+       {place.heading_rad, place.heading_sigma_rad, object.yaw_rate_radps, object.yaw_rate_sigma_radps})
+    add(value_rad, 6);
+  for (const Eigen::Vector3d& vector : {place.center_world, place.centerSigma_m()})
+    for (const double value_m : vector) add(value_m, 3);
+  add(object.age_s, 3);
   return line;
 }
 
@@ -94,6 +111,7 @@ ObjectEstimate readObject(FieldReader& fields) {
   if (fields.atEnd()) return object;
   const ObjectBox box = readBox(fields);
   if (box.size_m.x() > 0) object.cuboid = box;
+  if (!fields.atEnd()) readMotion(fields, object);
   return object;
 }
 

@@ -16,13 +16,15 @@ inline constexpr std::string_view kObjectsHeaderStart =
 inline constexpr std::string_view kObjectsHeader =
     "frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,right,"
     "bottom,box_x,box_y,box_z,length,width,height,box_x_sigma,box_y_sigma,box_z_sigma,length_sigma,width_sigma,"
-    "height_sigma,kind,kind_probability";
+    "height_sigma,kind,kind_probability,heading_rad,heading_sigma_rad,yaw_rate_radps,yaw_rate_sigma_radps,center_x,"
+    "center_y,center_z,center_x_sigma,center_y_sigma,center_z_sigma,age_s";
 
 std::string_view stateName(ObjectState state);
 std::string_view kindName(ObjectKind kind);
 
 std::string objectLine(FrameId frame, const ObjectEstimate& object);
-/// All columns but the frame, which is read already. Fails with the column's name.
+/// All columns but the frame, which is read already; what follows from others is passed over. Fails with the column's
+/// name.
 ObjectEstimate readObject(FieldReader& fields);
 
 }  // namespace motorcade

@@ -102,18 +102,6 @@ std::string asyncEvent(char phase, FrameId frame, SteadyTime at, SteadyTime orig
 
 // ---- reading ----
 
-/// The lines after the header; checks how it begins. A file that a killed run left empty has none.
-std::vector<TextLine> readTable(const fs::path& file, std::string_view header_start) {
-  auto lines = readLines(file, LastLine::kDropIfCut);
-  if (lines.empty()) return lines;
-  if (!lines.front().text.starts_with(header_start)) {
-    throw InputError(file.string() + ", line " + std::to_string(lines.front().number) +
-                     ": the header must begin with " + std::string(header_start));
-  }
-  lines.erase(lines.begin());
-  return lines;
-}
-
 std::vector<RunFolder::ObjectRow> readObjects(const fs::path& file) {
   std::vector<RunFolder::ObjectRow> rows;
   if (!fs::exists(file)) return rows;

@@ -12,6 +12,17 @@
 
 namespace motorcade {
 
+std::vector<TextLine> readTable(const std::filesystem::path& file, std::string_view header_start) {
+  auto lines = readLines(file, LastLine::kDropIfCut);
+  if (lines.empty()) return lines;
+  if (!lines.front().text.starts_with(header_start)) {
+    throw InputError(file.string() + ", line " + std::to_string(lines.front().number) +
+                     ": the header must begin with " + std::string(header_start));
+  }
+  lines.erase(lines.begin());
+  return lines;
+}
+
 std::string readWhole(const std::filesystem::path& file, std::size_t limit_bytes) {
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) throw InputError(file.string() + ": is a folder, a file is needed");

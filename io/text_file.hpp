@@ -25,6 +25,10 @@ enum class LastLine { kKeep, kDropIfCut };
 /// file cannot be read.
 std::vector<TextLine> readLines(const std::filesystem::path& file, LastLine last_line = LastLine::kKeep);
 
+/// The lines of a table of a run after its header, whose beginning is checked. Of a file that a killed run left, the
+/// cut line or, where it is empty, the header may be missing. Throws InputError.
+std::vector<TextLine> readTable(const std::filesystem::path& file, std::string_view header_start);
+
 /// The whole file; throws InputError when it cannot be read or is larger than `limit_bytes`.
 std::string readWhole(const std::filesystem::path& file, std::size_t limit_bytes = std::size_t{1} << 30);
 

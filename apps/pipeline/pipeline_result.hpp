@@ -18,6 +18,7 @@ struct PipelineResult {
   std::vector<FrameEstimate> dropped;  // frames that the live policy dropped just before this one, with predicted poses
   std::vector<FrameEstimate> finals;   // every frame once, in order, when it leaves the smoothing window
   std::vector<ObjectMask> masks;       // of the online estimate's objects, those whose outline was looked for
+  FrameMeasurementsPtr measurements;   // what the estimates were made from
   FrameTiming timing;
   SolverCounters counters;
   std::string problem;  // why the frame was rejected or lost, empty when all went well

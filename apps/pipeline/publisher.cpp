@@ -37,10 +37,13 @@ PipelineResult Publisher::resultOf(Job& job) {
   const bool seen_by_backend = job.problemOf(Stage::kIncrementalOptimization).empty();
   result.dropped = gaps_.fill(job.dropped, FrameStatus::kDropped);
   result.online = job.estimates->online;
+  online_ages_.fill(result.online);
   if (!seen_by_backend) result.online.T_world_cam = gaps_.predict(job.timing.stamp);
   gaps_.published(result.online, seen_by_backend);
   result.finals = gaps_.completed(job.estimates->finals);
+  for (FrameEstimate& estimate : result.finals) final_ages_.fill(estimate);
   result.masks = job.estimates->masks;
+  result.measurements = job.measurements;
   result.counters = job.estimates->counters;
   result.problem = takeProblems(job);
   return result;
@@ -60,6 +63,7 @@ void Publisher::count(const Job& job, const PipelineResult& result) {
 std::vector<FrameEstimate> Publisher::lastFinals(const std::vector<FrameEstimate>& last) {
   std::vector<FrameEstimate> finals = gaps_.completed(last);
   for (FrameEstimate& estimate : gaps_.rest()) finals.push_back(std::move(estimate));
+  for (FrameEstimate& estimate : finals) final_ages_.fill(estimate);
   return finals;
 }
 

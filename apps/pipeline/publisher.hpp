@@ -6,6 +6,7 @@
 
 #include "apps/pipeline/gap_filler.hpp"
 #include "apps/pipeline/job.hpp"
+#include "apps/pipeline/object_ages.hpp"
 #include "apps/pipeline/pipeline_params.hpp"
 #include "apps/pipeline/pipeline_result.hpp"
 #include "core/spsc_ring.hpp"
@@ -39,6 +40,7 @@ class Publisher {
   FreeJobs& free_jobs_;
   SpscRing<PipelineResult> results_;
   GapFiller gaps_;
+  ObjectAges online_ages_, final_ages_;
   PipelineSummary summary_;
 };
 

@@ -18,6 +18,8 @@ ObjectEstimate objectEstimate(const ObjectObservation& observation, const Object
           .T_world_body = filter.pose(),
           .velocity_world_mps = filter.velocityWorld_mps(),
           .speed_sigma_mps = filter.speedSigma_mps(),
+          .yaw_rate_radps = filter.yawRate_radps(),
+          .yaw_rate_sigma_radps = filter.yawRateSigma_radps(),
           .points = observation.points,
           .box = observation.box,
           .covariance = filter.poseCovariance()};

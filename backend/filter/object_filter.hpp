@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "core/constant_twist.hpp"
@@ -33,6 +35,8 @@ class ObjectFilter {
   Eigen::Vector3d velocityWorld_mps() const { return state_.velocityWorld_mps(); }
   Matrix6d poseCovariance() const { return state_.poseCovariance(); }
   double speedSigma_mps() const;
+  double yawRate_radps() const { return state_.twist[5]; }
+  double yawRateSigma_radps() const { return std::sqrt(std::max(0.0, state_.covariance(11, 11))); }
 
  private:
   void adaptNoise(double normalized_innovation);

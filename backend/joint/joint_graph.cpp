@@ -308,6 +308,7 @@ void JointGraph::keep(FrameId frame, const JointCovariances& covariances) {
     JointRecord& record = objects_.at(object.track).records.at(frame);
     record.covariance = object.T_cam_body;
     record.speed_sigma_mps = object.speed_sigma_mps;
+    record.yaw_rate_sigma_radps = object.yaw_rate_sigma_radps;
   }
 }
 

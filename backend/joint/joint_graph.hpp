@@ -33,7 +33,7 @@ struct JointRecord {
   std::optional<FactorId> motion;  // since the record before
   std::optional<SE3> frozen;       // T_world_body when the pose has left the window
   std::optional<Matrix6d> covariance;
-  std::optional<double> speed_sigma_mps;
+  std::optional<double> speed_sigma_mps, yaw_rate_sigma_radps;
 };
 
 /// Tracks that ended, and the factor that holds them.
@@ -63,7 +63,7 @@ struct JointCovariances {
   struct Object {
     TrackId track;
     Matrix6d T_cam_body;  // covariance of the pose seen from the camera, right perturbation
-    double speed_sigma_mps = 0;
+    double speed_sigma_mps = 0, yaw_rate_sigma_radps = 0;
   };
   std::optional<Matrix6d> camera;  // of T_cam(before)_cam(now), kCameraCovarianceFrames apart
   std::vector<Object> objects;

@@ -36,7 +36,8 @@ std::optional<Matrix6d> JointReader::cameraCovariance(FrameId frame) const {
   return graph_.designEffect() * J * *joint * J.transpose();
 }
 
-/// Of the pose seen from the camera, which is a variable, and of the speed, the length of the twist's velocity.
+/// Of the pose seen from the camera, which is a variable, of the speed, the length of the twist's velocity, and of its
+/// turn about the body's z axis.
 std::optional<JointCovariances::Object> JointReader::objectCovariance(TrackId id, const JointRecord& record) const {
   constexpr double kStanding_mps = 1e-9;  // slower, there is no direction
   if (!record.c.valid()) return std::nullopt;
@@ -49,7 +50,8 @@ std::optional<JointCovariances::Object> JointReader::objectCovariance(TrackId id
   const double variance = direction.dot(covariance.block<3, 3>(6, 6) * direction);
   return JointCovariances::Object{.track = id,
                                   .T_cam_body = covariance.topLeftCorner<6, 6>(),
-                                  .speed_sigma_mps = std::sqrt(std::max(0.0, variance))};
+                                  .speed_sigma_mps = std::sqrt(std::max(0.0, variance)),
+                                  .yaw_rate_sigma_radps = std::sqrt(std::max(0.0, covariance(11, 11)))};
 }
 
 FrameEstimate JointReader::read(FrameId frame) const {
@@ -66,13 +68,16 @@ FrameEstimate JointReader::read(FrameId frame) const {
 }
 
 ObjectEstimate JointReader::readObject(TrackId id, const JointObject& object, FrameId frame) const {
-  constexpr double kUnknownSpeedSigma_mps = 10.0;  // of a single observation
+  constexpr double kUnknownSpeedSigma_mps = 10.0, kUnknownYawRateSigma_radps = 0.3;  // of a single observation
   const JointRecord& record = object.records.at(frame);
+  const double yaw_rate_radps = record.w.valid() ? std::get<SmallVector>(graph_.solver().estimate(record.w))[5] : 0;
   return {.track = id,
           .state = record.seen.state,
           .T_world_body = graph_.objectPose(object, frame),
           .velocity_world_mps = graph_.objectVelocity_mps(object, frame),
           .speed_sigma_mps = record.speed_sigma_mps.value_or(kUnknownSpeedSigma_mps),
+          .yaw_rate_radps = yaw_rate_radps,
+          .yaw_rate_sigma_radps = record.yaw_rate_sigma_radps.value_or(kUnknownYawRateSigma_radps),
           .points = record.seen.points,
           .box = record.seen.box,
           .covariance = record.covariance};

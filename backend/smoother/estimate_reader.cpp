@@ -22,19 +22,22 @@ const ObjectRecord* neighborInTime(const ObjectTrack& track, FrameId frame) {
   return nullptr;
 }
 
-/// Of the speed |rho| / dt with (rho, phi) = log(z_other^-1 z_now), from the joint covariance of (z_now, z_other).
-std::optional<double> speedSigma_mps(const SE3& T_other_now, const Eigen::Ref<const Matrix12d>& joint, double dt_s) {
+/// Of the speed |rho| / dt and the yaw rate phi_z / dt with (rho, phi) = log(z_other^-1 z_now), from the joint
+/// covariance of (z_now, z_other).
+void addRateSigmas(FrameCovariances::Object& object, const SE3& T_other_now, const Eigen::Ref<const Matrix12d>& joint,
+                   double dt_s) {
+  if (!(dt_s > 0)) return;
   constexpr double kShortestStep_m = 1e-9;  // a shorter one has no direction
   const Vector6d step = T_other_now.log();
   const Matrix6d J_now = rightJacobianInverseSE3(step);
   Matrix6x12d J_step;
   J_step << J_now, -J_now * T_other_now.inverse().adjoint();
-  const Eigen::Matrix3d variance = (J_step * joint * J_step.transpose()).topLeftCorner<3, 3>();
+  const Matrix6d covariance = J_step * joint * J_step.transpose();
   const double length_m = step.head<3>().norm();
   const Eigen::Vector3d direction =
       length_m > kShortestStep_m ? Eigen::Vector3d(step.head<3>() / length_m) : Eigen::Vector3d::UnitX();
-  if (!(dt_s > 0)) return std::nullopt;
-  return std::sqrt(direction.dot(variance * direction)) / dt_s;
+  object.speed_sigma_mps = std::sqrt(direction.dot(covariance.topLeftCorner<3, 3>() * direction)) / dt_s;
+  object.yaw_rate_sigma_radps = std::sqrt(covariance(5, 5)) / dt_s;
 }
 
 }  // namespace
@@ -77,11 +80,13 @@ std::optional<FrameCovariances::Object> EstimateReader::objectCovariance(TrackId
   const SE3 T_body_cam = (solver.pose(track.anchor) * z).inverse() * solver.pose(x);
   Matrix6x18d J;
   J << -T_body_cam.adjoint(), z.inverse().adjoint(), Matrix6d::Identity();
-  FrameCovariances::Object object{
-      .track = id, .T_cam_body = J * joint->topLeftCorner<18, 18>() * J.transpose(), .speed_sigma_mps = {}};
+  FrameCovariances::Object object{.track = id,
+                                  .T_cam_body = J * joint->topLeftCorner<18, 18>() * J.transpose(),
+                                  .speed_sigma_mps = {},
+                                  .yaw_rate_sigma_radps = {}};
   if (other)
-    object.speed_sigma_mps = speedSigma_mps(solver.pose(other->z).inverse() * z, joint->bottomRightCorner<12, 12>(),
-                                            std::abs(secondsBetween(other->stamp, record->second.stamp)));
+    addRateSigmas(object, solver.pose(other->z).inverse() * z, joint->bottomRightCorner<12, 12>(),
+                  std::abs(secondsBetween(other->stamp, record->second.stamp)));
   return object;
 }
 
@@ -99,22 +104,27 @@ FrameEstimate EstimateReader::read(FrameId frame) const {
 }
 
 ObjectEstimate EstimateReader::readObject(TrackId id, const ObjectTrack& track, FrameId frame) const {
-  constexpr double kUnknownSpeedSigma_mps = 10.0;  // of a single observation
+  constexpr double kUnknownSpeedSigma_mps = 10.0, kUnknownYawRateSigma_radps = 0.3;  // of a single observation
   const ObjectRecord& record = track.records.at(frame);
+  const SE3 T_world_body = graph_.objectPose(track, frame);
+  const Eigen::Matrix3d world_cam = graph_.solver().pose(graph_.frames().at(frame).x).rotation();
+  const auto twist = meanTwist(track, frame);
   return {.track = id,
           .state = record.seen.state,
-          .T_world_body = graph_.objectPose(track, frame),
-          .velocity_world_mps = velocity(track, frame),
+          .T_world_body = T_world_body,
+          .velocity_world_mps = twist ? Eigen::Vector3d(T_world_body.rotation() * twist->head<3>())
+                                      : Eigen::Vector3d(world_cam * record.seen.velocity_cam_mps),
           .speed_sigma_mps = record.speed_sigma_mps.value_or(kUnknownSpeedSigma_mps),
+          .yaw_rate_radps = twist ? (*twist)[5] : 0,
+          .yaw_rate_sigma_radps = record.yaw_rate_sigma_radps.value_or(kUnknownYawRateSigma_radps),
           .points = record.seen.points,
           .box = record.seen.box,
           .covariance = record.covariance};
 }
 
-/// Mean of the body twists to the poses before and after, as far as there are any: exact on arcs of constant speed.
-Eigen::Vector3d EstimateReader::velocity(const ObjectTrack& track, FrameId frame) const {
+/// Of the body twists to the poses before and after, as far as there are any: exact on arcs of constant speed.
+std::optional<Vector6d> EstimateReader::meanTwist(const ObjectTrack& track, FrameId frame) const {
   const auto now = track.records.find(frame);
-  const SE3 T_world_body = graph_.objectPose(track, frame);
   Vector6d sum = Vector6d::Zero();
   int count = 0;
   const auto add = [&](const auto& before, const auto& after) {
@@ -125,9 +135,8 @@ Eigen::Vector3d EstimateReader::velocity(const ObjectTrack& track, FrameId frame
   };
   if (now != track.records.begin()) add(std::prev(now), now);
   if (std::next(now) != track.records.end()) add(now, std::next(now));
-  if (count == 0)
-    return graph_.solver().pose(graph_.frames().at(frame).x).rotation() * now->second.seen.velocity_cam_mps;
-  return T_world_body.rotation() * sum.head<3>() / count;
+  if (count == 0) return std::nullopt;
+  return sum / count;
 }
 
 }  // namespace motorcade

@@ -18,7 +18,7 @@ class EstimateReader {
   std::optional<Matrix6d> cameraCovariance(FrameId frame) const;
   std::optional<FrameCovariances::Object> objectCovariance(TrackId id, const ObjectTrack& track, FrameId frame) const;
   ObjectEstimate readObject(TrackId id, const ObjectTrack& track, FrameId frame) const;
-  Eigen::Vector3d velocity(const ObjectTrack& track, FrameId frame) const;
+  std::optional<Vector6d> meanTwist(const ObjectTrack& track, FrameId frame) const;
 
   const TrajectoryGraph& graph_;
 };

@@ -296,10 +296,11 @@ void TrajectoryGraph::converge() {
 
 void TrajectoryGraph::keep(FrameId frame, const FrameCovariances& covariances) {
   if (covariances.camera) frames_.at(frame).covariance = covariances.camera;
-  for (const auto& [track, T_cam_body, speed_sigma_mps] : covariances.objects) {
-    ObjectRecord& record = tracks_.at(track).records.at(frame);
-    record.covariance = T_cam_body;
-    if (speed_sigma_mps) record.speed_sigma_mps = speed_sigma_mps;
+  for (const FrameCovariances::Object& object : covariances.objects) {
+    ObjectRecord& record = tracks_.at(object.track).records.at(frame);
+    record.covariance = object.T_cam_body;
+    if (object.speed_sigma_mps) record.speed_sigma_mps = object.speed_sigma_mps;
+    if (object.yaw_rate_sigma_radps) record.yaw_rate_sigma_radps = object.yaw_rate_sigma_radps;
   }
 }
 

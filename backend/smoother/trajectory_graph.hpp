@@ -27,7 +27,7 @@ struct ObjectRecord {
   VariableId z;               // invalid when the frame's pose is not in the graph
   std::optional<SE3> frozen;  // T_world_body when the pose has left the window
   std::optional<Matrix6d> covariance;
-  std::optional<double> speed_sigma_mps;
+  std::optional<double> speed_sigma_mps, yaw_rate_sigma_radps;
 };
 
 /// An object's own pose graph and what joins it to the world.
@@ -40,8 +40,9 @@ struct ObjectTrack {
 struct FrameCovariances {
   struct Object {
     TrackId track;
-    Matrix6d T_cam_body;                    // covariance of the pose seen from the camera, right perturbation
-    std::optional<double> speed_sigma_mps;  // empty when the frame's pose is the object's only one
+    Matrix6d T_cam_body;  // covariance of the pose seen from the camera, right perturbation
+    std::optional<double> speed_sigma_mps,
+        yaw_rate_sigma_radps;  // empty when the frame's pose is the object's only one
   };
   std::optional<Matrix6d> camera;  // of T_cam(before)_cam(now), kCameraCovarianceFrames apart
   std::vector<Object> objects;

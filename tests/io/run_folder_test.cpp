@@ -27,6 +27,8 @@ FrameEstimate estimateOf(int i) {
   object.T_world_body = SE3::exp((Vector6d() << 3, 1, 20 + i, 0, 1, 0).finished());
   object.velocity_world_mps = {0.5, 0, 10};
   object.speed_sigma_mps = 0.25;
+  object.yaw_rate_radps = -0.125;
+  object.yaw_rate_sigma_radps = 0.03125;
   object.points = 17;
   object.box = {10, 20, 110.5, 90.25};
   object.covariance = Matrix6d::Identity() * 0.01;
@@ -36,6 +38,7 @@ FrameEstimate estimateOf(int i) {
   cuboid.size_sigma_m = {0.5, 0.1, 0.1};
   cuboid.kind = ObjectKind::kTwoWheeler;
   cuboid.kind_probability = 0.75;
+  object.age_s = 0.1 * i;
   if (i != 2) object.cuboid = cuboid;
   estimate.objects.push_back(object);
   estimate.camera_covariance = Matrix6d::Identity() * 0.02;
@@ -83,6 +86,9 @@ TEST(RunFolder, ComesBackAsWritten) {
   EXPECT_EQ(row.object.cuboid->size_sigma_m, Eigen::Vector3d(0.5, 0.1, 0.1));
   EXPECT_EQ(row.object.cuboid->kind, ObjectKind::kTwoWheeler);
   EXPECT_DOUBLE_EQ(row.object.cuboid->kind_probability, 0.75);
+  EXPECT_DOUBLE_EQ(row.object.yaw_rate_radps, -0.125);
+  EXPECT_DOUBLE_EQ(row.object.yaw_rate_sigma_radps, 0.03125);
+  EXPECT_DOUBLE_EQ(row.object.age_s, 0.6);
   ASSERT_EQ(run.covariances.size(), 6u);
   EXPECT_FALSE(run.covariances[0].track.valid());
   EXPECT_THAT(run.covariances[1].covariance, IsNear(Matrix6d::Identity() * 0.01, 1e-12));
@@ -97,26 +103,53 @@ TEST(RunFolder, HasTheDocumentedHeadersAndStamps) {
       testing::StartsWith(
           "frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,"
           "right,bottom,box_x,box_y,box_z,length,width,height,box_x_sigma,box_y_sigma,box_z_sigma,length_sigma,"
-          "width_sigma,height_sigma,kind,kind_probability\n0,4,moving,"));
+          "width_sigma,height_sigma,kind,kind_probability,heading_rad,heading_sigma_rad,yaw_rate_radps,"
+          "yaw_rate_sigma_radps,center_x,center_y,center_z,center_x_sigma,center_y_sigma,center_z_sigma,age_s\n"
+          "0,4,moving,"));
   EXPECT_THAT(folder.read("run/camera_online.tum"), testing::StartsWith("1317042651.174740992 0.000000000 "));
   EXPECT_THAT(folder.read("run/camera_final.txt"), testing::StartsWith("1.000000000e+00 0.000000000e+00 "));
   EXPECT_THAT(folder.read("run/trace.json"), AllOf(testing::StartsWith("[\n{\"name\":\"prepare\""),
                                                    HasSubstr("\"dur\":3000.000"), testing::EndsWith("]\n")));
 }
 
-TEST(RunFolder, ReadsRowsWithoutACuboidToo) {
+TEST(RunFolder, RowsTellWhereTheCuboidStandsAndHeads) {
   const test::TemporaryFolder folder;
-  writeRun(folder / "run", 1, 2);
-  EXPECT_FALSE(readRunFolder(folder / "run").final.objects[1].object.cuboid);  // not known in that frame
-  std::string csv = folder.read("run/objects_final.csv"), earlier;
+  RunFolderWriter writer(folder.path());
+  FrameEstimate estimate = estimateOf(0);
+  Eigen::Matrix3d world_body;
+  world_body << 0, -1, 0, 0, 0, -1, 1, 0, 0;  // ahead is z, left -x, up -y
+  estimate.objects[0].T_world_body = SE3(world_body, {4, 1, 20});
+  writer.writeOnline(estimate);
+  // The pose is good to 0.1 m and rad: the middle, 1.5 m ahead, .25 m left and .125 m below, to .1 and .1 times what is
+  // across the axis.
+  EXPECT_THAT(
+      folder.read("objects_online.csv"),
+      testing::EndsWith(",two_wheeler,0.750,0.000000,0.100000,-0.125000,0.031250,3.750,1.125,21.500,0.181,0.182,"
+                        "0.104,0.000\n"));
+}
+
+/// A table without its last columns, as earlier versions wrote it.
+std::string withoutLast(const std::string& csv, int columns) {
+  std::string earlier;
   for (std::size_t begin = 0; begin < csv.size();) {
     const std::size_t end = csv.find('\n', begin);
     std::string line = csv.substr(begin, end - begin);
-    for (int column = 0; column < 14; ++column) line.resize(line.rfind(','));
+    for (int column = 0; column < columns; ++column) line.resize(line.rfind(','));
     earlier += line + '\n';
     begin = end + 1;
   }
-  folder.write("run/objects_final.csv", earlier);  // as earlier versions wrote it
+  return earlier;
+}
+
+TEST(RunFolder, ReadsRowsOfEarlierVersionsToo) {
+  const test::TemporaryFolder folder;
+  writeRun(folder / "run", 1, 2);
+  EXPECT_FALSE(readRunFolder(folder / "run").final.objects[1].object.cuboid);  // not known in that frame
+  const std::string csv = folder.read("run/objects_final.csv");
+  constexpr int kPlaceAndMotion = 11, kCuboid = 14;
+  folder.write("run/objects_final.csv", withoutLast(csv, kPlaceAndMotion));
+  EXPECT_TRUE(readRunFolder(folder / "run").final.objects[0].object.cuboid);
+  folder.write("run/objects_final.csv", withoutLast(csv, kPlaceAndMotion + kCuboid));
   const RunFolder run = readRunFolder(folder / "run");
   ASSERT_EQ(run.final.objects.size(), 2U);
   EXPECT_FALSE(run.final.objects[0].object.cuboid);

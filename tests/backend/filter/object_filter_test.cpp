@@ -56,6 +56,8 @@ TEST(ObjectFilter, FindsTheTwistFromPosesAndPredictsAlongTheBend) {
   ObjectFilter filter = followed(bend, 60);
   EXPECT_THAT(filter.pose(), IsNearPose(bend.at(59), 1e-2));  // the prior of a car at rest has nearly died out
   EXPECT_THAT(filter.velocityWorld_mps(), IsNear(bend.velocity_mps(59), 0.05));
+  EXPECT_NEAR(filter.yawRate_radps(), bend.twist[5], 2 * filter.yawRateSigma_radps());
+  EXPECT_LT(filter.yawRateSigma_radps(), 0.1);  // poses to 0.01 rad
   filter.predict(stampOf(69));
   EXPECT_THAT(filter.pose(), IsNearPose(bend.at(69), 0.1));
   EXPECT_THAT(filter.velocityWorld_mps(), IsNear(bend.velocity_mps(69), 0.1));
@@ -174,6 +176,7 @@ TEST(ObjectFilter, ProcessNoiseFollowsTheInnovations) {
 TEST(ObjectFilter, TheSpeedIsAsUnsureAsSetUntilPosesTellIt) {
   const Bend bend;
   EXPECT_DOUBLE_EQ(followed(bend, 1).speedSigma_mps(), plain().initial_speed_sigma_mps);
+  EXPECT_DOUBLE_EQ(followed(bend, 1).yawRateSigma_radps(), plain().initial_turn_rate_sigma_radps);
   EXPECT_LT(followed(bend, 2).speedSigma_mps(), 2);  // two poses to 0.1 m, 0.1 s apart
   EXPECT_LT(followed(bend, 30).speedSigma_mps(), followed(bend, 10).speedSigma_mps() + 1e-12);
 }

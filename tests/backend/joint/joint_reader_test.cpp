@@ -1,5 +1,6 @@
 #include "backend/joint/joint_reader.hpp"
 
+#include <cmath>
 #include <iostream>
 
 #include <Eigen/Cholesky>
@@ -55,6 +56,29 @@ TEST(JointReader, CovariancesGrowByWhatErrorsHaveInCommon) {
   const double nees = cameraNees(common);
   EXPECT_GT(nees, 1.5);
   EXPECT_LT(nees, 9);
+}
+
+/// Of a vehicle in a bend, from the frame on in which its twist is known.
+TEST(JointReader, YawRatesAreThoseOfTheBendWithinTheirSigmas) {
+  PointDrive::Options options = kStreet;
+  constexpr double kYawRate_radps = 0.2;
+  options.drive.vehicles = {{{-2, 1, 25}, 0, 8, kYawRate_radps, 0, 1000}};
+  PointDrive drive(1, options);
+  JointBackend backend(JointParams{}, kPointRig);
+  const auto run = test::runDrive(backend, drive);
+  double squares = 0;
+  int count = 0;
+  for (std::size_t k = 10; k + 10 < run.finals.size(); k += 5) {
+    const ObjectEstimate& object = run.online[k].objects.at(0);
+    EXPECT_GT(object.yaw_rate_sigma_radps, 0);
+    EXPECT_LT(object.yaw_rate_sigma_radps, 0.2);
+    squares += std::pow((object.yaw_rate_radps - kYawRate_radps) / object.yaw_rate_sigma_radps, 2);
+    EXPECT_NEAR(run.finals[k].objects.at(0).yaw_rate_radps, kYawRate_radps, 0.05);
+    ++count;
+  }
+  std::cout << "mean normalized error " << squares / count << " of " << count << "\n";
+  EXPECT_GE(count, 5);
+  EXPECT_LT(squares / count, 4);  // one where the sigmas are right
 }
 
 /// What the image tells of the noise holds for a vehicle that enters it.

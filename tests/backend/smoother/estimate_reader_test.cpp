@@ -132,7 +132,7 @@ TEST_F(EstimateReaderTest, TheCameraHasNoCovarianceInItsFirstTenFrames) {
 }
 
 /// The neighbor in time is the frame before; the first frame of a track takes the frame after.
-TEST_F(EstimateReaderTest, TheSpeedsSigmaFollowsFromTheTwoPosesItIsMadeOf) {
+TEST_F(EstimateReaderTest, SigmasOfSpeedAndYawRateFollowFromTheTwoPosesTheyAreMadeOf) {
   drive();
   for (const auto& [frame, other] : {std::pair(kLast, FrameId{kLast.value - 1}), std::pair(FrameId{0}, FrameId{1})}) {
     const SE3 z_now = poseInTrack(0, frame), z_other = poseInTrack(0, other);
@@ -140,13 +140,20 @@ TEST_F(EstimateReaderTest, TheSpeedsSigmaFollowsFromTheTwoPosesItIsMadeOf) {
     const auto speed = [&](const SE3& from, const SE3& to) {
       return Eigen::Matrix<double, 1, 1>((from.inverse() * to).log().head<3>().norm() / dt_s);
     };
-    Eigen::Matrix<double, 1, 12> J;
-    J << numericJacobian([&](const SE3& T) { return speed(z_other, T); }, z_now),
-        numericJacobian([&](const SE3& T) { return speed(T, z_now); }, z_other);
+    const auto yaw_rate = [&](const SE3& from, const SE3& to) {
+      return Eigen::Matrix<double, 1, 1>((from.inverse() * to).log()[5] / dt_s);
+    };
     const std::array variables{track(0).records.at(frame).z, track(0).records.at(other).z};
-    const double variance = (J * *graph_.solver().jointCovariance(variables) * J.transpose())(0, 0);
+    const auto sigmaOf = [&](const auto& rate) {
+      Eigen::Matrix<double, 1, 12> J;
+      J << numericJacobian([&](const SE3& T) { return rate(z_other, T); }, z_now),
+          numericJacobian([&](const SE3& T) { return rate(T, z_now); }, z_other);
+      return std::sqrt((J * *graph_.solver().jointCovariance(variables) * J.transpose())(0, 0));
+    };
     constexpr double kTolerance = 1e-6;  // central differences, divided by dt
-    EXPECT_NEAR(covarianceOf(0, frame).speed_sigma_mps.value(), std::sqrt(variance), kTolerance) << frame.value;
+    const FrameCovariances::Object object = covarianceOf(0, frame);
+    EXPECT_NEAR(object.speed_sigma_mps.value(), sigmaOf(speed), kTolerance) << frame.value;
+    EXPECT_NEAR(object.yaw_rate_sigma_radps.value(), sigmaOf(yaw_rate), kTolerance) << frame.value;
   }
 }
 
@@ -167,11 +174,13 @@ TEST_F(EstimateReaderTest, AnObjectSeenOnceHasTheFrontEndsVelocityAndAWideSigma)
   const ObjectEstimate once = estimateOf(0, {10});
   EXPECT_TRUE(once.velocity_world_mps.isApprox(camera({10}).rotation() * velocity_cam_mps));
   EXPECT_EQ(once.speed_sigma_mps, 10.0);
+  EXPECT_EQ(once.yaw_rate_radps, 0);
+  EXPECT_EQ(once.yaw_rate_sigma_radps, 0.3);
   EXPECT_TRUE(once.covariance);
   EXPECT_LT(estimateOf(1, kLast).speed_sigma_mps, 10.0);
 }
 
-TEST_F(EstimateReaderTest, VelocityIsExactOnAnArcOfConstantSpeed) {
+TEST_F(EstimateReaderTest, VelocityAndYawRateAreExactOnAnArcOfConstantSpeed) {
   SimulatedDrive::Options exact;
   exact.encounter_sigma_m = exact.motion_sigma_m = exact.odometry_sigma_m = 1e-5;
   exact.encounter_sigma_rad = exact.motion_sigma_rad = exact.odometry_sigma_rad = 1e-6;
@@ -182,6 +191,8 @@ TEST_F(EstimateReaderTest, VelocityIsExactOnAnArcOfConstantSpeed) {
     const Eigen::Vector3d expected = truth.object(turning, frame).rotation() * Eigen::Vector3d(6, 0, 0);
     constexpr double kNoise_mps = 2e-3;  // 1e-5 m over 0.1 s, with the camera's and a margin
     EXPECT_THAT(estimateOf(turning, {frame}).velocity_world_mps, IsNear(expected, kNoise_mps)) << "frame " << frame;
+    constexpr double kNoise_radps = 2e-4;  // 1e-6 rad over 0.1 s, likewise
+    EXPECT_NEAR(estimateOf(turning, {frame}).yaw_rate_radps, 0.15, kNoise_radps) << "frame " << frame;
   }
 }
 
@@ -198,6 +209,7 @@ TEST_F(EstimateReaderTest, CovariancesStandInTheEstimatesOnceTheGraphKeepsThem) 
     EXPECT_EQ(estimate.objects[i].track, covariances.objects[i].track);
     EXPECT_EQ(estimate.objects[i].covariance, covariances.objects[i].T_cam_body);
     EXPECT_EQ(estimate.objects[i].speed_sigma_mps, covariances.objects[i].speed_sigma_mps);
+    EXPECT_EQ(estimate.objects[i].yaw_rate_sigma_radps, covariances.objects[i].yaw_rate_sigma_radps);
   }
 }
 
