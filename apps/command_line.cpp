@@ -31,7 +31,8 @@ void addRun(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_flag("--live", options->live,
                     "Behave like a camera that does not wait: the newest pair wins, others are dropped");
-  command->add_flag("--masks", options->masks, "Write the moving objects' pixels of each frame as masks/NNNNNN.png");
+  command->add_flag("--masks", options->masks,
+                    "Write what the image shows of the objects: masks/NNNNNN.png, outlines.jsonl, object_points.csv");
   command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
   command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
   command

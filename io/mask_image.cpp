@@ -38,6 +38,8 @@ std::uint16_t maskValue(TrackId track) {
   return static_cast<std::uint16_t>(track.value % std::numeric_limits<std::uint16_t>::max() + 1);
 }
 
+TrackId trackOfMask(std::uint16_t value) { return {value - 1}; }
+
 std::filesystem::path maskFile(const std::filesystem::path& folder, FrameId frame) {
   std::array<char, 32> name;
   std::snprintf(name.data(), name.size(), "%06lld.png", static_cast<long long>(frame.value));

@@ -25,6 +25,8 @@ class Canvas {
   int width() const { return image_.width; }
   int height() const { return image_.height; }
 
+  /// Of a pixel, which must lie on the canvas.
+  void blend(int x, int y, Color color, double opacity);
   void line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Color color, double width, double opacity = 1);
   void polyline(const std::vector<Eigen::Vector2d>& points, Color color, double width, double opacity = 1);
   /// Every second piece of `dash` pixels along the way.
@@ -44,8 +46,6 @@ class Canvas {
   const RgbImage& image() const { return image_; }
 
  private:
-  void blend(int x, int y, Color color, double opacity);
-
   RgbImage image_;
 };
 

@@ -7,6 +7,7 @@
 #include "apps/draw/frame_view.hpp"
 #include "io/errors.hpp"
 #include "io/image_file.hpp"
+#include "io/mask_image.hpp"
 
 namespace motorcade {
 namespace {
@@ -28,6 +29,26 @@ void addTruth(DrawnRun& drawn, const Sequence& sequence) {
   }
 }
 
+void addCovariances(DrawnRun& drawn, const RunFolder& run) {
+  for (const auto& row : run.covariances) {
+    const auto objects = drawn.objects.find(row.frame.value - run.first_frame);
+    if (!row.track.valid() || objects == drawn.objects.end()) continue;
+    for (ObjectEstimate& object : objects->second)
+      if (object.track == row.track) object.covariance = row.covariance;
+  }
+}
+
+/// With the mask where the run wrote masks.
+DrawnImages imagesOf(const std::filesystem::path& left, const std::filesystem::path& mask, ImagePool& pool) {
+  DrawnImages images{.left = readImage(left, pool)};
+  if (!std::filesystem::exists(mask)) return images;
+  images.mask = readPng16(mask);
+  const ImageSize size{images.mask->width, images.mask->height}, wanted{images.left.width(), images.left.height()};
+  if (size != wanted)
+    throw InputError(mask.string() + ": has " + size.text() + " pixels, the image has " + wanted.text());
+  return images;
+}
+
 DrawnRun drawnRun(const RunFolder& run, const Sequence& sequence) {
   DrawnRun drawn;
   drawn.camera = sequence.camera;
@@ -42,6 +63,11 @@ DrawnRun drawnRun(const RunFolder& run, const Sequence& sequence) {
     drawn.stamps.push_back(sequence.stamps[run.first_frame + i]);
   }
   for (const auto& row : shown.objects) drawn.objects[row.frame.value - run.first_frame].push_back(row.object);
+  addCovariances(drawn, run);
+  const auto points = run.folder / kObjectPointsFile;
+  if (std::filesystem::exists(points))
+    for (const ObjectPoint& point : readObjectPoints(points))
+      drawn.points[point.frame.value - run.first_frame].push_back(point);
   addTruth(drawn, sequence);
   return drawn;
 }
@@ -68,8 +94,9 @@ int runDraw(const DrawOptions& options) {
         (frame - options.frames.begin) % options.every != 0)
       continue;
     try {
-      const Image left = readImage(sequence.frames[frame].left, pool);
-      writePngRgb(options.out / pictureName(frame), drawFrame(left, drawn, i).image());
+      const auto mask = maskFile(options.run / kMasksFolder, {static_cast<std::int64_t>(frame)});
+      const DrawnImages images = imagesOf(sequence.frames[frame].left, mask, pool);
+      writePngRgb(options.out / pictureName(frame), drawFrame(images, drawn, i).image());
       ++pictures;
     } catch (const InputError& problem) {
       std::cerr << "left out: " << problem.what() << '\n';

@@ -14,13 +14,13 @@
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/feeder.hpp"
+#include "apps/run/object_view_writer.hpp"
 #include "apps/run/other_camera.hpp"
 #include "apps/run/progress.hpp"
 #include "apps/run/run_options.hpp"
 #include "apps/run/run_summary.hpp"
 #include "apps/run/stop_signals.hpp"
 #include "io/errors.hpp"
-#include "io/mask_image.hpp"
 #include "io/run_folder.hpp"
 
 namespace motorcade {
@@ -63,31 +63,11 @@ void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) 
   if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
 }
 
-/// Writes a mask image per frame, for those who map what rests.
-class MaskWriter {
- public:
-  /// Makes the folder, and removes masks of an earlier run, nothing else.
-  MaskWriter(const std::filesystem::path& folder, const StereoCamera& camera) : folder_(folder), camera_(camera) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw OutputError(folder.string() + ": cannot be made a folder: " + error.message());
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-      if (isMaskFile(entry.path())) std::filesystem::remove(entry.path(), error);
-  }
-  void write(const FrameEstimate& frame, const std::vector<ObjectMask>& masks) const {
-    writePng16(maskFile(folder_, frame.frame), maskImage(frame, masks, camera_.width_px, camera_.height_px));
-  }
-
- private:
-  std::filesystem::path folder_;
-  StereoCamera camera_;
-};
-
 /// Takes the pipeline's results into the run folder.
 class Recorder {
  public:
-  Recorder(RunFolderWriter& folder, const MaskWriter* masks, std::size_t frames)
-      : folder_(folder), masks_(masks), progress_(frames) {}
+  Recorder(RunFolderWriter& folder, ObjectViewWriter* views, std::size_t frames)
+      : folder_(folder), views_(views), progress_(frames) {}
 
   void record(const PipelineResult& result) {
     for (const FrameEstimate& dropped : result.dropped) {
@@ -101,7 +81,7 @@ class Recorder {
     }
     folder_.writeTiming(result.timing);
     folder_.writeOnline(result.online);
-    if (masks_) masks_->write(result.online, result.masks);
+    if (views_) views_->write(result);
     recordFinals(result.finals);
     if (result.online.status == FrameStatus::kGood) ++good_frames_;
     done_ += 1 + result.dropped.size();
@@ -114,7 +94,7 @@ class Recorder {
 
  private:
   RunFolderWriter& folder_;
-  const MaskWriter* masks_;
+  ObjectViewWriter* views_;
   Progress progress_;
   std::size_t done_ = 0;
   std::int64_t good_frames_ = 0;
@@ -175,10 +155,12 @@ int runSequence(const RunOptions& options) {
   summary.layout = sequence.layout;
   summary.rate_hz = rate_hz;
   summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
-  std::optional<MaskWriter> masks;
-  if (options.masks) masks.emplace(options.out / "masks", sequence.camera);
-  Recorder recorder(folder, masks ? &*masks : nullptr, range.size());
+  ObjectViewWriter::removeEarlier(options.out);
+  std::optional<ObjectViewWriter> views;
+  if (options.masks) views.emplace(options.out, sequence.camera);
+  Recorder recorder(folder, views ? &*views : nullptr, range.size());
   follow(sequence, range, config, std::move(stages), recorder, summary);
+  if (views) views->close();
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));
   std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);

@@ -1,8 +1,10 @@
 #include <gmock/gmock.h>
 
 #include "apps/draw/draw_command.hpp"
-#include "apps/draw/frame_view.hpp"
+#include "apps/draw/image_view.hpp"
+#include "apps/draw/top_view.hpp"
 #include "io/errors.hpp"
+#include "io/mask_image.hpp"
 #include "io/run_folder.hpp"
 #include "io/trajectory.hpp"
 #include "tests/io/temporary_folder.hpp"
@@ -10,61 +12,135 @@
 namespace motorcade {
 namespace {
 
-int differingPixels(const Canvas& a, const Canvas& b) {
+constexpr int kWidth_px = 400, kHeight_px = 120, kGray = 90;
+
+Image grayImage() {
+  static ImagePool pool;
+  Image image = pool.acquire(kWidth_px, kHeight_px);
+  for (int y = 0; y < kHeight_px; ++y) std::fill_n(image.mutableRow(y), kWidth_px, std::uint8_t{kGray});
+  return image;
+}
+
+/// How far a pixel is from gray.
+int colorfulness(const Canvas& canvas, int x, int y) {
+  const std::uint8_t* pixel = canvas.image().at(x, y);
+  return std::max({pixel[0], pixel[1], pixel[2]}) - std::min({pixel[0], pixel[1], pixel[2]});
+}
+
+int colorfulPixels(const Canvas& canvas) {
   int count = 0;
-  for (std::size_t i = 0; i < a.image().pixels.size(); i += 3) count += a.image().pixels[i] != b.image().pixels[i];
+  for (int y = 0; y < canvas.height(); ++y)
+    for (int x = 0; x < canvas.width(); ++x) count += colorfulness(canvas, x, y) > 20;
   return count;
 }
 
-TEST(Canvas, ALineCoversItsWidthTimesItsLength) {
-  const Canvas empty(60, 40, {0, 0, 0});
-  Canvas canvas = empty;
-  canvas.line({10, 20}, {50, 20}, {200, 0, 0}, 3);
-  double sum = 0;
-  for (std::size_t i = 0; i < canvas.image().pixels.size(); i += 3) sum += canvas.image().pixels[i] / 200.0;
-  EXPECT_NEAR(sum, 3 * 40 + 7, 4) << "with its two round ends";
+/// A car 12 m ahead that drives where the camera looks, 4 x 2 x 1.5 m, its body frame in its middle.
+ObjectEstimate carAhead() {
+  Eigen::Matrix3d world_body;
+  world_body << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  ObjectEstimate car;
+  car.track = {1};
+  car.T_world_body = SE3(world_body, {0, 0.75, 12});
+  car.box = {170, 55, 230, 105};
+  car.cuboid = ObjectBox{};
+  car.cuboid->size_m = {4, 2, 1.5};
+  car.cuboid->kind = ObjectKind::kCar;
+  return car;
 }
 
-TEST(Canvas, APolygonCoversItsAreaWhicheverWayItTurns) {
-  for (const bool turned : {false, true}) {
-    Canvas canvas(60, 40, {0, 0, 0});
-    std::vector<Eigen::Vector2d> corners{{10, 10}, {40, 10}, {40, 30}, {10, 30}};
-    if (turned) std::reverse(corners.begin(), corners.end());
-    canvas.fillPolygon(corners, {200, 0, 0});
-    double sum = 0;
-    for (std::size_t i = 0; i < canvas.image().pixels.size(); i += 3) sum += canvas.image().pixels[i] / 200.0;
-    EXPECT_NEAR(sum, 30 * 20, 5);  // anti-aliasing takes a little off the corners
-  }
+DrawnRun runWith(const ObjectEstimate& object) {
+  DrawnRun run;
+  run.camera = {300, 300, 200, 60, 0.5, kWidth_px, kHeight_px};
+  run.stamps = {Timestamp{0}};
+  run.T_world_cam = {SE3()};
+  run.objects[0] = {object};
+  return run;
 }
 
-TEST(Canvas, ShapesOutsideOrWithoutAPlaceAreCut) {
-  const Canvas empty(30, 20, {9, 9, 9});
-  Canvas canvas = empty;
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  canvas.line({-100, -100}, {-5, -90}, {255, 0, 0}, 3);
-  canvas.line({none, 0}, {5, 5}, {255, 0, 0}, 3);
-  canvas.fillPolygon({{100, 100}, {120, 100}, {110, 130}}, {255, 0, 0});
-  canvas.text({-200, 5}, "off", {255, 0, 0});
-  canvas.text({1e9, 5}, "off", {255, 0, 0});
-  EXPECT_EQ(differingPixels(canvas, empty), 0);
-  canvas.line({-1e9, 10}, {1e9, 10}, {255, 0, 0}, 1);
-  EXPECT_GE(differingPixels(canvas, empty), 30);
+TEST(ImageView, ShowsTheCuboidsEdgesWhereTheyProject) {
+  ObjectEstimate car = carAhead();
+  car.state = ObjectState::kStopped;
+  const Canvas canvas = drawImageView({grayImage()}, runWith(car), 0);
+  // The near face is 10 m away: 60 px wide and 45 px high around (200, 60 + 22.5), the far one 14 m.
+  for (const auto& [x, y] : {std::pair(170, 82), std::pair(230, 82), std::pair(200, 105)})
+    EXPECT_GT(colorfulness(canvas, x, y), 100) << x << ", " << y;
+  EXPECT_GT(colorfulness(canvas, 179, 82), 20) << "hidden, but there";
+  EXPECT_LT(colorfulness(canvas, 179, 82), colorfulness(canvas, 170, 82));
+  EXPECT_EQ(colorfulness(canvas, 190, 97), 0) << "nothing lies between the edges";
 }
 
-TEST(Canvas, EveryLetterOfTheLabelsHasAShape) {
-  const Canvas empty(30, 30, {0, 0, 0});
-  for (const char letter : std::string_view("0123456789#./-:abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ")) {
-    Canvas canvas = empty;
-    canvas.text({2, 2}, std::string_view(&letter, 1), {255, 255, 255});
-    EXPECT_GT(differingPixels(canvas, empty), 0) << letter;
-  }
+TEST(ImageView, CutsACuboidThatReachesBehindTheCamera) {
+  ObjectEstimate car = carAhead();
+  car.T_world_body = SE3(car.T_world_body.rotation(), {2.5, 0.75, 1.5});  // beside the camera, from -.5 to 3.5 m
+  const Canvas canvas = drawImageView({grayImage()}, runWith(car), 0);
+  EXPECT_GT(colorfulness(canvas, 329, 82), 100) << "the far face's left edge, 1.5 m right and 3.5 m ahead";
+}
+
+TEST(ImageView, TintsTheMaskAndMarksPoints) {
+  ObjectEstimate car = carAhead();
+  car.state = ObjectState::kStopped;
+  DrawnRun run = runWith(car);
+  DrawnImages images{.left = grayImage(), .mask = Gray16Image{.width = kWidth_px, .height = kHeight_px, .pixels = {}}};
+  images.mask->pixels.assign(std::size_t{kWidth_px} * kHeight_px, 0);
+  for (int y = 90; y < 100; ++y)
+    for (int x = 185; x < 198; ++x) images.mask->pixels[y * kWidth_px + x] = 2;  // track 1
+  run.points[0] = {{.frame = {0}, .track = {1}, .point = {}, .uvd_px = {215, 95, 12}}};
+  const Canvas canvas = drawImageView(images, run, 0);
+  EXPECT_GT(colorfulness(canvas, 190, 94), 30);
+  EXPECT_LT(colorfulness(canvas, 190, 94), 100) << "translucent";
+  EXPECT_GT(colorfulness(canvas, 190, 90), 100) << "the rim";
+  EXPECT_EQ(colorfulness(canvas, 202, 94), 0);
+  EXPECT_GT(colorfulness(canvas, 215, 95), 30) << "the point";
+}
+
+TEST(ImageView, TagsOfObjectsInOneDirectionStandOneAboveTheOther) {
+  ObjectEstimate car = carAhead(), behind = carAhead();
+  behind.track = {2};
+  const auto tagged = [](const std::vector<ObjectEstimate>& objects) {
+    DrawnRun run = runWith(objects.front());
+    run.objects[0] = objects;
+    const Canvas canvas = drawImageView({grayImage()}, run, 0);
+    int count = 0;  // of the plates' pixels above the boxes
+    for (int y = 0; y < 55; ++y)
+      for (int x = 0; x < kWidth_px; ++x) count += colorfulness(canvas, x, y) > 100;
+    return count;
+  };
+  EXPECT_GT(tagged({car, behind}), 1.8 * tagged({car}));
+}
+
+TEST(TopView, ShowsTheFootprintAndWhereItMayBe) {
+  ObjectEstimate car = carAhead();
+  car.state = ObjectState::kStopped;
+  const Canvas sure = drawTopView(runWith(car), 0, 950, 400);
+  // Ten pixels per meter; the camera is at (247, 200).
+  EXPECT_GT(colorfulness(sure, 247 + 105, 200), 100) << "its rear";
+  constexpr int kField = 20;  // of the camera's field of view
+  EXPECT_LE(colorfulness(sure, 247 + 120, 200 + 14), kField);
+  car.covariance = Matrix6d::Identity() * 1e-4;
+  car.cuboid->size_sigma_m = {0.1, 0.8, 0.1};
+  const Canvas unsure = drawTopView(runWith(car), 0, 950, 400);
+  EXPECT_GT(colorfulness(unsure, 247 + 120, 200 + 14), kField + 10) << "within two sigma of a width of 2 +- .8 m";
+  EXPECT_LT(colorfulness(unsure, 247 + 120, 200 + 14), 60);
+  EXPECT_LE(colorfulness(unsure, 247 + 120, 200 - 20), kField) << "beyond";
+}
+
+TEST(TopView, ShowsPointsAtTheirDepthAndMotionAheadOfTheNose) {
+  ObjectEstimate car = carAhead();
+  DrawnRun run = runWith(car);
+  const int still = colorfulPixels(drawTopView(run, 0, 950, 400));
+  run.objects[0][0].velocity_world_mps = {0, 0, 6};
+  const Canvas moving = drawTopView(run, 0, 950, 400);
+  EXPECT_GT(colorfulPixels(moving), still);
+  EXPECT_GT(colorfulness(moving, 247 + 170, 200), 100) << "3 m ahead of the nose";
+  run.points[0] = {{.frame = {0}, .track = {1}, .point = {}, .uvd_px = {200, 70, 6}}};  // 25 m ahead
+  const Canvas pointed = drawTopView(run, 0, 950, 400);
+  EXPECT_GT(pointed.image().at(247 + 250, 200)[0], 150);
+  EXPECT_LT(moving.image().at(247 + 250, 200)[0], 60);
 }
 
 TEST(Draw, MakesAPictureOfEveryNthFrameOfTheRun) {
   const test::TemporaryFolder folder;
-  ImagePool pool;
-  Image image = pool.acquire(400, 120);
-  for (int y = 0; y < 120; ++y) std::fill_n(image.mutableRow(y), 400, std::uint8_t{90});
+  const Image image = grayImage();
   std::string poses;
   for (const char* side : {"drive/left", "drive/right"}) std::filesystem::create_directories(folder / side);
   for (int i = 0; i < 8; ++i) {
@@ -94,6 +170,11 @@ TEST(Draw, MakesAPictureOfEveryNthFrameOfTheRun) {
       writer.writeFinal(estimate);
     }
   }
+  Gray16Image mask{.width = kWidth_px, .height = kHeight_px, .pixels = {}};
+  mask.pixels.assign(std::size_t{kWidth_px} * kHeight_px, 2);
+  std::filesystem::create_directories(folder / "run/masks");
+  writePng16(maskFile(folder / "run/masks", {7}), mask);
+  folder.write("run/object_points.csv", "frame,track_id,point_id,u,v,disparity\n5,1,9,100.000,30.000,8.000\n");
   testing::internal::CaptureStdout();
   EXPECT_EQ(runDraw({.run = folder / "run",
                      .sequence = folder / "drive",
@@ -105,7 +186,13 @@ TEST(Draw, MakesAPictureOfEveryNthFrameOfTheRun) {
   for (const char* name : {"frame_000003.png", "frame_000005.png", "frame_000007.png"}) {
     EXPECT_EQ(readImageSize(folder / "pictures" / name), (ImageSize{400, 120 + 4 + 240}));
   }
-  EXPECT_NE(readImage(folder / "pictures/frame_000005.png", pool).at(200, 50), 90) << "the object's box";
+  ImagePool pool;
+  const Image fifth = readImage(folder / "pictures/frame_000005.png", pool),
+              last = readImage(folder / "pictures/frame_000007.png", pool);
+  EXPECT_NE(fifth.at(200, 50), kGray) << "the object's box";
+  EXPECT_NE(fifth.at(100, 30), kGray) << "its point";
+  EXPECT_EQ(fifth.at(20, 20), kGray);
+  EXPECT_NE(last.at(20, 20), kGray) << "the mask of this frame";
   folder.write("file", "");
   EXPECT_THROW(runDraw({.run = folder / "run", .sequence = folder / "drive", .out = folder / "file"}), OutputError);
 }

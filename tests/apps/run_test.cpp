@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -13,6 +14,7 @@
 #include <sys/wait.h>
 
 #include "io/mask_image.hpp"
+#include "io/object_points.hpp"
 #include "io/run_folder.hpp"
 #include "tests/support/data_folder.hpp"
 
@@ -149,6 +151,33 @@ TEST_F(Run, KnowsWhatTheCarAheadIsAndWhereItsOutlineIs) {
   }
   ASSERT_GT(masks, 5);
   EXPECT_GT(iou / masks, 0.65);
+}
+
+TEST_F(Run, WritesOutlinesAndPointsWithTheMasksAndRemovesThemNextTime) {
+  ASSERT_EQ(run("out", "--masks"), 0) << contentOf(errors());
+  const auto rows = readRunFolder(out("out")).online.objects;
+  ASSERT_FALSE(rows.empty());
+  std::map<std::pair<FrameId, TrackId>, int> points;
+  for (const ObjectPoint& point : readObjectPoints(out("out") / kObjectPointsFile))
+    ++points[{point.frame, point.track}];
+  for (const auto& row : rows) EXPECT_EQ((points[{row.frame, row.object.track}]), row.object.points) << row.frame.value;
+
+  std::ifstream outlines(out("out") / "outlines.jsonl");
+  int count = 0;
+  for (std::string line; std::getline(outlines, line); ++count) {
+    const auto outline = nlohmann::json::parse(line);
+    const Gray16Image mask = readPng16(maskFile(out("out") / "masks", {outline["frame"]}));
+    for (const auto& corner : outline["polygons"].at(0))
+      EXPECT_NE(mask.pixels[corner[1].get<int>() * mask.width + corner[0].get<int>()], 0) << line;
+  }
+  EXPECT_GT(count, 5);
+  EXPECT_NEAR(rows.back().object.age_s, 0.1 * static_cast<double>(rows.back().frame.value - rows.front().frame.value),
+              2e-3);
+
+  ASSERT_EQ(run("out"), 0) << contentOf(errors());
+  EXPECT_FALSE(fs::exists(out("out") / kObjectPointsFile));
+  EXPECT_FALSE(fs::exists(out("out") / "outlines.jsonl"));
+  EXPECT_FALSE(fs::exists(maskFile(out("out") / "masks", {0})));
 }
 
 TEST_F(Run, FollowsItsOwnEffectiveConfiguration) {

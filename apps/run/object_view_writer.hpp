@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+
+#include "apps/pipeline/pipeline_result.hpp"
+#include "core/stereo_camera.hpp"
+#include "io/line_file.hpp"
+
+namespace motorcade {
+
+/// Writes what the image shows of the objects (`run --masks`): a mask image per frame, for those who map what rests;
+/// outlines as polygons; the followed points. Every failure is an OutputError naming the file.
+class ObjectViewWriter {
+ public:
+  ObjectViewWriter(const std::filesystem::path& run_folder, const StereoCamera& camera);
+  void write(const PipelineResult& result);
+  void close();
+
+  /// Removes such files of an earlier run, nothing else: they would be taken for this one's.
+  static void removeEarlier(const std::filesystem::path& run_folder);
+
+ private:
+  std::filesystem::path masks_;
+  StereoCamera camera_;
+  LineFile outlines_, points_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,37 @@
+#include "io/object_points.hpp"
+
+#include "io/number_text.hpp"
+#include "io/text_file.hpp"
+
+namespace motorcade {
+
+std::string objectPointLine(const ObjectPoint& point) {
+  std::string line;
+  appendInteger(line, point.frame.value);
+  for (const std::int64_t id : {point.track.value, point.point.value}) {
+    line += ',';
+    appendInteger(line, id);
+  }
+  for (const double value_px : point.uvd_px) {
+    line += ',';
+    appendFixed(line, value_px, 3);
+  }
+  return line;
+}
+
+std::vector<ObjectPoint> readObjectPoints(const std::filesystem::path& file) {
+  std::vector<ObjectPoint> points;
+  for (const auto& line : readTable(file, kObjectPointsHeader)) {
+    FieldReader fields(file, line, ',');
+    ObjectPoint point;
+    point.frame.value = fields.integer("frame");
+    point.track.value = fields.integer("track_id");
+    point.point.value = fields.integer("point_id");
+    for (double& value_px : point.uvd_px) value_px = fields.number("pixel");
+    fields.expectEnd();
+    points.push_back(point);
+  }
+  return points;
+}
+
+}  // namespace motorcade
