@@ -138,21 +138,12 @@ TEST(TopView, ShowsPointsAtTheirDepthAndMotionAheadOfTheNose) {
   EXPECT_LT(moving.image().at(247 + 250, 200)[0], 60);
 }
 
-TEST(Draw, MakesAPictureOfEveryNthFrameOfTheRun) {
-  const test::TemporaryFolder folder;
-  const Image image = grayImage();
-  std::string poses;
-  for (const char* side : {"drive/left", "drive/right"}) std::filesystem::create_directories(folder / side);
-  for (int i = 0; i < 8; ++i) {
-    for (const char* side : {"drive/left", "drive/right"})
-      writePng(folder / side / (std::to_string(i) + ".png"), image);
-    poses += kittiLine(SE3(Eigen::Matrix3d::Identity(), {0, 0, static_cast<double>(i)})) + "\n";
-  }
-  folder.write("drive/calib.txt", "P0: 300 0 200 0 0 300 60 0 0 0 1 0\nP1: 300 0 200 -150 0 300 60 0 0 0 1 0\n");
-  folder.write("drive/poses.txt", poses);
-  folder.write("drive/label_02.txt", "4 1 Car 0 0 0 10 10 40 60 1.5 1.7 4.2 0 1.6 12 -1.57\n");
-  {
-    RunFolderWriter writer(folder / "run");
+/// A drive of eight frames, and a run of all but its first two.
+class DrawnDrive : public testing::Test {
+ protected:
+  DrawnDrive() {
+    writeDrive();
+    RunFolderWriter writer(folder_ / "run");
     for (int i = 2; i < 8; ++i) {
       FrameEstimate estimate;
       estimate.frame = {i};
@@ -170,31 +161,72 @@ TEST(Draw, MakesAPictureOfEveryNthFrameOfTheRun) {
       writer.writeFinal(estimate);
     }
   }
-  Gray16Image mask{.width = kWidth_px, .height = kHeight_px, .pixels = {}};
-  mask.pixels.assign(std::size_t{kWidth_px} * kHeight_px, 2);
-  std::filesystem::create_directories(folder / "run/masks");
-  writePng16(maskFile(folder / "run/masks", {7}), mask);
-  folder.write("run/object_points.csv", "frame,track_id,point_id,u,v,disparity\n5,1,9,100.000,30.000,8.000\n");
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(runDraw({.run = folder / "run",
-                     .sequence = folder / "drive",
-                     .out = folder / "pictures",
-                     .frames = {3, 8},
-                     .every = 2}),
-            0);
-  EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::HasSubstr("3 pictures"));
-  for (const char* name : {"frame_000003.png", "frame_000005.png", "frame_000007.png"}) {
-    EXPECT_EQ(readImageSize(folder / "pictures" / name), (ImageSize{400, 120 + 4 + 240}));
+
+  void writeDrive() const {
+    std::string poses;
+    for (const char* side : {"drive/left", "drive/right"}) std::filesystem::create_directories(folder_ / side);
+    for (int i = 0; i < 8; ++i) {
+      for (const char* side : {"drive/left", "drive/right"})
+        writePng(folder_ / side / (std::to_string(i) + ".png"), grayImage());
+      poses += kittiLine(SE3(Eigen::Matrix3d::Identity(), {0, 0, static_cast<double>(i)})) + "\n";
+    }
+    folder_.write("drive/calib.txt", "P0: 300 0 200 0 0 300 60 0 0 0 1 0\nP1: 300 0 200 -150 0 300 60 0 0 0 1 0\n");
+    folder_.write("drive/poses.txt", poses);
+    folder_.write("drive/label_02.txt", "4 1 Car 0 0 0 10 10 40 60 1.5 1.7 4.2 0 1.6 12 -1.57\n");
   }
-  ImagePool pool;
-  const Image fifth = readImage(folder / "pictures/frame_000005.png", pool),
-              last = readImage(folder / "pictures/frame_000007.png", pool);
-  EXPECT_NE(fifth.at(200, 50), kGray) << "the object's box";
-  EXPECT_NE(fifth.at(100, 30), kGray) << "its point";
-  EXPECT_EQ(fifth.at(20, 20), kGray);
-  EXPECT_NE(last.at(20, 20), kGray) << "the mask of this frame";
-  folder.write("file", "");
-  EXPECT_THROW(runDraw({.run = folder / "run", .sequence = folder / "drive", .out = folder / "file"}), OutputError);
+
+  /// A mask of track 1 alone.
+  void writeMask(int frame, int width_px) const {
+    Gray16Image mask{.width = width_px, .height = kHeight_px, .pixels = {}};
+    mask.pixels.assign(static_cast<std::size_t>(width_px) * kHeight_px, 2);
+    std::filesystem::create_directories(folder_ / "run/masks");
+    writePng16(maskFile(folder_ / "run/masks", {frame}), mask);
+  }
+
+  /// Frames 3, 5 and 7; gives what is printed.
+  std::string draw() const {
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(runDraw({.run = folder_ / "run",
+                       .sequence = folder_ / "drive",
+                       .out = folder_ / "pictures",
+                       .frames = {3, 8},
+                       .every = 2}),
+              0);
+    return testing::internal::GetCapturedStdout();
+  }
+  Image picture(const std::string& name) {
+    ImagePool pool;
+    return readImage(folder_ / "pictures" / name, pool);
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(DrawnDrive, MakesAPictureOfEveryNthFrameOfTheRun) {
+  EXPECT_THAT(draw(), testing::HasSubstr("3 pictures"));
+  for (const char* name : {"frame_000003.png", "frame_000005.png", "frame_000007.png"})
+    EXPECT_EQ(readImageSize(folder_ / "pictures" / name), (ImageSize{400, 120 + 4 + 240}));
+  EXPECT_NE(picture("frame_000005.png").at(200, 50), kGray) << "the object's box";
+  folder_.write("file", "");
+  EXPECT_THROW(runDraw({.run = folder_ / "run", .sequence = folder_ / "drive", .out = folder_ / "file"}), OutputError);
+}
+
+TEST_F(DrawnDrive, ShowsMasksAndPointsWhereTheRunWroteThem) {
+  writeMask(7, kWidth_px);
+  folder_.write("run/object_points.csv", "frame,track_id,point_id,u,v,disparity\n5,1,9,100.000,30.000,8.000\n");
+  draw();
+  EXPECT_NE(picture("frame_000005.png").at(100, 30), kGray) << "the point";
+  EXPECT_EQ(picture("frame_000005.png").at(20, 20), kGray);
+  EXPECT_NE(picture("frame_000007.png").at(20, 20), kGray) << "the mask";
+  EXPECT_EQ(picture("frame_000003.png").at(100, 30), kGray) << "a frame without";
+}
+
+TEST_F(DrawnDrive, LeavesAFrameOutWhoseMaskDoesNotFit) {
+  writeMask(5, kWidth_px - 1);
+  testing::internal::CaptureStderr();
+  EXPECT_THAT(draw(), testing::HasSubstr("2 pictures"));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::AllOf(testing::HasSubstr("000005.png"), testing::HasSubstr("399x120")));
 }
 
 }  // namespace
