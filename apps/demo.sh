@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Shows what Motorcade does: renders a drive in which two cars overtake the camera car, follows it at camera rate and measures
-# the outcome against the exact truth.
+# the outcome against the exact truth, and draws what it saw.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 results=results/demo
@@ -19,13 +19,17 @@ else
 fi
 
 echo "== Following it at 10 pairs per second"
-"$motorcade" run "$results/sequence" --out "$results/run" --rate 10
+"$motorcade" run "$results/sequence" --out "$results/run" --rate 10 --masks
 
 echo "== Accuracy against the exact truth"
 "$motorcade" evaluate "$results/run" --sequence "$results/sequence" --json "$results/evaluation.json"
 
+echo "== Drawing every fourth frame"
+"$motorcade" draw "$results/run" --sequence "$results/sequence" --out "$results/pictures" --every 4
+
 echo "== Results"
 echo "images and truth   $PWD/$results/sequence"
 echo "trajectories       $PWD/$results/run"
+echo "pictures           $PWD/$results/pictures"
 echo "accuracy           $PWD/$results/evaluation.json"
 echo "latency            $PWD/$results/run/summary.json"
