@@ -59,7 +59,7 @@ for drive in kitti_tracking_0003 kitti_odometry_04 kitti_odometry_06 rendered_st
     echo "$drive is not in $data: skipped" >&2
   fi
 done
-for scene in overtake highway urban static crossing lead stop_and_go convoy circuit; do
+for scene in overtake highway urban static crossing lead stop_and_go convoy circuit traffic rain people; do
   is_wanted "$scene" || continue
   length=()
   [[ $scene == circuit ]] && length=(--frames 200)  # a third of the lap

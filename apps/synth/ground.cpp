@@ -3,6 +3,11 @@
 #include "apps/synth/noise.hpp"
 
 namespace motorcade::synth {
+namespace {
+
+constexpr float kCrosswalkHalf_m = 1.6F;
+
+}  // namespace
 
 /// How the pixel lies on the ground: long in the direction of view, narrow across.
 struct Ground::View {
@@ -32,7 +37,9 @@ Ground::Ground(const FrameScene& frame)
 
 std::optional<Ground::Hit> Ground::hit(const Vec3& origin, const Vec3& direction, float t_max) const {
   if (direction.z > -kLevel) return std::nullopt;
-  const float high_t = (kCurb_m - camera_z_m_ - origin.z) / direction.z, low_t = farthest(origin, direction);
+  // A reflected ray may start below the curb's height.
+  const float high_t = std::max(0.0F, (kCurb_m - camera_z_m_ - origin.z) / direction.z),
+              low_t = farthest(origin, direction);
   if (high_t >= t_max) return std::nullopt;
   const auto locate = [&](float t) {
     const Vec3 p = origin + direction * t;
@@ -104,6 +111,12 @@ float Ground::paint(const Hit& hit, const View& view) const {
   const Road& road = scene_->roads.roads()[hit.where.road];
   if (hit.where.next_outside_m < 1.0F) return 0;  // a junction
   float coverage = 0;
+  for (const double at_m : road.crosswalks_m) {
+    const auto center = static_cast<float>(at_m);
+    coverage = std::fmax(
+        coverage, inside(hit.where.along_m, center - kCrosswalkHalf_m, center + kCrosswalkHalf_m, view.along_road) *
+                      pulses(hit.where.left_m + 0.25F, 1, 0.5F, view.across_road));
+  }
   for (const auto& line : road.lines) {
     const auto center = static_cast<float>(line.left_m), half = 0.5F * static_cast<float>(line.width_m);
     const float across = inside(hit.where.left_m, center - half, center + half, view.across_road);
@@ -135,20 +148,20 @@ float Ground::beside(const Hit& hit, const View& view) const {
   return 0.27F * (1 + 0.5F * shade * visible(size, view.along_road) - 0.5F * joint) * (1 + 0.32F * dirt);
 }
 
-float Ground::reflectance(const Hit& hit, const Vec3& direction, float pixel) const {
-  const float flat = std::hypot(direction.x, direction.y), width = hit.t * pixel;
+float Ground::reflectance(const Hit& hit, const Vec3& direction, float width_m) const {
+  const float flat = std::hypot(direction.x, direction.y);
   View view{direction.x / flat,
             direction.y / flat,
-            width * std::hypot(flat, direction.z) / std::fmax(-direction.z, 1e-3F),
-            width,
+            width_m * std::hypot(flat, direction.z) / std::fmax(-direction.z, 1e-3F),
+            width_m,
             0,
             0,
             scene_->seed * 101U};
-  if (hit.curb_face) view.length = 2 * width;
+  if (hit.curb_face) view.length = 2 * width_m;
   const float cosine = std::abs(view.x * hit.where.along_x + view.y * hit.where.along_y),
               sine = std::sqrt(std::fmax(0.0F, 1 - cosine * cosine));
-  view.along_road = view.length * cosine + width * sine;
-  view.across_road = view.length * sine + width * cosine;
+  view.along_road = view.length * cosine + width_m * sine;
+  view.across_road = view.length * sine + width_m * cosine;
   if (hit.curb_face || hit.where.outside_m > 0) return beside(hit, view);
   return lerp(asphalt(hit, view), 0.62F, paint(hit, view));
 }

@@ -26,8 +26,8 @@ class Ground {
   }
   /// Where a ray from the camera meets the ground, before t_max.
   std::optional<Hit> hit(const Vec3& origin, const Vec3& direction, float t_max) const;
-  /// Reflectance at a hit; `pixel` is the width of a pixel at t = 1.
-  float reflectance(const Hit& hit, const Vec3& direction, float pixel) const;
+  /// Reflectance at a hit, dry; `width_m` is that of a pixel across the ray.
+  float reflectance(const Hit& hit, const Vec3& direction, float width_m) const;
 
  private:
   static constexpr float kLevel = 1e-5F;  // rays that fall less are taken as level

@@ -35,18 +35,21 @@ void includeHull(ImageBox& box, const std::vector<Eigen::Vector3d>& hull, const 
   }
 }
 
-ImageBox projectedBox(const Placed& placed, const SE3& T_cam_body, const StereoCamera& camera) {
+ImageBox projectedBox(std::span<const Placed> object, const SE3& T_cam_map, const StereoCamera& camera) {
   ImageBox box;
   std::vector<Eigen::Vector3d> hull;
-  for (const auto& part : placed.model->parts) {
-    hull.clear();
-    for (const Vec3& p : hullPoints(part, placed.model->cuts.data())) hull.push_back(T_cam_body * toDouble(p));
-    includeHull(box, hull, camera);
+  for (const Placed& placed : object) {
+    const SE3 T_cam_body = T_cam_map * placed.T_map_body;
+    for (const auto& part : placed.model->parts) {
+      hull.clear();
+      for (const Vec3& p : hullPoints(part, placed.model->cuts.data())) hull.push_back(T_cam_body * toDouble(p));
+      includeHull(box, hull, camera);
+    }
   }
   return box;
 }
 
-/// Share of a grid of points in the vehicle's box that the image does not show.
+/// Share of a grid of points in the object's box that the image does not show.
 double truncationOf(const Model& model, const SE3& T_cam_body, const StereoCamera& camera) {
   constexpr int kLong = 16, kWide = 6, kHigh = 5;
   int outside = 0;
@@ -62,12 +65,12 @@ double truncationOf(const Model& model, const SE3& T_cam_body, const StereoCamer
   return static_cast<double>(outside) / (kLong * kWide * kHigh);
 }
 
-/// Visible pixels and the pixels that the vehicle alone would cover, counted on the same grid.
+/// Visible pixels and the pixels that the object alone would cover, counted on the same grid.
 struct Coverage {
   int visible = 0, alone = 0, visible_on_grid = 0;
 };
-Coverage coverageOf(const FrameScene& frame, const Placed& placed, const StereoCamera& camera, const Rendering& left,
-                    const Label& label) {
+Coverage coverageOf(const FrameScene& frame, std::span<const Placed> object, const StereoCamera& camera,
+                    const Rendering& left, const Label& label) {
   const auto& R = frame.T_map_cam().rotation();
   const auto x0 = static_cast<int>(std::ceil(label.left_px)), x1 = static_cast<int>(std::floor(label.right_px));
   const auto y0 = static_cast<int>(std::ceil(label.top_px)), y1 = static_cast<int>(std::floor(label.bottom_px));
@@ -76,25 +79,26 @@ Coverage coverageOf(const FrameScene& frame, const Placed& placed, const StereoC
   Coverage count;
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x) {
-      const bool seen = left.object[y * camera.width_px + x] == placed.id;
+      const bool seen = left.object[y * camera.width_px + x] == object.front().id;
       count.visible += seen ? 1 : 0;
       if ((x - x0) % step != 0 || (y - y0) % step != 0) continue;
       const Eigen::Vector3d d =
           R * Eigen::Vector3d((x - camera.cx_px) / camera.fx_px, (y - camera.cy_px) / camera.fy_px, 1);
       const Vec3 direction{static_cast<float>(d.x()), static_cast<float>(d.y()), static_cast<float>(d.z())};
-      if (!seen && !FrameScene::meets(placed, direction)) continue;
+      if (!seen && !FrameScene::meets(object, direction)) continue;
       ++count.alone;
       count.visible_on_grid += seen ? 1 : 0;
     }
   return count;
 }
 
-std::optional<Label> labelOf(const FrameScene& frame, const Placed& placed, const StereoCamera& camera,
+std::optional<Label> labelOf(const FrameScene& frame, std::span<const Placed> object, const StereoCamera& camera,
                              const Rendering& left, int min_pixels) {
-  const SE3 T_cam_body = frame.T_map_cam().inverse() * placed.T_map_body;
+  const Placed& placed = object.front();
+  const SE3 T_cam_map = frame.T_map_cam().inverse(), T_cam_body = T_cam_map * placed.T_map_body;
   const Model& model = *placed.model;
   if (T_cam_body.translation().z() < -0.5 * model.length_m) return std::nullopt;
-  const ImageBox box = projectedBox(placed, T_cam_body, camera);
+  const ImageBox box = projectedBox(object, T_cam_map, camera);
   Label label;
   label.id = placed.id;
   label.type = model.kitti_type;
@@ -103,7 +107,7 @@ std::optional<Label> labelOf(const FrameScene& frame, const Placed& placed, cons
   label.top_px = std::clamp(box.top, 0.0, camera.height_px - 1.0);
   label.bottom_px = std::clamp(box.bottom, 0.0, camera.height_px - 1.0);
   if (box.left > box.right || label.left_px >= label.right_px || label.top_px >= label.bottom_px) return std::nullopt;
-  const Coverage coverage = coverageOf(frame, placed, camera, left, label);
+  const Coverage coverage = coverageOf(frame, object, camera, left, label);
   if (coverage.visible < min_pixels) return std::nullopt;
   const double visible = static_cast<double>(coverage.visible_on_grid) / std::max(1, coverage.alone);
   label.occluded = visible >= 0.8 ? 0 : visible >= 0.4 ? 1 : 2;
@@ -124,9 +128,8 @@ std::optional<Label> labelOf(const FrameScene& frame, const Placed& placed, cons
 std::vector<Label> labelsOf(const FrameScene& frame, const StereoCamera& camera, const Rendering& left,
                             int min_pixels) {
   std::vector<Label> labels;
-  for (const auto& placed : frame.placed())
-    if (placed.id >= 0)
-      if (auto label = labelOf(frame, placed, camera, left, min_pixels)) labels.push_back(std::move(*label));
+  for (const auto& object : frame.objects())
+    if (auto label = labelOf(frame, object, camera, left, min_pixels)) labels.push_back(std::move(*label));
   std::sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.id < b.id; });
   return labels;
 }

@@ -9,19 +9,19 @@
 
 namespace motorcade::synth {
 
-/// A vehicle as the left camera sees it, in the terms of KITTI's tracking labels.
+/// An object as the left camera sees it, in the terms of KITTI's tracking labels.
 struct Label {
   int id = -1;
   std::string type;
-  double truncated = 0;  // share of the vehicle outside the image
+  double truncated = 0;  // share of the object's box outside the image
   int occluded = 0;      // 0: at least 80 % of what is in the image is visible, 1: at least 40 %, 2: less
-  double left_px = 0, top_px = 0, right_px = 0, bottom_px = 0;  // of the whole vehicle, clipped to the image
+  double left_px = 0, top_px = 0, right_px = 0, bottom_px = 0;  // of the whole object, clipped to the image
   double height_m = 0, width_m = 0, length_m = 0;
   Eigen::Vector3d location_cam;  // center of the box's bottom face
   double rotation_y_rad = 0, alpha_rad = 0;
 };
 
-/// Labels of the vehicles that show at least `min_pixels` in the left image.
+/// Labels of the objects that show at least `min_pixels` in the left image.
 std::vector<Label> labelsOf(const FrameScene& frame, const StereoCamera& camera, const Rendering& left,
                             int min_pixels = 12);
 

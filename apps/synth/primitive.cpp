@@ -101,6 +101,27 @@ std::optional<SurfaceHit> intersectCylinder(const Primitive& part, const Vec3& o
   return SurfaceHit{enter, normalized(normal)};
 }
 
+/// The same cylinder as a ring: a ray that enters it where the hole is meets the hole's far wall, or nothing.
+std::optional<SurfaceHit> intersectRing(const Primitive& part, const Vec3& o, const Vec3& d, float t_min, float t_max) {
+  auto hit = intersectCylinder(part, o, d, t_min, t_max);
+  const int i = (part.axis + 1) % 3, j = (part.axis + 2) % 3;
+  if (!hit || std::abs(hit->normal[part.axis]) < 0.5F) return hit;
+  const Vec3 center = (part.lo + part.hi) * 0.5F, radii = (part.hi - part.lo) * (0.5F * part.hole);
+  const Vec3 p = o + d * hit->t - center;
+  const float x = p[i] / radii[i], y = p[j] / radii[j], dx = d[i] / radii[i], dy = d[j] / radii[j];
+  const float c = x * x + y * y - 1;
+  if (c >= 0) return hit;
+  const float a = std::fmax(dx * dx + dy * dy, 1e-20F), b = x * dx + y * dy;
+  const float on = (std::sqrt(b * b - a * c) - b) / a;
+  const Vec3 wall = p + d * on;
+  if (hit->t + on >= t_max || std::abs(wall[part.axis]) > 0.5F * (part.hi[part.axis] - part.lo[part.axis]))
+    return std::nullopt;
+  Vec3 inwards;
+  inwards[i] = -wall[i] / (radii[i] * radii[i]);
+  inwards[j] = -wall[j] / (radii[j] * radii[j]);
+  return SurfaceHit{hit->t + on, normalized(inwards)};
+}
+
 /// Where three planes meet, if they do.
 std::optional<Vec3> corner(const Cut& a, const Cut& b, const Cut& c) {
   const auto cross = [](const Vec3& u, const Vec3& v) {
@@ -174,13 +195,31 @@ void Model::cutLast(const Vec3& normal, const Vec3& point) {
   ++parts.back().cuts;
 }
 
+Primitive& Model::addBar(Material material, const Vec3& from, const Vec3& to, float thickness, float tone) {
+  const Vec3 half{0.5F * thickness, 0.5F * thickness, 0.5F * thickness};
+  add(material, min(from, to) - half, max(from, to) + half, tone);
+  const Vec3 across = normalized({from.z - to.z, 0, to.x - from.x});
+  for (const float side : {-0.5F, 0.5F}) cutLast(across * side, from + across * (side * thickness));
+  return parts.back();
+}
+
+void Model::addLimb(Model limb, std::function<Limb::Pose(double driven_m)> pose) {
+  limbs.push_back({std::make_shared<const Model>(std::move(limb)), std::move(pose)});
+}
+
+SE3 Limb::T_parent_limb(double driven_m) const {
+  const Pose at = pose(driven_m);
+  return {expSO3({0, at.angle_rad, 0}), Eigen::Vector3d(at.joint.x, at.joint.y, at.joint.z)};
+}
+
 std::optional<SurfaceHit> intersect(const Primitive& part, const Cut* cuts, const Vec3& origin, const Vec3& direction,
                                     float t_min, float t_max) {
   switch (part.shape) {
     case Shape::kBlock:
       return intersectBlock(part, cuts, origin, direction, t_min, t_max);
     case Shape::kCylinder:
-      return intersectCylinder(part, origin, direction, t_min, t_max);
+      return part.hole > 0 ? intersectRing(part, origin, direction, t_min, t_max)
+                           : intersectCylinder(part, origin, direction, t_min, t_max);
     case Shape::kEllipsoid:
       return intersectEllipsoid(part, origin, direction, t_min, t_max);
   }

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/synth/vec3.hpp"
+#include "core/se3.hpp"
 
 namespace motorcade::synth {
 
@@ -20,7 +23,8 @@ enum class Material : std::uint8_t {
   kTailLamp,
   kPlate,
   kGrille,
-  kCargo,  // vehicles
+  kCargo,
+  kCoach,  // vehicles
   kBrick,
   kPlaster,
   kRoof,
@@ -31,6 +35,8 @@ enum class Material : std::uint8_t {
   kBark,
   kLeaves,
   kHedge,  // street
+  kCloth,
+  kSkin,  // people
 };
 
 enum class Shape : std::uint8_t { kBlock, kCylinder, kEllipsoid };
@@ -50,15 +56,34 @@ struct Primitive {
   std::uint16_t first_cut = 0;
   Vec3 lo, hi;
   float tone = 0.5F;  // reflectance of its main color
+  float hole = 0;     // of a cylinder: inner radius over outer radius
   std::uint32_t seed = 0;
 };
 
-/// A rigid thing of several parts: x ahead, y left, z up, origin on the ground below its center.
+struct Model;
+
+/// Something rigid that turns on a thing as the thing moves on: a leg, a crank, a wheel with spokes.
+struct Limb {
+  /// Where its origin, the joint, is, and how far it has turned about the y axis, from z towards x.
+  struct Pose {
+    Vec3 joint;
+    double angle_rad = 0;
+  };
+  std::shared_ptr<const Model> model;
+  std::function<Pose(double driven_m)> pose;
+
+  SE3 T_parent_limb(double driven_m) const;
+};
+
+/// A thing of several parts, rigid but for its limbs: x ahead, y left, z up, origin on the ground below its center (of
+/// a limb: at its joint).
 struct Model {
   std::vector<Primitive> parts;
   std::vector<Cut> cuts;
+  std::vector<Limb> limbs;
   float length_m = 0, width_m = 0, height_m = 0;
-  std::string kitti_type;  // as in KITTI's labels; empty for what is not a vehicle
+  std::string kitti_type;     // as in KITTI's labels, or Bus or Trailer; empty for what is not an object
+  bool smooth_paint = false;  // without texture; shows the surroundings as in a mirror
 
   Primitive& add(Material material, const Vec3& lo, const Vec3& hi, float tone, std::uint32_t seed = 0);
   Primitive& addCylinder(Material material, int axis, const Vec3& lo, const Vec3& hi, float tone,
@@ -66,6 +91,9 @@ struct Model {
   Primitive& addEllipsoid(Material material, const Vec3& center, const Vec3& radii, float tone, std::uint32_t seed = 0);
   /// Cuts the block that was added last by the plane through `point`; what `normal` points to goes away.
   void cutLast(const Vec3& normal, const Vec3& point);
+  /// A square bar in a plane of constant y.
+  Primitive& addBar(Material material, const Vec3& from, const Vec3& to, float thickness, float tone);
+  void addLimb(Model limb, std::function<Limb::Pose(double driven_m)> pose);
 };
 
 struct SurfaceHit {

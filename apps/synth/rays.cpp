@@ -42,6 +42,18 @@ Covered widened(Covered c, float margin) {
 
 }  // namespace
 
+std::optional<RayHit> hitPart(const FrameScene& frame, std::uint32_t item, const Vec3& origin_body,
+                              const Vec3& direction_body, const RayRange& range) {
+  const Placed& placed = frame.placedOf(item);
+  const Primitive& part = frame.partOf(item);
+  const auto hit = intersect(part, placed.model->cuts.data(), origin_body, direction_body, range.from, range.to);
+  if (!hit) return std::nullopt;
+  const bool round = part.shape != Shape::kBlock;
+  return RayHit{hit->t,      &placed,
+                &part,       item * 128U + (round ? 0U : faceOf(hit->normal)),
+                hit->normal, origin_body + direction_body * hit->t};
+}
+
 CameraRays::CameraRays(const FrameScene& frame, const StereoCamera& camera, StereoSide side)
     : frame_(frame),
       cx_px_(static_cast<float>(camera.cx_px)),
@@ -123,15 +135,10 @@ std::optional<Covered> CameraRays::coveredByEllipsoid(const Primitive& part, con
 std::optional<RayHit> CameraRays::firstHit(float u_px, float v_px, const Vec3& direction, float t_max) const {
   std::optional<RayHit> best;
   grid_->traverse(u_px, v_px, 0, t_max, [&](std::uint32_t item, float limit) {
-    const Placed& placed = frame_.placedOf(item);
-    const Primitive& part = frame_.partOf(item);
-    const Vec3& o = origins_body_[frame_.items()[item].placed];
-    const Vec3 d = placed.rotation.transposed(direction);
-    const auto hit = intersect(part, placed.model->cuts.data(), o, d, 1e-3F, limit);
+    const auto hit = hitPart(frame_, item, origins_body_[frame_.items()[item].placed],
+                             frame_.placedOf(item).rotation.transposed(direction), {1e-3F, limit});
     if (!hit) return limit;
-    const bool round = part.shape != Shape::kBlock;
-    best =
-        RayHit{hit->t, &placed, &part, item * 128U + (round ? 0U : faceOf(hit->normal)), hit->normal, o + d * hit->t};
+    best = hit;
     return hit->t;
   });
   return best;

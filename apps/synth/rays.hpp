@@ -20,6 +20,13 @@ struct RayHit {
   Vec3 normal_body, position_body;
 };
 
+struct RayRange {
+  float from = 0, to = 0;
+};
+/// Where a ray, given in the axes of the item's thing, meets the item.
+std::optional<RayHit> hitPart(const FrameScene& frame, std::uint32_t item, const Vec3& origin_body,
+                              const Vec3& direction_body, const RayRange& range);
+
 /// The rays of one camera of the stereo pair into a frame.
 class CameraRays {
  public:

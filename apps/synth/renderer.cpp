@@ -5,16 +5,11 @@
 #include <functional>
 #include <thread>
 
-#include "apps/synth/ground.hpp"
 #include "apps/synth/noise.hpp"
-#include "apps/synth/sky.hpp"
-#include "apps/synth/texture.hpp"
+#include "apps/synth/ray_caster.hpp"
 
 namespace motorcade::synth {
 namespace {
-
-constexpr float kFar_m = 400;
-constexpr float kSun = 1.15F, kAmbient = 0.30F;
 
 /// Bands of rows, handed to the threads as they come.
 void parallelRows(int rows, int threads, const std::function<void(int)>& work) {
@@ -28,111 +23,6 @@ void parallelRows(int rows, int threads, const std::function<void(int)>& work) {
   for (int i = 1; i < threads; ++i) helpers.emplace_back(loop);
   loop();
 }
-
-/// Whether the sun reaches a point, and on the ground whether something low hangs over it.
-struct Exposure {
-  bool sunny = false, covered = false;
-  bool operator==(const Exposure&) const = default;
-};
-
-struct Sample {
-  float light = 0;    // linear
-  float depth_m = 0;  // 0: sky
-  std::uint32_t surface = 0;
-  std::int16_t object = -1;
-  Exposure exposure;
-};
-
-constexpr std::uint32_t kSkySurface = 0xffffffffU, kRoadSurface = 0xfffffffeU, kCurbSurface = 0xfffffffdU,
-                        kBesideSurface = 0xfffffffcU;
-
-/// Casts rays of one camera of the stereo pair into one frame.
-class RayCaster {
- public:
-  RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side)
-      : frame_(frame),
-        ground_(frame),
-        rays_(frame, camera, side),
-        to_sun_(frame, frame.scene().sun),
-        upwards_(frame, {0, 0, 1}),
-        pixel_(static_cast<float>(1 / camera.fx_px)) {}
-
-  /// `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel. An exposure that is known
-  /// already, from the pixel and its neighbors, saves the rays towards the light.
-  Sample cast(float u_px, float v_px, float sharpness, const std::optional<Exposure>& known) const {
-    const Vec3 d = rays_.direction(u_px, v_px);
-    const float pixel = pixel_ / sharpness;
-    const auto hit = rays_.firstHit(u_px, v_px, d, std::min(kFar_m, ground_.farthest(rays_.origin(), d)));
-    const auto ground = ground_.hit(rays_.origin(), d, hit ? hit->t : kFar_m);
-    if (ground) {
-      const std::uint32_t surface = ground->curb_face             ? kCurbSurface
-                                    : ground->where.outside_m < 0 ? kRoadSurface
-                                                                  : kBesideSurface;
-      const Exposure exposure = known ? *known : exposureOf(*ground, d);
-      return {haze(shade(*ground, d, pixel, exposure), ground->t), ground->t, surface, -1, exposure};
-    }
-    if (hit) {
-      const Vec3 normal = hit->placed->rotation * hit->normal_body;
-      const Exposure exposure =
-          known ? *known : Exposure{sunny(rays_.origin() + d * hit->t + normal * 2e-3F, normal), false};
-      return {haze(shade(*hit, normal, d, pixel, exposure), hit->t), hit->t, hit->surface,
-              static_cast<std::int16_t>(hit->placed->id), exposure};
-    }
-    return {skyRadiance(normalized(d), pixel, frame_.scene().seed), 0, kSkySurface, -1, {}};
-  }
-
- private:
-  bool sunny(const Vec3& position, const Vec3& normal) const {
-    return dot(normal, frame_.scene().sun) > 0 && !to_sun_.occluded(position, 60);
-  }
-
-  /// Under a car little of the sky is seen. The rays start on the ground itself, which is no obstacle, so that tires
-  /// shade where they stand.
-  Exposure exposureOf(const Ground::Hit& hit, const Vec3& d) const {
-    const Vec3 position = rays_.origin() + d * hit.t;
-    const bool sun = sunny(position, hit.normal);
-    return {sun, !sun && hit.t < 60 && upwards_.occluded(position, 1.05F)};
-  }
-
-  /// Light on a surface, from the sky and from the sun.
-  float lit(const Vec3& normal, const Exposure& exposure) const {
-    const float sky = kAmbient * (0.62F + 0.38F * normal.z) * (exposure.covered ? 0.35F : 1);
-    return exposure.sunny ? sky + kSun * std::fmax(0.0F, dot(normal, frame_.scene().sun)) : sky;
-  }
-
-  float shade(const RayHit& hit, const Vec3& normal, const Vec3& d, float pixel, const Exposure& exposure) const {
-    const Placed& placed = *hit.placed;
-    const Vec3 view = normalized(d);
-    const float slant = std::fmax(0.15F, std::abs(dot(normal, view)));
-    // Geometric mean of the footprint's two sides; steep views are supersampled anyway.
-    const SurfacePoint point{hit.part,
-                             placed.model.get(),
-                             hit.position_body,
-                             hit.normal_body,
-                             hit.t * pixel / std::sqrt(slant),
-                             placed.wheel_angle_rad};
-    const Reflectance r = reflectanceOf(point);
-    float light = r.diffuse * lit(normal, exposure) + r.glow;
-    if (r.mirror > 0) {
-      const Vec3 bounced = view - normal * (2 * dot(view, normal));
-      const float fresnel = r.mirror + (1 - r.mirror) * 0.6F * std::pow(1 - slant, 5.0F);
-      light += fresnel * lerp(0.10F, 0.62F, saturate(bounced.z * 3 + 0.35F));
-    }
-    return light;
-  }
-
-  float shade(const Ground::Hit& hit, const Vec3& d, float pixel, const Exposure& exposure) const {
-    return ground_.reflectance(hit, d, pixel) * lit(hit.normal, exposure);
-  }
-
-  static float haze(float light, float depth_m) { return lerp(light, 0.55F, 1 - std::exp(-depth_m / 900)); }
-
-  const FrameScene& frame_;
-  Ground ground_;
-  CameraRays rays_;
-  ParallelRays to_sun_, upwards_;
-  float pixel_;
-};
 
 /// Gray level of linear light: a camera's square-root-like response.
 float response(float light) { return 255 * std::sqrt(saturate(light * 0.98F)); }
@@ -183,7 +73,7 @@ Refinement refinementOf(const std::vector<Sample>& samples, int width, int heigh
     return samples[std::clamp(j, 0, height - 1) * width + std::clamp(i, 0, width - 1)];
   };
   const Sample& center = at(x, y);
-  const bool ground = center.surface == kRoadSurface || center.surface == kBesideSurface;
+  const bool ground = isLevelGround(center.surface);
   const float level = response(center.light), contrast = ground ? kGroundContrast : kContrast;
   bool same_surface = true, same_exposure = true, same_light = true;
   for (const auto [dx, dy] : {std::array{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {

@@ -16,6 +16,7 @@ struct Road {
   std::shared_ptr<const Path> path;
   double half_width_m = 5.6;
   std::vector<Line> lines;
+  std::vector<double> crosswalks_m{};  // arc lengths where people cross, between bars of paint
 };
 
 /// Where a ground point lies on the roads.

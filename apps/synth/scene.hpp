@@ -19,7 +19,7 @@ struct Fixture {
   int id = -1;
 };
 
-/// A vehicle in traffic.
+/// A vehicle in traffic, or someone on foot.
 struct Mover {
   std::shared_ptr<const Model> model;
   Trajectory trajectory;
@@ -34,6 +34,7 @@ struct Scene {
   double frame_s = 0.1;
   int lap_frames = 0;             // the scene repeats after this many frames; 0: never
   bool meadow = false;            // grass beyond the curb instead of paving
+  bool rain = false;              // no sun, and water on the road
   Vec3 sun{0.45F, 0.35F, 0.82F};  // unit vector towards the sun
   RoadNetwork roads;
   std::vector<Fixture> fixtures;

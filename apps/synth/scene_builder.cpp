@@ -2,6 +2,9 @@
 
 #include <numbers>
 
+#include "apps/synth/ground.hpp"
+#include "apps/synth/large_vehicle_model.hpp"
+#include "apps/synth/person_model.hpp"
 #include "apps/synth/street_model.hpp"
 
 namespace motorcade::synth {
@@ -22,20 +25,55 @@ SceneBuilder::SceneBuilder(std::string name, std::uint32_t seed) : random(mix(se
   scene.sun = {std::cos(height) * std::cos(azimuth), std::cos(height) * std::sin(azimuth), std::sin(height)};
 }
 
-void SceneBuilder::addMover(VehicleKind kind, Trajectory trajectory) {
-  scene.movers.push_back(
-      {std::make_shared<const Model>(makeVehicle(kind, random.bits())), std::move(trajectory), next_id_++});
+void SceneBuilder::addMover(VehicleKind kind, Trajectory trajectory, Finish finish) {
+  addMover(makeVehicle(kind, random.bits(), finish), std::move(trajectory));
 }
 
-void SceneBuilder::addParked(VehicleKind kind, int road, double along_m, double left_m, bool backwards) {
+void SceneBuilder::addMover(Model model, Trajectory trajectory) {
+  scene.movers.push_back({std::make_shared<const Model>(std::move(model)), std::move(trajectory), next_id_++});
+}
+
+void SceneBuilder::addTruckWithTrailer(const Trajectory& trajectory) {
+  constexpr float kGap_m = 0.25F;  // between the truck's rear and the drawbar's end
+  Model truck = makeVehicle(VehicleKind::kTruck, random.bits()), trailer = makeTrailer(random.bits());
+  const auto behind_m = static_cast<double>(0.5F * (truck.length_m + trailer.length_m) + kGap_m);
+  Trajectory following = trajectory;
+  following.start_m += trajectory.backwards ? behind_m : -behind_m;
+  addMover(std::move(truck), trajectory);
+  addMover(std::move(trailer), std::move(following));
+}
+
+void SceneBuilder::addPedestrian(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Profile speed_mps) {
+  // High enough for both feet while one of them is still on the pavement.
+  constexpr double kFootRoom_m = 0.4, kStep_m = 1.2, kSearch_m = 0.05, kUp_m = static_cast<double>(Ground::kCurb_m);
+  const Eigen::Vector2d way = to - from, along = way.normalized();
+  const auto onRoad = [&](double at_m) {
+    const Eigen::Vector2d p = from + at_m * along;
+    return scene.roads.locate(p.x(), p.y()).outside_m < 0;
+  };
+  std::vector<Profile::Knot> height{{0, onRoad(0) ? 0 : kUp_m}};
+  for (double at_m = kSearch_m; at_m < way.norm(); at_m += kSearch_m) {
+    const bool before = onRoad(at_m - kSearch_m), after = onRoad(at_m);
+    if (!before && after) height.insert(height.end(), {{at_m + kFootRoom_m, kUp_m}, {at_m + kFootRoom_m + kStep_m, 0}});
+    if (before && !after) height.insert(height.end(), {{at_m - kFootRoom_m - kStep_m, 0}, {at_m - kFootRoom_m, kUp_m}});
+  }
+  Trajectory t;
+  t.path = std::make_shared<const Path>(from, std::atan2(way.y(), way.x()), std::vector<Path::Piece>{{way.norm(), 0}});
+  t.speed_mps = std::move(speed_mps);
+  t.up_m = Profile(std::move(height));
+  addMover(makePedestrian(random.bits()), std::move(t));
+}
+
+void SceneBuilder::addParked(VehicleKind kind, int road, double along_m, double left_m, bool backwards, Finish finish) {
   const auto point = scene.roads.roads()[road].path->at(along_m);
   const Eigen::Vector2d p = point.position + left_m * point.left();
   const double heading = point.heading_rad + (backwards ? std::numbers::pi : 0) + random.uniform(-0.02F, 0.02F);
-  scene.fixtures.push_back({std::make_shared<const Model>(makeVehicle(kind, random.bits())),
+  scene.fixtures.push_back({std::make_shared<const Model>(makeVehicle(kind, random.bits(), finish)),
                             SE3(expSO3({0, 0, heading}), {p.x(), p.y(), 0}), next_id_++});
 }
 
 void SceneBuilder::place(Model model, int road, double along_m, double left_m, double turn_rad, double margin_m) {
+  if (margin_m < 1 && nearCrosswalk(road, along_m, 2.6)) return;  // what stands on the pavement
   const auto point = scene.roads.roads()[road].path->at(along_m);
   const Eigen::Vector2d p = point.position + left_m * point.left();
   Vec3 reach;
@@ -50,6 +88,12 @@ void SceneBuilder::place(Model model, int road, double along_m, double left_m, d
     }
   scene.fixtures.push_back(
       {std::make_shared<const Model>(std::move(model)), SE3(expSO3({0, 0, heading}), {p.x(), p.y(), 0})});
+}
+
+bool SceneBuilder::nearCrosswalk(int road, double along_m, double reach_m) const {
+  const auto& crosswalks_m = scene.roads.roads()[road].crosswalks_m;
+  return std::any_of(crosswalks_m.begin(), crosswalks_m.end(),
+                     [&](double at_m) { return std::abs(at_m - along_m) < reach_m; });
 }
 
 void SceneBuilder::placeWall(int road, const Dressing& d, double side) {
@@ -98,6 +142,10 @@ void SceneBuilder::placePavement(int road, const Dressing& d, double side) {
   if (d.rural)
     for (double s = d.from_m; s < d.to_m; s += 12)
       place(makeGuardRail(12, random.bits()), road, s + 6, side * (half + 0.6), 0, 0.3);
+}
+
+void SceneBuilder::parkCars(int road, const Dressing& d, double side) {
+  const double half = scene.roads.roads()[road].half_width_m;
   for (double s = d.from_m + 4; s < d.to_m; s += 7) {
     if (!random.chance(static_cast<float>(d.parked_share))) continue;
     const double left = side * (half - 1.05), along = s + random.uniform(-0.8F, 0.8F);
@@ -105,8 +153,12 @@ void SceneBuilder::placePavement(int road, const Dressing& d, double side) {
     const Eigen::Vector2d p = point.position + left * point.left();
     const auto where = scene.roads.locate(p.x(), p.y());
     const bool in_junction = where.next_outside_m<7, in_tight_bend = std::abs(point.curvature_per_m)> 0.02;
-    if (in_junction || in_tight_bend) continue;
-    addParked(random.chance(0.15F) ? VehicleKind::kVan : VehicleKind::kCar, road, along, left, side > 0);
+    if (in_junction || in_tight_bend || nearCrosswalk(road, along, 5.5)) continue;
+    const VehicleKind kind = random.chance(0.15F) ? VehicleKind::kVan : VehicleKind::kCar;
+    Finish finish = Finish::kAny;
+    if (d.smooth_share > 0 && random.chance(static_cast<float>(d.smooth_share)))
+      finish = random.chance(0.5F) ? Finish::kSmoothDark : Finish::kSmoothLight;
+    addParked(kind, road, along, left, side > 0, finish);
   }
 }
 
@@ -114,6 +166,7 @@ void SceneBuilder::dress(int road, const Dressing& dressing) {
   for (const double side : {-1.0, 1.0}) {
     placeWall(road, dressing, side);
     placePavement(road, dressing, side);
+    parkCars(road, dressing, side);
   }
 }
 

@@ -16,6 +16,7 @@ struct Dressing {
   bool buildings = true, trees = true;
   bool rural = false;       // hedges, bushes and guard rails instead of houses
   double parked_share = 0;  // of the parking spaces at the curb, 7 m each
+  double smooth_share = 0;  // of the parked cars: smooth and dark paint
 };
 
 /// Puts a scene together. Ids are given in the order of the calls.
@@ -28,15 +29,24 @@ class SceneBuilder {
 
   void setRoads(std::vector<Road> roads) { scene.roads = RoadNetwork(std::move(roads)); }
   void setEgo(Trajectory trajectory) { scene.ego.trajectory = std::move(trajectory); }
-  void addMover(VehicleKind kind, Trajectory trajectory);
-  void addParked(VehicleKind kind, int road, double along_m, double left_m, bool backwards);
-  /// Houses, trees, poles, fences and parked cars along both sides of a road, clear of every other road.
+  void addMover(VehicleKind kind, Trajectory trajectory, Finish finish = Finish::kAny);
+  void addMover(Model model, Trajectory trajectory);
+  /// Two objects: the truck drives as given, its trailer follows on the same path.
+  void addTruckWithTrailer(const Trajectory& trajectory);
+  /// Someone who walks straight from one point of the map to another, up and down the curbs on the way.
+  void addPedestrian(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Profile speed_mps);
+  void addParked(VehicleKind kind, int road, double along_m, double left_m, bool backwards,
+                 Finish finish = Finish::kAny);
+  /// Houses, trees, poles, fences and parked cars along both sides of a road, clear of every other road and of where
+  /// people cross.
   void dress(int road, const Dressing& dressing);
 
  private:
   void place(Model model, int road, double along_m, double left_m, double turn_rad, double margin_m);
   void placeWall(int road, const Dressing& dressing, double side);
   void placePavement(int road, const Dressing& dressing, double side);
+  void parkCars(int road, const Dressing& dressing, double side);
+  bool nearCrosswalk(int road, double along_m, double reach_m) const;
   int next_id_ = 0;
 };
 

@@ -3,39 +3,12 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "apps/synth/scene_builder.hpp"
+#include "apps/synth/mixed_scenes.hpp"
+#include "apps/synth/scene_parts.hpp"
 
 /// The scenes by name. Right-hand traffic; paths run along the map's x axis unless they bend.
 namespace motorcade::synth {
 namespace {
-
-using PathPtr = std::shared_ptr<const Path>;
-constexpr double kLane_m = 3.5;
-
-PathPtr makePath(double x, double y, double heading_rad, std::vector<Path::Piece> pieces, bool closed = false) {
-  return std::make_shared<const Path>(Eigen::Vector2d(x, y), heading_rad, std::move(pieces), closed);
-}
-PathPtr straight(double from_m, double to_m) { return makePath(from_m, 0, 0, {{to_m - from_m, 0}}); }
-
-/// Arc length on a path that starts `lead_m` before the ego car's start.
-Trajectory drive(const PathPtr& path, double start_m, Profile speed_mps, Profile left_m, bool backwards = false) {
-  Trajectory t;
-  t.path = path;
-  t.start_m = start_m;
-  t.speed_mps = std::move(speed_mps);
-  t.left_m = std::move(left_m);
-  t.backwards = backwards;
-  return t;
-}
-
-/// Two lanes and parking on both sides.
-Road street(PathPtr path) { return {std::move(path), 5.7, {{0, 0.12, true}, {3.5, 0.12, false}, {-3.5, 0.12, false}}}; }
-/// `lanes` lanes in one direction, with a parking strip on the right when it is wide enough.
-Road oneWay(PathPtr path, int lanes, double shoulder_m) {
-  Road road{std::move(path), 0.5 * lanes * kLane_m + shoulder_m, {}};
-  for (int i = 0; i <= lanes; ++i) road.lines.push_back({(i - 0.5 * lanes) * kLane_m, 0.14, i > 0 && i < lanes});
-  return road;
-}
 
 void buildStatic(SceneBuilder& b) {
   const auto path = makePath(-40, 0, 0, {{70, 0}, {60, 0.22}, {50, 0}, {60, -0.25}, {100, 0}});
@@ -220,15 +193,18 @@ struct Entry {
   const char* name;
   void (*build)(SceneBuilder&);
 };
-constexpr std::array<Entry, 9> kScenes{{{"overtake", buildOvertake},
-                                        {"highway", buildHighway},
-                                        {"urban", buildUrban},
-                                        {"static", buildStatic},
-                                        {"crossing", buildCrossing},
-                                        {"lead", buildLead},
-                                        {"stop_and_go", buildStopAndGo},
-                                        {"convoy", buildConvoy},
-                                        {"circuit", buildCircuit}}};
+constexpr std::array<Entry, 12> kScenes{{{"overtake", buildOvertake},
+                                         {"highway", buildHighway},
+                                         {"urban", buildUrban},
+                                         {"static", buildStatic},
+                                         {"crossing", buildCrossing},
+                                         {"lead", buildLead},
+                                         {"stop_and_go", buildStopAndGo},
+                                         {"convoy", buildConvoy},
+                                         {"circuit", buildCircuit},
+                                         {"traffic", buildTraffic},
+                                         {"rain", buildRain},
+                                         {"people", buildPeople}}};
 
 }  // namespace
 

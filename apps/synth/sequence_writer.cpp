@@ -81,10 +81,11 @@ struct Tables {
     times.writeLine(format("%.6f", frame.scene().frame_s * frame.frame()));
     poses.writeLine(kittiLine(T_world_map * frame.T_map_cam()));
     for (const auto& label : seen) labels.writeLine(labelLine(frame.frame(), label));
-    for (const auto& placed : frame.placed())
-      if (placed.id >= 0)
-        objects.writeLine(format("%d %d %d ", frame.frame(), placed.id, placed.moving ? 1 : 0) +
-                          kittiLine(T_world_map * placed.T_map_body));
+    for (const auto& object : frame.objects()) {
+      const Placed& body = object.front();
+      objects.writeLine(format("%d %d %d ", frame.frame(), body.id, body.moving ? 1 : 0) +
+                        kittiLine(T_world_map * body.T_map_body));
+    }
   }
   void close() {
     for (LineFile* file : {&times, &poses, &labels, &objects}) file->close();

@@ -4,7 +4,7 @@
 
 namespace motorcade::synth {
 
-float skyRadiance(const Vec3& direction, float pixel_rad, std::uint32_t seed) {
+float skyRadiance(const Vec3& direction, float pixel_rad, std::uint32_t seed, bool overcast) {
   const float azimuth = std::atan2(direction.y, direction.x), height = direction.z;
   // Hills and woods: ridge lines that close without a seam, since they are noise on the unit circle.
   const float cx = std::cos(azimuth), cy = std::sin(azimuth);
@@ -16,7 +16,7 @@ float skyRadiance(const Vec3& direction, float pixel_rad, std::uint32_t seed) {
     const float reach = 1 / (std::fmax(height, 0.0F) + 0.12F);
     const float clouds =
         fractal2(direction.x * reach, direction.y * reach, {1.1F, 6, 0.58F}, pixel_rad * reach * 4, seed + 3);
-    sky = lerp(sky, 1.02F, saturate(0.9F * clouds + 0.25F));
+    sky = overcast ? 0.80F + 0.10F * clouds : lerp(sky, 1.02F, saturate(0.9F * clouds + 0.25F));
   }
   const float trees = 0.12F + 0.06F * fractal2(azimuth * 60, height * 90, {2, 3, 0.7F}, pixel_rad * 75, seed + 4);
   return lerp(sky, std::fmax(0.04F, trees), land);

@@ -21,6 +21,9 @@ struct Reflectance {
 };
 
 Reflectance vehicleReflectance(const SurfacePoint& point);
+/// The body of a bus.
+Reflectance coachReflectance(const SurfacePoint& point);
+Reflectance personReflectance(const SurfacePoint& point);
 Reflectance streetReflectance(const SurfacePoint& point);
 /// Chooses by material.
 Reflectance reflectanceOf(const SurfacePoint& point);

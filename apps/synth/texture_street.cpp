@@ -130,7 +130,9 @@ Reflectance streetReflectance(const SurfacePoint& s) {
 }
 
 Reflectance reflectanceOf(const SurfacePoint& point) {
-  return point.part->material < Material::kBrick ? vehicleReflectance(point) : streetReflectance(point);
+  const Material material = point.part->material;
+  if (material >= Material::kCloth) return personReflectance(point);
+  return material < Material::kBrick ? vehicleReflectance(point) : streetReflectance(point);
 }
 
 }  // namespace motorcade::synth

@@ -2,43 +2,12 @@
 
 #include "apps/synth/noise.hpp"
 #include "apps/synth/texture.hpp"
+#include "apps/synth/texture_strokes.hpp"
 
 namespace motorcade::synth {
 namespace {
 
-/// A thin line at `at`.
-float line(float x, float at, float width, float footprint) {
-  return inside(x, at - 0.5F * width, at + 0.5F * width, footprint);
-}
-
-/// Glyphs: a grid of cells that hold strokes chosen by a hash; 1 on ink.
-float writing(float u, float v, float cell_width, float cell_height, float footprint, std::uint32_t seed) {
-  const float column = std::floor(u / cell_width), row = std::floor(v / cell_height);
-  const float x = u / cell_width - column, y = v / cell_height - row;
-  const float fx = footprint / cell_width, fy = footprint / cell_height;
-  const std::uint32_t bits = hashOf(static_cast<int>(column), static_cast<int>(row), seed);
-  float ink = 0;
-  const auto stroke = [&](unsigned bit, float x0, float x1, float y0, float y1) {
-    if ((bits >> bit) & 1U) ink = std::fmax(ink, inside(x, x0, x1, fx) * inside(y, y0, y1, fy));
-  };
-  stroke(3, 0.12F, 0.32F, 0.12F, 0.88F);
-  stroke(7, 0.62F, 0.82F, 0.12F, 0.88F);
-  stroke(11, 0.12F, 0.82F, 0.12F, 0.30F);
-  stroke(15, 0.12F, 0.82F, 0.41F, 0.59F);
-  stroke(19, 0.12F, 0.82F, 0.70F, 0.88F);
-  return ink;
-}
-
-/// Distance from the nearest wheel's center, in the side view.
-float wheelDistance(const Model& model, const Vec3& p) {
-  float nearest = 1e9F;
-  for (const auto& part : model.parts) {
-    if (part.material != Material::kTire) continue;
-    const Vec3 c = (part.lo + part.hi) * 0.5F;
-    nearest = std::fmin(nearest, std::hypot(p.x - c.x, p.z - c.z) - 0.5F * (part.hi.z - part.lo.z));
-  }
-  return nearest;
-}
+constexpr float kClearCoat = 0.07F;  // share that clean paint mirrors head on: little more than polished glass
 
 /// Body panels: door gaps, sills, wheel arches, a bright crease, grime from below and reflections of the street.
 Reflectance paint(const SurfacePoint& s) {
@@ -60,6 +29,7 @@ Reflectance paint(const SurfacePoint& s) {
     dark = std::fmax(dark, 0.7F * line(std::abs(p.y), 0.68F, 0.012F, f));
     dark = std::fmax(dark, 0.7F * line(std::abs(p.x), 0.27F * length, 0.014F, f));
   }
+  if (s.model->smooth_paint) return {tone * (1 - dark), kClearCoat * (1 - dark), 0};
   const float sheen = fractal3(p.x, p.y, p.z * 1.7F, {0.42F, 5, 0.72F}, f, s.part->seed);
   const float grime =
       saturate((0.5F - p.z) * 2) * (0.35F + 0.5F * fractal3(p.x, p.y, p.z, {0.12F, 3, 0.7F}, f, s.part->seed + 9));
@@ -186,9 +156,12 @@ Reflectance vehicleReflectance(const SurfacePoint& s) {
       return {s.part->tone, 0.2F, 0};
     case Material::kChrome:
       return {0.45F, 0.35F, 0};
+    case Material::kCoach:
+      return coachReflectance(s);
     case Material::kGrille:
       return {0.22F - 0.19F * pulses(s.position.z, 0.045F, 0.026F, s.footprint_m), 0.03F, 0};
     default:
+      if (s.model->smooth_paint) return {s.part->tone, 0.04F, 0};
       return {s.part->tone * (1 + 0.25F * fractal3(s.position.x, s.position.y, s.position.z, {0.2F, 4, 0.7F},
                                                    s.footprint_m, s.part->seed)),
               0.02F, 0};

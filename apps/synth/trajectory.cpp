@@ -47,7 +47,7 @@ SE3 Trajectory::T_map_body(double t_s) const {
   const Eigen::Vector2d position = point.position + left * point.left();
   const double heading =
       point.heading_rad + std::atan2(slope, 1 - point.curvature_per_m * left) + (backwards ? std::numbers::pi : 0);
-  return {expSO3(Eigen::Vector3d(0, 0, heading)), Eigen::Vector3d(position.x(), position.y(), 0)};
+  return {expSO3(Eigen::Vector3d(0, 0, heading)), Eigen::Vector3d(position.x(), position.y(), up_m(driven))};
 }
 
 SE3 Ego::T_map_cam(double t_s) const {

@@ -7,7 +7,7 @@
 
 namespace motorcade::synth {
 
-/// How a vehicle drives: along a path, at a speed and a lateral offset that ease between knots. Twice continuously
+/// How something moves: along a path, at a speed and a lateral offset that ease between knots. Twice continuously
 /// differentiable. The frame `map` is the scene's: z up, ground at z = 0.
 struct Trajectory {
   std::shared_ptr<const Path> path;
@@ -15,6 +15,7 @@ struct Trajectory {
   bool backwards = false;  // drives against the path's direction
   Profile speed_mps;       // over time, never negative
   Profile left_m;          // offset to the path's left over the distance driven
+  Profile up_m;            // height above the road, over the distance driven
   double sway_m = 0;       // a periodic drift along the path: sway_m * sin(2 pi t / sway_period_s + sway_phase_rad)
   double sway_period_s = 10, sway_phase_rad = 0;
 
@@ -22,7 +23,7 @@ struct Trajectory {
   /// Arc length on the path.
   double arc_m(double t_s) const;
   double speedAt_mps(double t_s) const;
-  /// Pose of the vehicle's footprint center: x ahead, y left, z up.
+  /// Pose of the footprint's center: x ahead, y left, z up.
   SE3 T_map_body(double t_s) const;
 };
 

@@ -1,63 +1,10 @@
 #include "apps/synth/vehicle_model.hpp"
 
+#include "apps/synth/model_size.hpp"
+#include "apps/synth/vehicle_parts.hpp"
+
 namespace motorcade::synth {
 namespace {
-
-/// Measures and colors shared by the parts.
-struct Shape3 {
-  float length, width, height;
-  float paint;
-  std::uint32_t seed;
-  float front() const { return 0.5F * length; }
-  float side() const { return 0.5F * width; }
-};
-
-void addWheels(Model& model, const Shape3& s, float radius, std::initializer_list<float> axles) {
-  const float rim = lerp(0.35F, 0.7F, unit(mix(s.seed + 11)));
-  for (const float x : axles)
-    for (const float y : {-1.0F, 1.0F}) {
-      const float outer = y * s.side(), inner = y * (s.side() - 0.21F);
-      model.addCylinder(Material::kTire, 1, {x - radius, std::min(outer, inner), 0},
-                        {x + radius, std::max(outer, inner), 2 * radius}, rim, s.seed);
-    }
-}
-
-/// A part and its mirror image across the car's middle plane.
-void addPair(Model& model, Material material, const Vec3& lo, const Vec3& hi, float tone, std::uint32_t seed) {
-  model.add(material, lo, hi, tone, seed);
-  model.add(material, {lo.x, -hi.y, lo.z}, {hi.x, -lo.y, hi.z}, tone, seed);
-}
-
-void addFront(Model& m, const Shape3& s, float lamp_z) {
-  const float x = s.front(), y = s.side();
-  m.add(Material::kPlastic, {x - 0.25F, -y + 0.10F, 0.26F}, {x, y - 0.10F, 0.46F},
-        unit(mix(s.seed)) < 0.5F ? 0.07F : 0.8F * s.paint, s.seed);
-  m.cutLast({1, 0.7F, 0}, {x, y - 0.32F, 0});
-  m.cutLast({1, -0.7F, 0}, {x, -y + 0.32F, 0});
-  addPair(m, Material::kHeadLamp, {x - 0.30F, y - 0.50F, lamp_z}, {x - 0.03F, y - 0.07F, lamp_z + 0.17F}, 0.6F, s.seed);
-  m.add(Material::kGrille, {x - 0.2F, -0.38F, lamp_z - 0.02F}, {x - 0.025F, 0.38F, lamp_z + 0.15F}, 0.2F, s.seed);
-  m.addEllipsoid(Material::kChrome, {x - 0.02F, 0, lamp_z + 0.11F}, {0.02F, 0.06F, 0.05F}, 0.6F);
-  m.add(Material::kPlate, {x - 0.02F, -0.26F, 0.33F}, {x + 0.005F, 0.26F, 0.44F}, 0.8F, s.seed);
-  addPair(m, Material::kGlass, {x - 0.12F, y - 0.42F, 0.31F}, {x + 0.0F, y - 0.26F, 0.40F}, 0.4F, s.seed);
-}
-
-void addRear(Model& m, const Shape3& s, float lamp_z, float lamp_height) {
-  const float x = -s.front(), y = s.side();
-  m.add(Material::kPlastic, {x, -y + 0.06F, 0.30F}, {x + 0.25F, y - 0.06F, 0.52F},
-        unit(mix(s.seed + 1)) < 0.4F ? 0.08F : 0.75F * s.paint, s.seed + 2);
-  m.cutLast({-1, 0.7F, 0}, {x, y - 0.22F, 0});
-  m.cutLast({-1, -0.7F, 0}, {x, -y + 0.22F, 0});
-  addPair(m, Material::kTailLamp, {x + 0.03F, y - 0.42F, lamp_z}, {x + 0.35F, y - 0.04F, lamp_z + lamp_height}, 0.15F,
-          s.seed);
-  const float plate_z = (s.seed & 8U) != 0 ? 0.36F : 0.64F;
-  m.add(Material::kPlate, {x - 0.004F, -0.26F, plate_z}, {x + 0.05F, 0.26F, plate_z + 0.115F}, 0.8F, s.seed + 1);
-  m.add(Material::kChrome, {x + 0.035F, -0.32F, plate_z + 0.15F}, {x + 0.08F, 0.32F, plate_z + 0.185F}, 0.6F);
-  m.addEllipsoid(Material::kChrome, {x + 0.05F, 0, plate_z + 0.26F}, {0.022F, 0.055F, 0.055F}, 0.6F);
-  m.addCylinder(Material::kChrome, 0, {x - 0.03F, -y + 0.32F, 0.22F}, {x + 0.3F, -y + 0.40F, 0.30F}, 0.3F);
-  addPair(m, Material::kTailLamp, {x - 0.006F, y - 0.40F, 0.36F}, {x + 0.02F, y - 0.24F, 0.41F}, 0.15F, s.seed);
-  // The model's name.
-  m.add(Material::kPlate, {x + 0.036F, 0.33F, plate_z + 0.21F}, {x + 0.08F, 0.60F, plate_z + 0.27F}, 0.6F, s.seed + 5);
-}
 
 void addSides(Model& m, const Shape3& s, float mirror_x, float belt_z) {
   const float y = s.side() - 0.03F;
@@ -146,26 +93,26 @@ Model makeTruck(const Shape3& s) {
   return m;
 }
 
-/// The label's box holds all parts.
-void measure(Model& model) {
-  Vec3 lo{1e9F, 1e9F, 0}, hi{-1e9F, -1e9F, -1e9F};
-  for (const auto& part : model.parts) {
-    for (const Vec3& p : hullPoints(part, model.cuts.data())) {
-      hi = max(hi, p);
-      lo = min(lo, p);
-    }
+float toneOf(Finish finish, Random& random) {
+  constexpr float kPaints[] = {0.03F, 0.05F, 0.10F, 0.16F, 0.24F, 0.34F, 0.48F, 0.62F, 0.72F};
+  const float any = kPaints[random.bits() % 9];
+  switch (finish) {
+    case Finish::kDark:
+    case Finish::kSmoothDark:
+      return 0.022F;
+    case Finish::kSmoothLight:
+      return 0.55F + 0.3F * any;
+    case Finish::kAny:
+      break;
   }
-  model.length_m = 2 * std::max(hi.x, -lo.x);
-  model.width_m = 2 * std::max(hi.y, -lo.y);
-  model.height_m = hi.z;
+  return any;
 }
 
 }  // namespace
 
-Model makeVehicle(VehicleKind kind, std::uint32_t seed) {
+Model makeVehicle(VehicleKind kind, std::uint32_t seed, Finish finish) {
   Random random(seed);
-  constexpr float kPaints[] = {0.03F, 0.05F, 0.10F, 0.16F, 0.24F, 0.34F, 0.48F, 0.62F, 0.72F};
-  const float paint = kPaints[random.bits() % 9];
+  const float paint = toneOf(finish, random);
   Model model;
   switch (kind) {
     case VehicleKind::kCar:
@@ -184,7 +131,8 @@ Model makeVehicle(VehicleKind kind, std::uint32_t seed) {
       model.kitti_type = "Truck";
       break;
   }
-  measure(model);
+  model.smooth_paint = finish == Finish::kSmoothDark || finish == Finish::kSmoothLight;
+  fitBox(model);
   return model;
 }
 

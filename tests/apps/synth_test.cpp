@@ -14,25 +14,19 @@
 #include "apps/synth/scene_builder.hpp"
 #include "apps/synth/sequence_writer.hpp"
 #include "io/image_file.hpp"
+#include "tests/apps/rendered_scene.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace motorcade::synth {
 namespace {
 
 const StereoCamera kCamera = kittiCamera(414, 125);
-const RenderOptions kNoNoise{.threads = 2, .noise_levels = 0, .equal_gains = true};
 
 int indexOf(int x, int y) { return y * kCamera.width_px + x; }
 
 Eigen::Vector3d behindPixel(const Rendering& left, int x, int y) {
   return kCamera.triangulate({static_cast<double>(x), static_cast<double>(y),
                               kCamera.fx_px * kCamera.baseline_m / static_cast<double>(left.depth_m[indexOf(x, y)])});
-}
-
-std::vector<std::uint8_t> pixels(const Image& image) {
-  std::vector<std::uint8_t> all;
-  for (int y = 0; y < image.height(); ++y) all.insert(all.end(), image.row(y), image.row(y) + image.width());
-  return all;
 }
 
 /// Footprints overlap when a point on the outline or middle line of one lies in the other.
@@ -51,16 +45,6 @@ bool overlap(const Placed& a, const Placed& b, double clearance_m) {
 std::string content(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// Where a ray meets the nearest of all parts, tried one by one; t_max if none.
-float nearestOfAll(const FrameScene& frame, const Vec3& origin, const Vec3& direction, float t_min, float t_max) {
-  for (std::uint32_t i = 0; i < frame.items().size(); ++i) {
-    const Placed& placed = frame.placedOf(i);
-    const Vec3 o = placed.rotation.transposed(origin - placed.translation), d = placed.rotation.transposed(direction);
-    if (const auto hit = intersect(frame.partOf(i), placed.model->cuts.data(), o, d, t_min, t_max)) t_max = hit->t;
-  }
-  return t_max;
 }
 
 TEST(SynthRays, MeetWhatTryingEveryPartFinds) {
@@ -162,16 +146,8 @@ TEST(SynthRenderer, NoiseDiffersBetweenTheEyesAndHasTheSizeAskedFor) {
   EXPECT_FALSE(std::equal(left.begin(), left.begin() + 100, right.begin()));
 }
 
-std::vector<Eigen::Vector2d> pixelsOf(const Rendering& rendering, int object) {
-  std::vector<Eigen::Vector2d> pixels;
-  for (int y = 0; y < kCamera.height_px; ++y)
-    for (int x = 0; x < kCamera.width_px; ++x)
-      if (rendering.object[indexOf(x, y)] == object) pixels.emplace_back(x, y);
-  return pixels;
-}
-
 TEST(SynthGroundTruth, LabelsAgreeWithPosesAndMasks) {
-  for (const char* name : {"overtake", "urban", "convoy"}) {
+  for (const char* name : {"overtake", "urban", "convoy", "traffic", "rain", "people"}) {
     const Scene scene = makeScene(name, 4);
     const FrameScene frame(scene, 20, true);
     const Rendering left = render(frame, kCamera, StereoSide::kLeft, kNoNoise);
@@ -189,7 +165,7 @@ TEST(SynthGroundTruth, LabelsAgreeWithPosesAndMasks) {
       }
       const Eigen::AlignedBox2d box(Eigen::Vector2d(label.left_px - 0.01, label.top_px - 0.01),
                                     Eigen::Vector2d(label.right_px + 0.01, label.bottom_px + 0.01));
-      for (const Eigen::Vector2d& pixel : pixelsOf(left, label.id))
+      for (const Eigen::Vector2d& pixel : pixelsOf(left, kCamera, label.id))
         ASSERT_TRUE(box.contains(pixel)) << name << " " << label.id << " at " << pixel.transpose();
     }
   }
@@ -244,7 +220,7 @@ TEST(SynthSequence, MoversCanBeLeftOut) {
   EXPECT_EQ(with.placed().size() - without.placed().size(), scene.movers.size());
 }
 
-/// Two vehicles by their ids, empty when none touch.
+/// Two things by their ids, empty when none touch.
 std::string touchingPair(const std::vector<Placed>& vehicles) {
   for (std::size_t i = 0; i < vehicles.size(); ++i)
     for (std::size_t j = 0; j < vehicles.size(); ++j)
@@ -253,7 +229,7 @@ std::string touchingPair(const std::vector<Placed>& vehicles) {
   return {};
 }
 
-TEST(SynthScenes, VehiclesNeverTouch) {
+TEST(SynthScenes, RoadUsersNeverTouch) {
   const auto ego_model = std::make_shared<Model>();
   ego_model->length_m = 4.2F;
   ego_model->width_m = 1.8F;
@@ -266,7 +242,7 @@ TEST(SynthScenes, VehiclesNeverTouch) {
         ego.model = ego_model;
         ego.T_map_body = scene.ego.trajectory.T_map_body(scene.time_s(k));
         std::vector<Placed> vehicles{ego};
-        std::ranges::copy_if(frame.placed(), std::back_inserter(vehicles), [](const Placed& p) { return p.id >= 0; });
+        for (const auto& object : frame.objects()) vehicles.push_back(object.front());
         ASSERT_EQ(touchingPair(vehicles), "") << name << " seed " << seed << " frame " << k;
       }
     }

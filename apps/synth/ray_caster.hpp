@@ -1,0 +1,63 @@
+#pragma once
+
+#include "apps/synth/ground.hpp"
+#include "apps/synth/ray_tree.hpp"
+#include "apps/synth/rays.hpp"
+
+namespace motorcade::synth {
+
+/// Whether the sun reaches a point, and on the ground whether something low hangs over it.
+struct Exposure {
+  bool sunny = false, covered = false;
+  bool operator==(const Exposure&) const = default;
+};
+
+/// What comes back along a ray.
+struct Sample {
+  float light = 0;    // linear
+  float depth_m = 0;  // 0: sky
+  std::uint32_t surface = 0;
+  std::int16_t object = -1;
+  Exposure exposure;
+};
+/// Road, or what lies beside it behind the curb.
+bool isLevelGround(std::uint32_t surface);
+
+/// Casts rays of one camera of the stereo pair into one frame.
+class RayCaster {
+ public:
+  RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side);
+
+  /// `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel. An exposure that is known
+  /// already, from the pixel and its neighbors, saves the rays towards the light.
+  Sample cast(float u_px, float v_px, float sharpness, const std::optional<Exposure>& known) const;
+
+ private:
+  struct Ray {
+    Vec3 origin, direction;
+    float pixel = 0;        // width of the pixel where t is 1
+    float before_m = 0;     // way to the origin
+    bool mirrored = false;  // has left a mirror already: meets no second one
+    float width_m(float t) const { return (before_m + t) * pixel; }
+  };
+  struct Lit {
+    float reflectance, light;
+  };
+  Sample sampleOf(const Ray& ray, const std::optional<RayHit>& hit, const std::optional<Exposure>& known) const;
+  bool sunny(const Vec3& position, const Vec3& normal) const;
+  Exposure exposureOf(const Ground::Hit& hit, const Vec3& position) const;
+  float lit(const Vec3& normal, const Exposure& exposure) const;
+  float shade(const RayHit& hit, const Vec3& normal, const Ray& ray, const Exposure& exposure) const;
+  float wet(const Ground::Hit& hit, const Ray& ray, const Lit& dry) const;
+  float surroundings(const RayHit& hit, const Vec3& normal, const Ray& ray) const;
+  float mirrored(const Ray& ray, float t, const Vec3& normal) const;
+
+  const FrameScene& frame_;
+  Ground ground_;
+  CameraRays rays_;
+  ParallelRays to_sun_, upwards_;
+  std::optional<RayTree> tree_;  // where something mirrors
+  float pixel_, sunlight_, skylight_;
+};
+
+}  // namespace motorcade::synth
