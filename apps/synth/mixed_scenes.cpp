@@ -50,11 +50,11 @@ void buildTraffic(SceneBuilder& b) {
   b.setEgo(drive(path, kStart_m, v, -0.5 * kLane_m));
   const auto ahead = [&](double m) { return kStart_m + m + jitter(b, 0.5F); };
   constexpr double kInner_m = 0.5 * kLane_m, kOuter_m = 1.5 * kLane_m, kEdge_m = 6.5;
-  b.addTruckWithTrailer(drive(path, ahead(21), Profile({{0, 7.3}, {6, 7.0}, {11, 7.3}}), -kOuter_m));
+  b.addTruckWithTrailer(drive(path, ahead(17), Profile({{0, 6.2}, {6, 5.8}, {11, 6.2}}), -kOuter_m));
   b.addMover(VehicleKind::kCar, drive(path, ahead(15), Profile({{0, v + 0.6}, {6, v - 0.2}, {11, v + 0.6}}), -kInner_m),
              Finish::kSmoothDark);
   b.addMover(VehicleKind::kCar, drive(path, ahead(25), v + 0.3, -kInner_m), Finish::kSmoothLight);
-  addCyclist(b, drive(path, ahead(43), vary(b.random, 6, 0.02), -kEdge_m));
+  addCyclist(b, drive(path, ahead(43), vary(b.random, 5.5, 0.02), -kEdge_m));
   b.addMover(makeBus(b.random.bits()), drive(path, ahead(47), vary(b.random, 8, 0.03), kInner_m, true));
   b.addMover(VehicleKind::kCar, drive(path, ahead(74), vary(b.random, 8, 0.03), kInner_m, true), Finish::kDark);
   b.addMover(VehicleKind::kCar, drive(path, ahead(104), vary(b.random, 8, 0.03), kInner_m, true), Finish::kSmoothLight);
