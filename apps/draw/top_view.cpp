@@ -122,14 +122,13 @@ void drawFootprint(Canvas& canvas, const ObjectEstimate& object, const SE3& T_ca
 
 void drawObjectFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame, const ObjectEstimate& object,
                          const TopMap& map) {
-  const Color color = trackColor(object.track);
   const SE3 T_cam_world = run.T_world_cam[frame].inverse(), T_cam_body = T_cam_world * object.T_world_body;
   const ObjectBox box = object.cuboid.value_or(kUsualCar);
-  canvas.polyline(mapped(run.wayOf(object.track, box.center_body, 0, frame), T_cam_world, map), color, 2);
   drawFootprint(canvas, object, T_cam_body, map);
+  if (object.state == ObjectState::kStopped) return;
   const Vector3d nose_cam = T_cam_body * (box.center_body + Vector3d(0.5 * box.size_m.x(), 0, 0)),
                  motion_cam = T_cam_world.rotation() * object.velocity_world_mps;
-  if (object.state != ObjectState::kStopped) canvas.arrow(map(nose_cam), map(nose_cam + motion_cam), color, 2);
+  canvas.arrow(map(nose_cam), map(nose_cam + motion_cam), trackColor(object.track), 2);
 }
 
 /// On a dark plate below the footprint, over all else.
@@ -153,18 +152,21 @@ void drawPointsFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame,
   }
 }
 
-/// The ways of objects that were followed once and are no more.
-void drawEarlierTracks(Canvas& canvas, const DrawnRun& run, std::size_t frame, const TopMap& map) {
+/// Of the objects that are there, and, fainter, of those that were followed once.
+void drawWays(Canvas& canvas, const DrawnRun& run, std::size_t frame, const TopMap& map) {
   std::set<TrackId> earlier;
   for (const auto& [at, objects] : run.objects) {
     if (std::cmp_greater(at, frame)) break;
     for (const auto& object : objects) earlier.insert(object.track);
   }
-  for (const auto& object : run.objectsAt(frame)) earlier.erase(object.track);
-  for (const TrackId track : earlier) {
-    const auto way = run.wayOf(track, Vector3d::Zero(), 0, frame);
-    canvas.polyline(mapped(way, run.T_world_cam[frame].inverse(), map), trackColor(track), 2, 0.4);
-  }
+  const auto draw = [&](TrackId track, const Vector3d& p_body, double opacity) {
+    const auto way = run.wayOf(track, p_body, 0, frame);
+    canvas.polyline(mapped(way, run.T_world_cam[frame].inverse(), map), trackColor(track), 2, opacity);
+  };
+  const auto objects = run.objectsAt(frame);
+  for (const auto& object : objects) earlier.erase(object.track);
+  for (const TrackId track : earlier) draw(track, Vector3d::Zero(), 0.4);
+  for (const auto& object : objects) draw(object.track, object.cuboid.value_or(kUsualCar).center_body, 1);
 }
 
 void drawLegend(Canvas& canvas, const DrawnRun& run, std::size_t frame) {
@@ -196,7 +198,7 @@ Canvas drawTopView(const DrawnRun& run, std::size_t frame, int width, int height
   const TopMap map{width, height, width / kShown_m};
   drawGrid(canvas, map);
   drawCameraFromAbove(canvas, run, frame, map);
-  drawEarlierTracks(canvas, run, frame, map);
+  drawWays(canvas, run, frame, map);
   for (const auto& object : run.objectsAt(frame)) drawObjectFromAbove(canvas, run, frame, object, map);
   drawPointsFromAbove(canvas, run, frame, map);
   drawTruthFromAbove(canvas, run, frame, map);

@@ -1,6 +1,8 @@
 #include "backend/smoother/estimate_reader.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace motorcade {
 namespace {
@@ -37,7 +39,7 @@ void addRateSigmas(FrameCovariances::Object& object, const SE3& T_other_now, con
   const Eigen::Vector3d direction =
       length_m > kShortestStep_m ? Eigen::Vector3d(step.head<3>() / length_m) : Eigen::Vector3d::UnitX();
   object.speed_sigma_mps = std::sqrt(direction.dot(covariance.topLeftCorner<3, 3>() * direction)) / dt_s;
-  object.yaw_rate_sigma_radps = std::sqrt(covariance(5, 5)) / dt_s;
+  object.yaw_rate_sigma_radps = std::sqrt(std::max(0.0, covariance(5, 5))) / dt_s;
 }
 
 }  // namespace

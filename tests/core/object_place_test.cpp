@@ -1,6 +1,7 @@
 #include "core/object_place.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -50,6 +51,15 @@ TEST(ObjectPlace, DeviationsAreOfTheWorldsAxes) {
   EXPECT_NEAR(placeOf(object).heading_sigma_rad, 0.02, 1e-12);
   EXPECT_THAT(placeOf(object).centerSigma_m(),
               IsNear(Eigen::Vector3d(std::hypot(0.4, 0.005), 0.05, std::hypot(0.1, 0.03)), 1e-12));
+}
+
+TEST(ObjectPlace, TellsNumbersAlsoOfWhatCannotBe) {
+  ObjectEstimate object = objectAt(SE3(expSO3({0, 0, kQuarter_rad}), {4, 1, 20}));  // its x axis points down
+  object.covariance = Matrix6d::Identity();
+  EXPECT_EQ(placeOf(object).heading_sigma_rad, 2 * kQuarter_rad);
+  object.covariance->setConstant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(placeOf(object).centerSigma_m(), Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(placeOf(object).heading_sigma_rad, 0);
 }
 
 TEST(ObjectPlace, WithoutACuboidItIsThatOfTheBodysOrigin) {
