@@ -58,11 +58,17 @@ bool mostlyInside(const Box& box, const Box& area) {
          overlapArea(box, area) > 0;
 }
 
+/// The middle of a row's cuboid, which is what a label gives; the body's origin, a point somewhere on it, where the row
+/// has none.
+Eigen::Vector3d middleOf(const ObjectEstimate& object) {
+  return object.cuboid ? object.T_world_body * object.cuboid->center_body : object.T_world_body.translation();
+}
+
 void matchRows(ComparedFrame& frame) {
   constexpr double kForbidden_m = 1e6;  // far above any gate: pairs come before short distances
   Eigen::MatrixXd cost_m(frame.rows.size(), frame.objects.size());
   for (std::size_t i = 0; i < frame.rows.size(); ++i) {
-    const Eigen::Vector3d seen = frame.T_world_cam.inverse() * frame.rows[i].row.object.T_world_body.translation();
+    const Eigen::Vector3d seen = frame.T_world_cam.inverse() * middleOf(frame.rows[i].row.object);
     for (std::size_t j = 0; j < frame.objects.size(); ++j) {
       const Eigen::Vector3d offset = seen - frame.objects[j].truth.T_cam_object.translation();
       const double distance_m = std::hypot(offset.x(), offset.z());
