@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <span>
+
+#include "frontend/image/window_differences.hpp"
 
 namespace motorcade {
 namespace {
@@ -186,6 +189,27 @@ void DenseDisparity::choose(const Image& left, DisparityMap& map, const Range& r
       const bool inside = best > 0 && best + 1 < range.count;
       const float offset = inside ? parabolaOffset(sums[best - 1], sums[best], sums[best + 1]) : 0.0F;
       map.disparity_px[pixel] = static_cast<float>(range.least_px + best) + offset;
+    }
+  }
+}
+
+void refineDisparities(const Image& left, const Image& right, int scale, DisparityMap& map) {
+  constexpr int kReach_px = 2;
+  std::array<std::uint16_t, 2 * kReach_px + 1> costs;
+  for (int row = 0; row < map.window.height; ++row) {
+    for (int column = 0; column < map.window.width; ++column) {
+      float& disparity_px = map.disparity_px[static_cast<std::size_t>(row) * map.window.width + column];
+      if (disparity_px == DisparityMap::kNone) continue;
+      const int u = (map.window.u0 + column) * scale + scale / 2, v = (map.window.v0 + row) * scale + scale / 2;
+      const int first = u - static_cast<int>(std::lround(disparity_px * static_cast<float>(scale))) - kReach_px;
+      const Window window{left, u, v, kHalfSizeWindow};
+      const int half = kHalfSizeWindow.columns / 2;
+      if (!window.insideImage() || first < half || first + 2 * kReach_px + half >= right.width()) continue;
+      windowDifferences(window, right, first, v, costs);
+      const auto best = static_cast<int>(std::ranges::min_element(costs) - costs.begin());
+      if (best == 0 || best == 2 * kReach_px) continue;
+      const float at = static_cast<float>(first + best) + parabolaOffset(costs[best - 1], costs[best], costs[best + 1]);
+      disparity_px = (static_cast<float>(u) - at) / static_cast<float>(scale);
     }
   }
 }

@@ -51,4 +51,8 @@ class DenseDisparity {
   std::vector<std::uint16_t> least_of_right_;
 };
 
+/// Makes disparities more exact in the same images at `scale` times their size, a power of two: each is searched anew
+/// within a pixel or two of what it is there. Where nothing fits best, it stays.
+void refineDisparities(const Image& left, const Image& right, int scale, DisparityMap& map);
+
 }  // namespace motorcade

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace motorcade {
 namespace {
@@ -17,6 +18,8 @@ constexpr double kBoundSigma_px = 1.5, kRounded_m = 0.08;  // of a bound of the 
 constexpr double kRoadSigma_m = 0.05, kRoadSlope = 0.004;  // of the road's height, per meter away
 constexpr double kPointSigma_m = 0.3;                      // of the outermost points of an object
 constexpr double kNear_m = 1.5;                            // nearer corners are seen too much from the side
+constexpr double kSharp_m = 0.35, kOutermost = 0.05, kExtentSigma_m = 0.1;
+constexpr std::size_t kLeastSharp = 30;
 constexpr int kEdge = 3;       // cells from the window's edge, where the window cuts the outline
 constexpr int kSamples = 400;  // of the outline's cells
 
@@ -39,6 +42,7 @@ class FaceMeasurement {
   void addPoints();
   void addSurfaces();
   void addSurfacePoint(int column, int row, std::array<FaceInformation, 6>& of_face, std::array<double, 6>& counts);
+  void addExtent();
   void addBounds();
   bool isCut(int column, int step) const;
   /// One side of the outline; where it is cut, the object reaches at least so far.
@@ -53,6 +57,7 @@ class FaceMeasurement {
   const ObjectView& view_;
   const StereoCamera& camera_;
   FaceInformation information_;
+  std::vector<Eigen::Vector3d> sharp_;  // points of the surface that are known sharply, in the body frame
 };
 
 /// The middle of the bottom face lies on the road.
@@ -83,6 +88,22 @@ void FaceMeasurement::addSurfaces() {
       if (outline_.at(column, row)) addSurfacePoint(column, row, of_face, counts);
   for (std::size_t face = 0; face < of_face.size(); ++face)
     if (counts[face] > 0) information_.add(of_face[face], std::min(1.0, kIndependent / counts[face]));
+  addExtent();
+}
+
+/// The cuboid holds the surface, all but its outermost parts, where that is known sharply.
+void FaceMeasurement::addExtent() {
+  if (sharp_.size() < kLeastSharp) return;
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto at = [&](double share) {
+      const auto nth = sharp_.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sharp_.size() - 1));
+      std::ranges::nth_element(sharp_, nth, {}, [axis](const Eigen::Vector3d& p) { return p[axis]; });
+      return (*nth)[axis];
+    };
+    const double least = at(kOutermost), most = at(1 - kOutermost);
+    if (view_.box.faces[2 * axis] > least) information_.add(Vector6d::Unit(2 * axis), least, kExtentSigma_m);
+    if (view_.box.faces[2 * axis + 1] < most) information_.add(Vector6d::Unit(2 * axis + 1), most, kExtentSigma_m);
+  }
 }
 
 /// The ray through a cell meets an upright face at the distance that the disparity says.
@@ -107,9 +128,11 @@ void FaceMeasurement::addSurfacePoint(int column, int row, std::array<FaceInform
     if (t > entry) entry = t, face = near;
   }
   if (face < 0) return;
-  const double along = direction[face / 2];
-  const double sigma_z = std::hypot(z * kSurfaceSigma_px * (1 << disparities_.level) / d, kUneven_m / std::abs(along));
+  const double along = direction[face / 2], noise_m = z * kSurfaceSigma_px * (1 << disparities_.level) / d;
+  if (noise_m < kSharp_m) sharp_.push_back(origin + z * direction);
+  const double sigma_z = std::hypot(noise_m, kUneven_m / std::abs(along));
   const double chi = (z - entry) / sigma_z, weight = 1 / (1 + chi * chi / (kGrossChi * kGrossChi));
+  if (chi < -kGrossChi) return;
   Vector6d measured = Vector6d::Zero();
   measured[face] = 1;
   FaceInformation one;

@@ -19,9 +19,11 @@ constexpr double kLookWeight = 0.15;          // of one outline: for the same re
 constexpr std::int64_t kMemory_frames = 120;  // beyond which looks no longer count
 constexpr double kMargin = 0.2;               // of the window around the box in the image, on each side
 constexpr int kMargin_px = 8, kMostCells = 7'000, kFinestLevel = 1;
+constexpr int kRefinements = 2;
 constexpr double kBefore_m = 2;  // how far before the cuboid disparities are told apart; behind it, all are
 constexpr double kLeastSize_m = 0.2, kMostSize_m = 25;  // of an object that is believed, along each axis
 constexpr int kLeastCells = 30;                         // of an outline that is believed
+constexpr int kFewLooks = 5;                            // so few are too few to do without one
 constexpr int kIterations = 2;  // of the faces, as what is seen of them depends on where they are
 
 double fading(std::int64_t frames) { return std::pow(kFading, static_cast<double>(std::abs(frames))); }
@@ -30,11 +32,13 @@ double fading(std::int64_t frames) { return std::pow(kFading, static_cast<double
 std::optional<Eigen::AlignedBox3d> extentOf(const std::vector<PointMeasurement>& points, const StereoCamera& camera,
                                             const SE3& T_body_cam, double disparity_offset_px) {
   constexpr std::size_t kLeastPoints = 5;
+  constexpr double kFarthest_m = 15;  // of a point on an object from its body's origin
   std::array<std::vector<double>, 3> along;
   for (const PointMeasurement& p : points) {
     const Eigen::Vector3d uvd_px = p.uvd_px.cast<double>() + Eigen::Vector3d(0, 0, disparity_offset_px);
     if (uvd_px.z() <= 0) continue;
     const Eigen::Vector3d p_body = T_body_cam * camera.triangulate(uvd_px);
+    if (p_body.norm() > kFarthest_m) continue;
     for (int axis = 0; axis < 3; ++axis) along[axis].push_back(p_body[axis]);
   }
   if (along[0].size() < kLeastPoints) return std::nullopt;
@@ -47,18 +51,40 @@ std::optional<Eigen::AlignedBox3d> extentOf(const std::vector<PointMeasurement>&
   return Eigen::AlignedBox3d(least, most);
 }
 
-/// The points that an object is found by lie on the sides that it turns to the camera.
+/// Does the image's border cut an object off? At the left, so does the border of what the right camera sees.
+bool isCutOff(const Box& points, double disparity_px, const StereoCamera& camera) {
+  constexpr double kBorder_px = 40;
+  return points.left_px < disparity_px + kBorder_px || points.right_px > camera.width_px - kBorder_px;
+}
+
+/// The points that an object is found by mostly lie on the face of which the camera sees most.
 FaceInformation nearFaceAtPoints(const ObjectView& view) {
   constexpr double kSigma_m = 0.6;
   FaceInformation near;
   if (!view.points) return near;
   const Eigen::Vector3d direction = view.T_cam_body.rotation().transpose() * view.T_cam_body.translation();
-  const int axis = std::abs(direction.x()) > std::abs(direction.y()) ? 0 : 1;
+  constexpr double kLengthOverWidth = 2.5;  // of what is seen of a side and of an end, when seen at 45 degrees
+  const int axis = std::abs(direction.x()) > kLengthOverWidth * std::abs(direction.y()) ? 0 : 1;
   if (direction[axis] > 0)
     near.add(Vector6d::Unit(2 * axis), view.points->min()[axis], kSigma_m);
   else
     near.add(Vector6d::Unit(2 * axis + 1), view.points->max()[axis], kSigma_m);
   return near;
+}
+
+/// Is nearly all of its cuboid where both cameras see it?
+bool isWhole(const ObjectView& view, const StereoCamera& camera) {
+  constexpr double kNear_m = 1, kWhole = 0.85;
+  double left_px = 1e9, right_px = -1e9, hidden_px = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d p_cam = view.T_cam_body * cornerOf(view.box.least(), view.box.most(), corner);
+    if (p_cam.z() < kNear_m) return false;
+    const double u_px = camera.cx_px + camera.fx_px * p_cam.x() / p_cam.z();
+    if (u_px < left_px) left_px = u_px, hidden_px = camera.fx_px * camera.baseline_m / p_cam.z();
+    right_px = std::max(right_px, u_px);
+  }
+  const double seen_px = std::min(right_px, camera.width_px - 1.0) - std::max(left_px, hidden_px);
+  return seen_px > kWhole * (right_px - left_px);
 }
 
 ObjectMask maskOf(const Outline& outline, int level, TrackId track) {
@@ -118,8 +144,9 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
   });
   if (observed != inputs.measurements->objects.end())
     view.points = extentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
-  if (is_new) {
-    shape.evidence = shape.first = nearFaceAtPoints(view);
+  if (is_new && view.points) {
+    const double disparity_px = camera_.fx_px * camera_.baseline_m / T_cam_body.translation().z();
+    if (!isCutOff(observed->box, disparity_px, camera_)) shape.evidence = shape.first = nearFaceAtPoints(view);
     view.box = estimateBox(shape.evidence, shape.speed_mps);
   }
   for (const ObjectEstimate& other : frame.objects)
@@ -131,7 +158,8 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
   if (const auto disparities = seen ? disparitiesAround(view, features) : std::nullopt) {
     Outline outline = findOutline(*disparities, view, camera_);
     if (outline.count() >= kLeastCells) {
-      if (const auto look = measured(*disparities, outline, view, shape)) {
+      const bool whole = isWhole(view, camera_) || std::ssize(shape.looks) < kFewLooks;
+      if (const auto look = whole ? measured(*disparities, outline, view, shape) : std::nullopt) {
         shape.evidence.add(*look, kLookWeight);
         shape.looks[frame.frame] = {*look, view.T_cam_body};
       }
@@ -186,6 +214,8 @@ std::optional<LevelDisparities> ObjectShapes::disparitiesAround(const ObjectView
       .level = level,
       .map = dense_disparity_(features.left.levels[level], features.right.levels[level], window, {0, most_px + 1})};
   if (disparities.map.window.empty()) return std::nullopt;
+  for (int finer = level - 1; finer >= std::max(0, level - kRefinements); --finer)
+    refineDisparities(features.left.levels[finer], features.right.levels[finer], 1 << (level - finer), disparities.map);
   return disparities;
 }
 

@@ -10,7 +10,7 @@
 namespace motorcade {
 namespace {
 
-constexpr double kDisparitySigma_px = 0.4;  // of a dense disparity, in pixels of its level
+constexpr double kDisparitySigma_px = 0.25;  // of a dense disparity, in pixels of its level
 constexpr double kGrowth_m = 0.6;  // by which an outline may pass the volume that was thought possible, along the road
 constexpr double kSlack_m = 0.2;   // beyond the volume that the cuboid may fill
 constexpr float kConnected_px = 1.0F;             // of the level: between neighbors on one surface

@@ -25,6 +25,7 @@ TEST(BoxBelief, KindsAreToldBySizeAndSpeed) {
   EXPECT_EQ(kind({11, 2.5, 3.3}, 15), ObjectKind::kLargeVehicle);
   EXPECT_EQ(kind({1.8, 0.6, 1.7}, 6), ObjectKind::kTwoWheeler);
   EXPECT_EQ(kind({0.8, 0.6, 1.75}, 1.5), ObjectKind::kPedestrian);
+  EXPECT_EQ(kind({1.3, 0.6, 1.75}, 5), ObjectKind::kTwoWheeler);  // too short for one, too fast for a walker
   const BoxEstimate fast = estimateBox(seen({1.2, 0.65, 1.75}, 0.3), 10),
                     slow = estimateBox(seen({1.2, 0.65, 1.75}, 0.3), 1);
   EXPECT_EQ(fast.kind, ObjectKind::kTwoWheeler);  // nobody runs that fast

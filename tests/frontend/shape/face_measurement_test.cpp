@@ -69,5 +69,24 @@ TEST(FaceMeasurement, HoldsTheFollowedPoints) {
   EXPECT_GT(front(), 4);
 }
 
+TEST(FaceMeasurement, AWrongBeliefOfTheRearGivesWayToTheSideThatIsSeenBehindIt) {
+  // A car that overtakes: its side fills the view, and its rear is believed to be two meters ahead of where it is.
+  const SE3 T_cam_body = StreetByHand::standingAt(-3.3, 9);
+  const StreetByHand street({{T_cam_body, StreetByHand::faces(kCar_m)}});
+  const LevelDisparities seen = street.disparities({.u0 = 40, .v0 = 60, .width = 110, .height = 60}, 2);
+  FaceInformation evidence;
+  evidence.add(Vector6d::Unit(kRear), -0.5 * kCar_m.x() + 2, 0.2);
+  ObjectView view{.T_cam_body = T_cam_body,
+                  .box = estimateBox(evidence, 15),
+                  .ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m},
+                  .disparity_offset_px = 0};
+  EXPECT_GT(view.box.least().x(), -0.5 * kCar_m.x() + 1.5);
+  for (int i = 0; i < 40; ++i) {
+    evidence.add(measureFaces(seen, findOutline(seen, view, kRig), view, kRig), 0.15);
+    view.box = estimateBox(evidence, 15);
+  }
+  EXPECT_NEAR(view.box.least().x(), -0.5 * kCar_m.x(), 0.3);
+}
+
 }  // namespace
 }  // namespace motorcade
