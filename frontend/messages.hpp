@@ -119,6 +119,7 @@ struct SceneMotion {
   GroundPlane ground;
   std::vector<ScenePoint> points;  // ordered by point id
   std::vector<Segment> segments;   // moving and unknown ones; the static rest is not listed
+  FeaturesPtr features;            // the stereo pair
 };
 using SceneMotionPtr = std::shared_ptr<const SceneMotion>;
 

@@ -29,6 +29,7 @@ SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo,
   tracks_.update(*flow, observed, odometry_.trail());
 
   auto motion = newMotion(frame, camera);
+  motion->features = stereo->features;
   addPoints(observed, camera.inliers, motion->points);
   const std::vector<bool> violates_geometry = testGeometry();
   motion->ground = findGround(violates_geometry, frame.frame, motion->points);
@@ -59,7 +60,8 @@ std::shared_ptr<SceneMotion> SceneFlowSegmentation::newMotion(const StereoFrame&
                         .ego_inliers = camera.inlier_count,
                         .ground = {},
                         .points = std::move(points),
-                        .segments = {}};
+                        .segments = {},
+                        .features = {}};
   return motion;
 }
 

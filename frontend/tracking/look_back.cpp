@@ -8,22 +8,42 @@ namespace motorcade {
 
 void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKinematics::Params& kinematics) const {
   auto earlier = past_.rbegin();
-  while (earlier != past_.rend() && earlier->scene->frame >= object.backlog.front().frame) ++earlier;
+  while (earlier != past_.rend() && earlier->scene->frame > object.backlog.front().frame) ++earlier;
+  if (earlier == past_.rend()) return;
+  TrackedObject body = object;
+  MeasuredPoints later;
+  if (earlier->scene->frame == object.backlog.front().frame) {
+    const SE3& T_cam_body = object.backlog.front().T_cam_body;
+    later = motion_.measuredPoints(body, *earlier->scene);
+    motion_.addPatches(*earlier->scene, T_cam_body, body, later);
+    motion_.addNearby(*earlier->scene, T_cam_body, body, later);
+    ++earlier;
+  }
+  ObjectKinematics then = object.kinematics;
   for (int k = 0; k < frames_ && earlier != past_.rend(); ++k, ++earlier) {
-    ObjectKinematics then = object.kinematics;
     then.predict(secondsBetween(now, earlier->scene->stamp), kinematics);
-    auto observation = observe(object, *earlier, then);
+    now = earlier->scene->stamp;
+    auto observation = observe(*earlier, body, then, later);
     if (!observation) return;
+    // What was only near the object then is evidence of it, but surely a point of it only if it was followed later.
+    std::erase_if(observation->measured, [&](const PointMeasurement& p) { return !object.find(p.point); });
     object.backlog.insert(object.backlog.begin(), std::move(*observation));
   }
 }
 
-std::optional<ObjectObservation> LookBack::observe(const TrackedObject& object, const PastScene& earlier,
-                                                   const ObjectKinematics& then) const {
+/// Where the object was in an earlier frame; `then` and `later` become what is known of it there.
+std::optional<ObjectObservation> LookBack::observe(const PastScene& earlier, TrackedObject& object,
+                                                   ObjectKinematics& then, MeasuredPoints& later) const {
   const PosePrior prior{earlier.T_world_cam.inverse() * then.pose(), then.poseCovariance().inverse()};
-  auto observation = motion_.lookBack(object, *earlier.scene, prior);
-  if (!observation && then.positionSigma_m() < ObjectMotionEstimator::kMaxEvidenceSigma_m)
+  std::optional<ObjectObservation> observation;
+  if (auto found = motion_.lookBack(object, *earlier.scene, later, prior)) {
+    then.acceptPose((earlier.T_world_cam * found->fit.T_cam_ref).normalized(), found->fit.covariance);
+    later = std::move(found->points);
+    motion_.addNearby(*earlier.scene, found->fit.T_cam_ref, object, later);
+    observation = std::move(found->observation);
+  } else if (then.positionSigma_m() < ObjectMotionEstimator::kMaxEvidenceSigma_m) {
     observation = motion_.visibleEvidence(object, *earlier.scene, prior);
+  }
   if (!observation) return std::nullopt;
   observation->frame = earlier.scene->frame;
   observation->velocity_cam_mps = earlier.T_world_cam.rotation().transpose() * then.velocityWorld_mps();

@@ -30,8 +30,8 @@ class LookBack {
     SceneMotionPtr scene;
     SE3 T_world_cam;
   };
-  std::optional<ObjectObservation> observe(const TrackedObject& object, const PastScene& earlier,
-                                           const ObjectKinematics& then) const;
+  std::optional<ObjectObservation> observe(const PastScene& earlier, TrackedObject& object, ObjectKinematics& then,
+                                           MeasuredPoints& later) const;
 
   int frames_, kept_;
   ObjectMotionEstimator motion_;

@@ -7,6 +7,9 @@ namespace motorcade {
 namespace {
 
 constexpr double kSpeedSigmas = 9.0;  // of the speed above zero: a parked car with a bad track reaches a few
+// People walk at 1.5 m/s, of which a few standard deviations are all there is: they are known by the way they go.
+constexpr double kSlowSpeedSigmas = 4, kLongTravel_m = 0.8;
+constexpr int kLongObserved = 7;
 constexpr double kMinExtent_m = 0.3;  // span of the points: less is a blot, no vehicle
 constexpr double kMinExtent_px = 20;  // in the image too: points whose patches overlap are one measurement
 
@@ -33,13 +36,16 @@ bool ObjectConfirmation::operator()(const TrackedObject& object, const std::vect
   const ObjectObservation& newest = object.backlog.back();
   if (looksThrough(newest, reported) || diagonal_px(newest.box) < kMinExtent_px) return false;
   const double traveled_m = (object.kinematics.pose().translation() - object.spawned_at_world).norm();
+  const bool surely = movesSurely(object.kinematics, kSpeedSigmas) ||
+                      (traveled_m > kLongTravel_m && object.life.observations() >= kLongObserved &&
+                       movesSurely(object.kinematics, kSlowSpeedSigmas));
   return object.life.observations() >= params_.confirm_observations && traveled_m > params_.confirm_travel_m &&
-         movesSurely(object.kinematics) && object.extent(0).diagonal().norm() > kMinExtent_m;
+         surely && object.extent(0).diagonal().norm() > kMinExtent_m;
 }
 
-bool ObjectConfirmation::movesSurely(const ObjectKinematics& kinematics) const {
+bool ObjectConfirmation::movesSurely(const ObjectKinematics& kinematics, double sigmas) const {
   const double speed_mps = kinematics.speed_mps();
-  return speed_mps > params_.confirm_speed_mps && speed_mps > kSpeedSigmas * kinematics.speedSigma_mps();
+  return speed_mps > params_.confirm_speed_mps && speed_mps > sigmas * kinematics.speedSigma_mps();
 }
 
 std::vector<Parameter> parametersOf(ObjectConfirmation::Params& params) {

@@ -22,7 +22,7 @@ class ObjectConfirmation {
   bool operator()(const TrackedObject& object, const std::vector<ObjectObservation>& reported) const;
 
  private:
-  bool movesSurely(const ObjectKinematics& kinematics) const;
+  bool movesSurely(const ObjectKinematics& kinematics, double sigmas) const;
 
   Params params_;
 };

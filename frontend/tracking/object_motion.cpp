@@ -23,6 +23,13 @@ Box imageBox(const std::vector<const ScenePoint*>& points) {
   return box;
 }
 
+template <class Observations>
+MeasuredPoints measuredIn(const SceneMotion& scene, const Observations& observations) {
+  MeasuredPoints measured{scene.features, {}};
+  for (const auto& o : observations) measured.points.push_back(*o.now);
+  return measured;
+}
+
 }  // namespace
 
 PointMeasurement measurementOf(const ScenePoint& point, double disparity_offset_px) {
@@ -55,10 +62,21 @@ PosePrior ObjectMotionEstimator::weakPrior(const SE3& T_cam_body) const {
   return {T_cam_body, sigma.cwiseAbs2().cwiseInverse().asDiagonal()};
 }
 
+std::vector<ScenePoint> ObjectMotionEstimator::search(const TrackedObject& object, const SceneMotion& scene,
+                                                      const MeasuredPoints& known, const SE3& T_cam_body,
+                                                      std::vector<Observation>& seen) const {
+  if (!scene.features) return {};
+  std::vector<ScenePoint> found =
+      searchByProjection(object, known, *scene.features, T_cam_body, scene.disparity_offset_px, camera_);
+  std::erase_if(found, [&](const ScenePoint& p) { return findPoint(scene, p.point) != nullptr; });
+  for (const ScenePoint& p : found) seen.push_back({object.indexOf(p.point), &p});
+  return found;
+}
+
 std::optional<ObjectMotionEstimator::Agreement> ObjectMotionEstimator::agree(const TrackedObject& object,
-                                                                             const SceneMotion& scene,
+                                                                             std::vector<Observation> seen,
                                                                              const PosePrior& prior) const {
-  Agreement a{.fit = {}, .seen = observations(object, scene), .chi2 = {}, .inliers = {}};
+  Agreement a{.fit = {}, .seen = std::move(seen), .chi2 = {}, .inliers = {}};
   if (static_cast<int>(a.seen.size()) < params_.min_points) return std::nullopt;
   std::vector<PoseObservation> observed;
   for (const auto& s : a.seen) observed.push_back(observe(object.points[s.body_point], *s.now));
@@ -77,7 +95,13 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
                                                                const SceneMotion* previous_scene,
                                                                const SE3& T_world_cam) const {
   const PosePrior prior{T_world_cam.inverse() * object.kinematics.pose(), object.kinematics.poseCovariance().inverse()};
-  const auto agreement = agree(object, scene, prior);
+  auto agreement = agree(object, observations(object, scene), prior);
+  std::vector<ScenePoint> searched;
+  if (!agreement || !agreement->enough) {
+    std::vector<Observation> seen = observations(object, scene);
+    searched = search(object, scene, object.measured, prior.mean, seen);
+    agreement = agree(object, std::move(seen), prior);
+  }
   if (!agreement) return std::nullopt;
   if (!agreement->enough) {
     dropMisfits(object, agreement->seen, agreement->chi2);
@@ -88,17 +112,25 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
   ObjectObservation observation =
       measureEncounter(object, agreement->inliers, object.T_cam_body, scene.disparity_offset_px);
   if (previous_scene) measureMotion(object, agreement->inliers, scene, *previous_scene, observation);
+  object.measured = measuredIn(scene, agreement->inliers);
   refinePoints(object, agreement->inliers);
   dropMisfits(object, agreement->seen, agreement->chi2);
   return observation;
 }
 
-std::optional<ObjectObservation> ObjectMotionEstimator::lookBack(const TrackedObject& object,
-                                                                 const SceneMotion& earlier,
-                                                                 const PosePrior& prior) const {
-  const auto agreement = agree(object, earlier, prior);
+std::optional<ObjectMotionEstimator::Found> ObjectMotionEstimator::lookBack(const TrackedObject& object,
+                                                                            const SceneMotion& earlier,
+                                                                            const MeasuredPoints& later,
+                                                                            const PosePrior& prior) const {
+  std::vector<Observation> seen = observations(object, earlier);
+  const std::vector<ScenePoint> searched = search(object, earlier, later, prior.mean, seen);
+  const auto agreement = agree(object, std::move(seen), prior);
   if (!agreement || !agreement->enough) return std::nullopt;
-  return measureEncounter(object, agreement->inliers, agreement->fit.T_cam_ref, earlier.disparity_offset_px);
+  Found found{.observation =
+                  measureEncounter(object, agreement->inliers, agreement->fit.T_cam_ref, earlier.disparity_offset_px),
+              .fit = agreement->fit,
+              .points = measuredIn(earlier, agreement->inliers)};
+  return found;
 }
 
 std::optional<ObjectObservation> ObjectMotionEstimator::visibleEvidence(const TrackedObject& object,
@@ -106,10 +138,24 @@ std::optional<ObjectObservation> ObjectMotionEstimator::visibleEvidence(const Tr
                                                                         const PosePrior& predicted) const {
   const auto origin = camera_.project(predicted.mean.translation());
   if (!origin || !camera_.inLeftImage(origin->x(), origin->y())) return std::nullopt;
+  const std::vector<const ScenePoint*> visible = pointsWithin(object, scene, predicted.mean);
+  if (static_cast<int>(visible.size()) < params_.min_points) return std::nullopt;
+  ObjectObservation observation;
+  observation.points = static_cast<int>(visible.size());
+  observation.box = imageBox(visible);
+  observation.T_cam_body = predicted.mean;
+  observation.encounter_covariance = weakPrior(predicted.mean).information.inverse();
+  return observation;
+}
+
+/// Points of unknown motion that may lie within the object's outline.
+std::vector<const ScenePoint*> ObjectMotionEstimator::pointsWithin(const TrackedObject& object,
+                                                                   const SceneMotion& scene,
+                                                                   const SE3& T_cam_body) const {
   Eigen::AlignedBox3d outline = object.core(SE3{});
   outline.min().array() -= params_.evidence_margin_m;
   outline.max().array() += params_.evidence_margin_m;
-  const SE3 T_body_cam = predicted.mean.inverse();
+  const SE3 T_body_cam = T_cam_body.inverse();
   const auto mayLieWithin = [&](const ScenePoint& p) {
     const Eigen::Vector3d p_body = T_body_cam * camera_.triangulate(p.uvd_px);
     const Eigen::Vector3d beyond = p_body - p_body.cwiseMax(outline.min()).cwiseMin(outline.max());
@@ -121,13 +167,35 @@ std::optional<ObjectObservation> ObjectMotionEstimator::visibleEvidence(const Tr
   for (const ScenePoint& p : scene.points)
     if (p.label != PointLabel::kStatic && p.label != PointLabel::kGround && !p.ambiguous && mayLieWithin(p))
       visible.push_back(&p);
-  if (static_cast<int>(visible.size()) < params_.min_points) return std::nullopt;
-  ObjectObservation observation;
-  observation.points = static_cast<int>(visible.size());
-  observation.box = imageBox(visible);
-  observation.T_cam_body = predicted.mean;
-  observation.encounter_covariance = weakPrior(predicted.mean).information.inverse();
-  return observation;
+  return visible;
+}
+
+MeasuredPoints ObjectMotionEstimator::measuredPoints(const TrackedObject& object, const SceneMotion& scene) const {
+  return measuredIn(scene, observations(object, scene));
+}
+
+void ObjectMotionEstimator::addNearby(const SceneMotion& scene, const SE3& T_cam_body, TrackedObject& object,
+                                      MeasuredPoints& measured) const {
+  add(pointsWithin(object, scene, T_cam_body), T_cam_body, object, measured);
+}
+
+void ObjectMotionEstimator::addPatches(const SceneMotion& scene, const SE3& T_cam_body, TrackedObject& object,
+                                       MeasuredPoints& measured) const {
+  const std::vector<ScenePoint> patches = samplePatches(measured, scene.disparity_offset_px);
+  std::vector<const ScenePoint*> points;
+  for (const ScenePoint& p : patches) points.push_back(&p);
+  add(points, T_cam_body, object, measured);
+}
+
+void ObjectMotionEstimator::add(const std::vector<const ScenePoint*>& points, const SE3& T_cam_body,
+                                TrackedObject& object, MeasuredPoints& measured) const {
+  std::vector<BodyPoint> of_body;
+  for (const ScenePoint* p : points) {
+    if (object.find(p->point)) continue;
+    of_body.push_back(toBody(*p, T_cam_body, camera_));
+    measured.points.push_back(*p);
+  }
+  object.adopt(of_body);
 }
 
 void ObjectMotionEstimator::dropMisfits(TrackedObject& object, const std::vector<Observation>& seen,
@@ -138,6 +206,7 @@ void ObjectMotionEstimator::dropMisfits(TrackedObject& object, const std::vector
     p.misfits = chi2[i] < params_.inlier_chi2 ? 0 : p.misfits + 1;
     if (p.misfits < params_.max_misfits) kept.push_back(p);
   }
+  std::ranges::sort(kept, {}, &BodyPoint::point);
   object.points = std::move(kept);
 }
 
@@ -155,7 +224,9 @@ ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& o
   const auto fit = fitPose(camera_, PoseObservations(observations), T_cam_body, params_.fit, &weak);
   ObjectObservation observation;
   observation.points = static_cast<int>(inliers.size());
-  for (const ScenePoint* p : visible) observation.measured.push_back(measurementOf(*p, disparity_offset_px));
+  for (const ScenePoint* p : visible)
+    if (isFollowed(p->point)) observation.measured.push_back(measurementOf(*p, disparity_offset_px));
+  std::ranges::sort(observation.measured, {}, &PointMeasurement::point);
   observation.box = imageBox(visible);
   observation.T_cam_body = fit ? fit->T_cam_ref : T_cam_body;
   observation.encounter_covariance = fit ? fit->covariance : Matrix6d(weak.information.inverse());

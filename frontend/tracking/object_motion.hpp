@@ -6,6 +6,7 @@
 #include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/geometry/stereo_pose.hpp"
+#include "frontend/tracking/search_by_projection.hpp"
 #include "frontend/tracking/tracked_object.hpp"
 
 namespace motorcade {
@@ -36,16 +37,34 @@ class ObjectMotionEstimator {
   std::optional<ObjectObservation> follow(TrackedObject& object, const SceneMotion& scene,
                                           const SceneMotion* previous_scene, const SE3& T_world_cam) const;
 
-  /// Pose in an earlier frame, when the object was not yet known but its points were already followed: from their
-  /// observations then, with a prior on the pose. Empty when too few of them agree. Leaves the object as it is.
-  std::optional<ObjectObservation> lookBack(const TrackedObject& object, const SceneMotion& earlier,
-                                            const PosePrior& prior) const;
+  /// What was found of an object in another frame, with its pose there and the points that agree on it.
+  struct Found {
+    ObjectObservation observation;
+    PoseFit fit;
+    MeasuredPoints points;
+  };
+  /// Pose in an earlier frame, when the object was not yet known: from the observations of its points that were already
+  /// followed then, and of those that are found by their patches in `later`, a frame in which they were measured; with
+  /// a prior on the pose. Empty when too few of them agree. Leaves the object as it is.
+  std::optional<Found> lookBack(const TrackedObject& object, const SceneMotion& earlier, const MeasuredPoints& later,
+                                const PosePrior& prior) const;
 
   /// For an object none of whose own points were followed: the predicted pose, when there is visible evidence of it,
   /// enough points of unknown motion within its outline. Its covariance is wide, as the prediction is made of
   /// measurements that count already.
   std::optional<ObjectObservation> visibleEvidence(const TrackedObject& object, const SceneMotion& scene,
                                                    const PosePrior& predicted) const;
+
+  /// The object's points that are observed in a scene.
+  MeasuredPoints measuredPoints(const TrackedObject& object, const SceneMotion& scene) const;
+
+  /// Points of a scene that may lie on an object, though nothing is known of their motion yet: they are added to it and
+  /// to its `measured` points.
+  void addNearby(const SceneMotion& scene, const SE3& T_cam_body, TrackedObject& object,
+                 MeasuredPoints& measured) const;
+  /// The same of patches between its points.
+  void addPatches(const SceneMotion& scene, const SE3& T_cam_body, TrackedObject& object,
+                  MeasuredPoints& measured) const;
 
   /// Encounter of an object that is spawned in this frame: its body frame is where its points say, up to their noise.
   ObjectObservation firstObservation(const TrackedObject& object, const SceneMotion& scene) const;
@@ -56,6 +75,8 @@ class ObjectMotionEstimator {
     const ScenePoint* now;
   };
   std::vector<Observation> observations(const TrackedObject& object, const SceneMotion& scene) const;
+  std::vector<const ScenePoint*> pointsWithin(const TrackedObject& object, const SceneMotion& scene,
+                                              const SE3& T_cam_body) const;
   PoseObservation observe(const BodyPoint& point, const ScenePoint& now) const;
   PosePrior weakPrior(const SE3& T_cam_body) const;
   /// The pose that the observations and the prior agree on, and the observations that fit it.
@@ -66,7 +87,13 @@ class ObjectMotionEstimator {
     std::vector<Observation> inliers;
     bool enough = false;
   };
-  std::optional<Agreement> agree(const TrackedObject& object, const SceneMotion& scene, const PosePrior& prior) const;
+  std::optional<Agreement> agree(const TrackedObject& object, std::vector<Observation> seen,
+                                 const PosePrior& prior) const;
+  /// Adds the points that are not seen in the scene but are found by their patches in `known`, which hold them.
+  std::vector<ScenePoint> search(const TrackedObject& object, const SceneMotion& scene, const MeasuredPoints& known,
+                                 const SE3& T_cam_body, std::vector<Observation>& seen) const;
+  void add(const std::vector<const ScenePoint*>& points, const SE3& T_cam_body, TrackedObject& object,
+           MeasuredPoints& measured) const;
   void dropMisfits(TrackedObject& object, const std::vector<Observation>& seen, const std::vector<double>& chi2) const;
   ObjectObservation measureEncounter(const TrackedObject& object, const std::vector<Observation>& inliers,
                                      const SE3& T_cam_body, double disparity_offset_px) const;

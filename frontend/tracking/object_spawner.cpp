@@ -50,7 +50,7 @@ TrackedObject ObjectSpawner::spawn(const SceneMotion& scene, const Segment& vehi
   const SE3 T_world_body(travelAxes(T_world_cam.rotation() * vehicle.velocity_mps, upInWorld(scene, T_world_cam)),
                          object.spawned_at_world);
   object.T_cam_body = object.T_cam_body_before = T_world_cam.inverse() * T_world_body;
-  for (const int i : vehicle.points) object.points.push_back(adopt_.toBody(object, scene.points[i]));
+  for (const int i : vehicle.points) object.points.push_back(toBody(scene.points[i], object.T_cam_body, camera_));
   ObjectObservation first = motion_.firstObservation(object, scene);
   first.frame = scene.frame;
   first.velocity_cam_mps = vehicle.velocity_mps;

@@ -6,7 +6,6 @@
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
 #include "frontend/tracking/object_motion.hpp"
-#include "frontend/tracking/point_adoption.hpp"
 #include "frontend/tracking/tracked_object.hpp"
 
 namespace motorcade {
@@ -15,7 +14,7 @@ namespace motorcade {
 class ObjectSpawner {
  public:
   ObjectSpawner(const ObjectMotionEstimator::Params& params, const StereoCamera& camera)
-      : min_points_(params.min_points), adopt_(camera), motion_(params, camera) {}
+      : min_points_(params.min_points), camera_(camera), motion_(params, camera) {}
 
   /// Objects from those points of the segment that are not `taken`, one for each vehicle abreast; marks their points.
   std::vector<TrackedObject> operator()(const SceneMotion& scene, const Segment& segment, const SE3& T_world_cam,
@@ -25,7 +24,7 @@ class ObjectSpawner {
   TrackedObject spawn(const SceneMotion& scene, const Segment& vehicle, const SE3& T_world_cam);
 
   int min_points_;
-  PointAdoption adopt_;
+  StereoCamera camera_;
   ObjectMotionEstimator motion_;
   std::int64_t next_track_ = 0;
 };

@@ -27,13 +27,6 @@ bool isWithinReach(const Eigen::AlignedBox3d& known, const BodyPoint& candidate,
 
 }  // namespace
 
-BodyPoint PointAdoption::toBody(const TrackedObject& object, const ScenePoint& point) const {
-  const SE3 T_body_cam = object.T_cam_body.inverse();
-  const Eigen::Matrix3d J = T_body_cam.rotation() * camera_.triangulationJacobian(point.uvd_px);
-  return {point.point, T_body_cam * camera_.triangulate(point.uvd_px),
-          J * point.sigma_px.cwiseAbs2().asDiagonal() * J.transpose()};
-}
-
 /// Its velocity is the body's at that point, and not zero.
 bool PointAdoption::movesWith(const TrackedObject& object, const ScenePoint& point, const SE3& T_world_cam) const {
   if (!point.flow) return false;
@@ -49,7 +42,7 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
   const auto consider = [&](int i) {
     const ScenePoint& p = scene.points[i];
     if (taken[i] || p.ambiguous || p.label == PointLabel::kGround) return;
-    const BodyPoint candidate = toBody(object, p);
+    const BodyPoint candidate = toBody(p, object.T_cam_body, camera_);
     if (!isWithinReach(known, candidate, segment != nullptr) || !movesWith(object, p, T_world_cam)) return;
     taken[i] = true;
     adopted.push_back(candidate);

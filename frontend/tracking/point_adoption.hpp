@@ -15,9 +15,6 @@ class PointAdoption {
   void operator()(TrackedObject& object, const SceneMotion& scene, const Segment* segment, const SE3& T_world_cam,
                   std::vector<bool>& taken) const;
 
-  /// Puts a point into the object's frame, with the covariance that its disparity gives.
-  BodyPoint toBody(const TrackedObject& object, const ScenePoint& point) const;
-
  private:
   bool movesWith(const TrackedObject& object, const ScenePoint& point, const SE3& T_world_cam) const;
 

@@ -11,6 +11,13 @@ void BodyPoint::moveTo(const SE3& T_new_old) {
   covariance = T_new_old.rotation() * covariance * T_new_old.rotation().transpose();
 }
 
+BodyPoint toBody(const ScenePoint& point, const SE3& T_cam_body, const StereoCamera& camera) {
+  const SE3 T_body_cam = T_cam_body.inverse();
+  const Eigen::Matrix3d J = T_body_cam.rotation() * camera.triangulationJacobian(point.uvd_px);
+  return {point.point, T_body_cam * camera.triangulate(point.uvd_px),
+          J * point.sigma_px.cwiseAbs2().asDiagonal() * J.transpose()};
+}
+
 const BodyPoint* TrackedObject::find(PointId point) const {
   const auto at = std::lower_bound(points.begin(), points.end(), point,
                                    [](const BodyPoint& p, PointId id) { return p.point < id; });

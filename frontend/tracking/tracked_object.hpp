@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/messages.hpp"
+#include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
 #include "frontend/tracking/life_cycle.hpp"
 #include "frontend/tracking/object_kinematics.hpp"
@@ -22,6 +23,15 @@ struct BodyPoint {
   void moveTo(const SE3& T_new_old);
 };
 
+/// Puts a point into the frame of a body, with the covariance that its disparity gives.
+BodyPoint toBody(const ScenePoint& point, const SE3& T_cam_body, const StereoCamera& camera);
+
+/// A body's points as they were measured in one stereo pair.
+struct MeasuredPoints {
+  FeaturesPtr features;            // the pair; empty when there is none
+  std::vector<ScenePoint> points;  // ordered by point id
+};
+
 /// A vehicle that the tracker follows. The body frame's origin is the middle of the points when it is confirmed, fixed
 /// to the vehicle from then on.
 struct TrackedObject {
@@ -32,6 +42,7 @@ struct TrackedObject {
   SE3 T_cam_body_before;
   FrameId observed_before;        // frame of T_cam_body_before's measurement; invalid while there is none
   std::vector<BodyPoint> points;  // ordered by point
+  MeasuredPoints measured;        // those of the frame in which it was measured last
   ObjectState state = ObjectState::kMoving;
   int slow_frames = 0;                                         // in a row
   Eigen::Vector3d last_middle_body = Eigen::Vector3d::Zero();  // of the points when it was measured last
@@ -39,6 +50,8 @@ struct TrackedObject {
   std::vector<ObjectObservation> backlog;  // observations until it is confirmed, oldest first
 
   const BodyPoint* find(PointId point) const;
+  /// Index of a point that is there.
+  std::size_t indexOf(PointId point) const { return find(point) - points.data(); }
   /// Adds points and keeps the order.
   void adopt(const std::vector<BodyPoint>& more);
   /// Box around the points in body axes, grown by `margin_m`.

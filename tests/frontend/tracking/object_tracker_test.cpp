@@ -209,6 +209,16 @@ TEST(ObjectTracker, WhatIsNoLargerThanAHandIsNoVehicle) {
   }
 }
 
+TEST(ObjectTracker, AWalkerIsFollowedOnceItsWayIsLongEnough) {
+  int followed = 0;
+  for (std::uint64_t seed = 0; seed < 5; ++seed)  // across the road, with few points
+    followed +=
+        Drive({{.x_m = -3, .z_m = 13, .heading_rad = 1.57, .speed_mps = 1.4, .points = 8, .size = 0.35}}, 2, 25, seed)
+            .tracks()
+            .size() == 1;
+  EXPECT_GE(followed, 4);
+}
+
 TEST(ObjectTracker, PointsWithinOnePatchAreNoVehicle) {
   for (std::uint64_t seed = 0; seed < 5; ++seed)  // 20 cm at 16 m: 9 pixels
     EXPECT_TRUE(Drive({{.x_m = 0.5, .z_m = 16, .points = 30, .size = 0.12}}, 10, 20, seed).tracks().empty())

@@ -119,15 +119,5 @@ TEST(PointAdoption, ALongVehicleIsFoundStepByStepUpToTheLengthOfALorry) {
   EXPECT_LT(reached_m, 14);
 }
 
-TEST(PointAdoption, APointInBodyAxesHasTheCovarianceOfItsTriangulation) {
-  Car car;
-  const ScenePoint& p = car.see({0.5, 0.2, 0.3});
-  const BodyPoint body = PointAdoption(kRig).toBody(car.object, p);
-  EXPECT_THAT(body.p_body, IsNear(Eigen::Vector3d(0.5, 0.2, 0.3), 1e-9));
-  const Eigen::Matrix3d R = car.object.T_cam_body.rotation();
-  EXPECT_THAT(body.covariance, IsNear(R.transpose() * test::triangulationCovariance(p.uvd_px, p.sigma_px) * R, 1e-12));
-  EXPECT_GT(body.covariance(0, 0), 10 * body.covariance(1, 1));  // the car is seen from behind: depth is worst
-}
-
 }  // namespace
 }  // namespace motorcade

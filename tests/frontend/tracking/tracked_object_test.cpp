@@ -2,8 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/matchers.hpp"
+#include "tests/support/stereo_views.hpp"
+
 namespace motorcade {
 namespace {
+
+using test::IsNear;
+using test::kRig;
 
 TrackedObject objectAt(const std::vector<Eigen::Vector3d>& points_body) {
   TrackedObject object;
@@ -31,6 +37,21 @@ TEST(TrackedObject, TheCoreOfFewPointsHoldsThemAllWhereItIsMovedTo) {
   const Eigen::AlignedBox3d core = object.core(SE3(Eigen::Matrix3d::Identity(), {10, 0, 0}));
   EXPECT_EQ(core.min(), Eigen::Vector3d(10, 0, 0));
   EXPECT_EQ(core.max(), Eigen::Vector3d(12, 2, 3));
+}
+
+TEST(TrackedObject, APointInBodyAxesHasTheCovarianceOfItsTriangulation) {
+  Eigen::Matrix3d upright;  // columns: ahead = camera's z, left = -x, up = -y
+  upright << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  const SE3 T_cam_body(upright, {1, 1, 12});
+  const Eigen::Vector3d p_body(0.5, 0.2, 0.3);
+  const ScenePoint seen{
+      .point = {7}, .uvd_px = *kRig.project(T_cam_body * p_body), .sigma_px = test::kObservationSigma_px, .flow = {}};
+  const BodyPoint point = toBody(seen, T_cam_body, kRig);
+  EXPECT_EQ(point.point, seen.point);
+  EXPECT_THAT(point.p_body, IsNear(p_body, 1e-9));
+  EXPECT_THAT(point.covariance,
+              IsNear(upright.transpose() * test::triangulationCovariance(seen.uvd_px) * upright, 1e-12));
+  EXPECT_GT(point.covariance(0, 0), 10 * point.covariance(1, 1));  // seen from behind: depth is worst
 }
 
 }  // namespace

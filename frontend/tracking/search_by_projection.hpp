@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "core/stereo_camera.hpp"
+#include "frontend/messages.hpp"
+#include "frontend/tracking/tracked_object.hpp"
+
+namespace motorcade {
+
+/// Looks for a body's points in another stereo pair, where its predicted pose T_cam_body puts them, by the patches
+/// around them in the pair where they were measured: small errors of the prediction are made up for by alignment. For
+/// points that are followed no more, or were not followed yet. Points whose patch is not found, in the left image or at
+/// about the predicted disparity in the right one, are left out; those that remain are still to be checked against each
+/// other, by a rigid body's pose. `disparity_offset_px` is that of the other pair.
+std::vector<ScenePoint> searchByProjection(const TrackedObject& body, const MeasuredPoints& measured,
+                                           const Features& other, const SE3& T_cam_body, double disparity_offset_px,
+                                           const StereoCamera& camera);
+
+/// Whether it is a followed point, rather than a patch that `samplePatches` placed.
+inline bool isFollowed(PointId point) { return point.value >= 0; }
+
+/// Patches between the measured points of a body that lie at about their depth: evidence of a body on which corners are
+/// few. Numbered -1, -2, ...
+std::vector<ScenePoint> samplePatches(const MeasuredPoints& measured, double disparity_offset_px);
+
+}  // namespace motorcade

@@ -1,0 +1,76 @@
+#include "frontend/tracking/look_back.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/frontend/tracking/textured_board.hpp"
+#include "tests/support/matchers.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::IsNearPose;
+using test::kRig;
+using test::TexturedBoard;
+
+constexpr double kSpeed_mps = 8, kFrame_s = 0.1;
+constexpr int kFrames = 7, kConfirmed = 6, kSpawned = 4;
+
+SE3 boardIn(int frame) { return TexturedBoard::standingAt(-1, 14 + kSpeed_mps * kFrame_s * frame); }
+Timestamp stampOf(int frame) { return Timestamp{static_cast<std::int64_t>(1e9 * kFrame_s) * frame}; }
+
+/// A board that drives ahead of a standing camera. Corners on it are followed from the frame in which it was spawned
+/// on; the images show it from `first_seen` on.
+struct Drive {
+  TrackedObject object;
+  LookBack look_back{12, 3, {}, kRig};
+
+  explicit Drive(int first_seen) {
+    for (int frame = 0; frame < kFrames; ++frame) look_back.remember(scene(frame, frame >= first_seen), SE3{});
+    const SE3 T_cam_body = boardIn(kConfirmed);
+    for (const ScenePoint& p : TexturedBoard::points(T_cam_body, 6, 100))
+      object.points.push_back(toBody(p, T_cam_body, kRig));
+    Vector6d twist = Vector6d::Zero();
+    twist[0] = kSpeed_mps + 0.3;
+    Matrix12d covariance = 1e-4 * Matrix12d::Identity();
+    covariance.bottomRightCorner<6, 6>() *= 2500;
+    object.kinematics = ObjectKinematics(T_cam_body, twist, covariance);
+    for (int frame = kSpawned; frame <= kConfirmed; ++frame) {
+      ObjectObservation seen;
+      seen.frame = {frame};
+      seen.T_cam_body = boardIn(frame);
+      object.backlog.push_back(seen);
+    }
+  }
+  static SceneMotionPtr scene(int frame, bool there) {
+    auto scene = std::make_shared<SceneMotion>();
+    scene->frame = {frame};
+    scene->stamp = stampOf(frame);
+    scene->features = TexturedBoard::seenAt(boardIn(frame), there);
+    if (frame >= kSpawned) scene->points = TexturedBoard::points(boardIn(frame), 6, 100);
+    return scene;
+  }
+  void lookBack() { look_back(object, stampOf(kConfirmed), {}); }
+};
+
+TEST(LookBack, FindsAnObjectInFramesInWhichNoCornerOnItWasFollowed) {
+  Drive drive(0);
+  drive.lookBack();
+  ASSERT_EQ(drive.object.backlog.size(), static_cast<std::size_t>(kFrames));
+  for (int frame = 0; frame < kSpawned; ++frame) {
+    const ObjectObservation& seen = drive.object.backlog[frame];
+    EXPECT_EQ(seen.frame.value, frame);
+    EXPECT_GE(seen.points, 6);
+    EXPECT_THAT(seen.T_cam_body, IsNearPose(boardIn(frame), 0.15));
+    for (const PointMeasurement& p : seen.measured) EXPECT_NE(drive.object.find(p.point), nullptr);
+  }
+}
+
+TEST(LookBack, EndsWhereTheObjectIsNotSeen) {
+  Drive drive(2);
+  drive.lookBack();
+  ASSERT_FALSE(drive.object.backlog.empty());
+  EXPECT_EQ(drive.object.backlog.front().frame.value, 2);
+}
+
+}  // namespace
+}  // namespace motorcade

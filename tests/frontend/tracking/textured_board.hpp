@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "frontend/tracking/tracked_object.hpp"
+#include "tests/frontend/texture.hpp"
+#include "tests/support/stereo_views.hpp"
+
+namespace motorcade::test {
+
+/// A textured board of 3 x 1.6 m, upright and square to the camera, which drives before a far wall with another
+/// texture: what the rig sees of it, in images.
+class TexturedBoard {
+ public:
+  static constexpr double kWall_m = 80, kHalfWidth_m = 1.5, kHalfHeight_m = 0.8;
+
+  /// Body axes x ahead (the camera's z), y left, z up; its origin is the middle of the board.
+  static SE3 standingAt(double x_m, double z_m) {
+    Eigen::Matrix3d upright;
+    upright << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+    return {upright, {x_m, 0.5, z_m}};
+  }
+  static FeaturesPtr seenAt(const SE3& T_cam_body, bool there = true) {
+    auto features = std::make_shared<Features>();
+    features->frame = std::make_shared<const StereoFrame>();
+    features->left.levels.push_back(view(T_cam_body, 0, there));
+    features->right.levels.push_back(view(T_cam_body, kRig.baseline_m, there));
+    return features;
+  }
+  /// `count` points on the board, as they are measured without error, numbered from `first` on.
+  static std::vector<ScenePoint> points(const SE3& T_cam_body, int count, std::int64_t first) {
+    std::vector<ScenePoint> points;
+    Noise noise(3);
+    for (std::int64_t i = 0; i < count; ++i) {
+      const Eigen::Vector3d p_body = noise.inBox({0, -1.2, -0.6}, {0, 1.2, 0.6});
+      points.push_back({.point = {first + i},
+                        .uvd_px = *kRig.project(T_cam_body * p_body),
+                        .sigma_px = kObservationSigma_px,
+                        .flow = {}});
+    }
+    return points;
+  }
+
+ private:
+  static Image view(const SE3& T_cam_body, double camera_x_m, bool there) {
+    const Texture board(1);
+    const Eigen::Vector3d middle = T_cam_body.translation();
+    return render(kRig.width_px, kRig.height_px, [&, there](double u, double v) {
+      const double x = (u - kRig.cx_px) / kRig.fx_px, y = (v - kRig.cy_px) / kRig.fy_px;
+      const double right_m = x * middle.z() + camera_x_m - middle.x(), down_m = y * middle.z() - middle.y();
+      constexpr double kPixelsPerMeter = 60;
+      if (there && std::abs(right_m) < kHalfWidth_m && std::abs(down_m) < kHalfHeight_m)
+        return board(kPixelsPerMeter * right_m, kPixelsPerMeter * down_m);
+      return 128 + 40 * std::sin(0.9 * (u + kRig.fx_px * camera_x_m / kWall_m)) * std::sin(0.7 * v);
+    });
+  }
+};
+
+}  // namespace motorcade::test
