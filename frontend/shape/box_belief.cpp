@@ -24,7 +24,7 @@ const std::array<KindPrior, 5> kKinds{{{ObjectKind::kCar, {4.1, 1.72, 1.55}, {0.
                                        {ObjectKind::kTwoWheeler, {1.76, 0.6, 1.74}, {0.25, 0.12, 0.15}, 0.03, 15},
                                        {ObjectKind::kPedestrian, {0.84, 0.66, 1.76}, {0.25, 0.15, 0.13}, 0.06, 3}}};
 
-constexpr double kRuledOut = 1e-3;     // of the likeliest kind's likelihood
+constexpr double kRuledOut = 1e-3;       // of the likeliest kind's likelihood
 constexpr double kSpeedSlack_mps = 0.7;  // by which a kind is faster than usual with one standard deviation
 // The body's origin is the median of points on it, which mostly lie on the faces in view.
 constexpr double kAheadSigma_m = 2.0, kAsideSigma_m = 0.7, kBottom_m = -0.8, kBottomSigma_m = 0.5;

@@ -18,7 +18,9 @@ constexpr double kBoundSigma_px = 1.5, kRounded_m = 0.08;  // of a bound of the 
 constexpr double kRoadSigma_m = 0.05, kRoadSlope = 0.004;  // of the road's height, per meter away
 constexpr double kPointSigma_m = 0.3;                      // of the outermost points of an object
 constexpr double kNear_m = 1.5;                            // nearer corners are seen too much from the side
-constexpr double kSharp_m = 0.35, kOutermost = 0.05, kExtentSigma_m = 0.1;
+constexpr double kSharp_m = 0.35;    // noise in depth of surface points that tell how far the object reaches
+constexpr double kOutermost = 0.05;  // share of them, at each side, that may be of something else
+constexpr double kExtentSigma_m = 0.1;
 constexpr std::size_t kLeastSharp = 30;
 constexpr int kEdge = 3;       // cells from the window's edge, where the window cuts the outline
 constexpr int kSamples = 400;  // of the outline's cells
@@ -43,6 +45,7 @@ class FaceMeasurement {
   void addSurfaces();
   void addSurfacePoint(int column, int row, std::array<FaceInformation, 6>& of_face, std::array<double, 6>& counts);
   void addExtent();
+  void reachOver(int axis, double least, double most, double sigma_m);
   void addBounds();
   bool isCut(int column, int step) const;
   /// One side of the outline; where it is cut, the object reaches at least so far.
@@ -72,11 +75,14 @@ void FaceMeasurement::addRoad() {
 /// The cuboid holds the points by which the object is followed.
 void FaceMeasurement::addPoints() {
   if (!view_.points) return;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double least = view_.points->min()[axis], most = view_.points->max()[axis];
-    if (view_.box.faces[2 * axis] > least) information_.add(Vector6d::Unit(2 * axis), least, kPointSigma_m);
-    if (view_.box.faces[2 * axis + 1] < most) information_.add(Vector6d::Unit(2 * axis + 1), most, kPointSigma_m);
-  }
+  for (int axis = 0; axis < 3; ++axis)
+    reachOver(axis, view_.points->min()[axis], view_.points->max()[axis], kPointSigma_m);
+}
+
+/// The cuboid reaches at least from `least` to `most`.
+void FaceMeasurement::reachOver(int axis, double least, double most, double sigma_m) {
+  if (view_.box.faces[2 * axis] > least) information_.add(Vector6d::Unit(2 * axis), least, sigma_m);
+  if (view_.box.faces[2 * axis + 1] < most) information_.add(Vector6d::Unit(2 * axis + 1), most, sigma_m);
 }
 
 void FaceMeasurement::addSurfaces() {
@@ -100,9 +106,7 @@ void FaceMeasurement::addExtent() {
       std::ranges::nth_element(sharp_, nth, {}, [axis](const Eigen::Vector3d& p) { return p[axis]; });
       return (*nth)[axis];
     };
-    const double least = at(kOutermost), most = at(1 - kOutermost);
-    if (view_.box.faces[2 * axis] > least) information_.add(Vector6d::Unit(2 * axis), least, kExtentSigma_m);
-    if (view_.box.faces[2 * axis + 1] < most) information_.add(Vector6d::Unit(2 * axis + 1), most, kExtentSigma_m);
+    reachOver(axis, at(kOutermost), at(1 - kOutermost), kExtentSigma_m);
   }
 }
 
@@ -132,7 +136,7 @@ void FaceMeasurement::addSurfacePoint(int column, int row, std::array<FaceInform
   if (noise_m < kSharp_m) sharp_.push_back(origin + z * direction);
   const double sigma_z = std::hypot(noise_m, kUneven_m / std::abs(along));
   const double chi = (z - entry) / sigma_z, weight = 1 / (1 + chi * chi / (kGrossChi * kGrossChi));
-  if (chi < -kGrossChi) return;
+  if (chi < -kGrossChi) return;  // before the cuboid: of another face, which reaches farther than is believed
   Vector6d measured = Vector6d::Zero();
   measured[face] = 1;
   FaceInformation one;

@@ -19,7 +19,7 @@ constexpr double kLookWeight = 0.15;          // of one outline: for the same re
 constexpr std::int64_t kMemory_frames = 120;  // beyond which looks no longer count
 constexpr double kMargin = 0.2;               // of the window around the box in the image, on each side
 constexpr int kMargin_px = 8, kMostCells = 7'000, kFinestLevel = 1;
-constexpr int kRefinements = 2;
+constexpr int kRefinements = 2;  // of the disparities: levels of the pyramid, finer than theirs
 constexpr double kBefore_m = 2;  // how far before the cuboid disparities are told apart; behind it, all are
 constexpr double kLeastSize_m = 0.2, kMostSize_m = 25;  // of an object that is believed, along each axis
 constexpr int kLeastCells = 30;                         // of an outline that is believed
@@ -87,6 +87,16 @@ bool isWhole(const ObjectView& view, const StereoCamera& camera) {
   return seen_px > kWhole * (right_px - left_px);
 }
 
+std::vector<ObjectView::Other> cuboidsBeside(TrackId track, const FrameEstimate& frame) {
+  std::vector<ObjectView::Other> others;
+  for (const ObjectEstimate& other : frame.objects)
+    if (other.track != track && other.cuboid)
+      others.push_back({(frame.T_world_cam.inverse() * other.T_world_body).inverse(),
+                        other.cuboid->center_body - 0.5 * other.cuboid->size_m,
+                        other.cuboid->center_body + 0.5 * other.cuboid->size_m});
+  return others;
+}
+
 ObjectMask maskOf(const Outline& outline, int level, TrackId track) {
   const PixelWindow bounds = outline.bounds();
   const int cell_px = 1 << level;
@@ -149,11 +159,7 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
     if (!isCutOff(observed->box, disparity_px, camera_)) shape.evidence = shape.first = nearFaceAtPoints(view);
     view.box = estimateBox(shape.evidence, shape.speed_mps);
   }
-  for (const ObjectEstimate& other : frame.objects)
-    if (other.track != object.track && other.cuboid)
-      view.others.push_back({(frame.T_world_cam.inverse() * other.T_world_body).inverse(),
-                             other.cuboid->center_body - 0.5 * other.cuboid->size_m,
-                             other.cuboid->center_body + 0.5 * other.cuboid->size_m});
+  view.others = cuboidsBeside(object.track, frame);
   const bool seen = object.state != ObjectState::kPredicted && features.right.levels.size() > kFinestLevel;
   if (const auto disparities = seen ? disparitiesAround(view, features) : std::nullopt) {
     Outline outline = findOutline(*disparities, view, camera_);
