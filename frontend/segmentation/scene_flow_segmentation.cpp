@@ -116,7 +116,7 @@ GroundPlane SceneFlowSegmentation::findGround(const std::vector<bool>& violates_
     candidates.push_back({p_cam, std::abs(p_cam.y()) * points[i].sigma_px.z() / points[i].uvd_px.z()});
     of_candidate.push_back(i);
   }
-  const GroundPlane ground = ground_plane_(candidates, static_cast<std::uint64_t>(frame.value));
+  GroundPlane ground = ground_plane_(candidates, static_cast<std::uint64_t>(frame.value));
   for (std::size_t k = 0; k < candidates.size(); ++k)
     if (ground_plane_.isOnGround(candidates[k])) points[of_candidate[k]].label = PointLabel::kGround;
   return ground;
