@@ -65,7 +65,8 @@ std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& t
 
 /// Every frame that has a camera pose in `tracks` and in `camera`, with its rows matched one to one to labels: as many
 /// as possible within the gate max(3 m, half the length + 0.08 z), then the least total distance on the ground as seen
-/// from the camera. Without labels the frames have no objects.
+/// from the camera, of the middle of a row's cuboid (of the body's origin, where it has none). Without labels the
+/// frames have no objects.
 std::vector<ComparedFrame> compareFrames(const RunFolder::Trajectories& trajectories, std::int64_t first_frame,
                                          const CameraTruth& camera, const ObjectTruths* truths,
                                          const std::vector<Timestamp>& stamps);
