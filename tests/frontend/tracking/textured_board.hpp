@@ -46,7 +46,7 @@ class TexturedBoard {
  private:
   static Image view(const SE3& T_cam_body, double camera_x_m, bool there) {
     const Texture board(1);
-    const Eigen::Vector3d middle = T_cam_body.translation();
+    const Eigen::Vector3d& middle = T_cam_body.translation();
     return render(kRig.width_px, kRig.height_px, [&, there](double u, double v) {
       const double x = (u - kRig.cx_px) / kRig.fx_px, y = (v - kRig.cy_px) / kRig.fy_px;
       const double right_m = x * middle.z() + camera_x_m - middle.x(), down_m = y * middle.z() - middle.y();
