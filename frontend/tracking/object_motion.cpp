@@ -95,10 +95,10 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
                                                                const SceneMotion* previous_scene,
                                                                const SE3& T_world_cam) const {
   const PosePrior prior{T_world_cam.inverse() * object.kinematics.pose(), object.kinematics.poseCovariance().inverse()};
-  auto agreement = agree(object, observations(object, scene), prior);
+  std::vector<Observation> seen = observations(object, scene);
+  auto agreement = agree(object, seen, prior);
   std::vector<ScenePoint> searched;
   if (!agreement || !agreement->enough) {
-    std::vector<Observation> seen = observations(object, scene);
     searched = search(object, scene, object.measured, prior.mean, seen);
     agreement = agree(object, std::move(seen), prior);
   }

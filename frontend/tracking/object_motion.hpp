@@ -31,9 +31,10 @@ class ObjectMotionEstimator {
   ObjectMotionEstimator(const Params& params, const StereoCamera& camera)
       : params_(requireValid(params)), camera_(camera) {}
 
-  /// Pose from the body points seen in `scene`, with the predicted kinematics as prior; updates kinematics, points and
-  /// misfits. Empty (and the object unchanged but for misfits) when too few points agree. The result's frame, track and
-  /// state are filled by the caller.
+  /// Pose from the body points seen in `scene`, with the predicted kinematics as prior; where too few of them are, also
+  /// from those that are found by their patches. Updates kinematics, points and misfits. Empty (and the object
+  /// unchanged but for misfits) when too few points agree. The result's frame, track and state are filled by the
+  /// caller.
   std::optional<ObjectObservation> follow(TrackedObject& object, const SceneMotion& scene,
                                           const SceneMotion* previous_scene, const SE3& T_world_cam) const;
 

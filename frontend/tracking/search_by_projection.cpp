@@ -14,6 +14,10 @@ namespace {
 /// Farther from the prediction than a followed point from its guess, hence surer.
 constexpr PatchParams kAlignment{.max_shift_px = 6, .min_ncc = 0.75};
 constexpr double kDisparitySearch_px = 2;  // around the prediction
+constexpr int kStep_px = 6;                // between patches, which then share half of their pixels
+constexpr int kMostPatches = 64;           // about; of a large object they are farther apart
+constexpr double kSameDepth_px = 0.7;      // of disparity, from that of the points
+constexpr double kPatchSigma_px = 0.25, kPatchDisparitySigma_px = 0.35;  // no corners: somewhat worse than those
 
 /// The point in the other pair, where it projects to `predicted_uvd_px`.
 std::optional<ScenePoint> findPatch(const ScenePoint& measured, const Features& from, const Features& other,
@@ -38,11 +42,6 @@ std::optional<ScenePoint> findPatch(const ScenePoint& measured, const Features& 
   return found;
 }
 
-constexpr int kStep_px = 6;            // between patches, which then share half of their pixels
-constexpr int kMostPatches = 64;       // about; of a large object they are farther apart
-constexpr double kSameDepth_px = 0.7;  // of disparity, from that of the points
-constexpr double kPatchSigma_px = 0.25, kPatchDisparitySigma_px = 0.35;  // no corners: somewhat worse than those
-
 double medianDisparity_px(const std::vector<ScenePoint>& points) {
   std::vector<double> disparities_px;
   for (const ScenePoint& p : points) disparities_px.push_back(p.uvd_px.z());
@@ -63,8 +62,8 @@ std::vector<ScenePoint> samplePatches(const MeasuredPoints& measured, double dis
   std::vector<ScenePoint> patches;
   for (double v = box.min().y(); v <= box.max().y(); v += step_px) {
     for (double u = box.min().x(); u <= box.max().x(); u += step_px) {
-      const auto match =
-          refineDisparity(left, right, u, v, disparity_px - disparity_offset_px, {.search_radius_px = 2});
+      const auto match = refineDisparity(left, right, u, v, disparity_px - disparity_offset_px,
+                                         {.search_radius_px = kDisparitySearch_px});
       if (!match || std::abs(match->disparity_px + disparity_offset_px - disparity_px) > kSameDepth_px) continue;
       patches.push_back(
           {.point = {-1 - std::ssize(patches)},

@@ -28,8 +28,8 @@ BodyPoint toBody(const ScenePoint& point, const SE3& T_cam_body, const StereoCam
 
 /// A body's points as they were measured in one stereo pair.
 struct MeasuredPoints {
-  FeaturesPtr features;            // the pair; empty when there is none
-  std::vector<ScenePoint> points;  // ordered by point id
+  FeaturesPtr features;  // the pair; empty when there is none
+  std::vector<ScenePoint> points;
 };
 
 /// A vehicle that the tracker follows. The body frame's origin is the middle of the points when it is confirmed, fixed
