@@ -1,18 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/image.hpp"
+#include "frontend/shape/census.hpp"
 
 namespace motorcade {
-
-/// A rectangle of an image: columns u0 ... u0 + width - 1, rows v0 ... v0 + height - 1.
-struct PixelWindow {
-  int u0 = 0, v0 = 0, width = 0, height = 0;
-  bool empty() const { return width <= 0 || height <= 0; }
-  int area() const { return empty() ? 0 : width * height; }
-};
 
 /// Disparities of every pixel of a window [px of the images given]; `kNone` where the two images do not agree on one.
 struct DisparityMap {
@@ -35,24 +30,33 @@ class DenseDisparity {
   DisparityMap operator()(const Image& left, const Image& right, PixelWindow window, Range range);
 
  private:
-  void fillCosts(const PixelWindow& window, const Range& range);
-  void aggregate(const PixelWindow& window, const Range& range);
-  void sumAlongRow(const PixelWindow& window, const Range& range, int row, bool backward);
-  void sumAlongColumns(const PixelWindow& window, const Range& range, bool backward);
-  void beginPaths(std::size_t paths, std::size_t count);
-  void chooseOfRight(const PixelWindow& window, const Range& range, int row);
-  void choose(const Image& left, DisparityMap& map, const Range& range);
+  /// Through every pixel of the window, in one direction: `count` of them side by side, each of `steps` pixels.
+  struct Paths {
+    int count, steps;
+    std::ptrdiff_t first, between_paths, between_steps;  // pixels of the window
+  };
+  void fillCosts();
+  void aggregate();
+  void sumAlong(const Paths& paths);
+  void stepAlongPath(std::uint8_t* path, std::uint8_t* least, std::size_t pixel);
+  void chooseOfRight(int row);
+  void choose(DisparityMap& map);
+  /// In the mirrored rows of the right image, where the least disparity of a column of the window is.
+  int inRight(int column) const { return right_width_ - 1 - (window_.u0 + column - range_.least_px - right_u0_); }
 
-  std::vector<std::uint32_t> left_, right_;  // census of the window; of the same rows of the right image
-  int right_u0_ = 0, right_width_ = 0;       // columns that `right_` holds
-  std::vector<std::uint8_t> costs_;          // per pixel and disparity
-  std::vector<std::uint16_t> sums_, path_, next_;
-  std::vector<int> best_of_right_;
-  std::vector<std::uint16_t> least_of_right_;
+  PixelWindow window_;
+  Range range_{};
+  int right_u0_ = 0, right_width_ = 0;      // columns of the right image that are compared
+  std::size_t lanes_ = 0;                   // bytes per pixel: disparities, and those that make the vectors full
+  Census left_, right_;                     // of the window; of the same rows of the right image, mirrored
+  std::vector<std::uint8_t> costs_, sums_;  // per pixel and disparity
+  std::vector<std::uint8_t> beyond_;        // per disparity: kFar where the range has ended
+  std::vector<std::uint8_t> paths_, least_of_path_;
+  std::vector<std::uint8_t> least_of_right_, best_of_right_;
 };
 
-/// Makes disparities more exact in the same images at `scale` times their size, a power of two: each is searched anew
-/// within a pixel or two of what it is there. Where nothing fits best, it stays.
-void refineDisparities(const Image& left, const Image& right, int scale, DisparityMap& map);
+/// Makes the disparities of some cells more exact in the same images at `scale` times their size, a power of two: each
+/// is searched anew within a pixel or two of what it is there. Where nothing fits best, it stays.
+void refineDisparities(const Image& left, const Image& right, int scale, std::span<const int> cells, DisparityMap& map);
 
 }  // namespace motorcade

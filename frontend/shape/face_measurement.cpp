@@ -22,8 +22,7 @@ constexpr double kSharp_m = 0.35;    // noise in depth of surface points that te
 constexpr double kOutermost = 0.05;  // share of them, at each side, that may be of something else
 constexpr double kExtentSigma_m = 0.1;
 constexpr std::size_t kLeastSharp = 30;
-constexpr int kEdge = 3;       // cells from the window's edge, where the window cuts the outline
-constexpr int kSamples = 400;  // of the outline's cells
+constexpr int kEdge = 3;  // cells from the window's edge, where the window cuts the outline
 
 class FaceMeasurement {
  public:
@@ -88,10 +87,8 @@ void FaceMeasurement::reachOver(int axis, double least, double most, double sigm
 void FaceMeasurement::addSurfaces() {
   std::array<FaceInformation, 6> of_face{};
   std::array<double, 6> counts{};
-  const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(outline_.count()) / kSamples)));
-  for (int row = step / 2; row < outline_.window.height; row += step)
-    for (int column = step / 2; column < outline_.window.width; column += step)
-      if (outline_.at(column, row)) addSurfacePoint(column, row, of_face, counts);
+  for (const int cell : outline_.samples())
+    addSurfacePoint(cell % outline_.window.width, cell / outline_.window.width, of_face, counts);
   for (std::size_t face = 0; face < of_face.size(); ++face)
     if (counts[face] > 0) information_.add(of_face[face], std::min(1.0, kIndependent / counts[face]));
   addExtent();

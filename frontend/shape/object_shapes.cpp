@@ -8,6 +8,7 @@
 
 #include "frontend/image/image_pyramid.hpp"
 #include "frontend/shape/face_measurement.hpp"
+#include "frontend/shape/outline_completion.hpp"
 
 namespace motorcade {
 namespace {
@@ -161,15 +162,17 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
   }
   view.others = cuboidsBeside(object.track, frame);
   const bool seen = object.state != ObjectState::kPredicted && features.right.levels.size() > kFinestLevel;
-  if (const auto disparities = seen ? disparitiesAround(view, features) : std::nullopt) {
-    Outline outline = findOutline(*disparities, view, camera_);
+  if (auto disparities = seen ? disparitiesAround(view, features) : std::nullopt) {
+    const std::vector<int> cells = cellsInReach(*disparities, view, camera_);
+    refine(*disparities, cells, features);
+    Outline outline = findOutline(*disparities, cells, view, camera_);
     if (outline.count() >= kLeastCells) {
       const bool whole = isWhole(view, camera_) || std::ssize(shape.looks) < kFewLooks;
       if (const auto look = whole ? measured(*disparities, outline, view, shape) : std::nullopt) {
         shape.evidence.add(*look, kLookWeight);
         shape.looks[frame.frame] = {*look, view.T_cam_body};
       }
-      reachDownToRoad(outline, *disparities, view, camera_);
+      completeOutline(outline, *disparities, view, camera_);
       masks.push_back(maskOf(outline, disparities->level, object.track));
     }
   }
@@ -220,9 +223,14 @@ std::optional<LevelDisparities> ObjectShapes::disparitiesAround(const ObjectView
       .level = level,
       .map = dense_disparity_(features.left.levels[level], features.right.levels[level], window, {0, most_px + 1})};
   if (disparities.map.window.empty()) return std::nullopt;
-  for (int finer = level - 1; finer >= std::max(0, level - kRefinements); --finer)
-    refineDisparities(features.left.levels[finer], features.right.levels[finer], 1 << (level - finer), disparities.map);
   return disparities;
+}
+
+void ObjectShapes::refine(LevelDisparities& disparities, std::span<const int> cells, const Features& features) {
+  const int level = disparities.level;
+  for (int finer = level - 1; finer >= std::max(0, level - kRefinements); --finer)
+    refineDisparities(features.left.levels[finer], features.right.levels[finer], 1 << (level - finer), cells,
+                      disparities.map);
 }
 
 void ObjectShapes::setBox(ObjectEstimate& object, const BoxEstimate& box, const SE3& T_cam_body) const {

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/messages.hpp"
@@ -50,6 +51,7 @@ class ObjectShapes {
   std::optional<FaceInformation> measured(const LevelDisparities& disparities, const Outline& outline, ObjectView& view,
                                           const Shape& shape) const;
   std::optional<LevelDisparities> disparitiesAround(const ObjectView& view, const Features& features);
+  static void refine(LevelDisparities& disparities, std::span<const int> cells, const Features& features);
   void complete(std::vector<FrameEstimate>& finals);
   void moveLooks(const FrameEstimate& final);
   FaceInformation evidenceAround(const Shape& shape, FrameId frame) const;

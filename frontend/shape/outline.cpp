@@ -6,40 +6,23 @@
 #include <utility>
 
 #include "frontend/image/image_pyramid.hpp"
+#include "frontend/shape/ray_in_box.hpp"
 
 namespace motorcade {
 namespace {
 
 constexpr double kDisparitySigma_px = 0.25;  // of a dense disparity, in pixels of its level
+constexpr double kCoarseSigma_px = 1.2;      // before it is refined
 constexpr double kGrowth_m = 0.6;  // by which an outline may pass the volume that was thought possible, along the road
 constexpr double kSlack_m = 0.2;   // beyond the volume that the cuboid may fill
 constexpr float kConnected_px = 1.0F;             // of the level: between neighbors on one surface
 constexpr double kLeastHeight_m = 0.15;           // above the road, below which a point may be the road's
 constexpr int kFringeLeft = 2, kFringeRight = 1;  // cells
-constexpr double kWheelInset_m = 0.3;             // of the wheels from the cuboid's sides
 constexpr double kLeastUsual = 0.7;               // of a piece's cells, so that it is one of the object's
 constexpr std::uint8_t kOutside = 0, kPossible = 1, kUsual = 2;  // in which volume a cell's point lies
 
 constexpr double kLeastShift = 1.5;    // cells between where the body's motion and rest take a point
 constexpr float kLeastDifference = 5;  // gray levels by which rest explains the brightness better
-
-struct Interval {
-  double begin, end;
-};
-
-/// Where a ray, origin + t * direction, is within a box; empty intervals end before they begin.
-Interval insideOf(const Eigen::Vector3d& least, const Eigen::Vector3d& most, const Eigen::Vector3d& origin,
-                  const Eigen::Vector3d& direction) {
-  Interval inside{0, 1e9};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double inverse = 1 / (std::abs(direction[axis]) > 1e-9 ? direction[axis] : 1e-9);
-    double in = (least[axis] - origin[axis]) * inverse, out = (most[axis] - origin[axis]) * inverse;
-    if (in > out) std::swap(in, out);
-    inside.begin = std::max(inside.begin, in);
-    inside.end = std::min(inside.end, out);
-  }
-  return inside;
-}
 
 /// Does a point lie in another object's cuboid?
 bool isOthers(const ObjectView& view, const Eigen::Vector3d& p_cam) {
@@ -49,40 +32,43 @@ bool isOthers(const ObjectView& view, const Eigen::Vector3d& p_cam) {
   });
 }
 
-/// The cells whose points lie above the road and within the volume that the cuboid may fill, or usually fills.
-std::vector<std::uint8_t> cellsWithin(const LevelDisparities& disparities, const ObjectView& view,
-                                      const StereoCamera& camera) {
-  const PixelWindow& window = disparities.map.window;
-  std::vector<std::uint8_t> inside(static_cast<std::size_t>(window.area()), 0);
-  const Eigen::Array3d growth_m(kGrowth_m, kGrowth_m, kSlack_m);
-  const Eigen::Vector3d least = view.box.possible_least.array() - growth_m,
-                        most = view.box.possible_most.array() + growth_m,
-                        usual_least = view.box.usual_least.array() - kSlack_m,
-                        usual_most = view.box.usual_most.array() + kSlack_m;
-  const Eigen::Matrix3d R_body_cam = view.T_cam_body.rotation().transpose();
-  const Eigen::Vector3d origin = -R_body_cam * view.T_cam_body.translation();
-  const double fb = camera.fx_px * camera.baseline_m, sigma_px = kDisparitySigma_px * (1 << disparities.level);
-  for (int row = 0; row < window.height; ++row) {
-    for (int column = 0; column < window.width; ++column) {
-      const auto disparity_px = disparities.disparity_px(column, row);
-      if (!disparity_px) continue;
-      const double d = *disparity_px + view.disparity_offset_px;
-      if (d <= 0) continue;
-      const double z = fb / d, slack_m = 2 * z * sigma_px / d;
-      const Eigen::Vector3d ray((disparities.u_px(column) - camera.cx_px) / camera.fx_px,
-                                (disparities.v_px(row) - camera.cy_px) / camera.fy_px, 1);
-      if (view.ground.heightOf_m(z * ray) < kLeastHeight_m) continue;
-      const Eigen::Vector3d direction = R_body_cam * ray;
-      const auto holds = [&](const Interval& within) {
-        return within.begin <= within.end && within.end >= z - slack_m && within.begin <= z + slack_m;
-      };
-      if (!holds(insideOf(least, most, origin, direction)) || isOthers(view, z * ray)) continue;
-      const bool usual = holds(insideOf(usual_least, usual_most, origin, direction));
-      inside[static_cast<std::size_t>(row) * window.width + column] = usual ? kUsual : kPossible;
-    }
+/// Tells where the points of cells are: in the volume that the cuboid may fill, and in the one that it usually fills.
+class CuboidVolumes {
+ public:
+  CuboidVolumes(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera)
+      : disparities_(disparities), view_(view), camera_(camera) {
+    const Eigen::Array3d growth_m(kGrowth_m, kGrowth_m, kSlack_m);
+    least_ = view.box.possible_least.array() - growth_m, most_ = view.box.possible_most.array() + growth_m;
+    usual_least_ = view.box.usual_least.array() - kSlack_m, usual_most_ = view.box.usual_most.array() + kSlack_m;
+    R_body_cam_ = view.T_cam_body.rotation().transpose();
+    origin_ = -R_body_cam_ * view.T_cam_body.translation();
   }
-  return inside;
-}
+
+  /// kOutside where the disparity is unknown, or wrong by more than `sigma_px` twice over [px of the level].
+  std::uint8_t operator()(int column, int row, double sigma_px) const {
+    const auto disparity_px = disparities_.disparity_px(column, row);
+    if (!disparity_px) return kOutside;
+    const double d = *disparity_px + view_.disparity_offset_px;
+    if (d <= 0) return kOutside;
+    const double z = camera_.fx_px * camera_.baseline_m / d, slack_m = 2 * z * sigma_px * (1 << disparities_.level) / d;
+    const Eigen::Vector3d ray((disparities_.u_px(column) - camera_.cx_px) / camera_.fx_px,
+                              (disparities_.v_px(row) - camera_.cy_px) / camera_.fy_px, 1);
+    if (view_.ground.heightOf_m(z * ray) < kLeastHeight_m) return kOutside;
+    const Eigen::Vector3d direction = R_body_cam_ * ray;
+    const auto holds = [&](const Interval& within) {
+      return within.begin <= within.end && within.end >= z - slack_m && within.begin <= z + slack_m;
+    };
+    if (!holds(insideOf(least_, most_, origin_, direction)) || isOthers(view_, z * ray)) return kOutside;
+    return holds(insideOf(usual_least_, usual_most_, origin_, direction)) ? kUsual : kPossible;
+  }
+
+ private:
+  const LevelDisparities& disparities_;
+  const ObjectView& view_;
+  const StereoCamera& camera_;
+  Eigen::Vector3d least_, most_, usual_least_, usual_most_, origin_;
+  Eigen::Matrix3d R_body_cam_;
+};
 
 /// Mean difference in gray levels of the 3x3 pixels around two places; empty where one is outside its image.
 std::optional<float> differenceOf(const Image& now, int u, int v, const Image& before, const Eigen::Vector2d& at) {
@@ -195,21 +181,9 @@ void dropPieces(Outline& outline, const DisparityMap& map) {
   }
 }
 
-/// First and last cell inside of each row (or column), first beyond last where there is none.
-std::vector<std::pair<int, int>> spans(const Outline& outline, bool of_rows) {
-  const int count = of_rows ? outline.window.height : outline.window.width;
-  const int length = of_rows ? outline.window.width : outline.window.height;
-  std::vector<std::pair<int, int>> result(count, {length, -1});
-  for (int i = 0; i < count; ++i)
-    for (int k = 0; k < length; ++k)
-      if (of_rows ? outline.at(k, i) : outline.at(i, k))
-        result[i].first = std::min(result[i].first, k), result[i].second = k;
-  return result;
-}
-
 /// Windows and smooth paint give no disparity, or a wrong one: what has cells of the object on all four sides is its.
 void fillGaps(Outline& outline) {
-  const auto rows = spans(outline, true), columns = spans(outline, false);
+  const auto rows = outline.spansOfRows(), columns = outline.spansOfColumns();
   for (int row = 0; row < outline.window.height; ++row)
     for (int column = rows[row].first; column <= rows[row].second; ++column)
       if (columns[column].first <= row && row <= columns[column].second)
@@ -218,7 +192,7 @@ void fillGaps(Outline& outline) {
 
 /// The windows that are compared make objects wider than they are; at the left, so does what only the left image sees.
 void takeOffFringe(Outline& outline) {
-  const auto rows = spans(outline, true);
+  const auto rows = outline.spansOfRows();
   for (int row = 0; row < outline.window.height; ++row) {
     const int first = rows[row].first, last = rows[row].second;
     const auto clear = [&](int from, int to) {
@@ -231,25 +205,6 @@ void takeOffFringe(Outline& outline) {
 }
 
 }  // namespace
-
-void reachDownToRoad(Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
-                     const StereoCamera& camera) {
-  const auto columns = spans(outline, false);
-  const Eigen::Matrix3d R_body_cam = view.T_cam_body.rotation().transpose();
-  const Eigen::Vector3d origin = -R_body_cam * view.T_cam_body.translation();
-  const Eigen::Vector3d inset(kWheelInset_m, kWheelInset_m, 0);
-  for (int column = 0; column < outline.window.width; ++column) {
-    const int lowest = columns[column].second;
-    if (lowest < 0) continue;
-    for (int row = lowest + 1; row < outline.window.height; ++row) {
-      const Eigen::Vector3d ray((disparities.u_px(column) - camera.cx_px) / camera.fx_px,
-                                (disparities.v_px(row) - camera.cy_px) / camera.fy_px, 1);
-      const Interval within = insideOf(view.box.least() + inset, view.box.most() - inset, origin, R_body_cam * ray);
-      if (within.begin > within.end) break;
-      outline.inside[static_cast<std::size_t>(row) * outline.window.width + column] = 1;
-    }
-  }
-}
 
 std::optional<double> LevelDisparities::disparity_px(int column, int row) const {
   const float d = map.at(column, row);
@@ -271,10 +226,51 @@ PixelWindow Outline::bounds() const {
   return {left, top, right - left + 1, bottom - top + 1};
 }
 
+Outline::Spans Outline::spansOfRows() const {
+  Spans spans(window.height, {window.width, -1});
+  for (int row = 0; row < window.height; ++row)
+    for (int column = 0; column < window.width; ++column)
+      if (at(column, row)) spans[row] = {std::min(spans[row].first, column), column};
+  return spans;
+}
+
+Outline::Spans Outline::spansOfColumns() const {
+  Spans spans(window.width, {window.height, -1});
+  for (int row = 0; row < window.height; ++row)
+    for (int column = 0; column < window.width; ++column)
+      if (at(column, row)) spans[column] = {std::min(spans[column].first, row), row};
+  return spans;
+}
+
 int Outline::count() const { return static_cast<int>(std::ranges::count(inside, 1)); }
 
-Outline findOutline(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera) {
-  Outline outline{.window = disparities.map.window, .inside = cellsWithin(disparities, view, camera)};
+std::vector<int> Outline::samples() const {
+  constexpr double kMost = 400;
+  const int step = std::max(1, static_cast<int>(std::sqrt(count() / kMost)));
+  std::vector<int> cells;
+  for (int row = step / 2; row < window.height; row += step)
+    for (int column = step / 2; column < window.width; column += step)
+      if (at(column, row)) cells.push_back(row * window.width + column);
+  return cells;
+}
+
+std::vector<int> cellsInReach(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera) {
+  const CuboidVolumes volumes(disparities, view, camera);
+  const PixelWindow& window = disparities.map.window;
+  std::vector<int> cells;
+  for (int row = 0; row < window.height; ++row)
+    for (int column = 0; column < window.width; ++column)
+      if (volumes(column, row, kCoarseSigma_px) != kOutside) cells.push_back(row * window.width + column);
+  return cells;
+}
+
+Outline findOutline(const LevelDisparities& disparities, std::span<const int> cells, const ObjectView& view,
+                    const StereoCamera& camera) {
+  Outline outline{.window = disparities.map.window, .inside = {}};
+  outline.inside.resize(static_cast<std::size_t>(outline.window.area()), kOutside);
+  const CuboidVolumes volumes(disparities, view, camera);
+  for (const int cell : cells)
+    outline.inside[cell] = volumes(cell % outline.window.width, cell / outline.window.width, kDisparitySigma_px);
   if (view.before) dropResting(outline, disparities, view, camera);
   smooth(outline);
   dropPieces(outline, disparities.map);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -51,18 +53,25 @@ struct Outline {
   /// Bounds of the cells inside; empty window when there are none.
   PixelWindow bounds() const;
   int count() const;
+  /// First and last cell inside of each row, or column; first beyond last where there is none.
+  using Spans = std::vector<std::pair<int, int>>;
+  Spans spansOfRows() const;
+  Spans spansOfColumns() const;
+  /// Some of the cells inside, evenly spread: their places in `inside`.
+  std::vector<int> samples() const;
   bool at(int column, int row) const { return inside[static_cast<std::size_t>(row) * window.width + column] != 0; }
 };
 
-Outline findOutline(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera);
+/// The cells of the window that may show the object, as far as coarse disparities tell: their places in the map.
+std::vector<int> cellsInReach(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera);
+
+/// Of the cells in reach, with their disparities refined.
+Outline findOutline(const LevelDisparities& disparities, std::span<const int> cells, const ObjectView& view,
+                    const StereoCamera& camera);
 
 /// Box in the left image around the cuboid, cut at the image's border; empty when it does not lie in the image.
 std::optional<Box> projectedBox(const Eigen::Vector3d& least, const Eigen::Vector3d& most, const SE3& T_cam_body,
                                 const StereoCamera& camera);
-
-/// Adds the wheels and what else is too low to be told from the road: down to where the cuboid stands.
-void reachDownToRoad(Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
-                     const StereoCamera& camera);
 
 /// The corners of a cuboid, numbered 0 ... 7 by bits: the greater x, y, z.
 Eigen::Vector3d cornerOf(const Eigen::Vector3d& least, const Eigen::Vector3d& most, int corner);

@@ -8,6 +8,7 @@ namespace motorcade {
 namespace {
 
 using test::kRig;
+using test::outlineOf;
 using test::StreetByHand;
 
 const Eigen::Vector3d kCar_m(4.5, 1.75, 1.45);
@@ -23,7 +24,7 @@ BoxEstimate afterLooks(const SE3& T_cam_body, const SE3& T_cam_frame, const Eige
                   .ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m},
                   .disparity_offset_px = 0};
   for (int i = 0; i < 15; ++i) {
-    evidence.add(measureFaces(seen, findOutline(seen, view, kRig), view, kRig), 0.15);
+    evidence.add(measureFaces(seen, outlineOf(seen, view), view, kRig), 0.15);
     view.box = estimateBox(evidence, 10);
   }
   return view.box;
@@ -82,7 +83,7 @@ TEST(FaceMeasurement, AWrongBeliefOfTheRearGivesWayToTheSideThatIsSeenBehindIt) 
                   .disparity_offset_px = 0};
   EXPECT_GT(view.box.least().x(), -0.5 * kCar_m.x() + 1.5);
   for (int i = 0; i < 40; ++i) {
-    evidence.add(measureFaces(seen, findOutline(seen, view, kRig), view, kRig), 0.15);
+    evidence.add(measureFaces(seen, outlineOf(seen, view), view, kRig), 0.15);
     view.box = estimateBox(evidence, 15);
   }
   EXPECT_NEAR(view.box.least().x(), -0.5 * kCar_m.x(), 0.3);

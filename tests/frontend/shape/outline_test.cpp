@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "frontend/shape/outline_completion.hpp"
 #include "tests/frontend/shape/street_by_hand.hpp"
 #include "tests/frontend/texture.hpp"
 
@@ -9,6 +10,7 @@ namespace motorcade {
 namespace {
 
 using test::kRig;
+using test::outlineOf;
 using test::StreetByHand;
 
 const Eigen::Vector3d kCar_m(4.2, 1.8, 1.5);
@@ -46,16 +48,45 @@ TEST_P(OutlineAtYaw, CoversTheCarAndNotTheRoad) {
   const StreetByHand street({{T_cam_body, StreetByHand::faces(kCar_m)}});
   const LevelDisparities seen = street.disparities(kWindow, 1);
   const ObjectView view = viewOf(T_cam_body, kCar_m);
-  Outline outline = findOutline(seen, view, kRig);
-  const int before = outline.count();
-  reachDownToRoad(outline, seen, view, kRig);
-  EXPECT_GT(outline.count(), before);  // what is just above the road
+  Outline outline = outlineOf(seen, view);
+  const double before = overlapOf(outline, seen, street, 0).iou();
+  completeOutline(outline, seen, view, kRig);
   const Overlap overlap = overlapOf(outline, seen, street, 0);
+  EXPECT_GT(overlap.iou(), before);
   EXPECT_GT(overlap.iou(), 0.85);
   EXPECT_LT(overlap.outside, 0.05 * overlap.either);
 }
 
 INSTANTIATE_TEST_SUITE_P(Yaws, OutlineAtYaw, testing::Values(0.0, 0.6, 1.5));
+
+TEST(OutlineCompletion, OneSeesTheRoadBetweenTheWheels) {
+  const SE3 T_cam_body = StreetByHand::standingAt(0, 13);
+  const StreetByHand street({{T_cam_body, StreetByHand::faces(kCar_m)}});
+  const LevelDisparities seen = street.disparities(kWindow, 1);
+  const ObjectView view = viewOf(T_cam_body, kCar_m);
+  Outline outline = outlineOf(seen, view);
+  completeOutline(outline, seen, view, kRig);
+  const double rear_m = 13 - kCar_m.x() / 2 + 0.45;  // to where the rear wheels stand
+  const auto isInside = [&](double x_m, double height_m) {
+    const double u = kRig.cx_px + kRig.fx_px * x_m / rear_m,
+                 v = kRig.cy_px + kRig.fy_px * (StreetByHand::kRoad_m - height_m) / rear_m;
+    return outline.at(static_cast<int>(u / 2) - kWindow.u0, static_cast<int>(v / 2) - kWindow.v0);
+  };
+  for (const double x_m : {-0.8, 0.8}) EXPECT_TRUE(isInside(x_m, 0.02));
+  EXPECT_FALSE(isInside(0, 0.02));
+  EXPECT_TRUE(isInside(0, 0.5));
+}
+
+TEST(OutlineCompletion, APersonStandsOnTheRoad) {
+  const Eigen::Vector3d person_m(0.6, 0.7, 1.75);
+  const SE3 T_cam_body = StreetByHand::standingAt(0, 9);
+  const StreetByHand street({{T_cam_body, StreetByHand::faces(person_m)}});
+  const LevelDisparities seen = street.disparities(kWindow, 1);
+  const ObjectView view = viewOf(T_cam_body, person_m);
+  Outline outline = outlineOf(seen, view);
+  completeOutline(outline, seen, view, kRig);
+  EXPECT_GT(overlapOf(outline, seen, street, 0).iou(), 0.85);
+}
 
 TEST(Outline, LeavesOthersAlone) {
   const SE3 T_near = StreetByHand::standingAt(-0.6, 12), T_far = StreetByHand::standingAt(1.6, 13);
@@ -65,7 +96,7 @@ TEST(Outline, LeavesOthersAlone) {
   view.box.usual_most += Eigen::Vector3d(0, 0.5, 0), view.box.possible_most = view.box.usual_most;
   view.box.usual_least -= Eigen::Vector3d(0, 2.5, 0), view.box.possible_least = view.box.usual_least;  // over the other
   const auto taken = [&] {
-    const Outline outline = findOutline(seen, view, kRig);
+    const Outline outline = outlineOf(seen, view);
     return overlapOf(outline, seen, street, 1).both;
   };
   const int without = taken();
@@ -99,9 +130,9 @@ TEST(Outline, LeavesOutWhatRests) {
   const LevelDisparities seen = now.disparities(kWindow, kLevel);
   ObjectView view = viewOf(T_now, kCar_m);
   view.box.usual_least -= Eigen::Vector3d(0, 3.2, 0), view.box.possible_least = view.box.usual_least;
-  const Outline without = findOutline(seen, view, kRig);
+  const Outline without = outlineOf(seen, view);
   view.before = {&images_now, &images_before, T_before, SE3{}};
-  const Outline with = findOutline(seen, view, kRig);
+  const Outline with = outlineOf(seen, view);
   EXPECT_GT(overlapOf(without, seen, now, 1).both, 300);
   EXPECT_LT(overlapOf(with, seen, now, 1).both, 0.3 * overlapOf(without, seen, now, 1).both);
   EXPECT_GT(overlapOf(with, seen, now, 0).both, 0.8 * overlapOf(without, seen, now, 0).both);
@@ -112,12 +143,12 @@ TEST(Outline, FillsWhatGivesNoDisparity) {
   const StreetByHand street({{T_cam_body, StreetByHand::faces(kCar_m)}});
   LevelDisparities seen = street.disparities(kWindow, 1);
   const ObjectView view = viewOf(T_cam_body, kCar_m);
-  const Outline whole = findOutline(seen, view, kRig);
+  const Outline whole = outlineOf(seen, view);
   const PixelWindow bounds = whole.bounds();
   for (int row = bounds.v0 + 5; row < bounds.v0 + bounds.height - 5; ++row)  // its windows
     for (int column = bounds.u0 + 8; column < bounds.u0 + bounds.width - 8; ++column)
       seen.map.disparity_px[static_cast<std::size_t>(row) * kWindow.width + column] = DisparityMap::kNone;
-  EXPECT_GT(findOutline(seen, view, kRig).count(), 0.95 * whole.count());
+  EXPECT_GT(outlineOf(seen, view).count(), 0.95 * whole.count());
 }
 
 TEST(Outline, BoxInTheImageHoldsTheCorners) {

@@ -72,4 +72,8 @@ class StreetByHand {
   std::vector<Item> items_;
 };
 
+inline Outline outlineOf(const LevelDisparities& seen, const ObjectView& view) {
+  return findOutline(seen, cellsInReach(seen, view, kRig), view, kRig);
+}
+
 }  // namespace motorcade::test
