@@ -24,6 +24,7 @@ constexpr int kRefinements = 2;  // of the disparities: levels of the pyramid, f
 constexpr double kBefore_m = 2;  // how far before the cuboid disparities are told apart; behind it, all are
 constexpr double kLeastSize_m = 0.2, kMostSize_m = 25;  // of an object that is believed, along each axis
 constexpr int kLeastCells = 30;                         // of an outline that is believed
+constexpr double kWhole = 0.85;                         // of a cuboid where both cameras see it: the look at it counts
 constexpr int kFewLooks = 5;                            // so few are too few to do without one
 constexpr int kIterations = 2;  // of the faces, as what is seen of them depends on where they are
 
@@ -73,19 +74,28 @@ FaceInformation nearFaceAtPoints(const ObjectView& view) {
   return near;
 }
 
-/// Is nearly all of its cuboid where both cameras see it?
-bool isWhole(const ObjectView& view, const StereoCamera& camera) {
-  constexpr double kNear_m = 1, kWhole = 0.85;
+/// How much of a cuboid's width is where both cameras see it.
+double shareInImages(const ObjectBox& box, const SE3& T_cam_body, const StereoCamera& camera) {
+  constexpr double kNear_m = 1;
+  const Eigen::Vector3d least = box.center_body - 0.5 * box.size_m, most = box.center_body + 0.5 * box.size_m;
   double left_px = 1e9, right_px = -1e9, hidden_px = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d p_cam = view.T_cam_body * cornerOf(view.box.least(), view.box.most(), corner);
-    if (p_cam.z() < kNear_m) return false;
+    const Eigen::Vector3d p_cam = T_cam_body * cornerOf(least, most, corner);
+    if (p_cam.z() < kNear_m) return 0;
     const double u_px = camera.cx_px + camera.fx_px * p_cam.x() / p_cam.z();
     if (u_px < left_px) left_px = u_px, hidden_px = camera.fx_px * camera.baseline_m / p_cam.z();
     right_px = std::max(right_px, u_px);
   }
-  const double seen_px = std::min(right_px, camera.width_px - 1.0) - std::max(left_px, hidden_px);
-  return seen_px > kWhole * (right_px - left_px);
+  return (std::min(right_px, camera.width_px - 1.0) - std::max(left_px, hidden_px)) / (right_px - left_px);
+}
+
+/// Drops rows that but predict what has left the images, for the most part.
+void dropLeft(FrameEstimate& frame, const StereoCamera& camera) {
+  constexpr double kMostly = 0.5;
+  std::erase_if(frame.objects, [&](const ObjectEstimate& object) {
+    return object.state == ObjectState::kPredicted && object.cuboid &&
+           shareInImages(*object.cuboid, frame.T_world_cam.inverse() * object.T_world_body, camera) < kMostly;
+  });
 }
 
 std::vector<ObjectView::Other> cuboidsBeside(TrackId track, const FrameEstimate& frame) {
@@ -123,6 +133,7 @@ EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& 
     if (const auto known = shapes_.find(object.track); known != shapes_.end())
       setBox(object, estimateBox(known->second.evidence, known->second.speed_mps), T_cam_world * object.T_world_body);
   for (ObjectEstimate& object : shaped->online.objects) lookAt(object, inputs, shaped->online, shaped->masks);
+  dropLeft(shaped->online, camera_);
   before_ = inputs.features;
   complete(shaped->finals);
   forgetGone(*shaped);
@@ -131,9 +142,31 @@ EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& 
 
 void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame,
                           std::vector<ObjectMask>& masks) {
-  const Features& features = *inputs.features;
-  const SceneMotion& scene = *inputs.scene;
   Shape& shape = shapes_[object.track];
+  ObjectView view = viewOf(object, inputs, frame, shape);
+  const bool predicted = object.state == ObjectState::kPredicted;
+  if (!predicted) shape.state = object.state;
+  if (auto seen = sightOf(view, *inputs.features)) {
+    if (predicted && movesWithBody(seen->outline, seen->disparities, view, camera_))
+      markSeen(object, shape.only_dense[frame.frame] = {shape.state, seen->outline.count()});
+    const bool whole =
+        shareInImages(view.box.box(), view.T_cam_body, camera_) > kWhole || std::ssize(shape.looks) < kFewLooks;
+    if (const auto look = whole && !predicted ? measured(*seen, view, shape) : std::nullopt) {
+      shape.evidence.add(*look, kLookWeight);
+      shape.looks[frame.frame] = {*look, view.T_cam_body};
+    }
+    if (object.state != ObjectState::kPredicted) {
+      completeOutline(seen->outline, seen->disparities, view, camera_);
+      masks.push_back(maskOf(seen->outline, seen->disparities.level, object.track));
+    }
+  }
+  setBox(object, view.box, view.T_cam_body);
+}
+
+/// How the object stands to the camera, and what is believed of its cuboid. Its shape becomes that of this frame.
+ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame,
+                                Shape& shape) const {
+  const SceneMotion& scene = *inputs.scene;
   const SE3 T_cam_body = frame.T_world_cam.inverse() * object.T_world_body;
   const bool is_new = !shape.last.valid();
   if (!is_new) {
@@ -149,7 +182,7 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
                   .box = estimateBox(shape.evidence, shape.speed_mps),
                   .ground = scene.ground,
                   .disparity_offset_px = scene.disparity_offset_px};
-  if (has_before) view.before = {&features.left, &before_->left, T_cam_body_before, scene.T_previous_now};
+  if (has_before) view.before = {&inputs.features->left, &before_->left, T_cam_body_before, scene.T_previous_now};
   const auto observed = std::ranges::find_if(inputs.measurements->objects, [&](const ObjectObservation& o) {
     return o.track == object.track && o.frame == frame.frame;
   });
@@ -161,31 +194,27 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
     view.box = estimateBox(shape.evidence, shape.speed_mps);
   }
   view.others = cuboidsBeside(object.track, frame);
-  const bool seen = object.state != ObjectState::kPredicted && features.right.levels.size() > kFinestLevel;
-  if (auto disparities = seen ? disparitiesAround(view, features) : std::nullopt) {
-    const std::vector<int> cells = cellsInReach(*disparities, view, camera_);
-    refine(*disparities, cells, features);
-    Outline outline = findOutline(*disparities, cells, view, camera_);
-    if (outline.count() >= kLeastCells) {
-      const bool whole = isWhole(view, camera_) || std::ssize(shape.looks) < kFewLooks;
-      if (const auto look = whole ? measured(*disparities, outline, view, shape) : std::nullopt) {
-        shape.evidence.add(*look, kLookWeight);
-        shape.looks[frame.frame] = {*look, view.T_cam_body};
-      }
-      completeOutline(outline, *disparities, view, camera_);
-      masks.push_back(maskOf(outline, disparities->level, object.track));
-    }
-  }
-  setBox(object, view.box, view.T_cam_body);
+  return view;
+}
+
+/// Empty where nothing, or hardly anything, is seen of the object.
+std::optional<ObjectShapes::Sight> ObjectShapes::sightOf(const ObjectView& view, const Features& features) {
+  if (features.right.levels.size() <= kFinestLevel) return std::nullopt;
+  auto disparities = disparitiesAround(view, features);
+  if (!disparities) return std::nullopt;
+  const std::vector<int> cells = cellsInReach(*disparities, view, camera_);
+  refine(*disparities, cells, features);
+  Outline outline = findOutline(*disparities, cells, view, camera_);
+  if (outline.count() < kLeastCells) return std::nullopt;
+  return Sight{std::move(*disparities), std::move(outline)};
 }
 
 /// What the outline says of the faces, and `view.box` with it; empty, and the box as it was, where that makes no sense.
-std::optional<FaceInformation> ObjectShapes::measured(const LevelDisparities& disparities, const Outline& outline,
-                                                      ObjectView& view, const Shape& shape) const {
+std::optional<FaceInformation> ObjectShapes::measured(const Sight& seen, ObjectView& view, const Shape& shape) const {
   const BoxEstimate before = view.box;
   FaceInformation look;
   for (int i = 0; i < kIterations; ++i) {
-    look = measureFaces(disparities, outline, view, camera_);
+    look = measureFaces(seen.disparities, seen.outline, view, camera_);
     FaceInformation both = shape.evidence;
     both.add(look, kLookWeight);
     view.box = estimateBox(both, shape.speed_mps);
@@ -233,6 +262,12 @@ void ObjectShapes::refine(LevelDisparities& disparities, std::span<const int> ce
                       disparities.map);
 }
 
+/// None of its points was followed, but its outline was found.
+void ObjectShapes::markSeen(ObjectEstimate& object, const DenseEvidence& evidence) {
+  object.state = evidence.state;
+  object.points = evidence.cells;
+}
+
 void ObjectShapes::setBox(ObjectEstimate& object, const BoxEstimate& box, const SE3& T_cam_body) const {
   object.cuboid = box.box();
   if (const auto in_image = projectedBox(box.least(), box.most(), T_cam_body, camera_)) object.box = *in_image;
@@ -250,9 +285,13 @@ void ObjectShapes::complete(std::vector<FrameEstimate>& finals) {
     for (ObjectEstimate& object : final.objects) {
       const auto shape = shapes_.find(object.track);
       if (shape == shapes_.end()) continue;
+      const auto dense = shape->second.only_dense.find(final.frame);
+      if (dense != shape->second.only_dense.end() && object.state == ObjectState::kPredicted)
+        markSeen(object, dense->second);
       const SE3 T_cam_body = final.T_world_cam.inverse() * object.T_world_body;
       setBox(object, estimateBox(evidenceAround(shape->second, final.frame), shape->second.speed_mps), T_cam_body);
     }
+    dropLeft(final, camera_);
   }
 }
 
@@ -284,6 +323,7 @@ void ObjectShapes::forgetGone(const Estimates& estimates) {
   for (auto it = shapes_.begin(); it != shapes_.end();) {
     auto& looks = it->second.looks;
     looks.erase(looks.begin(), looks.lower_bound(oldest));
+    it->second.only_dense.erase(it->second.only_dense.begin(), it->second.only_dense.lower_bound(oldest));
     it = looks.empty() && it->second.last < oldest ? shapes_.erase(it) : std::next(it);
   }
 }

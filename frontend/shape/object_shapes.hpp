@@ -39,22 +39,36 @@ class ObjectShapes {
     FaceInformation faces;
     SE3 T_cam_body;
   };
+  /// Of a frame in which an outline that moves as predicted was found, but none of the object's points.
+  struct DenseEvidence {
+    ObjectState state;
+    int cells;
+  };
   struct Shape {
     FaceInformation first;     // before its first outline
     FaceInformation evidence;  // faded with age
     double speed_mps = 0;
     FrameId last;
     SE3 T_cam_body_last;
+    ObjectState state = ObjectState::kMoving;  // when its points were last followed
     std::map<FrameId, Look> looks;
+    std::map<FrameId, DenseEvidence> only_dense;
+  };
+  /// What the images show of an object.
+  struct Sight {
+    LevelDisparities disparities;
+    Outline outline;
   };
   void lookAt(ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame, std::vector<ObjectMask>& masks);
-  std::optional<FaceInformation> measured(const LevelDisparities& disparities, const Outline& outline, ObjectView& view,
-                                          const Shape& shape) const;
+  ObjectView viewOf(const ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame, Shape& shape) const;
+  std::optional<Sight> sightOf(const ObjectView& view, const Features& features);
+  std::optional<FaceInformation> measured(const Sight& seen, ObjectView& view, const Shape& shape) const;
   std::optional<LevelDisparities> disparitiesAround(const ObjectView& view, const Features& features);
   static void refine(LevelDisparities& disparities, std::span<const int> cells, const Features& features);
   void complete(std::vector<FrameEstimate>& finals);
   void moveLooks(const FrameEstimate& final);
   FaceInformation evidenceAround(const Shape& shape, FrameId frame) const;
+  static void markSeen(ObjectEstimate& object, const DenseEvidence& evidence);
   void setBox(ObjectEstimate& object, const BoxEstimate& box, const SE3& T_cam_body) const;
   void forgetGone(const Estimates& estimates);
 

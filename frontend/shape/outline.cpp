@@ -279,6 +279,21 @@ Outline findOutline(const LevelDisparities& disparities, std::span<const int> ce
   return outline;
 }
 
+bool movesWithBody(const Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
+                   const StereoCamera& camera) {
+  constexpr double kLeastMoving_gray = 2;
+  constexpr int kLeastTold = 30;  // cells of which it can be told
+  double sum = 0;
+  int told = 0;
+  for (const int cell : outline.samples()) {
+    const int column = cell % outline.window.width, row = cell / outline.window.width;
+    if (!view.before || !disparities.disparity_px(column, row)) continue;
+    const float rests = restsRatherThanMoves(disparities, view, camera, column, row);
+    sum -= rests, told += rests != 0;
+  }
+  return told >= kLeastTold && sum > kLeastMoving_gray * told;
+}
+
 Eigen::Vector3d cornerOf(const Eigen::Vector3d& least, const Eigen::Vector3d& most, int corner) {
   return {(corner & 1 ? most : least).x(), (corner & 2 ? most : least).y(), (corner & 4 ? most : least).z()};
 }

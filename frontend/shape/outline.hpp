@@ -69,6 +69,11 @@ std::vector<int> cellsInReach(const LevelDisparities& disparities, const ObjectV
 Outline findOutline(const LevelDisparities& disparities, std::span<const int> cells, const ObjectView& view,
                     const StereoCamera& camera);
 
+/// Does the brightness of an outline say that what it shows moved with the body since the frame before, rather than
+/// rested? No where the two can hardly be told apart.
+bool movesWithBody(const Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
+                   const StereoCamera& camera);
+
 /// Box in the left image around the cuboid, cut at the image's border; empty when it does not lie in the image.
 std::optional<Box> projectedBox(const Eigen::Vector3d& least, const Eigen::Vector3d& most, const SE3& T_cam_body,
                                 const StereoCamera& camera);

@@ -1,16 +1,32 @@
 #include "frontend/tracking/look_back.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <Eigen/LU>
 
 namespace motorcade {
 
+namespace {
+
+/// Points that the object was given, but that were not measured to move with it yet.
+void dropNew(TrackedObject& object) {
+  std::erase_if(object.points, [&](const BodyPoint& point) {
+    return std::ranges::none_of(object.backlog, [&](const ObjectObservation& o) {
+      return std::ranges::find(o.measured, point.point, &PointMeasurement::point) != o.measured.end();
+    });
+  });
+}
+
+}  // namespace
+
 void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKinematics::Params& kinematics) const {
   auto earlier = past_.rbegin();
   while (earlier != past_.rend() && earlier->scene->frame > object.backlog.front().frame) ++earlier;
   if (earlier == past_.rend()) return;
   TrackedObject body = object;
+  dropNew(body);
+  const TrackedObject followed = body;
   MeasuredPoints later;
   if (earlier->scene->frame == object.backlog.front().frame) {
     const SE3& T_cam_body = object.backlog.front().T_cam_body;
@@ -26,7 +42,7 @@ void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKine
     auto observation = observe(*earlier, body, then, later);
     if (!observation) return;
     // What was only near the object then is evidence of it, but surely a point of it only if it was followed later.
-    std::erase_if(observation->measured, [&](const PointMeasurement& p) { return !object.find(p.point); });
+    std::erase_if(observation->measured, [&](const PointMeasurement& p) { return !followed.find(p.point); });
     object.backlog.insert(object.backlog.begin(), std::move(*observation));
   }
 }

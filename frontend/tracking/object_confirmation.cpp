@@ -15,26 +15,31 @@ constexpr double kMinExtent_px = 20;  // in the image too: points whose patches 
 
 double diagonal_px(const Box& box) { return std::hypot(box.right_px - box.left_px, box.bottom_px - box.top_px); }
 
-/// A few points that seem to lie behind a vehicle with many, and within its outline, are the vehicle's own with wrong
-/// disparities.
-bool looksThrough(const ObjectObservation& few, const std::vector<ObjectObservation>& objects) {
-  constexpr double kMargin = 0.25, kMaxMargin_px = 30;  // of the outline's width and height
-  constexpr int kMany = 3;                              // times as many points
-  return std::ranges::any_of(objects, [&](const ObjectObservation& o) {
-    const double du = std::min(kMaxMargin_px, kMargin * (o.box.right_px - o.box.left_px));
-    const double dv = std::min(kMaxMargin_px, kMargin * (o.box.bottom_px - o.box.top_px));
-    return o.frame == few.frame && o.points >= kMany * few.points &&
-           o.T_cam_body.translation().z() < few.T_cam_body.translation().z() && o.box.left_px - du < few.box.left_px &&
-           few.box.right_px < o.box.right_px + du && o.box.top_px - dv < few.box.top_px &&
-           few.box.bottom_px < o.box.bottom_px + dv;
-  });
-}
-
 }  // namespace
+
+/// A few points that seem to lie behind a vehicle with many, and within its outline, are the vehicle's own with wrong
+/// disparities. One that is cut off by the image's border, or at the left by that of the right image, reaches beyond
+/// its points.
+bool ObjectConfirmation::looksThrough(const ObjectObservation& few, const ObjectObservation& many) const {
+  constexpr double kMargin = 0.25, kMaxMargin_px = 30;  // of the outline's width and height
+  constexpr double kBorder_px = 80;
+  constexpr int kMany = 3;  // times as many points
+  const double z_m = many.T_cam_body.translation().z();
+  if (many.frame != few.frame || many.points < kMany * few.points || z_m >= few.T_cam_body.translation().z())
+    return false;
+  const double du = std::min(kMaxMargin_px, kMargin * (many.box.right_px - many.box.left_px));
+  const double dv = std::min(kMaxMargin_px, kMargin * (many.box.bottom_px - many.box.top_px));
+  const bool cut_left = many.box.left_px < camera_.fx_px * camera_.baseline_m / z_m + kBorder_px;
+  const bool cut_right = many.box.right_px > camera_.width_px - kBorder_px;
+  return (cut_left || many.box.left_px - du < few.box.left_px) &&
+         (cut_right || few.box.right_px < many.box.right_px + du) && many.box.top_px - dv < few.box.top_px &&
+         few.box.bottom_px < many.box.bottom_px + dv;
+}
 
 bool ObjectConfirmation::operator()(const TrackedObject& object, const std::vector<ObjectObservation>& reported) const {
   const ObjectObservation& newest = object.backlog.back();
-  if (looksThrough(newest, reported) || diagonal_px(newest.box) < kMinExtent_px) return false;
+  const auto hides = [&](const ObjectObservation& other) { return looksThrough(newest, other); };
+  if (std::ranges::any_of(reported, hides) || diagonal_px(newest.box) < kMinExtent_px) return false;
   const double traveled_m = (object.kinematics.pose().translation() - object.spawned_at_world).norm();
   const bool surely = movesSurely(object.kinematics, kSpeedSigmas) ||
                       (traveled_m > kLongTravel_m && object.life.observations() >= kLongObserved &&

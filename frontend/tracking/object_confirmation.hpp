@@ -4,6 +4,7 @@
 
 #include "core/messages.hpp"
 #include "core/parameters.hpp"
+#include "core/stereo_camera.hpp"
 #include "frontend/tracking/tracked_object.hpp"
 
 namespace motorcade {
@@ -16,7 +17,7 @@ class ObjectConfirmation {
     double confirm_speed_mps = 1.0;  // its speed,
     double confirm_travel_m = 0.5;   // and its way since it was spawned
   };
-  explicit ObjectConfirmation(const Params& params) : params_(params) {}
+  ObjectConfirmation(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
   /// By the newest observation of the object's backlog. `reported` are this frame's observations of other objects.
   bool operator()(const TrackedObject& object, const std::vector<ObjectObservation>& reported) const;
@@ -24,7 +25,10 @@ class ObjectConfirmation {
  private:
   bool movesSurely(const ObjectKinematics& kinematics, double sigmas) const;
 
+  bool looksThrough(const ObjectObservation& few, const ObjectObservation& many) const;
+
   Params params_;
+  StereoCamera camera_;
 };
 
 std::vector<Parameter> parametersOf(ObjectConfirmation::Params& params);

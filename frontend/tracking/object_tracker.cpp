@@ -16,6 +16,7 @@ namespace {
 constexpr int kMaxTentativeMisses = 1;   // frames without a measurement, after which a tentative object ends
 constexpr double kMaxLostSigma_m = 3;    // of a position: less well known, what is met there may be another vehicle
 constexpr double kOutsideImage_px = 50;  // an unseen object that is predicted this far outside has left
+constexpr double kInsideImage_px = 10;   // but not one of which a half must be visible
 constexpr double kReappearanceSpread_m = 1.0;  // standard deviation of the middle of an object's points when it is seen
                                                // again, about that of those seen last
 constexpr int kStopFrames = 3;                 // in a row below the stop speed, as the speed's noise may fall below it
@@ -28,7 +29,7 @@ ObjectTracker::ObjectTracker(const Params& params, const StereoCamera& camera)
       adopt_(camera),
       motion_(params.motion, camera),
       spawn_(params.motion, camera),
-      is_confirmed_(params.confirmation),
+      is_confirmed_(params.confirmation, camera),
       look_back_(params.look_back_frames, params.confirmation.confirm_observations, params.motion, camera) {}
 
 FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
@@ -43,6 +44,7 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   for (TrackedObject& object : objects_) follow(object, *scene, *measurements);
   matchSegments(*scene);
   mergeDuplicates(objects_);
+  confirmSure(*measurements);
   removeEnded(*measurements);
   measurements->disparity_offset_px = scene->disparity_offset_px;
   addOtherPoints(*scene, *measurements);
@@ -89,8 +91,16 @@ void ObjectTracker::coast(TrackedObject& object, const SceneMotion& scene, Frame
 bool ObjectTracker::isOutOfReach(const TrackedObject& object) const {
   const int allowed = object.life.phase() == Phase::kTentative ? kMaxTentativeMisses : params_.max_lost_frames;
   if (object.life.missed() > allowed || object.kinematics.positionSigma_m() > kMaxLostSigma_m) return true;
-  const auto uvd = camera_.project(object.T_cam_body.translation());
-  return !uvd || !camera_.inLeftImage(uvd->x(), uvd->y(), -kOutsideImage_px);
+  return !mayBeInImage(object);
+}
+
+/// Is the body's origin in the image or just outside, or the middle of its points well inside?
+bool ObjectTracker::mayBeInImage(const TrackedObject& object) const {
+  const auto isInside = [&](const Eigen::Vector3d& p_body, double margin_px) {
+    const auto uvd = camera_.project(object.T_cam_body * p_body);
+    return uvd && camera_.inLeftImage(uvd->x(), uvd->y(), margin_px);
+  };
+  return isInside(Eigen::Vector3d::Zero(), -kOutsideImage_px) || isInside(object.middle(), kInsideImage_px);
 }
 
 /// What is reported of a lost object: its predicted pose, as an observation where there is visible evidence of it, and
@@ -130,7 +140,14 @@ void ObjectTracker::record(TrackedObject& object, ObjectObservation observation,
     measurements.objects.push_back(std::move(observation));
   } else {
     object.backlog.push_back(std::move(observation));
-    if (is_confirmed_(object, measurements.objects)) confirm(object, measurements);
+  }
+}
+
+/// Tentative objects that were observed in this frame and are no part of others.
+void ObjectTracker::confirmSure(FrameMeasurements& measurements) {
+  for (TrackedObject& object : objects_) {
+    const bool observed = object.life.phase() == Phase::kTentative && object.observed_before == measurements.frame;
+    if (observed && is_confirmed_(object, measurements.objects)) confirm(object, measurements);
   }
 }
 

@@ -42,10 +42,12 @@ class ObjectTracker {
   std::optional<ObjectObservation> withoutMeasurement(const TrackedObject& object, const SceneMotion& scene) const;
   void updateState(TrackedObject& object) const;
   void record(TrackedObject& object, ObjectObservation observation, FrameMeasurements& measurements);
+  void confirmSure(FrameMeasurements& measurements);
   void confirm(TrackedObject& object, FrameMeasurements& measurements);
   void matchSegments(const SceneMotion& scene);
   void reappear(TrackedObject& object, const Segment& segment) const;
   bool isOutOfReach(const TrackedObject& object) const;
+  bool mayBeInImage(const TrackedObject& object) const;
   void removeEnded(FrameMeasurements& measurements);
   void addOtherPoints(const SceneMotion& scene, FrameMeasurements& measurements) const;
 

@@ -177,6 +177,16 @@ TEST(ObjectTracker, AFewPointsSeenThroughAVehicleAreNoVehicle) {
   }
 }
 
+/// The same beside its points, where the right image's border hides it.
+TEST(ObjectTracker, AFewPointsBesideAVehicleThatIsCutOffAreNoVehicle) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const SimulatedCar truck{.x_m = -4.2, .z_m = 9, .speed_mps = 10, .points = 200};
+    const SimulatedCar speck{.x_m = -12.9, .z_m = 16, .speed_mps = 10, .points = 20, .size = 0.5};
+    EXPECT_EQ(Drive({speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
+    EXPECT_EQ(Drive({truck, speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
+  }
+}
+
 TEST(ObjectTracker, ACarThatStopsIsStoppedUntilItMovesAgain) {
   const Drive drive({{.x_m = 3, .z_m = 20, .speed_mps = 5, .points = 60, .stands_from = 20, .stands_until = 45}}, 2,
                     65);
