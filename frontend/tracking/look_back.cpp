@@ -40,7 +40,7 @@ void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKine
     then.predict(secondsBetween(now, earlier->scene->stamp), kinematics);
     now = earlier->scene->stamp;
     auto observation = observe(*earlier, body, then, later);
-    if (!observation) return;
+    if (!observation || isTaken(*earlier, observation->T_cam_body)) return;
     // What was only near the object then is evidence of it, but surely a point of it only if it was followed later.
     std::erase_if(observation->measured, [&](const PointMeasurement& p) { return !followed.find(p.point); });
     object.backlog.insert(object.backlog.begin(), std::move(*observation));
@@ -66,8 +66,20 @@ std::optional<ObjectObservation> LookBack::observe(const PastScene& earlier, Tra
   return observation;
 }
 
-void LookBack::remember(const SceneMotionPtr& scene, const SE3& T_world_cam) {
-  past_.push_back({scene, T_world_cam});
+/// Was a vehicle reported there, so that one would be reported twice?
+bool LookBack::isTaken(const PastScene& scene, const SE3& T_cam_body) {
+  constexpr double kAlong_m = 2.5, kAside_m = 1.2;  // between the origins of two bodies on one vehicle
+  return std::ranges::any_of(scene.T_cam_reported, [&](const SE3& T_cam_other) {
+    const Eigen::Vector3d apart = (T_cam_body.inverse() * T_cam_other).translation().cwiseAbs();
+    return apart.x() < kAlong_m && apart.y() < kAside_m;
+  });
+}
+
+void LookBack::remember(const SceneMotionPtr& scene, const SE3& T_world_cam,
+                        const std::vector<ObjectObservation>& reported) {
+  past_.push_back({scene, T_world_cam, {}});
+  for (const ObjectObservation& o : reported)
+    if (o.frame == scene->frame) past_.back().T_cam_reported.push_back(o.T_cam_body);
   if (static_cast<int>(past_.size()) > kept_) past_.pop_front();
 }
 

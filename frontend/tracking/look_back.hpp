@@ -19,19 +19,23 @@ class LookBack {
   LookBack(int frames, int confirmed_after, const ObjectMotionEstimator::Params& params, const StereoCamera& camera)
       : frames_(frames), kept_(frames + confirmed_after), motion_(params, camera) {}
 
-  /// Puts what is found before the object's backlog; ends at the first frame in which it is not found.
+  /// Puts what is found before the object's backlog; ends at the first frame in which it is not found, or in which
+  /// another object was reported where it is.
   void operator()(TrackedObject& object, Timestamp now, const ObjectKinematics::Params& kinematics) const;
 
-  /// Call at the end of each frame.
-  void remember(const SceneMotionPtr& scene, const SE3& T_world_cam);
+  /// Call at the end of each frame, with the observations that it reported.
+  void remember(const SceneMotionPtr& scene, const SE3& T_world_cam, const std::vector<ObjectObservation>& reported);
 
  private:
   struct PastScene {
     SceneMotionPtr scene;
     SE3 T_world_cam;
+    std::vector<SE3> T_cam_reported;  // bodies
   };
   std::optional<ObjectObservation> observe(const PastScene& earlier, TrackedObject& object, ObjectKinematics& then,
                                            MeasuredPoints& later) const;
+
+  static bool isTaken(const PastScene& scene, const SE3& T_cam_body);
 
   int frames_, kept_;
   ObjectMotionEstimator motion_;

@@ -50,7 +50,7 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   addOtherPoints(*scene, *measurements);
   std::ranges::stable_sort(measurements->objects, {}, &ObjectObservation::track);
   previous_scene_ = scene;
-  look_back_.remember(scene, T_world_cam_);
+  look_back_.remember(scene, T_world_cam_, measurements->objects);
   return measurements;
 }
 

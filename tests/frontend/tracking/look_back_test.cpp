@@ -1,5 +1,7 @@
 #include "frontend/tracking/look_back.hpp"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "tests/frontend/tracking/textured_board.hpp"
@@ -24,8 +26,17 @@ struct Drive {
   TrackedObject object;
   LookBack look_back{12, 3, {}, kRig};
 
-  explicit Drive(int first_seen) {
-    for (int frame = 0; frame < kFrames; ++frame) look_back.remember(scene(frame, frame >= first_seen), SE3{});
+  /// Another object was reported `other_ahead_m` ahead of the board's place in the frames before `other_until`.
+  explicit Drive(int first_seen, int other_until = 0, double other_ahead_m = 0) {
+    for (int frame = 0; frame < kFrames; ++frame) {
+      std::vector<ObjectObservation> reported;
+      if (frame < other_until) {
+        reported.emplace_back();
+        reported.back().frame = {frame};
+        reported.back().T_cam_body = boardIn(frame) * SE3(Eigen::Matrix3d::Identity(), {other_ahead_m, 0, 0});
+      }
+      look_back.remember(scene(frame, frame >= first_seen), SE3{}, reported);
+    }
     const SE3 T_cam_body = boardIn(kConfirmed);
     for (const ScenePoint& p : TexturedBoard::points(T_cam_body, 6, 100))
       object.points.push_back(toBody(p, T_cam_body, kRig));
@@ -38,7 +49,9 @@ struct Drive {
       ObjectObservation seen;
       seen.frame = {frame};
       seen.T_cam_body = boardIn(frame);
-      object.backlog.push_back(seen);
+      for (const ScenePoint& p : TexturedBoard::points(seen.T_cam_body, 6, 100))
+        seen.measured.push_back(measurementOf(p, 0));
+      object.backlog.push_back(std::move(seen));
     }
   }
   static SceneMotionPtr scene(int frame, bool there) {
@@ -70,6 +83,14 @@ TEST(LookBack, EndsWhereTheObjectIsNotSeen) {
   drive.lookBack();
   ASSERT_FALSE(drive.object.backlog.empty());
   EXPECT_EQ(drive.object.backlog.front().frame.value, 2);
+}
+
+TEST(LookBack, EndsWhereAnotherObjectWasReportedInItsPlace) {
+  Drive taken(0, 2, 1.5), behind_another(0, 2, 6);
+  taken.lookBack();
+  EXPECT_EQ(taken.object.backlog.front().frame.value, 2);
+  behind_another.lookBack();
+  EXPECT_EQ(behind_another.object.backlog.front().frame.value, 0);
 }
 
 }  // namespace
