@@ -42,7 +42,11 @@ class FaceMeasurement {
   void addRoad();
   void addPoints();
   void addSurfaces();
-  void addSurfacePoint(int column, int row, std::array<FaceInformation, 6>& of_face, std::array<double, 6>& counts);
+  /// What surface points say of where their face is: a weighted sum.
+  struct Surface {
+    double points = 0, weight = 0, sum = 0, sum_of_squares = 0;
+  };
+  void addSurfacePoint(int column, int row, std::array<Surface, 6>& surfaces);
   void addExtent();
   void reachOver(int axis, double least, double most, double sigma_m);
   void addBounds();
@@ -85,12 +89,16 @@ void FaceMeasurement::reachOver(int axis, double least, double most, double sigm
 }
 
 void FaceMeasurement::addSurfaces() {
-  std::array<FaceInformation, 6> of_face{};
-  std::array<double, 6> counts{};
+  std::array<Surface, 6> surfaces{};
   for (const int cell : outline_.samples())
-    addSurfacePoint(cell % outline_.window.width, cell / outline_.window.width, of_face, counts);
-  for (std::size_t face = 0; face < of_face.size(); ++face)
-    if (counts[face] > 0) information_.add(of_face[face], std::min(1.0, kIndependent / counts[face]));
+    addSurfacePoint(cell % outline_.window.width, cell / outline_.window.width, surfaces);
+  for (std::size_t face = 0; face < surfaces.size(); ++face) {
+    const Surface& surface = surfaces[face];
+    if (surface.points <= 0) continue;
+    FaceInformation of_face;
+    of_face.H(face, face) = surface.weight, of_face.b[face] = surface.sum, of_face.c = surface.sum_of_squares;
+    information_.add(of_face, std::min(1.0, kIndependent / surface.points));
+  }
   addExtent();
 }
 
@@ -108,8 +116,7 @@ void FaceMeasurement::addExtent() {
 }
 
 /// The ray through a cell meets an upright face at the distance that the disparity says.
-void FaceMeasurement::addSurfacePoint(int column, int row, std::array<FaceInformation, 6>& of_face,
-                                      std::array<double, 6>& counts) {
+void FaceMeasurement::addSurfacePoint(int column, int row, std::array<Surface, 6>& surfaces) {
   const auto disparity_px = disparities_.disparity_px(column, row);
   if (!disparity_px) return;
   const double d = *disparity_px + view_.disparity_offset_px, z = camera_.fx_px * camera_.baseline_m / d;
@@ -134,12 +141,10 @@ void FaceMeasurement::addSurfacePoint(int column, int row, std::array<FaceInform
   const double sigma_z = std::hypot(noise_m, kUneven_m / std::abs(along));
   const double chi = (z - entry) / sigma_z, weight = 1 / (1 + chi * chi / (kGrossChi * kGrossChi));
   if (chi < -kGrossChi) return;  // before the cuboid: of another face, which reaches farther than is believed
-  Vector6d measured = Vector6d::Zero();
-  measured[face] = 1;
-  FaceInformation one;
-  one.add(measured, origin[face / 2] + z * along, sigma_z * std::abs(along));
-  of_face[face].add(one, weight);
-  counts[face] += weight;
+  const double at = origin[face / 2] + z * along, information = weight / (sigma_z * sigma_z * along * along);
+  Surface& surface = surfaces[face];
+  surface.points += weight, surface.weight += information;
+  surface.sum += information * at, surface.sum_of_squares += information * at * at;
 }
 
 void FaceMeasurement::addBounds() {

@@ -19,7 +19,7 @@ constexpr double kFading = 0.97;
 constexpr double kLookWeight = 0.15;          // of one outline: for the same reason, seven count as one
 constexpr std::int64_t kMemory_frames = 120;  // beyond which looks no longer count
 constexpr double kMargin = 0.2;               // of the window around the box in the image, on each side
-constexpr int kMargin_px = 8, kMostCells = 7'000, kFinestLevel = 1;
+constexpr int kMargin_px = 8, kMostCells = 5'000, kFinestLevel = 1;
 constexpr int kRefinements = 2;  // of the disparities: levels of the pyramid, finer than theirs
 constexpr double kBefore_m = 2;  // how far before the cuboid disparities are told apart; behind it, all are
 constexpr double kLeastSize_m = 0.2, kMostSize_m = 25;  // of an object that is believed, along each axis

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "frontend/image/image_pyramid.hpp"
+#include "frontend/shape/motion_evidence.hpp"
 #include "frontend/shape/ray_in_box.hpp"
 
 namespace motorcade {
@@ -21,7 +21,6 @@ constexpr int kFringeLeft = 2, kFringeRight = 1;  // cells
 constexpr double kLeastUsual = 0.7;               // of a piece's cells, so that it is one of the object's
 constexpr std::uint8_t kOutside = 0, kPossible = 1, kUsual = 2;  // in which volume a cell's point lies
 
-constexpr double kLeastShift = 1.5;    // cells between where the body's motion and rest take a point
 constexpr float kLeastDifference = 5;  // gray levels by which rest explains the brightness better
 
 /// Does a point lie in another object's cuboid?
@@ -42,6 +41,7 @@ class CuboidVolumes {
     usual_least_ = view.box.usual_least.array() - kSlack_m, usual_most_ = view.box.usual_most.array() + kSlack_m;
     R_body_cam_ = view.T_cam_body.rotation().transpose();
     origin_ = -R_body_cam_ * view.T_cam_body.translation();
+    boundDisparities();
   }
 
   /// kOutside where the disparity is unknown, or wrong by more than `sigma_px` twice over [px of the level].
@@ -49,7 +49,7 @@ class CuboidVolumes {
     const auto disparity_px = disparities_.disparity_px(column, row);
     if (!disparity_px) return kOutside;
     const double d = *disparity_px + view_.disparity_offset_px;
-    if (d <= 0) return kOutside;
+    if (d <= 0 || d < least_px_ || d > most_px_) return kOutside;
     const double z = camera_.fx_px * camera_.baseline_m / d, slack_m = 2 * z * sigma_px * (1 << disparities_.level) / d;
     const Eigen::Vector3d ray((disparities_.u_px(column) - camera_.cx_px) / camera_.fx_px,
                               (disparities_.v_px(row) - camera_.cy_px) / camera_.fy_px, 1);
@@ -63,57 +63,45 @@ class CuboidVolumes {
   }
 
  private:
+  /// What is nearer than the volume's nearest corner, or farther than its farthest, need not be looked at closely.
+  void boundDisparities() {
+    constexpr double kNear_m = 0.5, kSafety = 2.5;
+    double near_m = 1e9, far_m = kNear_m;
+    for (int corner = 0; corner < 8; ++corner) {
+      const double z = (view_.T_cam_body * cornerOf(least_, most_, corner)).z();
+      near_m = std::min(near_m, z), far_m = std::max(far_m, z);
+    }
+    const double fb = camera_.fx_px * camera_.baseline_m,
+                 slack_px = kSafety * 2 * kCoarseSigma_px * (1 << disparities_.level);
+    most_px_ = fb / std::max(near_m, kNear_m) + slack_px;
+    least_px_ = fb / far_m - slack_px;
+    if (least_px_ < slack_px) least_px_ = 0;  // so small that it may be anything
+  }
+
   const LevelDisparities& disparities_;
   const ObjectView& view_;
   const StereoCamera& camera_;
+  double least_px_ = 0, most_px_ = 0;
   Eigen::Vector3d least_, most_, usual_least_, usual_most_, origin_;
   Eigen::Matrix3d R_body_cam_;
 };
 
-/// Mean difference in gray levels of the 3x3 pixels around two places; empty where one is outside its image.
-std::optional<float> differenceOf(const Image& now, int u, int v, const Image& before, const Eigen::Vector2d& at) {
-  const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
-  const auto inside = [](const Image& image, int column, int row) {
-    return column >= 1 && row >= 1 && column + 1 < image.width() && row + 1 < image.height();
-  };
-  if (!inside(now, u, v) || !inside(before, x, y)) return std::nullopt;
-  int sum = 0;
-  for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx) sum += std::abs(now.row(v + dy)[u + dx] - before.row(y + dy)[x + dx]);
-  return static_cast<float>(sum) / 9;
-}
-
-/// By how much better a cell's brightness moved with the scene at rest than with the body, from the frame before
-/// [gray levels]; zero where the two can hardly be told apart.
-float restsRatherThanMoves(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera,
-                           int column, int row) {
-  const ObjectView::Before& images = *view.before;
-  const double d = *disparities.disparity_px(column, row) + view.disparity_offset_px;
-  const Eigen::Vector3d p_cam = camera.triangulate({disparities.u_px(column), disparities.v_px(row), d});
-  const auto moved = camera.project(images.T_before_body * (view.T_cam_body.inverse() * p_cam)),
-             rested = camera.project(images.T_before_cam * p_cam);
-  if (!moved || !rested) return 0;
-  const double scale = 1 << disparities.level;
-  if ((*moved - *rested).head<2>().norm() < kLeastShift * scale) return 0;
-  const auto difference = [&](const Eigen::Vector3d& uvd_px) {
-    const Eigen::Vector2d at((uvd_px.x() + 0.5) / scale - 0.5, (uvd_px.y() + 0.5) / scale - 0.5);
-    const int u = disparities.map.window.u0 + column, v = disparities.map.window.v0 + row;
-    return differenceOf(images.now->levels[disparities.level], u, v, images.before->levels[disparities.level], at);
-  };
-  const auto as_moved = difference(*moved), as_rested = difference(*rested);
-  return as_moved && as_rested ? *as_moved - *as_rested : 0;
-}
-
-/// Cells around which the brightness rests rather than moves with the body.
+/// Cells around which the brightness rests rather than moves with the body. Every other cell tells, as on a chessboard.
 void dropResting(Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
                  const StereoCamera& camera) {
   const int width = outline.window.width, height = outline.window.height;
+  const MotionEvidence rests_rather(disparities, view, camera);
   std::vector<float> evidence(outline.inside.size(), 0);
+  const auto tells = [&](int column, int row) { return (row + column) % 2 == 0 && outline.at(column, row); };
+  bool any = false;
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column)
-      if (outline.at(column, row))
-        evidence[static_cast<std::size_t>(row) * width + column] =
-            restsRatherThanMoves(disparities, view, camera, column, row);
+      if (tells(column, row)) {
+        const float rests = rests_rather(column, row);
+        evidence[static_cast<std::size_t>(row) * width + column] = rests;
+        any |= rests > 0;
+      }
+  if (!any) return;
   constexpr int kAround = 2;
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
@@ -122,7 +110,7 @@ void dropResting(Outline& outline, const LevelDisparities& disparities, const Ob
       int cells = 0;
       for (int y = std::max(row - kAround, 0); y <= std::min(row + kAround, height - 1); ++y)
         for (int x = std::max(column - kAround, 0); x <= std::min(column + kAround, width - 1); ++x)
-          sum += evidence[static_cast<std::size_t>(y) * width + x], cells += outline.at(x, y);
+          sum += evidence[static_cast<std::size_t>(y) * width + x], cells += tells(x, y);
       if (sum > kLeastDifference * static_cast<float>(cells))
         outline.inside[static_cast<std::size_t>(row) * width + column] = kOutside;
     }
@@ -131,13 +119,20 @@ void dropResting(Outline& outline, const LevelDisparities& disparities, const Ob
 /// A cell is what most of its 3x3 neighbors and itself are.
 void smooth(Outline& outline) {
   const int width = outline.window.width, height = outline.window.height;
-  const std::vector<std::uint8_t> before = outline.inside;
+  std::vector<std::uint8_t> across(outline.inside.size());  // how many of three in a row
   for (int row = 0; row < height; ++row) {
+    const std::uint8_t* inside = outline.inside.data() + static_cast<std::size_t>(row) * width;
+    std::uint8_t* sums = across.data() + static_cast<std::size_t>(row) * width;
+    for (int column = 0; column < width; ++column) sums[column] = inside[column] != kOutside;
+    for (int column = 1; column < width; ++column) sums[column] += inside[column - 1] != kOutside;
+    for (int column = 0; column + 1 < width; ++column) sums[column] += inside[column + 1] != kOutside;
+  }
+  for (int row = 0; row < height; ++row) {
+    const int first = std::max(row - 1, 0), last = std::min(row + 1, height - 1);
     for (int column = 0; column < width; ++column) {
-      int sum = 0, cells = 0;
-      for (int y = std::max(row - 1, 0); y <= std::min(row + 1, height - 1); ++y)
-        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, width - 1); ++x)
-          sum += before[static_cast<std::size_t>(y) * width + x] != kOutside, ++cells;
+      int sum = 0;
+      for (int y = first; y <= last; ++y) sum += across[static_cast<std::size_t>(y) * width + column];
+      const int cells = (last - first + 1) * (1 + (column > 0 ? 1 : 0) + (column + 1 < width ? 1 : 0));
       std::uint8_t& cell = outline.inside[static_cast<std::size_t>(row) * width + column];
       cell = 2 * sum <= cells ? kOutside : cell == kOutside ? kPossible : cell;
     }
@@ -205,15 +200,6 @@ void takeOffFringe(Outline& outline) {
 }
 
 }  // namespace
-
-std::optional<double> LevelDisparities::disparity_px(int column, int row) const {
-  const float d = map.at(column, row);
-  if (d == DisparityMap::kNone) return std::nullopt;
-  return static_cast<double>(d) * (1 << level);
-}
-
-double LevelDisparities::u_px(int column) const { return fromLevel(static_cast<float>(map.window.u0 + column), level); }
-double LevelDisparities::v_px(int row) const { return fromLevel(static_cast<float>(map.window.v0 + row), level); }
 
 PixelWindow Outline::bounds() const {
   int left = window.width, right = -1, top = window.height, bottom = -1;
@@ -283,12 +269,14 @@ bool movesWithBody(const Outline& outline, const LevelDisparities& disparities, 
                    const StereoCamera& camera) {
   constexpr double kLeastMoving_gray = 2;
   constexpr int kLeastTold = 30;  // cells of which it can be told
+  if (!view.before) return false;
+  const MotionEvidence rests_rather(disparities, view, camera);
   double sum = 0;
   int told = 0;
   for (const int cell : outline.samples()) {
     const int column = cell % outline.window.width, row = cell / outline.window.width;
-    if (!view.before || !disparities.disparity_px(column, row)) continue;
-    const float rests = restsRatherThanMoves(disparities, view, camera, column, row);
+    if (!disparities.disparity_px(column, row)) continue;
+    const float rests = rests_rather(column, row);
     sum -= rests, told += rests != 0;
   }
   return told >= kLeastTold && sum > kLeastMoving_gray * told;

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "core/stereo_camera.hpp"
+#include "frontend/image/image_pyramid.hpp"
 #include "frontend/messages.hpp"
 #include "frontend/shape/box_belief.hpp"
 #include "frontend/shape/dense_disparity.hpp"
@@ -39,10 +40,14 @@ struct LevelDisparities {
   int level = 0;
   DisparityMap map;
   /// Of a cell [px of full size]; empty where the images agree on none.
-  std::optional<double> disparity_px(int column, int row) const;
+  std::optional<double> disparity_px(int column, int row) const {
+    const float d = map.at(column, row);
+    if (d == DisparityMap::kNone) return std::nullopt;
+    return static_cast<double>(d) * (1 << level);
+  }
   /// Middle of a column or row [px of full size].
-  double u_px(int column) const;
-  double v_px(int row) const;
+  double u_px(int column) const { return fromLevel(static_cast<float>(map.window.u0 + column), level); }
+  double v_px(int row) const { return fromLevel(static_cast<float>(map.window.v0 + row), level); }
 };
 
 /// Which cells of the window show the object: those that lie within its cuboid, as far as both are known, above the

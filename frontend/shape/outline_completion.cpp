@@ -45,10 +45,13 @@ void addLowParts(Outline& outline, const LevelDisparities& disparities, const Ob
   const Eigen::Matrix3d R_body_cam = view.T_cam_body.rotation().transpose();
   const Eigen::Vector3d origin = -R_body_cam * view.T_cam_body.translation();
   const std::array<Eigen::AlignedBox3d, 5> parts = bodyAndWheels(view.box);
+  const auto box = projectedBox(view.box.least(), view.box.most(), view.T_cam_body, camera);
+  int end = box ? outline.window.height : 0;
+  while (end > 0 && disparities.v_px(end - 1) > box->bottom_px) --end;
   for (int column = 0; column < outline.window.width; ++column) {
     const int lowest = columns[column].second;
     if (lowest < 0) continue;
-    for (int row = lowest + 1; row < outline.window.height; ++row) {
+    for (int row = lowest + 1; row < end; ++row) {
       const Eigen::Vector3d ray((disparities.u_px(column) - camera.cx_px) / camera.fx_px,
                                 (disparities.v_px(row) - camera.cy_px) / camera.fy_px, 1);
       const bool hit = std::ranges::any_of(parts, [&](const Eigen::AlignedBox3d& part) {
