@@ -1,3 +1,4 @@
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -31,6 +32,7 @@ int perform(const std::function<int()>& action) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow further is an error of the write, as on a full disk
   try {
     spdlog::set_default_logger(spdlog::stderr_color_mt("motorcade"));
     spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");

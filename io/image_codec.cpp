@@ -7,6 +7,7 @@ namespace motorcade {
 namespace {
 
 constexpr int kMinSide_px = 16, kMaxSide_px = 16384;
+constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 26;  // 8192 x 8192: a few bytes may tell of more than memory
 constexpr std::size_t kMaxFile_bytes = std::size_t{1} << 28;
 
 }  // namespace
@@ -19,6 +20,10 @@ ImageSize checkedSize(std::uint64_t width, std::uint64_t height, const std::file
     throw InputError(file.string() + ": its header tells " + std::to_string(width) + "x" + std::to_string(height) +
                      " pixels; each side must lie between " + std::to_string(kMinSide_px) + " and " +
                      std::to_string(kMaxSide_px));
+  }
+  if (width * height > kMaxPixels) {
+    throw InputError(file.string() + ": its header tells " + std::to_string(width) + "x" + std::to_string(height) +
+                     " pixels, more than " + std::to_string(kMaxPixels) + "; make the images smaller");
   }
   return {static_cast<int>(width), static_cast<int>(height)};
 }

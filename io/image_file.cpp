@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <fstream>
+
+#include <unistd.h>
 
 #include "io/errors.hpp"
+#include "io/file_descriptor.hpp"
 #include "io/image_codec.hpp"
 
 namespace motorcade {
@@ -36,10 +38,14 @@ bool hasImageName(const fs::path& file) {
 
 ImageFormat imageFormat(const fs::path& file) {
   std::array<char, 8> start{};
-  std::ifstream in(file, std::ios::binary);
-  in.read(start.data(), start.size());
-  const ImageCodec* codec = codecOf({start.data(), static_cast<std::size_t>(in.gcount())});
-  return codec ? codec->format : ImageFormat::kUnknown;
+  try {
+    const InputFile in = openInput(file);
+    const ssize_t got = ::read(in.descriptor.number(), start.data(), start.size());
+    const ImageCodec* codec = codecOf({start.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0))});
+    return codec ? codec->format : ImageFormat::kUnknown;
+  } catch (const InputError&) {
+    return ImageFormat::kUnknown;
+  }
 }
 
 ImageSize readImageSize(const fs::path& file) {
@@ -47,9 +53,13 @@ ImageSize readImageSize(const fs::path& file) {
   return requiredCodecOf(bytes, file).size(bytes, file);
 }
 
-Image readImage(const fs::path& file, ImagePool& pool) {
+Image readImage(const fs::path& file, ImagePool& pool, std::optional<ImageSize> expected) {
   const std::string bytes = readImageBytes(file);
-  return requiredCodecOf(bytes, file).decode(bytes, file, pool);
+  const ImageCodec& codec = requiredCodecOf(bytes, file);
+  const ImageSize size = codec.size(bytes, file);
+  if (expected && size != *expected)
+    throw InputError(file.string() + ": has " + size.text() + " pixels, the sequence has " + expected->text());
+  return codec.decode(bytes, file, pool);
 }
 
 }  // namespace motorcade

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,11 +38,12 @@ struct Gray16Image {
 bool hasImageName(const std::filesystem::path& file);
 /// Recognized by the first bytes; unknown also when the file cannot be read.
 ImageFormat imageFormat(const std::filesystem::path& file);
-/// From the header alone. Refuses sizes below 16 or above 16384 in either direction.
+/// From the header alone. Refuses sizes below 16 or above 16384 in either direction, and more than 2^26 pixels.
 ImageSize readImageSize(const std::filesystem::path& file);
 
-/// Any PNG, JPEG or PGM as 8-bit gray; color is weighted as in BT.601, 16 bits lose the lower byte.
-Image readImage(const std::filesystem::path& file, ImagePool& pool);
+/// Any PNG, JPEG or PGM as 8-bit gray; color is weighted as in BT.601, 16 bits lose the lower byte. Another size than
+/// the expected one is refused by the header.
+Image readImage(const std::filesystem::path& file, ImagePool& pool, std::optional<ImageSize> expected = {});
 /// A gray PNG of 16 bits; one of 8 bits is widened without scaling.
 Gray16Image readPng16(const std::filesystem::path& file);
 

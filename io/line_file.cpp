@@ -2,9 +2,7 @@
 
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include "io/errors.hpp"
@@ -18,26 +16,14 @@ namespace {
 
 }  // namespace
 
-LineFile::LineFile(const std::filesystem::path& file) : file_(file) {
-  descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail(file_, "cannot be created");
-}
-
-LineFile::~LineFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-LineFile::LineFile(LineFile&& other) noexcept
-    : file_(std::move(other.file_)),
-      buffer_(std::move(other.buffer_)),
-      descriptor_(std::exchange(other.descriptor_, -1)) {}
+LineFile::LineFile(const std::filesystem::path& file) : file_(file), descriptor_(createOutput(file)) {}
 
 void LineFile::writeLine(std::string_view line) {
   buffer_.assign(line);
   buffer_ += '\n';
   std::string_view rest = buffer_;
   while (!rest.empty()) {
-    const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
+    const ssize_t written = ::write(descriptor_.number(), rest.data(), rest.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail(file_, "cannot be written");
     rest.remove_prefix(written);  // a disk that is almost full takes a part, and refuses the next
@@ -45,7 +31,7 @@ void LineFile::writeLine(std::string_view line) {
 }
 
 void LineFile::close() {
-  if (descriptor_ >= 0 && ::close(std::exchange(descriptor_, -1)) != 0) fail(file_, "cannot be closed");
+  if (descriptor_.number() >= 0 && ::close(descriptor_.release()) != 0) fail(file_, "cannot be closed");
 }
 
 void writeAtOnce(const std::filesystem::path& file, std::string_view content) {

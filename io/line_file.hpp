@@ -4,17 +4,16 @@
 #include <string>
 #include <string_view>
 
+#include "io/file_descriptor.hpp"
+
 namespace motorcade {
 
 /// A text file that grows by one whole line per write, so that a program that is killed leaves whole lines behind.
 /// Every failure is an OutputError naming the file.
 class LineFile {
  public:
-  /// Creates the file or empties it.
+  /// Makes the file anew (`createOutput`).
   explicit LineFile(const std::filesystem::path& file);
-  ~LineFile();
-  LineFile(LineFile&& other) noexcept;
-  LineFile& operator=(LineFile&&) = delete;
 
   /// Writes the line and its end.
   void writeLine(std::string_view line);
@@ -24,7 +23,7 @@ class LineFile {
  private:
   std::filesystem::path file_;
   std::string buffer_;
-  int descriptor_ = -1;
+  FileDescriptor descriptor_;
 };
 
 /// Writes a whole file under another name and renames it: readers see all of it or nothing.

@@ -7,6 +7,7 @@
 #include <png.h>
 
 #include "io/errors.hpp"
+#include "io/file_descriptor.hpp"
 #include "io/image_codec.hpp"
 #include "io/png_context.hpp"
 
@@ -24,8 +25,10 @@ struct PngWriter {
   png_infop info = nullptr;
 
   explicit PngWriter(const fs::path& path) : file(path) {
-    out = std::fopen(path.c_str(), "wb");
+    FileDescriptor made = createOutput(path);
+    out = ::fdopen(made.number(), "wb");
     if (!out) throw OutputError(path.string() + ": cannot be created: " + std::strerror(errno));
+    made.release();
     png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &context, PngContext::fail, PngContext::warn);
     if (png) info = png_create_info_struct(png);
     if (info) return;

@@ -25,11 +25,18 @@ fs::path preparedFolder(const fs::path& folder) {
     throw OutputError(folder.string() +
                       ": cannot be made a folder: " + (error ? error.message() : "a file of this name is there"));
   }
+  return folder;
+}
+
+/// For this run alone; the summary of an earlier one goes.
+FolderLock locked(const fs::path& folder) {
+  FolderLock lock(folder);
+  std::error_code error;
   fs::remove(folder / "summary.json", error);
   if (error)
     throw OutputError((folder / "summary.json").string() +
                       ": an earlier summary cannot be removed: " + error.message());
-  return folder;
+  return lock;
 }
 
 std::string covarianceLine(FrameId frame, TrackId track, const Matrix6d& covariance) {
@@ -192,6 +199,7 @@ void RunFolderWriter::Files::write(const FrameEstimate& estimate) {
 
 RunFolderWriter::RunFolderWriter(const fs::path& folder)
     : folder_(preparedFolder(folder)),
+      lock_(locked(folder_)),
       online_(folder_, "online"),
       final_(folder_, "final"),
       covariances_(folder_ / "covariances.csv"),
@@ -216,6 +224,7 @@ void RunFolderWriter::writeOnline(const FrameEstimate& estimate) {
 void RunFolderWriter::writeFinal(const FrameEstimate& estimate) { final_.write(estimate); }
 
 void RunFolderWriter::writeTiming(const FrameTiming& timing) {
+  lock_.check();
   frames_.writeLine(frameLine(timing));
   if (!origin_) origin_ = timing.due;
   for (std::size_t i = 0; i < kStageCount; ++i) {

@@ -8,6 +8,7 @@
 
 #include "core/frame_timing.hpp"
 #include "core/messages.hpp"
+#include "io/folder_lock.hpp"
 #include "io/line_file.hpp"
 
 namespace motorcade {
@@ -16,7 +17,8 @@ namespace motorcade {
 /// per write keeps the folder readable at any moment. Not thread safe. Every failure is an OutputError naming the file.
 class RunFolderWriter {
  public:
-  /// Makes the folder if need be and empties its files; a summary of an earlier run is removed first.
+  /// Makes the folder if need be, keeps it for this run alone, and makes its files anew; a summary of an earlier run is
+  /// removed first.
   explicit RunFolderWriter(const std::filesystem::path& folder);
 
   void writeConfig(std::string_view toml);
@@ -24,7 +26,7 @@ class RunFolderWriter {
   void writeOnline(const FrameEstimate& estimate);
   /// `camera_final.*`, `objects_final.csv`.
   void writeFinal(const FrameEstimate& estimate);
-  /// `frames.csv` and `trace.json`.
+  /// `frames.csv` and `trace.json`. Notices when the folder is no longer there.
   void writeTiming(const FrameTiming& timing);
   /// Closes all files, then writes `summary.json`: a run with this file is complete.
   void finish(std::string_view summary_json);
@@ -36,6 +38,7 @@ class RunFolderWriter {
     void write(const FrameEstimate& estimate);
   };
   std::filesystem::path folder_;
+  FolderLock lock_;
   Files online_, final_;
   LineFile covariances_, frames_, trace_;
   std::optional<SteadyTime> origin_;  // of the trace's clock: when the first frame was due

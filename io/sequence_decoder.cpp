@@ -6,7 +6,6 @@
 
 #include <sys/resource.h>
 
-#include "io/errors.hpp"
 #include "io/image_file.hpp"
 
 namespace motorcade {
@@ -44,16 +43,9 @@ StereoFrame SequenceDecoder::decode(std::size_t index) {
   frame.frame.value = static_cast<std::int64_t>(index);
   frame.stamp = sequence_.stamps[index];
   const ImageSize expected{sequence_.camera.width_px, sequence_.camera.height_px};
-  const auto read = [&](const std::filesystem::path& file) {
-    Image image = readImage(file, pool_);
-    const ImageSize size{image.width(), image.height()};
-    if (size != expected)
-      throw InputError(file.string() + ": has " + size.text() + " pixels, the sequence has " + expected.text());
-    return image;
-  };
   try {
-    frame.left = read(sequence_.frames[index].left);
-    frame.right = read(sequence_.frames[index].right);
+    frame.left = readImage(sequence_.frames[index].left, pool_, expected);
+    frame.right = readImage(sequence_.frames[index].right, pool_, expected);
   } catch (const std::exception& error) {  // nothing may leave the thread: also a lack of memory only costs the frame
     frame.left = frame.right = Image();
     frame.problem = error.what();

@@ -4,11 +4,12 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 
 #include <Eigen/LU>
+#include <unistd.h>
 
 #include "io/errors.hpp"
+#include "io/file_descriptor.hpp"
 
 namespace motorcade {
 
@@ -24,19 +25,20 @@ std::vector<TextLine> readTable(const std::filesystem::path& file, std::string_v
 }
 
 std::string readWhole(const std::filesystem::path& file, std::size_t limit_bytes) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) throw InputError(file.string() + ": is a folder, a file is needed");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string() + ": cannot be opened: " + std::strerror(errno));
-  const auto size = std::filesystem::file_size(file, error);
-  if (!error && size > limit_bytes) {
-    throw InputError(file.string() + ": is too large (" + std::to_string(size) + " bytes, at most " +
+  const InputFile in = openInput(file);
+  if (in.bytes > limit_bytes)
+    throw InputError(file.string() + ": is too large (" + std::to_string(in.bytes) + " bytes, at most " +
                      std::to_string(limit_bytes) + ")");
+  std::string content(in.bytes, '\0');
+  std::size_t done = 0;
+  while (done < content.size()) {
+    const ssize_t got = ::read(in.descriptor.number(), content.data() + done, content.size() - done);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw InputError(file.string() + ": cannot be read: " + std::strerror(errno));
+    if (got == 0) break;  // it was cut meanwhile
+    done += static_cast<std::size_t>(got);
   }
-  std::string content(error ? 0 : size, '\0');
-  in.read(content.data(), static_cast<std::streamsize>(content.size()));
-  if (in.bad()) throw InputError(file.string() + ": cannot be read");
-  content.resize(static_cast<std::size_t>(in.gcount()));
+  content.resize(done);
   return content;
 }
 

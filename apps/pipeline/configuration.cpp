@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -13,6 +11,7 @@
 
 #include "apps/pipeline/parameter_table.hpp"
 #include "io/errors.hpp"
+#include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {
@@ -141,9 +140,12 @@ void applyToml(PipelineConfig& config, std::string_view toml, const std::string&
 }
 
 void applyFile(PipelineConfig& config, const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.is_open() || stream.bad()) throw UsageError(file.string() + ": the configuration cannot be read");
+  std::string text;
+  try {
+    text = readWhole(file);
+  } catch (const InputError& error) {
+    throw UsageError(error.what());
+  }
   applyToml(config, text, file.string());
 }
 

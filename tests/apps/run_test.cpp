@@ -262,6 +262,46 @@ TEST_F(Run, FlushesItsResultsWhenASignalEndsIt) {
   EXPECT_EQ(summary("INT")["complete"], false);
 }
 
+TEST_F(Run, RefusesInputsThatWouldBeWaitedFor) {
+  const std::map<std::string, std::string> answers{{"calib.txt", "calib.txt: is a FIFO"},
+                                                   {"times.txt", "times.txt: is a FIFO"},
+                                                   {"image_1/000002.png", "image_0/000002.png has no partner"}};
+  for (const auto& [file, answer] : answers) {
+    const fs::path copy = out("copy");
+    fs::remove_all(copy);
+    fs::copy(kSequence, copy, fs::copy_options::recursive);
+    fs::remove(copy / file);
+    ASSERT_EQ(std::system(("mkfifo " + (copy / file).string()).c_str()), 0);
+    EXPECT_EQ(motorcade("run " + copy.string() + " --out " + out("fifo").string(), "timeout 60 "), 3) << file;
+    EXPECT_THAT(contentOf(errors()), HasSubstr(answer));
+  }
+}
+
+TEST_F(Run, ASecondRunIntoTheSameFolderIsRefused) {
+  const std::string first =
+      MOTORCADE_PROGRAM " run " + kSequence.string() + " --rate 1 --out " + out("shared").string();
+  const std::string started = "timeout -s INT 60 " + first + " >/dev/null 2>&1 & until [ -s " +
+                              (out("shared") / "frames.csv").string() + " ]; do sleep 0.1; done; ";
+  EXPECT_EQ(motorcade("run " + kSequence.string() + " --out " + out("shared").string(), started), 4);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("is in use by another run"));
+  std::system(("pkill -INT -f '" + first + "'").c_str());
+}
+
+TEST_F(Run, NoticesThatItsFolderIsGone) {
+  const std::string removal = "(until [ $(cat " + (out("gone") / "frames.csv").string() +
+                              " 2>/dev/null | wc -l) -gt 2 ]; do sleep 0.1; done; mv " + out("gone").string() + " " +
+                              out("moved").string() + ") & ";
+  EXPECT_EQ(motorcade("run " + kSequence.string() + " --rate 2 --out " + out("gone").string(), removal), 4);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("was removed, renamed or unmounted"));
+  EXPECT_LT(readRunFolder(out("moved")).frames.size(), kFrames);
+}
+
+TEST_F(Run, EndsWithAnErrorWhereFilesMayNotGrow) {
+  EXPECT_EQ(run("small", ""), 0);
+  EXPECT_EQ(motorcade("run " + kSequence.string() + " --out " + out("small").string(), "ulimit -f 1; "), 4);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("File too large"));
+}
+
 TEST_F(Run, TellsWhatIsWrongByItsExitCode) {
   EXPECT_EQ(motorcade("run"), 2);
   EXPECT_EQ(motorcade("--version"), 0);

@@ -1,6 +1,11 @@
 #include "io/run_folder.hpp"
 
+#include <csignal>
+#include <string>
+#include <utility>
+
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include "io/errors.hpp"
 #include "io/trajectory.hpp"
@@ -208,9 +213,21 @@ TEST(RunFolder, OutputsThatCannotBeWrittenAreNamed) {
   EXPECT_THAT(messageOf<OutputError>([&] { RunFolderWriter(folder / "file"); }), HasSubstr("file"));
   std::filesystem::create_directories(folder / "run/camera_online.txt");
   EXPECT_THAT(messageOf<OutputError>([&] { RunFolderWriter(folder / "run"); }), HasSubstr("camera_online.txt"));
-  if (!std::filesystem::exists("/dev/full")) return;
-  LineFile full("/dev/full");
-  EXPECT_THAT(messageOf<OutputError>([&] { full.writeLine("x"); }), AllOf(HasSubstr("/dev/full"), HasSubstr("space")));
+}
+
+TEST(LineFile, WhatDoesNotFitIsNamed) {
+  const test::TemporaryFolder folder;
+  LineFile cut(folder / "cut.csv");
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  const rlim_t before = std::exchange(limit.rlim_cur, 10);
+  setrlimit(RLIMIT_FSIZE, &limit);
+  const std::string message = messageOf<OutputError>([&] { cut.writeLine("more than ten bytes"); });
+  limit.rlim_cur = before;
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_THAT(message, AllOf(HasSubstr("cut.csv"), HasSubstr("too large")));
 }
 
 TEST(Trajectory, KittiLinesComeBackAndBadOnesAreNamed) {

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <utility>
+
+namespace motorcade {
+
+/// Owns an open file.
+class FileDescriptor {
+ public:
+  explicit FileDescriptor(int number = -1) : number_(number) {}
+  ~FileDescriptor();
+  FileDescriptor(FileDescriptor&& other) noexcept : number_(other.release()) {}
+  FileDescriptor& operator=(FileDescriptor&&) = delete;
+
+  int number() const { return number_; }
+  /// Whoever takes it closes it.
+  int release() { return std::exchange(number_, -1); }
+
+ private:
+  int number_;
+};
+
+/// An input, with the size that it has when it is opened.
+struct InputFile {
+  FileDescriptor descriptor;
+  std::size_t bytes;
+};
+/// Opens a regular file, or a link to one. A folder, a FIFO, a socket or a device is refused, none is waited for.
+/// Throws InputError.
+InputFile openInput(const std::filesystem::path& file);
+
+/// Makes a file anew, beside what has its name before, and takes that name: a link is replaced and not followed, and
+/// whoever reads the file before goes on reading it. What is neither a regular file nor a link is refused. Throws
+/// OutputError.
+FileDescriptor createOutput(const std::filesystem::path& file);
+
+}  // namespace motorcade
