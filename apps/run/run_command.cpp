@@ -16,6 +16,7 @@
 #include "apps/run/feeder.hpp"
 #include "apps/run/object_view_writer.hpp"
 #include "apps/run/other_camera.hpp"
+#include "apps/run/plausibility.hpp"
 #include "apps/run/progress.hpp"
 #include "apps/run/run_options.hpp"
 #include "apps/run/run_summary.hpp"
@@ -60,6 +61,7 @@ void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) 
   spdlog::info("{}: {} layout, {} of {} frames, {} x {} px, baseline {:.4f} m", sequence.folder.string(),
                sequence.layout, range.size(), sequence.frames.size(), camera.width_px, camera.height_px,
                camera.baseline_m);
+  for (const std::string& doubt : doubtsAbout(camera)) spdlog::warn(doubt);
   if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
 }
 
@@ -81,6 +83,7 @@ class Recorder {
     }
     folder_.writeTiming(result.timing);
     folder_.writeOnline(result.online);
+    if (const auto doubt = plausibility_.observe(result.online)) spdlog::warn(*doubt);
     if (views_) views_->write(result);
     recordFinals(result.finals);
     if (result.online.status == FrameStatus::kGood) ++good_frames_;
@@ -96,6 +99,7 @@ class Recorder {
   RunFolderWriter& folder_;
   ObjectViewWriter* views_;
   Progress progress_;
+  Plausibility plausibility_;
   std::size_t done_ = 0;
   std::int64_t good_frames_ = 0;
 };

@@ -24,6 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 const fs::path kSequence = MOTORCADE_RENDERED_SEQUENCE;
 constexpr std::size_t kFrames = MOTORCADE_RENDERED_FRAMES;
@@ -275,6 +276,27 @@ TEST_F(Run, RefusesInputsThatWouldBeWaitedFor) {
     EXPECT_EQ(motorcade("run " + copy.string() + " --out " + out("fifo").string(), "timeout 60 "), 3) << file;
     EXPECT_THAT(contentOf(errors()), HasSubstr(answer));
   }
+}
+
+TEST_F(Run, WarnsOfTimesAndCalibrationsThatCannotBe) {
+  EXPECT_EQ(run("clean"), 0);
+  EXPECT_THAT(contentOf(errors()), Not(HasSubstr("warning")));
+  const fs::path copy = out("copy");
+  fs::copy(kSequence, copy, fs::copy_options::recursive);
+  ASSERT_EQ(
+      std::system(("sed -i 's/^0\\.\\([0-9]\\)/\\100./; s/^1\\.\\([0-9]\\)/1\\100./' " + (copy / "times.txt").string())
+                      .c_str()),
+      0);
+  EXPECT_EQ(run("milliseconds", "", copy), 0);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("times must be in seconds"));
+  std::ofstream times(copy / "times.txt");
+  for (std::size_t frame = 0; frame < kFrames; ++frame) times << 100 * frame << '\n';
+  times.close();
+  EXPECT_EQ(run("milliseconds", "", copy), 0);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("times must be in seconds"));
+  ASSERT_EQ(std::system(("sed -i 's/-387\\.5/-387500/' " + (copy / "calib.txt").string()).c_str()), 0);
+  EXPECT_EQ(run("millimeters", "", copy), 0);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("must be in meters"));
 }
 
 TEST_F(Run, ASecondRunIntoTheSameFolderIsRefused) {

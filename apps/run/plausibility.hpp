@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "core/stereo_camera.hpp"
+
+namespace motorcade {
+
+/// What of a calibration no stereo camera on a car has, in sentences that say how to mend it: units other than meters,
+/// another image size.
+std::vector<std::string> doubtsAbout(const StereoCamera& camera);
+
+/// Watches for a drive that cannot be: times in another unit than seconds, or a wrong rate, make the camera faster than
+/// any car, or its pairs too far apart to follow anything.
+class Plausibility {
+ public:
+  /// Takes the online estimates in order. A sentence that says what is not plausible and how to mend it; only one of
+  /// its kind.
+  std::optional<std::string> observe(const FrameEstimate& online);
+
+ private:
+  /// Frames in a row of which something holds; true when it has held long enough, once.
+  class Persistent {
+   public:
+    bool observe(bool holds);
+
+   private:
+    int frames_ = 0;
+    bool told_ = false;
+  };
+
+  std::optional<FrameEstimate> before_;  // without objects
+  Persistent far_apart_, close_together_, too_fast_;
+};
+
+}  // namespace motorcade
