@@ -16,7 +16,7 @@ namespace {
 constexpr int kMaxTentativeMisses = 1;   // frames without a measurement, after which a tentative object ends
 constexpr double kMaxLostSigma_m = 3;    // of a position: less well known, what is met there may be another vehicle
 constexpr double kOutsideImage_px = 50;  // an unseen object that is predicted this far outside has left
-constexpr double kInsideImage_px = 10;   // but not one of which a half must be visible
+constexpr double kInsideImage_px = 10;   // unless the middle of its points is predicted this far inside
 constexpr double kReappearanceSpread_m = 1.0;  // standard deviation of the middle of an object's points when it is seen
                                                // again, about that of those seen last
 constexpr int kStopFrames = 3;                 // in a row below the stop speed, as the speed's noise may fall below it
