@@ -50,7 +50,8 @@ void Census::computeRow(const Image& image, const PixelWindow& window, int v) {
         const Bytes pixel = loadBytes(corner + y * stride + x);
         if (x % 2 == 0 && y % 2 == 0) least = lesser(least, pixel), most = greater(most, pixel);
         if (x == kHalf_px && y == kHalf_px) continue;
-        bits[bit / kBitsPerByte] |= Bytes(pixel < middle) & static_cast<std::uint8_t>(1 << bit % kBitsPerByte);
+        bits[bit / kBitsPerByte] |=
+            Bytes(pixel < middle) & allBytes(static_cast<std::uint8_t>(1 << bit % kBitsPerByte));
         ++bit;
       }
     for (int byte = 0; byte < kBytes; ++byte) storeBytes(planes_[byte].data() + at(v) + u, bits[byte]);

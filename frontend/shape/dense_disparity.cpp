@@ -81,7 +81,7 @@ void DenseDisparity::fillCosts() {
         Bytes different{};
         for (int byte = 0; byte < Census::kBytes; ++byte) {
           const std::uint8_t* right = right_.row(byte, row) + inRight(column) + static_cast<std::ptrdiff_t>(i);
-          different += bitCounts(loadBytes(right) ^ left_.row(byte, row)[column]);
+          different += bitCounts(loadBytes(right) ^ allBytes(left_.row(byte, row)[column]));
         }
         storeBytes(costs + i, different);
       }
@@ -144,7 +144,7 @@ void DenseDisparity::chooseOfRight(int row) {
       const Bytes here = loadBytes(sums), before = loadBytes(least);
       const Bytes less = Bytes(here < before);
       storeBytes(least, lesser(here, before));
-      storeBytes(best, (less & (kEveryLane + static_cast<std::uint8_t>(i))) | (~less & loadBytes(best)));
+      storeBytes(best, (less & (kEveryLane + allBytes(static_cast<std::uint8_t>(i)))) | (~less & loadBytes(best)));
     }
   }
 }
