@@ -126,7 +126,8 @@ TEST_F(TextFile, LeavesOutALastLineThatWasCutWhereAsked) {
 TEST_F(TextFile, NamesAFileThatCannotBeRead) {
   EXPECT_THAT(messageOf<InputError>([&] { readWhole(folder_ / "none.txt"); }),
               AllOf(HasSubstr("none.txt"), HasSubstr("cannot be opened")));
-  EXPECT_THAT(messageOf<InputError>([&] { readWhole(folder_.path()); }), HasSubstr("is a folder, a regular file is needed"));
+  EXPECT_THAT(messageOf<InputError>([&] { readWhole(folder_.path()); }),
+              HasSubstr("is a folder, a regular file is needed"));
   EXPECT_THAT(messageOf<InputError>([&] { readWhole(folder_.write("long.txt", "12345"), 4); }),
               HasSubstr("is too large (5 bytes, at most 4)"));
 }
