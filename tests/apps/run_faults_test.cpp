@@ -1,0 +1,138 @@
+#include <fstream>
+#include <map>
+#include <string>
+
+#include <gmock/gmock.h>
+
+#include "io/run_folder.hpp"
+#include "tests/apps/program_run.hpp"
+
+/// What `motorcade run` answers to inputs, outputs and settings that cannot work.
+namespace motorcade::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST_F(Run, RejectsADamagedImageAndGoesOn) {
+  const fs::path damaged = damagedSequence();
+  ASSERT_EQ(run("out", "", damaged), 0) << contentOf(errors());
+  const RunFolder folder = readRunFolder(out("out"));
+  ASSERT_EQ(folder.frames.size(), kFrames);
+  EXPECT_EQ(folder.frames[3].status, FrameStatus::kRejected);
+  EXPECT_EQ(folder.final.camera.size(), kFrames);
+  EXPECT_EQ(summary("out")["frames"]["rejected"], 1);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("000003"));
+  EXPECT_EQ(run("strict", "--require tracked=1", damaged), 5);
+}
+
+TEST_F(Run, FlushesItsResultsWhenASignalEndsIt) {
+  const auto interrupted = [&](const std::string& signal) {
+    return motorcade("run " + kSequence.string() + " --rate 1 --out " + out(signal).string(),
+                     "timeout --preserve-status -s " + signal + " 2 ");
+  };
+  EXPECT_EQ(interrupted("INT"), 130);
+  EXPECT_EQ(interrupted("TERM"), 143);
+  const RunFolder folder = readRunFolder(out("INT"));
+  EXPECT_GE(folder.frames.size(), 1u);
+  EXPECT_EQ(folder.final.camera.size(), folder.frames.size());
+  EXPECT_EQ(summary("INT")["complete"], false);
+}
+
+TEST_F(Run, RefusesInputsThatWouldBeWaitedFor) {
+  const std::map<std::string, std::string> answers{{"calib.txt", "calib.txt: is a FIFO"},
+                                                   {"times.txt", "times.txt: is a FIFO"},
+                                                   {"image_1/000002.png", "image_0/000002.png has no partner"}};
+  for (const auto& [file, answer] : answers) {
+    const fs::path copy = out("copy");
+    fs::remove_all(copy);
+    fs::copy(kSequence, copy, fs::copy_options::recursive);
+    fs::remove(copy / file);
+    ASSERT_EQ(std::system(("mkfifo " + (copy / file).string()).c_str()), 0);
+    EXPECT_EQ(motorcade("run " + copy.string() + " --out " + out("fifo").string(), "timeout 60 "), 3) << file;
+    EXPECT_THAT(contentOf(errors()), HasSubstr(answer));
+  }
+}
+
+TEST_F(Run, WarnsOfTimesAndCalibrationsThatCannotBe) {
+  EXPECT_EQ(run("clean"), 0);
+  EXPECT_THAT(contentOf(errors()), Not(HasSubstr("warning")));
+  const fs::path copy = out("copy");
+  fs::copy(kSequence, copy, fs::copy_options::recursive);
+  ASSERT_EQ(
+      std::system(("sed -i 's/^0\\.\\([0-9]\\)/\\100./; s/^1\\.\\([0-9]\\)/1\\100./' " + (copy / "times.txt").string())
+                      .c_str()),
+      0);
+  EXPECT_EQ(run("milliseconds", "", copy), 0);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("times must be in seconds"));
+  std::ofstream times(copy / "times.txt");
+  for (std::size_t frame = 0; frame < kFrames; ++frame) times << 100 * frame << '\n';
+  times.close();
+  EXPECT_EQ(run("milliseconds", "", copy), 0);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("times must be in seconds"));
+  ASSERT_EQ(std::system(("sed -i 's/-387\\.5/-387500/' " + (copy / "calib.txt").string()).c_str()), 0);
+  EXPECT_EQ(run("millimeters", "", copy), 0);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("must be in meters"));
+}
+
+TEST_F(Run, ASecondRunIntoTheSameFolderIsRefused) {
+  const std::string first =
+      MOTORCADE_PROGRAM " run " + kSequence.string() + " --rate 1 --out " + out("shared").string();
+  const std::string started = "timeout -s INT 60 " + first + " >/dev/null 2>&1 & until [ -s " +
+                              (out("shared") / "frames.csv").string() + " ]; do sleep 0.1; done; ";
+  EXPECT_EQ(motorcade("run " + kSequence.string() + " --out " + out("shared").string(), started), 4);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("is in use by another run"));
+  std::system(("pkill -INT -f '" + first + "'").c_str());
+}
+
+TEST_F(Run, NoticesThatItsFolderIsGone) {
+  const std::string removal = "(until [ $(cat " + (out("gone") / "frames.csv").string() +
+                              " 2>/dev/null | wc -l) -gt 2 ]; do sleep 0.1; done; mv " + out("gone").string() + " " +
+                              out("moved").string() + ") & ";
+  EXPECT_EQ(motorcade("run " + kSequence.string() + " --rate 2 --out " + out("gone").string(), removal), 4);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("was removed, renamed or unmounted"));
+  EXPECT_LT(readRunFolder(out("moved")).frames.size(), kFrames);
+}
+
+TEST_F(Run, EndsWithAnErrorWhereFilesMayNotGrow) {
+  EXPECT_EQ(run("small", ""), 0);
+  EXPECT_EQ(motorcade("run " + kSequence.string() + " --out " + out("small").string(), "ulimit -f 1; "), 4);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("File too large"));
+}
+
+TEST_F(Run, TellsWhatIsWrongByItsExitCode) {
+  EXPECT_EQ(motorcade("run"), 2);
+  EXPECT_EQ(motorcade("--version"), 0);
+  EXPECT_EQ(run("x", "--rate fast"), 2);
+  EXPECT_EQ(run("x", "--live --rate max"), 2);
+  EXPECT_EQ(run("x", "--set backend.budget_ms=1"), 2);
+  EXPECT_EQ(run("x", "--require lost=1"), 2);
+  EXPECT_EQ(run("x", "--threads 0"), 2);
+  EXPECT_EQ(run("x", "--set frontend.corner.max_corners=5"), 2);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("did you mean 'frontend.corners.max_corners'"));
+  EXPECT_EQ(run("x", "", out("nowhere")), 3);
+  EXPECT_EQ(motorcade("run " + kSequence.string() + " --out " + (kSequence / "calib.txt").string()), 4);
+}
+
+TEST_F(Run, AnswersSettingsThatCannotWorkWithTheKeyAndItsRange) {
+  for (const std::string setting :
+       {"frontend.disparity_offset.window_frames=0", "frontend.point_tracks.max_missed_frames=30",
+        "frontend.point_tracks.max_missed_frames=-1", "frontend.segmentation.max_gap_m=1e-6",
+        "backend.window_frames=1e300", "frontend.ground_plane.max_tilt_rad=inf"}) {
+    EXPECT_EQ(run("x", "--set " + setting), 2) << setting;
+    EXPECT_THAT(contentOf(errors()), HasSubstr(setting.substr(0, setting.find('=')) + "' is ")) << setting;
+    EXPECT_THAT(contentOf(errors()), HasSubstr(" to ")) << setting;
+  }
+  // Keys that once could be set to something that ended the program; they are keys no more.
+  for (const std::string setting : {"frontend.motion.calibration_frames=0", "backend.factors.object_encounter_share=0",
+                                    "backend.final_iterations=0", "frontend.optical_flow.patch.window_px=10",
+                                    "frontend.optical_flow.min_distance_px=0"}) {
+    EXPECT_EQ(run("x", "--set " + setting), 2) << setting;
+    EXPECT_THAT(contentOf(errors()), HasSubstr("unknown key")) << setting;
+  }
+}
+
+/// Real frames with two lead cars; the tests that need them are skipped where the data is absent.
+
+}  // namespace
+}  // namespace motorcade::test
