@@ -22,7 +22,7 @@ class FilesThatAreNone : public testing::Test {
  protected:
   test::TemporaryFolder folder_;
   fs::path fifo() const {
-    const fs::path file = folder_ / "fifo";
+    fs::path file = folder_ / "fifo";
     ::mkfifo(file.c_str(), 0600);
     return file;
   }

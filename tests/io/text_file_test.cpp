@@ -89,7 +89,7 @@ TEST(FieldReader, NamesWhatIsMissingAndWhatIsLeft) {
 
 TEST(FieldReader, PutsARotationOfFewDigitsBackOntoTheGroup) {
   const SE3 T = reading("0.8 -0.6001 0 1 0.6 0.8 0 2 0 0 1 3", kPose);
-  const Eigen::Matrix3d R = T.rotation();
+  const Eigen::Matrix3d& R = T.rotation();
   EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_EQ(T.translation(), Eigen::Vector3d(1, 2, 3));
 }
