@@ -43,8 +43,7 @@ bool Plausibility::Persistent::observe(bool holds) {
 }
 
 std::optional<std::string> Plausibility::observe(const FrameEstimate& online) {
-  const std::optional<FrameEstimate> before = std::exchange(before_, online);
-  before_->objects.clear();
+  const auto before = std::exchange(before_, Seen{online.stamp, online.status, online.T_world_cam});
   if (!before) return std::nullopt;
   const double period_s = secondsBetween(before->stamp, online.stamp);
   if (far_apart_.observe(period_s > kMostPeriod_s))

@@ -32,7 +32,12 @@ class Plausibility {
     bool told_ = false;
   };
 
-  std::optional<FrameEstimate> before_;  // without objects
+  struct Seen {
+    Timestamp stamp;
+    FrameStatus status;
+    SE3 T_world_cam;
+  };
+  std::optional<Seen> before_;
   Persistent far_apart_, close_together_, too_fast_;
 };
 

@@ -1,7 +1,7 @@
 #include "frontend/shape/outline_completion.hpp"
 
 #include <algorithm>
-#include <array>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -11,23 +11,20 @@ namespace motorcade {
 namespace {
 
 /// A vehicle's body, down to where one sees the road below it, and its wheels, away from its ends.
-std::array<Eigen::AlignedBox3d, 5> bodyAndWheels(const BoxEstimate& box) {
+std::vector<Eigen::AlignedBox3d> bodyAndWheels(const BoxEstimate& box) {
   constexpr double kClearance_m = 0.25, kFromEnd_m = 0.45, kDiameter_m = 0.65, kThickness_m = 0.25, kRounded_m = 0.15;
   constexpr double kLeastLength_m = 2.5;  // shorter ones stand on the road as a whole
   const Eigen::Vector3d least = box.least(), most = box.most();
   const Eigen::Vector3d rounded(kRounded_m, kRounded_m, 0);
-  std::array<Eigen::AlignedBox3d, 5> parts;
-  if (most.x() - least.x() < kLeastLength_m) {
-    parts.fill({least, most});
-    return parts;
-  }
-  parts[4] = {least + rounded + kClearance_m * Eigen::Vector3d::UnitZ(), most - rounded};
+  if (most.x() - least.x() < kLeastLength_m) return {Eigen::AlignedBox3d(least, most)};
+  std::vector<Eigen::AlignedBox3d> parts;
   for (int i = 0; i < 4; ++i) {
     const double x = i & 1 ? most.x() - kFromEnd_m - kDiameter_m : least.x() + kFromEnd_m;
     const double y = i & 2 ? most.y() - kThickness_m : least.y();
-    parts[i] = {Eigen::Vector3d(x, y, least.z()),
-                Eigen::Vector3d(x + kDiameter_m, y + kThickness_m, least.z() + kDiameter_m)};
+    parts.emplace_back(Eigen::Vector3d(x, y, least.z()),
+                       Eigen::Vector3d(x + kDiameter_m, y + kThickness_m, least.z() + kDiameter_m));
   }
+  parts.emplace_back(least + rounded + kClearance_m * Eigen::Vector3d::UnitZ(), most - rounded);
   return parts;
 }
 
@@ -44,7 +41,7 @@ void addLowParts(Outline& outline, const LevelDisparities& disparities, const Ob
   const auto columns = outline.spansOfColumns();
   const Eigen::Matrix3d R_body_cam = view.T_cam_body.rotation().transpose();
   const Eigen::Vector3d origin = -R_body_cam * view.T_cam_body.translation();
-  const std::array<Eigen::AlignedBox3d, 5> parts = bodyAndWheels(view.box);
+  const std::vector<Eigen::AlignedBox3d> parts = bodyAndWheels(view.box);
   const auto box = projectedBox(view.box.least(), view.box.most(), view.T_cam_body, camera);
   int end = box ? outline.window.height : 0;
   while (end > 0 && disparities.v_px(end - 1) > box->bottom_px) --end;

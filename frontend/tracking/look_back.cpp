@@ -6,7 +6,6 @@
 #include <Eigen/LU>
 
 namespace motorcade {
-
 namespace {
 
 /// Points that the object was given, but that were not measured to move with it yet.

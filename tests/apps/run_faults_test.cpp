@@ -1,5 +1,6 @@
 #include <fstream>
 #include <map>
+#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -75,21 +76,26 @@ TEST_F(Run, WarnsOfTimesAndCalibrationsThatCannotBe) {
   EXPECT_THAT(contentOf(errors()), HasSubstr("must be in meters"));
 }
 
-TEST_F(Run, ASecondRunIntoTheSameFolderIsRefused) {
-  const std::string first =
-      MOTORCADE_PROGRAM " run " + kSequence.string() + " --rate 1 --out " + out("shared").string();
-  const std::string started = "timeout -s INT 60 " + first + " >/dev/null 2>&1 & until [ -s " +
-                              (out("shared") / "frames.csv").string() + " ]; do sleep 0.1; done; ";
-  EXPECT_EQ(motorcade("run " + kSequence.string() + " --out " + out("shared").string(), started), 4);
-  EXPECT_THAT(contentOf(errors()), HasSubstr("is in use by another run"));
-  std::system(("pkill -INT -f '" + first + "'").c_str());
+/// A shell's wait of at most a minute until a run has written more than `lines` lines of frames.csv.
+std::string waitForLines(const fs::path& run, int lines) {
+  std::ostringstream wait;
+  wait << "for i in $(seq 600); do [ $(cat " << (run / "frames.csv").string() << " 2>/dev/null | wc -l) -gt " << lines
+       << " ] && break; sleep 0.1; done; ";
+  return wait.str();
 }
 
+TEST_F(Run, ASecondRunIntoTheSameFolderIsRefused) {
+  const std::string run_there = "run " + kSequence.string() + " --out " + out("shared").string();
+  const std::string first = MOTORCADE_PROGRAM " " + run_there + " --rate 1 >/dev/null 2>&1 & ";
+  EXPECT_EQ(motorcade(run_there, first + waitForLines(out("shared"), 0)), 4);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("is in use by another run"));
+}  // the first run ends when its folder is removed
+
 TEST_F(Run, NoticesThatItsFolderIsGone) {
-  const std::string removal = "(until [ $(cat " + (out("gone") / "frames.csv").string() +
-                              " 2>/dev/null | wc -l) -gt 2 ]; do sleep 0.1; done; mv " + out("gone").string() + " " +
-                              out("moved").string() + ") & ";
-  EXPECT_EQ(motorcade("run " + kSequence.string() + " --rate 2 --out " + out("gone").string(), removal), 4);
+  std::ostringstream removal;
+  removal << "(" << waitForLines(out("gone"), 2) << "mv " << out("gone").string() << " " << out("moved").string()
+          << ") & ";
+  EXPECT_EQ(motorcade("run " + kSequence.string() + " --rate 2 --out " + out("gone").string(), removal.str()), 4);
   EXPECT_THAT(contentOf(errors()), HasSubstr("was removed, renamed or unmounted"));
   EXPECT_LT(readRunFolder(out("moved")).frames.size(), kFrames);
 }

@@ -59,18 +59,28 @@ TEST_P(OutlineAtYaw, CoversTheCarAndNotTheRoad) {
 
 INSTANTIATE_TEST_SUITE_P(Yaws, OutlineAtYaw, testing::Values(0.0, 0.6, 1.5));
 
+/// The outline and the wheels of what stands before the camera.
+struct Completed {
+  StreetByHand street;
+  LevelDisparities seen;
+  Outline outline;
+
+  Completed(const Eigen::Vector3d& size_m, double z_m)
+      : street({{StreetByHand::standingAt(0, z_m), StreetByHand::faces(size_m)}}),
+        seen(street.disparities(kWindow, 1)) {
+    const ObjectView view = viewOf(StreetByHand::standingAt(0, z_m), size_m);
+    outline = outlineOf(seen, view);
+    completeOutline(outline, seen, view, kRig);
+  }
+};
+
 TEST(OutlineCompletion, OneSeesTheRoadBetweenTheWheels) {
-  const SE3 T_cam_body = StreetByHand::standingAt(0, 13);
-  const StreetByHand street({{T_cam_body, StreetByHand::faces(kCar_m)}});
-  const LevelDisparities seen = street.disparities(kWindow, 1);
-  const ObjectView view = viewOf(T_cam_body, kCar_m);
-  Outline outline = outlineOf(seen, view);
-  completeOutline(outline, seen, view, kRig);
+  const Completed car(kCar_m, 13);
   const double rear_m = 13 - kCar_m.x() / 2 + 0.45;  // to where the rear wheels stand
   const auto isInside = [&](double x_m, double height_m) {
     const double u = kRig.cx_px + kRig.fx_px * x_m / rear_m,
                  v = kRig.cy_px + kRig.fy_px * (StreetByHand::kRoad_m - height_m) / rear_m;
-    return outline.at(static_cast<int>(u / 2) - kWindow.u0, static_cast<int>(v / 2) - kWindow.v0);
+    return car.outline.at(static_cast<int>(u / 2) - kWindow.u0, static_cast<int>(v / 2) - kWindow.v0);
   };
   for (const double x_m : {-0.8, 0.8}) EXPECT_TRUE(isInside(x_m, 0.02));
   EXPECT_FALSE(isInside(0, 0.02));
@@ -78,14 +88,8 @@ TEST(OutlineCompletion, OneSeesTheRoadBetweenTheWheels) {
 }
 
 TEST(OutlineCompletion, APersonStandsOnTheRoad) {
-  const Eigen::Vector3d person_m(0.6, 0.7, 1.75);
-  const SE3 T_cam_body = StreetByHand::standingAt(0, 9);
-  const StreetByHand street({{T_cam_body, StreetByHand::faces(person_m)}});
-  const LevelDisparities seen = street.disparities(kWindow, 1);
-  const ObjectView view = viewOf(T_cam_body, person_m);
-  Outline outline = outlineOf(seen, view);
-  completeOutline(outline, seen, view, kRig);
-  EXPECT_GT(overlapOf(outline, seen, street, 0).iou(), 0.85);
+  const Completed person({0.6, 0.7, 1.75}, 9);
+  EXPECT_GT(overlapOf(person.outline, person.seen, person.street, 0).iou(), 0.85);
 }
 
 TEST(Outline, LeavesOthersAlone) {
