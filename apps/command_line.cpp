@@ -7,6 +7,7 @@
 
 #include "apps/draw/draw_command.hpp"
 #include "apps/evaluate/evaluate_command.hpp"
+#include "apps/inject/fault_spec.hpp"
 #include "apps/run/run_command.hpp"
 #include "apps/solve/solve_command.hpp"
 #include "apps/synth/synth_command.hpp"
@@ -45,6 +46,12 @@ void addRun(CLI::App& app, Action& action) {
       ->type_name("FILE.toml");
   command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")
       ->type_name("KEY=VALUE");
+  command
+      ->add_option("--inject", options->inject,
+                   "Faults on the way from the camera, to see what becomes of the results: "
+                   "KIND[=VALUE][/left|/right][@A[:B[:STEP]]][~SHARE],... and seed=N, as black@20:23,noise=20~0.1\n" +
+                       faultHelp())
+      ->type_name("FAULTS");
   command->add_option("--require", options->require, "Exit with 5 when fewer frames are tracked")
       ->type_name("tracked=FRACTION");
   command->callback([options, &action] { action = [options] { return runSequence(*options); }; });

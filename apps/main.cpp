@@ -1,11 +1,14 @@
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <new>
+#include <system_error>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "apps/command_line.hpp"
 #include "io/errors.hpp"
@@ -13,6 +16,31 @@
 namespace {
 
 constexpr int kExitInternal = 70;
+
+/// Ends the program with a message, without asking for memory: what was written so far is in its files.
+[[noreturn]] void endWith(const char* message) {
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message, std::strlen(message));
+  ::_exit(kExitInternal);
+}
+
+/// Operator new found no memory. Each thread may be in the middle of anything: nothing is unwound.
+[[noreturn]] void endWithoutMemory() { endWith("motorcade: out of memory\n"); }
+
+/// What is thrown where nothing may be: oneTBB's, when a thread cannot be started.
+[[noreturn]] void endWithCurrentException() {
+  try {
+    if (const auto current = std::current_exception()) std::rethrow_exception(current);
+  } catch (const std::bad_alloc&) {
+    endWithoutMemory();
+  } catch (const std::exception& error) {
+    const char* const what = error.what();
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, what, std::strlen(what));
+    endWith(": internal error of motorcade\n");
+  } catch (...) {
+    endWith("motorcade: unknown exception\n");
+  }
+  endWith("motorcade: internal error\n");
+}
 
 /// Runs the command and turns what went wrong into a message and an exit code.
 int perform(const std::function<int()>& action) {
@@ -23,6 +51,9 @@ int perform(const std::function<int()>& action) {
     return error.exitCode();
   } catch (const std::bad_alloc&) {
     spdlog::error("out of memory");
+  } catch (const std::system_error& error) {
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    spdlog::error("{}: {}", no_thread ? "no thread can be started, out of memory" : "internal error", error.what());
   } catch (const std::exception& error) {
     spdlog::error("internal error: {}", error.what());
   }
@@ -33,6 +64,8 @@ int perform(const std::function<int()>& action) {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow further is an error of the write, as on a full disk
+  std::set_new_handler(endWithoutMemory);
+  std::set_terminate(endWithCurrentException);
   try {
     spdlog::set_default_logger(spdlog::stderr_color_mt("motorcade"));
     spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");

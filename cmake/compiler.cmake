@@ -9,10 +9,20 @@ find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   # What ccache wants to know of precompiled headers.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
-  add_compile_options(-fpch-preprocess)
+  add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endif()
 # The compiler's own garbage collection costs an eighth of its time at the default of 128 MB.
 add_compile_options($<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
+
+# Programs at any address, with nothing to overwrite that tells where calls go, and with checks of the C library and of stack frames, where
+# the compiler can see how large a buffer is. Sanitizers check more, and do not go with the first.
+include(CheckPIESupported)
+check_pie_supported()
+add_link_options(LINKER:-z,relro,-z,now,-z,noexecstack)
+add_compile_options(-fstack-protector-strong)
+if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  add_compile_options($<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE> $<$<NOT:$<CONFIG:Debug>>:-D_FORTIFY_SOURCE=3>)
+endif()
 
 # One library per folder: `motorcade_library(core a.cpp b.cpp)` makes motorcade_core and motorcade::core.
 function(motorcade_library folder)
@@ -25,7 +35,9 @@ function(motorcade_library folder)
   if(folder STREQUAL core OR folder STREQUAL frontend)
     motorcade_same_bits(motorcade_${folder})
   endif()
-  motorcade_precompiled_headers(${folder})
+  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)  # else io would wait for the back-end all the same
+    motorcade_precompiled_headers(${folder})
+  endif()
 endfunction()
 
 # What nearly every file includes is parsed once: by core for itself and the front-end, whose flags are the same, and by the back-end for

@@ -48,6 +48,8 @@ struct FrameTiming {
   FrameId frame;
   Timestamp stamp;
   FrameStatus status = FrameStatus::kGood;
+  FrameCause cause = FrameCause::kNone;
+  int segment = 0;
   SteadyTime due;        // latency counts from here
   SteadyTime admitted;   // taken from the ring and put into the flow graph
   SteadyTime published;  // result ready for the reader

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -26,6 +27,20 @@ enum class FrameStatus {
   kRejected,  // unreadable or of the wrong size: the pose is predicted
   kDropped,   // never processed, by the live policy: the pose is predicted
 };
+
+/// Why a frame is not simply good. A good frame with a cause is *degraded*: its pose is measured, but less surely.
+enum class FrameCause {
+  kNone,
+  kAfterGap,      // good: measured across frames that were missing or of no use
+  kFewPoints,     // good: hardly more points than it takes
+  kNothingFound,  // lost: hardly anything of the frames before is found in it, as when it is dark, blurred or frozen
+  kUnlinked,      // lost: points are seen, but not how the camera moved since the last frame that was good
+  kFailed,        // lost or rejected: a stage of the pipeline could not work
+  kUnusable,      // rejected: damaged, missing or of the wrong size
+  kOutOfOrder,    // rejected: its time is not after that of the frame before
+  kTooLate        // dropped: it never came, or not in time
+};
+inline constexpr std::size_t kCauseCount = 9;
 
 /// A rectified stereo pair as it enters the pipeline.
 struct StereoFrame {
@@ -101,6 +116,10 @@ struct FrameMeasurements {
   FrameId frame;
   Timestamp stamp;
   FrameStatus status = FrameStatus::kGood;
+  FrameCause cause = FrameCause::kNone;
+  /// Counts up where the frames before and after are not linked by anything measured: poses of different segments lie
+  /// in one frame of reference by prediction alone.
+  int segment = 0;
   /// Ego-motion T_cam(previous)_cam(now), identity in the first frame; predicted, with a wide covariance, unless the
   /// status is kGood.
   SE3 T_previous_now;
@@ -133,15 +152,18 @@ struct ObjectEstimate {
   double age_s = 0;  // since its first estimate of the same kind, online or final
 };
 
-/// A camera's covariance is that of its motion over this many frames: the drift of an absolute pose has no bound.
+/// A camera's covariance is that of its motion over this many frames: the drift of an absolute pose has no bound. Where
+/// the frame so long before never entered, it is since the last one before it that did.
 inline constexpr int kCameraCovarianceFrames = 10;
 
-/// The camera and the objects in one frame: *online* as published when it is the newest, *final* when it leaves the
-/// window.
+/// The camera and the objects in one frame: *online* as published when it is the newest, *settled* when it is some
+/// seconds old, *final* when it leaves the window.
 struct FrameEstimate {
   FrameId frame;
   Timestamp stamp;
   FrameStatus status = FrameStatus::kGood;
+  FrameCause cause = FrameCause::kNone;
+  int segment = 0;  // see FrameMeasurements
   SE3 T_world_cam;
   std::optional<Matrix6d> camera_covariance;  // of T_cam(before)_cam(now), kCameraCovarianceFrames apart
   std::vector<ObjectEstimate> objects;        // ordered by track
@@ -159,7 +181,8 @@ struct SolverCounters {
 /// The back-end's answer to one frame.
 struct Estimates {
   FrameEstimate online;
-  std::vector<FrameEstimate> finals;  // frames that left the window with this update, oldest first
+  std::vector<FrameEstimate> finals;     // frames that left the window with this update, oldest first
+  std::vector<FrameEstimate> settled{};  // oldest first; they come again as final
   SolverCounters counters;
   std::vector<std::string> problems{};  // sentences for the log: what was left out or dropped, and why
   std::vector<ObjectMask> masks{};      // of the online estimate's objects, those whose outline was looked for

@@ -112,6 +112,8 @@ struct SceneMotion {
   FrameId frame;
   Timestamp stamp;
   FrameStatus status = FrameStatus::kGood;
+  FrameCause cause = FrameCause::kNone;
+  int segment = 0;  // see FrameMeasurements
   SE3 T_previous_now;
   Matrix6d odometry_covariance = Matrix6d::Identity();
   int ego_inliers = 0;

@@ -19,6 +19,7 @@ struct Calibration {
   using Projection = Eigen::Matrix<double, 3, 4>;
   std::filesystem::path file{};
   std::array<std::optional<Projection>, 4> P{};  // P0 ... P3, after rectification [px]
+  std::array<int, 4> line_of_P{};                // counted from one, for messages; 0 when it came from no file
   std::optional<Eigen::Matrix3d> R_rect{};       // unrectified to rectified camera 0
   std::optional<SE3> T_cam_velo{};               // the unrectified camera 0
   std::optional<SE3> T_velo_imu{};

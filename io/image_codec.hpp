@@ -26,8 +26,6 @@ const ImageCodec& pngCodec();
 const ImageCodec& jpegCodec();
 const ImageCodec& pgmCodec();
 
-/// The whole file, unless it is too large for an image.
-std::string readImageBytes(const std::filesystem::path& file);
 /// The size that a header tells, if it is one that an image may have.
 ImageSize checkedSize(std::uint64_t width, std::uint64_t height, const std::filesystem::path& file);
 [[noreturn]] void failDamaged(const std::filesystem::path& file, const std::string& why);

@@ -54,12 +54,15 @@ ImageSize readImageSize(const fs::path& file) {
 }
 
 Image readImage(const fs::path& file, ImagePool& pool, std::optional<ImageSize> expected) {
-  const std::string bytes = readImageBytes(file);
-  const ImageCodec& codec = requiredCodecOf(bytes, file);
-  const ImageSize size = codec.size(bytes, file);
+  return decodeImage(readImageBytes(file), file, pool, expected);
+}
+
+Image decodeImage(std::string_view bytes, const fs::path& name, ImagePool& pool, std::optional<ImageSize> expected) {
+  const ImageCodec& codec = requiredCodecOf(bytes, name);
+  const ImageSize size = codec.size(bytes, name);
   if (expected && size != *expected)
-    throw InputError(file.string() + ": has " + size.text() + " pixels, the sequence has " + expected->text());
-  return codec.decode(bytes, file, pool);
+    throw InputError(name.string() + ": has " + size.text() + " pixels, the sequence has " + expected->text());
+  return codec.decode(bytes, name, pool);
 }
 
 }  // namespace motorcade

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/image.hpp"
@@ -44,12 +45,19 @@ ImageSize readImageSize(const std::filesystem::path& file);
 /// Any PNG, JPEG or PGM as 8-bit gray; color is weighted as in BT.601, 16 bits lose the lower byte. Another size than
 /// the expected one is refused by the header.
 Image readImage(const std::filesystem::path& file, ImagePool& pool, std::optional<ImageSize> expected = {});
+/// The same from the bytes of a whole file; `name` is for messages.
+Image decodeImage(std::string_view bytes, const std::filesystem::path& name, ImagePool& pool,
+                  std::optional<ImageSize> expected = {});
+/// The whole file, unless it is too large for an image.
+std::string readImageBytes(const std::filesystem::path& file);
 /// A gray PNG of 16 bits; one of 8 bits is widened without scaling.
 Gray16Image readPng16(const std::filesystem::path& file);
 
 /// kFast trades a larger file for time.
 enum class PngEffort { kFast, kSmall };
 void writePng(const std::filesystem::path& file, const Image& image, PngEffort effort = PngEffort::kFast);
+/// As a JPEG file's bytes; `quality` is 1 to 100.
+std::string encodeJpeg(const Image& image, int quality);
 void writePng16(const std::filesystem::path& file, const Gray16Image& image, PngEffort effort = PngEffort::kFast);
 void writePngRgb(const std::filesystem::path& file, const RgbImage& image, PngEffort effort = PngEffort::kSmall);
 

@@ -13,6 +13,12 @@ namespace fs = std::filesystem;
 
 bool isJpeg(std::string_view bytes) { return bytes.starts_with("\xFF\xD8\xFF"); }
 
+/// A progressive file refines the whole image in each scan. Encoders make ten or so; a file of a few kB that tells of
+/// thousands would take hours.
+constexpr int kMostScans = 100;
+/// Coefficients of a progressive file of 2^26 pixels in three colors.
+constexpr long kMostCoefficients_bytes = 400'000'000;
+
 struct JpegErrors {
   jpeg_error_mgr manager;
   std::jmp_buf jump;
@@ -24,11 +30,22 @@ struct JpegErrors {
     std::longjmp(errors.jump, 1);
   }
   static void ignore(j_common_ptr) {}
+  /// Libjpeg would fill a cut file up with gray.
+  static void failOnWarning(j_common_ptr jpeg, int level) {
+    if (level < 0) fail(jpeg);
+  }
+  static void failOnManyScans(j_common_ptr jpeg) {
+    if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= kMostScans) return;
+    auto& errors = *reinterpret_cast<JpegErrors*>(jpeg->err);
+    std::snprintf(errors.message.data(), errors.message.size(), "it has more than %d scans", kMostScans);
+    std::longjmp(errors.jump, 1);
+  }
 };
 
 struct JpegReader {
   JpegErrors errors{};
   jpeg_decompress_struct jpeg{};
+  jpeg_progress_mgr progress{};
 
   JpegReader() {
     jpeg.err = jpeg_std_error(&errors.manager);
@@ -49,13 +66,17 @@ struct JpegReader {
   }
   bool readRows(JSAMPARRAY rows) {
     if (setjmp(errors.jump)) return false;
+    errors.manager.emit_message = JpegErrors::failOnWarning;
+    progress.progress_monitor = JpegErrors::failOnManyScans;
+    jpeg.progress = &progress;
+    jpeg.mem->max_memory_to_use = kMostCoefficients_bytes;
     jpeg_start_decompress(&jpeg);
     while (jpeg.output_scanline < jpeg.output_height)
       jpeg_read_scanlines(&jpeg, rows + jpeg.output_scanline, jpeg.output_height - jpeg.output_scanline);
     jpeg_finish_decompress(&jpeg);
     return true;
   }
-  /// libjpeg fills a cut file up with gray and only warns.
+  /// Libjpeg may have warned of what is wrong with the header.
   bool damaged() const { return errors.manager.num_warnings > 0; }
 };
 

@@ -34,6 +34,12 @@ void LineFile::close() {
   if (descriptor_.number() >= 0 && ::close(descriptor_.release()) != 0) fail(file_, "cannot be closed");
 }
 
+void replace(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code error;
+  std::filesystem::rename(from, to, error);
+  if (error) throw OutputError(to.string() + ": cannot be written: " + error.message());
+}
+
 void writeAtOnce(const std::filesystem::path& file, std::string_view content) {
   std::filesystem::path unfinished = file;
   unfinished += ".part";
@@ -47,9 +53,7 @@ void writeAtOnce(const std::filesystem::path& file, std::string_view content) {
     std::filesystem::remove(unfinished, ignored);
     throw;
   }
-  std::error_code error;
-  std::filesystem::rename(unfinished, file, error);
-  if (error) throw OutputError(file.string() + ": cannot be written: " + error.message());
+  replace(unfinished, file);
 }
 
 }  // namespace motorcade

@@ -26,6 +26,9 @@ class LineFile {
   FileDescriptor descriptor_;
 };
 
+/// Gives a file another name, also one that another file has. Throws OutputError.
+void replace(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// Writes a whole file under another name and renames it: readers see all of it or nothing.
 void writeAtOnce(const std::filesystem::path& file, std::string_view content);
 

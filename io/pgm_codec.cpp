@@ -77,8 +77,9 @@ class PgmSamples {
 Image decodePgm(std::string_view bytes, const fs::path& file, ImagePool& pool) {
   const PgmHeader header = pgmHeader(bytes, file);
   const std::size_t width = header.size.width, height = header.size.height;
-  if (header.binary && bytes.size() < header.data_at + width * height * header.sampleBytes())
-    failDamaged(file, "the file ends early");
+  const std::size_t least_bytes = header.binary ? width * height * header.sampleBytes()
+                                                : 2 * width * height - 1;  // a digit each, and what separates them
+  if (bytes.size() < header.data_at + least_bytes) failDamaged(file, "the file ends early");
   Image image = pool.acquire(header.size.width, header.size.height);
   if (header.binary && header.max_value == kWhite) {
     for (std::size_t y = 0; y < height; ++y)

@@ -33,6 +33,16 @@ ImageSize pngSize(std::string_view bytes, const fs::path& file) {
   return checkedSize(bigEndian32(bytes, 16), bigEndian32(bytes, 20), file);
 }
 
+/// The size of an image whose pixels may be in the file: deflate packs at most 1032 bytes into one.
+ImageSize decodableSize(std::string_view bytes, const fs::path& file) {
+  constexpr std::uint64_t kMostPerByte = 1032, kBitsPerByte = 8;
+  const ImageSize size = pngSize(bytes, file);
+  const auto bits_per_sample = static_cast<std::uint8_t>(bytes[24]);
+  if (bytes.size() * kMostPerByte * kBitsPerByte < std::uint64_t{bits_per_sample} * size.width * size.height)
+    failDamaged(file, "the file ends early");
+  return size;
+}
+
 /// Owns libpng's reader, so that a jump leaks nothing.
 struct PngReader {
   PngContext context;
@@ -47,6 +57,9 @@ struct PngReader {
       throw std::bad_alloc();
     }
     png_set_read_fn(png, &context, PngContext::read);
+    // Texts, profiles and the like are no part of the image, and could inflate to a thousand times 8 MB.
+    constexpr int kAllButTheImage = -1;
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, kAllButTheImage);
   }
   ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
   PngReader(const PngReader&) = delete;
@@ -76,7 +89,7 @@ struct PngReader {
 };
 
 Image decodePng(std::string_view bytes, const fs::path& file, ImagePool& pool) {
-  const ImageSize size = pngSize(bytes, file);
+  const ImageSize size = decodableSize(bytes, file);
   PngReader reader(bytes);
   if (!reader.readHeader(false)) failDamaged(file, reader.context.message.data());
   Image image = pool.acquire(size.width, size.height);
@@ -103,7 +116,7 @@ const ImageCodec& pngCodec() {
 Gray16Image readPng16(const fs::path& file) {
   const std::string bytes = readImageBytes(file);
   if (!isPng(bytes)) throw InputError(file.string() + ": is no PNG");
-  const ImageSize size = pngSize(bytes, file);
+  const ImageSize size = decodableSize(bytes, file);
   PngReader reader(bytes);
   if (!reader.readHeader(true)) failDamaged(file, reader.context.message.data());
   if (png_get_channels(reader.png, reader.info) != 1)

@@ -64,19 +64,15 @@ std::optional<double> numberOf(std::string_view word) {
   return value;
 }
 
-/// Finite, and so that squares of products stay finite too.
+/// Finite, and not too large.
 bool allUsable(std::span<const double> numbers) {
-  constexpr double kLargest = 1e50;
-  return std::ranges::all_of(numbers, [](double n) { return std::abs(n) <= kLargest; });
+  return std::ranges::all_of(numbers, [](double n) { return std::abs(n) <= kLargestNumber; });
 }
 
-/// As an error message shows it: a file that is no text must not reach the terminal.
+/// As an error message shows it.
 std::string shown(std::string_view word) {
-  constexpr std::size_t kMostCharacters = 40;
-  std::string text(word.substr(0, kMostCharacters));
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return c < 32 || c > 126; }, '?');
-  return "'" + text + (word.size() > kMostCharacters ? "...'" : "'");
+  std::string text = "'";
+  return text.append(printable(word)).append("'");
 }
 
 /// Row by row, the upper triangle.
@@ -246,7 +242,7 @@ std::int64_t Reader::idOf(std::string_view word) const {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), id);
   if (error != std::errc() || end != word.data() + word.size())
     fail(shown(word) + " stands where an id belongs; ids are whole numbers");
-  if (id < 0) fail("the id " + std::string(word) + " is negative; number the poses from 0");
+  if (id < 0) fail("the id " + printable(word) + " is negative; number the poses from 0");
   return id;
 }
 

@@ -15,8 +15,25 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kCovariancesHeaderStart = "frame,track_id";
-constexpr std::array kStatuses = {FrameStatus::kGood, FrameStatus::kLost, FrameStatus::kRejected,
-                                  FrameStatus::kDropped};
+/// A frame's status as it is written: a good frame with a cause is degraded.
+struct WrittenStatus {
+  FrameStatus status = FrameStatus::kGood;
+  bool degraded = false;
+};
+constexpr std::array kStatuses = {WrittenStatus{FrameStatus::kGood}, WrittenStatus{FrameStatus::kGood, true},
+                                  WrittenStatus{FrameStatus::kLost}, WrittenStatus{FrameStatus::kRejected},
+                                  WrittenStatus{FrameStatus::kDropped}};
+std::string_view writtenName(WrittenStatus written) {
+  return written.degraded ? "degraded" : statusName(written.status);
+}
+constexpr std::array kCauses = {FrameCause::kNone,         FrameCause::kAfterGap,   FrameCause::kFewPoints,
+                                FrameCause::kNothingFound, FrameCause::kUnlinked,   FrameCause::kFailed,
+                                FrameCause::kUnusable,     FrameCause::kOutOfOrder, FrameCause::kTooLate};
+constexpr std::array<std::string_view, kCauseCount> kCauseNames = {
+    "none", "after_gap", "few_points", "nothing_found", "unlinked", "failed", "unusable", "out_of_order", "too_late"};
+
+constexpr std::array kFinalFiles = {"camera_final.txt", "camera_final.tum", "objects_final.csv"};
+constexpr const char* kUnfinished = ".part";  // added to the names of the final files until the run has ended
 
 fs::path preparedFolder(const fs::path& folder) {
   std::error_code error;
@@ -65,14 +82,15 @@ std::string covariancesHeader() {
 std::string framesHeader() {
   std::string header("frame,status,stamp_ns,latency_ms,decode_ms");
   for (const auto& stage : kStageKeys) header.append(",").append(stage).append("_ms");
-  return header;
+  return header.append(",cause,segment");
 }
 
 std::string frameLine(const FrameTiming& timing) {
   std::string line;
   appendInteger(line, timing.frame.value);
   line += ',';
-  line += statusName(timing.status);
+  const bool degraded = timing.status == FrameStatus::kGood && timing.cause != FrameCause::kNone;
+  line += writtenName({timing.status, degraded});
   line += ',';
   appendInteger(line, timing.stamp.ns);
   const auto add = [&](double value_ms) {
@@ -82,6 +100,10 @@ std::string frameLine(const FrameTiming& timing) {
   add(timing.latency_ms());
   add(timing.decode_ms);
   for (const auto& span : timing.stages) add(span.duration_ms());
+  line += ',';
+  line += causeName(timing.cause);
+  line += ',';
+  appendInteger(line, timing.segment);
   return line;
 }
 
@@ -149,9 +171,15 @@ std::vector<RunFolder::FrameRow> readFrames(const fs::path& file) {
     FieldReader fields(file, line, ',');
     RunFolder::FrameRow row;
     row.frame.value = fields.integer("frame");
-    row.status = fields.byName("status", kStatuses, statusName);
+    row.status = fields.byName("status", kStatuses, writtenName).status;
     row.stamp.ns = fields.integer("stamp_ns");
     row.latency_ms = fields.number("latency_ms");
+    fields.number("decode_ms");
+    for (const auto& stage : kStageKeys) fields.number(stage);
+    if (!fields.atEnd()) {  // files of earlier versions end here
+      row.cause = fields.byName("cause", kCauses, causeName);
+      row.segment = static_cast<int>(fields.integer("segment"));
+    }
     rows.push_back(row);
   }
   return rows;
@@ -184,11 +212,17 @@ std::string_view statusName(FrameStatus status) {
   return "good";
 }
 
-RunFolderWriter::Files::Files(const fs::path& folder, const std::string& kind)
-    : kitti(folder / ("camera_" + kind + ".txt")),
-      tum(folder / ("camera_" + kind + ".tum")),
-      objects(folder / ("objects_" + kind + ".csv")) {
+std::string_view causeName(FrameCause cause) { return kCauseNames[static_cast<std::size_t>(cause)]; }
+
+RunFolderWriter::Files::Files(const fs::path& folder, const std::string& kind, const std::string& suffix)
+    : kitti(folder / ("camera_" + kind + ".txt" + suffix)),
+      tum(folder / ("camera_" + kind + ".tum" + suffix)),
+      objects(folder / ("objects_" + kind + ".csv" + suffix)) {
   objects.writeLine(kObjectsHeader);
+}
+
+void RunFolderWriter::Files::close() {
+  for (LineFile* file : {&kitti, &tum, &objects}) file->close();
 }
 
 void RunFolderWriter::Files::write(const FrameEstimate& estimate) {
@@ -201,13 +235,20 @@ RunFolderWriter::RunFolderWriter(const fs::path& folder)
     : folder_(preparedFolder(folder)),
       lock_(locked(folder_)),
       online_(folder_, "online"),
-      final_(folder_, "final"),
+      settled_(folder_, "final"),
+      final_(folder_, "final", kUnfinished),
       covariances_(folder_ / "covariances.csv"),
       frames_(folder_ / "frames.csv"),
       trace_(folder_ / "trace.json") {
   frames_.writeLine(framesHeader());
   covariances_.writeLine(covariancesHeader());
   trace_.writeLine("[");
+}
+
+RunFolderWriter::~RunFolderWriter() {
+  if (finished_) return;
+  std::error_code ignored;
+  for (const char* file : kFinalFiles) fs::remove(folder_ / (file + std::string(kUnfinished)), ignored);
 }
 
 void RunFolderWriter::writeConfig(std::string_view toml) { writeAtOnce(folder_ / "effective_config.toml", toml); }
@@ -220,6 +261,8 @@ void RunFolderWriter::writeOnline(const FrameEstimate& estimate) {
   }
   online_.write(estimate);
 }
+
+void RunFolderWriter::writeSettled(const FrameEstimate& estimate) { settled_.write(estimate); }
 
 void RunFolderWriter::writeFinal(const FrameEstimate& estimate) { final_.write(estimate); }
 
@@ -240,10 +283,10 @@ void RunFolderWriter::finish(std::string_view summary_json) {
   // A metadata event closes the array without a comma, so that strict JSON readers accept a complete trace.
   trace_.writeLine(R"({"name":"process_name","ph":"M","pid":1,"tid":0,"args":{"name":"motorcade"}})");
   trace_.writeLine("]");
-  for (LineFile* file : {&online_.kitti, &online_.tum, &online_.objects, &final_.kitti, &final_.tum, &final_.objects,
-                         &covariances_, &frames_, &trace_}) {
-    file->close();
-  }
+  for (LineFile* file : {&covariances_, &frames_, &trace_}) file->close();
+  for (Files* files : {&online_, &settled_, &final_}) files->close();
+  for (const char* file : kFinalFiles) replace(folder_ / (file + std::string(kUnfinished)), folder_ / file);
+  finished_ = true;
   writeAtOnce(folder_ / "summary.json", summary_json);
 }
 

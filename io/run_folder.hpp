@@ -13,18 +13,24 @@
 
 namespace motorcade {
 
-/// Writes a run folder (docs/formats.md). Frames come in order, each exactly once as online and once as final; a line
-/// per write keeps the folder readable at any moment. Not thread safe. Every failure is an OutputError naming the file.
+/// Writes a run folder (docs/formats.md). Frames come in order, each exactly once as online and once as final, and at
+/// most once as settled; a line per write keeps the folder readable at any moment. Not thread safe. Every failure is an
+/// OutputError naming the file.
 class RunFolderWriter {
  public:
   /// Makes the folder if need be, keeps it for this run alone, and makes its files anew; a summary of an earlier run is
   /// removed first.
   explicit RunFolderWriter(const std::filesystem::path& folder);
+  ~RunFolderWriter();
+  RunFolderWriter(const RunFolderWriter&) = delete;
+  RunFolderWriter& operator=(const RunFolderWriter&) = delete;
 
   void writeConfig(std::string_view toml);
   /// `camera_online.*`, `objects_online.csv`, and `covariances.csv` where the estimate has covariances.
   void writeOnline(const FrameEstimate& estimate);
-  /// `camera_final.*`, `objects_final.csv`.
+  /// What stands in `camera_final.*` and `objects_final.csv` until `finish`, so that a run that is killed has some.
+  void writeSettled(const FrameEstimate& estimate);
+  /// What stands there from then on.
   void writeFinal(const FrameEstimate& estimate);
   /// `frames.csv` and `trace.json`. Notices when the folder is no longer there.
   void writeTiming(const FrameTiming& timing);
@@ -33,18 +39,21 @@ class RunFolderWriter {
 
  private:
   struct Files {
-    explicit Files(const std::filesystem::path& folder, const std::string& kind);
+    Files(const std::filesystem::path& folder, const std::string& kind, const std::string& suffix = "");
     LineFile kitti, tum, objects;
     void write(const FrameEstimate& estimate);
+    void close();
   };
   std::filesystem::path folder_;
   FolderLock lock_;
-  Files online_, final_;
+  Files online_, settled_, final_;
   LineFile covariances_, frames_, trace_;
+  bool finished_ = false;
   std::optional<SteadyTime> origin_;  // of the trace's clock: when the first frame was due
 };
 
 std::string_view statusName(FrameStatus status);
+std::string_view causeName(FrameCause cause);
 
 /// A run folder as read back; a run that was killed has fewer rows and no summary.
 struct RunFolder {
@@ -59,7 +68,9 @@ struct RunFolder {
   };
   struct FrameRow {
     FrameId frame;
-    FrameStatus status = FrameStatus::kGood;
+    FrameStatus status = FrameStatus::kGood;  // also where `degraded` stands
+    FrameCause cause = FrameCause::kNone;
+    int segment = 0;
     Timestamp stamp;
     double latency_ms = 0;
   };

@@ -42,8 +42,8 @@ std::string readWhole(const std::filesystem::path& file, std::size_t limit_bytes
   return content;
 }
 
-std::vector<TextLine> readLines(const std::filesystem::path& file, LastLine last_line) {
-  const std::string content = readWhole(file);
+std::vector<TextLine> readLines(const std::filesystem::path& file, LastLine last_line, std::size_t limit_bytes) {
+  const std::string content = readWhole(file, limit_bytes);
   std::string_view rest = content;
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   std::vector<TextLine> lines;
@@ -56,6 +56,20 @@ std::vector<TextLine> readLines(const std::filesystem::path& file, LastLine last
     if (text.find_first_not_of(" \t") != std::string_view::npos) lines.push_back({number, std::string(text)});
   }
   return lines;
+}
+
+std::string printable(std::string_view text, std::size_t most_characters) {
+  std::string shown(text.substr(0, most_characters));
+  std::ranges::replace_if(
+      shown, [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
+  if (text.size() > most_characters) shown += "...";
+  return shown;
+}
+
+bool isRotation(const Eigen::Matrix3d& matrix) {
+  constexpr double kMaxDeviation = 1e-3;  // files with few digits are accepted, matrices that are no rotation are not
+  return (matrix * matrix.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kMaxDeviation &&
+         matrix.determinant() > 0;
 }
 
 FieldReader::FieldReader(const std::filesystem::path& file, const TextLine& line, char separator)
@@ -87,8 +101,9 @@ double FieldReader::number(std::string_view what) {
   double value = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc() || end != field.data() + field.size())
-    fail("'" + std::string(shown) + "' is not a number (" + std::string(what) + ")");
-  if (!std::isfinite(value)) fail("'" + std::string(shown) + "' is not finite (" + std::string(what) + ")");
+    fail("'" + printable(shown) + "' is not a number (" + printable(what) + ")");
+  if (!std::isfinite(value)) fail("'" + printable(shown) + "' is not finite (" + printable(what) + ")");
+  if (std::abs(value) > kLargestNumber) fail("'" + printable(shown) + "' is too large (" + printable(what) + ")");
   return value;
 }
 
@@ -97,7 +112,7 @@ std::int64_t FieldReader::integer(std::string_view what) {
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc() || end != field.data() + field.size()) {
-    fail("'" + std::string(field) + "' is not a whole number (" + std::string(what) + ")");
+    fail("'" + printable(field) + "' is not a whole number (" + printable(what) + ")");
   }
   return value;
 }
@@ -107,16 +122,12 @@ SE3 FieldReader::pose(std::string_view what) {
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column) m(row, column) = number(what);
   const Eigen::Matrix3d rotation = m.leftCols<3>();
-  constexpr double kMaxDeviation = 1e-3;  // files with few digits are accepted, matrices that are no rotation are not
-  if ((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kMaxDeviation ||
-      rotation.determinant() < 0) {
-    fail(std::string(what) + " holds no rotation matrix");
-  }
+  if (!isRotation(rotation)) fail(std::string(what) + " holds no rotation matrix");
   return SE3(rotation, m.col(3)).normalized();
 }
 
 void FieldReader::expectEnd() const {
-  if (!atEnd()) fail("has more fields than expected: '" + std::string(rest_) + "'");
+  if (!atEnd()) fail("has more fields than expected: '" + printable(rest_) + "'");
 }
 
 void FieldReader::fail(const std::string& message) const {

@@ -18,19 +18,32 @@ struct TextLine {
   std::string text;
 };
 
+inline constexpr std::size_t kMaxText_bytes = std::size_t{1} << 30;
+
 /// What to do with a last line that has no line end: a program that was killed may have left half a line.
 enum class LastLine { kKeep, kDropIfCut };
 
 /// The lines of a file that are not blank. Accepts both line ends and a byte order mark. Throws InputError when the
-/// file cannot be read.
-std::vector<TextLine> readLines(const std::filesystem::path& file, LastLine last_line = LastLine::kKeep);
+/// file cannot be read or is larger than `limit_bytes`.
+std::vector<TextLine> readLines(const std::filesystem::path& file, LastLine last_line = LastLine::kKeep,
+                                std::size_t limit_bytes = kMaxText_bytes);
 
 /// The lines of a table of a run after its header, whose beginning is checked. Of a file that a killed run left, the
 /// cut line or, where it is empty, the header may be missing. Throws InputError.
 std::vector<TextLine> readTable(const std::filesystem::path& file, std::string_view header_start);
 
 /// The whole file; throws InputError when it cannot be read or is larger than `limit_bytes`.
-std::string readWhole(const std::filesystem::path& file, std::size_t limit_bytes = std::size_t{1} << 30);
+std::string readWhole(const std::filesystem::path& file, std::size_t limit_bytes = kMaxText_bytes);
+
+/// The beginning of a text from a file, as a message may show it: no byte that a terminal could take for a command, and
+/// no more than fits into a line.
+std::string printable(std::string_view text, std::size_t most_characters = 40);
+
+/// Larger numbers are refused, so that squares of products stay finite.
+inline constexpr double kLargestNumber = 1e50;
+
+/// But for the digits that a file leaves off.
+bool isRotation(const Eigen::Matrix3d& matrix);
 
 /// Takes the fields of one line from left to right. Every failure is an InputError that names file and line.
 class FieldReader {
@@ -46,7 +59,7 @@ class FieldReader {
   Value byName(std::string_view what, const std::array<Value, N>& values, std::string_view (*name)(Value)) {
     const std::string_view text = word(what);
     const auto found = std::ranges::find(values, text, name);
-    if (found == values.end()) fail("'" + std::string(text) + "' is no " + std::string(what));
+    if (found == values.end()) fail(std::string(1, '\'').append(printable(text)).append("' is no ").append(what));
     return *found;
   }
   /// Twelve numbers, row by row: R | t. The rotation must be one, and is put back onto SO(3) from its printed digits.

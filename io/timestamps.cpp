@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <string>
 
@@ -13,6 +14,8 @@ namespace motorcade {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
+/// Until 2112, so that also the time between any two fits into 63 bits of nanoseconds.
+constexpr std::int64_t kMaxTime_s = 4'500'000'000;
 
 bool isDigits(std::string_view text) { return text.find_first_not_of("0123456789") == std::string_view::npos; }
 
@@ -26,7 +29,7 @@ std::optional<std::int64_t> plainSeconds_ns(std::string_view text) {
   std::int64_t seconds = 0, nanoseconds = 0;
   std::from_chars(whole.data(), whole.data() + whole.size(), seconds);
   std::from_chars(fraction.data(), fraction.data() + fraction.size(), nanoseconds);
-  return seconds >= 9'000'000'000 ? std::nullopt : std::optional(seconds * kSecond_ns + nanoseconds);
+  return seconds >= kMaxTime_s ? std::nullopt : std::optional(seconds * kSecond_ns + nanoseconds);
 }
 
 std::optional<std::int64_t> dateTime_ns(const std::string& text) {
@@ -38,8 +41,11 @@ std::optional<std::int64_t> dateTime_ns(const std::string& text) {
   const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(day))};
   if (!seconds_ns || !date.ok() || hour > 23 || minute > 59) return std::nullopt;
-  const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
-  return ((days * 24 + hour) * 60 + minute) * 60 * kSecond_ns + *seconds_ns;
+  constexpr std::int64_t kMinute_s = 61;  // one may have a leap second
+  const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count(),
+                     minutes_s = ((days * 24 + hour) * 60 + minute) * 60;
+  if (std::abs(minutes_s) >= kMaxTime_s || *seconds_ns >= kMinute_s * kSecond_ns) return std::nullopt;
+  return minutes_s * kSecond_ns + *seconds_ns;
 }
 
 }  // namespace
@@ -58,8 +64,8 @@ std::vector<Timestamp> readTimestamps(const std::filesystem::path& file) {
     } else {
       const double time_s = fields.number("a time in seconds");
       fields.expectEnd();
-      constexpr double kMaxTime_s = 9e9;  // what fits into 63 bits of nanoseconds
-      if (std::abs(time_s) > kMaxTime_s) fields.fail("the time is out of range; seconds are expected");
+      if (std::abs(time_s) >= static_cast<double>(kMaxTime_s))
+        fields.fail("the time is out of range; seconds are expected");
       stamp.ns = std::llround(time_s * 1e9);
     }
     if (!stamps.empty() && stamp <= stamps.back()) fields.fail("the time is not later than the one before");

@@ -1,10 +1,30 @@
 #!/usr/bin/env bash
-# What takes too long for every change: clang-tidy on every source, all tests under the sanitizers, the portable build's results.
-set -euo pipefail
+# What takes too long for every change: clang-tidy on every source, all tests with and without sanitizers, fuzzing, the portable build's
+# results and a long drive. Goes on after a failure; prints one table at its end, and ends with exit code 1 if any step failed.
+#   tests/nightly.sh [FUZZ_SECONDS]   per target, default 600
+set -uo pipefail
 cd "$(dirname "$0")/.."
+logs=build/nightly
+mkdir -p $logs
+table=() failed=0
 
-.ci/lint --all
-tests/run.sh
-tests/run.sh --asan
-tests/run.sh --tsan
-perf/portable.sh
+step() {  # NAME COMMAND...
+  local name=$1 started=$SECONDS result=passed
+  shift
+  echo "== $name: $*"
+  "$@" >"$logs/${name// /_}.log" 2>&1 || { result=FAILED failed=1; tail -n 30 "$logs/${name// /_}.log"; }
+  table+=("$(printf '| %-12s | %-6s | %6d s |' "$name" "$result" $((SECONDS - started)))")
+}
+
+step lint .ci/lint --all
+step tests tests/run.sh
+step asan tests/run.sh --asan  # with UndefinedBehaviorSanitizer, and LeakSanitizer at the end of each test
+step tsan tests/run.sh --tsan
+step fuzz tests/fuzz.sh "${1:-600}"
+step portable perf/portable.sh
+step "long drive" perf/long_drive.sh 100000
+
+echo "| step         | result | duration |"
+echo "| ------------ | ------ | -------- |"
+printf '%s\n' "${table[@]}"
+exit $failed

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
+
+#include <Eigen/Cholesky>
 
 #include "apps/evaluate/object_positions.hpp"
 #include "core/assignment.hpp"
@@ -99,21 +102,37 @@ void addSeenByBoth(const HalfRun& a, const HalfRun& b, FrameId frame, std::map<T
   }
 }
 
+/// Of a covariance of the camera; empty where the frames do not reach back so far.
+std::optional<ErrorSample> cameraError(const std::vector<ComparedFrame>& frames, const RunFolder::CovarianceRow& row,
+                                       const SE3& T_true_cam) {
+  const std::int64_t now = frames.empty() ? -1 : row.frame.value - frames.front().frame.value;
+  if (row.track.valid() || now < kCameraCovarianceFrames || now >= std::ssize(frames)) return std::nullopt;
+  std::int64_t before = now - kCameraCovarianceFrames;
+  while (before > 0 && !frames[before].entered) --before;
+  const auto &to = frames[now], &from = frames[before];
+  const SE3 estimate = from.T_world_cam.inverse() * to.T_world_cam,
+            truth = (from.T_world_cam_true * T_true_cam).inverse() * to.T_world_cam_true * T_true_cam;
+  return ErrorSample{(estimate.inverse() * truth).log(), row.covariance};
+}
+
 }  // namespace
 
 std::vector<ErrorSample> cameraErrorSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows,
                                             const SE3& T_true_cam) {
   std::vector<ErrorSample> samples;
-  for (const auto& row : rows) {
-    const std::int64_t now = frames.empty() ? -1 : row.frame.value - frames.front().frame.value;
-    if (row.track.valid() || !isTaken(row.frame) || now < kCameraCovarianceFrames || now >= std::ssize(frames))
-      continue;
-    const auto &to = frames[now], &from = frames[now - kCameraCovarianceFrames];
-    const SE3 estimate = from.T_world_cam.inverse() * to.T_world_cam,
-              truth = (from.T_world_cam_true * T_true_cam).inverse() * to.T_world_cam_true * T_true_cam;
-    samples.push_back({(estimate.inverse() * truth).log(), row.covariance});
-  }
+  for (const auto& row : rows)
+    if (isTaken(row.frame))
+      if (const auto sample = cameraError(frames, row, T_true_cam)) samples.push_back(*sample);
   return samples;
+}
+
+std::vector<FrameNees> cameraNees(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows,
+                                  const SE3& T_true_cam) {
+  std::vector<FrameNees> nees;
+  for (const auto& row : rows)
+    if (const auto sample = cameraError(frames, row, T_true_cam))
+      nees.push_back({row.frame, sample->xi.dot(sample->covariance.ldlt().solve(sample->xi))});
+  return nees;
 }
 
 std::vector<ErrorSample> objectErrorSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows) {

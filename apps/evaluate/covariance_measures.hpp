@@ -15,6 +15,14 @@ using CovarianceRows = std::vector<RunFolder::CovarianceRow>;
 std::vector<ErrorSample> cameraErrorSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows,
                                             const SE3& T_true_cam = {});
 
+/// The camera's normalized error squared in each frame that has a covariance, not only in every fifth.
+struct FrameNees {
+  FrameId frame;
+  double nees = 0;
+};
+std::vector<FrameNees> cameraNees(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows,
+                                  const SE3& T_true_cam);
+
 /// Errors of objects relative to the camera of the same frame, without the constant offset between body and label of
 /// each track. Tracks with fewer than `kLeastFramesOfMean` frames are left out: the offset takes their errors away.
 std::vector<ErrorSample> objectErrorSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows);

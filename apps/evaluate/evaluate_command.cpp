@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "apps/evaluate/kitti_export.hpp"
+#include "apps/evaluate/recovered_finals.hpp"
 #include "apps/evaluate/report.hpp"
 #include "io/line_file.hpp"
 
@@ -13,7 +14,9 @@ namespace {
 bool exportAlone(const EvaluateOptions& options) {
   if (options.export_kitti.empty()) return false;
   const Sequence sequence = openSequence(options.sequence, options.fps_hz);
-  exportKitti(options.export_kitti, readRunFolder(options.run), sequence);
+  RunFolder run = readRunFolder(options.run);
+  recoverFinals(run);
+  exportKitti(options.export_kitti, run, sequence);
   return options.json.empty() && !readCameraTruth(sequence);
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "apps/evaluate/mounting.hpp"
+#include "apps/evaluate/recovered_finals.hpp"
 #include "io/errors.hpp"
 #include "io/line_file.hpp"
 #include "io/number_text.hpp"
@@ -43,6 +44,7 @@ void removeMounting(Evaluation& evaluation, const std::vector<ComparedFrame>& fi
 }
 
 void evaluateCovariances(Evaluation& evaluation, const std::vector<ComparedFrame>& online, const CovarianceRows& rows) {
+  evaluation.camera_nees = cameraNees(online, rows, evaluation.mounting.value_or(SE3{}));
   evaluation.camera_covariance = consistencyOf(cameraErrorSamples(online, rows));
   evaluation.object_covariance = consistencyOf(objectErrorSamples(online, rows));
   if (!evaluation.mounting) return;
@@ -148,7 +150,7 @@ KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequ
 
 Evaluation evaluateRun(const EvaluateOptions& options) {
   const Sequence sequence = openSequence(options.sequence, options.fps_hz);
-  const RunFolder run = readRunFolder(options.run);
+  RunFolder run = readRunFolder(options.run);
   const CameraTruth camera = neededTruth(sequence, options.uninterpolated);
   const auto truths = readObjectTruths(sequence, camera);
   const auto compare = [&](const RunFolder::Trajectories& trajectories, std::int64_t first_frame) {
@@ -158,9 +160,13 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   evaluation.run = options.run;
   evaluation.sequence = options.sequence;
   evaluation.camera_source = camera.source;
+  evaluation.finals_recovered = recoverFinals(run);
   if (truths) evaluation.object_source = truths->source;
   countFrames(evaluation, run);
-  const auto online = compare(run.online, run.first_frame), final = compare(run.final, run.first_frame);
+  auto online = compare(run.online, run.first_frame);
+  const auto final = compare(run.final, run.first_frame);
+  for (std::size_t i = 0; i < std::min(online.size(), run.frames.size()); ++i)
+    online[i].entered = run.frames[i].cause != FrameCause::kTooLate && run.frames[i].cause != FrameCause::kOutOfOrder;
   evaluation.online = evaluateFrames(online);
   evaluation.final = evaluateFrames(final);
   if (mayBeMountedWrongly(sequence)) removeMounting(evaluation, final, online);

@@ -55,11 +55,13 @@ struct Evaluation {
   std::filesystem::path run, sequence;
   bool complete = false;
   std::int64_t first_frame = 0;
-  std::size_t frames_run = 0;  // with an online pose
+  std::size_t frames_run = 0;        // with an online pose
+  std::size_t finals_recovered = 0;  // of the last frames of a run that did not end in order, from online
   int lost = 0, rejected = 0, dropped = 0;
   std::string camera_source, object_source;  // the latter empty without labels
   KindEvaluation final, online;
   std::optional<SE3> mounting;  // T_true_cam, fitted to the final path; empty where the truth is exact
+  std::vector<FrameNees> camera_nees;
   CovarianceErrors camera_covariance, object_covariance;
   std::optional<CovarianceErrors> camera_mounted_covariance;  // without the truth's mounting error
   std::optional<CovarianceErrors> camera_truth_covariance;    // also with the noise of the truth's rotation added

@@ -47,6 +47,7 @@ struct ComparedFrame {
   SE3 T_world_cam, T_world_cam_true;
   std::vector<TrueObject> objects;
   std::vector<MatchedRow> rows;
+  bool entered = true;  // the pipeline: others have no part in covariances
 };
 
 /// A match of a reported row with a label that is asked for.

@@ -198,7 +198,10 @@ Json jsonOf(const CovarianceErrors& errors) {
 
 Json covarianceJson(const Evaluation& e) {
   const auto orNull = [](const auto& errors) { return errors ? jsonOf(*errors) : Json(); };
+  Json nees = Json::object();
+  for (const FrameNees& frame : e.camera_nees) nees[std::to_string(frame.frame.value)] = frame.nees;
   Json json = {{"camera", jsonOf(e.camera_covariance)},
+               {"camera_nees_by_frame", nees},
                {"camera_mounted", orNull(e.camera_mounted_covariance)},
                {"camera_mounted_with_truth_noise", orNull(e.camera_truth_covariance)},
                {"objects", jsonOf(e.object_covariance)},
@@ -217,6 +220,7 @@ std::string jsonOf(const Evaluation& e) {
                {"complete", e.complete},
                {"first_frame", e.first_frame},
                {"frames", e.frames_run},
+               {"finals_recovered", e.finals_recovered},
                {"lost", e.lost},
                {"rejected", e.rejected},
                {"dropped", e.dropped},

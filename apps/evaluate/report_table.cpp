@@ -23,6 +23,9 @@ void printHead(std::string& text, const Evaluation& e) {
   print(text, "sequence  %s\n", e.sequence.c_str());
   print(text, "frames    %zu from frame %lld; lost %d, rejected %d, dropped %d\n", e.frames_run,
         static_cast<long long>(e.first_frame), e.lost, e.rejected, e.dropped);
+  if (e.finals_recovered > 0)
+    print(text, "finals    of the last %zu frames are online estimates: the run did not end in order\n",
+          e.finals_recovered);
   print(text, "truth     camera from %s%s%s\n", e.camera_source.c_str(),
         e.object_source.empty() ? "" : ", objects from ", e.object_source.c_str());
 }

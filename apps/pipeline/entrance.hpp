@@ -1,7 +1,7 @@
 #pragma once
 
-#include <atomic>
-#include <cstddef>
+#include <chrono>
+#include <semaphore>
 
 namespace motorcade {
 
@@ -10,20 +10,19 @@ namespace motorcade {
 /// admitted frame gets that far, so that the wait ends.
 class Entrance {
  public:
-  /// Waits until `admitted` frames have passed.
-  void waitUntilPassed(std::size_t admitted) const {
-    for (auto passed = passed_.load(std::memory_order_acquire); passed < admitted;
-         passed = passed_.load(std::memory_order_acquire))
-      passed_.wait(passed, std::memory_order_acquire);
+  /// Called once before each admission: waits until all frames admitted so far have passed, or until `given_up` says,
+  /// asked now and then, that they will not.
+  template <class GivenUp>
+  void waitForTurn(const GivenUp& given_up) {
+    constexpr std::chrono::milliseconds kPatience(100);
+    while (!turns_.try_acquire_for(kPatience))
+      if (given_up()) return;
   }
   /// A frame has left those stages.
-  void pass() {
-    passed_.fetch_add(1, std::memory_order_release);
-    passed_.notify_one();
-  }
+  void pass() { turns_.release(); }
 
  private:
-  std::atomic<std::size_t> passed_{0};
+  std::counting_semaphore<> turns_{1};
 };
 
 }  // namespace motorcade

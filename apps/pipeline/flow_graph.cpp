@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
+#include <exception>
 #include <future>
 #include <thread>
 #include <tuple>
@@ -49,6 +51,23 @@ constexpr std::array<const char*, kEdges> kEdgeNames{"admit>prepare",
                                                      "incremental_optimization>object_shapes",
                                                      "object_shapes>publish"};
 
+/// Declared after the nodes: none of them ends while a task may use it, also when the wiring lacks memory.
+class Drained {
+ public:
+  explicit Drained(flow::graph& graph) : graph_(graph) {}
+  ~Drained() {
+    try {
+      graph_.wait_for_all();
+    } catch (...) {  // the exception that is under way, or one after it
+    }
+  }
+  Drained(const Drained&) = delete;
+  Drained& operator=(const Drained&) = delete;
+
+ private:
+  flow::graph& graph_;
+};
+
 constexpr auto kSequence = [](const Job* job) { return job->sequence; };
 constexpr auto kSequenceOfPair = [](const JobPair& pair) { return std::get<0>(pair)->sequence; };
 
@@ -56,40 +75,88 @@ constexpr auto kSequenceOfPair = [](const JobPair& pair) { return std::get<0>(pa
 
 class FlowGraph::Impl {
  public:
-  Impl(int threads, const Work& work);
+  Impl(int threads, Work work);
+  ~Impl() { close(); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
 
   void put(Job& job);
-  void close() { graph_->release_wait(); }
-  void join() { thread_.join(); }
+  void close() {
+    if (graph_ != nullptr && !closed_.exchange(true)) graph_->release_wait();
+  }
+  void join();
+  void fail(const std::exception_ptr& reason);
+  bool failed() { return failed_ || context_.is_group_execution_cancelled(); }
   std::vector<QueueMark> queues(std::int64_t bound) const;
 
  private:
   void run(std::promise<void>& wired);
+  void wireAndRun(std::promise<void>& wired);
+  void await(flow::graph& graph, std::promise<void>& wired);
+  template <class Act>
+  void unlessFailed(const Act& act);
   auto stage(std::vector<Edge> in, void (StageRunner::*work)(Job&), std::vector<Edge> out);
   void publish(Job& job);
 
   Work work_;
   std::array<EdgeGauge, kEdges> gauges_;
   oneapi::tbb::task_arena arena_;
+  oneapi::tbb::task_group_context context_;  // of the graph: canceled where the library itself lacked memory for a task
+  std::atomic<bool> closed_ = false, failed_ = false;
+  std::exception_ptr failure_;
   flow::graph* graph_ = nullptr;  // on the stack of `run`, like all nodes
   flow::receiver<Job*>* first_node_ = nullptr;
   std::jthread thread_;
 };
 
 /// One slot of the arena is reserved for the thread of `run`, which works too: together they are `threads` workers.
-FlowGraph::Impl::Impl(int threads, const Work& work)
-    : work_(work), arena_(std::min(threads, oneapi::tbb::info::default_concurrency()), 1) {
+FlowGraph::Impl::Impl(int threads, Work work)
+    : work_(std::move(work)), arena_(std::min(threads, oneapi::tbb::info::default_concurrency()), 1) {
   std::promise<void> promise;
   auto wired = promise.get_future();
-  thread_ = std::jthread([this, &promise] { arena_.execute([this, &promise] { run(promise); }); });
+  thread_ = std::jthread([this, &promise] { run(promise); });
   wired.get();
+}
+
+/// Nothing may leave the thread: what goes wrong before the graph is wired is the constructor's to throw.
+void FlowGraph::Impl::run(std::promise<void>& wired) {
+  try {
+    arena_.execute([this, &wired] { wireAndRun(wired); });
+  } catch (...) {
+    if (graph_ == nullptr)
+      wired.set_exception(std::current_exception());
+    else
+      fail(std::current_exception());
+  }
+}
+
+void FlowGraph::Impl::fail(const std::exception_ptr& reason) {
+  if (failed_.exchange(true)) return;
+  failure_ = reason;
+  work_.stop();
+}
+
+void FlowGraph::Impl::join() {
+  thread_.join();
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+/// An exception ends the graph's work: jobs still go through, so that all come out, but nothing is done with them.
+template <class Act>
+void FlowGraph::Impl::unlessFailed(const Act& act) {
+  if (failed_) return;
+  try {
+    act();
+  } catch (...) {
+    fail(std::current_exception());
+  }
 }
 
 /// What a node does with a job: takes it off the edges that lead here, works, and leaves it on the edges that lead on.
 auto FlowGraph::Impl::stage(std::vector<Edge> in, void (StageRunner::*work)(Job&), std::vector<Edge> out) {
   return [this, in = std::move(in), work, out = std::move(out)](Job* job) {
     for (const Edge edge : in) gauges_[edge].leave();
-    (work_.stages.*work)(*job);
+    unlessFailed([this, job, work] { (work_.stages.*work)(*job); });
     for (const Edge edge : out) gauges_[edge].enter();
     return job;
   };
@@ -97,13 +164,13 @@ auto FlowGraph::Impl::stage(std::vector<Edge> in, void (StageRunner::*work)(Job&
 
 void FlowGraph::Impl::publish(Job& job) {
   gauges_[kToPublish].leave();
-  work_.publisher.publish(job);
+  unlessFailed([this, &job] { work_.publisher.publish(job); });
 }
 
 /// The wiring: stateless stages `unlimited`, stages with memory `serial` behind a sequencer (a serial node may start
 /// its next message before it has handed on the last one). Stays in the graph until it is closed and all jobs are out.
-void FlowGraph::Impl::run(std::promise<void>& wired) {
-  flow::graph graph;
+void FlowGraph::Impl::wireAndRun(std::promise<void>& wired) {
+  flow::graph graph(context_);
   Node prepare(graph, flow::unlimited, stage({kToPrepare}, &StageRunner::prepare, {kToStereo, kToFlow}));
   Node stereo_matching(graph, flow::unlimited, stage({kToStereo}, &StageRunner::matchStereo, {kStereoToSegmentation}));
   InOrder flow_order(graph, kSequence);
@@ -126,6 +193,7 @@ void FlowGraph::Impl::run(std::promise<void>& wired) {
   InOrder publish_order(graph, kSequence);
   flow::function_node<Job*, flow::continue_msg> publish(graph, flow::serial, [this](Job* job) { this->publish(*job); });
 
+  const Drained drained(graph);
   flow::make_edge(prepare, stereo_matching);
   flow::make_edge(prepare, flow_order);
   flow::make_edge(flow_order, optical_flow);
@@ -143,10 +211,18 @@ void FlowGraph::Impl::run(std::promise<void>& wired) {
   flow::make_edge(publish_order, publish);
 
   first_node_ = &prepare;
+  await(graph, wired);
+}
+
+void FlowGraph::Impl::await(flow::graph& graph, std::promise<void>& wired) {
   graph_ = &graph;
   graph.reserve_wait();
   wired.set_value();
-  graph.wait_for_all();
+  try {
+    graph.wait_for_all();
+  } catch (...) {
+    fail(std::current_exception());
+  }
   work_.publisher.close();
 }
 
@@ -162,11 +238,13 @@ std::vector<QueueMark> FlowGraph::Impl::queues(std::int64_t bound) const {
   return marks;
 }
 
-FlowGraph::FlowGraph(int threads, const Work& work) : impl_(std::make_unique<Impl>(threads, work)) {}
+FlowGraph::FlowGraph(int threads, Work work) : impl_(std::make_unique<Impl>(threads, std::move(work))) {}
 FlowGraph::~FlowGraph() = default;
 
 void FlowGraph::put(Job& job) { impl_->put(job); }
 void FlowGraph::close() { impl_->close(); }
+void FlowGraph::fail(const std::exception_ptr& reason) { impl_->fail(reason); }
+bool FlowGraph::failed() { return impl_->failed(); }
 void FlowGraph::join() { impl_->join(); }
 std::vector<QueueMark> FlowGraph::queues(std::int64_t bound) const { return impl_->queues(bound); }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -21,16 +23,22 @@ class FlowGraph {
     StageRunner& stages;
     Publisher& publisher;  // closed when the last job is out
     Entrance& entrance;    // passed by each job that leaves scene flow segmentation
+    /// Called once, from any thread, when the graph cannot go on: jobs may have been lost.
+    std::function<void()> stop;
   };
-  FlowGraph(int threads, const Work& work);
-  /// Waits for the jobs in flight; `close` must have been called.
+  FlowGraph(int threads, Work work);
+  /// Waits for the jobs in flight.
   ~FlowGraph();
 
   /// One thread: puts a job in; never refused.
   void put(Job& job);
   /// The same thread: no further job comes.
   void close();
-  /// After `close`: waits until all jobs are out.
+  /// Any thread: puts an end to the work of the graph, for a reason that `join` throws.
+  void fail(const std::exception_ptr& reason);
+  /// The graph cannot go on; it has been closed or is to be.
+  bool failed();
+  /// After `close`: waits until all jobs are out. Throws what the graph failed of.
   void join();
 
   /// After `join`: how many jobs waited on each edge.

@@ -17,13 +17,15 @@ SE3 GapFiller::Trail::at(Timestamp stamp) const {
 
 SE3 GapFiller::predict(Timestamp stamp) const { return online_.at(stamp); }
 
-std::vector<FrameEstimate> GapFiller::fill(const std::vector<FrameHeader>& frames, FrameStatus status) {
+std::vector<FrameEstimate> GapFiller::fill(const std::vector<FrameHeader>& frames) {
   std::vector<FrameEstimate> estimates;
   for (const FrameHeader& header : frames) {
     FrameEstimate estimate;
     estimate.frame = header.frame;
     estimate.stamp = header.stamp;
-    estimate.status = status;
+    estimate.status = header.status;
+    estimate.cause = header.cause;
+    estimate.segment = segment_;
     estimate.T_world_cam = predict(header.stamp);
     missing_.push_back(estimate);
     estimates.push_back(std::move(estimate));
@@ -33,6 +35,7 @@ std::vector<FrameEstimate> GapFiller::fill(const std::vector<FrameHeader>& frame
 
 void GapFiller::published(const FrameEstimate& online, bool seen_by_backend) {
   online_.add({online.stamp, online.T_world_cam});
+  segment_ = online.segment;
   if (!seen_by_backend) missing_.push_back(online);
 }
 

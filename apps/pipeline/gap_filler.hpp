@@ -8,10 +8,12 @@
 
 namespace motorcade {
 
-/// An input frame of which only the header is known.
+/// An input frame of which only the header is known: it never entered the flow graph.
 struct FrameHeader {
   FrameId frame;
   Timestamp stamp;
+  FrameStatus status = FrameStatus::kDropped;
+  FrameCause cause = FrameCause::kTooLate;
 };
 
 /// Gives a pose to the frames that the back-end never saw, so that every input frame has its line in the results:
@@ -20,7 +22,7 @@ struct FrameHeader {
 class GapFiller {
  public:
   /// Estimates of frames that came after the last published one and were not processed.
-  std::vector<FrameEstimate> fill(const std::vector<FrameHeader>& frames, FrameStatus status);
+  std::vector<FrameEstimate> fill(const std::vector<FrameHeader>& frames);
   /// Notes a published estimate; `seen_by_backend` is false when the back-end gives no final estimate of the frame.
   void published(const FrameEstimate& online, bool seen_by_backend);
   /// The pose predicted for a moment after the last published frame.
@@ -44,6 +46,7 @@ class GapFiller {
   };
 
   Trail online_, final_;
+  int segment_ = 0;                    // of the last published frame
   std::deque<FrameEstimate> missing_;  // not in the back-end, and not yet final
 };
 

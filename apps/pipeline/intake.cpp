@@ -2,14 +2,29 @@
 
 #include <cassert>
 #include <chrono>
+#include <limits>
 #include <memory>
+#include <new>
+#include <string>
 #include <utility>
 
 namespace motorcade {
 namespace {
 
-/// Pairs that a live run may lose between two frames and still name one by one.
-constexpr std::size_t kLiveHeaders = 4096;
+/// Frames that may be lost between two others and still be named one by one.
+constexpr std::size_t kHeaders = 4096;
+
+/// A frame for which there is no memory gives up its images.
+StereoFramePtr shared(StereoFrame frame) {
+  const auto make = [&] { return std::make_shared<const StereoFrame>(std::move(frame)); };
+  try {
+    return make();
+  } catch (const std::bad_alloc&) {
+    frame.left = frame.right = Image{};
+    frame.problem = kNoMemoryLeft;
+    return make();
+  }
+}
 
 }  // namespace
 
@@ -19,13 +34,23 @@ Intake::Intake(const PipelineParams& params, FreeJobs& free_jobs, Entrance& entr
       entrance_(entrance),
       log_(std::move(log)),
       input_(ringCapacity(params)),
-      headers_(live() ? kLiveHeaders : 1) {}
+      headers_(kHeaders) {}
 
 bool Intake::push(StereoFrame frame) {
   if (input_.closed()) return false;
   if (!frame.frame.valid()) frame.frame = next_id_;
-  assert(frame.frame >= next_id_);
+  if (frame.frame < next_id_) {
+    late_.fetch_add(1, std::memory_order_relaxed);
+    return true;
+  }
   next_id_ = {frame.frame.value + 1};
+  if (!isAfterLast(frame)) {
+    announce({frame.frame, frame.stamp, FrameStatus::kRejected, FrameCause::kOutOfOrder});
+    refused_.fetch_add(1, std::memory_order_relaxed);
+    received_.fetch_add(1, std::memory_order_relaxed);
+    return true;
+  }
+  last_stamp_ = frame.stamp;
   if (live()) {
     announce({frame.frame, frame.stamp});
     newest_.put(std::move(frame));
@@ -37,7 +62,7 @@ bool Intake::push(StereoFrame frame) {
 }
 
 void Intake::passOver(const FrameHeader& frame) {
-  assert(live() && frame.frame >= next_id_);
+  assert(frame.frame >= next_id_);
   if (input_.closed()) return;
   next_id_ = {frame.frame.value + 1};
   announce(frame);
@@ -52,10 +77,10 @@ void Intake::close() {
   newest_.close();
 }
 
-Job* Intake::next() {
-  Job* const job = free_jobs_.take();
+Job* Intake::next(const std::function<bool()>& given_up) {
+  Job* const job = free_jobs_.take(given_up);
   if (!job) return nullptr;
-  if (live()) entrance_.waitUntilPassed(admitted_);
+  if (live()) entrance_.waitForTurn(given_up);
   auto frame = live() ? newest_.take() : input_.pop();
   if (!frame) return nullptr;
   admit(*job, std::move(*frame));
@@ -70,20 +95,32 @@ void Intake::admit(Job& job, StereoFrame frame) {
   job.timing.stamp = frame.stamp;
   job.timing.due = frame.due;
   job.timing.decode_ms = frame.decode_ms;
-  if (frame.rejected()) log_(LogLevel::kWarning, job.name() + " is rejected: " + frame.problem);
-  if (live()) job.dropped = droppedBefore(frame.frame);
-  job.frame = std::make_shared<const StereoFrame>(std::move(frame));
+  job.dropped = headersBefore(frame.frame);
+  for (const FrameHeader& header : job.dropped)
+    if (header.status == FrameStatus::kRejected)
+      tell(log_, LogLevel::kWarning, [&] {
+        return "frame " + std::to_string(header.frame.value) +
+               " is rejected: its time is not after that of the frame before it";
+      });
+  job.frame = shared(std::move(frame));
   job.sequence = admitted_++;
+  if (job.frame->rejected())
+    tell(log_, LogLevel::kWarning, [&] { return job.name() + " is rejected: " + job.frame->problem; });
 }
 
-std::vector<FrameHeader> Intake::droppedBefore(FrameId frame) {
-  std::vector<FrameHeader> dropped;
+std::vector<FrameHeader> Intake::headersBefore(FrameId frame) {
+  std::vector<FrameHeader> before;
   for (;;) {
     if (!header_ahead_) header_ahead_ = headers_.tryPop();
-    if (!header_ahead_ || header_ahead_->frame > frame) return dropped;
-    if (header_ahead_->frame < frame) dropped.push_back(*header_ahead_);
+    if (!header_ahead_ || header_ahead_->frame > frame) return before;
+    if (header_ahead_->frame < frame) before.push_back(*header_ahead_);
     header_ahead_.reset();
   }
+}
+
+std::vector<FrameHeader> Intake::headersLeft() {
+  constexpr FrameId kNever{std::numeric_limits<std::int64_t>::max()};
+  return headersBefore(kNever);
 }
 
 }  // namespace motorcade

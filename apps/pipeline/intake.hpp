@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -30,32 +31,39 @@ class Intake {
   void close();
 
   /// Pump: the next frame, admitted; waits for a free job first and then for a frame, so that in live it is the newest.
-  /// Null after the last frame.
-  Job* next();
+  /// Null after the last frame, or when `given_up` says that no job will be free any more.
+  Job* next(const std::function<bool()>& given_up);
 
   /// After the end.
   std::int64_t received() const { return received_.load(); }
   std::int64_t dropped() const { return newest_.overwritten() + passed_over_.load(); }
+  std::int64_t refused() const { return refused_.load(); }
+  std::int64_t late() const { return late_.load(); }
+  /// After the end: frames after the last admitted one that never entered.
+  std::vector<FrameHeader> headersLeft();
   std::size_t highWater() const { return input_.highWater(); }
 
  private:
+  bool isAfterLast(const StereoFrame& frame) const { return !last_stamp_ || frame.stamp > *last_stamp_; }
   bool live() const { return policy_ == InputPolicy::kLive; }
   void announce(FrameHeader header);
   void admit(Job& job, StereoFrame frame);
-  std::vector<FrameHeader> droppedBefore(FrameId frame);
+  std::vector<FrameHeader> headersBefore(FrameId frame);
 
   InputPolicy policy_;
   FreeJobs& free_jobs_;
   Entrance& entrance_;
   LogCallback log_;
 
-  // The ring in replay; in live the mailbox, and the headers of all frames to know those that it lost.
+  // The ring in replay, the mailbox in live. The headers are of frames that were passed over or refused; in live of all
+  // frames, to know those that the mailbox lost.
   SpscRing<StereoFrame> input_;
   Mailbox<StereoFrame> newest_;
   SpscRing<FrameHeader> headers_;
-  std::atomic<std::int64_t> received_{0}, passed_over_{0};
+  std::atomic<std::int64_t> received_{0}, passed_over_{0}, refused_{0}, late_{0};
 
   FrameId next_id_{0};                       // producer only
+  std::optional<Timestamp> last_stamp_;      // producer only
   std::optional<FrameHeader> header_ahead_;  // pump only: taken from `headers_`, later than the newest frame
   std::size_t admitted_ = 0;                 // pump only
 };

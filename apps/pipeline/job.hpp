@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
+#include <semaphore>
 #include <string>
 #include <vector>
 
@@ -48,18 +50,30 @@ struct Job {
 /// One thread takes jobs, one gives them back.
 class FreeJobs {
  public:
-  explicit FreeJobs(std::size_t count) : jobs_(count), free_(count) {
+  explicit FreeJobs(std::size_t count) : jobs_(count), free_(count), count_(0) {
     for (Job& job : jobs_) giveBack(job);
   }
 
-  /// Waits for a free job; null once closed.
-  Job* take() { return free_.pop().value_or(nullptr); }
-  void giveBack(Job& job) { free_.push(&job); }
-  void close() { free_.close(); }
+  /// Waits for a free job; null once closed, or when `given_up` says, asked now and then, that none will come.
+  template <class GivenUp>
+  Job* take(const GivenUp& given_up) {
+    constexpr std::chrono::milliseconds kPatience(100);
+    while (!count_.try_acquire_for(kPatience))
+      if (given_up()) return nullptr;
+    return free_.closed() ? nullptr : free_.tryPop().value_or(nullptr);
+  }
+  void giveBack(Job& job) {
+    if (free_.push(&job)) count_.release();
+  }
+  void close() {
+    free_.close();
+    count_.release();
+  }
 
  private:
   std::vector<Job> jobs_;
   SpscRing<Job*> free_;
+  std::counting_semaphore<> count_;  // of what is in the ring; unlike the ring's, its waits can have an end
 };
 
 }  // namespace motorcade

@@ -1,6 +1,7 @@
 #include "apps/pipeline/pipeline.hpp"
 
 #include <cassert>
+#include <exception>
 #include <thread>
 #include <utility>
 
@@ -25,6 +26,7 @@ class Pipeline::Impl {
 
  private:
   void pump();
+  void stop();
   std::vector<QueueMark> queues() const;
 
   PipelineParams params_;
@@ -44,17 +46,25 @@ Pipeline::Impl::Impl(const PipelineParams& params, Stages stages, const LogCallb
       intake_(params, free_jobs_, entrance_, log),
       stages_(std::move(stages), log),
       publisher_(params, free_jobs_),
-      graph_(params.threads, {.stages = stages_, .publisher = publisher_, .entrance = entrance_}),
+      graph_(params.threads,
+             {.stages = stages_, .publisher = publisher_, .entrance = entrance_, .stop = [this] { stop(); }}),
       pump_thread_([this] { pump(); }) {}
 
-Pipeline::Impl::~Impl() {
+Pipeline::Impl::~Impl() { stop(); }
+
+/// Ends all waits for frames, jobs and results.
+void Pipeline::Impl::stop() {
   intake_.close();
   free_jobs_.close();
   publisher_.close();
 }
 
 void Pipeline::Impl::pump() {
-  while (Job* const job = intake_.next()) graph_.put(*job);
+  try {
+    while (Job* const job = intake_.next([this] { return graph_.failed(); })) graph_.put(*job);
+  } catch (...) {
+    graph_.fail(std::current_exception());
+  }
   graph_.close();
 }
 
@@ -66,10 +76,15 @@ PipelineEnd Pipeline::Impl::finish() {
   while (auto result = publisher_.next()) end.results.push_back(std::move(*result));
   pump_thread_.join();
   graph_.join();
+  end.dropped = publisher_.lastDropped(intake_.headersLeft());
   end.finals = publisher_.lastFinals(stages_.finish());
   end.summary = publisher_.summary();
   end.summary.received = intake_.received();
   end.summary.dropped = intake_.dropped();
+  end.summary.rejected += intake_.refused();
+  end.summary.late = intake_.late();
+  end.summary.causes[static_cast<std::size_t>(FrameCause::kTooLate)] += end.summary.dropped;
+  end.summary.causes[static_cast<std::size_t>(FrameCause::kOutOfOrder)] += intake_.refused();
   end.summary.queues = queues();
   return end;
 }

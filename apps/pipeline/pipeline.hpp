@@ -22,12 +22,12 @@ class Pipeline {
   /// Abandons what was not finished.
   ~Pipeline();
 
-  /// Producer: false after `close`. Frames without an id are numbered; ids must increase.
+  /// Producer: false after `close`. Frames without an id are numbered; one whose id is not after the last one's is late
+  /// and ignored, one whose time is not after the last one's is rejected.
   /// A frame without a due time is due when the pipeline takes it.
   /// Under the live policy it takes no lock and, with images from an ImagePool, asks nothing of the heap.
   bool push(StereoFrame frame);
-  /// Producer, live only, between two pushes: the camera had this frame, but it was too late to push it. It counts as
-  /// received and dropped.
+  /// Producer, between two pushes: this frame was there, but does not come. It counts as received and dropped.
   void passOver(const FrameHeader& frame);
   /// Producer: no further frame comes.
   void close();
@@ -37,7 +37,8 @@ class Pipeline {
   /// Consumer: the next result if there is one already.
   std::optional<PipelineResult> poll();
   /// Consumer: closes the input, waits for the frames in flight and ends the run. Call it once, with no `push` under
-  /// way.
+  /// way. Throws when the run ended before its last frame, for a reason that no frame can be blamed for: there was no
+  /// memory to tell of a frame.
   PipelineEnd finish();
 
  private:

@@ -15,10 +15,12 @@ namespace motorcade {
 /// One processed or rejected frame, published in frame order. Owns its facts: no image stays alive through it.
 struct PipelineResult {
   FrameEstimate online;
-  std::vector<FrameEstimate> dropped;  // frames that the live policy dropped just before this one, with predicted poses
+  std::vector<FrameEstimate> dropped;  // frames just before this one that never entered, with predicted poses
   std::vector<FrameEstimate> finals;   // every frame once, in order, when it leaves the smoothing window
-  std::vector<ObjectMask> masks;       // of the online estimate's objects, those whose outline was looked for
-  FrameMeasurementsPtr measurements;   // what the estimates were made from
+  std::vector<FrameEstimate>
+      settled;                    // every frame at most once, in order, as soon as hardly anything will change in it
+  std::vector<ObjectMask> masks;  // of the online estimate's objects, those whose outline was looked for
+  FrameMeasurementsPtr measurements;  // what the estimates were made from
   FrameTiming timing;
   SolverCounters counters;
   std::string problem;  // why the frame was rejected or lost, empty when all went well
@@ -30,10 +32,14 @@ struct QueueMark {
   std::int64_t high_water = 0, bound = 0;
 };
 
-/// received == processed + dropped + rejected, once the run has ended.
+/// received == processed + dropped + rejected, once the run has ended. Frames that came late are in none of them.
 struct PipelineSummary {
   std::int64_t received = 0, processed = 0, dropped = 0, rejected = 0;
-  std::int64_t lost = 0;  // of the processed ones: without an ego-motion
+  std::int64_t late = 0;                           // pushed after a frame with a higher id, and ignored
+  std::int64_t lost = 0;                           // of the processed ones: without an ego-motion
+  std::int64_t degraded = 0;                       // of the others: measured, but less surely
+  std::array<std::int64_t, kCauseCount> causes{};  // frames by FrameCause
+  std::int64_t segments = 0;
   LatencyHistogram latency, latency_with_decoding;
   std::array<LatencyHistogram, kStageCount> stages;
   std::vector<QueueMark> queues;
@@ -42,6 +48,7 @@ struct PipelineSummary {
 
 struct PipelineEnd {
   std::vector<PipelineResult> results;  // those that were not taken before
+  std::vector<FrameEstimate> dropped;   // frames after the last result that never entered, with predicted poses
   std::vector<FrameEstimate> finals;    // frames that were still in the window, oldest first
   PipelineSummary summary;
 };

@@ -1,6 +1,8 @@
 #include "apps/pipeline/publisher.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -25,6 +27,8 @@ void Publisher::publish(Job& job) {
   results_.waitForRoom();
   job.timing.published = std::chrono::steady_clock::now();
   job.timing.status = result.online.status;
+  job.timing.cause = result.online.cause;
+  job.timing.segment = result.online.segment;
   result.timing = job.timing;
   count(job, result);
   results_.tryPush(result);
@@ -35,13 +39,17 @@ void Publisher::publish(Job& job) {
 PipelineResult Publisher::resultOf(Job& job) {
   PipelineResult result;
   const bool seen_by_backend = job.problemOf(Stage::kIncrementalOptimization).empty();
-  result.dropped = gaps_.fill(job.dropped, FrameStatus::kDropped);
+  result.dropped = gaps_.fill(job.dropped);
+  settled_gaps_.fill(job.dropped);
   result.online = job.estimates->online;
+  tellWhy(job, result.online);
   online_ages_.fill(result.online);
   if (!seen_by_backend) result.online.T_world_cam = gaps_.predict(job.timing.stamp);
   gaps_.published(result.online, seen_by_backend);
+  settled_gaps_.published(result.online, seen_by_backend);
   result.finals = gaps_.completed(job.estimates->finals);
-  for (FrameEstimate& estimate : result.finals) final_ages_.fill(estimate);
+  for (FrameEstimate& estimate : result.finals) complete(estimate);
+  result.settled = settledOf(*job.estimates);
   result.masks = job.estimates->masks;
   result.measurements = job.measurements;
   result.counters = job.estimates->counters;
@@ -49,10 +57,25 @@ PipelineResult Publisher::resultOf(Job& job) {
   return result;
 }
 
+/// A frame that leaves the window earlier is final by then.
+std::vector<FrameEstimate> Publisher::settledOf(const Estimates& estimates) {
+  std::vector<FrameEstimate> settled = estimates.settled;
+  if (!settled.empty()) last_settled_ = settled.back().frame;
+  std::ranges::copy_if(estimates.finals, std::back_inserter(settled),
+                       [this](const FrameEstimate& final) { return final.frame > last_settled_; });
+  if (!settled.empty()) last_settled_ = settled.back().frame;
+  settled = settled_gaps_.completed(settled);
+  for (FrameEstimate& estimate : settled) settled_ages_.fill(estimate);
+  return settled;
+}
+
 void Publisher::count(const Job& job, const PipelineResult& result) {
   const FrameStatus status = result.online.status;
   ++(status == FrameStatus::kRejected ? summary_.rejected : summary_.processed);
   if (status == FrameStatus::kLost) ++summary_.lost;
+  if (status == FrameStatus::kGood && result.online.cause != FrameCause::kNone) ++summary_.degraded;
+  ++summary_.causes[static_cast<std::size_t>(result.online.cause)];
+  summary_.segments = result.online.segment + 1;
   summary_.latency.add(job.timing.latency_ms());
   summary_.latency_with_decoding.add(job.timing.latency_ms() + job.timing.decode_ms);
   for (std::size_t stage = 0; stage < kStageCount; ++stage)
@@ -63,8 +86,27 @@ void Publisher::count(const Job& job, const PipelineResult& result) {
 std::vector<FrameEstimate> Publisher::lastFinals(const std::vector<FrameEstimate>& last) {
   std::vector<FrameEstimate> finals = gaps_.completed(last);
   for (FrameEstimate& estimate : gaps_.rest()) finals.push_back(std::move(estimate));
-  for (FrameEstimate& estimate : finals) final_ages_.fill(estimate);
+  for (FrameEstimate& estimate : finals) complete(estimate);
   return finals;
+}
+
+/// What the back-end does not look at, but hands on.
+void Publisher::tellWhy(Job& job, FrameEstimate& online) {
+  const bool failed = online.status != job.measurements->status;  // in the back-end, whose estimate then is none
+  online.cause = failed ? FrameCause::kFailed : job.measurements->cause;
+  if (online.status == FrameStatus::kRejected && !job.problemOf(Stage::kPrepare).empty())
+    online.cause = FrameCause::kFailed;
+  online.segment = job.measurements->segment;
+  reasons_.push_back({online.frame, online.cause, online.segment});
+}
+
+/// A final estimate says the same of its frame as the online one did.
+void Publisher::complete(FrameEstimate& final) {
+  final_ages_.fill(final);
+  while (!reasons_.empty() && reasons_.front().frame < final.frame) reasons_.pop_front();
+  if (reasons_.empty() || reasons_.front().frame != final.frame) return;  // it never entered
+  final.cause = reasons_.front().cause;
+  final.segment = reasons_.front().segment;
 }
 
 }  // namespace motorcade

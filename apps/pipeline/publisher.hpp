@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -28,19 +29,31 @@ class Publisher {
   /// Consumer: the next result if there is one already.
   std::optional<PipelineResult> poll() { return results_.tryPop(); }
 
-  /// After the last `publish`: all frames that are not final yet, oldest first. `last` are the back-end's.
+  /// After the last `publish`: the estimates of frames that came after it and never entered.
+  std::vector<FrameEstimate> lastDropped(const std::vector<FrameHeader>& frames) { return gaps_.fill(frames); }
+  /// After `lastDropped`: all frames that are not final yet, oldest first. `last` are the back-end's.
   std::vector<FrameEstimate> lastFinals(const std::vector<FrameEstimate>& last);
   const PipelineSummary& summary() const { return summary_; }
   std::size_t highWater() const { return results_.highWater(); }
 
  private:
   PipelineResult resultOf(Job& job);
+  void tellWhy(Job& job, FrameEstimate& online);
+  void complete(FrameEstimate& final);
+  std::vector<FrameEstimate> settledOf(const Estimates& estimates);
   void count(const Job& job, const PipelineResult& result);
 
   FreeJobs& free_jobs_;
   SpscRing<PipelineResult> results_;
-  GapFiller gaps_;
-  ObjectAges online_ages_, final_ages_;
+  struct Reason {
+    FrameId frame;
+    FrameCause cause;
+    int segment;
+  };
+  GapFiller gaps_, settled_gaps_;
+  FrameId last_settled_;
+  std::deque<Reason> reasons_;  // of the frames that are not final yet
+  ObjectAges online_ages_, settled_ages_, final_ages_;
   PipelineSummary summary_;
 };
 

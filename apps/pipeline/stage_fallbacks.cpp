@@ -41,6 +41,7 @@ SceneMotionPtr predictedMotion(const StereoFrame& frame, const SE3& T_previous_n
   predicted.frame = frame.frame;
   predicted.stamp = frame.stamp;
   predicted.status = frame.rejected() ? FrameStatus::kRejected : FrameStatus::kLost;
+  predicted.cause = frame.rejected() ? FrameCause::kUnusable : FrameCause::kFailed;
   predicted.T_previous_now = T_previous_now;
   predicted.odometry_covariance = unknownMotionCovariance();
   return shared(std::move(predicted));
@@ -51,6 +52,8 @@ FrameMeasurementsPtr cameraAlone(const SceneMotion& motion) {
   camera.frame = motion.frame;
   camera.stamp = motion.stamp;
   camera.status = motion.status == FrameStatus::kGood ? FrameStatus::kLost : motion.status;
+  camera.cause = motion.status == FrameStatus::kGood ? FrameCause::kFailed : motion.cause;
+  camera.segment = motion.segment;
   camera.T_previous_now = motion.T_previous_now;
   camera.odometry_covariance = motion.odometry_covariance;
   return shared(std::move(camera));

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <exception>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -27,6 +28,14 @@ std::string exceptionOf(const Work& work) {
   return {};
 }
 
+void nameProblem(Job& job, Stage stage, const std::string& problem) {
+  try {
+    job.problemOf(stage) = std::string(nameOf(stage)) + " failed: " + problem;
+  } catch (const std::bad_alloc&) {
+    job.problemOf(stage) = kNoMemoryLeft;
+  }
+}
+
 }  // namespace
 
 StageRunner::StageRunner(Stages stages, LogCallback log) : stages_(std::move(stages)), log_(std::move(log)) {}
@@ -44,8 +53,8 @@ auto StageRunner::attempt(Job& job, Stage stage, const Run& run, const Fallback&
     if (!message) throw std::logic_error("no message came out");
   });
   if (!problem.empty()) {
-    job.problemOf(stage) = std::string(nameOf(stage)) + " failed: " + problem;
-    log_(LogLevel::kError, job.name() + ": " + job.problemOf(stage));
+    nameProblem(job, stage, problem);
+    tell(log_, LogLevel::kError, [&] { return job.name() + ": " + job.problemOf(stage); });
     message = fallback();
   }
   span.cpu_ms = threadCpu_ms() - cpu_before_ms;
@@ -87,7 +96,8 @@ void StageRunner::optimize(Job& job) {
   job.estimates = attempt(
       job, Stage::kIncrementalOptimization, [&] { return stages_.incremental_optimization(job.measurements); },
       [&] { return lostEstimates(*job.measurements); });
-  for (const std::string& problem : job.estimates->problems) log_(LogLevel::kWarning, job.name() + ": " + problem);
+  for (const std::string& problem : job.estimates->problems)
+    tell(log_, LogLevel::kWarning, [&] { return job.name() + ": " + problem; });
 }
 
 void StageRunner::shapeObjects(Job& job) {
@@ -102,7 +112,7 @@ void StageRunner::shapeObjects(Job& job) {
 std::vector<FrameEstimate> StageRunner::finish() {
   std::vector<FrameEstimate> finals;
   const std::string problem = exceptionOf([&] { finals = stages_.finish(); });
-  if (!problem.empty()) log_(LogLevel::kError, "the back-end could not finish: " + problem);
+  if (!problem.empty()) tell(log_, LogLevel::kError, [&] { return "the back-end could not finish: " + problem; });
   return finals;
 }
 

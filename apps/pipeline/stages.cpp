@@ -1,8 +1,11 @@
 #include "apps/pipeline/stages.hpp"
 
 #include <memory>
+#include <stdexcept>
+#include <string>
 
 #include "apps/pipeline/pipeline_config.hpp"
+#include "apps/pipeline/restarting_backend.hpp"
 
 namespace motorcade {
 namespace {
@@ -11,6 +14,7 @@ namespace {
 JointParams jointParams(const BackendParams& params) {
   JointParams joint = params.joint;
   joint.window_frames = params.smoother.window_frames;
+  joint.settling_s = params.smoother.settling_s;
   joint.budget_scalars = params.smoother.budget_scalars;
   joint.budget_ms = params.smoother.budget_ms;
   joint.online_correction_s = params.smoother.online_correction_s;
@@ -26,6 +30,19 @@ std::unique_ptr<Backend> makeBackend(const BackendParams& params, const StereoCa
   return std::make_unique<PoseGraphBackend>(params.smoother, camera);
 }
 
+/// Throws where an image is missing or has not the size that the camera says.
+void requireImages(const StereoFrame& frame, const StereoCamera& camera) {
+  const auto require = [&](const Image& image, const std::string& side) {
+    if (image.empty()) throw std::invalid_argument("the " + side + " image is missing");
+    if (image.width() == camera.width_px && image.height() == camera.height_px) return;
+    throw std::invalid_argument("the " + side + " image has " + std::to_string(image.width()) + "x" +
+                                std::to_string(image.height()) + " pixels, the camera says " +
+                                std::to_string(camera.width_px) + "x" + std::to_string(camera.height_px));
+  };
+  require(frame.left, "left");
+  require(frame.right, "right");
+}
+
 }  // namespace
 
 /// The stages live behind shared pointers, because a std::function copies what it holds.
@@ -36,8 +53,13 @@ Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
   const auto motion = std::make_shared<SceneFlowSegmentation>(config.scene_flow_segmentation, camera);
   const auto tracking = std::make_shared<ObjectTracker>(config.tracking, camera);
   const auto shapes = std::make_shared<ObjectShapes>(camera);
-  const std::shared_ptr<Backend> backend = makeBackend(config.backend, camera);
-  return {.prepare = [prepare](const StereoFramePtr& frame) { return (*prepare)(frame); },
+  const std::shared_ptr<Backend> backend =
+      std::make_shared<RestartingBackend>([params = config.backend, camera] { return makeBackend(params, camera); });
+  return {.prepare =
+              [prepare, camera](const StereoFramePtr& frame) {
+                if (!frame->rejected()) requireImages(*frame, camera);
+                return (*prepare)(frame);
+              },
           .stereo_matching = [stereo](const FeaturesPtr& features) { return (*stereo)(features); },
           .optical_flow = [flow](const FeaturesPtr& features) { return (*flow)(features); },
           .scene_flow_segmentation = [motion](const StereoMatchesPtr& matches,

@@ -19,12 +19,18 @@ bool sleepUntil(SteadyTime moment, const std::stop_token& stopped) {
 
 }  // namespace
 
-Feeder::Feeder(SequenceDecoder& decoder, Pipeline& pipeline, CameraClock* clock)
+Feeder::Feeder(SequenceDecoder& decoder, Pipeline& pipeline, CameraClock* clock, FaultInjector* faults)
     : decoder_(decoder),
       pipeline_(pipeline),
       clock_(clock),
+      faults_(faults),
       next_(decoder.first()),
       thread_([this](const std::stop_token& stopped) { feed(stopped); }) {}
+
+Feeder::~Feeder() {
+  stop();
+  pipeline_.close();
+}
 
 void Feeder::stop() {
   thread_.request_stop();
@@ -38,16 +44,33 @@ void Feeder::feed(const std::stop_token& stopped) {
       frame->due = clock_->due(frame->stamp);
       if (!sleepUntil(frame->due, stopped)) break;
     }
-    if (stopped.stop_requested() || !enter(std::move(*frame))) break;
+    if (stopped.stop_requested() || !enter(std::move(*frame), stopped)) break;
   }
+  if (faults_ && !stopped.stop_requested()) faults_->finish(pipelineAfterFaults(stopped));
   pipeline_.close();
 }
 
 /// Tells first of the pairs before it that the decoder left out.
-bool Feeder::enter(StereoFrame frame) {
-  for (; next_ < frame.frame; ++next_.value) pipeline_.passOver({next_, decoder_.stampOf(next_)});
+bool Feeder::enter(StereoFrame frame, const std::stop_token& stopped) {
+  for (; next_ < frame.frame; ++next_.value) {
+    const Timestamp stamp = decoder_.stampOf(next_);
+    pipeline_.passOver({next_, faults_ ? faults_->shifted(stamp) : stamp});
+  }
   ++next_.value;
-  return pipeline_.push(std::move(frame));
+  return faults_ ? faults_->give(std::move(frame), pipelineAfterFaults(stopped)) : pipeline_.push(std::move(frame));
+}
+
+FaultInjector::Outlet Feeder::pipelineAfterFaults(const std::stop_token& stopped) {
+  return {.push = [this](StereoFrame frame) { return pipeline_.push(std::move(frame)); },
+          .pass_over =
+              [this](FrameId frame, Timestamp stamp) {
+                pipeline_.passOver({frame, stamp});
+              },
+          .wait =
+              [stopped](std::chrono::duration<double> time) {
+                const auto ticks = std::chrono::duration_cast<SteadyTime::duration>(time);
+                sleepUntil(std::chrono::steady_clock::now() + ticks, stopped);
+              }};
 }
 
 }  // namespace motorcade

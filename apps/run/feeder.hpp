@@ -2,6 +2,7 @@
 
 #include <thread>
 
+#include "apps/inject/fault_injector.hpp"
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/run/camera_clock.hpp"
 #include "io/sequence_decoder.hpp"
@@ -12,21 +13,24 @@ namespace motorcade {
 /// when it is due; without, as soon as there is room.
 class Feeder {
  public:
-  /// `clock` may be null; it is started with the first pair. Only under the live policy may the decoder leave pairs
-  /// out.
-  Feeder(SequenceDecoder& decoder, Pipeline& pipeline, CameraClock* clock);
-  ~Feeder() { stop(); }
+  /// `clock` may be null; it is started with the first pair. So may `faults`, which change the pairs on their way.
+  /// Pairs that the decoder leaves out are passed over.
+  Feeder(SequenceDecoder& decoder, Pipeline& pipeline, CameraClock* clock, FaultInjector* faults);
+  /// Closes the pipeline too, so that the thread never waits for room in it.
+  ~Feeder();
 
   /// No further pair enters; from any thread.
   void stop();
 
  private:
   void feed(const std::stop_token& stopped);
-  bool enter(StereoFrame frame);
+  bool enter(StereoFrame frame, const std::stop_token& stopped);
+  FaultInjector::Outlet pipelineAfterFaults(const std::stop_token& stopped);
 
   SequenceDecoder& decoder_;
   Pipeline& pipeline_;
   CameraClock* clock_;
+  FaultInjector* faults_;
   FrameId next_;  // after the last pair that entered
   std::jthread thread_;
 };

@@ -19,6 +19,9 @@ std::string text(const char* format, double value) {
   return buffer;
 }
 
+/// Of the principal point, as a share of the image's size.
+bool isFarFromMiddle(double share) { return share < 0.3 || share > 0.7; }
+
 }  // namespace
 
 std::vector<std::string> doubtsAbout(const StereoCamera& camera) {
@@ -33,6 +36,11 @@ std::vector<std::string> doubtsAbout(const StereoCamera& camera) {
   if (camera.cx_px <= 0 || camera.cx_px >= camera.width_px || camera.cy_px <= 0 || camera.cy_px >= camera.height_px)
     doubts.push_back("the calibration's principal point (" + text("%.5g", camera.cx_px) + ", " +
                      text("%.5g", camera.cy_px) + ") lies outside the image; is it that of another image size?");
+  else if (isFarFromMiddle(camera.cx_px / camera.width_px) || isFarFromMiddle(camera.cy_px / camera.height_px))
+    doubts.push_back("the calibration's principal point (" + text("%.5g", camera.cx_px) + ", " +
+                     text("%.5g", camera.cy_px) + ") lies far from the middle of images of " +
+                     std::to_string(camera.width_px) + "x" + std::to_string(camera.height_px) +
+                     " px; is it that of another image size?");
   return doubts;
 }
 

@@ -7,9 +7,12 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <spdlog/spdlog.h>
 
+#include "apps/console/progress.hpp"
+#include "apps/console/stop_signals.hpp"
 #include "apps/pipeline/configuration.hpp"
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/run/camera_clock.hpp"
@@ -17,17 +20,15 @@
 #include "apps/run/object_view_writer.hpp"
 #include "apps/run/other_camera.hpp"
 #include "apps/run/plausibility.hpp"
-#include "apps/run/progress.hpp"
 #include "apps/run/run_options.hpp"
 #include "apps/run/run_summary.hpp"
-#include "apps/run/stop_signals.hpp"
 #include "io/errors.hpp"
 #include "io/run_folder.hpp"
 
 namespace motorcade {
 namespace {
 
-constexpr int kExitUntracked = 5, kExitSignal = 128;
+constexpr int kExitUntracked = 5;
 
 void logToSpdlog(LogLevel level, const std::string& text) {
   switch (level) {
@@ -69,26 +70,34 @@ void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) 
 class Recorder {
  public:
   Recorder(RunFolderWriter& folder, ObjectViewWriter* views, std::size_t frames)
-      : folder_(folder), views_(views), progress_(frames) {}
+      : folder_(folder), views_(views), progress_("frame", frames) {}
 
   void record(const PipelineResult& result) {
-    for (const FrameEstimate& dropped : result.dropped) {
-      FrameTiming timing;
-      timing.frame = dropped.frame;
-      timing.stamp = dropped.stamp;
-      timing.status = dropped.status;
-      timing.due = timing.published = result.timing.due;
-      folder_.writeTiming(timing);
-      folder_.writeOnline(dropped);
-    }
+    recordDropped(result.dropped, result.timing.due);
     folder_.writeTiming(result.timing);
     folder_.writeOnline(result.online);
     if (const auto doubt = plausibility_.observe(result.online)) spdlog::warn(*doubt);
     if (views_) views_->write(result);
+    for (const FrameEstimate& estimate : result.settled) folder_.writeSettled(estimate);
     recordFinals(result.finals);
     if (result.online.status == FrameStatus::kGood) ++good_frames_;
-    done_ += 1 + result.dropped.size();
-    progress_.show(done_, result.timing.latency_ms());
+    ++done_;
+    progress_.show(done_, fmt::format("latency {:.1f} ms", result.timing.latency_ms()));
+  }
+  /// Frames that never entered; `due` stands for when they were due, which nobody knows.
+  void recordDropped(const std::vector<FrameEstimate>& dropped, SteadyTime due) {
+    for (const FrameEstimate& estimate : dropped) {
+      FrameTiming timing;
+      timing.frame = estimate.frame;
+      timing.stamp = estimate.stamp;
+      timing.status = estimate.status;
+      timing.cause = estimate.cause;
+      timing.segment = estimate.segment;
+      timing.due = timing.published = due;
+      folder_.writeTiming(timing);
+      folder_.writeOnline(estimate);
+      ++done_;
+    }
   }
   void recordFinals(const std::vector<FrameEstimate>& finals) {
     for (const FrameEstimate& estimate : finals) folder_.writeFinal(estimate);
@@ -104,9 +113,16 @@ class Recorder {
   std::int64_t good_frames_ = 0;
 };
 
+/// What is played into the pipeline.
+struct Replay {
+  const Sequence& sequence;
+  FrameRange range;
+  FaultInjector* faults = nullptr;
+};
+
 /// Runs the frames through the pipeline and writes all results but the summary.
-void follow(const Sequence& sequence, const FrameRange& range, const PipelineConfig& config, Stages stages,
-            Recorder& recorder, RunSummary& summary) {
+void follow(const Replay& replay, const PipelineConfig& config, Stages stages, Recorder& recorder,
+            RunSummary& summary) {
   StopSignals signals;
   std::optional<CameraClock> clock;
   if (summary.rate_hz) clock.emplace(*summary.rate_hz / summary.capture_rate_hz, 1 / summary.capture_rate_hz);
@@ -114,21 +130,17 @@ void follow(const Sequence& sequence, const FrameRange& range, const PipelineCon
   // Where decoding is too slow for a live camera, pairs that a later one has overtaken are left out.
   if (clock && config.pipeline.policy == InputPolicy::kLive)
     decoding.wanted = [&](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };
-  SequenceDecoder decoder(sequence, range, decoding);
+  SequenceDecoder decoder(replay.sequence, replay.range, decoding);
   Pipeline pipeline(config.pipeline, std::move(stages), logToSpdlog);
   const auto start = std::chrono::steady_clock::now();
   {
-    Feeder feeder(decoder, pipeline, clock ? &*clock : nullptr);
+    Feeder feeder(decoder, pipeline, clock ? &*clock : nullptr, replay.faults);
     const auto watch = signals.watch([&feeder] { feeder.stop(); });
-    try {
-      while (const auto result = pipeline.next()) recorder.record(*result);
-    } catch (...) {
-      pipeline.close();  // or the feeder would wait for room for ever
-      throw;
-    }
+    while (const auto result = pipeline.next()) recorder.record(*result);
   }
   const PipelineEnd end = pipeline.finish();
   for (const PipelineResult& result : end.results) recorder.record(result);
+  recorder.recordDropped(end.dropped, std::chrono::steady_clock::now());
   recorder.recordFinals(end.finals);
   summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   summary.pipeline = end.summary;
@@ -144,6 +156,7 @@ int runSequence(const RunOptions& options) {
   const ProcessUsage before = processUsage();
   const PipelineConfig config = configurationOf(options);
   const auto required_tracking = requiredTracking(options);
+  const FaultSpec fault_spec = parseFaultSpec(options.inject);
   const auto rate_hz = replayRate_hz(options, config.pipeline.policy);
   const Sequence sequence = openSequence(options.sequence, options.fps_hz);
   const FrameRange range = selectedFrames(options, sequence);
@@ -163,7 +176,8 @@ int runSequence(const RunOptions& options) {
   std::optional<ObjectViewWriter> views;
   if (options.masks) views.emplace(options.out, sequence.camera);
   Recorder recorder(folder, views ? &*views : nullptr, range.size());
-  follow(sequence, range, config, std::move(stages), recorder, summary);
+  FaultInjector faults(fault_spec, sequence);
+  follow({sequence, range, options.inject.empty() ? nullptr : &faults}, config, std::move(stages), recorder, summary);
   if (views) views->close();
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));

@@ -24,6 +24,7 @@ struct RunOptions {
   std::filesystem::path camera;          // KITTI pose lines
   std::vector<std::string> assignments;  // key=value
   std::string require;                   // tracked=FRACTION
+  std::string inject;                    // faults, see FaultSpec
 };
 
 /// The configuration in force: defaults, then the file, then `--set`, then the options. Throws UsageError.

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/version.h>
 
+#include "io/run_folder.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -38,6 +40,15 @@ Json toJson(const SolverCounters& solver) {
 
 Json toJson(const QueueMark& queue) {
   return {{"name", queue.name}, {"high_water", queue.high_water}, {"bound", queue.bound}};
+}
+
+/// Of the causes that occurred.
+Json byCause(const PipelineSummary& pipeline) {
+  Json counts = Json::object();
+  for (std::size_t cause = 1; cause < kCauseCount; ++cause)
+    if (pipeline.causes[cause] > 0)
+      counts[std::string(causeName(static_cast<FrameCause>(cause)))] = pipeline.causes[cause];
+  return counts;
 }
 
 Json versions() {
@@ -78,6 +89,10 @@ std::string toJson(const RunSummary& summary) {
               {"dropped", pipeline.dropped},
               {"rejected", pipeline.rejected},
               {"lost", pipeline.lost},
+              {"degraded", pipeline.degraded},
+              {"late", pipeline.late},
+              {"by_cause", byCause(pipeline)},
+              {"segments", pipeline.segments},
               {"tracked_fraction", rounded(summary.trackedFraction())}}},
             {"latency_ms", toJson(pipeline.latency)},
             {"latency_with_decoding_ms", toJson(pipeline.latency_with_decoding)},

@@ -87,44 +87,51 @@ Solution withFileProblems(const PoseGraph& graph) {
   return solution;
 }
 
-void feedAll(PoseGraphFeed& feed, Solution& solution) {
-  while (!feed.atEnd()) {
+void feedAll(PoseGraphFeed& feed, const SolveProgress& progress, Solution& solution) {
+  while (solution.complete && !feed.atEnd()) {
     const auto update = feed.next();
     solution.update_ms.push_back(update.cpu_ms);
     solution.update_eliminated_scalars.push_back(update.report.eliminated_scalars);
     solution.total_ms += update.cpu_ms;
     addSolverProblems(update.report, feed, solution.problems);
+    solution.complete = progress(solution.update_ms.size(), feed.updateCount());
   }
 }
 
-bool converge(PoseGraphFeed& feed, Solution& solution) {
-  const double start_ms = threadCpu_ms();
-  const auto& report = feed.solver().converge(kMaxIterations, kConverged);
-  solution.total_ms += threadCpu_ms() - start_ms;
-  addSolverProblems(report, feed, solution.problems);
-  return report.largest_change < kConverged && std::isfinite(feed.chi2());
+/// True when nothing moves any more, or when it was stopped.
+bool converge(PoseGraphFeed& feed, const SolveProgress& progress, Solution& solution) {
+  for (int iteration = 1; solution.complete && iteration <= kMaxIterations; ++iteration) {
+    const double start_ms = threadCpu_ms();
+    const auto& report = feed.solver().converge(1, kConverged);
+    solution.total_ms += threadCpu_ms() - start_ms;
+    addSolverProblems(report, feed, solution.problems);
+    if (report.largest_change < kConverged) return std::isfinite(feed.chi2());
+    solution.complete = progress(iteration, kMaxIterations);
+  }
+  return !solution.complete;
 }
 
 }  // namespace
 
-Solution solveIncrementally(const PoseGraph& graph, const IncrementalSolver::Params& params) {
+Solution solveIncrementally(const PoseGraph& graph, const IncrementalSolver::Params& params,
+                            const SolveProgress& progress) {
   Solution solution = withFileProblems(graph);
   PoseGraphFeed feed(graph, params);
-  feedAll(feed, solution);
+  feedAll(feed, progress, solution);
   return solutionOf(graph, feed, std::move(solution));
 }
 
-Solution solveAtOnce(const PoseGraph& graph, const IncrementalSolver::Params& params) {
+Solution solveAtOnce(const PoseGraph& graph, const IncrementalSolver::Params& params, const SolveProgress& progress) {
   Solution solution = withFileProblems(graph);
   PoseGraphFeed feed(graph, params, PoseGraphFeed::Pace::kAtOnce);
-  feedAll(feed, solution);
-  if (converge(feed, solution)) return solutionOf(graph, feed, std::move(solution));
+  feedAll(feed, progress, solution);
+  if (converge(feed, progress, solution)) return solutionOf(graph, feed, std::move(solution));
 
   Solution second = withFileProblems(graph);
   second.total_ms = solution.total_ms;
   PoseGraphFeed driven(graph, params);
-  feedAll(driven, second);
-  if (!converge(driven, second)) {
+  feedAll(driven, progress, second);
+  if (!converge(driven, progress, second)) {
     second.problems.push_back({"not_converged",
                                "solution",
                                "Gauss-Newton moved on after " + std::to_string(kMaxIterations) + " iterations",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct SolveProblem {
 /// A solved graph, and what it took.
 struct Solution {
   std::size_t poses = 0, edges = 0;  // in the solution
+  bool complete = true;              // not stopped before its end
   double chi2 = 0, total_ms = 0;
   std::vector<double> update_ms;  // CPU time of each update
   std::vector<std::int64_t> update_eliminated_scalars;
@@ -25,11 +27,15 @@ struct Solution {
   std::vector<PoseGraph::Vertex> vertices;
 };
 
+/// Told after each step how many are done and how many there may be; false stops the work there, with what is solved.
+using SolveProgress = std::function<bool(std::size_t done, std::size_t count)>;
+
 /// Smooths the graph as it comes, an update per pose or frame.
-Solution solveIncrementally(const PoseGraph& graph, const IncrementalSolver::Params& params);
+Solution solveIncrementally(const PoseGraph& graph, const IncrementalSolver::Params& params,
+                            const SolveProgress& progress);
 
 /// Gauss-Newton on the whole graph until nothing moves, from odometry; where that does not get there, from the
 /// incremental solution.
-Solution solveAtOnce(const PoseGraph& graph, const IncrementalSolver::Params& params);
+Solution solveAtOnce(const PoseGraph& graph, const IncrementalSolver::Params& params, const SolveProgress& progress);
 
 }  // namespace motorcade

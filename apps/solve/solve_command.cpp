@@ -1,7 +1,10 @@
 #include "apps/solve/solve_command.hpp"
 
 #include <iostream>
+#include <optional>
 
+#include "apps/console/progress.hpp"
+#include "apps/console/stop_signals.hpp"
 #include "apps/solve/solution.hpp"
 #include "apps/solve/solve_report.hpp"
 #include "io/errors.hpp"
@@ -26,14 +29,24 @@ IncrementalSolver::Params solverParams(const SolveOptions& options) {
 int runSolve(const SolveOptions& options) {
   const auto params = solverParams(options);
   PoseGraph graph = readPoseGraph(options.graph);
-  Solution solution = options.at_once ? solveAtOnce(graph, params) : solveIncrementally(graph, params);
+  StopSignals signals;
+  const auto watch = signals.watch([] {});  // the progress asks for it
+  std::optional<Progress> shown;
+  const SolveProgress progress = [&](std::size_t done, std::size_t count) {
+    if (!shown || done == 1) shown.emplace("step", count);
+    shown->show(done);
+    return signals.received() == 0;
+  };
+  Solution solution =
+      options.at_once ? solveAtOnce(graph, params, progress) : solveIncrementally(graph, params, progress);
+  shown.reset();
   std::cout << textOf(solution);
   if (!options.json.empty()) writeAtOnce(options.json, jsonOf(solution, options));
   if (!options.out.empty()) {
     graph.vertices = std::move(solution.vertices);
     writePoseGraph(options.out, graph);
   }
-  return 0;
+  return solution.complete ? 0 : kExitSignal + signals.received();
 }
 
 }  // namespace motorcade

@@ -42,10 +42,16 @@ std::string textOf(const Solution& solution) {
 
 std::string jsonOf(const Solution& solution, const SolveOptions& options) {
   const Times times = timesOf(solution.update_ms);
-  nlohmann::ordered_json json = {
-      {"graph", options.graph.string()},      {"poses", solution.poses}, {"edges", solution.edges},
-      {"updates", solution.update_ms.size()}, {"chi2", solution.chi2},   {"total_s", 1e-3 * solution.total_ms},
-      {"median_ms", times.median_ms},         {"p99_ms", times.p99_ms},  {"max_ms", times.max_ms}};
+  nlohmann::ordered_json json = {{"graph", options.graph.string()},
+                                 {"poses", solution.poses},
+                                 {"edges", solution.edges},
+                                 {"complete", solution.complete},
+                                 {"updates", solution.update_ms.size()},
+                                 {"chi2", solution.chi2},
+                                 {"total_s", 1e-3 * solution.total_ms},
+                                 {"median_ms", times.median_ms},
+                                 {"p99_ms", times.p99_ms},
+                                 {"max_ms", times.max_ms}};
   json["problems"] = nlohmann::ordered_json::array();
   for (const auto& p : solution.problems)
     json["problems"].push_back({{"kind", p.kind}, {"name", p.name}, {"detail", p.detail}, {"poses", p.poses}});

@@ -6,15 +6,19 @@
 namespace motorcade {
 namespace {
 
-constexpr int kMaxGap_frames = 3;       // without a view of a point, whose track then ends
 constexpr int kColumns = 8, kRows = 4;  // of the grid over the image in which landmarks are spread
 
 }  // namespace
 
-bool isLost(const LandmarkTrack::View& newest, FrameId now) { return now.value - newest.frame.value > kMaxGap_frames; }
+void TrackLife::add(FrameId frame) {
+  frames_.push_back(frame);
+  if (frames_.size() > kMaxGap_frames + 1) frames_.pop_front();
+  oldest_ = frames_.front();
+}
 
 void BodyPoints::observe(FrameId frame, std::span<const PointMeasurement> points, const EarlierViews& earlier) {
   newest_ = frame;
+  life_.add(frame);
   for (const PointMeasurement& p : points) {
     if (params_.half > 0 && p.point.value % 2 != params_.half % 2) continue;
     const auto [at, is_new] = candidates_.try_emplace(p.point);
@@ -34,7 +38,7 @@ void BodyPoints::observe(FrameId frame, std::span<const PointMeasurement> points
     }
   }
   for (auto it = candidates_.begin(); it != candidates_.end();) {
-    const bool lost = isLost(it->second.track.views.back(), frame);
+    const bool lost = life_.isLost(it->second.track.views.back());
     if (lost && it->second.chosen) end(it->second);
     it = lost ? candidates_.erase(it) : std::next(it);
   }

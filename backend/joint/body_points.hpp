@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -22,8 +24,19 @@ struct LandmarkTrack {
   std::optional<LandmarkEstimate> estimate{};  // when it was fitted last
 };
 
-/// A point that was not seen for so long that its track has ended.
-bool isLost(const LandmarkTrack::View& newest, FrameId now);
+/// Tells which tracks have ended: their points were not seen for some frames. Frames that never came, or that showed
+/// nothing, do not count.
+class TrackLife {
+ public:
+  /// In frame order.
+  void add(FrameId frame);
+  bool isLost(const LandmarkTrack::View& newest) const { return newest.frame < oldest_; }
+
+ private:
+  static constexpr std::size_t kMaxGap_frames = 3;
+  std::deque<FrameId> frames_;  // the newest ones
+  FrameId oldest_{0};           // that a track which goes on may have been seen in last
+};
 
 /// Chooses the landmarks of a body and cuts their tracks: a track ends when its point is lost or when it has as many
 /// views as it may have, and the point's next view begins a new one. Nothing is counted twice.
@@ -63,6 +76,7 @@ class BodyPoints {
 
   Params params_;
   FrameId newest_;
+  TrackLife life_;
   std::map<PointId, Candidate> candidates_;
   std::vector<LandmarkTrack> ended_;
 };

@@ -2,6 +2,7 @@
 
 #include "backend/joint/joint_reader.hpp"
 #include "backend/smoother/continuous_poses.hpp"
+#include "backend/smoother/settling.hpp"
 
 namespace motorcade {
 namespace {
@@ -16,7 +17,8 @@ class JointBackend::Estimator {
       : params_(requireValid(params)),
         graph_(params_, camera),
         reader_(graph_),
-        continuous_(params.online_correction_s) {}
+        continuous_(params.online_correction_s),
+        settling_(params.settling_s) {}
 
   EstimatesPtr add(const FrameMeasurements& measurements) {
     graph_.add(measurements);
@@ -27,6 +29,7 @@ class JointBackend::Estimator {
     }
     estimates.online = reader_.read(measurements.frame);
     continuous_(estimates.online, [this](TrackId track, FrameId frame) { return earlierPose(track, frame); });
+    for (const FrameId frame : settling_(graph_.frames())) estimates.settled.push_back(reader_.read(frame));
     while (params_.window_frames > 0 && graph_.frames().size() > static_cast<std::size_t>(params_.window_frames)) {
       estimates.finals.push_back(reader_.read(graph_.frames().begin()->first));
       graph_.retireOldest();
@@ -69,6 +72,7 @@ class JointBackend::Estimator {
   JointGraph graph_;
   JointReader reader_;
   ContinuousPoses continuous_;
+  Settling settling_;
 };
 
 JointBackend::JointBackend(const Params& params, const StereoCamera& camera)

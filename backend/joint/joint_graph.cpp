@@ -38,6 +38,9 @@ bool concernsVariable(SolverProblem::Kind kind) {
   return kind != Kind::kNotFinite && kind != Kind::kUnknownVariable && kind != Kind::kRepeatedVariable;
 }
 
+/// Were points seen, whether or not they tell how the camera moved?
+bool isSeen(const FrameMeasurements& m) { return m.status == FrameStatus::kGood || m.cause == FrameCause::kUnlinked; }
+
 BodyPoints::Params pointParams(const JointParams& params, const StereoCamera& camera, int max_views,
                                int max_landmarks) {
   return {.max_views = max_views,
@@ -67,11 +70,12 @@ JointGraph::JointGraph(const JointParams& params, const StereoCamera& camera)
 /// The camera first: objects are predicted, and their motion is told from the camera's, by where it was then found.
 void JointGraph::add(const FrameMeasurements& measurements) {
   problems_.clear();
+  ++added_frames_;
   addCamera(measurements);
   addPoints(world_, nullptr);
   dropTroubled(solver_.update());
   addObjects(measurements);
-  undecided_.observe(measurements.frame, measurements.undecided);
+  if (isSeen(measurements)) undecided_.observe(measurements.frame, measurements.undecided);
   calibrate();
 }
 
@@ -81,7 +85,7 @@ void JointGraph::addObjects(const FrameMeasurements& measurements) {
   if (objects_.empty()) return;
   for (auto& [id, object] : objects_) {
     const bool seen_now = object.records.rbegin()->first == measurements.frame;
-    if (!seen_now) object.points.points.observe(measurements.frame, {});  // its tracks end
+    if (!seen_now && isSeen(measurements)) object.points.points.observe(measurements.frame, {});  // its tracks end
     settleMotion(object, measurements.frame);
     addPoints(object.points, &object);
   }
@@ -90,20 +94,21 @@ void JointGraph::addObjects(const FrameMeasurements& measurements) {
 
 void JointGraph::addCamera(const FrameMeasurements& m) {
   const SE3 T_previous_now = isFinite(m.T_previous_now) ? m.T_previous_now : SE3{};
-  JointCamera camera{.stamp = m.stamp, .status = m.status, .x = {}, .weak = false, .covariance = {}};
+  JointCamera camera{.stamp = m.stamp, .status = m.status, .x = {}, .gauge = 0, .weak = false, .covariance = {}};
   if (!first_frame_.valid()) first_frame_ = m.frame;
   if (frames_.empty()) {
     camera.x = solver_.addVariable(SE3{});
-    addPrior(camera.x, SE3{},
-             sigmas(params_.first_pose_sigma_m, params_.first_pose_sigma_rad, params_.first_pose_sigma_rad));
-    observeAtRest(m);
+    addGaugePrior(camera.x, SE3{});
+    if (isSeen(m)) observeAtRest(m);
   } else {
     const VariableId before = frames_.rbegin()->second.x;
     camera.x = solver_.addVariable((solver_.pose(before) * T_previous_now).normalized());
-    observeAtRest(m);
+    last_seen_.T_seen_now = (last_seen_.T_seen_now * T_previous_now).normalized();
+    if (isSeen(m)) observeAtRest(m);
     camera.weak = m.status != FrameStatus::kGood || world_.points.seenNow() < kFewStatic;
-    if (camera.weak) addOdometry(m, before, camera.x);
+    linkCamera(m, camera);
   }
+  if (isSeen(m)) last_seen_ = {m.frame, SE3{}};
   for (const ObjectObservation& seen : m.objects) world_.points.forget(seen.measured);
   frames_.emplace(m.frame, camera);
 }
@@ -113,11 +118,31 @@ void JointGraph::observeAtRest(const FrameMeasurements& m) {
   world_.points.observe(m.frame, m.at_rest, [&](PointId point) { return undecided_.take(point, m.frame, 1); });
 }
 
-void JointGraph::addOdometry(const FrameMeasurements& m, VariableId before, VariableId now) {
-  auto root = squareRootInformation(m.odometry_covariance);
+/// Where points hardly tell it, odometry says how the camera moved since points were seen last; unseen frames lie where
+/// a steady motion puts them. An unknown motion begins a new gauge: after a weak factor all that follows would float.
+void JointGraph::linkCamera(const FrameMeasurements& m, JointCamera& camera) {
+  const auto& [frame_before, before] = *frames_.rbegin();
+  camera.gauge = before.gauge;
+  if (m.cause == FrameCause::kUnlinked) {
+    ++camera.gauge;
+    return addGaugePrior(camera.x, solver_.pose(camera.x));
+  }
+  if (!isSeen(m)) return addOdometry(m.T_previous_now, m.odometry_covariance, before.x, camera.x);
+  const auto seen = frames_.find(last_seen_.frame);
+  if (seen == frames_.end()) return addOdometry(m.T_previous_now, unknownMotionCovariance(), before.x, camera.x);
+  if (seen->first != frame_before) {
+    const double dt_s = secondsBetween(before.stamp, m.stamp);
+    const SE3 steady = scaledMotion(last_seen_.T_seen_now, dt_s / secondsBetween(seen->second.stamp, m.stamp));
+    addOdometry(steady, unknownMotionCovariance(dt_s), before.x, camera.x);
+  }
+  if (camera.weak) addOdometry(last_seen_.T_seen_now, m.odometry_covariance, seen->second.x, camera.x);
+}
+
+void JointGraph::addOdometry(const SE3& T_before_now, const Matrix6d& covariance, VariableId before, VariableId now) {
+  auto root = squareRootInformation(covariance);
   if (!root) root = squareRootInformation(unknownMotionCovariance());
   const PoseNoise noise{.sqrt_information = *root};
-  solver_.addFactor(std::make_unique<MotionFactor>(std::array{before, now}, MotionModel{m.T_previous_now}, noise));
+  solver_.addFactor(std::make_unique<MotionFactor>(std::array{before, now}, MotionModel{T_before_now}, noise));
 }
 
 JointObject& JointGraph::objectOf(TrackId id) {
@@ -188,8 +213,8 @@ SE3 JointGraph::cameraMotion(const JointRecord& before, const JointRecord& now) 
 void JointGraph::addMotion(const JointRecord& before, JointRecord& now) {
   ConstantTwistFactor::Variables variables{
       .c_a = before.c, .w_a = before.w, .c_b = now.c, .w_b = now.w, .x_a = {}, .x_b = {}};
-  const JointCamera& camera = frames_.at(now.seen.frame);
-  if (camera.weak) variables.x_a = frames_.at(before.seen.frame).x, variables.x_b = camera.x;
+  const JointCamera &camera_before = frames_.at(before.seen.frame), &camera = frames_.at(now.seen.frame);
+  if (camera_before.weak || camera.weak) variables.x_a = camera_before.x, variables.x_b = camera.x;
   const Vector6d density = (params_.use_smoothness ? 1.0 : kFreeMotion) * params_.acceleration.density();
   now.motion = solver_.addFactor(std::make_unique<ConstantTwistFactor>(
       variables, cameraMotion(before, now), secondsBetween(before.stamp, now.stamp), density));
@@ -203,6 +228,10 @@ void JointGraph::settleMotion(JointObject& object, FrameId newest) {
   if (!before.c.valid() || !now->second.c.valid() || !frames_.contains(before.seen.frame)) return;
   solver_.removeFactor(*now->second.motion);
   addMotion(before, now->second);
+}
+
+void JointGraph::addGaugePrior(VariableId x, const SE3& mean) {
+  addPrior(x, mean, sigmas(params_.first_pose_sigma_m, params_.first_pose_sigma_rad, params_.first_pose_sigma_rad));
 }
 
 void JointGraph::addPrior(VariableId v, const SE3& mean, const Vector6d& sigma) {

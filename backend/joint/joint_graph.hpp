@@ -21,6 +21,7 @@ struct JointCamera {
   Timestamp stamp;
   FrameStatus status = FrameStatus::kGood;
   VariableId x;
+  int gauge = 0;                       // frames of one number are linked by what was measured
   bool weak = false;                   // the points at rest hardly tell how it moved since the frame before
   std::optional<Matrix6d> covariance;  // as last computed
 };
@@ -97,7 +98,9 @@ class JointGraph {
  private:
   void addCamera(const FrameMeasurements& measurements);
   void observeAtRest(const FrameMeasurements& measurements);
-  void addOdometry(const FrameMeasurements& measurements, VariableId before, VariableId now);
+  void linkCamera(const FrameMeasurements& measurements, JointCamera& camera);
+  void addGaugePrior(VariableId x, const SE3& mean);
+  void addOdometry(const SE3& T_before_now, const Matrix6d& covariance, VariableId before, VariableId now);
   void addObservation(const ObjectObservation& seen);
   void addObjects(const FrameMeasurements& measurements);
   SE3 cameraMotion(const JointRecord& before, const JointRecord& now) const;
@@ -132,6 +135,13 @@ class JointGraph {
   bool offset_free_ = false;
   double linearized_offset_px_ = 0;
   FrameId first_frame_;
+  /// The last camera in which points were seen, and the motion since then.
+  struct LastSeen {
+    FrameId frame;
+    SE3 T_seen_now;
+  };
+  LastSeen last_seen_;
+  std::int64_t added_frames_ = 0;
   JointPoints world_;
   UndecidedPoints undecided_;
   std::map<FrameId, JointCamera> frames_;

@@ -66,7 +66,7 @@ void JointGraph::addPoints(JointPoints& body, const JointObject* object) {
   body.current.reset();
   std::ranges::move(body.points.takeEnded(), std::back_inserter(body.ended));
   if (object && !object->lever.valid()) return body.ended.clear();
-  if (frames_.rbegin()->first.value % kFramesPerFactor == 0) closeEnded(body, object);
+  if ((first_frame_.value + added_frames_ - 1) % kFramesPerFactor == 0) closeEnded(body, object);
   std::vector<LandmarkTrack*> tracks = body.points.current();
   std::ranges::copy(pointersTo(body.ended), std::back_inserter(tracks));
   body.current = addBundle(tracks, body.noise, object);

@@ -39,7 +39,7 @@ struct JointParams {
 
   /// See SmootherParams: one key sets both.
   int window_frames = 1000, budget_scalars = 0;
-  double budget_ms = 0, online_correction_s = 0.5;
+  double budget_ms = 0, online_correction_s = 0.5, settling_s = 10;
   bool compute_covariances = true;
 
   /// See IncrementalSolver::Params.

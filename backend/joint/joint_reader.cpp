@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "core/constant_twist.hpp"
 
@@ -24,8 +25,10 @@ JointCovariances JointReader::covariances(FrameId frame) const {
 
 std::optional<Matrix6d> JointReader::cameraCovariance(FrameId frame) const {
   const auto now = graph_.frames().find(frame),
-             before = graph_.frames().find(FrameId{frame.value - kCameraCovarianceFrames});
-  if (before == graph_.frames().end()) return std::nullopt;
+             after = graph_.frames().upper_bound(FrameId{frame.value - kCameraCovarianceFrames});
+  if (after == graph_.frames().begin()) return std::nullopt;
+  const auto before = std::prev(after);
+  if (before->second.gauge != now->second.gauge) return std::nullopt;
   const std::array variables{before->second.x, now->second.x};
   const auto joint = graph_.solver().jointCovariance(variables);
   if (!joint) return std::nullopt;

@@ -9,10 +9,11 @@ namespace motorcade {
 
 void UndecidedPoints::observe(FrameId frame, std::span<const PointMeasurement> points) {
   merged_.clear();
+  life_.add(frame);
   auto known = known_.begin();
   const auto keepUpTo = [&](PointId point) {
     for (; known != known_.end() && known->point < point; ++known)
-      if (!known->views.empty() && !isLost(known->views.back(), frame)) merged_.push_back(std::move(*known));
+      if (!known->views.empty() && !life_.isLost(known->views.back())) merged_.push_back(std::move(*known));
   };
   for (const PointMeasurement& p : points) {
     keepUpTo(p.point);

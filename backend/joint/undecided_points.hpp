@@ -22,6 +22,7 @@ class UndecidedPoints {
 
  private:
   int most_views_;
+  TrackLife life_;
   std::vector<LandmarkTrack> known_;   // ordered by point; without views when they were taken
   std::vector<LandmarkTrack> merged_;  // memory for the next frame
 };

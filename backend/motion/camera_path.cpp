@@ -23,8 +23,9 @@ const CameraPath::Camera* CameraPath::find(FrameId frame) const {
 }
 
 std::optional<Matrix6d> CameraPath::covarianceSince(FrameId since, FrameId now) const {
-  const auto from = cameras_.find(since), to = cameras_.find(now);
-  if (from == cameras_.end() || to == cameras_.end()) return std::nullopt;
+  const auto after = cameras_.upper_bound(since), to = cameras_.find(now);
+  if (after == cameras_.begin() || to == cameras_.end()) return std::nullopt;
+  const auto from = std::prev(after);
   Matrix6d covariance = Matrix6d::Zero();
   for (auto it = std::next(from); it != std::next(to); ++it) {
     const Matrix6d through = it->second.T_previous_now.inverse().adjoint();

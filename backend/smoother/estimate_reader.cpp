@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace motorcade {
 namespace {
@@ -53,8 +54,9 @@ FrameCovariances EstimateReader::covariances(FrameId frame) const {
 
 std::optional<Matrix6d> EstimateReader::cameraCovariance(FrameId frame) const {
   const auto now = graph_.frames().find(frame),
-             before = graph_.frames().find(FrameId{frame.value - kCameraCovarianceFrames});
-  if (before == graph_.frames().end()) return std::nullopt;
+             after = graph_.frames().upper_bound(FrameId{frame.value - kCameraCovarianceFrames});
+  if (after == graph_.frames().begin()) return std::nullopt;
+  const auto before = std::prev(after);
   const std::array variables{before->second.x, now->second.x};
   const auto joint = graph_.solver().jointCovariance(variables);
   if (!joint) return std::nullopt;

@@ -2,6 +2,7 @@
 
 #include "backend/smoother/continuous_poses.hpp"
 #include "backend/smoother/estimate_reader.hpp"
+#include "backend/smoother/settling.hpp"
 #include "backend/smoother/trajectory_graph.hpp"
 
 namespace motorcade {
@@ -14,7 +15,11 @@ constexpr int kCovarianceLagFrames = 5;  // final covariances are taken so much 
 class Optimizer::Smoother {
  public:
   explicit Smoother(const Params& params)
-      : params_(params), graph_(params_), reader_(graph_), continuous_(params.online_correction_s) {}
+      : params_(params),
+        graph_(params_),
+        reader_(graph_),
+        continuous_(params.online_correction_s),
+        settling_(params.settling_s) {}
 
   EstimatesPtr add(const FrameMeasurements& measurements) {
     graph_.add(measurements);
@@ -25,6 +30,7 @@ class Optimizer::Smoother {
     }
     estimates.online = reader_.read(measurements.frame);
     continuous_(estimates.online, [this](TrackId track, FrameId frame) { return earlierPose(track, frame); });
+    for (const FrameId frame : settling_(graph_.frames())) estimates.settled.push_back(reader_.read(frame));
     while (params_.window_frames > 0 && graph_.frames().size() > static_cast<std::size_t>(params_.window_frames)) {
       estimates.finals.push_back(reader_.read(graph_.frames().begin()->first));
       graph_.retireOldest();
@@ -65,6 +71,7 @@ class Optimizer::Smoother {
   TrajectoryGraph graph_;
   EstimateReader reader_;
   ContinuousPoses continuous_;
+  Settling settling_;
 };
 
 Optimizer::Optimizer(const Params& params) : smoother_(std::make_unique<Smoother>(requireValid(params))) {}

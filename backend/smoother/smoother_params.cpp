@@ -8,6 +8,8 @@ std::vector<Parameter> parametersOf(SmootherParams& params) {
       numberParameter("window_frames", params.window_frames, {0, 1e6},
                       "a frame is final when it leaves the window: longer is more exact, shorter comes earlier; 0 "
                       "keeps everything"),
+      numberParameter("settling_s", params.settling_s, {0, 3600},
+                      "what a killed run leaves as final is up to so old: longer is more exact, shorter leaves more"),
       choiceParameter<Policy>("relinearization", params.policy, {{"every", Policy::kEveryN}, {"fluid", Policy::kFluid}},
                               "fluid relinearizes what is off; every N updates is the paper's way"),
       numberParameter("relinearize_every_updates", params.relinearize_every_updates, {1, 10000},

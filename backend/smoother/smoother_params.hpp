@@ -16,6 +16,7 @@ enum class RelinearizationPolicy {
 /// Parameters of the smoother: of its graph, its solver and its published estimates.
 struct SmootherParams {
   int window_frames = 1000;  // a frame is final when it leaves the window; 0 keeps everything
+  double settling_s = 10;    // a frame so old has settled
 
   /// Kinds of factors. Camera odometry is always on.
   bool use_motion = true, use_smoothness = true, use_camera_encounter = true, use_object_encounter = true;

@@ -10,6 +10,10 @@
 namespace motorcade {
 namespace {
 
+/// So many new variables in one update have no order that could be kept: at the end of the old one they may all be
+/// neighbors of one that is eliminated before them, at the cost of a dense system.
+constexpr std::size_t kMostAppended = 200;
+
 /// A factor over these variables was left out.
 SolverProblem refusal(SolverProblem::Kind kind, VariableId because_of, std::span<const VariableId> variables) {
   SolverProblem problem{.kind = kind, .variable = because_of};
@@ -92,7 +96,8 @@ const IncrementalSolver::Report& IncrementalSolver::update() {
   const auto begin = std::chrono::steady_clock::now();
   beginReport();
   ++counters_.updates;
-  if (params_.policy == Policy::kEveryN && counters_.updates % params_.batch_every_updates == 0) {
+  const bool batch_due = counters_.updates % params_.batch_every_updates == 0 || new_variables_.size() > kMostAppended;
+  if (params_.policy == Policy::kEveryN && batch_due) {
     batchStep();
   } else {
     step(true);

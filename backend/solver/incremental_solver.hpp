@@ -27,8 +27,10 @@ namespace motorcade {
 class IncrementalSolver {
  public:
   enum class Policy {
-    kEveryN,  // keeps the order and the linear models between batch steps, every `batch_every_updates` (iSAM)
-    kFluid,   // corrects the models that are off and reorders what an update touches
+    /// Keeps the order and the linear models between batch steps, every `batch_every_updates` (iSAM), and where very
+    /// many variables come at once.
+    kEveryN,
+    kFluid,  // corrects the models that are off and reorders what an update touches
   };
   struct Params {
     Policy policy = Policy::kFluid;

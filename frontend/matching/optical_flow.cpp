@@ -10,6 +10,8 @@
 #include "frontend/features/sift_features.hpp"
 #include "frontend/image/image_pyramid.hpp"
 #include "frontend/matching/corner_lookup.hpp"
+#include "frontend/matching/followed_point.hpp"
+#include "frontend/matching/image_content.hpp"
 #include "frontend/matching/neighbor_shifts.hpp"
 #include "frontend/matching/occupancy.hpp"
 #include "frontend/matching/point_follower.hpp"
@@ -22,14 +24,22 @@ using Params = OpticalFlowTracker::Params;
 
 constexpr int kBorder_px = 6;  // of the image, where a patch would repeat the image's last pixels
 
-// A point gets a new keyframe when one of these is exceeded.
-constexpr int kKeyframeFrames = 6;           // since the keyframe
-constexpr double kMaxKeyframeNccLoss = 0.2;  // how much less a point looks like its keyframe than like the last frame
-constexpr double kMaxKeyframeDrift_px = 1;   // from the frame-to-frame position to that of the keyframe's patch
-
 // Pyramid levels at which an alignment starts. Young points (new ones, and those that did not keep their velocity) get
 // their guesses from corners, which are exact to a pixel, and need less reach.
 constexpr int kMovingLevel = 2, kYoungLevel = 1;
+
+// An image in which few points are found is of no use (dark, blurred, hidden): they wait for a better one, for a while.
+// From frame to frame two thirds of them are found on clean drives, fewer in poor images; after n intervals an n-th.
+constexpr double kMinFoundShare = 0.6;                    // of the share that is found usually
+constexpr double kUsualShare = 0.75, kUsualMemory = 0.8;  // at first, and how much of it stays from frame to frame
+constexpr double kMinSharpFoundShare = 0.4;               // where the image is sharp: the camera may have turned
+constexpr int kFewToJudge = 30;                           // points: too few for a share
+constexpr double kMinTextureShare = 0.4;  // of the texture in the image before: blurred by 9 px it is a fifth
+constexpr double kSharpShare = 0.7;
+constexpr int kMaxWaiting_frames = 3;    // then all points start anew
+constexpr double kMaxWaiting_s = 0.5;    // beyond it points look different, and the scene flow stage finds them better
+constexpr double kStanding_px = 0.5;     // points that moved by less since the last frame may rest
+constexpr double kUnevenInterval = 1.5;  // times the interval before: frames are missing
 
 // Bounds of the shift of a young point.
 constexpr float kNeighborFactor = 1.3F;  // times the shift of its neighbors
@@ -42,32 +52,14 @@ constexpr double kMaxFarDifference = 30;    // many corners are far, and most of
 
 constexpr double kSiftMaxFlow_px = 150, kSiftMaxRatio = 0.85;  // as `matchSift` takes them
 
-/// The patch to which a point is aligned.
-struct Keyframe {
-  Image image;
-  float u_px = 0, v_px = 0;
-  int frames = 0;   // number of frames since
-  float scale = 1;  // by which the patch has grown since
-};
+/// Are frames missing in so many intervals?
+bool isUneven(double intervals) { return intervals > kUnevenInterval || intervals < 1 / kUnevenInterval; }
 
-/// A scene point that is followed from image to image.
-struct FollowedPoint {
-  FlowObservation observation;
-  Shift shift;         // since the previous frame
-  bool moved = false;  // found in this frame; otherwise `observation` is still that of the previous frame
-  Keyframe keyframe;
-  int descriptor = -1;  // with SIFT: index of its descriptor in this frame
-};
-
-/// The shifts of all points that were found in this frame.
-NeighborShifts shiftsOf(const std::vector<FollowedPoint>& points, const Image& image) {
-  std::vector<MovedPoint> moved;
-  for (const FollowedPoint& point : points) {
-    if (!point.moved) continue;
-    const FlowObservation& now = point.observation;
-    moved.push_back({{now.u_px - point.shift.du_px, now.v_px - point.shift.dv_px}, point.shift});
-  }
-  return {std::move(moved), image.width(), image.height()};
+/// The last shift of a point, after so many times the interval in which it made it.
+Shift shiftAfter(const FollowedPoint& point, double intervals) {
+  if (!isUneven(intervals)) return point.shift;
+  const auto factor = static_cast<float>(intervals);
+  return {factor * point.shift.du_px, factor * point.shift.dv_px};
 }
 
 /// From rest to somewhat more than the shift of the neighbors; anywhere when there are no neighbors.
@@ -85,38 +77,6 @@ ShiftBounds widened(const ShiftBounds& near) {
   return {near.min_du_px - kMore_px, near.max_du_px + kMore_px, near.min_dv_px, near.max_dv_px};
 }
 
-/// The position near a frame-to-frame position at which the keyframe's patch, grown to its present scale, fits best.
-std::optional<AlignedPatch> alignToKeyframe(const Keyframe& keyframe, const AlignedPatch& found, const Image& now) {
-  PatchParams params;
-  params.min_ncc = found.ncc - kMaxKeyframeNccLoss;
-  params.max_shift_px = kMaxKeyframeDrift_px;
-  const auto patch = makeTemplate(keyframe.image, keyframe.u_px, keyframe.v_px, kPatchWindow_px,
-                                  PatchDeformation::kScale, keyframe.scale);
-  return patch ? alignPatch(*patch, now, {found.u_px, found.v_px}, params) : std::nullopt;
-}
-
-/// Moves a point to a frame-to-frame position, corrected by alignment to its keyframe where that still fits.
-void moveTo(FollowedPoint& point, const AlignedPatch& found, const Image& now) {
-  Keyframe& keyframe = point.keyframe;
-  AlignedPatch position = found;
-  ++keyframe.frames;
-  keyframe.scale *= std::exp(found.log_growth);
-  bool anchored = keyframe.frames == 1;  // then the keyframe's own patch was aligned
-  if (!anchored) {
-    const auto aligned = alignToKeyframe(keyframe, found, now);
-    if (aligned) {
-      position = *aligned;
-      keyframe.scale *= std::exp(aligned->log_growth);
-    }
-    anchored = aligned.has_value();
-  }
-  FlowObservation& seen = point.observation;
-  point.shift = {position.u_px - seen.u_px, position.v_px - seen.v_px};
-  seen = {seen.point, position.u_px, position.v_px, position.sigma_px, seen.age + 1, -1};
-  point.moved = true;
-  if (!anchored || keyframe.frames >= kKeyframeFrames) keyframe = {now, position.u_px, position.v_px, 0, 1};
-}
-
 /// Indices of the corners, the strongest first.
 std::vector<int> strongestFirst(const std::vector<Corner>& corners) {
   std::vector<int> order(corners.size());
@@ -131,12 +91,21 @@ bool sameSize(const Image& a, const Image& b) { return a.width() == b.width() &&
 
 struct OpticalFlowTracker::State {
   Params params;
-  FeaturesPtr previous;               // empty at the start and after a rejected frame
+  FeaturesPtr previous;               // in which the points were seen last, empty at the start
   std::vector<FollowedPoint> points;  // ordered by their ids
+  double interval_s = 0;              // in which the points made their last shift
+  int waiting_frames = 0;             // of no use, since `previous`
+  double usual_share = kUsualShare;   // of the points, found from frame to frame
   std::int64_t next_id = 0;
 
-  void follow(const Features& now);
-  void followMoving(const PointFollower& follower, const Image& now);
+  bool advance(const FeaturesPtr& features);
+  double intervalsSince(const Features& now) const;
+  bool mayWait(Timestamp now) const;
+  bool follow(const Features& now);
+  std::vector<std::optional<AlignedPatch>> findMoving(const PointFollower& follower, double intervals) const;
+  bool isFrozen(const Features& now) const;
+  std::optional<double> shareOf(const std::vector<std::optional<AlignedPatch>>& found) const;
+  bool isOfNoUse(const Features& now, const std::vector<std::optional<AlignedPatch>>& found, double intervals) const;
   void followYoung(const PointFollower& follower, const Features& now);
   std::optional<AlignedPatch> searchYoung(const FlowObservation& point, const std::optional<Shift>& neighbors,
                                           const CornerLookup& corners, const PointFollower& follower) const;
@@ -146,19 +115,40 @@ struct OpticalFlowTracker::State {
   void followDescriptors(const Features& now);
 };
 
-/// Follows points that moved before. Their last shift is the guess.
-void OpticalFlowTracker::State::followMoving(const PointFollower& follower, const Image& now) {
+/// Where points are that moved before. Their last shift is the guess.
+std::vector<std::optional<AlignedPatch>> OpticalFlowTracker::State::findMoving(const PointFollower& follower,
+                                                                               double intervals) const {
   const int level = std::min(kMovingLevel, follower.coarsestLevel());
+  std::vector<std::optional<AlignedPatch>> found(points.size());
   forEachItem(points.size(), [&](std::size_t i) {
-    FollowedPoint& point = points[i];
-    const FlowObservation& before = point.observation;
+    const FlowObservation& before = points[i].observation;
     if (before.age < 2) return;
-    const auto found = follower.follow(before, follower.patchAt(before, level), {&point.shift, 1}, level);
-    if (found) moveTo(point, *found, now);
+    const Shift guess = shiftAfter(points[i], intervals);
+    found[i] = follower.follow(before, follower.patchAt(before, level), {&guess, 1}, level);
   });
+  return found;
 }
 
-/// Follows the points that `followMoving` leaves: new ones, and those that did not keep their velocity.
+/// Of the points that moved before; empty where they are too few.
+std::optional<double> OpticalFlowTracker::State::shareOf(const std::vector<std::optional<AlignedPatch>>& found) const {
+  const auto moving = std::ranges::count_if(points, [](const FollowedPoint& p) { return p.observation.age >= 2; });
+  const auto seen = std::ranges::count_if(found, [](const auto& f) { return f.has_value(); });
+  if (moving < kFewToJudge) return std::nullopt;
+  return static_cast<double>(seen) / static_cast<double>(moving);
+}
+
+bool OpticalFlowTracker::State::isOfNoUse(const Features& now, const std::vector<std::optional<AlignedPatch>>& found,
+                                          double intervals) const {
+  if (isFrozen(now)) return true;
+  const double texture = textureOf(now) / std::max(textureOf(*previous), 1e-9);
+  if (texture < kMinTextureShare) return true;
+  const double min_share = (texture < kSharpShare ? kMinFoundShare : kMinSharpFoundShare) * usual_share /
+                           (isUneven(intervals) ? std::max(intervals, 1.0) : 1.0);
+  const auto share = shareOf(found);
+  return share && *share < min_share;
+}
+
+/// Follows the points that are left: new ones, and those that did not keep their velocity.
 void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const Features& now) {
   const Image& image = now.left.levels.front();
   const NeighborShifts moved = shiftsOf(points, image);
@@ -206,13 +196,54 @@ void OpticalFlowTracker::State::removeLost(const Image& now) {
   });
 }
 
-void OpticalFlowTracker::State::follow(const Features& now) {
-  for (FollowedPoint& point : points) point.moved = false;
+/// The same image again, though the points moved until now: a camera that stands still does not repeat its noise.
+bool OpticalFlowTracker::State::isFrozen(const Features& now) const {
+  if (!sameContent(now.left.levels.back(), previous->left.levels.back())) return false;
+  const auto moved = std::ranges::count_if(
+      points, [](const FollowedPoint& p) { return std::hypot(p.shift.du_px, p.shift.dv_px) > kStanding_px; });
+  return 2 * moved > std::ssize(points);
+}
+
+/// False, with the points as they were, when the image is of no use.
+bool OpticalFlowTracker::State::follow(const Features& now) {
   const PointFollower follower(previous->left, now.left, params.max_round_trip_px);
   const Image& image = now.left.levels.front();
-  followMoving(follower, image);
+  const double intervals = intervalsSince(now);
+  const auto found = findMoving(follower, intervals);
+  if (isOfNoUse(now, found, intervals)) return false;
+  if (const auto share = isUneven(intervals) ? std::nullopt : shareOf(found))
+    usual_share = kUsualMemory * usual_share + (1 - kUsualMemory) * *share;
+  interval_s = secondsBetween(previous->frame->stamp, now.frame->stamp);
+  forEachItem(points.size(), [&](std::size_t i) {
+    points[i].moved = false;
+    if (found[i]) moveTo(points[i], *found[i], image);
+  });
   followYoung(follower, now);
   removeLost(image);
+  return true;
+}
+
+/// Since the points were seen last, in intervals of their last shift.
+double OpticalFlowTracker::State::intervalsSince(const Features& now) const {
+  return interval_s > 0 ? secondsBetween(previous->frame->stamp, now.frame->stamp) / interval_s : 1;
+}
+
+bool OpticalFlowTracker::State::mayWait(Timestamp now) const {
+  return previous && waiting_frames < kMaxWaiting_frames && secondsBetween(previous->frame->stamp, now) < kMaxWaiting_s;
+}
+
+/// Follows the points and starts new ones; false when the points wait for the next frame.
+bool OpticalFlowTracker::State::advance(const FeaturesPtr& features) {
+  const Features& now = *features;
+  const bool followed = previous && follow(now);
+  if (previous && !followed) {
+    const bool frames_are_missing = waiting_frames == 0 && intervalsSince(now) > kUnevenInterval;
+    if (!frames_are_missing && mayWait(now.frame->stamp)) return false;
+    points.clear();
+    interval_s = 0;
+  }
+  startPoints(now);
+  return true;
 }
 
 FollowedPoint& OpticalFlowTracker::State::startPoint(const Features& now, int corner, double sigma_px) {
@@ -282,19 +313,23 @@ OpticalFlowTracker::~OpticalFlowTracker() = default;
 OpticalFlowPtr OpticalFlowTracker::operator()(const FeaturesPtr& features) {
   State& state = *state_;
   const bool rejected = features->frame->rejected();
-  if (rejected || (state.previous && !sameSize(state.previous->left.levels.front(), features->left.levels.front()))) {
+  const bool resized =
+      !rejected && state.previous && !sameSize(state.previous->left.levels.front(), features->left.levels.front());
+  if (resized || (rejected && !state.mayWait(features->frame->stamp))) {
     state.points.clear();
     state.previous.reset();
+    state.interval_s = 0;
   }
-  if (!rejected && !features->descriptors.empty()) {
+  bool seen = !rejected;
+  if (!rejected && !features->descriptors.empty())
     state.followDescriptors(*features);
-  } else if (!rejected) {
-    if (state.previous) state.follow(*features);
-    state.startPoints(*features);
-  }
-  if (!rejected) state.previous = features;
+  else if (!rejected)
+    seen = state.advance(features);
+  state.waiting_frames = seen ? 0 : state.waiting_frames + 1;
+  if (seen) state.previous = features;
 
   OpticalFlow flow{.features = features, .observations = {}};
+  if (!seen) return std::make_shared<const OpticalFlow>(std::move(flow));
   flow.observations.reserve(state.points.size());
   for (const FollowedPoint& point : state.points) flow.observations.push_back(point.observation);
   return std::make_shared<const OpticalFlow>(std::move(flow));

@@ -11,7 +11,8 @@ namespace motorcade {
 /// Follows scene points through the left images. Each point is aligned from frame to frame, coarse to fine and both
 /// ways, then to its patch in a keyframe, so that errors do not add up from frame to frame. New points start at corners
 /// where points are few. Features with descriptors (SIFT) are followed by those instead. Call in frame order. A
-/// rejected frame gives no observations and ends all points, as a change of the image size does.
+/// frame that is rejected, or in which hardly any point is found, gives no observations: the points wait for the next
+/// one, for half a second at most. A change of the image size ends all points.
 class OpticalFlowTracker {
  public:
   struct Params {

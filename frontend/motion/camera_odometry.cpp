@@ -1,46 +1,95 @@
 #include "frontend/motion/camera_odometry.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "core/unknown_motion.hpp"
 
 namespace motorcade {
 namespace {
 
-CameraMotion predictedMotion(const SE3& T_previous_now, std::size_t observations) {
-  CameraMotion motion{.status = FrameStatus::kLost,
-                      .T_previous_now = T_previous_now,
-                      .inliers = std::vector<bool>(observations, false)};
-  motion.covariance = unknownMotionCovariance();
-  return motion;
+/// Beyond it no motion is likely to go on: the camera is taken to have stopped somewhere.
+constexpr double kMaxPrediction_s = 1.0;
+
+/// Over more steps than these, pitch and roll do not go on: a car nods and sways about where it is.
+constexpr double kSteadySteps = 1.5;
+
+/// Forward and turning, as a car drives on.
+SE3 levelMotion(const SE3& motion) {
+  const Vector6d twist = motion.log();
+  Vector6d level = Vector6d::Zero();
+  level[2] = twist[2], level[4] = twist[4];
+  return SE3::exp(level);
+}
+
+/// A motion measured by fewer is as good as it can be, but not safe.
+constexpr int kFewInliers = 25;
+
+CameraMotion predictedMotion(FrameCause cause, const SE3& T_previous_now, std::size_t observations, double dt_s) {
+  return {.status = FrameStatus::kLost,
+          .cause = cause,
+          .T_previous_now = T_previous_now,
+          .covariance = unknownMotionCovariance(dt_s),
+          .inliers = std::vector<bool>(observations, false)};
 }
 
 }  // namespace
 
-SE3 CameraOdometry::predict(Timestamp stamp) const {
-  if (!last_motion_ || last_dt_s_ <= 0) return SE3{};
-  return scaledMotion(*last_motion_, secondsBetween(trail_.newest().stamp, stamp) / last_dt_s_);
+double CameraOdometry::sinceSeen_s(Timestamp stamp) const {
+  return trail_.empty() ? 0 : secondsBetween(trail_.newest().stamp, stamp);
 }
 
-CameraMotion CameraOdometry::operator()(const StereoFrame& frame, const std::vector<std::optional<KnownPoint>>& known,
-                                        const std::vector<std::optional<StereoObservation>>& observed) {
-  assert(known.size() == observed.size());
-  CameraMotion motion;
-  if (trail_.empty()) {
-    motion.inliers.resize(observed.size(), false);
-  } else {
-    motion = measure(frame, known, observed);
+PredictedMotion CameraOdometry::predict(Timestamp stamp) const {
+  const double dt_s = sinceSeen_s(stamp);
+  PredictedMotion predicted{SE3{}, dt_s, steady_frames_};
+  if (!last_motion_ || last_dt_s_ <= 0) return predicted;
+  const double steps = std::min(dt_s, kMaxPrediction_s) / last_dt_s_;
+  predicted.T_previous_now = scaledMotion(steps < kSteadySteps ? *last_motion_ : levelMotion(*last_motion_), steps);
+  return predicted;
+}
+
+bool CameraOdometry::motionKnown(Timestamp stamp) const {
+  return last_motion_ && secondsBetween(measured_at_, stamp) < kMaxPrediction_s;
+}
+
+void CameraOdometry::add(const StereoFrame& frame, CameraMotion& motion) {
+  if (!trail_.empty() && motion.status == FrameStatus::kGood) {
+    const PredictedMotion predicted = predict(frame.stamp);
+    steady_frames_ =
+        last_motion_ && ego_motion_.follows(motion.T_previous_now.inverse(), predicted) ? steady_frames_ + 1 : 0;
     last_motion_ = motion.T_previous_now;
-    last_dt_s_ = secondsBetween(trail_.newest().stamp, frame.stamp);
+    last_dt_s_ = predicted.dt_s;
+    measured_at_ = frame.stamp;
   }
+  if (motion.status != FrameStatus::kGood)
+    unlinked_ = true;
+  else if (std::exchange(unlinked_, false))
+    ++segment_;
   trail_.add(frame.stamp, motion.T_previous_now);
+  motion.T_previous_now = T_seen_reported_.inverse() * motion.T_previous_now;
+  T_seen_reported_ = SE3{};
+  last_stamp_ = frame.stamp;
+}
+
+CameraMotion CameraOdometry::passOver(const StereoFrame& frame) {
+  const SE3 T_seen_now = predict(frame.stamp).T_previous_now;
+  CameraMotion motion =
+      predictedMotion(FrameCause::kNothingFound, (T_seen_reported_.inverse() * T_seen_now).normalized(), 0,
+                      last_stamp_ ? secondsBetween(*last_stamp_, frame.stamp) : 0);
+  T_seen_reported_ = T_seen_now;
+  last_stamp_ = frame.stamp;
   return motion;
 }
 
 CameraMotion CameraOdometry::measure(const StereoFrame& frame, const std::vector<std::optional<KnownPoint>>& known,
-                                     const std::vector<std::optional<StereoObservation>>& observed) {
+                                     const std::vector<std::optional<StereoObservation>>& observed,
+                                     const PredictedMotion& predicted) const {
+  assert(known.size() == observed.size());
+  CameraMotion motion{.T_previous_now = SE3{}, .inliers = std::vector<bool>(observed.size(), false)};
+  if (trail_.empty()) return motion;
   std::vector<PoseObservation> observations;
   std::vector<bool> known_movers;
   std::vector<std::size_t> of_observation;
@@ -53,15 +102,13 @@ CameraMotion CameraOdometry::measure(const StereoFrame& frame, const std::vector
     known_movers.push_back(known[i]->moving);
     of_observation.push_back(i);
   }
-  const PredictedMotion predicted{predict(frame.stamp), secondsBetween(trail_.newest().stamp, frame.stamp),
-                                  steady_frames_};
   const auto ego = ego_motion_(observations, known_movers, predicted, static_cast<std::uint64_t>(frame.frame.value));
-  if (!ego) return predictedMotion(predicted.T_previous_now, observed.size());
-  if (motionKnown()) steady_frames_ = ego->steady ? steady_frames_ + 1 : 0;
-  CameraMotion motion{.T_previous_now = ego->T_previous_now,
-                      .covariance = ego->covariance,
-                      .inlier_count = ego->inlier_count,
-                      .inliers = std::vector<bool>(observed.size(), false)};
+  if (!ego) return predictedMotion(FrameCause::kUnlinked, predicted.T_previous_now, observed.size(), predicted.dt_s);
+  motion.T_previous_now = ego->T_previous_now;
+  motion.covariance = ego->covariance;
+  motion.inlier_count = ego->inlier_count;
+  if (ego->inlier_count < kFewInliers) motion.cause = FrameCause::kFewPoints;
+  motion.measured_count = static_cast<int>(observations.size());
   for (std::size_t k = 0; k < of_observation.size(); ++k) motion.inliers[of_observation[k]] = ego->inliers[k];
   return motion;
 }

@@ -12,40 +12,55 @@
 
 namespace motorcade {
 
-/// The camera's motion since the previous frame, measured or predicted.
+/// The camera's motion, measured or predicted: since the last frame that was seen while it is being measured, since the
+/// previous frame, seen or not, when it is reported.
 struct CameraMotion {
   FrameStatus status = FrameStatus::kGood;  // kLost: predicted
+  FrameCause cause = FrameCause::kNone;
   SE3 T_previous_now;
   Matrix6d covariance = Matrix6d::Identity();  // right perturbation of T_previous_now
-  int inlier_count = 0;
-  std::vector<bool> inliers;  // one per observation: agrees with this motion over a static world
+  int inlier_count = 0, measured_count = 0;    // of so many points that were known before
+  std::vector<bool> inliers;                   // one per observation: agrees with this motion over a static world
 };
 
 /// The camera's motion from frame to frame and the trail that it leaves: ego-motion where enough points agree on it,
-/// else the motion of the frame before. Call in frame order, once per frame.
+/// else the motion that was measured last. Frames in which nothing is seen leave no trail: motion is measured from the
+/// last one that was seen. Call in frame order, once per frame.
 class CameraOdometry {
  public:
   CameraOdometry(const EgoMotionEstimator::Params& params, const StereoCamera& camera) : ego_motion_(params, camera) {}
 
-  /// T_previous_now at the velocity of the frame before; standing still while no motion is known.
-  SE3 predict(Timestamp stamp) const;
-  bool motionKnown() const { return last_motion_.has_value(); }
+  /// The motion since the last frame that was seen, at the velocity measured last; standing still while none is known.
+  PredictedMotion predict(Timestamp stamp) const;
+  /// Was the motion measured, and not too long ago?
+  bool motionKnown(Timestamp stamp) const;
 
-  /// Adds a frame to the trail. `known` tells where points were before it, `observed` where they are now; both are
-  /// parallel.
-  CameraMotion operator()(const StereoFrame& frame, const std::vector<std::optional<KnownPoint>>& known,
-                          const std::vector<std::optional<StereoObservation>>& observed);
+  /// The motion since the last frame that was seen. `known` tells where points were then, `observed` where they are
+  /// now; both are parallel. The first frame that is seen does not move.
+  CameraMotion measure(const StereoFrame& frame, const std::vector<std::optional<KnownPoint>>& known,
+                       const std::vector<std::optional<StereoObservation>>& observed,
+                       const PredictedMotion& predicted) const;
+  /// Adds a frame with its measured motion to the trail, and makes it one since the previous frame.
+  void add(const StereoFrame& frame, CameraMotion& motion);
+  /// A frame in which nothing is seen: its predicted motion since the previous frame.
+  CameraMotion passOver(const StereoFrame& frame);
 
   const CameraTrail& trail() const { return trail_; }
+  /// See FrameMeasurements: of the last frame.
+  int segment() const { return segment_; }
 
  private:
-  CameraMotion measure(const StereoFrame& frame, const std::vector<std::optional<KnownPoint>>& known,
-                       const std::vector<std::optional<StereoObservation>>& observed);
+  double sinceSeen_s(Timestamp stamp) const;
 
   EgoMotionEstimator ego_motion_;
-  CameraTrail trail_;
-  std::optional<SE3> last_motion_;  // T_previous_now of the last frame, empty before the second one
+  CameraTrail trail_;  // of frames that were seen
+  int segment_ = 0;
+  bool unlinked_ = false;                // since the last frame that was good
+  SE3 T_seen_reported_;                  // from the last one to the last frame that was reported
+  std::optional<Timestamp> last_stamp_;  // of the last frame that was reported
+  std::optional<SE3> last_motion_;       // as last measured, from frame to frame
   double last_dt_s_ = 0;
+  Timestamp measured_at_;
   int steady_frames_ = 0;  // see PredictedMotion
 };
 

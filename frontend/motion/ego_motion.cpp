@@ -162,7 +162,6 @@ std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObse
   for (const double chi2 : poseChi2(camera_, all, fit->T_cam_ref)) ego.inliers.push_back(chi2 < params_.inlier_chi2);
   ego.inlier_count = static_cast<int>(std::count(ego.inliers.begin(), ego.inliers.end(), true));
   if (ego.inlier_count < params_.min_inliers) return std::nullopt;
-  ego.steady = follows(fit->T_cam_ref, predicted);
   return ego;
 }
 

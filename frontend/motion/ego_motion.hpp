@@ -18,7 +18,6 @@ struct EgoMotion {
   Matrix6d covariance;        // right perturbation of T_previous_now
   std::vector<bool> inliers;  // one per observation
   int inlier_count = 0;
-  bool steady = false;  // as a vehicle can have moved after what was predicted
 };
 
 /// What the frames before tell of the camera's motion.
@@ -47,8 +46,10 @@ class EgoMotionEstimator {
                                       const std::vector<bool>& known_movers, const PredictedMotion& predicted,
                                       std::uint64_t seed) const;
 
- private:
+  /// Can a vehicle have moved like this after what was predicted?
   bool follows(const SE3& T_now_previous, const PredictedMotion& predicted) const;
+
+ private:
   SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
                      const PredictedMotion& predicted, std::uint64_t seed) const;
   std::optional<PoseFit> refine(std::span<const PoseObservation> observations, const PoseObservations& all,

@@ -126,6 +126,19 @@ std::vector<std::reference_wrapper<const PointTrack>> PointTracks::observedNow()
   return observed;
 }
 
+std::vector<RestingPoint> PointTracks::seenLast() const {
+  std::vector<RestingPoint> points;
+  for (const PointTrack& track : observedNow()) {
+    if (track.label == PointLabel::kMoving) continue;
+    const Eigen::Vector3d uvd_px = track.newest().uvd_px.cast<double>();
+    points.push_back({.point = track.point,
+                      .uvd_px = uvd_px,
+                      .p_cam = track.p_static_cam ? *track.p_static_cam : camera_.triangulate(uvd_px),
+                      .observations = track.count});
+  }
+  return points;
+}
+
 void PointTracks::setLabels(std::span<const ScenePoint> points) {
   auto point = points.begin();
   for (auto& track : tracks_)

@@ -13,6 +13,7 @@
 #include "frontend/matching/circular_matching.hpp"
 #include "frontend/messages.hpp"
 #include "frontend/motion/camera_trail.hpp"
+#include "frontend/motion/coarse_localization.hpp"
 #include "frontend/motion/point_track.hpp"
 #include "frontend/motion/scene_flow.hpp"
 
@@ -50,6 +51,10 @@ class PointTracks {
 
   /// `points` are those of `observedNow`, with the labels that the segmentation gave them.
   void setLabels(std::span<const ScenePoint> points);
+
+  /// Points of the last update that are not known to move, and the features of its frame; null before the first.
+  std::vector<RestingPoint> seenLast() const;
+  const FeaturesPtr& featuresOfLast() const { return features_; }
 
   /// Points at rest that were observed in an earlier frame and in the newest.
   std::vector<StereoCorrespondence> atRestSince(std::int64_t step) const;

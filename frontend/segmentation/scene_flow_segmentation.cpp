@@ -1,17 +1,48 @@
 #include "frontend/segmentation/scene_flow_segmentation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <utility>
 
 #include "frontend/segmentation/geometric_constraints.hpp"
 
 namespace motorcade {
+namespace {
+
+constexpr double kGapIntervals = 1.5;  // since the last frame that was seen: frames are missing
+// Flow over a gap is trusted when so many points agree on a motion, and such a share of those that were followed.
+constexpr int kSureInliers = 60;
+constexpr double kSureShare = 0.6;
+
+bool isSure(const CameraMotion& camera) {
+  return camera.status == FrameStatus::kGood && camera.inlier_count >= kSureInliers &&
+         camera.inlier_count >= kSureShare * camera.measured_count;
+}
+
+/// Two measurements of a motion over a gap: what they differ by is noise, or one of them is wrong.
+bool agree(const SE3& a, const SE3& b) {
+  constexpr double kApart_m = 0.5, kApart_rad = 0.02;
+  const Vector6d apart = (a.inverse() * b).log();
+  return apart.head<3>().norm() < kApart_m && apart.tail<3>().norm() < kApart_rad;
+}
+
+/// Observations of both, ordered by point; where both have a point, that of the flow.
+OpticalFlow merged(const OpticalFlow& flow, const std::vector<FlowObservation>& found) {
+  OpticalFlow all{.features = flow.features, .observations = {}};
+  std::ranges::set_union(flow.observations, found, std::back_inserter(all.observations), {}, &FlowObservation::point,
+                         &FlowObservation::point);
+  return all;
+}
+
+}  // namespace
 
 SceneFlowSegmentation::SceneFlowSegmentation(const Params& params, const StereoCamera& camera)
     : camera_(camera),
       circular_matching_(params.circular_matching, camera),
       odometry_(params.ego_motion, camera),
+      gap_bridge_(params.ego_motion, camera),
       tracks_(params.point_tracks, camera),
       ground_plane_(params.ground_plane),
       segmenter_(params.segmenter, camera),
@@ -21,12 +52,13 @@ SceneFlowSegmentation::SceneFlowSegmentation(const Params& params, const StereoC
 /// scene are those that are observed.
 SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow) {
   const StereoFrame& frame = *stereo->features->frame;
-  if (frame.rejected()) return passOver(frame);
+  if (frame.rejected() || flow->observations.empty()) return passOver(frame);
 
-  const auto known = tracks_.known(*flow, odometry_.trail());
-  const auto observed = circular_matching_(*stereo, *flow, expectDisparities(known, frame.stamp));
-  const CameraMotion camera = odometry_(frame, known, observed);
-  tracks_.update(*flow, observed, odometry_.trail());
+  Sight sight = look(*stereo, *flow, odometry_.predict(frame.stamp));
+  if (sight.camera.status != FrameStatus::kGood || isAfterGap(frame.stamp)) bridge(*stereo, sight);
+  auto& [seen_flow, observed, camera] = sight;
+  odometry_.add(frame, camera);
+  tracks_.update(seen_flow, observed, odometry_.trail());
 
   auto motion = newMotion(frame, camera);
   motion->features = stereo->features;
@@ -41,10 +73,54 @@ SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo,
   return motion;
 }
 
-SceneMotionPtr SceneFlowSegmentation::passOver(const StereoFrame& rejected) {
-  CameraMotion camera = odometry_(rejected, {}, {});
-  camera.status = FrameStatus::kRejected;
-  return newMotion(rejected, camera);
+SceneFlowSegmentation::Sight SceneFlowSegmentation::look(const StereoMatches& stereo, const OpticalFlow& flow,
+                                                         const PredictedMotion& predicted) const {
+  const StereoFrame& frame = *stereo.features->frame;
+  const auto known = tracks_.known(flow, odometry_.trail());
+  auto observed = circular_matching_(stereo, flow, expectDisparities(known, frame.stamp, predicted.T_previous_now));
+  CameraMotion camera = odometry_.measure(frame, known, observed, predicted);
+  return {flow, std::move(observed), std::move(camera)};
+}
+
+/// Are frames missing before this one?
+bool SceneFlowSegmentation::isAfterGap(Timestamp stamp) const {
+  const CameraTrail& trail = odometry_.trail();
+  if (trail.empty()) return false;
+  const auto* before = trail.find(trail.newest().step - 1);
+  return before && secondsBetween(trail.newest().stamp, stamp) > -kGapIntervals * before->dt_s;
+}
+
+/// Finds the points of the last frame that was seen again, where optical flow lost them, and measures the motion anew.
+/// Where that fails, the motion is not known.
+void SceneFlowSegmentation::bridge(const StereoMatches& stereo, Sight& sight) const {
+  if (odometry_.trail().empty()) return;
+  const Features& now = *stereo.features;
+  const PredictedMotion predicted = odometry_.predict(now.frame->stamp);
+  const std::vector<RestingPoint> points = tracks_.seenLast();
+  std::optional<SE3> T_then_now;
+  if (isSure(sight.camera)) T_then_now = sight.camera.T_previous_now;
+  if (!tracks_.featuresOfLast()) return;
+  const GapBridge::Gap gap{.points = points,
+                           .then = *tracks_.featuresOfLast(),
+                           .now = now,
+                           .disparity_offset_px = disparity_offset_.offset_px(),
+                           .duration_s = predicted.dt_s};
+  if (!T_then_now && predicted.dt_s < GapBridge::kMaxGap_s)
+    T_then_now = gap_bridge_.locate(gap, predicted.T_previous_now);
+  if (T_then_now)
+    sight = look(stereo, merged(sight.flow, gap_bridge_.find(gap, *T_then_now)), {*T_then_now, predicted.dt_s, 0});
+  if (T_then_now && sight.camera.status == FrameStatus::kGood && agree(sight.camera.T_previous_now, *T_then_now)) {
+    sight.camera.cause = FrameCause::kAfterGap;
+  } else {
+    sight.camera = odometry_.measure(*now.frame, {}, {}, predicted);
+    sight.camera.inliers.assign(sight.observed.size(), false);
+  }
+}
+
+SceneMotionPtr SceneFlowSegmentation::passOver(const StereoFrame& unseen) {
+  CameraMotion camera = odometry_.passOver(unseen);
+  if (unseen.rejected()) camera.status = FrameStatus::kRejected, camera.cause = FrameCause::kUnusable;
+  return newMotion(unseen, camera);
 }
 
 /// In the memory of one that is no longer in use.
@@ -55,6 +131,8 @@ std::shared_ptr<SceneMotion> SceneFlowSegmentation::newMotion(const StereoFrame&
   *motion = SceneMotion{.frame = frame.frame,
                         .stamp = frame.stamp,
                         .status = camera.status,
+                        .cause = camera.cause,
+                        .segment = odometry_.segment(),
                         .T_previous_now = camera.T_previous_now,
                         .odometry_covariance = camera.covariance,
                         .ego_inliers = camera.inlier_count,
@@ -66,10 +144,10 @@ std::shared_ptr<SceneMotion> SceneFlowSegmentation::newMotion(const StereoFrame&
 }
 
 ExpectedDisparities SceneFlowSegmentation::expectDisparities(const std::vector<std::optional<KnownPoint>>& known,
-                                                             Timestamp stamp) const {
-  const SE3 T_now_previous = odometry_.predict(stamp).inverse();
+                                                             Timestamp stamp, const SE3& T_previous_now) const {
+  const SE3 T_now_previous = T_previous_now.inverse();
   ExpectedDisparities expected{.of_point = std::vector<std::optional<ExpectedDisparity>>(known.size()),
-                               .motion_known = odometry_.motionKnown(),
+                               .motion_known = odometry_.motionKnown(stamp),
                                .offset_px = disparity_offset_.offset_px()};
   for (std::size_t i = 0; i < known.size(); ++i) {
     if (!known[i]) continue;

@@ -10,6 +10,7 @@
 #include "frontend/messages.hpp"
 #include "frontend/motion/camera_odometry.hpp"
 #include "frontend/motion/disparity_offset.hpp"
+#include "frontend/motion/gap_bridge.hpp"
 #include "frontend/motion/ground_plane.hpp"
 #include "frontend/motion/point_tracks.hpp"
 #include "frontend/segmentation/motion_segmenter.hpp"
@@ -35,9 +36,19 @@ class SceneFlowSegmentation {
   SceneMotionPtr operator()(const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow);
 
  private:
-  SceneMotionPtr passOver(const StereoFrame& rejected);
+  /// What is seen of a frame: the points that are followed, where they are, and how the camera moved.
+  struct Sight {
+    OpticalFlow flow;
+    std::vector<std::optional<StereoObservation>> observed;  // one per flow observation
+    CameraMotion camera;
+  };
+  Sight look(const StereoMatches& stereo, const OpticalFlow& flow, const PredictedMotion& predicted) const;
+  bool isAfterGap(Timestamp stamp) const;
+  void bridge(const StereoMatches& stereo, Sight& sight) const;
+  SceneMotionPtr passOver(const StereoFrame& unseen);
   std::shared_ptr<SceneMotion> newMotion(const StereoFrame& frame, const CameraMotion& camera);
-  ExpectedDisparities expectDisparities(const std::vector<std::optional<KnownPoint>>& known, Timestamp stamp) const;
+  ExpectedDisparities expectDisparities(const std::vector<std::optional<KnownPoint>>& known, Timestamp stamp,
+                                        const SE3& T_previous_now) const;
   void addPoints(const std::vector<std::optional<StereoObservation>>& observed, const std::vector<bool>& inliers,
                  std::vector<ScenePoint>& points) const;
   std::vector<bool> testGeometry() const;
@@ -47,6 +58,7 @@ class SceneFlowSegmentation {
   StereoCamera camera_;
   CircularMatching circular_matching_;
   CameraOdometry odometry_;
+  GapBridge gap_bridge_;
   PointTracks tracks_;
   GroundPlaneEstimator ground_plane_;
   MotionSegmenter segmenter_;

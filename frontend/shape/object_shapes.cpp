@@ -135,6 +135,7 @@ EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& 
   for (ObjectEstimate& object : shaped->online.objects) lookAt(object, inputs, shaped->online, shaped->masks);
   dropLeft(shaped->online, camera_);
   before_ = inputs.features;
+  for (FrameEstimate& settled : shaped->settled) gatherShapes(settled);
   complete(shaped->finals);
   forgetGone(*shaped);
   return shaped;
@@ -281,18 +282,21 @@ std::vector<FrameEstimate> ObjectShapes::finish(std::vector<FrameEstimate> final
 /// All looks of these frames first, as each frame's cuboid gathers what is around it.
 void ObjectShapes::complete(std::vector<FrameEstimate>& finals) {
   for (const FrameEstimate& final : finals) moveLooks(final);
-  for (FrameEstimate& final : finals) {
-    for (ObjectEstimate& object : final.objects) {
-      const auto shape = shapes_.find(object.track);
-      if (shape == shapes_.end()) continue;
-      const auto dense = shape->second.only_dense.find(final.frame);
-      if (dense != shape->second.only_dense.end() && object.state == ObjectState::kPredicted)
-        markSeen(object, dense->second);
-      const SE3 T_cam_body = final.T_world_cam.inverse() * object.T_world_body;
-      setBox(object, estimateBox(evidenceAround(shape->second, final.frame), shape->second.speed_mps), T_cam_body);
-    }
-    dropLeft(final, camera_);
+  for (FrameEstimate& final : finals) gatherShapes(final);
+}
+
+/// From what was seen of each object before and after the frame.
+void ObjectShapes::gatherShapes(FrameEstimate& frame) const {
+  for (ObjectEstimate& object : frame.objects) {
+    const auto shape = shapes_.find(object.track);
+    if (shape == shapes_.end()) continue;
+    const auto dense = shape->second.only_dense.find(frame.frame);
+    if (dense != shape->second.only_dense.end() && object.state == ObjectState::kPredicted)
+      markSeen(object, dense->second);
+    const SE3 T_cam_body = frame.T_world_cam.inverse() * object.T_world_body;
+    setBox(object, estimateBox(evidenceAround(shape->second, frame.frame), shape->second.speed_mps), T_cam_body);
   }
+  dropLeft(frame, camera_);
 }
 
 /// Into the body frame of the final estimate.

@@ -26,8 +26,8 @@ class ObjectShapes {
     SceneMotionPtr scene;
     FrameMeasurementsPtr measurements;
   };
-  /// The estimates with cuboids, kinds, image boxes and masks. Final estimates get theirs from what was seen before and
-  /// after their frame.
+  /// The estimates with cuboids, kinds, image boxes and masks. Settled and final ones get theirs from what was seen
+  /// before and after their frame.
   EstimatesPtr operator()(const Inputs& inputs, const EstimatesPtr& estimates);
   /// The same for the frames that were still in the window when the drive ended.
   std::vector<FrameEstimate> finish(std::vector<FrameEstimate> finals);
@@ -67,6 +67,7 @@ class ObjectShapes {
   static void refine(LevelDisparities& disparities, std::span<const int> cells, const Features& features);
   void complete(std::vector<FrameEstimate>& finals);
   void moveLooks(const FrameEstimate& final);
+  void gatherShapes(FrameEstimate& frame) const;
   FaceInformation evidenceAround(const Shape& shape, FrameId frame) const;
   static void markSeen(ObjectEstimate& object, const DenseEvidence& evidence);
   void setBox(ObjectEstimate& object, const BoxEstimate& box, const SE3& T_cam_body) const;

@@ -23,6 +23,8 @@ class LookBack {
   /// another object was reported where it is.
   void operator()(TrackedObject& object, Timestamp now, const ObjectKinematics::Params& kinematics) const;
 
+  /// No motion links the frames that come to those before.
+  void forget() { past_.clear(); }
   /// Call at the end of each frame, with the observations that it reported.
   void remember(const SceneMotionPtr& scene, const SE3& T_world_cam, const std::vector<ObjectObservation>& reported);
 

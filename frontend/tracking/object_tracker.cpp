@@ -37,10 +37,13 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   measurements->frame = scene->frame;
   measurements->stamp = scene->stamp;
   measurements->status = scene->status;
+  measurements->cause = scene->cause;
+  measurements->segment = scene->segment;
   measurements->T_previous_now = scene->T_previous_now;
   measurements->odometry_covariance = scene->odometry_covariance;
 
   advance(*scene);
+  if (scene->cause == FrameCause::kUnlinked) endAll(*measurements);
   for (TrackedObject& object : objects_) follow(object, *scene, *measurements);
   matchSegments(*scene);
   mergeDuplicates(objects_);
@@ -63,6 +66,13 @@ void ObjectTracker::advance(const SceneMotion& scene) {
     object.T_cam_body_before = object.T_cam_body;
     object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
   }
+}
+
+/// Nobody knows where the objects are now, seen from the camera: what is met may be another vehicle.
+void ObjectTracker::endAll(FrameMeasurements& measurements) {
+  look_back_.forget();
+  for (TrackedObject& object : objects_) object.life.end();
+  removeEnded(measurements);
 }
 
 void ObjectTracker::follow(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements) {

@@ -37,6 +37,7 @@ class ObjectTracker {
 
  private:
   void advance(const SceneMotion& scene);
+  void endAll(FrameMeasurements& measurements);
   void follow(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements);
   void coast(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements);
   std::optional<ObjectObservation> withoutMeasurement(const TrackedObject& object, const SceneMotion& scene) const;

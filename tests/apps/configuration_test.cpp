@@ -16,6 +16,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string complaintAbout(const std::string& toml) {
   PipelineConfig config;
@@ -115,6 +116,27 @@ TEST(Configuration, NamesTheRangeOfABadValue) {
 
 TEST(Configuration, NamesTheLineThatIsNoToml) {
   EXPECT_THAT(complaintAbout("[pipeline]\nthreads = = 2"), HasSubstr("drive.toml, line 2"));
+}
+
+TEST(Configuration, RefusesWhatTheParserCannotStand) {
+  for (const char* header : {"[+x]", "[= 1", "[[ \t", "  [\x01"})
+    EXPECT_THAT(complaintAbout(std::string("\n") + header + "\n"),
+                HasSubstr("drive.toml, line 2: a section's name must begin with a letter"));
+  EXPECT_THAT(complaintAbout("\n\u043f = 1\n"), HasSubstr("drive.toml, line 2: has a letter that is not ASCII"));
+  EXPECT_THAT(complaintAbout("\xEF\xBB\xBFpipeline.threads = 1  # \u043f ............\n"), HasSubstr("no complaint"));
+  EXPECT_THAT(complaintAbout("a = 1\nb = 1979-05-27T:07-+\nc = 2\n"), HasSubstr("drive.toml, line 2: is no TOML"));
+  std::string deep;
+  for (int i = 0; i < 100'000; ++i) deep += "a.";  // a table each, taken apart one in the other
+  EXPECT_THAT(complaintAbout("\n" + deep + "a = 1\n"), HasSubstr("drive.toml, line 2: has more than 100 dots"));
+  EXPECT_THAT(complaintAbout("a = {\n" + deep), HasSubstr("line"));
+}
+
+TEST(Configuration, ShowsNoByteThatATerminalTakesForACommandAndNoLongText) {
+  EXPECT_THAT(complaintAbout("\"\\u001b[2J\" = 1\n"),
+              AllOf(HasSubstr("line 1: unknown key '?"), Not(HasSubstr("\x1b"))));
+  EXPECT_THAT(complaintAbout("pipeline.threads = \"\\u001b[2J\"\n"), Not(HasSubstr("\x1b")));
+  EXPECT_LT(complaintAbout(std::string(100'000, 'k') + " = 1\n").size(), 300u);
+  EXPECT_LT(complaintAbout("pipeline.threads = \"" + std::string(100'000, 'v') + "\"\n").size(), 300u);
 }
 
 TEST(Configuration, TakesSingleAssignments) {

@@ -257,7 +257,9 @@ TEST_F(EvaluateDrive, KilledRunsAndRunsWithoutLabelsAreMeasured) {
   folder_.write("run/objects_final.csv", "");
   Evaluation evaluation = evaluateRun(options_);
   EXPECT_FALSE(evaluation.complete);
-  EXPECT_EQ(evaluation.final.frames, 0u);
+  EXPECT_EQ(evaluation.final.frames, static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(evaluation.finals_recovered, static_cast<std::size_t>(kFrames));
+  EXPECT_THAT(tableOf(evaluation), HasSubstr("online estimates"));
   EXPECT_EQ(evaluation.online.frames, static_cast<std::size_t>(kFrames));
   std::filesystem::remove(folder_ / "drive/label_02.txt");
   evaluation = evaluateRun(options_);

@@ -11,8 +11,7 @@
 #include "apps/pipeline/parameter_table.hpp"
 #include "apps/pipeline/pipeline.hpp"
 #include "io/errors.hpp"
-#include "io/image_file.hpp"
-#include "io/sequence.hpp"
+#include "tests/apps/rendered_drive.hpp"
 #include "tests/apps/toy_stages.hpp"
 
 /// Every key of the configuration at both ends of its range, on a short rendered drive behind another car that the
@@ -24,26 +23,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr double kTravel_m = 16.08;  // of the camera along its first view, by the truth
-
-struct Drive {
-  StereoCamera camera;
-  std::vector<StereoFrame> frames;
-};
-
-Drive readDrive() {
-  const Sequence sequence = openSequence(MOTORCADE_SMALL_SEQUENCE);
-  Drive drive{.camera = sequence.camera, .frames = {}};
-  ImagePool pool;
-  for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
-    StereoFrame frame;
-    frame.frame = {static_cast<std::int64_t>(i)};
-    frame.stamp = sequence.stamps[i];
-    frame.left = readImage(sequence.frames[i].left, pool);
-    frame.right = readImage(sequence.frames[i].right, pool);
-    drive.frames.push_back(std::move(frame));
-  }
-  return drive;
-}
 
 std::string numberText(double value) {
   char text[40];
@@ -105,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(OfEveryKey, ParameterRange, testing::ValuesIn(allKeys()
 
 /// A value that is legal does not make the result worthless: the camera is followed, and the car ahead is found.
 TEST_P(ParameterRange, FollowsCameraAndCarAtBothEnds) {
-  const Drive drive = readDrive();
+  const Drive drive = readDrive(MOTORCADE_SMALL_SEQUENCE);
   for (const std::string& value : extremesOf(parameter())) {
     SCOPED_TRACE(GetParam() + "=" + value);
     PipelineConfig config;
@@ -118,6 +97,29 @@ TEST_P(ParameterRange, FollowsCameraAndCarAtBothEnds) {
     EXPECT_GT(10 * goodFrames(run), 9 * drive.frames.size());
     EXPECT_GT(2 * objectRows(run), drive.frames.size());
     EXPECT_NEAR(run.finals.back().T_world_cam.translation().z(), kTravel_m, 0.02 * kTravel_m);
+  }
+}
+
+/// No values exclude each other: every frame comes out, and nothing fails.
+TEST(ParameterRanges, AllKeysAtTheSameEndAtOnce) {
+  constexpr std::size_t kFew = 6;  // the upper ends are slow
+  Drive drive = readDrive(MOTORCADE_SMALL_SEQUENCE);
+  drive.frames.resize(kFew);
+  for (const std::string kind : {"joint", "pose_graph", "filter", "filter_map"}) {
+    for (const bool upper : {false, true}) {
+      SCOPED_TRACE(kind + (upper ? " at the upper ends" : " at the lower ends"));
+      PipelineConfig config, defaults;
+      for (const auto& known : parameterTable(defaults)) {
+        if (known.key() == "pipeline.policy") continue;  // live drops most of the pairs
+        const auto values = extremesOf(known.parameter);
+        applyAssignment(config, known.key() + "=" + (upper ? values.back() : values.front()));
+      }
+      applyAssignment(config, "backend.kind=" + kind);
+      Pipeline pipeline(config.pipeline, makeStages(config, drive.camera));
+      const Outcome run = runThrough(pipeline, drive.frames);
+      EXPECT_EQ(run.finals.size(), drive.frames.size());
+      for (const PipelineResult& result : run.results) EXPECT_EQ(result.problem, "");
+    }
   }
 }
 

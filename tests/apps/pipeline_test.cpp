@@ -1,9 +1,11 @@
 #include "apps/pipeline/pipeline.hpp"
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -17,7 +19,12 @@
 namespace motorcade {
 namespace {
 
+constexpr std::array kAllStages = {Stage::kPrepare,     Stage::kStereoMatching,
+                                   Stage::kOpticalFlow, Stage::kSceneFlowSegmentation,
+                                   Stage::kTracking,    Stage::kIncrementalOptimization};
+
 using std::chrono::milliseconds;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// Frame-dependent pauses that make later frames overtake earlier ones wherever the wiring lets them.
@@ -70,8 +77,7 @@ TEST_P(PipelineThreads, UsesNoMoreWorkersThanItWasGiven) {
 }
 
 TEST_P(PipelineThreads, SurvivesAStageThatThrows) {
-  for (const Stage broken : {Stage::kPrepare, Stage::kStereoMatching, Stage::kOpticalFlow,
-                             Stage::kSceneFlowSegmentation, Stage::kTracking, Stage::kIncrementalOptimization}) {
+  for (const Stage broken : kAllStages) {
     std::mutex mutex;
     std::vector<std::string> log;
     ToyStages toys{.work = [&](Stage stage, FrameId frame) {
@@ -84,6 +90,7 @@ TEST_P(PipelineThreads, SurvivesAStageThatThrows) {
     const Outcome run = runThrough(pipeline, framesFrom0To(10));
     EXPECT_EQ(idsOf(run.results), numbersTo(10));
     EXPECT_EQ(idsOf(run.finals), numbersTo(10));
+    EXPECT_EQ(idsOf(run.settled), numbersTo(9));  // the last one is final before it has settled
     ASSERT_EQ(log.size(), 2u);
     EXPECT_THAT(log[0], HasSubstr("frame 3: "));
     EXPECT_THAT(log[1], HasSubstr("toy trouble"));
@@ -104,6 +111,26 @@ TEST_P(PipelineThreads, GivesTheSameResultsForEveryNumberOfThreads) {
   const Outcome run = runThrough(pipeline, framesFrom0To(50)), expected = runThrough(single, framesFrom0To(50));
   for (std::size_t frame = 0; frame < 50; ++frame)
     EXPECT_EQ(run.finals[frame].T_world_cam.translation(), expected.finals[frame].T_world_cam.translation());
+}
+
+TEST_P(PipelineThreads, AFrameForWhichAStageLacksMemoryIsLostAndTheRunGoesOn) {
+  for (const Stage broken : kAllStages) {
+    SCOPED_TRACE(nameOf(broken));
+    ToyStages toys{.work = [&](Stage stage, FrameId frame) {
+      if (stage == broken && frame.value == 3) throw std::bad_alloc();
+    }};
+    Pipeline pipeline({.threads = GetParam()}, toys.stages());
+    const Outcome run = runThrough(pipeline, framesFrom0To(10));
+    EXPECT_EQ(idsOf(run.results), numbersTo(10));
+    EXPECT_FALSE(run.results[3].problem.empty());
+    EXPECT_TRUE(run.results[4].problem.empty());
+  }
+}
+
+TEST(Pipeline, FramesSettleAtTheLatestWhenTheyLeaveTheWindow) {
+  ToyStages toys{.settles = false};
+  Pipeline pipeline({}, toys.stages());
+  EXPECT_EQ(idsOf(runThrough(pipeline, framesFrom0To(10)).settled), numbersTo(8));
 }
 
 TEST(Pipeline, GivesOneResultForARejectedFrame) {
@@ -153,6 +180,23 @@ TEST(Pipeline, DropsOldFramesWhenLiveAndAccountsForAll) {
     online.push_back(result.online);
   }
   EXPECT_EQ(idsOf(online), numbersTo(kFrames));
+}
+
+/// As when there is no memory to tell of a frame that was lost for want of memory.
+TEST(Pipeline, EndsWithTheReasonWhenItCannotTellOfAFrame) {
+  ToyStages toys{.work = [](Stage stage, FrameId frame) {
+    if (stage == Stage::kTracking && frame.value == 3) throw std::runtime_error("toy trouble");
+  }};
+  Pipeline pipeline({.threads = 2}, toys.stages(),
+                    [](LogLevel, const std::string&) { throw std::logic_error("no paper left"); });
+  std::jthread producer([&] {
+    for (StereoFrame& frame : framesFrom0To(50))
+      if (!pipeline.push(std::move(frame))) return;
+  });
+  std::vector<PipelineResult> results;
+  while (auto result = pipeline.next()) results.push_back(std::move(*result));
+  EXPECT_THROW(pipeline.finish(), std::logic_error);
+  EXPECT_THAT(idsOf(results), ElementsAre(0, 1, 2));
 }
 
 TEST(Pipeline, EndsWhenNothingWasPushed) {

@@ -64,6 +64,10 @@ TEST(DoubtsAboutACamera, NameWhatCannotBe) {
   EXPECT_THAT(doubtsAbout(millimeters)[0], HasSubstr("baseline of 540 m"));
   ASSERT_EQ(doubtsAbout(of_larger).size(), 1U);
   EXPECT_THAT(doubtsAbout(of_larger)[0], HasSubstr("(1302, 188) lies outside"));
+  StereoCamera of_half = kCamera;
+  of_half.fx_px /= 2, of_half.fy_px /= 2, of_half.cx_px /= 2, of_half.cy_px /= 2;
+  ASSERT_EQ(doubtsAbout(of_half).size(), 1U);
+  EXPECT_THAT(doubtsAbout(of_half)[0], HasSubstr("far from the middle"));
   ASSERT_EQ(doubtsAbout(absurd).size(), 1U);
   EXPECT_THAT(doubtsAbout(absurd)[0], HasSubstr("focal length of 1e+308 px"));
 }

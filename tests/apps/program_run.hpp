@@ -27,6 +27,14 @@ inline std::string contentOf(const fs::path& file) {
   return content.str();
 }
 
+/// A shell's wait of at most a minute until a file has more than `lines` lines.
+inline std::string waitForLines(const fs::path& file, std::size_t lines) {
+  std::ostringstream wait;
+  wait << "for i in $(seq 600); do [ $(cat " << file.string() << " 2>/dev/null | wc -l) -gt " << lines
+       << " ] && break; sleep 0.1; done; ";
+  return wait.str();
+}
+
 /// Runs the program, each test in a folder of its own.
 class Run : public testing::Test {
  protected:

@@ -27,19 +27,6 @@ TEST_F(Run, RejectsADamagedImageAndGoesOn) {
   EXPECT_EQ(run("strict", "--require tracked=1", damaged), 5);
 }
 
-TEST_F(Run, FlushesItsResultsWhenASignalEndsIt) {
-  const auto interrupted = [&](const std::string& signal) {
-    return motorcade("run " + kSequence.string() + " --rate 1 --out " + out(signal).string(),
-                     "timeout --preserve-status -s " + signal + " 2 ");
-  };
-  EXPECT_EQ(interrupted("INT"), 130);
-  EXPECT_EQ(interrupted("TERM"), 143);
-  const RunFolder folder = readRunFolder(out("INT"));
-  EXPECT_GE(folder.frames.size(), 1u);
-  EXPECT_EQ(folder.final.camera.size(), folder.frames.size());
-  EXPECT_EQ(summary("INT")["complete"], false);
-}
-
 TEST_F(Run, RefusesInputsThatWouldBeWaitedFor) {
   const std::map<std::string, std::string> answers{{"calib.txt", "calib.txt: is a FIFO"},
                                                    {"times.txt", "times.txt: is a FIFO"},
@@ -76,25 +63,17 @@ TEST_F(Run, WarnsOfTimesAndCalibrationsThatCannotBe) {
   EXPECT_THAT(contentOf(errors()), HasSubstr("must be in meters"));
 }
 
-/// A shell's wait of at most a minute until a run has written more than `lines` lines of frames.csv.
-std::string waitForLines(const fs::path& run, int lines) {
-  std::ostringstream wait;
-  wait << "for i in $(seq 600); do [ $(cat " << (run / "frames.csv").string() << " 2>/dev/null | wc -l) -gt " << lines
-       << " ] && break; sleep 0.1; done; ";
-  return wait.str();
-}
-
 TEST_F(Run, ASecondRunIntoTheSameFolderIsRefused) {
   const std::string run_there = "run " + kSequence.string() + " --out " + out("shared").string();
   const std::string first = MOTORCADE_PROGRAM " " + run_there + " --rate 1 >/dev/null 2>&1 & ";
-  EXPECT_EQ(motorcade(run_there, first + waitForLines(out("shared"), 0)), 4);
+  EXPECT_EQ(motorcade(run_there, first + waitForLines(out("shared") / "frames.csv", 0)), 4);
   EXPECT_THAT(contentOf(errors()), HasSubstr("is in use by another run"));
 }  // the first run ends when its folder is removed
 
 TEST_F(Run, NoticesThatItsFolderIsGone) {
   std::ostringstream removal;
-  removal << "(" << waitForLines(out("gone"), 2) << "mv " << out("gone").string() << " " << out("moved").string()
-          << ") & ";
+  removal << "(" << waitForLines(out("gone") / "frames.csv", 2) << "mv " << out("gone").string() << " "
+          << out("moved").string() << ") & ";
   EXPECT_EQ(motorcade("run " + kSequence.string() + " --rate 2 --out " + out("gone").string(), removal.str()), 4);
   EXPECT_THAT(contentOf(errors()), HasSubstr("was removed, renamed or unmounted"));
   EXPECT_LT(readRunFolder(out("moved")).frames.size(), kFrames);

@@ -46,8 +46,8 @@ std::string ahead(int from, int to) {
 class Solve : public testing::Test {
  protected:
   /// Runs the program and gives its exit code.
-  int solve(const fs::path& graph, const std::string& options = "") {
-    const std::string command = std::string(MOTORCADE_PROGRAM) + " solve " + graph.string() + " --json " +
+  int solve(const fs::path& graph, const std::string& options = "", const std::string& prefix = "") {
+    const std::string command = prefix + MOTORCADE_PROGRAM + " solve " + graph.string() + " --json " +
                                 (folder_ / "solve.json").string() + " --out " + (folder_ / "out.g2o").string() + " " +
                                 options + " >" + (folder_ / "stdout").string() + " 2>" + (folder_ / "stderr").string();
     return WEXITSTATUS(std::system(command.c_str()));
@@ -215,6 +215,37 @@ TEST_F(Solve, AJointThatSaysNextToNothingIsNamedWithItsMend) {
   EXPECT_THAT(std::string(result["problems"][0]["name"]), testing::AnyOf("pose 2", "pose 3"));
   EXPECT_THAT(printed(), AllOf(HasSubstr("badly conditioned in any direction"),
                                HasSubstr("bring their information closer together")));
+}
+
+/// All poses wait for the hub, which is eliminated last: before the others it would make them a dense system, for
+/// hours.
+TEST_F(Solve, AStarWhoseHubComesLastTakesNoLongerThanOthers) {
+  constexpr int kPoses = 20'000;
+  std::string star;
+  for (int pose = 0; pose + 1 < kPoses; ++pose) star += quarterTurn(kPoses - 1, pose);
+  const fs::path graph = folder_.write("graph.g2o", star);
+  for (const std::string policy : {"fluid", "every"}) {
+    ASSERT_EQ(solve(graph, "--policy " + policy, "timeout 60 "), 0);
+    const json result = json::parse(folder_.read("solve.json"));
+    EXPECT_EQ(result["poses"], kPoses);
+    EXPECT_NEAR(result["chi2"], 0, kTol);
+  }
+}
+
+TEST_F(Solve, WritesWhatIsSolvedWhenASignalEndsIt) {
+  constexpr int kPoses = 20'000, kLongSteps = 100;
+  std::string drive;
+  for (int pose = 1; pose < kPoses; ++pose) {
+    drive += ahead(pose - 1, pose);
+    if (pose % kLongSteps == 0) drive += ahead(pose - kLongSteps, pose);
+  }
+  const fs::path graph = folder_.write("graph.g2o", drive);
+  EXPECT_EQ(solve(graph, "--policy every --every 2", "timeout --preserve-status -s TERM 1 "), 143);
+  const json result = json::parse(folder_.read("solve.json"));
+  EXPECT_EQ(result["complete"], false);
+  EXPECT_GT(result["poses"], 1);
+  EXPECT_LT(result["poses"], kPoses);
+  EXPECT_EQ(readPoseGraph(folder_ / "out.g2o").vertices.size(), result["poses"]);
 }
 
 TEST_F(Solve, ErrorsSayWhatToMend) {

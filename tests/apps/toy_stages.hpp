@@ -29,6 +29,7 @@ struct ToyStages {
   std::vector<std::int64_t> order_of_flow{}, order_of_motion{}, order_of_backend{};
   double traveled_m = 0;
   std::vector<FrameEstimate> window{};  // keeps two frames
+  bool settles = true;                  // the frame before the newest has settled
   bool branches_met_wrongly = false;
 
   Stages stages() {
@@ -93,6 +94,7 @@ struct ToyStages {
     result.online.status = measurements->status;
     result.online.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, traveled_m});
     window.push_back(result.online);
+    if (settles && window.size() > 1) result.settled = {window[window.size() - 2]};
     if (window.size() > 2) {
       result.finals.push_back(window.front());
       window.erase(window.begin());
@@ -103,7 +105,7 @@ struct ToyStages {
 
 struct Outcome {
   std::vector<PipelineResult> results;
-  std::vector<FrameEstimate> finals;
+  std::vector<FrameEstimate> finals, settled;
   PipelineSummary summary;
 };
 
@@ -120,6 +122,7 @@ inline Outcome runThrough(Pipeline& pipeline, std::vector<StereoFrame> frames,
   Outcome run;
   const auto keep = [&run](PipelineResult result) {
     for (const FrameEstimate& estimate : result.finals) run.finals.push_back(estimate);
+    for (const FrameEstimate& estimate : result.settled) run.settled.push_back(estimate);
     run.results.push_back(std::move(result));
   };
   while (auto result = pipeline.next()) keep(std::move(*result));

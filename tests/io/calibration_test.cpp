@@ -73,16 +73,32 @@ TEST_F(CalibrationFile, NamesTheKeyThatIsMissingOrHasTheWrongLength) {
   EXPECT_THAT(errorOf("P0: 700 0 320 0 0 710 100 0 0 0 1 0\n"), AllOf(HasSubstr("calib.txt"), HasSubstr("key P1")));
   EXPECT_THAT(errorOf(std::string(kProjections.substr(0, kProjections.find("P3"))), CameraPair::kColor),
               HasSubstr("key P3 is missing; the images are those of cameras 2 and 3"));
-  EXPECT_THAT(errorOf("P0: 1 2 3\n"), HasSubstr("key P0 has 3 numbers, 12 are needed"));
+  EXPECT_THAT(errorOf("\nP0: 1 2 3\n"), HasSubstr("calib.txt, line 2: key P0 has 3 numbers, 12 are needed"));
   EXPECT_THAT(errorOf("P0: 700 zero\n"), AllOf(HasSubstr("line 1"), HasSubstr("'zero' is not a number (P0)")));
 }
 
 TEST_F(CalibrationFile, RefusesPairsThatCannotBeUsed) {
   const std::string left = "P0: 700 0 320 0 0 710 100 0 0 0 1 0\n";
   EXPECT_THAT(errorOf("P0: 0 0 320 0 0 710 100 0 0 0 1 0\nP1: 0 0 320 -350 0 710 100 0 0 0 1 0\n"),
-              HasSubstr("the focal lengths must be positive"));
+              HasSubstr("calib.txt, line 1: key P0: the focal lengths must be positive"));
+  EXPECT_THAT(errorOf("P0: 1e20 0 320 0 0 710 100 0 0 0 1 0\nP1: 1e20 0 320 -350 0 710 100 0 0 0 1 0\n"),
+              HasSubstr("line 1: key P0: a focal length is"));
   EXPECT_THAT(errorOf(left + "P1: 700 0 330 -350 0 710 100 0 0 0 1 0\n"), HasSubstr("the pair is not rectified"));
+  EXPECT_THAT(errorOf("P0: 700 0 320 0 0 700 100 0 0 0 0 0\nP1: 700 0 320 -350 0 700 100 0 0 0 0 0\n"),
+              HasSubstr("must be fx 0 cx, 0 fy cy, 0 0 1"));
   EXPECT_THAT(errorOf(left + "P1: 700 0 320 350 0 710 100 0 0 0 1 0\n"), HasSubstr("are left and right swapped?"));
+}
+
+TEST_F(CalibrationFile, RefusesWhatIsNoRotation) {
+  const std::string projections(kProjections);
+  EXPECT_THAT(errorOf("R0_rect: 0 0 0 0 0 0 0 0 0\n" + projections),
+              HasSubstr("calib.txt, line 1: key R0_rect holds no rotation matrix"));
+  EXPECT_THAT(errorOf(projections + "Tr_velo_to_cam: 1 0 0 4 0 1 0 5 0 0 -1 6\n"),
+              HasSubstr("calib.txt, line 5: key Tr_velo_to_cam holds no rotation matrix"));
+}
+
+TEST_F(CalibrationFile, RefusesAFileThatIsTooLarge) {
+  EXPECT_THAT(errorOf(std::string(2'000'000, '\n')), HasSubstr("is too large (2000000 bytes, at most 1048576)"));
 }
 
 TEST_F(CalibrationFile, JoinsTheThreeFilesOfARawDate) {

@@ -6,6 +6,8 @@
 
 #include <gmock/gmock.h>
 #include <jpeglib.h>
+#include <sys/resource.h>
+#include <zlib.h>
 
 #include "io/errors.hpp"
 #include "tests/io/temporary_folder.hpp"
@@ -30,7 +32,9 @@ void expectEqual(const Image& a, const Image& b) {
   for (int y = 0; y < a.height(); ++y) ASSERT_TRUE(std::equal(a.row(y), a.row(y) + a.width(), b.row(y))) << "row " << y;
 }
 
-std::string jpegOf(const Image& image) {
+enum class Scans { kBaseline, kProgressive };
+
+std::string jpegOf(const Image& image, Scans scans = Scans::kBaseline) {
   jpeg_compress_struct jpeg{};
   jpeg_error_mgr errors;
   jpeg.err = jpeg_std_error(&errors);
@@ -44,6 +48,7 @@ std::string jpegOf(const Image& image) {
   jpeg.in_color_space = JCS_GRAYSCALE;
   jpeg_set_defaults(&jpeg);
   jpeg_set_quality(&jpeg, 100, TRUE);
+  if (scans == Scans::kProgressive) jpeg_simple_progression(&jpeg);
   jpeg_start_compress(&jpeg, TRUE);
   for (int y = 0; y < image.height(); ++y) {
     JSAMPROW row = const_cast<JSAMPROW>(image.row(y));
@@ -164,6 +169,71 @@ TEST_F(ImageFile, AbsurdSizesAreRefusedFromTheHeader) {
               }),
               HasSubstr("has 800x600 pixels, the sequence has 40x24"));
   EXPECT_EQ(pool_.buffersMade(), 1u) << "only the image that was written";
+}
+
+TEST_F(ImageFile, PixelsThatTheFileCannotHoldAreRefusedBeforeTheyGetMemory) {
+  writePng(folder_ / "a.png", noise(40, 24, pool_));
+  std::string png = folder_.read("a.png");
+  png.replace(16, 8, std::string("\0\0\x20\0\0\0\x20\0", 8));
+  for (const std::string& bytes :
+       {png, std::string("P2 8192 8192 255\n1 2 3 "), std::string("P5 8192 8192 65535\n12")}) {
+    EXPECT_THAT(messageOf<InputError>([&] { readImage(folder_.write("a", bytes), pool_); }),
+                HasSubstr("the file ends early"));
+  }
+  EXPECT_THAT(messageOf<InputError>([&] { readPng16(folder_.write("a", png)); }), HasSubstr("the file ends early"));
+  EXPECT_EQ(pool_.buffersMade(), 1u) << "only the image that was written";
+}
+
+/// A chunk of a PNG, with its length and its checksum.
+std::string pngChunk(const std::string& type_and_data) {
+  const auto bigEndian = [](std::uint32_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
+    return bytes;
+  };
+  const auto crc =
+      crc32(0, reinterpret_cast<const Bytef*>(type_and_data.data()), static_cast<uInt>(type_and_data.size()));
+  return bigEndian(static_cast<std::uint32_t>(type_and_data.size() - 4)) + type_and_data + bigEndian(crc);
+}
+
+/// Texts in a PNG inflate to up to 8 MB each, a thousand of them.
+TEST_F(ImageFile, TextsInAPngTakeNoMemory) {
+  const Image image = noise(40, 24, pool_);
+  writePng(folder_ / "a.png", image);
+  std::string png = folder_.read("a.png"), zeros(4 << 20, 'x'), packed(zeros.size(), 0);
+  uLongf length = packed.size();
+  ASSERT_EQ(compress(reinterpret_cast<Bytef*>(packed.data()), &length, reinterpret_cast<const Bytef*>(zeros.data()),
+                     zeros.size()),
+            Z_OK);
+  packed.resize(length);
+  std::string texts;
+  for (int i = 0; i < 100; ++i) texts += pngChunk("zTXtkey" + std::string(2, '\0') + packed);
+  constexpr std::size_t kAfterHeader = 33;  // signature and IHDR
+  png.insert(kAfterHeader, texts);
+  const auto file = folder_.write("a.png", png);
+  const auto peak_kB = [] {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+  };
+  const long before_kB = peak_kB();
+  expectEqual(readImage(file, pool_), image);
+  EXPECT_LT(peak_kB() - before_kB, 100'000);  // of 400 MB
+}
+
+/// A progressive JPEG whose last scan comes again and again: each one goes over the whole image.
+TEST_F(ImageFile, JpegsOfThousandsOfScansAreRefused) {
+  const std::string jpeg = jpegOf(noise(64, 64, pool_), Scans::kProgressive);
+  const auto scan = jpeg.rfind("\xFF\xDA");
+  ASSERT_NE(scan, std::string::npos);
+  const std::string last(jpeg, scan, jpeg.size() - 2 - scan);
+  std::string many = jpeg.substr(0, scan);
+  for (int i = 0; i < 3000; ++i) many += last;
+  const auto file = folder_.write("many.jpg", many + "\xFF\xD9");
+  EXPECT_THAT(
+      messageOf<InputError>([&] { readImage(file, pool_); }),
+      HasSubstr("many.jpg: damaged image: "));  // too many scans, or out of sequence: libjpeg looks first or we do
+  EXPECT_NO_THROW(readImage(folder_.write("few.jpg", jpeg), pool_));
 }
 
 TEST_F(ImageFile, WritingWhereNothingCanBeWrittenIsAnOutputError) {

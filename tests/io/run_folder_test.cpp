@@ -100,6 +100,26 @@ TEST(RunFolder, ComesBackAsWritten) {
   EXPECT_DOUBLE_EQ(run.frames[1].latency_ms, 30.5);
 }
 
+TEST(RunFolder, ShowsWhatHasSettledUntilTheRunHasEnded) {
+  const test::TemporaryFolder folder;
+  {
+    RunFolderWriter writer(folder / "run");
+    for (int i = 0; i < 4; ++i) {
+      writer.writeOnline(estimateOf(i));
+      writer.writeTiming(timingOf(i));
+      if (i > 0) writer.writeSettled(estimateOf(i - 1));
+    }
+    writer.writeFinal(estimateOf(0));
+    EXPECT_EQ(readRunFolder(folder / "run").final.camera.size(), 3u);
+  }
+  const RunFolder run = readRunFolder(folder / "run");
+  EXPECT_FALSE(run.complete());
+  EXPECT_EQ(run.final.camera.size(), 3u);
+  EXPECT_EQ(run.final.objects.size(), 3u);
+  for (const auto& file : std::filesystem::directory_iterator(folder / "run"))
+    EXPECT_NE(file.path().extension(), ".part");
+}
+
 TEST(RunFolder, HasTheDocumentedHeadersAndStamps) {
   const test::TemporaryFolder folder;
   writeRun(folder / "run", 0, 1);

@@ -76,6 +76,17 @@ TEST(FieldReader, NamesFileLineAndFieldOfWhatIsNoNumber) {
   EXPECT_THAT(errorOf("99999999999999999999", kInteger), HasSubstr("is not a whole number"));
 }
 
+TEST(FieldReader, RefusesNumbersWhoseProductsWouldNotBeFinite) {
+  EXPECT_EQ(reading("-1e50", kNumber), -1e50);
+  EXPECT_THAT(errorOf("1e51", kNumber), HasSubstr("'1e51' is too large (a speed)"));
+}
+
+TEST(FieldReader, ShowsNoByteThatATerminalTakesForACommandAndNoLongText) {
+  EXPECT_THAT(errorOf("1\x1b[2J\xff", kNumber), HasSubstr("'1?[2J?' is not a number"));
+  EXPECT_THAT(errorOf("\a7", kInteger), HasSubstr("'?7' is not a whole number"));
+  EXPECT_THAT(errorOf(std::string(100000, '7') + "x", kNumber), HasSubstr("'" + std::string(40, '7') + "...' is not"));
+}
+
 TEST(FieldReader, NamesWhatIsMissingAndWhatIsLeft) {
   EXPECT_THAT(errorOf("", kNumber), HasSubstr("ends before a speed"));
   EXPECT_THAT(errorOf("1 2",

@@ -55,12 +55,21 @@ TEST_F(TimestampFile, NamesTheLineThatIsNotLaterThanTheOneBefore) {
               AllOf(HasSubstr("times.txt, line 3"), HasSubstr("the time is not later than the one before")));
 }
 
+/// 63 bits of nanoseconds are 292 years: the year 9999 does not fit, nor do the seconds from the first time to the
+/// last.
+TEST_F(TimestampFile, RefusesTimesThatDoNotFitIntoNanoseconds) {
+  for (const char* far : {"9999-12-31 23:59:59\n", "4500000000\n", "-9e9\n", "1700-01-01 00:00:00\n"})
+    EXPECT_THAT(errorOf(far), HasSubstr("times.txt, line 1")) << far;
+  EXPECT_THAT(errorOf("2011-02-03 13:10:61\n"), HasSubstr("line 1"));
+  EXPECT_THAT(read_ns("-4499999999\n4499999999\n"), ElementsAre(-4'499'999'999'000'000'000, 4'499'999'999'000'000'000));
+}
+
 TEST_F(TimestampFile, NamesTheLineThatIsNoTime) {
   EXPECT_THAT(errorOf("0.1\nnoon\n"), AllOf(HasSubstr("line 2"), HasSubstr("'noon' is not a number")));
   EXPECT_THAT(errorOf("0.1 0.2\n"), HasSubstr("more fields than expected"));
   EXPECT_THAT(errorOf("2011-02-30 13:10:51\n"), HasSubstr("line 1"));
   EXPECT_THAT(errorOf("inf\n"), HasSubstr("is not finite"));
-  EXPECT_THAT(errorOf("9.1e9\n"), HasSubstr("the time is out of range; seconds are expected"));
+  EXPECT_THAT(errorOf("4.6e9\n"), HasSubstr("the time is out of range; seconds are expected"));
   EXPECT_THAT(errorOf("1403636579763555584\n"), HasSubstr("seconds are expected"));  // nanoseconds
 }
 

@@ -147,15 +147,49 @@ TEST(OpticalFlowTracker, KeepsPointsApartAndSpread) {
   }
 }
 
-TEST(OpticalFlowTracker, StartsAgainAfterARejectedFrame) {
+FeaturesPtr at(FeaturesPtr features, int frame) {
+  auto stamped = std::make_shared<StereoFrame>(*features->frame);
+  stamped->frame = {frame};
+  stamped->stamp = {frame * 100'000'000};
+  auto copy = std::make_shared<Features>(*features);
+  copy->frame = stamped;
+  return copy;
+}
+
+FeaturesPtr uniform(std::uint8_t gray, const Features& like) {
+  const Image& size = like.left.levels.front();
+  const Image image = test::render(size.width(), size.height(), [gray](double, double) { return gray; });
+  return FeaturePreparation({})(test::stereoFrame(0, image, image));
+}
+
+/// Of the points, how many have been followed for `age` frames and more.
+std::ptrdiff_t countOfAge(const OpticalFlow& flow, int age) {
+  return std::ranges::count_if(flow.observations, [age](const FlowObservation& point) { return point.age >= age; });
+}
+
+TEST(OpticalFlowTracker, PointsWaitWhileImagesAreOfNoUse) {
+  const MovingWall wall(3, 0);
+  const FeaturesPtr rejected = FeaturePreparation({})(test::rejectedFrame(3)), black = uniform(0, *wall.at(0)),
+                    frozen = wall.at(2);
+  for (const FeaturesPtr& useless : {rejected, black, frozen}) {
+    OpticalFlowTracker track({});
+    for (int frame = 0; frame < 3; ++frame) track(at(wall.at(frame), frame));
+    EXPECT_TRUE(track(at(useless, 3))->observations.empty());
+    EXPECT_TRUE(track(at(useless, 4))->observations.empty());
+    const auto after = track(at(wall.at(5), 5));
+    EXPECT_GT(countOfAge(*after, 4), 0.7 * static_cast<double>(after->observations.size()));
+  }
+}
+
+TEST(OpticalFlowTracker, PointsStartAnewAfterALongTimeWithoutImages) {
   const MovingWall wall(3, 0);
   OpticalFlowTracker track({});
-  const auto before = track(wall.at(0));
-  EXPECT_TRUE(track(FeaturePreparation({})(test::rejectedFrame(1)))->observations.empty());
-  const auto after = track(wall.at(2));
+  const auto before = track(at(wall.at(0), 0));
+  for (int frame = 1; frame < 7; ++frame) track(at(FeaturePreparation({})(test::rejectedFrame(frame)), frame));
+  const auto after = track(at(wall.at(7), 7));
   ASSERT_FALSE(after->observations.empty());
   EXPECT_GT(after->observations.front().point, before->observations.back().point);
-  EXPECT_TRUE(std::ranges::all_of(after->observations, [](const FlowObservation& point) { return point.age == 1; }));
+  EXPECT_EQ(countOfAge(*after, 2), 0);
 }
 
 TEST(OpticalFlowTracker, StartsAgainWhenTheImageSizeChanges) {

@@ -42,17 +42,27 @@ struct Views {
   }
 };
 
+/// A frame in which points are seen.
+CameraMotion see(CameraOdometry& odometry, const StereoFrame& frame, const Views& views) {
+  CameraMotion motion = odometry.measure(frame, views.known, views.observed, odometry.predict(frame.stamp));
+  odometry.add(frame, motion);
+  return motion;
+}
+
+const Views kNothingKnown(0, SE3{}, 1);
+
 TEST(CameraOdometry, MeasuresTheMotionAndLeavesATrail) {
   CameraOdometry odometry({}, kRig);
   const Views views(200, kStep, 1);
-  EXPECT_FALSE(odometry.motionKnown());
-  EXPECT_THAT(odometry(frameAt(0, 0), views.known, views.observed).T_previous_now, test::IsNearPose(SE3{}, 0.0));
-  EXPECT_FALSE(odometry.motionKnown());
-  const CameraMotion motion = odometry(frameAt(1, 100), views.known, views.observed);
+  EXPECT_FALSE(odometry.motionKnown({0}));
+  EXPECT_THAT(see(odometry, frameAt(0, 0), views).T_previous_now, test::IsNearPose(SE3{}, 0.0));
+  EXPECT_FALSE(odometry.motionKnown({0}));
+  const CameraMotion motion = see(odometry, frameAt(1, 100), views);
   EXPECT_EQ(motion.status, FrameStatus::kGood);
   EXPECT_THAT(motion.T_previous_now, test::IsNearPose(kStep, 0.02));  // five of its standard deviations
   EXPECT_THAT(odometry.trail().find(0)->T_then_now, test::IsNearPose(motion.T_previous_now, 1e-12));
-  EXPECT_TRUE(odometry.motionKnown());
+  EXPECT_TRUE(odometry.motionKnown({200'000'000}));
+  EXPECT_FALSE(odometry.motionKnown({2'000'000'000}));
   ASSERT_EQ(motion.inliers.size(), views.observed.size());
   int inliers = 0;
   for (std::size_t i = 0; i < motion.inliers.size(); ++i) {
@@ -65,20 +75,20 @@ TEST(CameraOdometry, MeasuresTheMotionAndLeavesATrail) {
 
 TEST(CameraOdometry, PredictsTheVelocityOfTheFrameBefore) {
   CameraOdometry odometry({}, kRig);
-  EXPECT_THAT(odometry.predict({0}), test::IsNearPose(SE3{}, 0.0));
-  odometry(frameAt(0, 0), {}, {});
+  EXPECT_THAT(odometry.predict({0}).T_previous_now, test::IsNearPose(SE3{}, 0.0));
+  see(odometry, frameAt(0, 0), kNothingKnown);
   const Views views(200, kStep, 2);
-  const SE3 measured = odometry(frameAt(1, 100), views.known, views.observed).T_previous_now;
-  EXPECT_THAT(odometry.predict({200'000'000}), test::IsNearPose(measured, 1e-9));
-  EXPECT_THAT(odometry.predict({300'000'000}), test::IsNearPose(measured * measured, 1e-9));
+  const SE3 measured = see(odometry, frameAt(1, 100), views).T_previous_now;
+  EXPECT_THAT(odometry.predict({200'000'000}).T_previous_now, test::IsNearPose(measured, 1e-9));
+  EXPECT_THAT(odometry.predict({300'000'000}).T_previous_now, test::IsNearPose(measured * measured, 0.02));
 }
 
 TEST(CameraOdometry, WithTooFewPointsTheMotionIsPredictedAndItsCovarianceWide) {
   CameraOdometry odometry({}, kRig);
   const Views views(200, kStep, 3);
-  odometry(frameAt(0, 0), {}, {});
-  const CameraMotion measured = odometry(frameAt(1, 100), views.known, views.observed);
-  const CameraMotion lost = odometry(frameAt(2, 200), {}, {});
+  see(odometry, frameAt(0, 0), kNothingKnown);
+  const CameraMotion measured = see(odometry, frameAt(1, 100), views);
+  const CameraMotion lost = see(odometry, frameAt(2, 200), kNothingKnown);
   EXPECT_EQ(lost.status, FrameStatus::kLost);
   EXPECT_THAT(lost.T_previous_now, test::IsNearPose(measured.T_previous_now, 1e-9));
   for (int i = 0; i < 6; ++i) EXPECT_GT(lost.covariance(i, i), 100 * measured.covariance(i, i));
@@ -87,9 +97,54 @@ TEST(CameraOdometry, WithTooFewPointsTheMotionIsPredictedAndItsCovarianceWide) {
 TEST(CameraOdometry, AFrameAtTheTimeOfTheOneBeforeIsPredictedToStand) {
   CameraOdometry odometry({}, kRig);
   const Views views(200, kStep, 4);
-  odometry(frameAt(0, 0), {}, {});
-  odometry(frameAt(1, 0), views.known, views.observed);
-  EXPECT_THAT(odometry.predict({100'000'000}), test::IsNearPose(SE3{}, 0.0));
+  see(odometry, frameAt(0, 0), kNothingKnown);
+  see(odometry, frameAt(1, 0), views);
+  EXPECT_THAT(odometry.predict({100'000'000}).T_previous_now, test::IsNearPose(SE3{}, 0.0));
+}
+
+TEST(CameraOdometry, FramesInWhichNothingIsSeenArePassedOver) {
+  CameraOdometry odometry({}, kRig);
+  see(odometry, frameAt(0, 0), kNothingKnown);
+  const SE3 first = see(odometry, frameAt(1, 100), Views(200, kStep, 5)).T_previous_now;
+  const CameraMotion unseen = odometry.passOver(frameAt(2, 200));
+  EXPECT_EQ(unseen.cause, FrameCause::kNothingFound);
+  EXPECT_THAT(unseen.T_previous_now, test::IsNearPose(first, 0.02));
+  EXPECT_EQ(odometry.trail().newest().step, 1);
+  const SE3 two_steps = kStep * SE3(Eigen::Matrix3d::Identity(), {0, 0, 1.3});
+  const CameraMotion after = see(odometry, frameAt(3, 300), Views(200, two_steps, 6));
+  EXPECT_EQ(after.status, FrameStatus::kGood);
+  EXPECT_THAT(unseen.T_previous_now * after.T_previous_now, test::IsNearPose(two_steps, 0.03));
+  EXPECT_EQ(odometry.segment(), 0);
+}
+
+TEST(CameraOdometry, AStartInTheDarkIsNoMotion) {
+  CameraOdometry odometry({}, kRig);
+  for (int frame = 0; frame < 3; ++frame)
+    EXPECT_THAT(odometry.passOver(frameAt(frame, 100 * frame)).T_previous_now, test::IsNearPose(SE3{}, 0.0));
+  const CameraMotion first = see(odometry, frameAt(3, 300), kNothingKnown);
+  EXPECT_EQ(first.status, FrameStatus::kGood);
+  EXPECT_FALSE(odometry.motionKnown({300'000'000}));
+  EXPECT_THAT(see(odometry, frameAt(4, 400), Views(200, kStep, 7)).T_previous_now, test::IsNearPose(kStep, 0.02));
+}
+
+TEST(CameraOdometry, WhatIsNotLinkedBeginsANewSegment) {
+  CameraOdometry odometry({}, kRig);
+  see(odometry, frameAt(0, 0), kNothingKnown);
+  see(odometry, frameAt(1, 100), Views(200, kStep, 8));
+  const CameraMotion lost = see(odometry, frameAt(2, 200), kNothingKnown);
+  EXPECT_EQ(lost.cause, FrameCause::kUnlinked);
+  EXPECT_EQ(odometry.segment(), 0);
+  see(odometry, frameAt(3, 300), Views(200, kStep, 9));
+  EXPECT_EQ(odometry.segment(), 1);
+}
+
+TEST(CameraOdometry, NoMotionIsTakenToGoOnForLong) {
+  CameraOdometry odometry({}, kRig);
+  see(odometry, frameAt(0, 0), kNothingKnown);
+  see(odometry, frameAt(1, 100), Views(200, kStep, 10));
+  const double second_m = odometry.predict({1'100'000'000}).T_previous_now.translation().norm();
+  EXPECT_NEAR(second_m, 10, 0.5);
+  EXPECT_NEAR(odometry.predict({3600'000'000'000}).T_previous_now.translation().norm(), second_m, 1e-9);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST(SceneFlowSegmentation, EveryInputGivesOneOutputOfItsFrameAlsoWhenRejectedOr
     ASSERT_TRUE(motion);
     EXPECT_EQ(motion->frame, FrameId{frame});
     EXPECT_EQ(motion->stamp, Timestamp{frame * 100'000'000});
-    EXPECT_EQ(motion->status, rejected ? FrameStatus::kRejected : frame == 0 ? FrameStatus::kGood : FrameStatus::kLost);
+    EXPECT_EQ(motion->status, rejected ? FrameStatus::kRejected : FrameStatus::kLost);
     EXPECT_TRUE(motion->points.empty());
     EXPECT_THAT(motion->T_previous_now,
                 test::IsNearPose(SE3{}, 0.0));  // no motion was ever seen: standing still is predicted

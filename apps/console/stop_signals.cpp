@@ -1,4 +1,4 @@
-#include "apps/run/stop_signals.hpp"
+#include "apps/console/stop_signals.hpp"
 
 #include <ctime>
 #include <utility>

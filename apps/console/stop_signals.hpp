@@ -8,7 +8,9 @@
 
 namespace motorcade {
 
-/// Waits for SIGINT and SIGTERM on a thread of its own, so that a run can end in order; a second signal ends the
+inline constexpr int kExitSignal = 128;  // plus the signal that ended the program, as shells have it
+
+/// Waits for SIGINT and SIGTERM on a thread of its own, so that the work can end in order; a second signal ends the
 /// program at once, unless it comes within a second: `timeout` and terminals send the same one to a process and to its
 /// group. Make it before the threads that are to be spared: they inherit that both signals are blocked.
 class StopSignals {

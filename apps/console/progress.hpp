@@ -1,0 +1,32 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace motorcade {
+
+/// Shows how far the work is: a bar on a terminal, a plain line every few seconds otherwise. Writes to the standard
+/// error output.
+class Progress {
+ public:
+  /// `item` is the singular of what is counted.
+  Progress(std::string item, std::size_t count);
+  /// Ends the bar's line.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// So many are done, and what else there is to say.
+  void show(std::size_t done, const std::string& more = "");
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string item_;
+  std::size_t count_;
+  bool terminal_;
+  Clock::time_point start_, next_;
+  bool line_open_ = false;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,117 @@
+#include "apps/inject/fault_injector.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "apps/inject/image_faults.hpp"
+#include "apps/inject/process_limits.hpp"
+#include "io/image_file.hpp"
+
+namespace motorcade {
+
+bool FaultInjector::give(StereoFrame frame, const Outlet& outlet) {
+  bool dropped = false;
+  std::int64_t overtaken_by = 0;  // frames
+  for (std::size_t k = 0; k < spec_.faults.size(); ++k) {
+    const Fault& fault = spec_.faults[k];
+    if (!strikes(fault, k, frame.frame, spec_.seed)) continue;
+    if (fault.kind == FaultKind::kDrop) dropped = true;
+    if (fault.kind == FaultKind::kLate) overtaken_by = static_cast<std::int64_t>(fault.value);
+    if (fault.kind == FaultKind::kStall) outlet.wait(std::chrono::duration<double>(fault.value));
+    applyTo(frame, fault, seedOf(spec_.seed, k, frame.frame));
+  }
+  left_before_ = frame.left;
+  right_before_ = frame.right;
+  frame.stamp = shifted(frame.stamp);
+  const std::int64_t id = frame.frame.value;
+  if (dropped || overtaken_by > 0) outlet.pass_over(frame.frame, frame.stamp);
+  if (overtaken_by > 0)
+    late_.push_back({std::move(frame), id + overtaken_by});
+  else if (!dropped && !outlet.push(std::move(frame)))
+    return false;
+  return giveLate(id, outlet);
+}
+
+bool FaultInjector::giveLate(std::int64_t frame, const Outlet& outlet) {
+  const auto due = std::stable_partition(late_.begin(), late_.end(), [&](const Late& late) { return late.after > frame; });
+  std::deque<Late> come(std::make_move_iterator(due), std::make_move_iterator(late_.end()));
+  late_.erase(due, late_.end());
+  return std::ranges::all_of(come, [&](Late& late) { return outlet.push(std::move(late.frame)); });
+}
+
+bool FaultInjector::finish(const Outlet& outlet) { return giveLate(std::numeric_limits<std::int64_t>::max(), outlet); }
+
+void FaultInjector::applyTo(StereoFrame& frame, const Fault& fault, std::uint64_t seed) {
+  switch (fault.kind) {
+    case FaultKind::kDuplicate:
+      if (!left_before_.empty()) frame.left = left_before_, frame.right = right_before_;
+      return;
+    case FaultKind::kExchanged:
+      return std::swap(frame.left, frame.right);
+    case FaultKind::kTimeJump:
+      jumps_ns_ += std::llround(1e9 * fault.value);
+      return;
+    case FaultKind::kOutOfMemory:
+      return limitFurtherMemory(static_cast<std::uint64_t>(1e6 * fault.value));
+    case FaultKind::kDiskFull:
+      return limitFileSize(static_cast<std::uint64_t>(1e3 * fault.value));
+    default:
+      break;
+  }
+  if (frame.rejected()) return;
+  const FramePaths& files = sequence_.frames[static_cast<std::size_t>(frame.frame.value)];
+  try {
+    if (fault.side != FaultSide::kRight) applyTo(frame.left, files.left, fault, 2 * seed);
+    if (fault.side != FaultSide::kLeft) applyTo(frame.right, files.right, fault, 2 * seed + 1);
+  } catch (const std::exception& error) {
+    frame.left = frame.right = Image();
+    frame.problem = error.what();
+  }
+}
+
+void FaultInjector::applyTo(Image& image, const std::filesystem::path& file, const Fault& fault, std::uint64_t seed) {
+  constexpr std::uint8_t kBlack = 0, kWhite = 255;
+  if (image.empty()) return;
+  switch (fault.kind) {
+    case FaultKind::kBlack:
+      image = filled(image, kBlack, pool_);
+      break;
+    case FaultKind::kWhite:
+      image = filled(image, kWhite, pool_);
+      break;
+    case FaultKind::kBlur:
+      image = blurred(image, fault.value, pool_);
+      break;
+    case FaultKind::kNoise:
+      image = withNoise(image, fault.value, seed, pool_);
+      break;
+    case FaultKind::kExposure:
+      image = exposed(image, fault.value, pool_);
+      break;
+    case FaultKind::kJpeg:
+      image = throughJpeg(image, static_cast<int>(fault.value), pool_);
+      break;
+    case FaultKind::kTruncated: {
+      std::string bytes = readImageBytes(file);
+      bytes.resize(static_cast<std::size_t>(fault.value * static_cast<double>(bytes.size())));
+      image = decodeImage(bytes, file, pool_, ImageSize{image.width(), image.height()});
+      break;
+    }
+    case FaultKind::kBitFlips:
+      image = decodeImage(withBitFlips(readImageBytes(file), static_cast<int>(fault.value), seed), file, pool_,
+                          ImageSize{image.width(), image.height()});
+      break;
+    case FaultKind::kOneEyed:
+      image = Image();
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace motorcade

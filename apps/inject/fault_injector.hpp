@@ -1,0 +1,55 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <utility>
+
+#include "apps/inject/fault_spec.hpp"
+#include "core/image.hpp"
+#include "core/messages.hpp"
+#include "core/timestamp.hpp"
+#include "io/sequence.hpp"
+
+namespace motorcade {
+
+/// Stands between a sequence and whoever follows it, and lets happen what a specification asks for. Results depend on
+/// the specification and its seed alone. Call it in the order of frames, from one thread.
+class FaultInjector {
+ public:
+  /// Where pairs go on to.
+  struct Outlet {
+    std::function<bool(StereoFrame)> push;              // false when no further pair is wanted
+    std::function<void(FrameId, Timestamp)> pass_over;  // this pair does not come, or not in its turn
+    std::function<void(std::chrono::duration<double>)> wait;
+  };
+  /// `sequence` must outlive it: faults of files read them again.
+  FaultInjector(FaultSpec spec, const Sequence& sequence) : spec_(std::move(spec)), sequence_(sequence) {}
+
+  /// Gives a pair on, changed, later or not at all; false when no further pair is wanted.
+  bool give(StereoFrame frame, const Outlet& outlet);
+  /// After the last pair: gives on those that are still late.
+  bool finish(const Outlet& outlet);
+  /// The frame's time with all jumps so far.
+  Timestamp shifted(Timestamp stamp) const { return {stamp.ns + jumps_ns_}; }
+
+ private:
+  struct Late {
+    StereoFrame frame;
+    std::int64_t after = 0;  // the frame that overtakes it
+  };
+  void applyTo(StereoFrame& frame, const Fault& fault, std::uint64_t seed);
+  void applyTo(Image& image, const std::filesystem::path& file, const Fault& fault, std::uint64_t seed);
+  bool giveLate(std::int64_t frame, const Outlet& outlet);
+
+  FaultSpec spec_;
+  const Sequence& sequence_;
+  ImagePool pool_;
+  std::int64_t jumps_ns_ = 0;
+  Image left_before_, right_before_;
+  std::deque<Late> late_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,89 @@
+#include "apps/inject/image_faults.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "io/image_file.hpp"
+
+namespace motorcade {
+namespace {
+
+std::uint8_t toGray(double value) { return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L)); }
+
+/// Each pixel of a new image by a function of its place.
+template <class Gray>
+Image imageOf(const Image& like, ImagePool& pool, const Gray& gray) {
+  Image image = pool.acquire(like.width(), like.height());
+  for (int y = 0; y < image.height(); ++y) {
+    std::uint8_t* const row = image.mutableRow(y);
+    for (int x = 0; x < image.width(); ++x) row[x] = gray(x, y);
+  }
+  return image;
+}
+
+/// Means of `2 reach + 1` values, the ends being repeated.
+std::vector<double> runningMeans(const std::vector<double>& values, int reach) {
+  const int last = static_cast<int>(values.size()) - 1;
+  const auto at = [&](int i) { return values[static_cast<std::size_t>(std::clamp(i, 0, last))]; };
+  std::vector<double> means;
+  means.reserve(values.size());
+  double sum = 0;
+  for (int i = -reach; i <= reach; ++i) sum += at(i);
+  for (int i = 0; i <= last; ++i) {
+    means.push_back(sum / (2 * reach + 1));
+    sum += at(i + reach + 1) - at(i - reach);
+  }
+  return means;
+}
+
+}  // namespace
+
+Image filled(const Image& like, std::uint8_t gray, ImagePool& pool) {
+  return imageOf(like, pool, [gray](int, int) { return gray; });
+}
+
+Image blurred(const Image& image, double width_px, ImagePool& pool) {
+  const int reach = static_cast<int>(width_px / 2);
+  std::vector<std::vector<double>> rows;
+  for (int y = 0; y < image.height(); ++y)
+    rows.push_back(runningMeans({image.row(y), image.row(y) + image.width()}, reach));
+  std::vector<double> column(static_cast<std::size_t>(image.height()));
+  for (int x = 0; x < image.width(); ++x) {
+    for (std::size_t y = 0; y < column.size(); ++y) column[y] = rows[y][static_cast<std::size_t>(x)];
+    column = runningMeans(column, reach);
+    for (std::size_t y = 0; y < column.size(); ++y) rows[y][static_cast<std::size_t>(x)] = column[y];
+  }
+  return imageOf(image, pool,
+                 [&](int x, int y) { return toGray(rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)]); });
+}
+
+Image withNoise(const Image& image, double sigma_gray, std::uint64_t seed, ImagePool& pool) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0, 1);
+  return imageOf(image, pool, [&](int x, int y) { return toGray(image.at(x, y) + sigma_gray * noise(random)); });
+}
+
+Image exposed(const Image& image, double factor, ImagePool& pool) {
+  return imageOf(image, pool, [&](int x, int y) { return toGray(factor * image.at(x, y)); });
+}
+
+Image throughJpeg(const Image& image, int quality, ImagePool& pool) {
+  return decodeImage(encodeJpeg(image, quality), "compressed", pool);
+}
+
+std::string withBitFlips(std::string bytes, int count, std::uint64_t seed) {
+  constexpr unsigned kBits = 8;
+  if (bytes.empty()) return bytes;
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<std::size_t> bit(0, kBits * bytes.size() - 1);
+  for (int i = 0; i < count; ++i) {
+    const std::size_t at = bit(random);
+    bytes[at / kBits] = static_cast<char>(static_cast<unsigned char>(bytes[at / kBits]) ^ (1U << at % kBits));
+  }
+  return bytes;
+}
+
+}  // namespace motorcade

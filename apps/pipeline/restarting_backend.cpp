@@ -1,0 +1,75 @@
+#include "apps/pipeline/restarting_backend.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace motorcade {
+
+RestartingBackend::RestartingBackend(std::function<std::unique_ptr<Backend>()> make)
+    : make_(std::move(make)), backend_(make_()) {}
+
+EstimatesPtr RestartingBackend::operator()(const FrameMeasurementsPtr& measurements) {
+  try {
+    return estimate(measurements);
+  } catch (...) {
+    giveUp(*measurements);
+    throw;
+  }
+}
+
+EstimatesPtr RestartingBackend::estimate(const FrameMeasurementsPtr& measurements) {
+  if (!backend_) {
+    backend_ = make_();
+    T_world_start_ = (T_world_cam_ * measurements->T_previous_now).normalized();
+    restarted_ = true;
+  }
+  EstimatesPtr estimates = (*backend_)(measurements);
+  const std::size_t final_now = estimates->finals.size();
+  if (restarted_) {
+    Estimates moved = *estimates;
+    moveToWorld(moved.online);
+    for (FrameEstimate& estimate : moved.finals) moveToWorld(estimate);
+    moved.finals.insert(moved.finals.begin(), left_.begin(), left_.end());
+    estimates = std::make_shared<const Estimates>(std::move(moved));
+  }
+  window_.push_back(estimates->online);
+  // From here on nothing fails: the estimates are on their way.
+  window_.erase(window_.begin(), window_.begin() + static_cast<std::ptrdiff_t>(std::min(final_now, window_.size())));
+  left_.clear();
+  T_world_cam_ = estimates->online.T_world_cam;
+  return estimates;
+}
+
+std::vector<FrameEstimate> RestartingBackend::finish() {
+  std::vector<FrameEstimate> finals(left_.begin(), left_.end());
+  try {
+    if (backend_)
+      for (FrameEstimate& estimate : backend_->finish()) {
+        moveToWorld(estimate);
+        finals.push_back(std::move(estimate));
+      }
+  } catch (...) {
+    finals.assign(left_.begin(), left_.end());
+    finals.insert(finals.end(), window_.begin(), window_.end());
+  }
+  return finals;
+}
+
+/// Covariances are relative to the camera, and stay.
+void RestartingBackend::moveToWorld(FrameEstimate& estimate) const {
+  if (!restarted_) return;
+  estimate.T_world_cam = T_world_start_ * estimate.T_world_cam;
+  for (ObjectEstimate& object : estimate.objects) {
+    object.T_world_body = T_world_start_ * object.T_world_body;
+    object.velocity_world_mps = T_world_start_.rotation() * object.velocity_world_mps;
+  }
+}
+
+void RestartingBackend::giveUp(const FrameMeasurements& measurements) noexcept {
+  backend_.reset();
+  T_world_cam_ = (T_world_cam_ * measurements.T_previous_now).normalized();
+  if (left_.empty()) left_.swap(window_);  // the window of a back-end that fails with its first frame is empty
+}
+
+}  // namespace motorcade

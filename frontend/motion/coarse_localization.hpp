@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/se3.hpp"
+#include "core/stereo_camera.hpp"
+#include "frontend/messages.hpp"
+
+namespace motorcade {
+
+/// A point at rest as it was seen last.
+struct RestingPoint {
+  PointId point;
+  Eigen::Vector3d uvd_px;  // then
+  Eigen::Vector3d p_cam;   // in the camera of then
+  int observations = 1;
+};
+
+/// How the camera may have moved between two images, about a predicted motion.
+struct MotionRange {
+  SE3 T_then_now;                                       // predicted
+  double forward_m = 0, yaw_rad = 0, pitch_rad = 0.03;  // how far it may differ from it, each way
+};
+
+/// The motions within a range under which small patches around points at rest, at the coarsest level of the pyramid,
+/// look most alike in both images, the best first: a search over all distances and turns, for when nothing is near
+/// enough to be aligned. Exact to some pixels, where it is right at all.
+std::vector<SE3> localizeCoarsely(std::span<const RestingPoint> points, const ImagePyramid& then,
+                                  const ImagePyramid& now, const MotionRange& range, const StereoCamera& camera);
+
+}  // namespace motorcade

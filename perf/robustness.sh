@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# Measures what faults do to the results, and writes perf/robustness.md: every fault of `run --inject` on real and rendered drives, with the
+# drift of the camera and the recall of moving objects against the same drive without faults. Needs jq.
+#   perf/robustness.sh [--gaps N] [--drives "NAME ..."] [DATA_FOLDER] [OUT_FOLDER]
+# --gaps    gaps of random place and length on rendered_street whose error is held against what the run says of it (default 100)
+# --drives  only these
+set -euo pipefail
+cd "$(dirname "$0")/.."
+gaps=100 drives="rendered_street kitti_tracking_0003" folders=()
+while (($#)); do
+  case $1 in
+    --gaps) gaps=$2 && shift 2 ;;
+    --drives) drives=$2 && shift 2 ;;
+    -*) sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+    *) folders+=("$1") && shift ;;
+  esac
+done
+data=${folders[0]:-${MOTORCADE_DATA:-../shared/data}}
+out=${folders[1]:-results/robustness}
+motorcade=${MOTORCADE:-build/release/apps/motorcade}
+report=perf/robustness.md
+command -v jq >/dev/null || { echo "perf/robustness.sh needs jq: apt-get install jq" >&2; exit 1; }
+mkdir -p "$out"
+
+run() {  # DRIVE FAULTS: the measures of a run as JSON in $out/measures.json
+  rm -rf "$out/run"
+  local exit_code=0
+  "$motorcade" run "$data/$1" --out "$out/run" ${2:+--inject "$2"} >"$out/log" 2>&1 || exit_code=$?
+  ((exit_code == 0)) || { cat "$out/log" >&2; return 1; }
+  "$motorcade" evaluate "$out/run" --sequence "$data/$1" --json "$out/measures.json" >/dev/null
+}
+ate() { jq '.final.camera.ate_m.rmse' "$out/measures.json"; }
+recall() { jq '.final.detection.within_30m.recall // 0' "$out/measures.json"; }
+
+row() {  # NAME FAULTS
+  local line="| $1 | \`$2\` |" drive clean_ate clean_recall
+  for drive in $drives; do
+    read -r clean_ate clean_recall <<<"${clean[$drive]}"
+    run "$drive" "$2"
+    line+=$(jq -r --argjson clean "$clean_ate" --argjson recall "$clean_recall" --slurpfile summary "$out/run/summary.json" '
+      .final.camera.ate_m.rmse as $ate | (.final.detection.within_30m.recall // null) as $found | $summary[0].frames as $f |
+      " \($ate * 1000 | round / 1000) (x \($ate / $clean * 100 | round / 100)) | \(if $found == null then "-" else "\($found * 1000 | round / 10)" end) | \($f.lost + $f.rejected + $f.dropped) / \($f.degraded) / \($f.segments) |"' \
+      "$out/measures.json")
+  done
+  echo "$line"
+}
+
+head_of() { printf '| fault | `--inject` |'; for drive in $drives; do printf ' %s: ATE m (times clean) | recall %% | missing / degraded / segments |' "$drive"; done
+  printf '\n| --- | --- |'; for drive in $drives; do printf ' --- | --- | --- |'; done; printf '\n'; }
+
+declare -A clean
+for drive in $drives; do
+  run "$drive" ""
+  clean[$drive]="$(ate) $(recall)"
+done
+
+{
+  echo "# Robustness"
+  echo
+  echo "Made by \`perf/robustness.sh\`: what each fault does to the camera's final path (absolute trajectory error, and how many times that of the drive"
+  echo "without faults) and to the recall of moving objects to 30 m. *Missing*: lost, rejected and dropped frames."
+  echo
+  echo "## Frames that are missing or of no use"
+  echo
+  head_of
+  row "none" "seed=1"
+  for n in 1 3 5 8 10 15; do row "$n missing" "drop@30:$((30 + n))"; done
+  for n in 1 3 10; do row "$n black" "black@30:$((30 + n))"; done
+  row "3 white" "white@30:33"
+  row "3 damaged" "truncated@30:33"
+  row "3 with bits turned" "bitflips=20@30:33"
+  row "3 without the right image" "one_eyed@30:33"
+  row "3 frozen" "duplicate@30:33"
+  row "left and right exchanged" "exchanged@30"
+  row "first five black" "black@0:5"
+  row "every second blurred" "blur=9@0::2"
+  row "every fifth exposed by .3" "exposure=0.3@0::5"
+  row "three in ten missing" "drop~0.3"
+  row "neighbors exchanged" "reordered@30"
+  row "clock jumps by an hour" "jump=3600@30"
+  echo
+  echo "## Poor images, all along"
+  echo
+  head_of
+  for v in 10 20 40; do row "noise, sigma $v" "noise=$v"; done
+  for v in 3 5 9; do row "blur over $v px" "blur=$v"; done
+  for v in 40 20 10; do row "JPEG, quality $v" "jpeg=$v"; done
+  for v in 0.5 1.5; do row "exposure x $v" "exposure=$v"; done
+  for v in 0.7 0.5; do row "right image's exposure x $v" "exposure=$v/right"; done
+  for v in 3 5; do row "right image's blur $v px" "blur=$v/right"; done
+  echo
+  echo "## Silent jumps"
+  echo
+  perf/gaps.sh "$gaps" rendered_street "$data" "$out"  # its truth is exact
+} >"$out/report.md"
+mv "$out/report.md" "$report"
+cat "$report"

@@ -1,0 +1,35 @@
+#include "apps/pipeline/configuration.hpp"
+#include "apps/pipeline/parameter_table.hpp"
+#include "tests/fuzz/fuzz_input.hpp"
+
+using namespace motorcade;
+
+/// In place of the real one: numbers, switches and choices of the parts that need no stage. All that differs is the
+/// number of keys.
+std::vector<ConfigurationKey> motorcade::parameterTable(PipelineConfig& config) {
+  std::vector<ConfigurationKey> table;
+  const auto add = [&](const std::string& section, const std::vector<Parameter>& parameters) {
+    for (const Parameter& parameter : parameters) table.push_back({section, parameter});
+  };
+  add("pipeline", parametersOf(config.pipeline));
+  add("backend", parametersOf(config.backend.smoother));
+  add("backend.joint", parametersOf(config.backend.joint));
+  return table;
+}
+
+/// A configuration file; what it sets is legal, and is read back as it was written.
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static fuzz::MemoryFile file;
+  const auto& path = file.holding(fuzz::textOf(data, size));
+  fuzz::readOrRefuse(path.native(), {}, [&] {
+    PipelineConfig config, again;
+    applyFile(config, path);
+    const std::string written = toToml(config);
+    applyToml(again, written, "written");
+    fuzz::require(toToml(again) == written, "a configuration that changes when it is written and read");
+    requireValid(config.pipeline);
+    requireValid(config.backend.smoother);
+    requireValid(config.backend.joint);
+  });
+  return 0;
+}
