@@ -37,7 +37,7 @@ enum class FrameCause {
   kUnlinked,      // lost: points are seen, but not how the camera moved since the last frame that was good
   kFailed,        // lost or rejected: a stage of the pipeline could not work
   kUnusable,      // rejected: damaged, missing or of the wrong size
-  kOutOfOrder,    // rejected: its time is not after that of the frame before
+  kOutOfOrder,    // rejected: its time does not follow that of the frame before
   kTooLate        // dropped: it never came, or not in time
 };
 inline constexpr std::size_t kCauseCount = 9;

@@ -38,7 +38,8 @@ bool FaultInjector::give(StereoFrame frame, const Outlet& outlet) {
 }
 
 bool FaultInjector::giveLate(std::int64_t frame, const Outlet& outlet) {
-  const auto due = std::stable_partition(late_.begin(), late_.end(), [&](const Late& late) { return late.after > frame; });
+  const auto due =
+      std::stable_partition(late_.begin(), late_.end(), [&](const Late& late) { return late.after > frame; });
   std::deque<Late> come(std::make_move_iterator(due), std::make_move_iterator(late_.end()));
   late_.erase(due, late_.end());
   return std::ranges::all_of(come, [&](Late& late) { return outlet.push(std::move(late.frame)); });

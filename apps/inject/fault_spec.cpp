@@ -38,7 +38,8 @@ constexpr std::array kKinds{
     KindEntry{FaultKind::kExchanged, "exchanged", 0, 0, 0, "left is right"},
     KindEntry{FaultKind::kOneEyed, "one_eyed", 0, 0, 0, "one image does not come, the right one unless named", true},
     KindEntry{FaultKind::kStall, "stall", 1, 0, 3600, "nothing comes for so many seconds"},
-    KindEntry{FaultKind::kTimeJump, "jump", 3600, 0.001, 1e9, "times are so many seconds later from here on"},
+    KindEntry{FaultKind::kTimeJump, "jump", 3600, -1e9, 1e9,
+              "times are so many seconds later from here on, or earlier"},
     KindEntry{FaultKind::kOutOfMemory, "memory", 16, 0, 1e6, "from here on only so many more megabytes"},
     KindEntry{FaultKind::kDiskFull, "disk", 16, 0, 1e9, "from here on no file grows beyond so many kilobytes"}};
 

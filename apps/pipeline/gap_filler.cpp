@@ -1,17 +1,26 @@
 #include "apps/pipeline/gap_filler.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace motorcade {
+namespace {
+
+/// No motion is taken to go on for longer.
+constexpr double kMaxPrediction_s = 1.0;
+
+}  // namespace
 
 void GapFiller::Trail::add(const Moment& moment) { before = std::exchange(last, moment); }
 
-/// Constant velocity through the last two moments, before or after the last one.
+/// Constant velocity through the last two moments, from the first of them on. The time of a frame that was refused may
+/// be any.
 SE3 GapFiller::Trail::at(Timestamp stamp) const {
   if (!last) return SE3();
   if (!before || last->stamp <= before->stamp) return last->T_world_cam;
   const SE3 motion = before->T_world_cam.inverse() * last->T_world_cam;
-  const double factor = secondsBetween(last->stamp, stamp) / secondsBetween(before->stamp, last->stamp);
+  const double step_s = secondsBetween(before->stamp, last->stamp);
+  const double factor = std::clamp(secondsBetween(last->stamp, stamp), -step_s, kMaxPrediction_s) / step_s;
   return (last->T_world_cam * scaledMotion(motion, factor)).normalized();
 }
 

@@ -44,13 +44,15 @@ bool Intake::push(StereoFrame frame) {
     return true;
   }
   next_id_ = {frame.frame.value + 1};
-  if (!isAfterLast(frame)) {
-    announce({frame.frame, frame.stamp, FrameStatus::kRejected, FrameCause::kOutOfOrder});
+  const auto time = clock_.read(frame.stamp);
+  if (!time) {
+    announce({frame.frame, clock_.expected(), FrameStatus::kRejected, FrameCause::kOutOfOrder});
     refused_.fetch_add(1, std::memory_order_relaxed);
     received_.fetch_add(1, std::memory_order_relaxed);
     return true;
   }
-  last_stamp_ = frame.stamp;
+  frame.stamp = *time;
+  clock_ahead_ns_.store(clock_.ahead_ns(), std::memory_order_relaxed);
   if (live()) {
     announce({frame.frame, frame.stamp});
     newest_.put(std::move(frame));
@@ -65,7 +67,9 @@ void Intake::passOver(const FrameHeader& frame) {
   assert(frame.frame >= next_id_);
   if (input_.closed()) return;
   next_id_ = {frame.frame.value + 1};
-  announce(frame);
+  FrameHeader header = frame;
+  header.stamp.ns += clock_.ahead_ns();
+  announce(header);
   passed_over_.fetch_add(1, std::memory_order_relaxed);
   received_.fetch_add(1, std::memory_order_relaxed);
 }
@@ -100,12 +104,24 @@ void Intake::admit(Job& job, StereoFrame frame) {
     if (header.status == FrameStatus::kRejected)
       tell(log_, LogLevel::kWarning, [&] {
         return "frame " + std::to_string(header.frame.value) +
-               " is rejected: its time is not after that of the frame before it";
+               " is rejected: its time does not follow that of the frame before it";
       });
+  tellOfClock(frame);
   job.frame = shared(std::move(frame));
   job.sequence = admitted_++;
   if (job.frame->rejected())
     tell(log_, LogLevel::kWarning, [&] { return job.name() + " is rejected: " + job.frame->problem; });
+}
+
+/// The frame may be one of the few before the first with a corrected time.
+void Intake::tellOfClock(const StereoFrame& frame) {
+  const std::int64_t ahead_ns = clock_ahead_ns_.load(std::memory_order_relaxed);
+  if (ahead_ns == std::exchange(told_ahead_ns_, ahead_ns)) return;
+  tell(log_, LogLevel::kWarning, [&] {
+    return "frame " + std::to_string(frame.frame.value) +
+           ": the clock of the camera was set back; from here on times are " +
+           std::to_string(1e-9 * static_cast<double>(ahead_ns)) + " s later than its own";
+  });
 }
 
 std::vector<FrameHeader> Intake::headersBefore(FrameId frame) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/pipeline/entrance.hpp"
+#include "apps/pipeline/frame_clock.hpp"
 #include "apps/pipeline/gap_filler.hpp"
 #include "apps/pipeline/job.hpp"
 #include "apps/pipeline/log_callback.hpp"
@@ -44,9 +45,9 @@ class Intake {
   std::size_t highWater() const { return input_.highWater(); }
 
  private:
-  bool isAfterLast(const StereoFrame& frame) const { return !last_stamp_ || frame.stamp > *last_stamp_; }
   bool live() const { return policy_ == InputPolicy::kLive; }
   void announce(FrameHeader header);
+  void tellOfClock(const StereoFrame& frame);
   void admit(Job& job, StereoFrame frame);
   std::vector<FrameHeader> headersBefore(FrameId frame);
 
@@ -61,9 +62,11 @@ class Intake {
   Mailbox<StereoFrame> newest_;
   SpscRing<FrameHeader> headers_;
   std::atomic<std::int64_t> received_{0}, passed_over_{0}, refused_{0}, late_{0};
+  std::atomic<std::int64_t> clock_ahead_ns_{0};
 
   FrameId next_id_{0};                       // producer only
-  std::optional<Timestamp> last_stamp_;      // producer only
+  FrameClock clock_;                         // producer only
+  std::int64_t told_ahead_ns_ = 0;           // pump only
   std::optional<FrameHeader> header_ahead_;  // pump only: taken from `headers_`, later than the newest frame
   std::size_t admitted_ = 0;                 // pump only
 };

@@ -23,7 +23,8 @@ class Pipeline {
   ~Pipeline();
 
   /// Producer: false after `close`. Frames without an id are numbered; one whose id is not after the last one's is late
-  /// and ignored, one whose time is not after the last one's is rejected.
+  /// and ignored, one whose time is not after the last one's is rejected; where the camera's clock was set back, times
+  /// go on from the last one (see `FrameClock`).
   /// A frame without a due time is due when the pipeline takes it.
   /// Under the live policy it takes no lock and, with images from an ImagePool, asks nothing of the heap.
   bool push(StereoFrame frame);

@@ -61,10 +61,11 @@ TEST_F(Inject, AStartInTheDarkIsNoMotion) {
 
 TEST_F(Inject, AJumpOfTheClockBeginsANewSegment) {
   const RunFolder folder = inject("jump", "jump=3600@7");
-  expectFrame(folder, 7, FrameStatus::kLost, FrameCause::kUnlinked);
-  expectFrame(folder, 9, FrameStatus::kGood, FrameCause::kNone);
-  EXPECT_EQ(folder.frames[6].segment, 0);
-  EXPECT_EQ(folder.frames[9].segment, 1);
+  expectFrame(folder, 7, FrameStatus::kRejected, FrameCause::kOutOfOrder);  // it might have been one wrong time
+  expectFrame(folder, 8, FrameStatus::kLost, FrameCause::kUnlinked);
+  expectFrame(folder, 10, FrameStatus::kGood, FrameCause::kNone);
+  EXPECT_EQ(folder.frames[7].segment, 0);
+  EXPECT_EQ(folder.frames[10].segment, 1);
   EXPECT_LT((folder.final.camera[9].translation() - folder.final.camera[6].translation()).norm(), 40);
   EXPECT_EQ(summary("jump")["frames"]["segments"], 2);
   for (const auto& row : folder.final.objects) {
@@ -73,6 +74,22 @@ TEST_F(Inject, AJumpOfTheClockBeginsANewSegment) {
       EXPECT_FALSE(across && row.object.track == other.object.track) << row.object.track.value;
     }
   }
+}
+
+TEST_F(Inject, AClockThatIsSetBackCostsAFewFrames) {
+  const RunFolder folder = inject("back", "jump=-3600@4");
+  for (std::size_t frame = 4; frame < 8; ++frame)
+    expectFrame(folder, frame, FrameStatus::kRejected, FrameCause::kOutOfOrder);
+  expectFrame(folder, 8, FrameStatus::kGood, FrameCause::kAfterGap);
+  expectFrame(folder, 9, FrameStatus::kGood, FrameCause::kNone);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("the clock of the camera was set back"));
+}
+
+TEST_F(Inject, OneTimeFarAheadCostsAFrame) {
+  const RunFolder folder = inject("ahead", "jump=3600@6,jump=-3600@7");
+  expectFrame(folder, 6, FrameStatus::kRejected, FrameCause::kOutOfOrder);
+  expectFrame(folder, 7, FrameStatus::kGood, FrameCause::kAfterGap);
+  expectFrame(folder, 8, FrameStatus::kGood, FrameCause::kNone);
 }
 
 TEST_F(Inject, LatePairsAreIgnored) {

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/timestamp.hpp"
+
+namespace motorcade {
+
+/// The time of frames, which never goes back, whatever the camera's clock does. A frame whose time is not after that of
+/// the frame before is out of order, and so is one far ahead unless the next one agrees. A few frames in a row before
+/// the last one, but in order, show that the clock was set back: times then go on from the last one, at the pace of the
+/// new ones.
+class FrameClock {
+ public:
+  /// Beyond it a frame is far ahead: no motion can be followed over as long.
+  static constexpr std::int64_t kFarAhead_ns = 10'000'000'000;
+  /// So many frames in a row that are before the last one are refused; the next one goes on.
+  static constexpr int kRefused = 4;
+
+  /// The time of a frame that the camera stamped so; empty when it is out of order.
+  std::optional<Timestamp> read(Timestamp stamp);
+  /// When the frame that was refused last was likely taken: one period after the frame before it.
+  Timestamp expected() const { return expected_; }
+  /// How much later frames are than the camera says: how far its clock was set back, time without frames aside.
+  std::int64_t ahead_ns() const { return ahead_ns_; }
+
+ private:
+  bool isFarAhead(Timestamp stamp) const;
+  bool goesOn(Timestamp stamp);
+  Timestamp accept(Timestamp stamp);
+
+  std::optional<Timestamp> last_;  // as the camera stamped it
+  std::int64_t ahead_ns_ = 0, period_ns_ = 0;
+  Timestamp expected_;
+  std::optional<Timestamp> refused_ahead_;  // the frame before this one
+  Timestamp first_refused_, last_refused_;
+  int refused_ = 0;  // in a row, before the last one, with times in order
+};
+
+}  // namespace motorcade

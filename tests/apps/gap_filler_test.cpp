@@ -1,0 +1,42 @@
+#include "apps/pipeline/gap_filler.hpp"
+
+#include <gtest/gtest.h>
+
+namespace motorcade {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000, kHour_ns = 3600 * kSecond_ns;
+
+/// A camera that goes forward by ten meters a second, ten frames a second.
+FrameEstimate estimateAt(std::int64_t frame) {
+  FrameEstimate estimate;
+  estimate.frame = {frame};
+  estimate.stamp = {frame * kSecond_ns / 10};
+  estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, static_cast<double>(frame)});
+  return estimate;
+}
+
+double wayTo_m(const GapFiller& filler, std::int64_t stamp_ns) { return filler.predict({stamp_ns}).translation().z(); }
+
+TEST(GapFiller, PredictsASteadyMotionForASecond) {
+  GapFiller filler;
+  filler.published(estimateAt(0), true);
+  filler.published(estimateAt(1), true);
+  EXPECT_NEAR(wayTo_m(filler, 3 * kSecond_ns / 10), 3, 1e-9);
+  EXPECT_NEAR(wayTo_m(filler, 11 * kSecond_ns / 10), 11, 1e-9);
+  EXPECT_NEAR(wayTo_m(filler, kHour_ns), 11, 1e-9);
+  EXPECT_NEAR(wayTo_m(filler, -kHour_ns), 0, 1e-9);  // of a frame that was refused for its time
+}
+
+TEST(GapFiller, InterpolatesBetweenFinalPoses) {
+  GapFiller filler;
+  filler.published(estimateAt(0), true);
+  filler.fill({{{1}, {kSecond_ns / 10}}});
+  filler.published(estimateAt(2), true);
+  const auto finals = filler.completed({estimateAt(0), estimateAt(2)});
+  ASSERT_EQ(finals.size(), 3u);
+  EXPECT_NEAR(finals[1].T_world_cam.translation().z(), 1, 1e-9);
+}
+
+}  // namespace
+}  // namespace motorcade
