@@ -1,18 +1,20 @@
 #include "io/image_codec.hpp"
 
 #include "io/errors.hpp"
+#include "io/image_limits.hpp"
 #include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {
 
 constexpr int kMinSide_px = 16, kMaxSide_px = 16384;
-constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 26;  // 8192 x 8192: a few bytes may tell of more than memory
-constexpr std::size_t kMaxFile_bytes = std::size_t{1} << 28;
 
 }  // namespace
 
-std::string readImageBytes(const std::filesystem::path& file) { return readWhole(file, kMaxFile_bytes); }
+std::string readImageBytes(const std::filesystem::path& file, int max_mb) {
+  constexpr std::size_t kMegabyte = std::size_t{1} << 20;
+  return readWhole(file, static_cast<std::size_t>(max_mb) * kMegabyte);
+}
 
 ImageSize checkedSize(std::uint64_t width, std::uint64_t height, const std::filesystem::path& file) {
   const auto bad = [](std::uint64_t side) { return side < kMinSide_px || side > kMaxSide_px; };
@@ -21,9 +23,9 @@ ImageSize checkedSize(std::uint64_t width, std::uint64_t height, const std::file
                      " pixels; each side must lie between " + std::to_string(kMinSide_px) + " and " +
                      std::to_string(kMaxSide_px));
   }
-  if (width * height > kMaxPixels) {
+  if (width * height > kMaxImage_pixels) {
     throw InputError(file.string() + ": its header tells " + std::to_string(width) + "x" + std::to_string(height) +
-                     " pixels, more than " + std::to_string(kMaxPixels) + "; make the images smaller");
+                     " pixels, more than " + std::to_string(kMaxImage_pixels) + "; make the images smaller");
   }
   return {static_cast<int>(width), static_cast<int>(height)};
 }

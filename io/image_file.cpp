@@ -53,8 +53,8 @@ ImageSize readImageSize(const fs::path& file) {
   return requiredCodecOf(bytes, file).size(bytes, file);
 }
 
-Image readImage(const fs::path& file, ImagePool& pool, std::optional<ImageSize> expected) {
-  return decodeImage(readImageBytes(file), file, pool, expected);
+Image readImage(const fs::path& file, ImagePool& pool, std::optional<ImageSize> expected, int max_mb) {
+  return decodeImage(readImageBytes(file, max_mb), file, pool, expected);
 }
 
 Image decodeImage(std::string_view bytes, const fs::path& name, ImagePool& pool, std::optional<ImageSize> expected) {

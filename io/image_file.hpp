@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/image.hpp"
+#include "io/image_limits.hpp"
 
 /// Images in files. Formats are recognized by content, sizes are checked in the header before anything is allocated.
 /// Reading throws InputError, writing OutputError, both naming the file.
@@ -43,13 +44,14 @@ ImageFormat imageFormat(const std::filesystem::path& file);
 ImageSize readImageSize(const std::filesystem::path& file);
 
 /// Any PNG, JPEG or PGM as 8-bit gray; color is weighted as in BT.601, 16 bits lose the lower byte. Another size than
-/// the expected one is refused by the header.
-Image readImage(const std::filesystem::path& file, ImagePool& pool, std::optional<ImageSize> expected = {});
+/// the expected one is refused by the header, a file of more than `max_mb` before it is read.
+Image readImage(const std::filesystem::path& file, ImagePool& pool, std::optional<ImageSize> expected = {},
+                int max_mb = kMaxImageFile_mb);
 /// The same from the bytes of a whole file; `name` is for messages.
 Image decodeImage(std::string_view bytes, const std::filesystem::path& name, ImagePool& pool,
                   std::optional<ImageSize> expected = {});
 /// The whole file, unless it is too large for an image.
-std::string readImageBytes(const std::filesystem::path& file);
+std::string readImageBytes(const std::filesystem::path& file, int max_mb = kMaxImageFile_mb);
 /// A gray PNG of 16 bits; one of 8 bits is widened without scaling.
 Gray16Image readPng16(const std::filesystem::path& file);
 

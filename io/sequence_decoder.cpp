@@ -23,6 +23,7 @@ void giveWay() {
 SequenceDecoder::SequenceDecoder(Sequence sequence, FrameRange range, const Params& params)
     : sequence_(std::move(sequence)),
       wanted_(params.wanted),
+      max_file_mb_(params.max_file_mb),
       range_(range.within(sequence_.frames.size())),
       ring_(params.ahead) {
   thread_ = std::jthread([this] {
@@ -44,8 +45,8 @@ StereoFrame SequenceDecoder::decode(std::size_t index) {
   frame.stamp = sequence_.stamps[index];
   const ImageSize expected{sequence_.camera.width_px, sequence_.camera.height_px};
   try {
-    frame.left = readImage(sequence_.frames[index].left, pool_, expected);
-    frame.right = readImage(sequence_.frames[index].right, pool_, expected);
+    frame.left = readImage(sequence_.frames[index].left, pool_, expected, max_file_mb_);
+    frame.right = readImage(sequence_.frames[index].right, pool_, expected, max_file_mb_);
   } catch (const std::exception& error) {  // nothing may leave the thread: also a lack of memory only costs the frame
     frame.left = frame.right = Image();
     frame.problem = error.what();

@@ -8,6 +8,7 @@
 #include "core/image.hpp"
 #include "core/messages.hpp"
 #include "core/spsc_ring.hpp"
+#include "io/image_limits.hpp"
 #include "io/sequence.hpp"
 
 namespace motorcade {
@@ -22,6 +23,7 @@ class SequenceDecoder {
     /// Asked, on the decoder's thread, before a pair is decoded; an unwanted pair is left out. The last pair always
     /// comes.
     std::function<bool(Timestamp)> wanted{};
+    int max_file_mb = kMaxImageFile_mb;
   };
   SequenceDecoder(Sequence sequence, FrameRange range, const Params& params);
   SequenceDecoder(Sequence sequence, FrameRange range) : SequenceDecoder(std::move(sequence), range, Params{}) {}
@@ -51,6 +53,7 @@ class SequenceDecoder {
 
   Sequence sequence_;
   std::function<bool(Timestamp)> wanted_;
+  int max_file_mb_;
   FrameRange range_;
   ImagePool pool_;
   SpscRing<StereoFrame> ring_;

@@ -13,14 +13,14 @@ constexpr double kMaxPrediction_s = 1.0;
 
 void GapFiller::Trail::add(const Moment& moment) { before = std::exchange(last, moment); }
 
-/// Constant velocity through the last two moments, from the first of them on. The time of a frame that was refused may
-/// be any.
+/// Constant velocity through the last two moments, for a second before and after them.
 SE3 GapFiller::Trail::at(Timestamp stamp) const {
   if (!last) return SE3();
   if (!before || last->stamp <= before->stamp) return last->T_world_cam;
   const SE3 motion = before->T_world_cam.inverse() * last->T_world_cam;
   const double step_s = secondsBetween(before->stamp, last->stamp);
-  const double factor = std::clamp(secondsBetween(last->stamp, stamp), -step_s, kMaxPrediction_s) / step_s;
+  const double factor =
+      std::clamp(secondsBetween(last->stamp, stamp), -step_s - kMaxPrediction_s, kMaxPrediction_s) / step_s;
   return (last->T_world_cam * scaledMotion(motion, factor)).normalized();
 }
 
@@ -44,6 +44,7 @@ std::vector<FrameEstimate> GapFiller::fill(const std::vector<FrameHeader>& frame
 
 void GapFiller::published(const FrameEstimate& online, bool seen_by_backend) {
   online_.add({online.stamp, online.T_world_cam});
+  if (!first_.before) first_.add({online.stamp, online.T_world_cam});
   segment_ = online.segment;
   if (!seen_by_backend) missing_.push_back(online);
 }
@@ -51,10 +52,11 @@ void GapFiller::published(const FrameEstimate& online, bool seen_by_backend) {
 std::vector<FrameEstimate> GapFiller::completed(const std::vector<FrameEstimate>& finals) {
   std::vector<FrameEstimate> all;
   for (const FrameEstimate& estimate : finals) {
-    const Trail gap{.before = final_.last, .last = Moment{estimate.stamp, estimate.T_world_cam}};
+    const Trail gap =
+        final_.last ? Trail{.before = final_.last, .last = Moment{estimate.stamp, estimate.T_world_cam}} : first_;
     for (; !missing_.empty() && missing_.front().frame < estimate.frame; missing_.pop_front()) {
       all.push_back(missing_.front());
-      if (final_.last) all.back().T_world_cam = gap.at(all.back().stamp);
+      all.back().T_world_cam = gap.at(all.back().stamp);
     }
     final_.add({estimate.stamp, estimate.T_world_cam});
     all.push_back(estimate);

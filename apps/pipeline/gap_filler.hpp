@@ -17,8 +17,8 @@ struct FrameHeader {
 };
 
 /// Gives a pose to the frames that the back-end never saw, so that every input frame has its line in the results:
-/// predicted at constant velocity when published, interpolated between its neighbors in the final trajectory. Call it
-/// in frame order.
+/// predicted at constant velocity when published, interpolated between its neighbors in the final trajectory; before
+/// the first, the final trajectory is as if the first motion had gone on before. Call it in frame order.
 class GapFiller {
  public:
   /// Estimates of frames that came after the last published one and were not processed.
@@ -45,7 +45,7 @@ class GapFiller {
     SE3 at(Timestamp stamp) const;
   };
 
-  Trail online_, final_;
+  Trail first_, online_, final_;
   int segment_ = 0;                    // of the last published frame
   std::deque<FrameEstimate> missing_;  // not in the back-end, and not yet final
 };

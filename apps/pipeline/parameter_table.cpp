@@ -25,6 +25,7 @@ std::vector<ConfigurationKey> parameterTable(PipelineConfig& config) {
     for (Parameter& parameter : parameters) table.push_back({section, std::move(parameter)});
   };
   auto& segmentation = config.scene_flow_segmentation;
+  add("input", parametersOf(config.input));
   add("pipeline", parametersOf(config.pipeline));
   add("frontend", parametersOf(config.preparation));
   add("frontend.corners", parametersOf(config.preparation.corners));

@@ -11,6 +11,7 @@
 #include "frontend/segmentation/scene_flow_segmentation.hpp"
 #include "frontend/shape/object_shapes.hpp"
 #include "frontend/tracking/object_tracker.hpp"
+#include "io/image_limits.hpp"
 
 namespace motorcade {
 
@@ -30,6 +31,7 @@ struct BackendParams {
 
 /// Every parameter of a run, those of each stage. What a user may set has a key in the configuration file.
 struct PipelineConfig {
+  ImageLimits input;
   PipelineParams pipeline;
   FeaturePreparation::Params preparation;
   StereoMatcher::Params stereo;

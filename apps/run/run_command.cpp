@@ -57,6 +57,13 @@ FrameRange selectedFrames(const RunOptions& options, const Sequence& sequence) {
   return range;
 }
 
+void requireWithin(const ImageLimits& limits, const Sequence& sequence) {
+  const int pixels = sequence.camera.width_px * sequence.camera.height_px;
+  if (pixels > limits.max_pixels)
+    throw InputError(fmt::format("{}: images of {} pixels, input.max_pixels is {}", sequence.folder.string(), pixels,
+                                 limits.max_pixels));
+}
+
 void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) {
   const StereoCamera& camera = sequence.camera;
   spdlog::info("{}: {} layout, {} of {} frames, {} x {} px, baseline {:.4f} m", sequence.folder.string(),
@@ -126,7 +133,8 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   StopSignals signals;
   std::optional<CameraClock> clock;
   if (summary.rate_hz) clock.emplace(*summary.rate_hz / summary.capture_rate_hz, 1 / summary.capture_rate_hz);
-  SequenceDecoder::Params decoding{.ahead = std::bit_floor(static_cast<std::size_t>(config.pipeline.frames_in_flight))};
+  SequenceDecoder::Params decoding{.ahead = std::bit_floor(static_cast<std::size_t>(config.pipeline.frames_in_flight)),
+                                   .max_file_mb = config.input.max_file_mb};
   // Where decoding is too slow for a live camera, pairs that a later one has overtaken are left out.
   if (clock && config.pipeline.policy == InputPolicy::kLive)
     decoding.wanted = [&](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };
@@ -159,6 +167,7 @@ int runSequence(const RunOptions& options) {
   const FaultSpec fault_spec = parseFaultSpec(options.inject);
   const auto rate_hz = replayRate_hz(options, config.pipeline.policy);
   const Sequence sequence = openSequence(options.sequence, options.fps_hz);
+  requireWithin(config.input, sequence);
   const FrameRange range = selectedFrames(options, sequence);
   Stages stages = makeStages(config, sequence.camera);
   if (auto other_camera = otherCamera(options, config, sequence)) replaceOdometry(stages, *std::move(other_camera));

@@ -5,14 +5,12 @@
 #include <limits>
 
 #include "backend/smoother/factors.hpp"
-#include "core/unknown_motion.hpp"
 
 namespace motorcade {
 namespace {
 
 constexpr double kFreeMotion = 1e6;  // times the accelerations' variance: nothing is known of how objects move
 constexpr int kEarlierViews = 3;     // of a point whose body is found: one that took longer may be of two
-constexpr int kFewStatic = 20;       // landmarks seen now and before: with fewer the front-end's odometry helps
 
 IncrementalSolver::Params solverParams(const JointParams& params) {
   return {.policy = IncrementalSolver::Policy::kFluid,
@@ -37,9 +35,6 @@ bool concernsVariable(SolverProblem::Kind kind) {
   using Kind = SolverProblem::Kind;
   return kind != Kind::kNotFinite && kind != Kind::kUnknownVariable && kind != Kind::kRepeatedVariable;
 }
-
-/// Were points seen, whether or not they tell how the camera moved?
-bool isSeen(const FrameMeasurements& m) { return m.status == FrameStatus::kGood || m.cause == FrameCause::kUnlinked; }
 
 BodyPoints::Params pointParams(const JointParams& params, const StereoCamera& camera, int max_views,
                                int max_landmarks) {
@@ -75,7 +70,7 @@ void JointGraph::add(const FrameMeasurements& measurements) {
   addPoints(world_, nullptr);
   dropTroubled(solver_.update());
   addObjects(measurements);
-  if (isSeen(measurements)) undecided_.observe(measurements.frame, measurements.undecided);
+  if (showsPoints(measurements)) undecided_.observe(measurements.frame, measurements.undecided);
   calibrate();
 }
 
@@ -85,64 +80,11 @@ void JointGraph::addObjects(const FrameMeasurements& measurements) {
   if (objects_.empty()) return;
   for (auto& [id, object] : objects_) {
     const bool seen_now = object.records.rbegin()->first == measurements.frame;
-    if (!seen_now && isSeen(measurements)) object.points.points.observe(measurements.frame, {});  // its tracks end
+    if (!seen_now && showsPoints(measurements)) object.points.points.observe(measurements.frame, {});  // its tracks end
     settleMotion(object, measurements.frame);
     addPoints(object.points, &object);
   }
   dropTroubled(solver_.update());
-}
-
-void JointGraph::addCamera(const FrameMeasurements& m) {
-  const SE3 T_previous_now = isFinite(m.T_previous_now) ? m.T_previous_now : SE3{};
-  JointCamera camera{.stamp = m.stamp, .status = m.status, .x = {}, .gauge = 0, .weak = false, .covariance = {}};
-  if (!first_frame_.valid()) first_frame_ = m.frame;
-  if (frames_.empty()) {
-    camera.x = solver_.addVariable(SE3{});
-    addGaugePrior(camera.x, SE3{});
-    if (isSeen(m)) observeAtRest(m);
-  } else {
-    const VariableId before = frames_.rbegin()->second.x;
-    camera.x = solver_.addVariable((solver_.pose(before) * T_previous_now).normalized());
-    last_seen_.T_seen_now = (last_seen_.T_seen_now * T_previous_now).normalized();
-    if (isSeen(m)) observeAtRest(m);
-    camera.weak = m.status != FrameStatus::kGood || world_.points.seenNow() < kFewStatic;
-    linkCamera(m, camera);
-  }
-  if (isSeen(m)) last_seen_ = {m.frame, SE3{}};
-  for (const ObjectObservation& seen : m.objects) world_.points.forget(seen.measured);
-  frames_.emplace(m.frame, camera);
-}
-
-/// A point that rests from its second view on did so in the first; one that became so later did not.
-void JointGraph::observeAtRest(const FrameMeasurements& m) {
-  world_.points.observe(m.frame, m.at_rest, [&](PointId point) { return undecided_.take(point, m.frame, 1); });
-}
-
-/// Where points hardly tell it, odometry says how the camera moved since points were seen last; unseen frames lie where
-/// a steady motion puts them. An unknown motion begins a new gauge: after a weak factor all that follows would float.
-void JointGraph::linkCamera(const FrameMeasurements& m, JointCamera& camera) {
-  const auto& [frame_before, before] = *frames_.rbegin();
-  camera.gauge = before.gauge;
-  if (m.cause == FrameCause::kUnlinked) {
-    ++camera.gauge;
-    return addGaugePrior(camera.x, solver_.pose(camera.x));
-  }
-  if (!isSeen(m)) return addOdometry(m.T_previous_now, m.odometry_covariance, before.x, camera.x);
-  const auto seen = frames_.find(last_seen_.frame);
-  if (seen == frames_.end()) return addOdometry(m.T_previous_now, unknownMotionCovariance(), before.x, camera.x);
-  if (seen->first != frame_before) {
-    const double dt_s = secondsBetween(before.stamp, m.stamp);
-    const SE3 steady = scaledMotion(last_seen_.T_seen_now, dt_s / secondsBetween(seen->second.stamp, m.stamp));
-    addOdometry(steady, unknownMotionCovariance(dt_s), before.x, camera.x);
-  }
-  if (camera.weak) addOdometry(last_seen_.T_seen_now, m.odometry_covariance, seen->second.x, camera.x);
-}
-
-void JointGraph::addOdometry(const SE3& T_before_now, const Matrix6d& covariance, VariableId before, VariableId now) {
-  auto root = squareRootInformation(covariance);
-  if (!root) root = squareRootInformation(unknownMotionCovariance());
-  const PoseNoise noise{.sqrt_information = *root};
-  solver_.addFactor(std::make_unique<MotionFactor>(std::array{before, now}, MotionModel{T_before_now}, noise));
 }
 
 JointObject& JointGraph::objectOf(TrackId id) {
@@ -230,13 +172,14 @@ void JointGraph::settleMotion(JointObject& object, FrameId newest) {
   addMotion(before, now->second);
 }
 
-void JointGraph::addGaugePrior(VariableId x, const SE3& mean) {
-  addPrior(x, mean, sigmas(params_.first_pose_sigma_m, params_.first_pose_sigma_rad, params_.first_pose_sigma_rad));
+std::optional<FactorId> JointGraph::addGaugePrior(VariableId x, const SE3& mean) {
+  return addPrior(x, mean,
+                  sigmas(params_.first_pose_sigma_m, params_.first_pose_sigma_rad, params_.first_pose_sigma_rad));
 }
 
-void JointGraph::addPrior(VariableId v, const SE3& mean, const Vector6d& sigma) {
+std::optional<FactorId> JointGraph::addPrior(VariableId v, const SE3& mean, const Vector6d& sigma) {
   const PoseNoise noise{.sqrt_information = sigma.cwiseInverse().asDiagonal()};
-  solver_.addFactor(std::make_unique<PriorFactor>(std::array{v}, PriorModel{mean}, noise));
+  return solver_.addFactor(std::make_unique<PriorFactor>(std::array{v}, PriorModel{mean}, noise));
 }
 
 void JointGraph::addPrior(VariableId v, const SmallVector& mean, const SmallVector& sigma) {
@@ -311,6 +254,7 @@ void JointGraph::dropTroubled(const IncrementalSolver::Report& report) {
 
 void JointGraph::retireOldest() {
   const auto [oldest, camera] = *frames_.begin();
+  start_ = {};
   std::vector<VariableId> retired{camera.x};
   for (auto it = objects_.begin(); it != objects_.end();) {
     JointObject& object = it->second;

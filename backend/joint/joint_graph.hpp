@@ -59,6 +59,9 @@ struct JointObject {
   JointPoints points;
 };
 
+/// Were points seen, whether or not they tell how the camera moved?
+bool showsPoints(const FrameMeasurements& measurements);
+
 /// Covariances of one frame, as far as its graph determines them.
 struct JointCovariances {
   struct Object {
@@ -99,8 +102,11 @@ class JointGraph {
   void addCamera(const FrameMeasurements& measurements);
   void observeAtRest(const FrameMeasurements& measurements);
   void linkCamera(const FrameMeasurements& measurements, JointCamera& camera);
-  void addGaugePrior(VariableId x, const SE3& mean);
-  void addOdometry(const SE3& T_before_now, const Matrix6d& covariance, VariableId before, VariableId now);
+  std::optional<FactorId> addGaugePrior(VariableId x, const SE3& mean);
+  void linkUnseen(const FrameMeasurements& measurements, const JointCamera& camera);
+  void settleStart(Timestamp now, Timestamp seen_first);
+  std::optional<FactorId> addOdometry(const SE3& T_before_now, const Matrix6d& covariance, VariableId before,
+                                      VariableId now);
   void addObservation(const ObjectObservation& seen);
   void addObjects(const FrameMeasurements& measurements);
   SE3 cameraMotion(const JointRecord& before, const JointRecord& now) const;
@@ -120,7 +126,7 @@ class JointGraph {
   void relinearizeClosed(JointPoints& body, const JointObject* object);
   void forgetClosed(const std::function<bool(const ClosedTracks&)>& forgotten);
   JointObject& objectOf(TrackId id);
-  void addPrior(VariableId v, const SE3& mean, const Vector6d& sigma);
+  std::optional<FactorId> addPrior(VariableId v, const SE3& mean, const Vector6d& sigma);
   void addPrior(VariableId v, const SmallVector& mean, const SmallVector& sigma);
   void dropTroubled(const IncrementalSolver::Report& report);
   std::vector<VariableId> variablesOf(const JointObject& object) const;
@@ -141,6 +147,17 @@ class JointGraph {
     SE3 T_seen_now;
   };
   LastSeen last_seen_;
+  /// Frames before the first in which points were seen: nothing tells how the camera moved in them.
+  struct UnseenStart {
+    struct Link {
+      std::optional<FactorId> factor;
+      VariableId before, now;
+      Timestamp from, to;
+    };
+    std::optional<FactorId> gauge;
+    std::vector<Link> links;
+  };
+  UnseenStart start_;
   std::int64_t added_frames_ = 0;
   JointPoints world_;
   UndecidedPoints undecided_;

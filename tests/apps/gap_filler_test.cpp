@@ -25,7 +25,7 @@ TEST(GapFiller, PredictsASteadyMotionForASecond) {
   EXPECT_NEAR(wayTo_m(filler, 3 * kSecond_ns / 10), 3, 1e-9);
   EXPECT_NEAR(wayTo_m(filler, 11 * kSecond_ns / 10), 11, 1e-9);
   EXPECT_NEAR(wayTo_m(filler, kHour_ns), 11, 1e-9);
-  EXPECT_NEAR(wayTo_m(filler, -kHour_ns), 0, 1e-9);  // of a frame that was refused for its time
+  EXPECT_NEAR(wayTo_m(filler, -kHour_ns), -10, 1e-9);
 }
 
 TEST(GapFiller, InterpolatesBetweenFinalPoses) {
@@ -35,6 +35,16 @@ TEST(GapFiller, InterpolatesBetweenFinalPoses) {
   filler.published(estimateAt(2), true);
   const auto finals = filler.completed({estimateAt(0), estimateAt(2)});
   ASSERT_EQ(finals.size(), 3u);
+  EXPECT_NEAR(finals[1].T_world_cam.translation().z(), 1, 1e-9);
+}
+
+TEST(GapFiller, TakesTheFirstMotionToHaveGoneOnBefore) {
+  GapFiller filler;
+  filler.fill({{{0}, {0}}, {{1}, {kSecond_ns / 10}}});
+  for (const std::int64_t frame : {2, 3, 4}) filler.published(estimateAt(frame), true);
+  const auto finals = filler.completed({estimateAt(2)});
+  ASSERT_EQ(finals.size(), 3u);
+  EXPECT_NEAR(finals[0].T_world_cam.translation().z(), 0, 1e-9);
   EXPECT_NEAR(finals[1].T_world_cam.translation().z(), 1, 1e-9);
 }
 

@@ -27,6 +27,11 @@ TEST_F(Run, RejectsADamagedImageAndGoesOn) {
   EXPECT_EQ(run("strict", "--require tracked=1", damaged), 5);
 }
 
+TEST_F(Run, RefusesImagesThatAreLargerThanTheConfigurationAllows) {
+  EXPECT_EQ(run("large", "--set input.max_pixels=1000"), 3);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("input.max_pixels is 1000"));
+}
+
 TEST_F(Run, RefusesInputsThatWouldBeWaitedFor) {
   const std::map<std::string, std::string> answers{{"calib.txt", "calib.txt: is a FIFO"},
                                                    {"times.txt", "times.txt: is a FIFO"},

@@ -171,6 +171,13 @@ TEST_F(ImageFile, AbsurdSizesAreRefusedFromTheHeader) {
   EXPECT_EQ(pool_.buffersMade(), 1u) << "only the image that was written";
 }
 
+TEST_F(ImageFile, RefusesFilesOfMoreBytesThanAllowed) {
+  const std::string large = "P5 1100 1000 255\n" + std::string(std::size_t{1100} * 1000, 'x');
+  const std::filesystem::path file = folder_.write("large.pgm", large);
+  EXPECT_NO_THROW(readImage(file, pool_, {}, 2));
+  EXPECT_THAT(messageOf<InputError>([&] { readImage(file, pool_, {}, 1); }), HasSubstr("large.pgm"));
+}
+
 TEST_F(ImageFile, PixelsThatTheFileCannotHoldAreRefusedBeforeTheyGetMemory) {
   writePng(folder_ / "a.png", noise(40, 24, pool_));
   std::string png = folder_.read("a.png");

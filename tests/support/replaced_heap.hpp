@@ -11,6 +11,7 @@
 bool heapTaken();
 void heapGiven();
 
+// NOLINTBEGIN(misc-definitions-in-headers): see above
 extern "C" {
 void* __real_malloc(std::size_t size);
 void* __real_calloc(std::size_t number, std::size_t size);
@@ -59,3 +60,4 @@ void __wrap_free(void* block) {
 [[gnu::noinline]] void operator delete(void* block, std::size_t) noexcept { std::free(block); }
 [[gnu::noinline]] void operator delete(void* block, std::align_val_t) noexcept { std::free(block); }
 [[gnu::noinline]] void operator delete(void* block, std::size_t, std::align_val_t) noexcept { std::free(block); }
+// NOLINTEND(misc-definitions-in-headers)
