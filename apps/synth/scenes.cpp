@@ -3,6 +3,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "apps/synth/crowded_scenes.hpp"
 #include "apps/synth/mixed_scenes.hpp"
 #include "apps/synth/scene_parts.hpp"
 
@@ -193,7 +194,7 @@ struct Entry {
   const char* name;
   void (*build)(SceneBuilder&);
 };
-constexpr std::array<Entry, 12> kScenes{{{"overtake", buildOvertake},
+constexpr std::array<Entry, 15> kScenes{{{"overtake", buildOvertake},
                                          {"highway", buildHighway},
                                          {"urban", buildUrban},
                                          {"static", buildStatic},
@@ -204,7 +205,10 @@ constexpr std::array<Entry, 12> kScenes{{{"overtake", buildOvertake},
                                          {"circuit", buildCircuit},
                                          {"traffic", buildTraffic},
                                          {"rain", buildRain},
-                                         {"people", buildPeople}}};
+                                         {"people", buildPeople},
+                                         {"crowd", buildCrowd},
+                                         {"truck", buildTruck},
+                                         {"walled_in", buildWalledIn}}};
 
 }  // namespace
 

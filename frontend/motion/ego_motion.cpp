@@ -109,7 +109,7 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
                                        std::uint64_t seed) const {
   const auto votes = votesOf(observations, known_movers);
   const Voters voters = chooseVoters(observations, votes, params_.inlier_chi2);
-  const SE3 start = predicted.T_previous_now.inverse();
+  SE3 start = predicted.T_previous_now.inverse();
   Sampler sample(observations, votes, known_movers, seed);
   if (sample.empty()) return start;
   const double trust = std::min(1.0, static_cast<double>(predicted.steady_frames) / kTrustedSteadyFrames);

@@ -31,6 +31,7 @@ bool heapTaken() {
 }
 void heapGiven() { countHeapCall(); }
 
+// NOLINTBEGIN(*-reserved-identifier, readability-identifier-naming): the linker names them
 extern "C" {
 int __real_pthread_mutex_lock(pthread_mutex_t* mutex);
 int __wrap_pthread_mutex_lock(pthread_mutex_t* mutex) {
@@ -38,6 +39,7 @@ int __wrap_pthread_mutex_lock(pthread_mutex_t* mutex) {
   return __real_pthread_mutex_lock(mutex);
 }
 }
+// NOLINTEND(*-reserved-identifier, readability-identifier-naming)
 
 namespace motorcade {
 namespace {

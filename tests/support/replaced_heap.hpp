@@ -11,7 +11,7 @@
 bool heapTaken();
 void heapGiven();
 
-// NOLINTBEGIN(misc-definitions-in-headers): see above
+// NOLINTBEGIN(misc-definitions-in-headers, *-reserved-identifier, readability-identifier-naming): the linker names them
 extern "C" {
 void* __real_malloc(std::size_t size);
 void* __real_calloc(std::size_t number, std::size_t size);
@@ -60,4 +60,4 @@ void __wrap_free(void* block) {
 [[gnu::noinline]] void operator delete(void* block, std::size_t) noexcept { std::free(block); }
 [[gnu::noinline]] void operator delete(void* block, std::align_val_t) noexcept { std::free(block); }
 [[gnu::noinline]] void operator delete(void* block, std::size_t, std::align_val_t) noexcept { std::free(block); }
-// NOLINTEND(misc-definitions-in-headers)
+// NOLINTEND(misc-definitions-in-headers, *-reserved-identifier, readability-identifier-naming)
