@@ -14,6 +14,9 @@ namespace {
 /// Beyond it no motion is likely to go on: the camera is taken to have stopped somewhere.
 constexpr double kMaxPrediction_s = 1.0;
 
+/// Where nothing else was measured for so long, a camera that seems to slide does so.
+constexpr double kMaxUnbelieved_s = 5.0;
+
 /// Over more steps than these, pitch and roll do not go on: a car nods and sways about where it is.
 constexpr double kSteadySteps = 1.5;
 
@@ -44,7 +47,8 @@ double CameraOdometry::sinceSeen_s(Timestamp stamp) const {
 
 PredictedMotion CameraOdometry::predict(Timestamp stamp) const {
   const double dt_s = sinceSeen_s(stamp);
-  PredictedMotion predicted{SE3{}, dt_s, steady_frames_};
+  const bool is_car = secondsBetween(measured_at_, stamp) < kMaxUnbelieved_s;
+  PredictedMotion predicted{SE3{}, dt_s, steady_frames_, is_car ? ahead_frames_ : 0};
   if (!last_motion_ || last_dt_s_ <= 0) return predicted;
   const double steps = std::min(dt_s, kMaxPrediction_s) / last_dt_s_;
   predicted.T_previous_now = scaledMotion(steps < kSteadySteps ? *last_motion_ : levelMotion(*last_motion_), steps);
@@ -60,6 +64,8 @@ void CameraOdometry::add(const StereoFrame& frame, CameraMotion& motion) {
     const PredictedMotion predicted = predict(frame.stamp);
     steady_frames_ =
         last_motion_ && ego_motion_.follows(motion.T_previous_now.inverse(), predicted) ? steady_frames_ + 1 : 0;
+    if (drivesAhead(motion.T_previous_now, predicted.dt_s)) ++ahead_frames_;
+    if (slides(motion.T_previous_now, predicted.dt_s)) ahead_frames_ = 0;
     last_motion_ = motion.T_previous_now;
     last_dt_s_ = predicted.dt_s;
     measured_at_ = frame.stamp;

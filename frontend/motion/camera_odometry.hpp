@@ -61,7 +61,7 @@ class CameraOdometry {
   std::optional<SE3> last_motion_;       // as last measured, from frame to frame
   double last_dt_s_ = 0;
   Timestamp measured_at_;
-  int steady_frames_ = 0;  // see PredictedMotion
+  int steady_frames_ = 0, ahead_frames_ = 0;  // see PredictedMotion
 };
 
 }  // namespace motorcade

@@ -19,6 +19,10 @@ constexpr double kVoteCell_m = 4;          // edge of the floor's cells, each wi
 constexpr double kVoteDepth_m = 40;        // beyond it depth noise exceeds a cell
 constexpr double kSurprisePenalty = 0.3;   // votes, as a share of all, against a motion that no vehicle can make
 constexpr int kTrustedSteadyFrames = 3;    // after which the penalty counts in full
+constexpr int kTrustedAheadFrames = 20;    // after which a camera that slides is not believed
+constexpr double kSlide_mps = 0.5, kSlideShare = 0.2;  // sideways and upwards; the latter of the way ahead
+constexpr double kYawRate_radps = 1.0;                 // of a tight curve
+constexpr double kDriving_mps = 3.0;                   // faster than what is carried or flies indoors
 constexpr double kClearScore = 0.25;   // of the worst score: three quarters agree, and more samples gain nothing ...
 constexpr int kSearchShare = 4;        // ... once a quarter of the hypotheses have been tried
 constexpr double kRefinementGate = 3;  // of the inliers' chi-square: a hypothesis of three points is not exact
@@ -99,6 +103,20 @@ class Sampler {
 
 }  // namespace
 
+bool drivesAhead(const SE3& T_previous_now, double dt_s) {
+  return T_previous_now.translation().z() > kDriving_mps * dt_s && !slides(T_previous_now, dt_s);
+}
+
+bool slides(const SE3& T_previous_now, double dt_s) {
+  const Eigen::Vector3d way = T_previous_now.translation();
+  const double chord = 0.5 * kYawRate_radps * dt_s;  // of a curve: its angle to the axis
+  return way.head<2>().norm() > kSlide_mps * dt_s + (kSlideShare + chord) * std::abs(way.z());
+}
+
+bool EgoMotionEstimator::isBeyondBelief(const SE3& T_now_previous, const PredictedMotion& predicted) {
+  return predicted.ahead_frames >= kTrustedAheadFrames && slides(T_now_previous.inverse(), predicted.dt_s);
+}
+
 bool EgoMotionEstimator::follows(const SE3& T_now_previous, const PredictedMotion& predicted) const {
   const double change_m = (T_now_previous.inverse().translation() - predicted.T_previous_now.translation()).norm();
   return change_m < params_.max_acceleration_mps2 * predicted.dt_s * predicted.dt_s;
@@ -121,7 +139,7 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
     if (best_score < kClearScore * voters.worst_score && k >= params_.max_hypotheses / kSearchShare) break;
     const std::array<PoseObservation, 3> three{sample(), sample(), sample()};
     const auto fit = fitPose(camera_, PoseObservations(three), start, {.max_iterations = kMinimalIterations});
-    if (!fit) continue;
+    if (!fit || isBeyondBelief(fit->T_cam_ref, predicted)) continue;
     double fit_score = score(camera_, voters, fit->T_cam_ref, params_.inlier_chi2);
     if (!follows(fit->T_cam_ref, predicted)) fit_score += penalty;
     if (fit_score >= best_score) continue;
@@ -150,7 +168,7 @@ std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObse
   const SE3 hypothesis = bestHypothesis(observations, known_movers, predicted, seed);
   const PoseObservations all(observations);
   const auto fit = refine(observations, all, hypothesis);
-  if (!fit) return std::nullopt;
+  if (!fit || isBeyondBelief(fit->T_cam_ref, predicted)) return std::nullopt;
 
   EgoMotion ego;
   ego.T_previous_now = fit->T_cam_ref.inverse();

@@ -25,7 +25,13 @@ struct PredictedMotion {
   SE3 T_previous_now;
   double dt_s = 0;        // from the previous frame to now
   int steady_frames = 0;  // in a row that moved as the frame before them did; 0: no motion is known
+  int ahead_frames = 0;   // that the camera drove along its optical axis, as on a car, and none in which it slid
 };
+
+/// Does a camera that moves like this go along its optical axis at the speed of a car?
+bool drivesAhead(const SE3& T_previous_now, double dt_s);
+/// Does it go sideways, beyond bumps and the chord of a curve?
+bool slides(const SE3& T_previous_now, double dt_s);
 
 /// RANSAC over three points, then covariance-weighted refinement over all inliers. Stateless.
 class EgoMotionEstimator {
@@ -50,6 +56,9 @@ class EgoMotionEstimator {
   bool follows(const SE3& T_now_previous, const PredictedMotion& predicted) const;
 
  private:
+  /// A car's camera, which has driven ahead all the time, cannot slide: then it is the points that move, as when a
+  /// truck fills the view.
+  static bool isBeyondBelief(const SE3& T_now_previous, const PredictedMotion& predicted);
   SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
                      const PredictedMotion& predicted, std::uint64_t seed) const;
   std::optional<PoseFit> refine(std::span<const PoseObservation> observations, const PoseObservations& all,

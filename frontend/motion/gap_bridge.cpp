@@ -89,7 +89,7 @@ std::optional<SE3> GapBridge::fit(const Gap& gap, const std::vector<FlowObservat
                             {o.u_px, o.v_px, match->disparity_px + gap.disparity_offset_px},
                             Eigen::Vector3d::Constant(sigma_px)});
   }
-  const PredictedMotion predicted{T_then_now, gap.duration_s, 0};
+  const PredictedMotion predicted{T_then_now, gap.duration_s, 0, gap.ahead_frames};
   const auto ego = ego_motion_(observations, std::vector<bool>(observations.size(), false), predicted,
                                static_cast<std::uint64_t>(gap.now.frame->frame.value));
   if (!ego || ego->inlier_count < kMinAgreeing) return std::nullopt;

@@ -104,11 +104,13 @@ void SceneFlowSegmentation::bridge(const StereoMatches& stereo, Sight& sight) co
                            .then = *tracks_.featuresOfLast(),
                            .now = now,
                            .disparity_offset_px = disparity_offset_.offset_px(),
-                           .duration_s = predicted.dt_s};
+                           .duration_s = predicted.dt_s,
+                           .ahead_frames = predicted.ahead_frames};
   if (!T_then_now && predicted.dt_s < GapBridge::kMaxGap_s)
     T_then_now = gap_bridge_.locate(gap, predicted.T_previous_now);
   if (T_then_now)
-    sight = look(stereo, merged(sight.flow, gap_bridge_.find(gap, *T_then_now)), {*T_then_now, predicted.dt_s, 0});
+    sight = look(stereo, merged(sight.flow, gap_bridge_.find(gap, *T_then_now)),
+                 {*T_then_now, predicted.dt_s, 0, predicted.ahead_frames});
   if (T_then_now && sight.camera.status == FrameStatus::kGood && agree(sight.camera.T_previous_now, *T_then_now)) {
     sight.camera.cause = FrameCause::kAfterGap;
   } else {

@@ -147,5 +147,17 @@ TEST(CameraOdometry, NoMotionIsTakenToGoOnForLong) {
   EXPECT_NEAR(odometry.predict({3600'000'000'000}).T_previous_now.translation().norm(), second_m, 1e-9);
 }
 
+TEST(CameraOdometry, ACarsCameraIsOneThatHasDrivenAhead) {
+  CameraOdometry odometry({}, kRig);
+  int frame = 0;
+  for (; frame < 30; ++frame) see(odometry, frameAt(frame, 100 * frame), Views(200, kStep, frame));
+  EXPECT_EQ(odometry.predict(frameAt(frame, 100 * frame).stamp).ahead_frames, 29);
+  const SE3 aside(Eigen::Matrix3d::Identity(), {0.5, 0, 0});
+  const CameraMotion refused = see(odometry, frameAt(frame, 100 * frame), Views(200, aside, 1));
+  EXPECT_EQ(refused.status, FrameStatus::kLost);
+  EXPECT_EQ(odometry.predict({3'500'000'000}).ahead_frames, 29);
+  EXPECT_EQ(odometry.predict({9'000'000'000}).ahead_frames, 0);  // it was not seen to drive for too long
+}
+
 }  // namespace
 }  // namespace motorcade

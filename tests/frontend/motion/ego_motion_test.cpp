@@ -132,5 +132,35 @@ TEST(EgoMotion, ASteadyMotionIsNotGivenUpForOneThatNoVehicleCanMake) {
   }
 }
 
+/// A truck passes ahead of a car that stands, and all that is at rest are a few points.
+TEST(EgoMotion, ACarDoesNotSlideWhereATruckFillsTheView) {
+  const EgoMotionEstimator estimate({}, kRig);
+  const SE3 standing, sliding(Eigen::Matrix3d::Identity(), {-0.65, 0, 0});
+  const Street truck = street(90, 0, 1, sliding), around = street(30, 0, 2, standing);
+  Street s = truck;
+  s.observations.insert(s.observations.end(), around.observations.begin(), around.observations.end());
+  s.moves.resize(s.observations.size(), false);
+  PredictedMotion predicted{standing, 0.1, 0, 50};
+  const auto of_car = estimate(s.observations, nothingKnown(s), predicted, 1);
+  ASSERT_TRUE(of_car);
+  EXPECT_LT(of_car->T_previous_now.translation().norm(), 0.05);
+  EXPECT_FALSE(estimate(truck.observations, nothingKnown(truck), predicted, 1));
+  predicted.ahead_frames = 0;  // whatever the camera is mounted on
+  const auto of_any = estimate(s.observations, nothingKnown(s), predicted, 1);
+  ASSERT_TRUE(of_any);
+  EXPECT_LT((of_any->T_previous_now.translation() - sliding.translation()).norm(), 0.05);
+}
+
+TEST(EgoMotion, TellsDrivingFromSliding) {
+  const auto moved = [](double x, double y, double z) { return SE3(Eigen::Matrix3d::Identity(), {x, y, z}); };
+  EXPECT_TRUE(drivesAhead(moved(0.05, 0.04, 1), 0.1));
+  EXPECT_FALSE(drivesAhead(moved(0, 0, 0.1), 0.1));
+  EXPECT_FALSE(drivesAhead(moved(0, 0, -1), 0.1));
+  EXPECT_FALSE(slides(moved(0, 0.04, 0), 0.1));
+  EXPECT_FALSE(slides(moved(0.2, 0, 1), 0.1));
+  EXPECT_TRUE(slides(moved(0.5, 0, 1), 0.1));
+  EXPECT_FALSE(slides(moved(4, 0, 10), 1));  // a curve's chord
+}
+
 }  // namespace
 }  // namespace motorcade
