@@ -196,6 +196,19 @@ void ObjectTracker::matchSegments(const SceneMotion& scene) {
     if (object_of[s] >= 0 || scene.segments[s].label != PointLabel::kMoving) continue;
     std::ranges::move(spawn_(scene, scene.segments[s], T_world_cam_, taken), std::back_inserter(objects_));
   }
+  dropFarthest();
+}
+
+/// Of the objects that are not confirmed yet, where more are followed than may be.
+void ObjectTracker::dropFarthest() {
+  const auto most = static_cast<std::size_t>(params_.max_objects);
+  while (objects_.size() > most) {
+    const auto importance = [](const TrackedObject& object) {
+      return object.life.phase() == Phase::kTentative ? -object.T_cam_body.translation().norm() : 0.0;
+    };
+    const auto least = std::ranges::min_element(objects_, {}, importance);
+    objects_.erase(least);
+  }
 }
 
 /// The position of an object that was not seen has drifted: what is seen again is taken for what was seen last.
@@ -231,6 +244,8 @@ std::vector<Parameter> parametersOf(ObjectTracker::Params& params) {
   const std::vector<Parameter> own{
       numberParameter("look_back_frames", params.look_back_frames, {0, 50},
                       "more fill in an object's path before it was confirmed"),
+      numberParameter("max_objects", params.max_objects, {1, 1000},
+                      "bounds time and memory in crowds: of new ones the nearest are followed"),
       numberParameter("max_coasted_frames", params.max_coasted_frames, {0, 5},
                       "rows in state `predicted` while an object is not seen"),
       numberParameter("max_lost_frames", params.max_lost_frames, {0, 100},

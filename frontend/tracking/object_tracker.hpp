@@ -24,7 +24,8 @@ class ObjectTracker {
   struct Params {
     ObjectConfirmation::Params confirmation;
     int look_back_frames =
-        12;  // in which a confirmed object is looked for among the points followed before its spawning
+        12;                // in which a confirmed object is looked for among the points followed before its spawning
+    int max_objects = 64;  // followed at a time
     int max_coasted_frames = 5;  // rows in state `predicted`
     int max_lost_frames = 15;    // after which a confirmed object that was not measured ends
     double stop_speed_mps = 0.5, start_speed_mps = 1.0;
@@ -46,6 +47,7 @@ class ObjectTracker {
   void confirmSure(FrameMeasurements& measurements);
   void confirm(TrackedObject& object, FrameMeasurements& measurements);
   void matchSegments(const SceneMotion& scene);
+  void dropFarthest();
   void reappear(TrackedObject& object, const Segment& segment) const;
   bool isOutOfReach(const TrackedObject& object) const;
   bool mayBeInImage(const TrackedObject& object) const;

@@ -24,7 +24,6 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
 
 const fs::path kGraphs = test::dataFolder() / "posegraphs";
 const std::string kUnit3 = " 1 0 0 1 0 1\n";

@@ -147,7 +147,7 @@ TEST(OpticalFlowTracker, KeepsPointsApartAndSpread) {
   }
 }
 
-FeaturesPtr at(FeaturesPtr features, int frame) {
+FeaturesPtr at(const FeaturesPtr& features, int frame) {
   auto stamped = std::make_shared<StereoFrame>(*features->frame);
   stamped->frame = {frame};
   stamped->stamp = {frame * 100'000'000};

@@ -313,5 +313,28 @@ TEST(ObjectTracker, EveryFrameGivesItsOutput) {
   EXPECT_TRUE(answer->objects.empty());
 }
 
+TEST(ObjectTracker, FollowsNoMoreObjectsThanItMay) {
+  std::vector<SimulatedCar> cars;
+  for (int i = 0; i < 6; ++i)
+    cars.push_back({.x_m = -7.5 + 3.0 * i, .z_m = 14.0 + 3.0 * ((i + 2) % 4), .speed_mps = 12});
+  for (const int most : {2, 64}) {
+    SimulatedTraffic traffic(cars, 8, 1, 0.003);
+    ObjectTracker::Params params;
+    params.max_objects = most;
+    ObjectTracker tracker(params, kRig);
+    std::size_t most_at_once = 0;
+    for (int i = 0; i < 12; ++i) {
+      const auto frame = tracker(traffic.next());
+      const auto now = [&](const ObjectObservation& o) { return o.frame == frame->frame; };
+      most_at_once = std::max<std::size_t>(most_at_once, std::ranges::count_if(frame->objects, now));
+    }
+    if (most == 2) {
+      EXPECT_EQ(most_at_once, 2U);
+    } else {
+      EXPECT_GT(most_at_once, 3U);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace motorcade
