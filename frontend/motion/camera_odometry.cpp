@@ -50,7 +50,8 @@ PredictedMotion CameraOdometry::predict(Timestamp stamp) const {
   const bool is_car = secondsBetween(measured_at_, stamp) < kMaxUnbelieved_s;
   PredictedMotion predicted{SE3{}, dt_s, steady_frames_, is_car ? ahead_frames_ : 0};
   if (!last_motion_ || last_dt_s_ <= 0) return predicted;
-  const double steps = std::min(dt_s, kMaxPrediction_s) / last_dt_s_;
+  const double predicted_s = secondsBetween(measured_at_, stamp);  // of which dt_s are the last
+  const double steps = std::clamp(kMaxPrediction_s - (predicted_s - dt_s), 0.0, dt_s) / last_dt_s_;
   predicted.T_previous_now = scaledMotion(steps < kSteadySteps ? *last_motion_ : levelMotion(*last_motion_), steps);
   return predicted;
 }
@@ -97,7 +98,7 @@ CameraMotion CameraOdometry::measure(const StereoFrame& frame, const std::vector
   CameraMotion motion{.T_previous_now = SE3{}, .inliers = std::vector<bool>(observed.size(), false)};
   if (trail_.empty()) return motion;
   std::vector<PoseObservation> observations;
-  std::vector<bool> known_movers;
+  std::vector<PointLabel> labels;
   std::vector<std::size_t> of_observation;
   observations.reserve(observed.size());
   of_observation.reserve(observed.size());
@@ -105,10 +106,10 @@ CameraMotion CameraOdometry::measure(const StereoFrame& frame, const std::vector
     if (!known[i] || !observed[i]) continue;
     observations.push_back({known[i]->p_cam, known[i]->covariance, observed[i]->uvd_px.cast<double>(),
                             observed[i]->sigma_px.cast<double>()});
-    known_movers.push_back(known[i]->moving);
+    labels.push_back(known[i]->label);
     of_observation.push_back(i);
   }
-  const auto ego = ego_motion_(observations, known_movers, predicted, static_cast<std::uint64_t>(frame.frame.value));
+  const auto ego = ego_motion_(observations, labels, predicted, static_cast<std::uint64_t>(frame.frame.value));
   if (!ego) return predictedMotion(FrameCause::kUnlinked, predicted.T_previous_now, observed.size(), predicted.dt_s);
   motion.T_previous_now = ego->T_previous_now;
   motion.covariance = ego->covariance;

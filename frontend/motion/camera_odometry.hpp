@@ -35,6 +35,10 @@ class CameraOdometry {
   /// Was the motion measured, and not too long ago?
   bool motionKnown(Timestamp stamp) const;
 
+  /// May the camera have moved like this since the last frame that was seen?
+  bool believes(const SE3& T_previous_now, const PredictedMotion& predicted) const {
+    return !ego_motion_.breaks(T_previous_now.inverse(), predicted);
+  }
   /// The motion since the last frame that was seen. `known` tells where points were then, `observed` where they are
   /// now; both are parallel. The first frame that is seen does not move.
   CameraMotion measure(const StereoFrame& frame, const std::vector<std::optional<KnownPoint>>& known,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <random>
@@ -15,14 +16,18 @@ namespace {
 constexpr int kScoredPoints = 300;         // of all observations: more tell hypotheses apart no better
 constexpr int kMinimalIterations = 5;      // of a fit to three points, which starts near
 constexpr double kKnownMoverWeight = 0.1;  // vote of a point that moved in the frame before: it may have stopped
+constexpr double kRoadShare = 0.5;         // of the votes
+constexpr int kRoadPoints = 10;            // with fewer it may be no road
 constexpr double kVoteCell_m = 4;          // edge of the floor's cells, each with one vote: about a car's length
 constexpr double kVoteDepth_m = 40;        // beyond it depth noise exceeds a cell
 constexpr double kSurprisePenalty = 0.3;   // votes, as a share of all, against a motion that no vehicle can make
+constexpr double kMaxSurprise = 2;         // times this penalty: all points may jump, where an unseen frame is missing
 constexpr int kTrustedSteadyFrames = 3;    // after which the penalty counts in full
 constexpr int kTrustedAheadFrames = 20;    // after which a camera that slides is not believed
-constexpr double kSlide_mps = 0.5, kSlideShare = 0.2;  // sideways and upwards; the latter of the way ahead
-constexpr double kYawRate_radps = 1.0;                 // of a tight curve
-constexpr double kDriving_mps = 3.0;                   // faster than what is carried or flies indoors
+constexpr double kSlide_mps = 0.5, kSlideShare = 0.2;   // sideways and upwards; the latter of the way ahead
+constexpr double kSway_radps = 0.15, kMinRadius_m = 3;  // turning where it stands, and the tightest curve
+constexpr double kYawRate_radps = 1.0;                  // of a tight curve
+constexpr double kDriving_mps = 3.0;                    // faster than what is carried or flies indoors
 constexpr double kClearScore = 0.25;   // of the worst score: three quarters agree, and more samples gain nothing ...
 constexpr int kSearchShare = 4;        // ... once a quarter of the hypotheses have been tried
 constexpr double kRefinementGate = 3;  // of the inliers' chi-square: a hypothesis of three points is not exact
@@ -56,9 +61,24 @@ double score(const StereoCamera& camera, const Voters& voters, const SE3& T_now_
   return sum;
 }
 
+/// Whatever moves, the road does not: where enough of it is seen, its points have a share of the votes at least.
+void hearTheRoad(const std::vector<PointLabel>& labels, std::vector<double>& votes) {
+  const auto isRoad = [&](std::size_t i) { return labels[i] == PointLabel::kGround; };
+  double road = 0, other = 0;
+  int points = 0;
+  for (std::size_t i = 0; i < votes.size(); ++i) {
+    (isRoad(i) ? road : other) += votes[i];
+    points += isRoad(i);
+  }
+  const double factor = kRoadShare / (1 - kRoadShare) * other / road;
+  if (points < kRoadPoints || factor <= 1) return;
+  for (std::size_t i = 0; i < votes.size(); ++i)
+    if (isRoad(i)) votes[i] *= factor;
+}
+
 /// Of each observation. The world is larger than the vehicles in it, though these may carry most points: so what counts
 /// is the floor space that agrees. Points share the vote of their cell; those beyond `kVoteDepth_m` share by bearing.
-std::vector<double> votesOf(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers) {
+std::vector<double> votesOf(std::span<const PoseObservation> observations, const std::vector<PointLabel>& labels) {
   std::map<std::pair<int, int>, int> points_in;
   std::vector<int*> sharing;
   sharing.reserve(observations.size());
@@ -72,7 +92,8 @@ std::vector<double> votesOf(std::span<const PoseObservation> observations, const
   std::vector<double> votes;
   votes.reserve(observations.size());
   for (std::size_t i = 0; i < observations.size(); ++i)
-    votes.push_back((known_movers[i] ? kKnownMoverWeight : 1.0) / *sharing[i]);
+    votes.push_back((labels[i] == PointLabel::kMoving ? kKnownMoverWeight : 1.0) / *sharing[i]);
+  hearTheRoad(labels, votes);
   return votes;
 }
 
@@ -80,10 +101,11 @@ std::vector<double> votesOf(std::span<const PoseObservation> observations, const
 class Sampler {
  public:
   Sampler(std::span<const PoseObservation> observations, const std::vector<double>& votes,
-          const std::vector<bool>& known_movers, std::uint64_t seed)
+          const std::vector<PointLabel>& labels, std::uint64_t seed)
       : observations_(observations), votes_up_to_(observations.size()), random_(seed) {
     double total = 0;
-    for (std::size_t i = 0; i < observations.size(); ++i) votes_up_to_[i] = total += known_movers[i] ? 0.0 : votes[i];
+    for (std::size_t i = 0; i < observations.size(); ++i)
+      votes_up_to_[i] = total += labels[i] == PointLabel::kMoving ? 0.0 : votes[i];
     empty_ = total <= 0;
     up_to_ = std::uniform_real_distribution<double>(0, total);
   }
@@ -108,27 +130,35 @@ bool drivesAhead(const SE3& T_previous_now, double dt_s) {
 }
 
 bool slides(const SE3& T_previous_now, double dt_s) {
-  const Eigen::Vector3d way = T_previous_now.translation();
+  const Eigen::Vector3d& way = T_previous_now.translation();
   const double chord = 0.5 * kYawRate_radps * dt_s;  // of a curve: its angle to the axis
-  return way.head<2>().norm() > kSlide_mps * dt_s + (kSlideShare + chord) * std::abs(way.z());
+  const double turn = T_previous_now.log().tail<3>().norm();
+  return way.head<2>().norm() > kSlide_mps * dt_s + (kSlideShare + chord) * std::abs(way.z()) ||
+         turn > kSway_radps * dt_s + std::abs(way.z()) / kMinRadius_m;
 }
 
 bool EgoMotionEstimator::isBeyondBelief(const SE3& T_now_previous, const PredictedMotion& predicted) {
   return predicted.ahead_frames >= kTrustedAheadFrames && slides(T_now_previous.inverse(), predicted.dt_s);
 }
 
-bool EgoMotionEstimator::follows(const SE3& T_now_previous, const PredictedMotion& predicted) const {
+/// By how much the change from what was predicted is more than a vehicle can do; 1: just what it can.
+double EgoMotionEstimator::surprise(const SE3& T_now_previous, const PredictedMotion& predicted) const {
   const double change_m = (T_now_previous.inverse().translation() - predicted.T_previous_now.translation()).norm();
-  return change_m < params_.max_acceleration_mps2 * predicted.dt_s * predicted.dt_s;
+  const double possible_m = params_.max_acceleration_mps2 * predicted.dt_s * predicted.dt_s;
+  return possible_m > 0 ? change_m / possible_m : std::numeric_limits<double>::infinity();
+}
+
+bool EgoMotionEstimator::breaks(const SE3& T_now_previous, const PredictedMotion& predicted) const {
+  return predicted.steady_frames >= kTrustedSteadyFrames && !follows(T_now_previous, predicted);
 }
 
 SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observations,
-                                       const std::vector<bool>& known_movers, const PredictedMotion& predicted,
+                                       const std::vector<PointLabel>& labels, const PredictedMotion& predicted,
                                        std::uint64_t seed) const {
-  const auto votes = votesOf(observations, known_movers);
+  const auto votes = votesOf(observations, labels);
   const Voters voters = chooseVoters(observations, votes, params_.inlier_chi2);
   SE3 start = predicted.T_previous_now.inverse();
-  Sampler sample(observations, votes, known_movers, seed);
+  Sampler sample(observations, votes, labels, seed);
   if (sample.empty()) return start;
   const double trust = std::min(1.0, static_cast<double>(predicted.steady_frames) / kTrustedSteadyFrames);
   const double penalty = kSurprisePenalty * trust * voters.worst_score;
@@ -141,7 +171,8 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
     const auto fit = fitPose(camera_, PoseObservations(three), start, {.max_iterations = kMinimalIterations});
     if (!fit || isBeyondBelief(fit->T_cam_ref, predicted)) continue;
     double fit_score = score(camera_, voters, fit->T_cam_ref, params_.inlier_chi2);
-    if (!follows(fit->T_cam_ref, predicted)) fit_score += penalty;
+    if (const double by = surprise(fit->T_cam_ref, predicted); by >= 1)
+      fit_score += std::min(by, kMaxSurprise) * penalty;
     if (fit_score >= best_score) continue;
     best_score = fit_score;
     best = fit->T_cam_ref;
@@ -161,11 +192,11 @@ std::optional<PoseFit> EgoMotionEstimator::refine(std::span<const PoseObservatio
 }
 
 std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObservation> observations,
-                                                        const std::vector<bool>& known_movers,
+                                                        const std::vector<PointLabel>& labels,
                                                         const PredictedMotion& predicted, std::uint64_t seed) const {
-  assert(observations.size() == known_movers.size());
+  assert(observations.size() == labels.size());
   if (static_cast<int>(observations.size()) < params_.min_inliers) return std::nullopt;
-  const SE3 hypothesis = bestHypothesis(observations, known_movers, predicted, seed);
+  const SE3 hypothesis = bestHypothesis(observations, labels, predicted, seed);
   const PoseObservations all(observations);
   const auto fit = refine(observations, all, hypothesis);
   if (!fit || isBeyondBelief(fit->T_cam_ref, predicted)) return std::nullopt;

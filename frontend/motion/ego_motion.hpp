@@ -9,6 +9,7 @@
 #include "core/se3.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/geometry/stereo_pose.hpp"
+#include "frontend/messages.hpp"
 
 namespace motorcade {
 
@@ -30,7 +31,7 @@ struct PredictedMotion {
 
 /// Does a camera that moves like this go along its optical axis at the speed of a car?
 bool drivesAhead(const SE3& T_previous_now, double dt_s);
-/// Does it go sideways, beyond bumps and the chord of a curve?
+/// Does it go sideways, beyond bumps and the chord of a curve, or turn where it stands?
 bool slides(const SE3& T_previous_now, double dt_s);
 
 /// RANSAC over three points, then covariance-weighted refinement over all inliers. Stateless.
@@ -45,21 +46,26 @@ class EgoMotionEstimator {
   EgoMotionEstimator(const Params& params, const StereoCamera& camera)
       : params_(requireValid(params)), camera_(camera) {}
 
-  /// `observations` hold points in the previous camera's frame, `known_movers` whether they moved in the one before it.
+  /// `observations` hold points in the previous camera's frame, `labels` what they were in the one before it.
   /// The predicted motion is scored first, and what a vehicle cannot do after it must win by more. Random samples are
   /// drawn from a generator seeded with `seed` (the frame number). Empty when too few points agree on any motion.
   std::optional<EgoMotion> operator()(std::span<const PoseObservation> observations,
-                                      const std::vector<bool>& known_movers, const PredictedMotion& predicted,
+                                      const std::vector<PointLabel>& labels, const PredictedMotion& predicted,
                                       std::uint64_t seed) const;
 
   /// Can a vehicle have moved like this after what was predicted?
-  bool follows(const SE3& T_now_previous, const PredictedMotion& predicted) const;
+  bool follows(const SE3& T_now_previous, const PredictedMotion& predicted) const {
+    return surprise(T_now_previous, predicted) < 1;
+  }
+  /// A steady motion that went on in a way that no vehicle can.
+  bool breaks(const SE3& T_now_previous, const PredictedMotion& predicted) const;
 
  private:
   /// A car's camera, which has driven ahead all the time, cannot slide: then it is the points that move, as when a
   /// truck fills the view.
+  double surprise(const SE3& T_now_previous, const PredictedMotion& predicted) const;
   static bool isBeyondBelief(const SE3& T_now_previous, const PredictedMotion& predicted);
-  SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<bool>& known_movers,
+  SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<PointLabel>& labels,
                      const PredictedMotion& predicted, std::uint64_t seed) const;
   std::optional<PoseFit> refine(std::span<const PoseObservation> observations, const PoseObservations& all,
                                 const SE3& hypothesis) const;

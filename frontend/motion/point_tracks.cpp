@@ -53,8 +53,7 @@ std::optional<KnownPoint> PointTracks::knownPoint(const PointTrack& track, const
   if (!relation) return std::nullopt;
   const SE3 T_last_then = relation->T_then_now.inverse();
   const Eigen::Vector3d uvd_px = newest.uvd_px.cast<double>();
-  KnownPoint known{
-      .p_cam = {}, .covariance = {}, .disparity_px = uvd_px.z(), .moving = track.label == PointLabel::kMoving};
+  KnownPoint known{.p_cam = {}, .covariance = {}, .disparity_px = uvd_px.z(), .label = track.label};
   if (track.p_static_cam) {
     known.p_cam = T_last_then * *track.p_static_cam;
     known.covariance = T_last_then.rotation() * track.static_covariance * T_last_then.rotation().transpose();

@@ -24,7 +24,7 @@ struct KnownPoint {
   Eigen::Vector3d p_cam;  // in the newest camera of the trail, as if it were at rest since it was last observed
   Eigen::Matrix3d covariance;
   double disparity_px;  // when it was last observed
-  bool moving;          // by its label then
+  PointLabel label;     // then
 };
 
 /// The tracks of scene points over the latest frames, each fitted as a point at rest and as a moving one. Call `update`

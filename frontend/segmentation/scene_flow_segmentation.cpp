@@ -108,6 +108,7 @@ void SceneFlowSegmentation::bridge(const StereoMatches& stereo, Sight& sight) co
                            .ahead_frames = predicted.ahead_frames};
   if (!T_then_now && predicted.dt_s < GapBridge::kMaxGap_s)
     T_then_now = gap_bridge_.locate(gap, predicted.T_previous_now);
+  if (T_then_now && !odometry_.believes(*T_then_now, predicted)) T_then_now.reset();
   if (T_then_now)
     sight = look(stereo, merged(sight.flow, gap_bridge_.find(gap, *T_then_now)),
                  {*T_then_now, predicted.dt_s, 0, predicted.ahead_frames});

@@ -34,7 +34,7 @@ struct Views {
       const auto o = test::lookTwice(p, T_previous_now.inverse() * p, noise);
       if (!o) continue;
       known.push_back(KnownPoint{kRig.triangulate(*kRig.project(p)), test::triangulationCovariance(*kRig.project(p)),
-                                 kRig.project(p)->z(), false});
+                                 kRig.project(p)->z(), PointLabel::kUnknown});
       observed.emplace_back(StereoObservation{o->uvd_px.cast<float>(), o->sigma_px.cast<float>()});
       if (known.size() % 10 == 0) known.back().reset();
       if (known.size() % 10 == 5) observed.back().reset();

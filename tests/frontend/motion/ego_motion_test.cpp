@@ -15,9 +15,16 @@ using test::Noise;
 struct Street {
   std::vector<PoseObservation> observations;
   std::vector<bool> moves;
+  std::vector<PointLabel> labels() const {
+    std::vector<PointLabel> labels;
+    for (const bool one : moves) labels.push_back(one ? PointLabel::kMoving : PointLabel::kUnknown);
+    return labels;
+  }
 };
 
-std::vector<bool> nothingKnown(const Street& s) { return std::vector<bool>(s.moves.size(), false); }
+std::vector<PointLabel> nothingKnown(const Street& s) {
+  return std::vector<PointLabel>(s.moves.size(), PointLabel::kUnknown);
+}
 
 SE3 trueMotion() {
   Vector6d xi;
@@ -60,7 +67,7 @@ TEST(EgoMotion, SurvivesSixtyPercentMoversKnownFromBefore) {
   const EgoMotionEstimator estimate({}, kRig);
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Street s = street(80, 120, seed);
-    expectTrueMotion(estimate(s.observations, s.moves, {SE3{}}, seed), s, seed);
+    expectTrueMotion(estimate(s.observations, s.labels(), {SE3{}}, seed), s, seed);
   }
 }
 
@@ -82,7 +89,7 @@ TEST(EgoMotion, CovarianceIsThatOfTheErrors) {
   double mean = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {
     const Street s = street(100, 0, 200 + static_cast<std::uint64_t>(seed), T_previous_now);
-    const auto ego = estimate(s.observations, s.moves, {T_previous_now}, static_cast<std::uint64_t>(seed));
+    const auto ego = estimate(s.observations, s.labels(), {T_previous_now}, static_cast<std::uint64_t>(seed));
     ASSERT_TRUE(ego);
     const Vector6d error = (T_previous_now.inverse() * ego->T_previous_now).log();
     mean += test::nees(error, ego->covariance) / kSeeds;
@@ -93,12 +100,12 @@ TEST(EgoMotion, CovarianceIsThatOfTheErrors) {
 TEST(EgoMotion, TooFewPointsGiveNone) {
   const EgoMotionEstimator estimate({}, kRig);
   const Street few = street(11, 0, 1);
-  EXPECT_FALSE(estimate(few.observations, few.moves, {trueMotion()}, 1));
+  EXPECT_FALSE(estimate(few.observations, few.labels(), {trueMotion()}, 1));
   EXPECT_FALSE(estimate({}, {}, {trueMotion()}, 1));
   Street scattered = street(30, 0, 2);  // enough points, of which hardly any agree
   Noise noise(3);
   for (auto& o : scattered.observations) o.uvd_px += noise.inBox({-60, -40, -5}, {60, 40, 5});
-  EXPECT_FALSE(estimate(scattered.observations, scattered.moves, {trueMotion()}, 1));
+  EXPECT_FALSE(estimate(scattered.observations, scattered.labels(), {trueMotion()}, 1));
 }
 
 TEST(EgoMotion, EqualSeedsGiveEqualResults) {
@@ -151,6 +158,34 @@ TEST(EgoMotion, ACarDoesNotSlideWhereATruckFillsTheView) {
   EXPECT_LT((of_any->T_previous_now.translation() - sliding.translation()).norm(), 0.05);
 }
 
+/// Buses on all sides go as we do: nearly all that is seen is theirs, but for some road and houses.
+TEST(EgoMotion, TheRoadHasItsSayWhereVehiclesFillTheView) {
+  const EgoMotionEstimator estimate({}, kRig);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Street s = street(40, 0, seed);
+    const Street buses = street(160, 0, 50 + seed, SE3{});
+    s.observations.insert(s.observations.end(), buses.observations.begin(), buses.observations.end());
+    s.moves.resize(s.observations.size(), false);
+    std::vector<PointLabel> labels = nothingKnown(s);
+    const auto of_most = estimate(s.observations, labels, {SE3{}}, seed);
+    ASSERT_TRUE(of_most);
+    EXPECT_LT(of_most->T_previous_now.translation().norm(), 0.1);
+    std::fill_n(labels.begin(), 20, PointLabel::kGround);  // the other 20 are houses
+    const auto of_road = estimate(s.observations, labels, {SE3{}}, seed);
+    ASSERT_TRUE(of_road);
+    EXPECT_LT((of_road->T_previous_now.translation() - trueMotion().translation()).norm(), 0.1);
+  }
+}
+
+TEST(EgoMotion, ASteadyMotionDoesNotBreakOff) {
+  const EgoMotionEstimator estimate({}, kRig);
+  const SE3 ahead(Eigen::Matrix3d::Identity(), {0, 0, 1}), braked(Eigen::Matrix3d::Identity(), {0, 0, 0.9});
+  EXPECT_TRUE(estimate.breaks(SE3{}, {ahead, 0.1, 10}));
+  EXPECT_FALSE(estimate.breaks(SE3{}, {ahead, 0.1, 1}));
+  EXPECT_FALSE(estimate.breaks(SE3{}, {ahead, 0.5, 10}));
+  EXPECT_FALSE(estimate.breaks(braked.inverse(), {ahead, 0.1, 10}));
+}
+
 TEST(EgoMotion, TellsDrivingFromSliding) {
   const auto moved = [](double x, double y, double z) { return SE3(Eigen::Matrix3d::Identity(), {x, y, z}); };
   EXPECT_TRUE(drivesAhead(moved(0.05, 0.04, 1), 0.1));
@@ -160,6 +195,9 @@ TEST(EgoMotion, TellsDrivingFromSliding) {
   EXPECT_FALSE(slides(moved(0.2, 0, 1), 0.1));
   EXPECT_TRUE(slides(moved(0.5, 0, 1), 0.1));
   EXPECT_FALSE(slides(moved(4, 0, 10), 1));  // a curve's chord
+  const SE3 turn(expSO3({0, 0.05, 0}), {0, 0, 0.5});
+  EXPECT_FALSE(slides(turn, 0.1));
+  EXPECT_TRUE(slides(SE3(turn.rotation(), {0, 0, 0.01}), 0.1));
 }
 
 }  // namespace

@@ -136,8 +136,8 @@ TEST(PointTracks, LabelsComeBackAndSayWhatIsAtRest) {
   std::vector<ScenePoint> points(2);
   points[0].label = PointLabel::kMoving;
   drive.tracks.setLabels(points);
-  EXPECT_TRUE(drive.known(kA)->moving);
-  EXPECT_FALSE(drive.known(kB)->moving);
+  EXPECT_TRUE(drive.known(kA)->label == PointLabel::kMoving);
+  EXPECT_FALSE(drive.known(kB)->label == PointLabel::kMoving);
   EXPECT_TRUE(drive.tracks.atRestSince(1).empty());
 }
 
