@@ -40,7 +40,6 @@ std::vector<ConfigurationKey> parameterTable(PipelineConfig& config) {
   add("frontend.ground_plane", parametersOf(segmentation.ground_plane));
   add("frontend.segmentation", parametersOf(segmentation.segmenter));
   add("frontend.tracking", parametersOf(config.tracking));
-  add("frontend.object_motion", parametersOf(config.tracking.motion));
   add("backend", {backendKind(config.backend)});
   add("backend", parametersOf(config.backend.smoother));
   add("backend.joint", parametersOf(config.backend.joint));

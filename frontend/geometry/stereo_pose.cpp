@@ -38,7 +38,11 @@ struct Linearized {
   StereoViews view;
   Doubles3 residual_px, weighted_residual;
   SymmetricDoubles3x3 information;
-  Doubles chi2() const { return dot(residual_px, weighted_residual); }
+  /// Infinite where a point is so far away that rounding leaves no covariance.
+  Doubles chi2() const {
+    const Doubles sum = dot(residual_px, weighted_residual);
+    return sum >= Doubles{} ? sum : allDoubles(kInfinity);
+  }
 };
 
 Linearized linearize(const StereoCamera& camera, const PoseObservations::Block& o, const PoseLanes& T_cam_ref) {
@@ -69,14 +73,26 @@ struct LaneEquations {
   Doubles chi2{}, inliers{};
 
   void add(const PoseObservations::Block& o, const Linearized& l, double gate, double huber_sigmas) {
-    const Doubles chi2_px = l.chi2();
-    const Doubles counts = chi2_px < allDoubles(gate) ? o.count * l.view.ahead : Doubles{};
+    const Doubles known_px = l.chi2();
+    const auto is_in = known_px < allDoubles(gate);
+    const Doubles counts = is_in ? o.count * l.view.ahead : Doubles{}, chi2_px = is_in ? known_px : Doubles{};
+    const auto orNone = [&](const Doubles& value) {
+      return is_in ? value : Doubles{};
+    };  // rather than infinite times 0
+    const SymmetricDoubles3x3 information{.xx = orNone(l.information.xx),
+                                          .xy = orNone(l.information.xy),
+                                          .xz = orNone(l.information.xz),
+                                          .yy = orNone(l.information.yy),
+                                          .yz = orNone(l.information.yz),
+                                          .zz = orNone(l.information.zz)};
+    const Doubles3 weighted_residual{orNone(l.weighted_residual.x), orNone(l.weighted_residual.y),
+                                     orNone(l.weighted_residual.z)};
     const Doubles weight = huberLoss(chi2_px, huber_sigmas).weight * counts;
     const Doubles3x3& J_t = l.view.J;
     // The rows of -J_t hat(p_ref).
     const Doubles3x3 J_r{cross(o.p_ref, J_t.x), cross(o.p_ref, J_t.y), cross(o.p_ref, J_t.z)};
-    const Doubles3x3 W_t = weight * (l.information * J_t), W_r = weight * (l.information * J_r);
-    const Doubles3 r = weight * l.weighted_residual;
+    const Doubles3x3 W_t = weight * (information * J_t), W_r = weight * (information * J_r);
+    const Doubles3 r = weight * weighted_residual;
     H_tt += symmetricTransposeTimes(J_t, W_t);
     H_rr += symmetricTransposeTimes(J_r, W_r);
     H_tr += transposeTimes(J_t, W_r);

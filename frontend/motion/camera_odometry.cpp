@@ -28,6 +28,9 @@ SE3 levelMotion(const SE3& motion) {
   return SE3::exp(level);
 }
 
+/// Of a point: beyond it there is hardly a digit left in its covariance.
+constexpr double kFarthest_m = 1e5;
+
 /// A motion measured by fewer is as good as it can be, but not safe.
 constexpr int kFewInliers = 25;
 
@@ -103,7 +106,7 @@ CameraMotion CameraOdometry::measure(const StereoFrame& frame, const std::vector
   observations.reserve(observed.size());
   of_observation.reserve(observed.size());
   for (std::size_t i = 0; i < observed.size(); ++i) {
-    if (!known[i] || !observed[i]) continue;
+    if (!known[i] || !observed[i] || known[i]->p_cam.z() > kFarthest_m) continue;
     observations.push_back({known[i]->p_cam, known[i]->covariance, observed[i]->uvd_px.cast<double>(),
                             observed[i]->sigma_px.cast<double>()});
     labels.push_back(known[i]->label);

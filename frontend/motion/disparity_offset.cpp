@@ -111,9 +111,7 @@ double DisparityOffsetEstimator::advance() {
 
 std::vector<Parameter> parametersOf(DisparityOffsetEstimator::Params& params) {
   return {numberParameter("prior_sigma_px", params.prior_sigma_px, {0, 5},
-                          "how far the calibration of the rig may be off; 0 trusts it"),
-          numberParameter("window_frames", params.window_frames, {2, CameraTrail::kCapacity - 1},
-                          "longer windows see the offset more clearly, and less often")};
+                          "how far the calibration of the rig may be off; 0 trusts it")};
 }
 
 }  // namespace motorcade

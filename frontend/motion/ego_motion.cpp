@@ -16,7 +16,8 @@ namespace {
 constexpr int kScoredPoints = 300;         // of all observations: more tell hypotheses apart no better
 constexpr int kMinimalIterations = 5;      // of a fit to three points, which starts near
 constexpr double kKnownMoverWeight = 0.1;  // vote of a point that moved in the frame before: it may have stopped
-constexpr double kRoadShare = 0.5;         // of the votes
+constexpr double kRoadShare = 0.2;         // of the votes
+constexpr double kRoadDepth_m = 15;        // farther away, a vehicle's lower edge may pass for the road
 constexpr int kRoadPoints = 10;            // with fewer it may be no road
 constexpr double kVoteCell_m = 4;          // edge of the floor's cells, each with one vote: about a car's length
 constexpr double kVoteDepth_m = 40;        // beyond it depth noise exceeds a cell
@@ -62,8 +63,11 @@ double score(const StereoCamera& camera, const Voters& voters, const SE3& T_now_
 }
 
 /// Whatever moves, the road does not: where enough of it is seen, its points have a share of the votes at least.
-void hearTheRoad(const std::vector<PointLabel>& labels, std::vector<double>& votes) {
-  const auto isRoad = [&](std::size_t i) { return labels[i] == PointLabel::kGround; };
+void hearTheRoad(std::span<const PoseObservation> observations, const std::vector<PointLabel>& labels,
+                 std::vector<double>& votes) {
+  const auto isRoad = [&](std::size_t i) {
+    return labels[i] == PointLabel::kGround && observations[i].p_ref.z() < kRoadDepth_m;
+  };
   double road = 0, other = 0;
   int points = 0;
   for (std::size_t i = 0; i < votes.size(); ++i) {
@@ -93,7 +97,7 @@ std::vector<double> votesOf(std::span<const PoseObservation> observations, const
   votes.reserve(observations.size());
   for (std::size_t i = 0; i < observations.size(); ++i)
     votes.push_back((labels[i] == PointLabel::kMoving ? kKnownMoverWeight : 1.0) / *sharing[i]);
-  hearTheRoad(labels, votes);
+  hearTheRoad(observations, labels, votes);
   return votes;
 }
 

@@ -301,9 +301,4 @@ ObjectObservation ObjectMotionEstimator::firstObservation(const TrackedObject& o
   return observation;
 }
 
-std::vector<Parameter> parametersOf(ObjectMotionEstimator::Params& params) {
-  return {numberParameter("min_points", params.min_points, {2, 7},
-                          "fewer follow objects farther away, more follow them more surely")};
-}
-
 }  // namespace motorcade

@@ -3,7 +3,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/geometry/stereo_pose.hpp"
 #include "frontend/tracking/search_by_projection.hpp"
@@ -28,8 +27,7 @@ class ObjectMotionEstimator {
   /// outline that is off by half a vehicle holds other points.
   static constexpr double kMaxEvidenceSigma_m = 1.5;
 
-  ObjectMotionEstimator(const Params& params, const StereoCamera& camera)
-      : params_(requireValid(params)), camera_(camera) {}
+  ObjectMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
   /// Pose from the body points seen in `scene`, with the predicted kinematics as prior; where too few of them are, also
   /// from those that are found by their patches. Updates kinematics, points and misfits. Empty (and the object
@@ -111,7 +109,5 @@ PointMeasurement measurementOf(const ScenePoint& point, double disparity_offset_
 
 /// The point of a scene by id, or null.
 const ScenePoint* findPoint(const SceneMotion& scene, PointId point);
-
-std::vector<Parameter> parametersOf(ObjectMotionEstimator::Params& params);
 
 }  // namespace motorcade

@@ -251,8 +251,7 @@ std::vector<Parameter> parametersOf(ObjectTracker::Params& params) {
       numberParameter("max_lost_frames", params.max_lost_frames, {0, 100},
                       "longer keeps the id of an object that is hidden"),
       numberParameter("stop_speed_mps", params.stop_speed_mps, {0, 0.75},
-                      "an object that is slower for some frames is reported as stopped"),
-      numberParameter("start_speed_mps", params.start_speed_mps, {0.75, 5}, "and one that is faster as moving again")};
+                      "an object that is slower for some frames is reported as stopped")};
   all.insert(all.end(), own.begin(), own.end());
   return all;
 }

@@ -106,7 +106,7 @@ TEST_F(Run, TellsWhatIsWrongByItsExitCode) {
 
 TEST_F(Run, AnswersSettingsThatCannotWorkWithTheKeyAndItsRange) {
   for (const std::string setting :
-       {"frontend.disparity_offset.window_frames=0", "frontend.point_tracks.max_missed_frames=30",
+       {"frontend.optical_flow.max_tracks=0", "frontend.point_tracks.max_missed_frames=30",
         "frontend.point_tracks.max_missed_frames=-1", "frontend.segmentation.max_gap_m=1e-6",
         "backend.window_frames=1e300", "frontend.ground_plane.max_tilt_rad=inf"}) {
     EXPECT_EQ(run("x", "--set " + setting), 2) << setting;

@@ -46,6 +46,19 @@ TEST(StereoPose, NoiseFreePointsGiveTheExactPose) {
   EXPECT_THAT(found->T_cam_ref, IsNearPose(trueMotion(), 1e-8));
 }
 
+/// So far away that rounding leaves a matrix that is no covariance.
+TEST(StereoPose, APointBeyondAllMeasureDoesNotSpoilTheOthers) {
+  Noise noise(2);
+  auto observations = observe(60, 6, 40, noise);
+  const auto without = fit(observations);
+  observations.push_back(observations.front());
+  observations.back().covariance_ref = -100 * Eigen::Matrix3d::Identity();
+  const auto with = fit(observations);
+  ASSERT_TRUE(without && with);
+  EXPECT_THAT(with->T_cam_ref, IsNearPose(without->T_cam_ref, 1e-9));
+  EXPECT_GT(poseChi2(kRig, PoseObservations(observations), trueMotion()).back(), 1e9);
+}
+
 TEST(StereoPose, CovarianceIsThatOfTheErrors) {
   constexpr int kSeeds = 1000;
   double mean = 0;
