@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Measures what faults do to the results, and writes perf/robustness.md: every fault of `run --inject` on real and rendered drives, with the
-# drift of the camera and the recall of moving objects against the same drive without faults. Needs jq.
+# drift of the camera and the recall of moving objects against the same drive without faults; scenes with little at rest in view; and the tests
+# of all other faults, from a build by tests/run.sh. Needs jq.
 #   perf/robustness.sh [--gaps N] [--drives "NAME ..."] [DATA_FOLDER] [OUT_FOLDER]
 # --gaps    gaps of random place and length on rendered_street whose error is held against what the run says of it (default 100)
 # --drives  only these
@@ -11,13 +12,14 @@ while (($#)); do
   case $1 in
     --gaps) gaps=$2 && shift 2 ;;
     --drives) drives=$2 && shift 2 ;;
-    -*) sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+    -*) sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
     *) folders+=("$1") && shift ;;
   esac
 done
 data=${folders[0]:-${MOTORCADE_DATA:-../shared/data}}
 out=${folders[1]:-results/robustness}
-motorcade=${MOTORCADE:-build/release/apps/motorcade}
+build=build/release
+motorcade=${MOTORCADE:-$build/apps/motorcade}
 report=perf/robustness.md
 command -v jq >/dev/null || { echo "perf/robustness.sh needs jq: apt-get install jq" >&2; exit 1; }
 mkdir -p "$out"
@@ -48,6 +50,26 @@ row() {  # NAME FAULTS
 head_of() { printf '| fault | `--inject` |'; for drive in $drives; do printf ' %s: ATE m (times clean) | recall %% | missing / degraded / segments |' "$drive"; done
   printf '\n| --- | --- |'; for drive in $drives; do printf ' --- | --- | --- |'; done; printf '\n'; }
 
+crowded() {  # SCENE MEANING: camera and recall where little is at rest in view, of seeds 1 to 3
+  local ates="" recalls="" lost="" seed
+  for seed in 1 2 3; do
+    [[ -f $out/$1-$seed/times.txt ]] || "$motorcade" synth "$out/$1-$seed" --scene "$1" --seed $seed >/dev/null 2>&1
+    "$motorcade" run "$out/$1-$seed" --out "$out/run" >/dev/null 2>&1
+    "$motorcade" evaluate "$out/run" --sequence "$out/$1-$seed" --json "$out/measures.json" >/dev/null
+    ates+=" $(jq '.final.camera.ate_m.rmse * 1000 | round / 1000' "$out/measures.json")"
+    recalls+=" $(jq '.final.detection.within_30m.recall * 100 | round' "$out/measures.json")"
+    lost+=" $(jq '.frames.lost' "$out/run/summary.json")"
+  done
+  echo "| \`$1\`: $2 |$ates |$recalls |$lost | $(jq ".peak_memory_bytes / 1e6 | round" "$out/run/summary.json") |"
+}
+
+tested() {  # FAULT TESTS: whether the tests whose names match pass
+  local result
+  result=$(ctest --test-dir "$build" -R "$2" 2>/dev/null | sed -n 's/^[0-9]*% tests passed, \([0-9]*\) tests\{0,1\} failed out of \([0-9]*\)$/\1 \2/p' | tail -1)
+  read -r failed all <<<"${result:-0 0}"
+  echo "| $1 | \`${2//|/, }\` | $((all - failed)) of $all passed |"
+}
+
 declare -A clean
 for drive in $drives; do
   run "$drive" ""
@@ -57,7 +79,7 @@ done
 {
   echo "# Robustness"
   echo
-  echo "Made by \`perf/robustness.sh\`: what each fault does to the camera's final path (absolute trajectory error, and how many times that of the drive"
+  echo "Made by \`perf/robustness.sh --gaps $gaps\`: what each fault does to the camera's final path (absolute trajectory error, and how many times that of the drive"
   echo "without faults) and to the recall of moving objects to 30 m. *Missing*: lost, rejected and dropped frames."
   echo
   echo "## Frames that are missing or of no use"
@@ -92,6 +114,35 @@ done
   echo "## Silent jumps"
   echo
   perf/gaps.sh "$gaps" rendered_street "$data" "$out"  # its truth is exact
+  echo
+  echo "## Little at rest in view"
+  echo
+  echo "Rendered scenes with exact truth, seeds 1, 2 and 3."
+  echo
+  echo "| scene | ATE m | recall to 30 m % | lost frames | peak memory MB |"
+  echo "| --- | --- | --- | --- | --- |"
+  crowded walled_in "buses on all sides, two thirds of the view move"
+  crowded truck "waits while trailers pass right ahead, up to 99 % of the view"
+  crowded crowd "fifty vehicles"
+  echo
+  echo "## All other faults"
+  echo
+  echo "| fault | tests | result |"
+  echo "| --- | --- | --- |"
+  tested "a second run into the folder" Run.ASecondRunIntoTheSameFolderIsRefused
+  tested "the folder goes away" Run.NoticesThatItsFolderIsGone
+  tested "file size limit, full disk" "Run.EndsWithAnErrorWhereFilesMayNotGrow|Inject.AFullDisk"
+  tested "SIGKILL, SIGTERM" "Run.LeavesFinalsWhenItIsKilled|Run.FlushesItsResults|Run.SettledEstimates|RecoveredFinals"
+  tested "out of memory" "Run.EndsWithAMessageWhereMemoryRunsOut|ExceptionSafety|LacksMemory|RestartingBackend"
+  tested "FIFOs and devices as input or output" "Run.RefusesInputsThatWouldBeWaitedFor|RunFolder.Outputs"
+  tested "sizes, limits and headers of images" "Run.RefusesImagesThatAreLarger|ImageFile.AbsurdSizes|ImageFile.RefusesFiles|ImageFile.Pixels|ImageFile.Jpegs"
+  tested "damaged images" "ImageFile.EveryCut|ImageFile.BrokenBytes|Run.RejectsADamagedImage"
+  tested "calibrations and times that cannot be" "Run.WarnsOfTimes|DoubtsAboutACamera|Plausibility|CalibrationFile.Refuses"
+  tested "clocks" "FrameClock|Inject.AJumpOfTheClock|Inject.AClockThat|Inject.OneTimeFar"
+  tested "late pairs" "Inject.LatePairs|FaultInjector"
+  tested "parameters at their bounds" "ParameterRange"
+  tested "\`solve\`: a star, signals" "Solve.AStar|Solve.WritesWhatIsSolved"
+  tested "crowds, a truck that fills the view" "CrowdedRun|FollowsNoMoreObjects|EgoMotion.ACarDoesNotSlide"
 } >"$out/report.md"
 mv "$out/report.md" "$report"
 cat "$report"
