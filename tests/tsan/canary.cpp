@@ -1,9 +1,11 @@
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "apps/pipeline/pipeline.hpp"
@@ -69,7 +71,11 @@ long raceOfStage() {
   stages.finish = [] { return std::vector<FrameEstimate>(); };
   Pipeline pipeline({.threads = 2}, std::move(stages));
   std::jthread producer([&pipeline] {
-    for (int i = 0; i < 200; ++i) pipeline.push(StereoFrame{});
+    for (std::int64_t i = 0; i < 200; ++i) {
+      StereoFrame frame;
+      frame.stamp = {100'000'000 * i};
+      pipeline.push(std::move(frame));
+    }
     pipeline.close();
   });
   while (pipeline.next()) {
