@@ -62,7 +62,8 @@ double score(const StereoCamera& camera, const Voters& voters, const SE3& T_now_
   return sum;
 }
 
-/// Whatever moves, the road does not: where enough of it is seen, its points have a share of the votes at least.
+/// While no steady motion is known: whatever moves, the road does not. Where enough of it is seen, it has a share of
+/// the votes.
 void hearTheRoad(std::span<const PoseObservation> observations, const std::vector<PointLabel>& labels,
                  std::vector<double>& votes) {
   const auto isRoad = [&](std::size_t i) {
@@ -97,7 +98,6 @@ std::vector<double> votesOf(std::span<const PoseObservation> observations, const
   votes.reserve(observations.size());
   for (std::size_t i = 0; i < observations.size(); ++i)
     votes.push_back((labels[i] == PointLabel::kMoving ? kKnownMoverWeight : 1.0) / *sharing[i]);
-  hearTheRoad(observations, labels, votes);
   return votes;
 }
 
@@ -159,7 +159,8 @@ bool EgoMotionEstimator::breaks(const SE3& T_now_previous, const PredictedMotion
 SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observations,
                                        const std::vector<PointLabel>& labels, const PredictedMotion& predicted,
                                        std::uint64_t seed) const {
-  const auto votes = votesOf(observations, labels);
+  auto votes = votesOf(observations, labels);
+  if (predicted.steady_frames < kTrustedSteadyFrames) hearTheRoad(observations, labels, votes);
   const Voters voters = chooseVoters(observations, votes, params_.inlier_chi2);
   SE3 start = predicted.T_previous_now.inverse();
   Sampler sample(observations, votes, labels, seed);
