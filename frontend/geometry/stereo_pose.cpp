@@ -76,9 +76,8 @@ struct LaneEquations {
     const Doubles known_px = l.chi2();
     const auto is_in = known_px < allDoubles(gate);
     const Doubles counts = is_in ? o.count * l.view.ahead : Doubles{}, chi2_px = is_in ? known_px : Doubles{};
-    const auto orNone = [&](const Doubles& value) {
-      return is_in ? value : Doubles{};
-    };  // rather than infinite times 0
+    // What is out may be infinite, and infinite times 0 is no number.
+    const auto orNone = [&](const Doubles& value) { return is_in ? value : Doubles{}; };
     const SymmetricDoubles3x3 information{.xx = orNone(l.information.xx),
                                           .xy = orNone(l.information.xy),
                                           .xz = orNone(l.information.xz),

@@ -61,9 +61,9 @@ class EgoMotionEstimator {
   bool breaks(const SE3& T_now_previous, const PredictedMotion& predicted) const;
 
  private:
+  double surprise(const SE3& T_now_previous, const PredictedMotion& predicted) const;
   /// A car's camera, which has driven ahead all the time, cannot slide: then it is the points that move, as when a
   /// truck fills the view.
-  double surprise(const SE3& T_now_previous, const PredictedMotion& predicted) const;
   static bool isBeyondBelief(const SE3& T_now_previous, const PredictedMotion& predicted);
   SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<PointLabel>& labels,
                      const PredictedMotion& predicted, std::uint64_t seed) const;
