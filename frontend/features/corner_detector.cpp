@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "frontend/image/grain.hpp"
 #include "frontend/parallel_items.hpp"
 
 namespace motorcade {
@@ -155,21 +156,6 @@ int nextMark(const std::vector<std::uint8_t>& marks, int x) {
   return x;
 }
 
-/// Standard deviation of white noise that explains the roughest part of a neighborhood, which straight edges do not
-/// touch (the mask of Immerkaer, Fast Noise Variance Estimation, 1996).
-float grainAround(const Image& image, int x, int y) {
-  int squares = 0;
-  for (int r = y - kHalfWindow_px; r <= y + kHalfWindow_px; ++r) {
-    const std::uint8_t *above = image.row(r - 1), *row = image.row(r), *below = image.row(r + 1);
-    for (int c = x - kHalfWindow_px; c <= x + kHalfWindow_px; ++c) {
-      const int rough = above[c - 1] + above[c + 1] + below[c - 1] + below[c + 1] -
-                        2 * (above[c] + row[c - 1] + row[c + 1] + below[c]) + 4 * row[c];
-      squares += rough * rough;
-    }
-  }
-  return std::sqrt(static_cast<float>(squares) / (36.0F * kWindowPixels));
-}
-
 struct Candidate {
   int cell;
   Corner corner;
@@ -182,11 +168,11 @@ bool strongerInCell(const Candidate& a, const Candidate& b) {
 
 /// Local maxima of the rows from `first_center` up to `end_center`, in reading order.
 std::vector<Candidate> findCandidates(const Image& image, int first_center, int end_center,
-                                      const CornerDetector::Params& params) {
+                                      double min_score) {
   const int width = image.width();
   std::vector<Candidate> candidates;
   constexpr double kMomentScale = Gradients::kScale * Gradients::kScale * kWindowPixels;
-  const auto threshold = static_cast<float>(params.min_score * params.min_score * kMomentScale);
+  const auto threshold = static_cast<float>(min_score * min_score * kMomentScale);
   const int columns = (width + kCell_px - 1) / kCell_px;
   Gradients gradients(image);
   ColumnMoments moments(width);
@@ -215,14 +201,14 @@ std::vector<Candidate> findCandidates(const Image& image, int first_center, int 
 }
 
 /// Local maxima of the whole image, in reading order. Bands of rows are searched in parallel.
-std::vector<Candidate> findCandidates(const Image& image, const CornerDetector::Params& params) {
+std::vector<Candidate> findCandidates(const Image& image, double min_score) {
   constexpr int kBands = 4;
   const int rows = image.height() - 2 * kBorder_px;
   if (rows <= 0 || image.width() <= 2 * kBorder_px) return {};
   const auto startOf = [&](std::size_t band) { return kBorder_px + rows * static_cast<int>(band) / kBands; };
   std::array<std::vector<Candidate>, kBands> bands;
   forEachItem(
-      kBands, [&](std::size_t i) { bands[i] = findCandidates(image, startOf(i), startOf(i + 1), params); }, 1);
+      kBands, [&](std::size_t i) { bands[i] = findCandidates(image, startOf(i), startOf(i + 1), min_score); }, 1);
   std::vector<Candidate> candidates = std::move(bands.front());
   for (std::size_t i = 1; i < kBands; ++i) candidates.insert(candidates.end(), bands[i].begin(), bands[i].end());
   return candidates;
@@ -241,8 +227,8 @@ float cutOfRank(const std::vector<std::pair<int, Candidate>>& ranked, int rank, 
 
 CornerDetector::CornerDetector(const Params& params) : params_(requireValid(params)) {}
 
-std::vector<Corner> CornerDetector::operator()(const Image& image) const {
-  std::vector<Candidate> candidates = findCandidates(image, params_);
+std::vector<Corner> CornerDetector::operator()(const Image& image, double score_share) const {
+  std::vector<Candidate> candidates = findCandidates(image, score_share * params_.min_score);
   std::ranges::sort(candidates, strongerInCell);
 
   std::vector<std::pair<int, Candidate>> ranked;  // with the rank in the cell

@@ -22,8 +22,9 @@ class CornerDetector {
 
   explicit CornerDetector(const Params& params);
 
-  /// Corners ordered by cell, row by row, the strongest of a cell first. Their coordinates are whole pixels.
-  std::vector<Corner> operator()(const Image& image) const;
+  /// Corners ordered by cell, row by row, the strongest of a cell first. Their coordinates are whole pixels. The least
+  /// score is `score_share` of the parameter.
+  std::vector<Corner> operator()(const Image& image, double score_share = 1) const;
 
  private:
   Params params_;

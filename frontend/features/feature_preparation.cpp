@@ -1,10 +1,22 @@
 #include "frontend/features/feature_preparation.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "frontend/image/grain.hpp"
 #include "frontend/image/image_pyramid.hpp"
 
 namespace motorcade {
+namespace {
+
+/// Share of the least score that suffices in an image of this grain. Blur takes noise as it takes contrast, so that
+/// fainter corners are as good; without them, a blur over 9 px leaves too few.
+double scoreShare(float grain_gray) {
+  constexpr float kBlurredGrain = 0.4F;
+  return grain_gray < kBlurredGrain ? 1.0 / 3 : 1;
+}
+
+}  // namespace
 
 FeaturePreparation::FeaturePreparation(const Params& params)
     : params_(params), detect_corners_(params.corners), detect_sift_(params.sift) {}
@@ -14,16 +26,21 @@ FeaturesPtr FeaturePreparation::operator()(const StereoFramePtr& frame) const {
   features.frame = frame;
   if (frame->rejected()) return std::make_shared<const Features>(std::move(features));
 
-  features.left = buildPyramid(frame->left, kPyramidLevels, pool_);
-  features.right = buildPyramid(frame->right, kPyramidLevels, pool_);
+  constexpr float kUsualGrain = 1;
+  const float left_grain = grainOf(frame->left).value_or(kUsualGrain),
+              right_grain = grainOf(frame->right).value_or(kUsualGrain);
+  const float grain = std::max(left_grain, right_grain);
+  const Image left = denoised(frame->left, grain, pool_), right = denoised(frame->right, grain, pool_);
+  features.left = buildPyramid(left, kPyramidLevels, pool_);
+  features.right = buildPyramid(right, kPyramidLevels, pool_);
   if (params_.detector == DetectorKind::kCorners) {
-    features.corners = detect_corners_(frame->left);
+    features.corners = detect_corners_(left, scoreShare(left_grain));
   } else {
-    SiftPoints left = detect_sift_(frame->left), right = detect_sift_(frame->right);
-    features.corners = std::move(left.corners);
-    features.descriptors = std::move(left.descriptors);
-    features.right_corners = std::move(right.corners);
-    features.right_descriptors = std::move(right.descriptors);
+    SiftPoints in_left = detect_sift_(left), in_right = detect_sift_(right);
+    features.corners = std::move(in_left.corners);
+    features.descriptors = std::move(in_left.descriptors);
+    features.right_corners = std::move(in_right.corners);
+    features.right_descriptors = std::move(in_right.descriptors);
   }
   return std::make_shared<const Features>(std::move(features));
 }

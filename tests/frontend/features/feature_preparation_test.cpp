@@ -1,9 +1,13 @@
 #include "frontend/features/feature_preparation.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <thread>
 
 #include <gtest/gtest.h>
 
+#include "frontend/image/image_pyramid.hpp"
+#include "frontend/matching/stereo_matcher.hpp"
 #include "tests/frontend/texture.hpp"
 
 namespace motorcade {
@@ -16,6 +20,37 @@ TEST(FeaturePreparation, MakesPyramidsAndCorners) {
   EXPECT_EQ(features->right.levels.size(), 4U);
   EXPECT_GT(features->corners.size(), 50U);
   EXPECT_TRUE(features->descriptors.empty());
+}
+
+TEST(FeaturePreparation, FindsAgainInNoiseWhatItFinds) {
+  constexpr double kDisparity_px = 12, kNoise_gray = 20;
+  const test::Texture texture(53, 12, 60);
+  const auto shifted = [&](double x, double y) { return texture(x + kDisparity_px, y); };
+  const Image left = test::render(640, 300, texture, {.noise = kNoise_gray, .seed = 2}),
+              right = test::render(640, 300, shifted, {.noise = kNoise_gray, .seed = 3});
+  const auto rightMatches = [&](const FeaturesPtr& features) {
+    const auto matches = StereoMatcher({})(features);
+    return std::ranges::count_if(matches->of_corner, [&](const auto& match) {
+      return match && std::abs(match->disparity_px - kDisparity_px) < 0.5;
+    });
+  };
+  const auto frame = test::stereoFrame(0, left, right);
+  const FeaturesPtr features = FeaturePreparation({})(frame);
+  ImagePool pool;
+  Features as_it_is;
+  as_it_is.frame = frame;
+  as_it_is.left = buildPyramid(left, FeaturePreparation::kPyramidLevels, pool);
+  as_it_is.right = buildPyramid(right, FeaturePreparation::kPyramidLevels, pool);
+  as_it_is.corners = CornerDetector({})(left);
+  EXPECT_GT(rightMatches(features), 1.5 * rightMatches(std::make_shared<const Features>(as_it_is)));
+}
+
+TEST(FeaturePreparation, TakesFaintCornersWhereTheImageIsBlurred) {
+  const test::Texture texture(54, 30, 90);
+  const Image faint = test::render(640, 300, [&](double x, double y) { return 128 + 0.4 * (texture(x, y) - 128); });
+  const auto corners = FeaturePreparation({})(test::stereoFrame(0, faint, faint))->corners.size();
+  EXPECT_GT(corners, 2 * CornerDetector({})(faint).size());
+  EXPECT_GT(corners, 30U);
 }
 
 TEST(FeaturePreparation, GivesNoImagesForARejectedFrame) {
