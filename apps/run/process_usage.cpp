@@ -3,6 +3,7 @@
 #include <fstream>
 #include <string>
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -42,5 +43,7 @@ ProcessUsage processUsage() {
           .involuntary_switches = usage.ru_nivcsw,
           .peak_memory_bytes = std::int64_t{1024} * usage.ru_maxrss};
 }
+
+void giveBackSpareMemory() { malloc_trim(0); }
 
 }  // namespace motorcade
