@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/check/check_command.hpp"
 #include "apps/draw/draw_command.hpp"
 #include "apps/evaluate/evaluate_command.hpp"
 #include "apps/inject/fault_spec.hpp"
@@ -52,9 +53,24 @@ void addRun(CLI::App& app, Action& action) {
                    "KIND[=VALUE][/left|/right][@A[:B[:STEP]]][~SHARE],... and seed=N, as black@20:23,noise=20~0.1\n" +
                        faultHelp())
       ->type_name("FAULTS");
+  command->add_flag("--force", options->force, "Go on where the input is found to be worthless");
   command->add_option("--require", options->require, "Exit with 5 when fewer frames are tracked")
       ->type_name("tracked=FRACTION");
   command->callback([options, &action] { action = [options] { return runSequence(*options); }; });
+}
+
+void addCheck(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<CheckOptions>();
+  CLI::App* command = app.add_subcommand("check", "Look for what is wrong with a sequence's first twenty pairs");
+  command->add_option("SEQUENCE", options->sequence, "Folder of a sequence, as for run")->required();
+  command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
+  command->add_option("--fps", options->fps_hz, "Capture rate of a sequence without times [Hz]")
+      ->check(CLI::Range(0.001, 100'000.0))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "File for what was measured and found as JSON");
+  command->add_option("--inject", options->inject, "Faults, as for run, to see whether they are found")
+      ->type_name("FAULTS");
+  command->callback([options, &action] { action = [options] { return runCheck(*options); }; });
 }
 
 constexpr double kMostRigOffset_px = 64;  // far beyond what a rectification can be off and a matcher can bridge
@@ -157,7 +173,7 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   app.set_version_flag("--version", MOTORCADE_VERSION);
   app.require_subcommand(1);
   CommandLine command_line;
-  for (const auto add : {addRun, addSynth, addEvaluate, addDraw, addSolve}) add(app, command_line.action);
+  for (const auto add : {addRun, addCheck, addSynth, addEvaluate, addDraw, addSolve}) add(app, command_line.action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

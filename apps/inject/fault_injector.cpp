@@ -6,6 +6,7 @@
 #include <exception>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "apps/inject/image_faults.hpp"
@@ -15,6 +16,7 @@
 namespace motorcade {
 
 bool FaultInjector::give(StereoFrame frame, const Outlet& outlet) {
+  const Image right = frame.right;
   bool dropped = false;
   std::int64_t overtaken_by = 0;  // frames
   for (std::size_t k = 0; k < spec_.faults.size(); ++k) {
@@ -27,6 +29,7 @@ bool FaultInjector::give(StereoFrame frame, const Outlet& outlet) {
   }
   left_before_ = frame.left;
   right_before_ = frame.right;
+  right_taken_ = right;
   frame.stamp = shifted(frame.stamp);
   const std::int64_t id = frame.frame.value;
   if (dropped || overtaken_by > 0) outlet.pass_over(frame.frame, frame.stamp);
@@ -51,6 +54,9 @@ void FaultInjector::applyTo(StereoFrame& frame, const Fault& fault, std::uint64_
   switch (fault.kind) {
     case FaultKind::kDuplicate:
       if (!left_before_.empty()) frame.left = left_before_, frame.right = right_before_;
+      return;
+    case FaultKind::kApart:
+      if (!right_taken_.empty()) frame.right = right_taken_;
       return;
     case FaultKind::kExchanged:
       return std::swap(frame.left, frame.right);
@@ -96,6 +102,15 @@ void FaultInjector::applyTo(Image& image, const std::filesystem::path& file, con
       break;
     case FaultKind::kJpeg:
       image = throughJpeg(image, static_cast<int>(fault.value), pool_);
+      break;
+    case FaultKind::kLowered:
+      image = lowered(image, fault.value, pool_);
+      break;
+    case FaultKind::kRolled:
+      image = rolled(image, fault.value * std::numbers::pi / 180, pool_);
+      break;
+    case FaultKind::kBarrel:
+      image = distorted(image, fault.value, pool_);
       break;
     case FaultKind::kTruncated: {
       std::string bytes = readImageBytes(file);

@@ -48,7 +48,8 @@ class FaultInjector {
   const Sequence& sequence_;
   ImagePool pool_;
   std::int64_t jumps_ns_ = 0;
-  Image left_before_, right_before_;
+  Image left_before_, right_before_;  // as they were given on
+  Image right_taken_;                 // as the camera took it before
   std::deque<Late> late_;
 };
 

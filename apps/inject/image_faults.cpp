@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "io/image_file.hpp"
@@ -39,6 +40,27 @@ std::vector<double> runningMeans(const std::vector<double>& values, int reach) {
   return means;
 }
 
+/// Gray level between the pixels; the border's are repeated.
+double sampled(const Image& image, double x, double y) {
+  x = std::clamp(x, 0.0, image.width() - 1.0);
+  y = std::clamp(y, 0.0, image.height() - 1.0);
+  const int left = std::min(static_cast<int>(x), image.width() - 2),
+            top = std::min(static_cast<int>(y), image.height() - 2);
+  const double u = x - left, v = y - top;
+  return (1 - v) * ((1 - u) * image.at(left, top) + u * image.at(left + 1, top)) +
+         v * ((1 - u) * image.at(left, top + 1) + u * image.at(left + 1, top + 1));
+}
+
+/// An image about whose middle `source(x, y)` tells where each pixel's content comes from.
+template <class Source>
+Image moved(const Image& image, ImagePool& pool, const Source& source) {
+  const double middle_x = (image.width() - 1) / 2.0, middle_y = (image.height() - 1) / 2.0;
+  return imageOf(image, pool, [&](int x, int y) {
+    const auto [from_x, from_y] = source(x - middle_x, y - middle_y);
+    return toGray(sampled(image, middle_x + from_x, middle_y + from_y));
+  });
+}
+
 }  // namespace
 
 Image filled(const Image& like, std::uint8_t gray, ImagePool& pool) {
@@ -72,6 +94,28 @@ Image exposed(const Image& image, double factor, ImagePool& pool) {
 
 Image throughJpeg(const Image& image, int quality, ImagePool& pool) {
   return decodeImage(encodeJpeg(image, quality), "compressed", pool);
+}
+
+Image lowered(const Image& image, double rows_px, ImagePool& pool) {
+  return moved(image, pool, [rows_px](double x, double y) { return std::pair(x, y - rows_px); });
+}
+
+Image rolled(const Image& image, double angle_rad, ImagePool& pool) {
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  return moved(image, pool, [c, s](double x, double y) { return std::pair(c * x + s * y, c * y - s * x); });
+}
+
+Image distorted(const Image& image, double k1, ImagePool& pool) {
+  const double unit_px = image.width() / 2.0;
+  return moved(image, pool, [k1, unit_px](double x, double y) {
+    constexpr int kIterations = 8;  // of the inverse, which converges for |k1| up to a half
+    double shrink = 1;
+    for (int i = 0; i < kIterations; ++i) {
+      const double r2 = (x * x + y * y) * shrink * shrink / (unit_px * unit_px);
+      shrink = 1 / (1 + k1 * r2);
+    }
+    return std::pair(x * shrink, y * shrink);
+  });
 }
 
 std::string withBitFlips(std::string bytes, int count, std::uint64_t seed) {

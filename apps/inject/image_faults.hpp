@@ -17,6 +17,13 @@ Image withNoise(const Image& image, double sigma_gray, std::uint64_t seed, Image
 Image exposed(const Image& image, double factor, ImagePool& pool);
 /// Through JPEG compression and back.
 Image throughJpeg(const Image& image, int quality, ImagePool& pool);
+/// As a camera sees it that stands so many rows too high: its content is lower. Interpolated bilinearly, as are the
+/// next two; the border's pixels are repeated.
+Image lowered(const Image& image, double rows_px, ImagePool& pool);
+/// Turned clockwise about its middle.
+Image rolled(const Image& image, double angle_rad, ImagePool& pool);
+/// With the radial distortion of a lens, r (1 + k1 r^2), about its middle; r = 1 at half the image's width.
+Image distorted(const Image& image, double k1, ImagePool& pool);
 
 /// The bytes of a file with `count` random bits turned.
 std::string withBitFlips(std::string bytes, int count, std::uint64_t seed);

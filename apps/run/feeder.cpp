@@ -19,11 +19,12 @@ bool sleepUntil(SteadyTime moment, const std::stop_token& stopped) {
 
 }  // namespace
 
-Feeder::Feeder(SequenceDecoder& decoder, Pipeline& pipeline, CameraClock* clock, FaultInjector* faults)
+Feeder::Feeder(SequenceDecoder& decoder, Pipeline& pipeline, const Between& between)
     : decoder_(decoder),
       pipeline_(pipeline),
-      clock_(clock),
-      faults_(faults),
+      clock_(between.clock),
+      faults_(between.faults),
+      watch_(between.watch),
       next_(decoder.first()),
       thread_([this](const std::stop_token& stopped) { feed(stopped); }) {}
 
@@ -47,6 +48,7 @@ void Feeder::feed(const std::stop_token& stopped) {
     if (stopped.stop_requested() || !enter(std::move(*frame), stopped)) break;
   }
   if (faults_ && !stopped.stop_requested()) faults_->finish(pipelineAfterFaults(stopped));
+  if (watch_) watch_->finish();
   pipeline_.close();
 }
 
@@ -57,11 +59,17 @@ bool Feeder::enter(StereoFrame frame, const std::stop_token& stopped) {
     pipeline_.passOver({next_, faults_ ? faults_->shifted(stamp) : stamp});
   }
   ++next_.value;
-  return faults_ ? faults_->give(std::move(frame), pipelineAfterFaults(stopped)) : pipeline_.push(std::move(frame));
+  return faults_ ? faults_->give(std::move(frame), pipelineAfterFaults(stopped)) : push(std::move(frame));
+}
+
+/// The pair enters first, so that looking at it does not delay it.
+bool Feeder::push(StereoFrame frame) {
+  const StereoFrame seen = frame;
+  return pipeline_.push(std::move(frame)) && (!watch_ || watch_->admits(seen));
 }
 
 FaultInjector::Outlet Feeder::pipelineAfterFaults(const std::stop_token& stopped) {
-  return {.push = [this](StereoFrame frame) { return pipeline_.push(std::move(frame)); },
+  return {.push = [this](StereoFrame frame) { return push(std::move(frame)); },
           .pass_over =
               [this](FrameId frame, Timestamp stamp) {
                 pipeline_.passOver({frame, stamp});

@@ -5,6 +5,7 @@
 #include "apps/inject/fault_injector.hpp"
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/run/camera_clock.hpp"
+#include "apps/run/input_watch.hpp"
 #include "io/sequence_decoder.hpp"
 
 namespace motorcade {
@@ -13,9 +14,14 @@ namespace motorcade {
 /// when it is due; without, as soon as there is room.
 class Feeder {
  public:
-  /// `clock` may be null; it is started with the first pair. So may `faults`, which change the pairs on their way.
+  /// What may stand between decoder and pipeline; each may be null.
+  struct Between {
+    CameraClock* clock = nullptr;     // started with the first pair
+    FaultInjector* faults = nullptr;  // change the pairs on their way
+    InputWatch* watch = nullptr;      // sees them as they enter, and may end the drive
+  };
   /// Pairs that the decoder leaves out are passed over.
-  Feeder(SequenceDecoder& decoder, Pipeline& pipeline, CameraClock* clock, FaultInjector* faults);
+  Feeder(SequenceDecoder& decoder, Pipeline& pipeline, const Between& between);
   /// Closes the pipeline too, so that the thread never waits for room in it.
   ~Feeder();
 
@@ -25,12 +31,14 @@ class Feeder {
  private:
   void feed(const std::stop_token& stopped);
   bool enter(StereoFrame frame, const std::stop_token& stopped);
+  bool push(StereoFrame frame);
   FaultInjector::Outlet pipelineAfterFaults(const std::stop_token& stopped);
 
   SequenceDecoder& decoder_;
   Pipeline& pipeline_;
   CameraClock* clock_;
   FaultInjector* faults_;
+  InputWatch* watch_;
   FrameId next_;  // after the last pair that entered
   std::jthread thread_;
 };

@@ -2,16 +2,10 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "core/messages.hpp"
-#include "core/stereo_camera.hpp"
 
 namespace motorcade {
-
-/// What of a calibration no stereo camera on a car has, in sentences that say how to mend it: units other than meters,
-/// another image size.
-std::vector<std::string> doubtsAbout(const StereoCamera& camera);
 
 /// Watches for a drive that cannot be: times in another unit than seconds, or a wrong rate, make the camera faster than
 /// any car, or its pairs too far apart to follow anything.

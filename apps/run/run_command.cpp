@@ -11,12 +11,14 @@
 
 #include <spdlog/spdlog.h>
 
+#include "apps/check/camera_doubts.hpp"
 #include "apps/console/progress.hpp"
 #include "apps/console/stop_signals.hpp"
 #include "apps/pipeline/configuration.hpp"
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/feeder.hpp"
+#include "apps/run/input_watch.hpp"
 #include "apps/run/object_view_writer.hpp"
 #include "apps/run/other_camera.hpp"
 #include "apps/run/plausibility.hpp"
@@ -29,7 +31,7 @@
 namespace motorcade {
 namespace {
 
-constexpr int kExitUntracked = 5;
+constexpr int kExitInput = 3, kExitUntracked = 5;
 /// The heap's holes grow for hours, by 4 % in 100,000 frames.
 constexpr std::size_t kFramesPerTrim = 200;
 
@@ -67,12 +69,19 @@ void requireWithin(const ImageLimits& limits, const Sequence& sequence) {
                                  limits.max_pixels));
 }
 
+/// Throws InputError where the calibration cannot be the images', unless the user insists.
+void requireBelievable(const Sequence& sequence, bool force) {
+  for (const std::string& doubt : doubtsAbout(sequence.camera)) {
+    if (!force) throw InputError(sequence.folder.string() + ": " + doubt + "; --force goes on");
+    spdlog::warn(doubt);
+  }
+}
+
 void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) {
   const StereoCamera& camera = sequence.camera;
   spdlog::info("{}: {} layout, {} of {} frames, {} x {} px, baseline {:.4f} m", sequence.folder.string(),
                sequence.layout, range.size(), sequence.frames.size(), camera.width_px, camera.height_px,
                camera.baseline_m);
-  for (const std::string& doubt : doubtsAbout(camera)) spdlog::warn(doubt);
   if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
 }
 
@@ -128,6 +137,7 @@ struct Replay {
   const Sequence& sequence;
   FrameRange range;
   FaultInjector* faults = nullptr;
+  InputWatch* watch = nullptr;
 };
 
 /// Runs the frames through the pipeline and writes all results but the summary.
@@ -145,7 +155,7 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   Pipeline pipeline(config.pipeline, std::move(stages), logToSpdlog);
   const auto start = std::chrono::steady_clock::now();
   {
-    Feeder feeder(decoder, pipeline, clock ? &*clock : nullptr, replay.faults);
+    Feeder feeder(decoder, pipeline, {clock ? &*clock : nullptr, replay.faults, replay.watch});
     const auto watch = signals.watch([&feeder] { feeder.stop(); });
     while (const auto result = pipeline.next()) recorder.record(*result);
   }
@@ -171,6 +181,7 @@ int runSequence(const RunOptions& options) {
   const auto rate_hz = replayRate_hz(options, config.pipeline.policy);
   const Sequence sequence = openSequence(options.sequence, options.fps_hz);
   requireWithin(config.input, sequence);
+  requireBelievable(sequence, options.force);
   const FrameRange range = selectedFrames(options, sequence);
   Stages stages = makeStages(config, sequence.camera);
   if (auto other_camera = otherCamera(options, config, sequence)) replaceOdometry(stages, *std::move(other_camera));
@@ -189,12 +200,15 @@ int runSequence(const RunOptions& options) {
   if (options.masks) views.emplace(options.out, sequence.camera);
   Recorder recorder(folder, views ? &*views : nullptr, range.size());
   FaultInjector faults(fault_spec, sequence);
-  follow({sequence, range, options.inject.empty() ? nullptr : &faults}, config, std::move(stages), recorder, summary);
+  InputWatch watch(sequence.camera, options.force);
+  follow({sequence, range, options.inject.empty() ? nullptr : &faults, &watch}, config, std::move(stages), recorder,
+         summary);
   if (views) views->close();
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));
   std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);
 
+  if (watch.refused()) return kExitInput;
   if (summary.signal != 0) return kExitSignal + summary.signal;
   if (required_tracking && summary.trackedFraction() < *required_tracking) {
     spdlog::error("{:.4f} of the frames are tracked, --require asks for {:.4f}", summary.trackedFraction(),

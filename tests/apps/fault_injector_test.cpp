@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -85,6 +86,14 @@ TEST(FaultInjector, ChangesTheImagesOfTheSideThatIsNamed) {
   EXPECT_TRUE(same(outcome.frames[4].right, picture(104)));
 }
 
+TEST(FaultInjector, ARightImageCanComeFromThePairBefore) {
+  const Outcome outcome = inject("apart", 3);
+  for (const int frame : {1, 2}) {
+    EXPECT_TRUE(same(outcome.frames[frame].left, picture(frame)));
+    EXPECT_TRUE(same(outcome.frames[frame].right, picture(100 + frame - 1)));
+  }
+}
+
 TEST(FaultInjector, IsTheSameForTheSameSeed) {
   const Outcome once = inject("noise=20,seed=3", 2), again = inject("noise=20,seed=3", 2),
                 other = inject("noise=20,seed=4", 2);
@@ -118,6 +127,27 @@ TEST(ImageFaults, DoWhatTheirNamesSay) {
   EXPECT_GT(jpeg_error / pixels, 1);
   EXPECT_LT(jpeg_error / pixels, 20);
   EXPECT_NE(withBitFlips(std::string(20, 'a'), 3, 1), std::string(20, 'a'));
+}
+
+TEST(ImageFaults, MoveTheContentAsTheyTell) {
+  constexpr int kSide = 201, kMiddle = 100;
+  ImagePool pool;
+  Image image = filled(pool.acquire(kSide, kSide), 20, pool);
+  for (int y = 98; y <= 102; ++y)
+    for (int x = 158; x <= 162; ++x) image.mutableRow(y)[x] = 220;  // a spot 60 px right of the middle
+  const auto spot = [](const Image& moved) {
+    double u = 0, v = 0, sum = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const double weight = moved.at(x, y) - 20.0;
+        u += weight * (x - kMiddle), v += weight * (y - kMiddle), sum += weight;
+      }
+    return std::pair(u / sum, v / sum);
+  };
+  EXPECT_NEAR(spot(lowered(image, 2.5, pool)).second, 2.5, 0.05);
+  EXPECT_NEAR(spot(rolled(image, 0.1, pool)).first, 60 * std::cos(0.1), 0.1);
+  EXPECT_NEAR(spot(rolled(image, 0.1, pool)).second, 60 * std::sin(0.1), 0.1);  // rows go down: clockwise
+  EXPECT_NEAR(spot(distorted(image, -0.2, pool)).first, 60 * (1 - 0.2 * 0.36), 0.3);
 }
 
 }  // namespace

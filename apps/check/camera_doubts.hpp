@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/stereo_camera.hpp"
+
+namespace motorcade {
+
+/// What of a calibration no stereo camera on a car has, in sentences that say how to mend it: units other than meters,
+/// another image size.
+std::vector<std::string> doubtsAbout(const StereoCamera& camera);
+
+}  // namespace motorcade

@@ -1,0 +1,202 @@
+#include "apps/check/input_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <utility>
+
+#include "frontend/image/grain.hpp"
+#include "frontend/image/image_pyramid.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr int kLevels = 4;
+constexpr std::size_t kMinMatches = 60;  // that a rig is judged by
+
+// Effects on the rows from which on an error is told, and from which on results are worthless [px].
+constexpr double kTold_px = 0.8, kWorthless_px = 1.2;
+constexpr double kSure = 5;           // standard deviations
+constexpr double kSureDistorted = 4;  // as the least displacement below asks for much already
+/// Displacement in the corner of the image from which on distortion is told: good calibrations stay below the half [px].
+constexpr double kDistorted_px = 20;
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  char buffer[400];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+double meanGray(const Image& image) {
+  constexpr int kStep_px = 8;
+  std::int64_t sum = 0, count = 0;
+  for (int y = kStep_px / 2; y < image.height(); y += kStep_px)
+    for (int x = kStep_px / 2; x < image.width(); x += kStep_px, ++count) sum += image.at(x, y);
+  return static_cast<double>(sum) / static_cast<double>(std::max<std::int64_t>(1, count));
+}
+
+double degrees(double angle_rad) { return angle_rad * 180 / std::numbers::pi; }
+
+/// How an error of the rows is told, with value and standard deviation in the format's units.
+struct RowErrorText {
+  RowError error;
+  const char* name;
+  const char* format;
+  double unit = 1;
+};
+
+const double kDegree = degrees(1);
+const std::array kRowErrorTexts{
+    RowErrorText{RowError::kOffset, "rows", "the right image's content lies %.2f (+-%.2f) px lower than the left's"},
+    RowErrorText{RowError::kRoll, "roll", "the right image is turned by %.2f (+-%.2f) degrees about its middle", kDegree},
+    RowErrorText{RowError::kZoom, "zoom", "the right image is larger by %.2f (+-%.2f) %%", 100},
+    RowErrorText{RowError::kYaw, "yaw", "the right camera looks to the side by %.2f (+-%.2f) degrees", kDegree},
+    RowErrorText{RowError::kLift, "lift", "the right camera stands lower by %.1f (+-%.1f) %% of the baseline", 100},
+    RowErrorText{RowError::kAhead, "ahead", "the right camera stands back by %.1f (+-%.1f) %% of the baseline", 100}};
+
+}  // namespace
+
+InputCheck::InputCheck(const StereoCamera& camera) : camera_(camera), detect_corners_({}) {}
+
+void InputCheck::observe(const StereoFrame& pair) {
+  const bool whole = !pair.rejected() && !pair.left.empty() && !pair.right.empty();
+  if (complete() || !whole) return;
+  ++pairs_;
+  stamps_.push_back(pair.stamp);
+  observeLight(pair);
+  Pair now{buildPyramid(pair.left, kLevels, pool_), buildPyramid(pair.right, kLevels, pool_),
+           detect_corners_(pair.left)};
+  const auto matches = matchUnrectified(now.left, now.right, now.corners);
+  compareWithNeighbors(now, matchesInRow(matches), matches.size());
+  matches_.insert(matches_.end(), matches.begin(), matches.end());
+  before_ = std::move(now);
+}
+
+void InputCheck::observeLight(const StereoFrame& pair) {
+  left_means_.push_back(meanGray(pair.left));
+  right_means_.push_back(meanGray(pair.right));
+  if (const auto grain = grainOf(pair.left)) left_grains_.push_back(*grain);
+  if (const auto grain = grainOf(pair.right)) right_grains_.push_back(*grain);
+}
+
+/// Only where the pair's own rows agree badly, as it costs as much again, twice.
+void InputCheck::compareWithNeighbors(const Pair& now, std::size_t in_row, std::size_t matched) {
+  constexpr double kGoodShare = 0.75, kBetter = 1.5;
+  constexpr std::size_t kFew = 30;
+  if (!before_ || static_cast<double>(in_row) > kGoodShare * static_cast<double>(std::max(matched, kFew))) return;
+  ++apart_.bad;
+  const double own = kBetter * static_cast<double>(std::max(in_row, kFew / 2));
+  const auto with_before = matchesInRow(matchUnrectified(now.left, before_->right, now.corners));
+  const auto with_after = matchesInRow(matchUnrectified(before_->left, now.right, before_->corners));
+  if (static_cast<double>(with_before) > own && with_before > with_after) ++apart_.before;
+  if (static_cast<double>(with_after) > own && with_after > with_before) ++apart_.after;
+}
+
+std::vector<Finding> InputCheck::findings() const {
+  std::vector<Finding> findings;
+  if (const auto found = apart())
+    findings.push_back(*found);
+  else if (const auto also_found = exchanged())
+    findings.push_back(*also_found);
+  else
+    addRowErrors(findings);
+  addLight(findings);
+  addTimes(findings);
+  return findings;
+}
+
+std::optional<Finding> InputCheck::apart() const {
+  constexpr int kMinPairs = 4;
+  const int most = std::max(apart_.before, apart_.after);
+  if (most < kMinPairs || 2 * most < apart_.bad) return std::nullopt;
+  return Finding{"apart",
+                 text("the images of a pair are not taken at the same time: in %d of %d pairs, the left image fits the "
+                      "right one of the pair %s better; number the images by their times",
+                      most, apart_.bad, apart_.before > apart_.after ? "after" : "before"),
+                 true};
+}
+
+std::optional<Finding> InputCheck::exchanged() const {
+  constexpr double kClear_px = 1.5, kRow_px = 3, kShare = 0.25;
+  double ahead = 0, behind = 0;
+  for (const EpipolarMatch& match : matches_) {
+    if (std::abs(match.rowDifference_px()) > kRow_px) continue;
+    ahead += match.disparity_px() > kClear_px ? 1 : 0;
+    behind += match.disparity_px() < -kClear_px ? 1 : 0;
+  }
+  const auto all = static_cast<double>(matches_.size());
+  if (matches_.size() < kMinMatches || behind < kShare * all || behind < 3 * ahead) return std::nullopt;
+  return Finding{"exchanged",
+                 text("left and right image are exchanged: %.0f %% of the points would lie behind the camera, %.0f %% "
+                      "before it; exchange the folders, or P0 and P1 of the calibration",
+                      100 * behind / all, 100 * ahead / all),
+                 true};
+}
+
+void InputCheck::addRowErrors(std::vector<Finding>& findings) const {
+  if (matches_.size() < kMinMatches) return;
+  const PairGeometry geometry = this->geometry();
+  const RowErrorEstimate& barrel = geometry[RowError::kBarrel];
+  if (barrel.effect_px > kDistorted_px && std::abs(barrel.value) > kSureDistorted * barrel.sigma)
+    findings.push_back({"distortion",
+                        text("the images are distorted: k1 %.3f (+-%.3f), %.0f px in the corners; undistort and rectify "
+                             "them, or give their calibration",
+                             barrel.value, barrel.sigma, barrel.effect_px),
+                        true});
+  for (const RowErrorText& entry : kRowErrorTexts) {
+    const RowErrorEstimate& estimate = geometry[entry.error];
+    if (estimate.effect_px < kTold_px || std::abs(estimate.value) < kSure * estimate.sigma) continue;
+    findings.push_back({entry.name,
+                        text(entry.format, entry.unit * estimate.value, entry.unit * estimate.sigma) +
+                            text(": %.1f px between the rows; rectify the images anew", estimate.effect_px),
+                        estimate.effect_px > kWorthless_px});
+  }
+}
+
+void InputCheck::addLight(std::vector<Finding>& findings) const {
+  constexpr double kJump = 1.35, kSides = 1.6, kBlurred = 0.4, kUnlike = 2.5, kNoisy = 8;
+  double jump = 1, sides = 1;
+  for (std::size_t i = 0; i < left_means_.size(); ++i) {
+    const auto ratio = [](double a, double b) { return std::max(a, b) / std::max(1.0, std::min(a, b)); };
+    sides = std::max(sides, ratio(left_means_[i], right_means_[i]));
+    if (i > 0) jump = std::max(jump, ratio(left_means_[i], left_means_[i - 1]));
+  }
+  if (jump > kJump)
+    findings.push_back({"exposure", text("the exposure jumps by %.2f times from one pair to the next; hold it, or let it "
+                                         "change slowly", jump), false});
+  if (sides > kSides)
+    findings.push_back({"exposure", text("one image of a pair is %.2f times as bright as the other; let both cameras "
+                                         "have the same exposure", sides), false});
+  if (left_grains_.empty() || right_grains_.empty()) return;
+  const double left = median(left_grains_), right = median(right_grains_);
+  if (std::min(left, right) < kBlurred || std::max(left, right) > kUnlike * std::min(left, right))
+    findings.push_back({"blur", text("images are blurred, smoothed or strongly compressed: the grain is %.2f gray levels "
+                                     "on the left, %.2f on the right, of a sharp image 1 to 3; look at focus and "
+                                     "compression", left, right), false});
+  if (std::max(left, right) > kNoisy)
+    findings.push_back({"noise", text("images are noisy: about %.0f gray levels; more light or less gain helps",
+                                      std::max(left, right)), false});
+}
+
+void InputCheck::addTimes(std::vector<Finding>& findings) const {
+  constexpr double kJump = 4;
+  std::vector<double> periods_s;
+  for (std::size_t i = 1; i < stamps_.size(); ++i) periods_s.push_back(secondsBetween(stamps_[i - 1], stamps_[i]));
+  if (periods_s.size() < 3) return;
+  const double usual_s = median(periods_s);
+  const auto [least, most] = std::ranges::minmax(periods_s);
+  if (most > kJump * usual_s || least <= 0)
+    findings.push_back({"times", text("the times jump: pairs are %.4g s apart, but once %.4g s; look at times.txt",
+                                      usual_s, most > kJump * usual_s ? most : least), false});
+}
+
+}  // namespace motorcade

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "apps/check/epipolar_matching.hpp"
+#include "core/stereo_camera.hpp"
+
+namespace motorcade {
+
+/// What makes the rows of a pair differ, to first order. With x, y the left pixel's normalized coordinates, d the
+/// disparity and x_r = x - d / f, the row in the right image less that in the left one is
+///   offset (1 + y^2) + f roll x + f zoom y + f yaw x y + (lift + ahead y) d + f k1 y (x_r^2 - x^2)
+enum class RowError {
+  kOffset,  // px, at the principal point: pitch between the cameras, or another crop
+  kRoll,    // rad, about the optical axis, the right image clockwise
+  kZoom,    // relative difference of the focal lengths
+  kYaw,     // rad
+  kLift,    // of the right camera downwards, over the baseline
+  kAhead,   // of the right camera, over the baseline, negative
+  kBarrel,  // k1, the radial distortion of both images that was not taken out
+};
+inline constexpr std::size_t kRowErrors = 7;
+
+struct RowErrorEstimate {
+  double value = 0, sigma = 0;
+  double effect_px = 0;  // on the rows, root mean square over the image; for kBarrel, the displacement in a corner
+};
+
+struct PairGeometry {
+  std::array<RowErrorEstimate, kRowErrors> errors;
+  double rms_px = 0;          // of row differences, as they are
+  double remaining_px = 0;    // once the errors above are taken out
+  double agreeing_share = 0;  // of the matches that follow them
+  std::size_t matches = 0;
+
+  const RowErrorEstimate& operator[](RowError error) const { return errors[static_cast<std::size_t>(error)]; }
+};
+
+/// Robust least squares (Cauchy weights) over the matches of several pairs of one rig. Errors that they do not show stay
+/// at zero, with the standard deviation of what a rig may have.
+PairGeometry estimatePairGeometry(std::span<const EpipolarMatch> matches, const StereoCamera& camera);
+
+/// Matches whose row differences lie within a pixel of their median.
+std::size_t matchesInRow(std::span<const EpipolarMatch> matches);
+
+}  // namespace motorcade
