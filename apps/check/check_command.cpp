@@ -20,9 +20,8 @@ namespace motorcade {
 namespace {
 
 constexpr int kExitInput = 3;
-constexpr std::array<const char*, kRowErrors> kNames{"row offset [px]", "roll [deg]",        "zoom [%]",
-                                                     "yaw [deg]",       "lift / baseline",   "ahead / baseline",
-                                                     "distortion k1"};
+constexpr std::array<const char*, kRowErrors> kNames{"row offset [px]", "roll [deg]",       "zoom [%]",     "yaw [deg]",
+                                                     "lift / baseline", "ahead / baseline", "distortion k1"};
 constexpr std::array<const char*, kRowErrors> kKeys{"rows_px", "roll_rad", "zoom", "yaw_rad", "lift", "ahead", "k1"};
 constexpr double kDegree = 180 / std::numbers::pi;
 constexpr std::array<double, kRowErrors> kUnits{1, kDegree, 100, kDegree, 1, 1, 1};
@@ -57,8 +56,9 @@ void printGeometry(const PairGeometry& geometry) {
     std::printf("  %-18s %10.3f %10.3f %12.2f\n", kNames[k], kUnits[k] * error.value, kUnits[k] * error.sigma,
                 error.effect_px);
   }
-  std::printf("  the rows differ by %.2f px (root mean square); %.0f %% of the points follow the errors above to %.2f px\n",
-              geometry.rms_px, 100 * geometry.agreeing_share, geometry.remaining_px);
+  std::printf(
+      "  the rows differ by %.2f px (root mean square); %.0f %% of the points follow the errors above to %.2f px\n",
+      geometry.rms_px, 100 * geometry.agreeing_share, geometry.remaining_px);
 }
 
 void writeJson(const std::filesystem::path& file, const PairGeometry& geometry, const std::vector<Finding>& findings) {

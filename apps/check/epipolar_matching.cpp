@@ -77,8 +77,8 @@ std::optional<Place> searchBothWays(const Image& left, const Image& right, Place
   if (!found) return std::nullopt;
   const Window back{right, found->u, found->v, kHalfSizeWindow};
   const auto again = searchArea(back, left, {found->u + kLeastDisparity_px, found->u + kMostDisparity_px});
-  const bool same = again && std::abs(again->u - from.u) <= kMaxRoundTrip_px &&
-                    std::abs(again->v - from.v) <= kMaxRoundTrip_px;
+  const bool same =
+      again && std::abs(again->u - from.u) <= kMaxRoundTrip_px && std::abs(again->v - from.v) <= kMaxRoundTrip_px;
   return same ? found : std::nullopt;
 }
 

@@ -19,7 +19,8 @@ constexpr std::size_t kMinMatches = 60;  // that a rig is judged by
 constexpr double kTold_px = 0.8, kWorthless_px = 1.2;
 constexpr double kSure = 5;           // standard deviations
 constexpr double kSureDistorted = 4;  // as the least displacement below asks for much already
-/// Displacement in the corner of the image from which on distortion is told: good calibrations stay below the half [px].
+/// Displacement in the corner of the image from which on distortion is told: good calibrations stay below the half
+/// [px].
 constexpr double kDistorted_px = 20;
 
 template <class... Values>
@@ -57,7 +58,8 @@ struct RowErrorText {
 const double kDegree = degrees(1);
 const std::array kRowErrorTexts{
     RowErrorText{RowError::kOffset, "rows", "the right image's content lies %.2f (+-%.2f) px lower than the left's"},
-    RowErrorText{RowError::kRoll, "roll", "the right image is turned by %.2f (+-%.2f) degrees about its middle", kDegree},
+    RowErrorText{RowError::kRoll, "roll", "the right image is turned by %.2f (+-%.2f) degrees about its middle",
+                 kDegree},
     RowErrorText{RowError::kZoom, "zoom", "the right image is larger by %.2f (+-%.2f) %%", 100},
     RowErrorText{RowError::kYaw, "yaw", "the right camera looks to the side by %.2f (+-%.2f) degrees", kDegree},
     RowErrorText{RowError::kLift, "lift", "the right camera stands lower by %.1f (+-%.1f) %% of the baseline", 100},
@@ -147,11 +149,12 @@ void InputCheck::addRowErrors(std::vector<Finding>& findings) const {
   const PairGeometry geometry = this->geometry();
   const RowErrorEstimate& barrel = geometry[RowError::kBarrel];
   if (barrel.effect_px > kDistorted_px && std::abs(barrel.value) > kSureDistorted * barrel.sigma)
-    findings.push_back({"distortion",
-                        text("the images are distorted: k1 %.3f (+-%.3f), %.0f px in the corners; undistort and rectify "
-                             "them, or give their calibration",
-                             barrel.value, barrel.sigma, barrel.effect_px),
-                        true});
+    findings.push_back(
+        {"distortion",
+         text("the images are distorted: k1 %.3f (+-%.3f), %.0f px in the corners; undistort and rectify "
+              "them, or give their calibration",
+              barrel.value, barrel.sigma, barrel.effect_px),
+         true});
   for (const RowErrorText& entry : kRowErrorTexts) {
     const RowErrorEstimate& estimate = geometry[entry.error];
     if (estimate.effect_px < kTold_px || std::abs(estimate.value) < kSure * estimate.sigma) continue;
@@ -171,20 +174,31 @@ void InputCheck::addLight(std::vector<Finding>& findings) const {
     if (i > 0) jump = std::max(jump, ratio(left_means_[i], left_means_[i - 1]));
   }
   if (jump > kJump)
-    findings.push_back({"exposure", text("the exposure jumps by %.2f times from one pair to the next; hold it, or let it "
-                                         "change slowly", jump), false});
+    findings.push_back({"exposure",
+                        text("the exposure jumps by %.2f times from one pair to the next; hold it, or let it "
+                             "change slowly",
+                             jump),
+                        false});
   if (sides > kSides)
-    findings.push_back({"exposure", text("one image of a pair is %.2f times as bright as the other; let both cameras "
-                                         "have the same exposure", sides), false});
+    findings.push_back({"exposure",
+                        text("one image of a pair is %.2f times as bright as the other; let both cameras "
+                             "have the same exposure",
+                             sides),
+                        false});
   if (left_grains_.empty() || right_grains_.empty()) return;
   const double left = median(left_grains_), right = median(right_grains_);
   if (std::min(left, right) < kBlurred || std::max(left, right) > kUnlike * std::min(left, right))
-    findings.push_back({"blur", text("images are blurred, smoothed or strongly compressed: the grain is %.2f gray levels "
-                                     "on the left, %.2f on the right, of a sharp image 1 to 3; look at focus and "
-                                     "compression", left, right), false});
+    findings.push_back({"blur",
+                        text("images are blurred, smoothed or strongly compressed: the grain is %.2f gray levels "
+                             "on the left, %.2f on the right, of a sharp image 1 to 3; look at focus and "
+                             "compression",
+                             left, right),
+                        false});
   if (std::max(left, right) > kNoisy)
-    findings.push_back({"noise", text("images are noisy: about %.0f gray levels; more light or less gain helps",
-                                      std::max(left, right)), false});
+    findings.push_back(
+        {"noise",
+         text("images are noisy: about %.0f gray levels; more light or less gain helps", std::max(left, right)),
+         false});
 }
 
 void InputCheck::addTimes(std::vector<Finding>& findings) const {
@@ -195,8 +209,10 @@ void InputCheck::addTimes(std::vector<Finding>& findings) const {
   const double usual_s = median(periods_s);
   const auto [least, most] = std::ranges::minmax(periods_s);
   if (most > kJump * usual_s || least <= 0)
-    findings.push_back({"times", text("the times jump: pairs are %.4g s apart, but once %.4g s; look at times.txt",
-                                      usual_s, most > kJump * usual_s ? most : least), false});
+    findings.push_back({"times",
+                        text("the times jump: pairs are %.4g s apart, but once %.4g s; look at times.txt", usual_s,
+                             most > kJump * usual_s ? most : least),
+                        false});
 }
 
 }  // namespace motorcade

@@ -37,7 +37,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Effect of each error per unit on the rows, root mean square over the image; of kBarrel, the displacement in a corner.
+/// Effect of each error per unit on the rows, root mean square over the image; of kBarrel, the displacement in a
+/// corner.
 Vector reach(const StereoCamera& camera) {
   const double f = camera.fx_px, half_width = camera.width_px / (2 * f), half_height = camera.height_px / (2 * f);
   const double mean_x = half_width / std::numbers::sqrt3, mean_y = half_height / std::numbers::sqrt3;
@@ -90,7 +91,8 @@ PairGeometry estimatePairGeometry(std::span<const EpipolarMatch> matches, const 
   geometry.matches = matches.size();
   geometry.rms_px = rowRms(matches);
   geometry.remaining_px = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, agreeing)));
-  geometry.agreeing_share = static_cast<double>(agreeing) / static_cast<double>(std::max<std::size_t>(1, matches.size()));
+  geometry.agreeing_share =
+      static_cast<double>(agreeing) / static_cast<double>(std::max<std::size_t>(1, matches.size()));
   return geometry;
 }
 

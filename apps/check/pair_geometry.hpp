@@ -38,8 +38,8 @@ struct PairGeometry {
   const RowErrorEstimate& operator[](RowError error) const { return errors[static_cast<std::size_t>(error)]; }
 };
 
-/// Robust least squares (Cauchy weights) over the matches of several pairs of one rig. Errors that they do not show stay
-/// at zero, with the standard deviation of what a rig may have.
+/// Robust least squares (Cauchy weights) over the matches of several pairs of one rig. Errors that they do not show
+/// stay at zero, with the standard deviation of what a rig may have.
 PairGeometry estimatePairGeometry(std::span<const EpipolarMatch> matches, const StereoCamera& camera);
 
 /// Matches whose row differences lie within a pixel of their median.

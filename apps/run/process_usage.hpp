@@ -18,8 +18,8 @@ struct ProcessUsage {
 /// Up to now.
 ProcessUsage processUsage();
 
-/// Gives the pages that the heap holds in reserve back to the system. Takes milliseconds, in which other threads may wait
-/// for the heap.
+/// Gives the pages that the heap holds in reserve back to the system. Takes milliseconds, in which other threads may
+/// wait for the heap.
 void giveBackSpareMemory();
 
 }  // namespace motorcade

@@ -167,8 +167,7 @@ bool strongerInCell(const Candidate& a, const Candidate& b) {
 }
 
 /// Local maxima of the rows from `first_center` up to `end_center`, in reading order.
-std::vector<Candidate> findCandidates(const Image& image, int first_center, int end_center,
-                                      double min_score) {
+std::vector<Candidate> findCandidates(const Image& image, int first_center, int end_center, double min_score) {
   const int width = image.width();
   std::vector<Candidate> candidates;
   constexpr double kMomentScale = Gradients::kScale * Gradients::kScale * kWindowPixels;

@@ -13,8 +13,8 @@ constexpr int kWindowPixels = (2 * kHalfWindow_px + 1) * (2 * kHalfWindow_px + 1
 constexpr int kGrid_px = 40;
 constexpr std::size_t kMinNeighborhoods = 12;
 
-/// Grain up to which images stay as they are, and from which on all of an image is smoothed. At 10, smoothed images lose
-/// more accuracy of the path than they gain; at 20, matches in images that are not smoothed are half as many.
+/// Grain up to which images stay as they are, and from which on all of an image is smoothed. At 10, smoothed images
+/// lose more accuracy of the path than they gain; at 20, matches in images that are not smoothed are half as many.
 constexpr float kHarmlessGrain = 8, kSmoothedGrain = 16;
 constexpr int kWhole = 16;  // of the share, in sixteenths
 

@@ -60,8 +60,9 @@ TEST_F(Check, IsQuietWhereNothingIsWrong) {
 TEST_F(Check, NamesWhatMakesResultsWorthless) {
   const struct {
     std::string faults, name;
-  } cases[] = {{"exchanged", "exchanged"},      {"lowered=1.5/right", "rows"}, {"lowered=4/right", "rows"},
-               {"lowered=-4/right", "rows"},    {"rolled=1/right", "roll"},    {"barrel=-0.15", "distortion"},
+  } cases[] = {{"exchanged", "exchanged"},  {"lowered=1.5/right", "rows"},
+               {"lowered=4/right", "rows"}, {"lowered=-4/right", "rows"},
+               {"rolled=1/right", "roll"},  {"barrel=-0.15", "distortion"},
                {"apart", "apart"}};
   for (const auto& [faults, name] : cases) {
     const Found found = check(faults);

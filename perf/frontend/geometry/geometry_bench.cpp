@@ -63,10 +63,10 @@ void BM_EgoMotion(benchmark::State& state) {
     }
   }
   const EgoMotionEstimator estimate(EgoMotionEstimator::Params{}, test::kRig);
-  const std::vector<bool> movers(count, false);
+  const std::vector<PointLabel> labels(count);
   std::uint64_t number = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(estimate(frames[number % kVariants], movers,
+    benchmark::DoNotOptimize(estimate(frames[number % kVariants], labels,
                                       {.T_previous_now = T_previous_now, .dt_s = 0.1, .steady_frames = 5}, number));
     ++number;
   }
