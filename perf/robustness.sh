@@ -50,6 +50,18 @@ row() {  # NAME FAULTS
 head_of() { printf '| fault | `--inject` |'; for drive in $drives; do printf ' %s: ATE m (times clean) | recall %% | missing / degraded / segments |' "$drive"; done
   printf '\n| --- | --- |'; for drive in $drives; do printf ' --- | --- | --- |'; done; printf '\n'; }
 
+checked() {  # NAME FAULTS FINDING: on how many clips of the drives `check` names the fault
+  local drive first named=0 clips=0
+  for drive in $drives; do
+    for first in 0 10 20 30; do
+      "$motorcade" check "$data/$drive" --frames $first: --inject "$2" --json "$out/check.json" >/dev/null 2>&1 || true
+      clips=$((clips + 1))
+      jq -e --arg name "$3" 'if $name == "" then .findings == [] else any(.findings[]; .name == $name) end' "$out/check.json" >/dev/null && named=$((named + 1))
+    done
+  done
+  echo "| $1 | \`$2\` | ${3:-nothing} | $named of $clips |"
+}
+
 crowded() {  # SCENE MEANING: camera and recall where little is at rest in view, of seeds 1 to 3
   local ates="" recalls="" lost="" seed
   for seed in 1 2 3; do
@@ -111,6 +123,23 @@ done
   for v in 0.7 0.5; do row "right image's exposure x $v" "exposure=$v/right"; done
   for v in 3 5; do row "right image's blur $v px" "blur=$v/right"; done
   echo
+  echo "## Rigs and inputs that are wrong"
+  echo
+  echo "What \`motorcade check\` finds in twenty pairs, from four places of each drive."
+  echo
+  echo "| fault | \`--inject\` | finding | named |"
+  echo "| --- | --- | --- | --- |"
+  checked "none" "seed=1" ""
+  checked "left and right exchanged" "exchanged" exchanged
+  for v in 1.5 -1.5 4; do checked "right image lower by $v px" "lowered=$v/right" rows; done
+  for v in 1 -1; do checked "right image turned by $v degrees" "rolled=$v/right" roll; done
+  for v in -0.1 0.1; do checked "distortion left in, k1 $v" "barrel=$v" distortion; done
+  checked "right image of the pair before" "apart" apart
+  checked "exposure jumps" "exposure=0.5@35::2,exposure=0.5@5::2" exposure
+  checked "one image dark" "exposure=0.5/right" exposure
+  checked "blur" "blur=9" blur
+  checked "noise" "noise=20" noise
+  echo
   echo "## Silent jumps"
   echo
   perf/gaps.sh "$gaps" rendered_street "$data" "$out"  # its truth is exact
@@ -137,7 +166,7 @@ done
   tested "FIFOs and devices as input or output" "Run.RefusesInputsThatWouldBeWaitedFor|RunFolder.Outputs"
   tested "sizes, limits and headers of images" "Run.RefusesImagesThatAreLarger|ImageFile.AbsurdSizes|ImageFile.RefusesFiles|ImageFile.Pixels|ImageFile.Jpegs"
   tested "damaged images" "ImageFile.EveryCut|ImageFile.BrokenBytes|Run.RejectsADamagedImage"
-  tested "calibrations and times that cannot be" "Run.WarnsOfTimes|DoubtsAboutACamera|Plausibility|CalibrationFile.Refuses"
+  tested "calibrations and times that cannot be" "Run.WarnsOfTimes|DoubtsAboutACamera|Check|Plausibility|CalibrationFile.Refuses"
   tested "clocks" "FrameClock|Inject.AJumpOfTheClock|Inject.AClockThat|Inject.OneTimeFar"
   tested "late pairs" "Inject.LatePairs|FaultInjector"
   tested "parameters at their bounds" "ParameterRange"

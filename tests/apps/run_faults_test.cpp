@@ -47,7 +47,7 @@ TEST_F(Run, RefusesInputsThatWouldBeWaitedFor) {
   }
 }
 
-TEST_F(Run, WarnsOfTimesAndCalibrationsThatCannotBe) {
+TEST_F(Run, WarnsOfTimesAndRefusesCalibrationsThatCannotBe) {
   EXPECT_EQ(run("clean"), 0);
   EXPECT_THAT(contentOf(errors()), Not(HasSubstr("warning")));
   const fs::path copy = out("copy");
@@ -64,7 +64,7 @@ TEST_F(Run, WarnsOfTimesAndCalibrationsThatCannotBe) {
   EXPECT_EQ(run("milliseconds", "", copy), 0);
   EXPECT_THAT(contentOf(errors()), HasSubstr("times must be in seconds"));
   ASSERT_EQ(std::system(("sed -i 's/-387\\.5/-387500/' " + (copy / "calib.txt").string()).c_str()), 0);
-  EXPECT_EQ(run("millimeters", "", copy), 0);
+  EXPECT_EQ(run("millimeters", "", copy), 3);
   EXPECT_THAT(contentOf(errors()), HasSubstr("must be in meters"));
 }
 
