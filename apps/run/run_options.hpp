@@ -25,6 +25,7 @@ struct RunOptions {
   std::vector<std::string> assignments;  // key=value
   std::string require;                   // tracked=FRACTION
   std::string inject;                    // faults, see FaultSpec
+  bool force = false;                    // replace a finished run
 };
 
 /// The configuration in force: defaults, then the file, then `--set`, then the options. Throws UsageError.
