@@ -62,7 +62,7 @@ std::vector<std::pair<std::string, std::string>> versions() {
 std::string versionsText() {
   std::string text;
   for (const auto& [name, version] : versions())
-    text += text.empty() ? name + " " + version : fmt::format("\n{:<16} {}", name, version);
+    text += text.empty() ? fmt::format("{} {}", name, version) : fmt::format("\n{:<16} {}", name, version);
   return text;
 }
 

@@ -1,4 +1,5 @@
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,12 @@ using testing::HasSubstr;
 using testing::Not;
 
 const std::string kCommands[] = {"run", "synth", "evaluate", "draw", "solve", "help"};
+
+std::string words(const std::vector<std::string>& arguments) {
+  std::string line;
+  for (const std::string& argument : arguments) line.append(argument).append(" ");
+  return line;
+}
 
 class CommandLine : public Run {
  protected:
@@ -84,12 +91,12 @@ TEST_F(CommandLine, TheLogIsAsTalkativeAsAskedForBeforeAndBehindTheCommand) {
   EXPECT_THAT(said("run " + two_frames, 0),
               AllOf(HasSubstr(" info "), HasSubstr("throughput"), Not(HasSubstr("debug"))));
   for (const std::string quiet : {"-q", "--quiet", "--log-level warning", "--log-level off"}) {
-    EXPECT_EQ(said("run " + two_frames + " " + quiet, 0), "") << quiet;
-    EXPECT_EQ(said(quiet + " run " + two_frames, 0), "") << quiet;
+    EXPECT_EQ(said(words({"run", two_frames, quiet}), 0), "") << quiet;
+    EXPECT_EQ(said(words({quiet, "run", two_frames}), 0), "") << quiet;
   }
   for (const std::string verbose : {"-v", "--verbose", "--log-level debug", "--log-level trace"}) {
-    EXPECT_THAT(said("run " + two_frames + " " + verbose, 0), HasSubstr(" debug ")) << verbose;
-    EXPECT_THAT(said(verbose + " run " + two_frames, 0), HasSubstr(" debug ")) << verbose;
+    EXPECT_THAT(said(words({"run", two_frames, verbose}), 0), HasSubstr(" debug ")) << verbose;
+    EXPECT_THAT(said(words({verbose, "run", two_frames}), 0), HasSubstr(" debug ")) << verbose;
   }
   const std::string nowhere = "run " + out("nowhere").string() + " --out " + out("x").string();
   EXPECT_THAT(said("-q " + nowhere, 3), HasSubstr("nowhere"));
