@@ -19,7 +19,7 @@ else
 fi
 
 echo "== Following it at 10 pairs per second"
-"$motorcade" run "$results/sequence" --out "$results/run" --rate 10 --masks
+"$motorcade" run "$results/sequence" --out "$results/run" --force --rate 10 --masks
 
 echo "== Accuracy against the exact truth"
 "$motorcade" evaluate "$results/run" --sequence "$results/sequence" --json "$results/evaluation.json"

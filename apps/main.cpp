@@ -6,11 +6,11 @@
 #include <new>
 #include <system_error>
 
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include "apps/command_line.hpp"
+#include "apps/console/log.hpp"
 #include "io/errors.hpp"
 
 namespace {
@@ -67,8 +67,7 @@ int main(int argc, char** argv) {
   std::set_new_handler(endWithoutMemory);
   std::set_terminate(endWithCurrentException);
   try {
-    spdlog::set_default_logger(spdlog::stderr_color_mt("motorcade"));
-    spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
+    motorcade::startLog();
     const motorcade::CommandLine command_line = motorcade::parseCommandLine(argc, argv);
     return command_line.action ? perform(command_line.action) : command_line.exit_code;
   } catch (...) {  // the logger itself, or the parser

@@ -38,7 +38,7 @@ run_all() {  # NAME SEQUENCE: a run and its evaluation for every back-end
     [[ ! -d $2/instance ]] || masks=(--masks)  # there is truth to compare them with
     [[ $backend == default ]] || kind=(--set "backend.kind=\"$backend\"")
     mkdir -p "$out/$backend"
-    "$motorcade" run "$2" --out "$out/$backend/$1" "${kind[@]}" "${masks[@]}" >"$out/$backend/$1.log" 2>&1
+    "$motorcade" run "$2" --out "$out/$backend/$1" --force "${kind[@]}" "${masks[@]}" >"$out/$backend/$1.log" 2>&1
   done
   for backend in $backends; do
     local baseline=()

@@ -14,7 +14,7 @@ for ((gap = 0; gap < count; ++gap)); do
   drive=${names[gap % ${#names[@]}]}
   length=$((1 + RANDOM % 20)) start=$((12 + RANDOM % 20))
   after=$((start + length))
-  "$motorcade" run "$data/$drive" --out "$out/gap" --frames "0:$((after + 2))" --inject "drop@$start:$after" >/dev/null 2>&1
+  "$motorcade" run "$data/$drive" --out "$out/gap" --force --frames "0:$((after + 2))" --inject "drop@$start:$after" >/dev/null 2>&1
   status=$(awk -F, -v frame=$after '$1 == frame { print $2 }' "$out/gap/frames.csv")
   if [[ $status == lost ]]; then
     lost=$((lost + 1))

@@ -13,8 +13,8 @@ out=results/portable
 if [[ ! -x $native ]]; then cmake --preset release --log-level=WARNING && cmake --build --preset release --target motorcade; fi
 if [[ ! -x $portable ]]; then cmake --preset portable --log-level=WARNING && cmake --build --preset portable; fi >/dev/null
 mkdir -p $out
-"$native" run "$drive" --frames "0:$frames" --out $out/native >/dev/null 2>&1
-"$portable" run "$drive" --frames "0:$frames" --out $out/portable >/dev/null 2>&1
+"$native" run "$drive" --frames "0:$frames" --out $out/native --force >/dev/null 2>&1
+"$portable" run "$drive" --frames "0:$frames" --out $out/portable --force >/dev/null 2>&1
 
 # Prints the largest difference between the numbers of two files of the same shape, and where it is; words must be equal.
 largest_difference() {

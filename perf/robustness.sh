@@ -66,7 +66,7 @@ crowded() {  # SCENE MEANING: camera and recall where little is at rest in view,
   local ates="" recalls="" lost="" seed
   for seed in 1 2 3; do
     [[ -f $out/$1-$seed/times.txt ]] || "$motorcade" synth "$out/$1-$seed" --scene "$1" --seed $seed >/dev/null 2>&1
-    "$motorcade" run "$out/$1-$seed" --out "$out/run" >/dev/null 2>&1
+    "$motorcade" run "$out/$1-$seed" --out "$out/run" --force >/dev/null 2>&1
     "$motorcade" evaluate "$out/run" --sequence "$out/$1-$seed" --json "$out/measures.json" >/dev/null
     ates+=" $(jq '.final.camera.ate_m.rmse * 1000 | round / 1000' "$out/measures.json")"
     recalls+=" $(jq '.final.detection.within_30m.recall * 100 | round' "$out/measures.json")"

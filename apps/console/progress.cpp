@@ -1,19 +1,37 @@
 #include "apps/console/progress.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
 #include <spdlog/spdlog.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
+
+#include "apps/console/log.hpp"
 
 namespace motorcade {
 namespace {
 
-constexpr std::size_t kBarWidth = 40;
 constexpr auto kBarPeriod = std::chrono::milliseconds(100);
 constexpr auto kLinePeriod = std::chrono::seconds(3);
 
+/// Of the standard error output's terminal, which the user may have made wider or narrower since.
+std::size_t terminalColumns() {
+  constexpr std::size_t kUsual = 80;  // of terminals that do not know
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
+}
+
 }  // namespace
+
+std::string progressLine(double share_done, const std::string& text, std::size_t columns) {
+  constexpr std::size_t kLeastBar = 10, kMostBar = 40, kAround = 3;  // brackets and a blank
+  if (text.size() + kLeastBar + kAround > columns) return text.substr(0, columns);
+  const std::size_t bar = std::min(kMostBar, columns - text.size() - kAround);
+  const auto filled = static_cast<std::size_t>(std::clamp(share_done, 0.0, 1.0) * static_cast<double>(bar));
+  return fmt::format("[{:#<{}}{:.<{}}] {}", "", filled, "", bar - filled, text);
+}
 
 Progress::Progress(std::string item, std::size_t count)
     : item_(std::move(item)),
@@ -27,6 +45,7 @@ Progress::~Progress() {
 }
 
 void Progress::show(std::size_t done, const std::string& more) {
+  if (!tellsProgress()) return;
   const auto now = Clock::now();
   if (now < next_ && !(terminal_ && done == count_)) return;
   next_ = now + (terminal_ ? Clock::duration(kBarPeriod) : Clock::duration(kLinePeriod));
@@ -37,9 +56,9 @@ void Progress::show(std::size_t done, const std::string& more) {
     spdlog::info(text);
     return;
   }
-  const std::size_t filled = count_ > 0 ? kBarWidth * done / count_ : kBarWidth;
-  const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-  std::fprintf(stderr, "\r[%s] %s\033[K", bar.c_str(), text.c_str());
+  const double share_done = count_ > 0 ? static_cast<double>(done) / static_cast<double>(count_) : 1;
+  const std::size_t columns = terminalColumns() - 1;  // in the last one, the cursor may go on to the next line
+  std::fprintf(stderr, "\r%s\033[K", progressLine(share_done, text, columns).c_str());
   line_open_ = true;
 }
 

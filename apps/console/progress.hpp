@@ -6,8 +6,11 @@
 
 namespace motorcade {
 
-/// Shows how far the work is: a bar on a terminal, a plain line every few seconds otherwise. Writes to the standard
-/// error output.
+/// A bar of what is done, as far as there is room for it, and the text: at most so many columns.
+std::string progressLine(double share_done, const std::string& text, std::size_t columns);
+
+/// Shows how far the work is: a bar on a terminal, in one line of it, a plain line every few seconds otherwise. Writes
+/// to the standard error output, and nothing where the user wants to read warnings and errors only.
 class Progress {
  public:
   /// `item` is the singular of what is counted.

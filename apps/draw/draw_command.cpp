@@ -4,7 +4,9 @@
 #include <iostream>
 #include <string>
 
+#include "apps/console/log.hpp"
 #include "apps/draw/frame_view.hpp"
+#include "apps/recorded/recorded_run.hpp"
 #include "io/errors.hpp"
 #include "io/image_file.hpp"
 #include "io/mask_image.hpp"
@@ -56,9 +58,6 @@ DrawnRun drawnRun(const RunFolder& run, const Sequence& sequence) {
   // A run that was killed has few final poses: what was published online tells more then.
   const RunFolder::Trajectories& shown = run.final.camera.size() >= run.online.camera.size() ? run.final : run.online;
   drawn.T_world_cam = shown.camera;
-  const std::size_t available =
-      sequence.frames.size() - std::min(sequence.frames.size(), static_cast<std::size_t>(run.first_frame));
-  if (drawn.T_world_cam.size() > available) drawn.T_world_cam.resize(available);
   for (std::size_t i = 0; i < drawn.T_world_cam.size(); ++i) {
     drawn.stamps.push_back(sequence.stamps[run.first_frame + i]);
   }
@@ -81,8 +80,9 @@ std::string pictureName(std::int64_t frame) {
 }  // namespace
 
 int runDraw(const DrawOptions& options) {
-  const Sequence sequence = openSequence(options.sequence, options.fps_hz);
-  const DrawnRun drawn = drawnRun(readRunFolder(options.run), sequence);
+  const RunFolder run = readRunFolder(options.run);
+  const Sequence sequence = openSequenceOf(run, {options.sequence, options.fps_hz});
+  const DrawnRun drawn = drawnRun(run, sequence);
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
   if (error) throw OutputError(options.out.string() + ": cannot be made a folder: " + error.message());
@@ -102,7 +102,7 @@ int runDraw(const DrawOptions& options) {
       std::cerr << "left out: " << problem.what() << '\n';
     }
   }
-  std::cout << pictures << " pictures in " << options.out.string() << '\n';
+  if (tellsProgress()) std::cout << pictures << " pictures in " << options.out.string() << '\n';
   return 0;
 }
 

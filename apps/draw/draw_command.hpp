@@ -1,15 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "io/sequence.hpp"
 
 namespace motorcade {
 
 struct DrawOptions {
-  std::filesystem::path run{}, sequence{}, out{};
-  double fps_hz = 10;
-  FrameRange frames{};  // of the sequence
+  std::filesystem::path run{}, sequence{}, out{};  // the sequence that the run names when empty
+  std::optional<double> fps_hz{};                  // of a sequence without times; the run's when empty
+  FrameRange frames{};                             // of the sequence
   int every = 1;
 };
 

@@ -5,6 +5,7 @@
 #include "apps/evaluate/kitti_export.hpp"
 #include "apps/evaluate/recovered_finals.hpp"
 #include "apps/evaluate/report.hpp"
+#include "apps/recorded/recorded_run.hpp"
 #include "io/line_file.hpp"
 
 namespace motorcade {
@@ -13,8 +14,8 @@ namespace {
 /// Exports results where asked; true when that is all, as there is no truth to measure by.
 bool exportAlone(const EvaluateOptions& options) {
   if (options.export_kitti.empty()) return false;
-  const Sequence sequence = openSequence(options.sequence, options.fps_hz);
   RunFolder run = readRunFolder(options.run);
+  const Sequence sequence = openSequenceOf(run, {options.sequence, options.fps_hz});
   recoverFinals(run);
   exportKitti(options.export_kitti, run, sequence);
   return options.json.empty() && !readCameraTruth(sequence);

@@ -7,6 +7,7 @@
 
 #include "apps/evaluate/mounting.hpp"
 #include "apps/evaluate/recovered_finals.hpp"
+#include "apps/recorded/recorded_run.hpp"
 #include "io/errors.hpp"
 #include "io/line_file.hpp"
 #include "io/number_text.hpp"
@@ -149,8 +150,8 @@ KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequ
 }
 
 Evaluation evaluateRun(const EvaluateOptions& options) {
-  const Sequence sequence = openSequence(options.sequence, options.fps_hz);
   RunFolder run = readRunFolder(options.run);
+  const Sequence sequence = openSequenceOf(run, {options.sequence, options.fps_hz});
   const CameraTruth camera = neededTruth(sequence, options.uninterpolated);
   const auto truths = readObjectTruths(sequence, camera);
   const auto compare = [&](const RunFolder::Trajectories& trajectories, std::int64_t first_frame) {
@@ -158,7 +159,7 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   };
   Evaluation evaluation;
   evaluation.run = options.run;
-  evaluation.sequence = options.sequence;
+  evaluation.sequence = sequence.folder;
   evaluation.camera_source = camera.source;
   evaluation.finals_recovered = recoverFinals(run);
   if (truths) evaluation.object_source = truths->source;
@@ -173,7 +174,11 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   evaluateCovariances(evaluation, online, run.covariances);
   if (!sequence.truth.instances.empty())
     evaluation.masks = maskErrors(online, options.run / "masks", sequence.truth.instances);
-  if (!options.half_run.empty()) evaluation.half_errors = compareHalves(run, readRunFolder(options.half_run));
+  if (!options.half_run.empty()) {
+    const RunFolder half = readRunFolder(options.half_run);
+    requireSameDrive(half, sequence);
+    evaluation.half_errors = compareHalves(run, half);
+  }
   if (!options.baseline.empty()) {
     const auto poses =
         baselinePoses(options.baseline, run.first_frame, run.final.camera.size(), sequence.frames.size());
@@ -181,6 +186,7 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   }
   if (!options.baseline_run.empty()) {
     const RunFolder other = readRunFolder(options.baseline_run);
+    requireSameDrive(other, sequence);
     const auto theirs = compare(other.final, other.first_frame);
     if (options.baseline.empty()) compareCameras(evaluation, evaluateFrames(theirs));
     evaluation.objects_against_baseline = compareRuns(followedLabels(final), followedLabels(theirs));

@@ -19,15 +19,15 @@
 namespace motorcade {
 
 struct EvaluateOptions {
-  std::filesystem::path run, sequence;
-  double fps_hz = 10;
-  bool uninterpolated = false;         // oxts packet k for image k
-  std::filesystem::path baseline;      // camera poses to compare with; empty for none
-  std::filesystem::path baseline_run;  // run folder to compare objects with; empty for none
-  std::filesystem::path half_run;      // run folder of the same drive from other points; empty for none
-  std::filesystem::path export_truth;  // folder for the true trajectories; empty for none
-  std::filesystem::path export_kitti;  // folder for the run's objects as KITTI results; empty for none
-  std::filesystem::path json;          // empty for none
+  std::filesystem::path run, sequence;  // the sequence that the run names when empty
+  std::optional<double> fps_hz;         // of a sequence without times; the run's when empty
+  bool uninterpolated = false;          // oxts packet k for image k
+  std::filesystem::path baseline;       // camera poses to compare with; empty for none
+  std::filesystem::path baseline_run;   // run folder to compare objects with; empty for none
+  std::filesystem::path half_run;       // run folder of the same drive from other points; empty for none
+  std::filesystem::path export_truth;   // folder for the true trajectories; empty for none
+  std::filesystem::path export_kitti;   // folder for the run's objects as KITTI results; empty for none
+  std::filesystem::path json;           // empty for none
 };
 
 /// All measures of one kind of estimate, final or online.

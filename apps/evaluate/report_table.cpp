@@ -32,98 +32,99 @@ void printHead(std::string& text, const Evaluation& e) {
 
 void printCameraLine(std::string& text, const char* kind, const std::optional<TrajectoryErrors>& errors) {
   if (!errors) return print(text, "  %-8s too few poses\n", kind);
-  print(text, "  %-8s %7.3f %7.3f %7.3f  %9.3f  %6.2f %%  %7.4f / %6.4f  %7.4f / %6.4f  %7.3f\n", kind,
-        errors->ate_m.rmse, errors->ate_m.mean, errors->ate_m.median, errors->ate_first_pose_m.rmse,
-        errors->end_percent, errors->rpe_m.rmse, errors->rpe_m.median, errors->rpe_deg.rmse, errors->rpe_deg.median,
-        errors->are_deg.mean);
+  print(text, "  %-8s %7.3f %7.3f %7.3f  %8.3f  %7.2f %%  %7.4f %7.4f  %7.4f %7.4f  %7.3f\n", kind, errors->ate_m.rmse,
+        errors->ate_m.mean, errors->ate_m.median, errors->ate_first_pose_m.rmse, errors->end_percent,
+        errors->rpe_m.rmse, errors->rpe_m.median, errors->rpe_deg.rmse, errors->rpe_deg.median, errors->are_deg.mean);
 }
 
 void printCamera(std::string& text, const Evaluation& e) {
-  print(text,
-        "\ncamera     ATE m, SE(3) aligned    ATE first  end error  RPE_t m            RPE_r deg         ARE deg\n");
-  print(text,
-        "              rmse    mean  median  pose rmse                rmse / median     rmse / median     mean\n");
+  text += "\ncamera       ATE m                  1st pose  end error   RPE_t m          RPE_r deg       ARE deg\n";
+  text += "              rmse    mean  median      rmse                rmse  median     rmse  median     mean\n";
   printCameraLine(text, "final", e.final.camera);
   printCameraLine(text, "online", e.online.camera);
   if (!e.mounting) return;
   const Eigen::Vector3d turn_deg = logSO3(e.mounting->rotation()) * 180 / std::numbers::pi,
                         arm_m = e.mounting->translation();
-  print(text,
-        "without the truth's mounting, a rotation of (%.2f %.2f %.2f) deg and a lever arm of (%.2f %.2f %.2f) m:\n",
-        turn_deg.x(), turn_deg.y(), turn_deg.z(), arm_m.x(), arm_m.y(), arm_m.z());
+  print(text, "without the truth's mounting (rotation %.2f %.2f %.2f deg, lever arm %.2f %.2f %.2f m):\n", turn_deg.x(),
+        turn_deg.y(), turn_deg.z(), arm_m.x(), arm_m.y(), arm_m.z());
   printCameraLine(text, "final", e.final.camera_mounted);
   printCameraLine(text, "online", e.online.camera_mounted);
 }
 
-void printObjectHead(std::string& text) {
-  print(text,
-        "\nmoving objects (final)   frames     ids   position m rmse: aligned / offset removed /  ARE    "
-        "origin drift m       ME_t m         ME_r deg       speed m/s\n");
-  print(text,
-        "  label  type             followed        as seen, offset removed               deg    "
-        "along   up      across  mean / rmse    mean / rmse    rmse    bias\n");
-}
-
-void printObject(std::string& text, const ObjectErrors& object) {
-  print(text, "  %-6lld %-14s %5d/%-5d %4d", static_cast<long long>(object.label), object.type.c_str(),
+void printPosition(std::string& text, const ObjectErrors& object) {
+  print(text, "  %-6lld %-14.14s %5d/%-5d %3d", static_cast<long long>(object.label), object.type.c_str(),
         object.followed_frames, object.labeled_frames, object.tracks);
   if (!object.positions) return print(text, "\n");
   const PositionErrors& p = *object.positions;
-  const MotionErrors& m = object.motion;
-  print(text, "  %7.3f / %7.3f / %7.3f      %6.2f", p.of(PositionKind::kAligned).rmse,
+  print(text, "  %7.3f %7.3f %7.3f  %6.2f", p.of(PositionKind::kAligned).rmse,
         p.of(PositionKind::kWorldOffsetRemoved).rmse, p.of(PositionKind::kAsSeenOffsetRemoved).rmse, p.are_deg.rmse);
   const Eigen::Vector3d drift = p.origin_drift_m.value_or(Eigen::Vector3d::Zero());
-  print(text, "  %6.3f  %6.3f  %6.3f", drift.x(), drift.y(), drift.z());
-  print(text, "  %5.3f / %5.3f  %5.2f / %5.2f  %5.2f  %+6.2f\n", m.me_m.mean, m.me_m.rmse, m.me_deg.mean, m.me_deg.rmse,
-        m.speed_mps.rmse, m.speed_bias_mps);
+  print(text, "  %6.3f %6.3f %6.3f\n", drift.x(), drift.y(), drift.z());
 }
 
-void printObjects(std::string& text, const KindEvaluation& kind) {
-  printObjectHead(text);
-  for (const auto& object : kind.objects) printObject(text, object);
+void printPositions(std::string& text, const KindEvaluation& kind) {
+  text += "\nmoving objects (final)       frames ids    position, ATE m           ARE   origin drift m\n";
+  text += "  label  type              followed      aligned  offset as seen     deg   along     up across\n";
+  for (const auto& object : kind.objects) printPosition(text, object);
   const MeanPositionErrors& mean = kind.mean_positions;
-  print(text, "  mean of %-3d objects (largest drift)   ", mean.objects);
   const auto at = [&](PositionKind position) { return mean.ate_m[static_cast<std::size_t>(position)]; };
-  print(text, "  %7.3f / %7.3f / %7.3f      %6.2f", at(PositionKind::kAligned), at(PositionKind::kWorldOffsetRemoved),
-        at(PositionKind::kAsSeenOffsetRemoved), mean.are_deg);
-  print(text, "  %6.3f  %6.3f  %6.3f\n", mean.largest_drift_m.x(), mean.largest_drift_m.y(), mean.largest_drift_m.z());
+  print(text, "  mean of %-3d objects (largest drift)    %7.3f %7.3f %7.3f  %6.2f", mean.objects,
+        at(PositionKind::kAligned), at(PositionKind::kWorldOffsetRemoved), at(PositionKind::kAsSeenOffsetRemoved),
+        mean.are_deg);
+  print(text, "  %6.3f %6.3f %6.3f\n", mean.largest_drift_m.x(), mean.largest_drift_m.y(), mean.largest_drift_m.z());
 }
 
-void printDetectionLine(std::string& text, const char* kind, const KindEvaluation& k, bool from_fifth) {
-  const auto& near = from_fifth ? k.detection.within_30m_from_fifth : k.detection.within_30m;
-  const auto& far = from_fifth ? k.detection.from_30_to_50m_from_fifth : k.detection.from_30_to_50m;
-  print(text, "  %-8s %5.1f %% (%d/%d)  %5.1f %% (%d/%d)", kind, 100 * near.recall(), near.found, near.labels,
-        100 * far.recall(), far.found, far.labels);
-  print(text, "  %d of %d", k.detection.false_rows, k.detection.rows);
-  if (k.detection.false_rows > 0)
-    print(text, " (%d unlabeled, %d in DontCare)", k.detection.false_rows_unlabeled, k.detection.false_rows_in_ignored);
-  print(text, "  %d  %.3f  %.3f / %.3f  %.2f / %.2f  %.2f\n", k.detection.id_switches, k.detection.mota,
-        k.motion.me_m.mean, k.motion.me_m.rmse, k.motion.me_deg.mean, k.motion.me_deg.rmse, k.motion.speed_mps.rmse);
+void printMotion(std::string& text, const std::string& whose, const MotionErrors& m) {
+  print(text, "  %-21.21s  %7.3f %7.3f  %7.2f %7.2f  %7.2f %+7.2f\n", whose.c_str(), m.me_m.mean, m.me_m.rmse,
+        m.me_deg.mean, m.me_deg.rmse, m.speed_mps.rmse, m.speed_bias_mps);
+}
+
+void printMotions(std::string& text, const Evaluation& e) {
+  text += "\nmotion of the same         ME_t m           ME_r deg         speed m/s\n";
+  text += "                            mean    rmse     mean    rmse     rmse    bias\n";
+  for (const auto& object : e.final.objects) {
+    std::string whose;
+    print(whose, "%-6lld %s", static_cast<long long>(object.label), object.type.c_str());
+    if (object.positions) printMotion(text, whose, object.motion);
+  }
+  printMotion(text, "all rows, final", e.final.motion);
+  printMotion(text, "all rows, online", e.online.motion);
+}
+
+void printRecall(std::string& text, const DetectionCounts& recall) {
+  std::string counts;
+  print(counts, "%5.1f %% (%d/%d)", 100 * recall.recall(), recall.found, recall.labels);
+  print(text, " %-19s", counts.c_str());
+}
+
+void printDetectionLine(std::string& text, const char* kind, const DetectionErrors& errors, bool from_fifth) {
+  print(text, "  %-8s", kind);
+  printRecall(text, from_fifth ? errors.within_30m_from_fifth : errors.within_30m);
+  printRecall(text, from_fifth ? errors.from_30_to_50m_from_fifth : errors.from_30_to_50m);
+  print(text, " %6d %5d %9d %8d %8d %6.3f\n", errors.false_rows, errors.rows, errors.false_rows_unlabeled,
+        errors.false_rows_in_ignored, errors.id_switches, errors.mota);
 }
 
 void printDetection(std::string& text, const Evaluation& e) {
-  print(text,
-        "\ndetection: recall to 30 m, 30-50 m, false rows, id switches, MOTA, ME_t m mean / rmse, ME_r deg mean "
-        "/ rmse, speed rmse "
-        "m/s\n");
-  printDetectionLine(text, "final", e.final, false);
-  printDetectionLine(text, "online", e.online, true);
+  text += "\ndetection  recall              recall               false    of    false, false in       id   MOTA\n";
+  text += "           to 30 m             30 to 50 m            rows  rows unlabeled DontCare switches\n";
+  printDetectionLine(text, "final", e.final.detection, false);
+  printDetectionLine(text, "online", e.online.detection, true);
   print(text, "  (online: recall from a label's fifth visible frame on)\n");
 }
 
 void printBoxLine(std::string& text, const char* kind, const BoxErrors& boxes) {
   if (boxes.rows == 0) return;
-  print(text, "  %-18s %5d  %5.2f %5.1f %%  %5.2f  %5.2f", kind, boxes.rows, boxes.iou_2d, 100 * boxes.over_half_2d,
+  print(text, "  %-18s %5d  %6.2f %5.1f %%  %6.2f  %6.2f", kind, boxes.rows, boxes.iou_2d, 100 * boxes.over_half_2d,
         boxes.iou_bird, boxes.iou_3d);
-  print(text, "  %6.2f  %6.2f  %6.2f  %6.2f  %6.2f\n", boxes.center_m.mean, boxes.heading_deg.mean, boxes.length_m.mean,
+  print(text, "  %7.2f %7.2f %7.2f %7.2f %7.2f\n", boxes.center_m.mean, boxes.heading_deg.mean, boxes.length_m.mean,
         boxes.width_m.mean, boxes.height_m.mean);
 }
 
 void printBoxes(std::string& text, const Evaluation& e) {
-  print(text,
-        "\nboxes               rows  IoU in the image, over .5, from above, 3D; mean errors: center m, heading deg, "
-        "length, "
-        "width, height m\n");
+  text += "\nboxes                 rows  IoU in    over     IoU     IoU   mean error of\n";
+  text += "                             image      .5   above      3D   center heading  length   width  height\n";
+  text += "                                                                  m     deg       m       m       m\n";
   printBoxLine(text, "final to 30 m", e.final.boxes_within_30m);
   printBoxLine(text, "final 30 to 50 m", e.final.boxes_from_30_to_50m);
   printBoxLine(text, "online to 30 m", e.online.boxes_within_30m);
@@ -137,9 +138,9 @@ void printSection(std::string& text, const std::string& head, const std::string&
 
 void printHotaLine(std::string& text, const std::string& what, const Hota& hota) {
   if (hota.labels == 0 && hota.rows == 0) return;
-  print(text, "  %-28s %5d %6d  %5.3f  %5.3f  %5.3f  %5.3f", what.c_str(), hota.labels, hota.rows, hota.hota,
+  print(text, "  %-26s %6d %6d  %5.3f  %5.3f  %5.3f  %5.3f", what.c_str(), hota.labels, hota.rows, hota.hota,
         hota.det_a, hota.ass_a, hota.loc_a);
-  print(text, "  %5.3f / %5.3f  %5.3f / %5.3f\n", hota.det_re, hota.det_pr, hota.ass_re, hota.ass_pr);
+  print(text, "  %5.3f  %5.3f  %5.3f  %5.3f\n", hota.det_re, hota.det_pr, hota.ass_re, hota.ass_pr);
 }
 
 void printHotaLines(std::string& text, const std::string& kind, const KindEvaluation& k) {
@@ -154,7 +155,7 @@ void printHota(std::string& text, const Evaluation& e) {
   printHotaLines(lines, "final", e.final);
   printHotaLines(lines, "online", e.online);
   printSection(text,
-               "moving objects               labels   rows  HOTA   DetA   AssA   LocA   DetRe / DetPr  AssRe / AssPr",
+               "tracks of moving objects     labels   rows   HOTA   DetA   AssA   LocA  DetRe  DetPr  AssRe  AssPr",
                lines);
 }
 
@@ -187,8 +188,8 @@ void printKindCounts(std::string& text, const char* what, const KindCounts& coun
 }
 
 void printKinds(std::string& text, const Evaluation& e) {
-  std::string head = "kinds to 30 m, as    ", lines;
-  for (const ObjectKind kind : kAllKinds) print(head, "%11s   ", std::string(kindName(kind)).c_str());
+  std::string head = "kinds to 30 m, as ", lines;
+  for (const ObjectKind kind : kAllKinds) print(head, "%14s", std::string(kindName(kind)).c_str());
   printKindCounts(lines, "final, from a track's tenth row on", e.final.kinds_within_30m.from_tenth_row);
   printKindCounts(lines, "final, before", e.final.kinds_within_30m.before);
   printKindCounts(lines, "online, from a track's tenth row on", e.online.kinds_within_30m.from_tenth_row);
@@ -211,11 +212,18 @@ void printMasks(std::string& text, const Evaluation& e) {
                lines);
 }
 
+std::string neesText(double nees) {
+  std::string text;
+  print(text, nees < 1e3 ? "%.2f" : nees < 1e7 ? "%.0f" : "%.1e", nees);
+  return text;
+}
+
 void printCovarianceLine(std::string& text, const char* what, const CovarianceErrors& errors) {
   if (errors.samples == 0) return;
-  print(text, "  %-26s %7d", what, errors.samples);
+  print(text, "  %-24s %7d", what, errors.samples);
   for (const NormalizedErrors* of : {&errors.pose, &errors.position, &errors.rotation})
-    print(text, "  %9.2f %9.2f %6.1f %%", of->mean_nees, of->median_nees, 100 * of->coverage_95);
+    print(text, " %7s %7s %3.0f %%", neesText(of->mean_nees).c_str(), neesText(of->median_nees).c_str(),
+          100 * of->coverage_95);
   text += '\n';
 }
 
@@ -230,12 +238,9 @@ void printCovariances(std::string& text, const Evaluation& e) {
     printCovarianceLine(lines, "objects, of two halves", e.half_errors->objects);
   }
   if (lines.empty()) return;
-  print(text,
-        "\ncovariances                  samples  pose: NEES mean, median,   position: NEES mean, median,   "
-        "rotation: NEES mean, median\n");
-  print(text,
-        "  consistent:                         6.00      5.35   95.0 %%       3.00      2.37   95.0 %%"
-        "       3.00      2.37   95.0 %%  in the 95 %% region\n");
+  text += "\ncovariances                samples  pose: NEES            position: NEES        rotation: NEES\n";
+  text += "                                      mean  median    in    mean  median    in    mean  median    in\n";
+  text += "  consistent:                         6.00    5.35  95 %    3.00    2.37  95 %    3.00    2.37  95 %\n";
   text += lines;
 }
 
@@ -279,7 +284,8 @@ std::string tableOf(const Evaluation& evaluation) {
   printHead(text, evaluation);
   printCamera(text, evaluation);
   if (!evaluation.object_source.empty()) {
-    printObjects(text, evaluation.final);
+    printPositions(text, evaluation.final);
+    printMotions(text, evaluation);
     printDetection(text, evaluation);
     printBoxes(text, evaluation);
     printHota(text, evaluation);
@@ -288,7 +294,7 @@ std::string tableOf(const Evaluation& evaluation) {
     printMasks(text, evaluation);
   }
   printRest(text, evaluation);
-  return text;
+  return text + legendOf(evaluation);
 }
 
 }  // namespace motorcade

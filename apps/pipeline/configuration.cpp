@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -21,6 +20,7 @@ namespace motorcade {
 #pragma pop_macro("NDEBUG")
 
 #include "apps/pipeline/parameter_table.hpp"
+#include "core/edit_distance.hpp"
 #include "io/errors.hpp"
 #include "io/text_file.hpp"
 
@@ -104,22 +104,6 @@ toml::table parsed(std::string_view toml, const std::string& file_name) {
   } catch (const std::logic_error&) {
     fail({file_name, lineOfAssertion(ascii)}, "is no TOML");
   }
-}
-
-/// Levenshtein's distance: how many letters to change, to add or to take away.
-std::size_t editDistance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row[b.size()];
 }
 
 /// A key of the right name in another section is nearer than a misspelled one.

@@ -12,10 +12,12 @@
 #include <spdlog/spdlog.h>
 
 #include "apps/check/camera_doubts.hpp"
+#include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
 #include "apps/console/stop_signals.hpp"
 #include "apps/pipeline/configuration.hpp"
 #include "apps/pipeline/pipeline.hpp"
+#include "apps/recorded/recorded_run.hpp"
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/feeder.hpp"
 #include "apps/run/input_watch.hpp"
@@ -60,6 +62,12 @@ FrameRange selectedFrames(const RunOptions& options, const Sequence& sequence) {
     throw UsageError("--frames " + options.frames + ": the sequence has " + std::to_string(sequence.frames.size()) +
                      " frames, none of these");
   return range;
+}
+
+void requireReplaceable(const RunOptions& options) {
+  if (!options.force && holdsFinishedRun(options.out))
+    throw OutputError(options.out.string() +
+                      ": holds a finished run; choose another folder, or replace it with --force");
 }
 
 void requireWithin(const ImageLimits& limits, const Sequence& sequence) {
@@ -179,6 +187,7 @@ int runSequence(const RunOptions& options) {
   const auto required_tracking = requiredTracking(options);
   const FaultSpec fault_spec = parseFaultSpec(options.inject);
   const auto rate_hz = replayRate_hz(options, config.pipeline.policy);
+  requireReplaceable(options);
   const Sequence sequence = openSequence(options.sequence, options.fps_hz);
   requireWithin(config.input, sequence);
   requireBelievable(sequence, options.force);
@@ -186,12 +195,15 @@ int runSequence(const RunOptions& options) {
   Stages stages = makeStages(config, sequence.camera);
   if (auto other_camera = otherCamera(options, config, sequence)) replaceOdometry(stages, *std::move(other_camera));
   announce(sequence, range, options.fps_hz);
+  spdlog::debug("{} threads, {} frames in flight; results go to {}", config.pipeline.threads,
+                config.pipeline.frames_in_flight, options.out.string());
 
   RunFolderWriter folder(options.out);
   folder.writeConfig(toToml(config));
   RunSummary summary;
   summary.params = config.pipeline;
-  summary.sequence = options.sequence.string();
+  summary.sequence = sequence.folder.string();
+  summary.inject = options.inject;
   summary.layout = sequence.layout;
   summary.rate_hz = rate_hz;
   summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
@@ -206,7 +218,7 @@ int runSequence(const RunOptions& options) {
   if (views) views->close();
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));
-  std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);
+  if (tellsProgress()) std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);
 
   if (watch.refused()) return kExitInput;
   if (summary.signal != 0) return kExitSignal + summary.signal;

@@ -25,7 +25,7 @@ struct RunOptions {
   std::vector<std::string> assignments;  // key=value
   std::string require;                   // tracked=FRACTION
   std::string inject;                    // faults, see FaultSpec
-  bool force = false;                    // go on where results will be worthless
+  bool force = false;                    // replace a finished run, go on where results will be worthless
 };
 
 /// The configuration in force: defaults, then the file, then `--set`, then the options. Throws UsageError.

@@ -1,12 +1,12 @@
 #include "apps/run/run_summary.hpp"
 
+#include <cmath>
 #include <csignal>
 
-#include <Eigen/Core>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <oneapi/tbb/version.h>
 
+#include "apps/console/versions.hpp"
 #include "io/run_folder.hpp"
 
 namespace motorcade {
@@ -51,12 +51,11 @@ Json byCause(const PipelineSummary& pipeline) {
   return counts;
 }
 
-Json versions() {
-  return {{"motorcade", MOTORCADE_VERSION},
-          {"compiler", __VERSION__},
-          {"build", MOTORCADE_BUILD},
-          {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
-          {"onetbb", TBB_VERSION_STRING}};
+/// What the program is made of.
+Json programVersions() {
+  Json json = Json::object();
+  for (const auto& [name, version] : versions()) json[name] = version;
+  return json;
 }
 
 }  // namespace
@@ -78,6 +77,7 @@ std::string toJson(const RunSummary& summary) {
   Json json{{"complete", summary.signal == 0},
             {"sequence", summary.sequence},
             {"layout", summary.layout},
+            {"inject", summary.inject},
             {"capture_rate_hz", rounded(summary.capture_rate_hz)},
             {"rate", summary.rate_hz ? Json(*summary.rate_hz) : Json("max")},
             {"policy", summary.params.policy == InputPolicy::kLive ? "live" : "replay"},
@@ -105,7 +105,7 @@ std::string toJson(const RunSummary& summary) {
             {"involuntary_switches", summary.used.involuntary_switches},
             {"queues", queues},
             {"solver", toJson(pipeline.solver)},
-            {"versions", versions()}};
+            {"versions", programVersions()}};
   if (summary.signal != 0) json["interrupted_by"] = summary.signal == SIGINT ? "SIGINT" : "SIGTERM";
   return json.dump(2) + "\n";
 }

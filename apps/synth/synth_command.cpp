@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include "apps/console/log.hpp"
 #include "apps/synth/scene_builder.hpp"
 #include "io/errors.hpp"
 
@@ -26,6 +27,7 @@ StereoCamera cameraOfSize(const std::string& size) {
 
 /// A bar on a terminal, a line every ten seconds elsewhere.
 void reportProgress(int done, int frames, std::chrono::steady_clock::time_point& last) {
+  if (!tellsProgress()) return;
   const auto now = std::chrono::steady_clock::now();
   const bool terminal = isatty(STDERR_FILENO) == 1;
   if (!terminal && done < frames && now - last < std::chrono::seconds(10)) return;
@@ -56,8 +58,9 @@ int runSynth(const SynthOptions& options) {
   };
   synth::writeSequence(scene, options.out, writing);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::printf("%s: %d stereo pairs of scene '%s' in %.1f s (%.2f per second)\n", options.out.c_str(), frames,
-              scene.name.c_str(), seconds, frames / seconds);
+  if (tellsProgress())
+    std::printf("%s: %d stereo pairs of scene '%s' in %.1f s (%.2f per second)\n", options.out.c_str(), frames,
+                scene.name.c_str(), seconds, frames / seconds);
   return 0;
 }
 

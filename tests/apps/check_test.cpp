@@ -32,7 +32,7 @@ class Check : public Run {
   }
   /// A copy of the drive whose calibration tells so many times the baseline.
   fs::path withCalibration(const std::string& name, double factor_of_baseline) {
-    const fs::path copy = out(name);
+    fs::path copy = out(name);
     fs::copy(kSequence, copy, fs::copy_options::recursive);
     std::istringstream lines(contentOf(kSequence / "calib.txt"));
     std::ofstream calibration(copy / "calib.txt");

@@ -156,6 +156,7 @@ class DrawnDrive : public testing::Test {
       estimate.objects.push_back(object);
       FrameTiming timing;
       timing.frame = estimate.frame;
+      timing.stamp = {i * 100'000'000LL};
       writer.writeOnline(estimate);
       writer.writeTiming(timing);
       writer.writeFinal(estimate);
@@ -209,6 +210,17 @@ TEST_F(DrawnDrive, MakesAPictureOfEveryNthFrameOfTheRun) {
   EXPECT_NE(picture("frame_000005.png").at(200, 50), kGray) << "the object's box";
   folder_.write("file", "");
   EXPECT_THROW(runDraw({.run = folder_ / "run", .sequence = folder_ / "drive", .out = folder_ / "file"}), OutputError);
+}
+
+TEST_F(DrawnDrive, TakesTheSequenceFromTheRunAndNoOther) {
+  const DrawOptions options{.run = folder_ / "run", .out = folder_ / "pictures"};
+  EXPECT_THAT(test::messageOf<InputError>([&] { runDraw(options); }), testing::HasSubstr("summary.json"));
+  folder_.write("run/summary.json", R"({"sequence": ")" + (folder_ / "drive").string() + "\"}");
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(runDraw(options), 0);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::HasSubstr("6 pictures"));
+  for (const char* side : {"drive/left", "drive/right"}) std::filesystem::remove(folder_ / side / "7.png");
+  EXPECT_THAT(test::messageOf<InputError>([&] { runDraw(options); }), testing::HasSubstr("is no run of"));
 }
 
 TEST_F(DrawnDrive, ShowsMasksAndPointsWhereTheRunWroteThem) {

@@ -4,12 +4,13 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "apps/evaluate/evaluate_command.hpp"
+#include "apps/evaluate/evaluation.hpp"
 #include "apps/evaluate/report.hpp"
 #include "io/errors.hpp"
 #include "io/image_file.hpp"
 #include "io/run_folder.hpp"
 #include "io/trajectory.hpp"
+#include "tests/apps/evaluated_drive.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/support/data_folder.hpp"
 
@@ -17,6 +18,7 @@ namespace motorcade {
 namespace {
 
 using namespace nlohmann::literals;
+using test::EvaluateDrive;
 using test::messageOf;
 using testing::HasSubstr;
 
@@ -86,77 +88,6 @@ TEST(TrajectoryErrors, AreZeroForATrajectoryMovedAsAWholeAndKnownForADriftingOne
   EXPECT_NEAR(drift->end_percent, 10, 0.2);   // of a path that bends a little
   EXPECT_FALSE(trajectoryErrors({SE3()}, {SE3()}));
 }
-
-/// A drive made by hand: the camera goes 1 m per frame; label 7 goes 1.2 m ahead of it per frame, label 8 is parked.
-/// The rows' bodies sit elsewhere in the cars and have other axes than the labels.
-class EvaluateDrive : public testing::Test {
- protected:
-  static constexpr int kFrames = 30;
-
-  EvaluateDrive() {
-    ImagePool pool;
-    Image image = pool.acquire(64, 32);
-    std::string poses, labels;
-    for (const char* side : {"image_0", "image_1"}) std::filesystem::create_directories(folder_ / "drive" / side);
-    for (int i = 0; i < kFrames; ++i) {
-      std::string name = std::to_string(100 + i) + ".png";
-      writePng(folder_ / "drive/image_0" / name, image);
-      writePng(folder_ / "drive/image_1" / name, image);
-      poses += kittiLine(camera(i)) + "\n";
-      char line[256];
-      for (const auto& [id, z] : {std::pair(7, 15 + 1.2 * i - i), std::pair(8, 60.0 - i)}) {
-        std::snprintf(line, sizeof(line), "%d %d Car 0 0 0 10 10 40 60 1.5 1.7 4.2 %.6f 1.6 %.6f -1.570796\n", i, id,
-                      id == 7 ? 2.0 : -4.0, z);
-        labels += line;
-      }
-    }
-    folder_.write("drive/calib.txt", "P0: 700 0 32 0 0 700 16 0 0 0 1 0\nP1: 700 0 32 -350 0 700 16 0 0 0 1 0\n");
-    folder_.write("drive/poses.txt", poses);
-    folder_.write("drive/label_02.txt", labels);
-    options_.run = folder_ / "run";
-    options_.sequence = folder_ / "drive";
-  }
-
-  static SE3 camera(int i) { return SE3(Eigen::Matrix3d::Identity(), {0, 0, static_cast<double>(i)}); }
-  static ObjectEstimate lead(int i, int track) {
-    Eigen::Matrix3d world_body;
-    world_body << 0, -1, 0, 0, 0, -1, 1, 0, 0;  // x ahead, z up
-    ObjectEstimate object;
-    object.track = {track};
-    object.T_world_body = SE3(world_body, {2.3, 1.0, 15 + 1.2 * i + 1.0});
-    object.velocity_world_mps = {0, 0, 12};
-    object.speed_sigma_mps = 0.1;
-    object.points = 20;
-    object.box = {10, 10, 40, 60};
-    object.covariance = Matrix6d::Identity() * 1e-4;
-    return object;
-  }
-  /// Writes a run over frames [first, end), after `change` had its way with each estimate.
-  template <class Change>
-  void writeRun(const std::filesystem::path& name, int first, int end, const Change& change) {
-    RunFolderWriter writer(folder_ / name);
-    for (int i = first; i < end; ++i) {
-      FrameEstimate estimate;
-      estimate.frame = {i};
-      estimate.stamp = {i * 100'000'000LL};
-      const SE3 T_first = camera(first).inverse();
-      estimate.T_world_cam = T_first * camera(i);
-      estimate.objects.push_back(lead(i, 3));
-      estimate.camera_covariance = Matrix6d::Identity() * 1e-4;
-      change(i, estimate);
-      for (auto& object : estimate.objects) object.T_world_body = T_first * object.T_world_body;
-      FrameTiming timing;
-      timing.frame = estimate.frame;
-      writer.writeOnline(estimate);
-      writer.writeTiming(timing);
-      writer.writeFinal(estimate);
-    }
-    writer.finish("{}");
-  }
-
-  test::TemporaryFolder folder_;
-  EvaluateOptions options_;
-};
 
 TEST_F(EvaluateDrive, APerfectRunHasNoErrors) {
   writeRun("run", 0, kFrames, [](int, FrameEstimate&) {});
@@ -266,22 +197,6 @@ TEST_F(EvaluateDrive, KilledRunsAndRunsWithoutLabelsAreMeasured) {
   EXPECT_THAT(tableOf(evaluation), testing::Not(HasSubstr("recall")));
 }
 
-TEST_F(EvaluateDrive, TableJsonAndTruthAreWritten) {
-  writeRun("run", 0, kFrames, [](int, FrameEstimate&) {});
-  options_.json = folder_ / "measures.json";
-  options_.export_truth = folder_ / "truth";
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(runEvaluate(options_), 0);
-  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("RPE_r deg"));
-  const auto json = nlohmann::json::parse(folder_.read("measures.json"));
-  EXPECT_NEAR(json["final"]["camera"]["rpe_t_m"]["rmse"], 0, 1e-6);
-  EXPECT_EQ(json["final"]["objects"][0]["label"], 7);
-  EXPECT_EQ(json["final"]["detection"]["within_30m"]["recall"], 1.0);
-  EXPECT_THAT(folder_.read("truth/object_7.tum"), HasSubstr("0.100000000 2.000000000 1.600000000 16.200000000 "));
-  EXPECT_THAT(folder_.read("truth/objects_truth.csv"), HasSubstr("\n0,7,Car,1,"));
-  EXPECT_EQ(readKittiPoses(folder_ / "truth/camera_truth.txt").size(), static_cast<std::size_t>(kFrames));
-}
-
 TEST_F(EvaluateDrive, MasksAreComparedWhereTheSequenceHasInstances) {
   writeRun("run", 0, kFrames, [](int, FrameEstimate&) {});
   constexpr int kLabelValue = 8, kTrackValue = 4;
@@ -304,28 +219,6 @@ TEST_F(EvaluateDrive, ASequenceWithoutTruthIsRefused) {
   writeRun("run", 0, 3, [](int, FrameEstimate&) {});
   std::filesystem::remove(folder_ / "drive/poses.txt");
   EXPECT_THAT(messageOf<InputError>([&] { evaluateRun(options_); }), HasSubstr("no ground truth"));
-}
-
-TEST_F(EvaluateDrive, TheJsonHasEveryMeasureOfTheAccuracyTables) {
-  writeRun("run", 0, kFrames, [](int, FrameEstimate&) {});
-  options_.baseline_run = options_.half_run = options_.run;
-  const auto json = nlohmann::json::parse(jsonOf(evaluateRun(options_)));
-  constexpr double kDigitsOfTheFiles = 1e-5;
-  EXPECT_NEAR(json.at("/final/camera_mounted/ate_m/rmse"_json_pointer), 0, kDigitsOfTheFiles);
-  EXPECT_NEAR(json.at("/online/objects/0/position/ate_m/as_seen_offset_removed/rmse"_json_pointer), 0,
-              kDigitsOfTheFiles);
-  EXPECT_NEAR(json.at("/final/objects_mean/ate_rmse_m/world_offset_removed"_json_pointer), 0, kDigitsOfTheFiles);
-  EXPECT_NEAR(json.at("/final/objects_mean/largest_origin_drift_m/0"_json_pointer), 0, kDigitsOfTheFiles);
-  EXPECT_EQ(json.at("/baseline/objects/objects_of_mean"_json_pointer), 1);
-  EXPECT_NEAR(json.at("/baseline/objects/mean_relative_error/aligned"_json_pointer), 0, kDigitsOfTheFiles);
-  for (const char* of : {"camera", "camera_mounted", "camera_mounted_with_truth_noise", "objects"})
-    EXPECT_EQ(json.at("covariance").at(of).at("rotation").at("coverage_95"), 1) << of;
-  EXPECT_NEAR(json.at("/final/hota/image/within_50m/det_a"_json_pointer), 1, kDigitsOfTheFiles);
-  EXPECT_EQ(json.at("/final/hota/footprint/within_30m/rows"_json_pointer), kFrames);
-  EXPECT_EQ(json.at("/online/kinds_within_30m/from_tenth_row/confusion/car/unknown"_json_pointer), kFrames - 9);
-  EXPECT_EQ(json.at("/online/first_report/within_50m/never"_json_pointer), 0);
-  EXPECT_TRUE(json.at("masks").is_null());
-  EXPECT_GT(json.at("/covariance/halves/objects/samples"_json_pointer), 0);
 }
 
 }  // namespace

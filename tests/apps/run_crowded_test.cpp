@@ -15,7 +15,7 @@ class CrowdedRun : public Run {
  protected:
   /// Drift of the camera, whose truth is exact [m].
   double drift_m(const fs::path& sequence, const std::string& options = "") {
-    EXPECT_EQ(run("out", options, sequence), 0) << contentOf(errors());
+    EXPECT_EQ(run("out", "--force " + options, sequence), 0) << contentOf(errors());
     return evaluate("out", sequence)["final"]["camera"]["ate_m"]["rmse"].get<double>();
   }
 };

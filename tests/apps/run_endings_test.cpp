@@ -23,6 +23,7 @@ TEST_F(Run, FlushesItsResultsWhenASignalEndsIt) {
   EXPECT_GE(folder.frames.size(), 1u);
   EXPECT_EQ(folder.final.camera.size(), folder.frames.size());
   EXPECT_EQ(summary("INT")["complete"], false);
+  EXPECT_EQ(run("INT"), 0) << "what did not come to its end is replaced unasked";
 }
 
 /// Every back-end leaves the finals of what is older than the lag; a filter has no lag.
@@ -68,7 +69,7 @@ TEST_F(Run, EndsWithAMessageWhereMemoryRunsOut) {
   int short_of_memory = 0;
   for (int limit_mb = kLeast_mb; limit_mb <= kMost_mb; limit_mb += kStep_mb) {
     SCOPED_TRACE(std::to_string(limit_mb) + " MB");
-    const int code = motorcade("run " + kSequence.string() + " --out " + out("small").string(),
+    const int code = motorcade("run " + kSequence.string() + " --force --out " + out("small").string(),
                                "ulimit -c 0; ulimit -v " + std::to_string(1024 * limit_mb) + "; timeout 60 ");
     EXPECT_THAT(code, testing::AnyOf(0, 3, 4, 70)) << contentOf(errors());
     if (code == 0) continue;

@@ -12,6 +12,7 @@
 namespace motorcade::test {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -61,7 +62,7 @@ TEST_F(Run, WarnsOfTimesAndRefusesCalibrationsThatCannotBe) {
   std::ofstream times(copy / "times.txt");
   for (std::size_t frame = 0; frame < kFrames; ++frame) times << 100 * frame << '\n';
   times.close();
-  EXPECT_EQ(run("milliseconds", "", copy), 0);
+  EXPECT_EQ(run("milliseconds", "--force", copy), 0);
   EXPECT_THAT(contentOf(errors()), HasSubstr("times must be in seconds"));
   ASSERT_EQ(std::system(("sed -i 's/-387\\.5/-387500/' " + (copy / "calib.txt").string()).c_str()), 0);
   EXPECT_EQ(run("millimeters", "", copy), 3);
@@ -75,6 +76,17 @@ TEST_F(Run, ASecondRunIntoTheSameFolderIsRefused) {
   EXPECT_THAT(contentOf(errors()), HasSubstr("is in use by another run"));
 }  // the first run ends when its folder is removed
 
+TEST_F(Run, AFinishedRunIsReplacedOnlyWhereTheUserSaysSo) {
+  ASSERT_EQ(run("out", "--frames 0:4"), 0) << contentOf(errors());
+  const std::string before = contentOf(out("out") / "summary.json");
+  EXPECT_EQ(run("out", "--frames 0:3"), 4);
+  EXPECT_THAT(contentOf(errors()), AllOf(HasSubstr(out("out").string()), HasSubstr("--force")));
+  EXPECT_EQ(contentOf(out("out") / "summary.json"), before);
+  EXPECT_EQ(readRunFolder(out("out")).frames.size(), 4U);
+  EXPECT_EQ(run("out", "--frames 0:3 --force"), 0) << contentOf(errors());
+  EXPECT_EQ(readRunFolder(out("out")).frames.size(), 3U);
+}
+
 TEST_F(Run, NoticesThatItsFolderIsGone) {
   std::ostringstream removal;
   removal << "(" << waitForLines(out("gone") / "frames.csv", 2) << "mv " << out("gone").string() << " "
@@ -86,7 +98,7 @@ TEST_F(Run, NoticesThatItsFolderIsGone) {
 
 TEST_F(Run, EndsWithAnErrorWhereFilesMayNotGrow) {
   EXPECT_EQ(run("small", ""), 0);
-  EXPECT_EQ(motorcade("run " + kSequence.string() + " --out " + out("small").string(), "ulimit -f 1; "), 4);
+  EXPECT_EQ(motorcade("run " + kSequence.string() + " --force --out " + out("small").string(), "ulimit -f 1; "), 4);
   EXPECT_THAT(contentOf(errors()), HasSubstr("File too large"));
 }
 

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 class Inject : public Run {
  protected:
   RunFolder inject(const std::string& name, const std::string& faults) {
-    EXPECT_EQ(run(name, "--inject '" + faults + "'"), 0) << contentOf(errors());
+    EXPECT_EQ(run(name, "--force --inject '" + faults + "'"), 0) << contentOf(errors());
     RunFolder folder = readRunFolder(out(name));
     EXPECT_EQ(folder.frames.size(), kFrames) << faults;
     EXPECT_EQ(folder.final.camera.size(), kFrames) << faults;
@@ -68,6 +68,8 @@ TEST_F(Inject, AJumpOfTheClockBeginsANewSegment) {
   EXPECT_EQ(folder.frames[10].segment, 1);
   EXPECT_LT((folder.final.camera[9].translation() - folder.final.camera[6].translation()).norm(), 40);
   EXPECT_EQ(summary("jump")["frames"]["segments"], 2);
+  EXPECT_EQ(summary("jump")["inject"], "jump=3600@7");
+  EXPECT_EQ(evaluate("jump")["frames"], kFrames) << "measured, although most times are not the sequence's";
   for (const auto& row : folder.final.objects) {
     for (const auto& other : folder.final.objects) {
       const bool across = row.frame < FrameId{7} && other.frame > FrameId{7};

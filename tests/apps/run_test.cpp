@@ -102,7 +102,7 @@ TEST_F(Run, WritesOutlinesAndPointsWithTheMasksAndRemovesThemNextTime) {
   EXPECT_NEAR(rows.back().object.age_s, 0.1 * static_cast<double>(rows.back().frame.value - rows.front().frame.value),
               2e-3);
 
-  ASSERT_EQ(run("out"), 0) << contentOf(errors());
+  ASSERT_EQ(run("out", "--force"), 0) << contentOf(errors());
   EXPECT_FALSE(fs::exists(out("out") / kObjectPointsFile));
   EXPECT_FALSE(fs::exists(out("out") / "outlines.jsonl"));
   EXPECT_FALSE(fs::exists(maskFile(out("out") / "masks", {0})));

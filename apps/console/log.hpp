@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// The messages of the programs, on the standard error output.
+namespace motorcade {
+
+/// In color where that output is a terminal and the environment does not say NO_COLOR (https://no-color.org).
+void startLog();
+
+/// `trace`, `debug`, `info`, `warning`, `error`, `critical`, `off`: each shows the messages of the later ones too.
+std::vector<std::string> logLevelNames();
+void setLogLevel(const std::string& name);
+
+/// Whether the user wants to read more than warnings and errors: progress and short reports.
+bool tellsProgress();
+
+}  // namespace motorcade

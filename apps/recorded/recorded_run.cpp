@@ -1,0 +1,113 @@
+#include "apps/recorded/recorded_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "io/errors.hpp"
+#include "io/text_file.hpp"
+
+namespace motorcade {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr double kUsualRate_hz = 10;
+
+/// An object without keys where there is no summary, or none that can be read.
+Json summaryOf(const RunFolder& run) {
+  Json json = Json::parse(run.summary_json, nullptr, /*allow_exceptions=*/false);
+  return json.is_object() ? json : Json::object();
+}
+
+std::string textOf(const Json& summary, const char* key) {
+  const auto found = summary.find(key);
+  return found != summary.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+fs::path recordedFolder(const RunFolder& run, const Json& summary) {
+  const fs::path file = run.folder / "summary.json";
+  const std::string folder = textOf(summary, "sequence");
+  if (folder.empty())
+    throw InputError(file.string() + (run.complete() ? ": does not name" : ": is not there to name") +
+                     " the sequence that was run; give --sequence");
+  std::error_code unreachable;  // is as if it were not there
+  if (!fs::exists(folder, unreachable))
+    throw InputError(file.string() + ": names the sequence " + folder +
+                     ", which is not there; say with --sequence where it is");
+  return folder;
+}
+
+double recordedRate_hz(const Json& summary) {
+  const auto found = summary.find("capture_rate_hz");
+  const double rate_hz = found != summary.end() && found->is_number() ? found->get<double>() : 0;
+  return rate_hz > 0 ? rate_hz : kUsualRate_hz;
+}
+
+/// One behind the last frame of the run, as numbered in the sequence.
+std::int64_t endOf(const RunFolder& run) {
+  const auto poses = std::max(run.online.camera.size(), run.final.camera.size());
+  std::int64_t end = run.first_frame + static_cast<std::int64_t>(poses);
+  for (const auto& row : run.frames) end = std::max(end, row.frame.value + 1);
+  return end;
+}
+
+bool timesAreTheCameras(const Json& summary) {
+  return !summary.empty() && textOf(summary, "inject").find("jump") == std::string::npos;
+}
+
+/// From the frame to one beside it.
+std::int64_t interval_ns(const Sequence& sequence, std::size_t frame) {
+  if (sequence.stamps.size() < 2) return 0;
+  const std::size_t earlier = std::max<std::size_t>(frame, 1) - 1;
+  return sequence.stamps[earlier + 1].ns - sequence.stamps[earlier].ns;
+}
+
+/// Whether most frames of the run were taken when those of the sequence were.
+bool timesFit(const RunFolder& run, const Sequence& sequence) {
+  std::int64_t compared = 0, fitting = 0;
+  for (const auto& row : run.frames) {
+    if (row.frame.value < 0 || row.cause == FrameCause::kOutOfOrder) continue;  // that has an expected time
+    const auto frame = static_cast<std::size_t>(row.frame.value);
+    const auto difference_ns = static_cast<double>(row.stamp.ns) - static_cast<double>(sequence.stamps[frame].ns);
+    ++compared;
+    fitting += std::abs(difference_ns) <= 0.5 * static_cast<double>(interval_ns(sequence, frame));
+  }
+  return 2 * fitting >= compared;
+}
+
+}  // namespace
+
+bool holdsFinishedRun(const fs::path& folder) {
+  const fs::path file = folder / "summary.json";
+  std::error_code unreachable;  // then nothing can be replaced there either
+  if (!fs::exists(file, unreachable)) return false;
+  const Json summary = Json::parse(readWhole(file), nullptr, /*allow_exceptions=*/false);
+  return !summary.is_object() || summary.value("complete", Json(true)) != Json(false);
+}
+
+Sequence openSequenceOf(const RunFolder& run, const NamedSequence& named) {
+  const Json summary = summaryOf(run);
+  const fs::path folder = named.folder.empty() ? recordedFolder(run, summary) : named.folder;
+  Sequence sequence = openSequence(folder, named.fps_hz.value_or(recordedRate_hz(summary)));
+  requireSameDrive(run, sequence);
+  return sequence;
+}
+
+void requireSameDrive(const RunFolder& run, const Sequence& sequence) {
+  const std::string other = run.folder.string() + ": is no run of " + sequence.folder.string() + ": ";
+  const auto frames = static_cast<std::int64_t>(sequence.frames.size());
+  if (endOf(run) > frames)
+    throw InputError(other + "it has frames up to " + std::to_string(endOf(run) - 1) + ", the sequence has " +
+                     std::to_string(frames));
+  if (!timesAreTheCameras(summaryOf(run)) || timesFit(run, sequence)) return;
+  throw InputError(other + "most of its frames have other times than the sequence's" +
+                   (sequence.stamps_measured ? "" : ", which come from the frame rate; is it --fps?"));
+}
+
+}  // namespace motorcade

@@ -1,0 +1,111 @@
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/evaluate/evaluate_command.hpp"
+#include "apps/evaluate/report.hpp"
+#include "io/errors.hpp"
+#include "io/image_file.hpp"
+#include "tests/apps/evaluated_drive.hpp"
+
+/// What `motorcade evaluate` reads and writes.
+namespace motorcade::test {
+namespace {
+
+using namespace nlohmann::literals;
+using testing::HasSubstr;
+
+TEST_F(EvaluateDrive, TableJsonAndTruthAreWritten) {
+  writeRun("run", 0, kFrames, [](int, FrameEstimate&) {});
+  options_.json = folder_ / "measures.json";
+  options_.export_truth = folder_ / "truth";
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(runEvaluate(options_), 0);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("RPE_r deg"));
+  const auto json = nlohmann::json::parse(folder_.read("measures.json"));
+  EXPECT_NEAR(json["final"]["camera"]["rpe_t_m"]["rmse"], 0, 1e-6);
+  EXPECT_EQ(json["final"]["objects"][0]["label"], 7);
+  EXPECT_EQ(json["final"]["detection"]["within_30m"]["recall"], 1.0);
+  EXPECT_THAT(folder_.read("truth/object_7.tum"), HasSubstr("0.100000000 2.000000000 1.600000000 16.200000000 "));
+  EXPECT_THAT(folder_.read("truth/objects_truth.csv"), HasSubstr("\n0,7,Car,1,"));
+  EXPECT_EQ(readKittiPoses(folder_ / "truth/camera_truth.txt").size(), static_cast<std::size_t>(kFrames));
+}
+
+TEST_F(EvaluateDrive, TheTableFitsAHundredColumnsAndExplainsItsMeasures) {
+  writeRun("run", 0, kFrames, [](int i, FrameEstimate& estimate) {
+    estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {100.0 * (i % 2), 0, 0}) * estimate.T_world_cam;
+  });
+  Gray16Image image{64, 32, std::vector<std::uint16_t>(64 * 32)};
+  for (const auto& [name, value] : {std::pair("drive/instance", 8), std::pair("run/masks", 4)}) {
+    std::filesystem::create_directories(folder_ / name);
+    image.pixels[700] = static_cast<std::uint16_t>(value);
+    writePng16(folder_ / name / "000002.png", image);
+  }
+  options_.baseline_run = options_.half_run = options_.run;
+  const std::string table = tableOf(evaluateRun(options_));
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("run ") || line.starts_with("sequence ")) continue;  // paths are as long as they are
+    EXPECT_LE(line.size(), 100U) << line;
+    EXPECT_FALSE(line.ends_with(' ')) << line;
+  }
+  for (const char* const section : {"camera ", "moving objects", "motion of", "detection", "boxes", "tracks of",
+                                    "kinds", "masks", "covariances", "against the baseline"})
+    EXPECT_THAT(table, HasSubstr(std::string("\n") + section));
+  const auto legend = table.substr(table.find("\nATE "));
+  for (const char* const measure : {"RPE", "ARE", "ME", "MOTA", "IoU", "HOTA", "NEES"})
+    EXPECT_THAT(legend, HasSubstr(std::string("\n") + measure)) << "has no explanation";
+}
+
+TEST_F(EvaluateDrive, TheJsonHasEveryMeasureOfTheAccuracyTables) {
+  writeRun("run", 0, kFrames, [](int, FrameEstimate&) {});
+  options_.baseline_run = options_.half_run = options_.run;
+  const auto json = nlohmann::json::parse(jsonOf(evaluateRun(options_)));
+  constexpr double kDigitsOfTheFiles = 1e-5;
+  EXPECT_NEAR(json.at("/final/camera_mounted/ate_m/rmse"_json_pointer), 0, kDigitsOfTheFiles);
+  EXPECT_NEAR(json.at("/online/objects/0/position/ate_m/as_seen_offset_removed/rmse"_json_pointer), 0,
+              kDigitsOfTheFiles);
+  EXPECT_NEAR(json.at("/final/objects_mean/ate_rmse_m/world_offset_removed"_json_pointer), 0, kDigitsOfTheFiles);
+  EXPECT_NEAR(json.at("/final/objects_mean/largest_origin_drift_m/0"_json_pointer), 0, kDigitsOfTheFiles);
+  EXPECT_EQ(json.at("/baseline/objects/objects_of_mean"_json_pointer), 1);
+  EXPECT_NEAR(json.at("/baseline/objects/mean_relative_error/aligned"_json_pointer), 0, kDigitsOfTheFiles);
+  for (const char* of : {"camera", "camera_mounted", "camera_mounted_with_truth_noise", "objects"})
+    EXPECT_EQ(json.at("covariance").at(of).at("rotation").at("coverage_95"), 1) << of;
+  EXPECT_NEAR(json.at("/final/hota/image/within_50m/det_a"_json_pointer), 1, kDigitsOfTheFiles);
+  EXPECT_EQ(json.at("/final/hota/footprint/within_30m/rows"_json_pointer), kFrames);
+  EXPECT_EQ(json.at("/online/kinds_within_30m/from_tenth_row/confusion/car/unknown"_json_pointer), kFrames - 9);
+  EXPECT_EQ(json.at("/online/first_report/within_50m/never"_json_pointer), 0);
+  EXPECT_TRUE(json.at("masks").is_null());
+  EXPECT_GT(json.at("/covariance/halves/objects/samples"_json_pointer), 0);
+}
+
+TEST_F(EvaluateDrive, TheRunTellsOfWhichSequenceItIs) {
+  writeRun("run", 0, kFrames, [](int, FrameEstimate&) {});
+  folder_.write("run/summary.json", R"({"sequence": ")" + options_.sequence.string() + "\"}");
+  options_.sequence.clear();
+  const Evaluation evaluation = evaluateRun(options_);
+  EXPECT_EQ(evaluation.sequence, folder_ / "drive");
+  EXPECT_NEAR(evaluation.final.camera->ate_m.rmse, 0, 1e-6);
+  std::filesystem::remove(folder_ / "run/summary.json");
+  EXPECT_THAT(messageOf<InputError>([&] { evaluateRun(options_); }), HasSubstr("summary.json"));
+}
+
+TEST_F(EvaluateDrive, RunsOfOtherSequencesAreRefused) {
+  const auto nothing = [](int, FrameEstimate&) {};
+  writeRun("run", 0, kFrames, nothing);
+  writeRun("longer", 0, kFrames + 1, nothing);
+  options_.run = folder_ / "longer";
+  EXPECT_THAT(messageOf<InputError>([&] { evaluateRun(options_); }), HasSubstr("longer: is no run of"));
+  options_.run = folder_ / "run";
+  options_.baseline_run = folder_ / "longer";
+  EXPECT_THAT(messageOf<InputError>([&] { evaluateRun(options_); }), HasSubstr("longer: is no run of"));
+  options_.baseline_run.clear();
+  options_.half_run = folder_ / "longer";
+  EXPECT_THAT(messageOf<InputError>([&] { evaluateRun(options_); }), HasSubstr("longer: is no run of"));
+}
+
+}  // namespace
+}  // namespace motorcade::test
