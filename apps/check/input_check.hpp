@@ -24,7 +24,8 @@ struct Finding {
 class InputCheck {
  public:
   static constexpr std::size_t kPairs = 20;
-  explicit InputCheck(const StereoCamera& camera);
+  /// With `half`, two of four pairs are looked at, for half the cost.
+  explicit InputCheck(const StereoCamera& camera, bool half = false);
 
   /// Pairs that lack an image are passed over, and so are those after the first kPairs.
   void observe(const StereoFrame& pair);
@@ -52,7 +53,10 @@ class InputCheck {
   void addLight(std::vector<Finding>& findings) const;
   void addTimes(std::vector<Finding>& findings) const;
 
+  void lookAt(const StereoFrame& pair);
+
   StereoCamera camera_;
+  bool half_;
   CornerDetector detect_corners_;
   ImagePool pool_;
   std::size_t pairs_ = 0;

@@ -10,7 +10,7 @@ namespace motorcade {
 class InputWatch {
  public:
   /// With `force` the run goes on where its results would be worthless.
-  InputWatch(const StereoCamera& camera, bool force) : check_(camera), force_(force) {}
+  InputWatch(const StereoCamera& camera, bool force) : check_(camera, true), force_(force) {}
 
   /// Takes the pairs in order; false from when it is known that results would be worthless.
   bool admits(const StereoFrame& pair);
