@@ -227,4 +227,12 @@ Sequence openSequence(const fs::path& given, double fps_hz) {
                    "with a calib.txt beside them, or a KITTI tracking, odometry or raw folder, are understood");
 }
 
+FrameRange selectedFrames(std::string_view text, const Sequence& sequence) {
+  const FrameRange range = (text.empty() ? FrameRange{} : parseFrameRange(text)).within(sequence.frames.size());
+  if (range.size() == 0)
+    throw UsageError("--frames " + std::string(text) + ": the sequence has " + std::to_string(sequence.frames.size()) +
+                     " frames, none of these");
+  return range;
+}
+
 }  // namespace motorcade

@@ -63,4 +63,8 @@ struct Sequence {
 /// rejected frame later.
 Sequence openSequence(const std::filesystem::path& folder, double fps_hz = 10);
 
+/// The frames of a sequence that an option --frames names, all of them where it is empty. Throws UsageError where there
+/// are none.
+FrameRange selectedFrames(std::string_view text, const Sequence& sequence);
+
 }  // namespace motorcade

@@ -11,7 +11,6 @@
 #include "apps/check/camera_doubts.hpp"
 #include "apps/check/input_check.hpp"
 #include "apps/inject/fault_injector.hpp"
-#include "io/errors.hpp"
 #include "io/line_file.hpp"
 #include "io/sequence.hpp"
 #include "io/sequence_decoder.hpp"
@@ -28,11 +27,7 @@ constexpr std::array<double, kRowErrors> kUnits{1, kDegree, 100, kDegree, 1, 1, 
 
 /// Shows the first pairs of the sequence, after faults, to the check.
 InputCheck lookedAt(const Sequence& sequence, const CheckOptions& options) {
-  const FrameRange range =
-      (options.frames.empty() ? FrameRange{} : parseFrameRange(options.frames)).within(sequence.frames.size());
-  if (range.size() == 0)
-    throw UsageError("--frames " + options.frames + ": the sequence has " + std::to_string(sequence.frames.size()) +
-                     " frames, none of these");
+  const FrameRange range = selectedFrames(options.frames, sequence);
   InputCheck check(sequence.camera);
   FaultInjector faults(parseFaultSpec(options.inject), sequence);
   const FaultInjector::Outlet outlet{.push =

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "apps/check/median.hpp"
 #include "frontend/image/grain.hpp"
 #include "frontend/image/image_pyramid.hpp"
 
@@ -28,13 +29,6 @@ std::string text(const char* format, Values... values) {
   char buffer[400];
   std::snprintf(buffer, sizeof buffer, format, values...);
   return buffer;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 double meanGray(const Image& image) {
@@ -62,8 +56,8 @@ const std::array kRowErrorTexts{
                  kDegree},
     RowErrorText{RowError::kZoom, "zoom", "the right image is larger by %.2f (+-%.2f) %%", 100},
     RowErrorText{RowError::kYaw, "yaw", "the right camera looks to the side by %.2f (+-%.2f) degrees", kDegree},
-    RowErrorText{RowError::kLift, "lift", "the right camera stands lower by %.1f (+-%.1f) %% of the baseline", 100},
-    RowErrorText{RowError::kAhead, "ahead", "the right camera stands back by %.1f (+-%.1f) %% of the baseline", 100}};
+    RowErrorText{RowError::kLift, "lift", "the right camera stands higher by %.1f (+-%.1f) %% of the baseline", 100},
+    RowErrorText{RowError::kAhead, "ahead", "the right camera stands ahead by %.1f (+-%.1f) %% of the baseline", 100}};
 
 }  // namespace
 

@@ -45,6 +45,7 @@ class InputCheck {
   struct Apart {
     int bad = 0, before = 0, after = 0;
   };
+  void lookAt(const StereoFrame& pair);
   void compareWithNeighbors(const Pair& now, std::size_t in_row, std::size_t matched);
   void observeLight(const StereoFrame& pair);
   std::optional<Finding> apart() const;
@@ -52,8 +53,6 @@ class InputCheck {
   void addRowErrors(std::vector<Finding>& findings) const;
   void addLight(std::vector<Finding>& findings) const;
   void addTimes(std::vector<Finding>& findings) const;
-
-  void lookAt(const StereoFrame& pair);
 
   StereoCamera camera_;
   bool half_;

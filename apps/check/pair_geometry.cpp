@@ -6,6 +6,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "apps/check/median.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -28,13 +30,6 @@ Row derivatives(const EpipolarMatch& match, const StereoCamera& camera) {
   Row row;
   row << 1 + y * y, f * x, f * y, f * x * y, d, y * d, f * y * (x_r * x_r - x * x);
   return row;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 /// Effect of each error per unit on the rows, root mean square over the image; of kBarrel, the displacement in a

@@ -17,8 +17,8 @@ enum class RowError {
   kRoll,    // rad, about the optical axis, the right image clockwise
   kZoom,    // relative difference of the focal lengths
   kYaw,     // rad
-  kLift,    // of the right camera downwards, over the baseline
-  kAhead,   // of the right camera, over the baseline, negative
+  kLift,    // of the right camera upwards, over the baseline
+  kAhead,   // of the right camera, over the baseline
   kBarrel,  // k1, the radial distortion of both images that was not taken out
 };
 inline constexpr std::size_t kRowErrors = 7;

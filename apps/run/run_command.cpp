@@ -55,15 +55,6 @@ double captureRate_hz(const Sequence& sequence, const FrameRange& range, double 
          secondsBetween(sequence.stamps[range.begin], sequence.stamps[range.end - 1]);
 }
 
-FrameRange selectedFrames(const RunOptions& options, const Sequence& sequence) {
-  const FrameRange range =
-      (options.frames.empty() ? FrameRange{} : parseFrameRange(options.frames)).within(sequence.frames.size());
-  if (range.size() == 0)
-    throw UsageError("--frames " + options.frames + ": the sequence has " + std::to_string(sequence.frames.size()) +
-                     " frames, none of these");
-  return range;
-}
-
 void requireReplaceable(const RunOptions& options) {
   if (!options.force && holdsFinishedRun(options.out))
     throw OutputError(options.out.string() +
@@ -191,7 +182,7 @@ int runSequence(const RunOptions& options) {
   const Sequence sequence = openSequence(options.sequence, options.fps_hz);
   requireWithin(config.input, sequence);
   requireBelievable(sequence, options.force);
-  const FrameRange range = selectedFrames(options, sequence);
+  const FrameRange range = selectedFrames(options.frames, sequence);
   Stages stages = makeStages(config, sequence.camera);
   if (auto other_camera = otherCamera(options, config, sequence)) replaceOdometry(stages, *std::move(other_camera));
   announce(sequence, range, options.fps_hz);

@@ -19,6 +19,7 @@ const StereoCamera kCamera{720, 720, 620, 188, 0.54, 1242, 375};
 
 struct Rig {
   double down_px = 0, roll_rad = 0, k1 = 0;
+  double up_m = 0, ahead_m = 0;  // of the right camera
 };
 
 /// Points of a street, as a rig sees them in whose right image every tenth point is matched wrongly.
@@ -33,8 +34,9 @@ std::vector<EpipolarMatch> seenBy(const Rig& rig, unsigned seed) {
   std::vector<EpipolarMatch> matches;
   for (int i = 0; i < 3000; ++i) {
     const double x = (u(random) - kCamera.cx_px) / kCamera.fx_px, y = (v(random) - kCamera.cy_px) / kCamera.fy_px;
-    const double x_right = x - kCamera.baseline_m * inverse_depth(random);
-    const Eigen::Vector2d left = pixel(x, y), right = pixel(x_right, y);
+    const double depth_m = 1 / inverse_depth(random), depth_right_m = depth_m - rig.ahead_m;
+    const Eigen::Vector2d left = pixel(x, y), right = pixel((x * depth_m - kCamera.baseline_m) / depth_right_m,
+                                                            (y * depth_m + rig.up_m) / depth_right_m);
     const double turned_px = rig.down_px + rig.roll_rad * (right.x() - kCamera.cx_px);
     const double outlier_px = i % 10 == 0 ? wrong_px(random) : 0;
     matches.push_back({left.x(), left.y(), right.x(), right.y() + turned_px + noise_px(random) + outlier_px});
@@ -50,12 +52,20 @@ TEST(PairGeometry, OfARectifiedRigIsZero) {
 }
 
 TEST(PairGeometry, IsWhatTheRigIs) {
-  const PairGeometry geometry = estimatePairGeometry(seenBy({3, 0.017, -0.05}, 2), kCamera);
+  const PairGeometry geometry = estimatePairGeometry(seenBy({3, 0.017, -0.05, 0, 0}, 2), kCamera);
   EXPECT_NEAR(geometry[RowError::kOffset].value, 3, 0.2);
   EXPECT_NEAR(geometry[RowError::kRoll].value, 0.017, 0.002);
   EXPECT_NEAR(geometry[RowError::kBarrel].value, -0.05, 0.015);
   for (const RowError error : {RowError::kZoom, RowError::kLift, RowError::kAhead})
     EXPECT_LT(geometry[error].effect_px, 0.5);
+}
+
+TEST(PairGeometry, TellsWhereTheRightCameraStands) {
+  Rig rig;
+  rig.up_m = 0.05, rig.ahead_m = 0.08;
+  const PairGeometry geometry = estimatePairGeometry(seenBy(rig, 4), kCamera);
+  EXPECT_NEAR(geometry[RowError::kLift].value, rig.up_m / kCamera.baseline_m, 0.02);
+  EXPECT_NEAR(geometry[RowError::kAhead].value, rig.ahead_m / kCamera.baseline_m, 0.04);
 }
 
 TEST(PairGeometry, ErrorsThatNothingShowsStayUnsure) {
