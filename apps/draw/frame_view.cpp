@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-Canvas drawFrame(const DrawnImages& images, const DrawnRun& run, std::size_t frame) {
+Canvas drawFrame(const DrawnImages& images, const RecordedDrive& run, std::size_t frame) {
   constexpr int kGap_px = 4;
   constexpr Color kBackground{17, 21, 27};
   const int width = images.left.width(), height = images.left.height();

@@ -1,10 +1,11 @@
 #pragma once
 
-#include "apps/draw/drawn_run.hpp"
+#include "apps/draw/palette.hpp"
+#include "apps/recorded/recorded_drive.hpp"
 
 namespace motorcade {
 
 /// The image above the view from the top.
-Canvas drawFrame(const DrawnImages& images, const DrawnRun& run, std::size_t frame);
+Canvas drawFrame(const DrawnImages& images, const RecordedDrive& run, std::size_t frame);
 
 }  // namespace motorcade

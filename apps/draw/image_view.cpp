@@ -100,7 +100,7 @@ void drawPoints(Canvas& canvas, const std::vector<ObjectPoint>& points) {
 }
 
 /// Way and motion on the ground.
-void drawMotion(Canvas& canvas, const DrawnRun& run, std::size_t frame, const ObjectEstimate& object) {
+void drawMotion(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const ObjectEstimate& object) {
   constexpr std::size_t kWay_frames = 15;
   const Color color = trackColor(object.track);
   const SE3 T_cam_world = run.T_world_cam[frame].inverse();
@@ -178,7 +178,7 @@ void drawTags(Canvas& canvas, std::vector<Tag> tags) {
 
 }  // namespace
 
-Canvas drawImageView(const DrawnImages& images, const DrawnRun& run, std::size_t frame) {
+Canvas drawImageView(const DrawnImages& images, const RecordedDrive& run, std::size_t frame) {
   Canvas canvas(images.left);
   if (images.mask) drawMask(canvas, *images.mask);
   const SE3 T_cam_world = run.T_world_cam[frame].inverse();

@@ -25,7 +25,7 @@ struct TopMap {
   }
 };
 
-double cameraSpeed_mps(const DrawnRun& run, std::size_t frame) {
+double cameraSpeed_mps(const RecordedDrive& run, std::size_t frame) {
   const std::size_t from = frame > 0 ? frame - 1 : 0, to = std::min(from + 1, run.T_world_cam.size() - 1);
   const double dt_s = secondsBetween(run.stamps[from], run.stamps[to]);
   return dt_s > 0 ? (run.T_world_cam[to].translation() - run.T_world_cam[from].translation()).norm() / dt_s : 0;
@@ -61,7 +61,7 @@ std::vector<Vector2d> footprint(const SE3& T_cam_box, const Vector3d& across, do
   return corners;
 }
 
-void drawCameraFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame, const TopMap& map) {
+void drawCameraFromAbove(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const TopMap& map) {
   const double half_width = 0.5 * run.camera.width_px / run.camera.fx_px, far_m = 60;
   canvas.fillPolygon({map({0, 0, 0}), map({half_width * far_m, 0, far_m}), map({-half_width * far_m, 0, far_m})},
                      {120, 150, 190}, 0.09);
@@ -76,7 +76,7 @@ void drawCameraFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame,
   canvas.fillPolygon({at + Vector2d(11, 0), at + Vector2d(-9, 8), at + Vector2d(-9, -8)}, kCamera);
 }
 
-void drawTruthFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame, const TopMap& map) {
+void drawTruthFromAbove(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const TopMap& map) {
   const auto here = run.true_objects.find(static_cast<std::int64_t>(frame));
   if (here == run.true_objects.end() || frame >= run.T_world_cam_true.size()) return;
   const SE3 T_cam_world = run.T_world_cam_true[frame].inverse();
@@ -120,7 +120,7 @@ void drawFootprint(Canvas& canvas, const ObjectEstimate& object, const SE3& T_ca
                      kDark, 0.7);
 }
 
-void drawObjectFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame, const ObjectEstimate& object,
+void drawObjectFromAbove(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const ObjectEstimate& object,
                          const TopMap& map) {
   const SE3 T_cam_world = run.T_world_cam[frame].inverse(), T_cam_body = T_cam_world * object.T_world_body;
   const ObjectBox box = object.cuboid.value_or(kUsualCar);
@@ -132,7 +132,8 @@ void drawObjectFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame,
 }
 
 /// On a dark plate below the footprint, over all else.
-void drawName(Canvas& canvas, const DrawnRun& run, std::size_t frame, const ObjectEstimate& object, const TopMap& map) {
+void drawName(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const ObjectEstimate& object,
+              const TopMap& map) {
   const ObjectBox box = object.cuboid.value_or(kUsualCar);
   const Vector3d middle_cam = run.T_world_cam[frame].inverse() * (object.T_world_body * box.center_body);
   const auto name = format("#%lld", static_cast<long long>(object.track.value));
@@ -143,7 +144,7 @@ void drawName(Canvas& canvas, const DrawnRun& run, std::size_t frame, const Obje
 }
 
 /// Followed points, each at the distance that its disparity says.
-void drawPointsFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame, const TopMap& map) {
+void drawPointsFromAbove(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const TopMap& map) {
   for (const ObjectPoint& point : run.pointsAt(frame)) {
     if (!(point.uvd_px.z() > 0)) continue;
     const Vector2d at = map(run.camera.triangulate(point.uvd_px));
@@ -153,7 +154,7 @@ void drawPointsFromAbove(Canvas& canvas, const DrawnRun& run, std::size_t frame,
 }
 
 /// Of the objects that are there, and, fainter, of those that were followed once.
-void drawWays(Canvas& canvas, const DrawnRun& run, std::size_t frame, const TopMap& map) {
+void drawWays(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const TopMap& map) {
   std::set<TrackId> earlier;
   for (const auto& [at, objects] : run.objects) {
     if (std::cmp_greater(at, frame)) break;
@@ -169,7 +170,7 @@ void drawWays(Canvas& canvas, const DrawnRun& run, std::size_t frame, const TopM
   for (const auto& object : objects) draw(object.track, object.cuboid.value_or(kUsualCar).center_body, 1);
 }
 
-void drawLegend(Canvas& canvas, const DrawnRun& run, std::size_t frame) {
+void drawLegend(Canvas& canvas, const RecordedDrive& run, std::size_t frame) {
   canvas.text({12, 10}, format("frame %lld", static_cast<long long>(run.first_frame) + static_cast<long long>(frame)),
               kText);
   canvas.text({12, 32}, format("camera %.1f m/s", cameraSpeed_mps(run, frame)), kText);
@@ -192,7 +193,7 @@ void drawLegend(Canvas& canvas, const DrawnRun& run, std::size_t frame) {
 
 }  // namespace
 
-Canvas drawTopView(const DrawnRun& run, std::size_t frame, int width, int height) {
+Canvas drawTopView(const RecordedDrive& run, std::size_t frame, int width, int height) {
   Canvas canvas(width, height, kDark);
   constexpr double kShown_m = 95;
   const TopMap map{width, height, width / kShown_m};

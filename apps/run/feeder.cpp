@@ -25,6 +25,7 @@ Feeder::Feeder(SequenceDecoder& decoder, Pipeline& pipeline, const Between& betw
       clock_(between.clock),
       faults_(between.faults),
       watch_(between.watch),
+      listeners_(between.listeners),
       next_(decoder.first()),
       thread_([this](const std::stop_token& stopped) { feed(stopped); }) {}
 
@@ -65,7 +66,9 @@ bool Feeder::enter(StereoFrame frame, const std::stop_token& stopped) {
 /// The pair enters first, so that looking at it does not delay it.
 bool Feeder::push(StereoFrame frame) {
   const StereoFrame seen = frame;
-  return pipeline_.push(std::move(frame)) && (!watch_ || watch_->admits(seen));
+  if (!pipeline_.push(std::move(frame))) return false;
+  for (RunListener* const listener : listeners_) listener->frameEntered(seen);
+  return !watch_ || watch_->admits(seen);
 }
 
 FaultInjector::Outlet Feeder::pipelineAfterFaults(const std::stop_token& stopped) {

@@ -6,6 +6,7 @@
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/input_watch.hpp"
+#include "apps/run/run_listener.hpp"
 #include "io/sequence_decoder.hpp"
 
 namespace motorcade {
@@ -14,11 +15,12 @@ namespace motorcade {
 /// when it is due; without, as soon as there is room.
 class Feeder {
  public:
-  /// What may stand between decoder and pipeline; each may be null.
+  /// What may stand between decoder and pipeline; each may be absent.
   struct Between {
     CameraClock* clock = nullptr;     // started with the first pair
     FaultInjector* faults = nullptr;  // change the pairs on their way
     InputWatch* watch = nullptr;      // sees them as they enter, and may end the drive
+    RunListeners listeners{};         // see those that entered
   };
   /// Pairs that the decoder leaves out are passed over.
   Feeder(SequenceDecoder& decoder, Pipeline& pipeline, const Between& between);
@@ -39,6 +41,7 @@ class Feeder {
   CameraClock* clock_;
   FaultInjector* faults_;
   InputWatch* watch_;
+  RunListeners listeners_;
   FrameId next_;  // after the last pair that entered
   std::jthread thread_;
 };

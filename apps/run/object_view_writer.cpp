@@ -36,7 +36,7 @@ ObjectViewWriter::ObjectViewWriter(const fs::path& run_folder, const StereoCamer
   points_.writeLine(kObjectPointsHeader);
 }
 
-void ObjectViewWriter::write(const PipelineResult& result) {
+void ObjectViewWriter::frameLeft(const PipelineResult& result) {
   const FrameEstimate& frame = result.online;
   writePng16(maskFile(masks_, frame.frame), maskImage(frame, result.masks, camera_.width_px, camera_.height_px));
   for (const ObjectMask& mask : result.masks)

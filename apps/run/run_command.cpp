@@ -25,6 +25,7 @@
 #include "apps/run/other_camera.hpp"
 #include "apps/run/plausibility.hpp"
 #include "apps/run/process_usage.hpp"
+#include "apps/run/run_listener.hpp"
 #include "apps/run/run_options.hpp"
 #include "apps/run/run_summary.hpp"
 #include "io/errors.hpp"
@@ -87,15 +88,15 @@ void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) 
 /// Takes the pipeline's results into the run folder.
 class Recorder {
  public:
-  Recorder(RunFolderWriter& folder, ObjectViewWriter* views, std::size_t frames)
-      : folder_(folder), views_(views), progress_("frame", frames) {}
+  Recorder(RunFolderWriter& folder, RunListeners listeners, std::size_t frames)
+      : folder_(folder), listeners_(std::move(listeners)), progress_("frame", frames) {}
 
   void record(const PipelineResult& result) {
     recordDropped(result.dropped, result.timing.due);
     folder_.writeTiming(result.timing);
     folder_.writeOnline(result.online);
     if (const auto doubt = plausibility_.observe(result.online)) spdlog::warn(*doubt);
-    if (views_) views_->write(result);
+    for (RunListener* const listener : listeners_) listener->frameLeft(result);
     for (const FrameEstimate& estimate : result.settled) folder_.writeSettled(estimate);
     recordFinals(result.finals);
     if (result.online.status == FrameStatus::kGood) ++good_frames_;
@@ -124,7 +125,7 @@ class Recorder {
 
  private:
   RunFolderWriter& folder_;
-  ObjectViewWriter* views_;
+  RunListeners listeners_;
   Progress progress_;
   Plausibility plausibility_;
   std::size_t done_ = 0;
@@ -137,6 +138,7 @@ struct Replay {
   FrameRange range;
   FaultInjector* faults = nullptr;
   InputWatch* watch = nullptr;
+  RunListeners listeners{};
 };
 
 /// Runs the frames through the pipeline and writes all results but the summary.
@@ -154,7 +156,7 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   Pipeline pipeline(config.pipeline, std::move(stages), logToSpdlog);
   const auto start = std::chrono::steady_clock::now();
   {
-    Feeder feeder(decoder, pipeline, {clock ? &*clock : nullptr, replay.faults, replay.watch});
+    Feeder feeder(decoder, pipeline, {clock ? &*clock : nullptr, replay.faults, replay.watch, replay.listeners});
     const auto watch = signals.watch([&feeder] { feeder.stop(); });
     while (const auto result = pipeline.next()) recorder.record(*result);
   }
@@ -201,11 +203,13 @@ int runSequence(const RunOptions& options) {
   ObjectViewWriter::removeEarlier(options.out);
   std::optional<ObjectViewWriter> views;
   if (options.masks) views.emplace(options.out, sequence.camera);
-  Recorder recorder(folder, views ? &*views : nullptr, range.size());
+  RunListeners listeners;
+  if (views) listeners.push_back(&*views);
+  Recorder recorder(folder, listeners, range.size());
   FaultInjector faults(fault_spec, sequence);
   InputWatch watch(sequence.camera, options.force);
-  follow({sequence, range, options.inject.empty() ? nullptr : &faults, &watch}, config, std::move(stages), recorder,
-         summary);
+  follow({sequence, range, options.inject.empty() ? nullptr : &faults, &watch, listeners}, config, std::move(stages),
+         recorder, summary);
   if (views) views->close();
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));

@@ -48,8 +48,8 @@ ObjectEstimate carAhead() {
   return car;
 }
 
-DrawnRun runWith(const ObjectEstimate& object) {
-  DrawnRun run;
+RecordedDrive runWith(const ObjectEstimate& object) {
+  RecordedDrive run;
   run.camera = {300, 300, 200, 60, 0.5, kWidth_px, kHeight_px};
   run.stamps = {Timestamp{0}};
   run.T_world_cam = {SE3()};
@@ -79,7 +79,7 @@ TEST(ImageView, CutsACuboidThatReachesBehindTheCamera) {
 TEST(ImageView, TintsTheMaskAndMarksPoints) {
   ObjectEstimate car = carAhead();
   car.state = ObjectState::kStopped;
-  DrawnRun run = runWith(car);
+  RecordedDrive run = runWith(car);
   DrawnImages images{.left = grayImage(), .mask = Gray16Image{.width = kWidth_px, .height = kHeight_px, .pixels = {}}};
   images.mask->pixels.assign(std::size_t{kWidth_px} * kHeight_px, 0);
   for (int y = 90; y < 100; ++y)
@@ -97,7 +97,7 @@ TEST(ImageView, TagsOfObjectsInOneDirectionStandOneAboveTheOther) {
   ObjectEstimate car = carAhead(), behind = carAhead();
   behind.track = {2};
   const auto tagged = [](const std::vector<ObjectEstimate>& objects) {
-    DrawnRun run = runWith(objects.front());
+    RecordedDrive run = runWith(objects.front());
     run.objects[0] = objects;
     const Canvas canvas = drawImageView({grayImage()}, run, 0);
     int count = 0;  // of the plates' pixels above the boxes
@@ -126,7 +126,7 @@ TEST(TopView, ShowsTheFootprintAndWhereItMayBe) {
 
 TEST(TopView, ShowsPointsAtTheirDepthAndMotionAheadOfTheNose) {
   ObjectEstimate car = carAhead();
-  DrawnRun run = runWith(car);
+  RecordedDrive run = runWith(car);
   const int still = colorfulPixels(drawTopView(run, 0, 950, 400));
   run.objects[0][0].velocity_world_mps = {0, 0, 6};
   const Canvas moving = drawTopView(run, 0, 950, 400);

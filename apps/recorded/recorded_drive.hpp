@@ -1,23 +1,19 @@
 #pragma once
 
-#include <array>
-#include <cstdio>
+#include <cstdint>
 #include <map>
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "apps/draw/canvas.hpp"
 #include "core/stereo_camera.hpp"
 #include "io/ground_truth.hpp"
-#include "io/image_file.hpp"
 #include "io/object_points.hpp"
 #include "io/run_folder.hpp"
+#include "io/sequence.hpp"
 
 namespace motorcade {
 
-/// All that the pictures of a run need, but for the images. Poses are in the world of the run, its first frame.
-struct DrawnRun {
+/// All that pictures and pages of a run show, but for the images. Poses are in the world of the run, its first frame.
+struct RecordedDrive {
   StereoCamera camera;
   std::vector<Timestamp> stamps;  // of the run's frames
   std::int64_t first_frame = 0;
@@ -34,24 +30,7 @@ struct DrawnRun {
                                      std::size_t frame) const;
 };
 
-/// What is drawn on: the left image and the mask of the objects, where there is one.
-struct DrawnImages {
-  Image left;
-  std::optional<Gray16Image> mask{};
-};
-
-/// Each track its color, the same in every picture.
-Color trackColor(TrackId track);
-
-/// Halfway to white: for points on what has the color itself.
-Color lightened(Color color);
-
-/// As printf.
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  std::array<char, 128> text;
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
+/// What a run and the truth of its sequence tell. Throws InputError naming the file that cannot be read.
+RecordedDrive recordedDrive(const RunFolder& run, const Sequence& sequence);
 
 }  // namespace motorcade

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+/// The options of each command; what a command does is in the room of its name. Only the sources of this folder and
+/// command_line.cpp include CLI11, which takes long to compile.
+namespace motorcade {
+
+/// What a command line asks for; gives the exit code.
+using Action = std::function<int()>;
+
+/// Each adds its command; when the command line names it, `action` is set.
+void addRun(CLI::App& app, Action& action);
+void addCheck(CLI::App& app, Action& action);
+void addEvaluate(CLI::App& app, Action& action);
+void addDraw(CLI::App& app, Action& action);
+void addSynth(CLI::App& app, Action& action);
+void addSolve(CLI::App& app, Action& action);
+
+}  // namespace motorcade

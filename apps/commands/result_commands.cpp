@@ -1,0 +1,61 @@
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands/commands.hpp"
+#include "apps/draw/draw_command.hpp"
+#include "apps/evaluate/evaluate_command.hpp"
+
+namespace motorcade {
+
+void addEvaluate(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<EvaluateOptions>();
+  CLI::App* command = app.add_subcommand("evaluate", "Measure a run against the ground truth of its sequence");
+  command->add_option("run", options->run, "Run folder")->required();
+  command->add_option("--sequence", options->sequence, "The sequence that was run, where it is no longer where it was");
+  command
+      ->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]; the run's when absent")
+      ->check(CLI::Range(0.001, 100'000.0));
+  command->add_option("--baseline", options->baseline,
+                      "KITTI pose lines of another camera trajectory, for the relative error");
+  command->add_option("--baseline-run", options->baseline_run,
+                      "Run folder of another method, for the relative error of the objects");
+  command->add_option("--half-run", options->half_run,
+                      "Run folder of the same drive from the other half of the points: do the two differ as their "
+                      "covariances say");
+  command->add_option("--export-truth", options->export_truth,
+                      "Folder for the true trajectories of camera and objects");
+  command->add_option("--export-kitti", options->export_kitti,
+                      "Folder for the run's objects as KITTI tracking results; needs no ground truth");
+  command->add_option("--json", options->json, "File for all measures as JSON");
+  command->add_flag("--uninterpolated", options->uninterpolated,
+                    "Take oxts packet k for image k, as published evaluations do");
+  command->footer("Example: motorcade evaluate RUN --json MEASURES.json");
+  command->callback([options, &action] { action = [options] { return runEvaluate(*options); }; });
+}
+
+void addDraw(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<DrawOptions>();
+  const auto frames = std::make_shared<std::string>(":");
+  CLI::App* command = app.add_subcommand("draw", "Draw a run: the annotated left images above a view from the top");
+  command->add_option("run", options->run, "Run folder")->required();
+  command->add_option("--sequence", options->sequence, "The sequence that was run, where it is no longer where it was");
+  command->add_option("--out", options->out, "Folder for the pictures")->required();
+  command->add_option("--frames", *frames, "Frames A:B of the sequence");
+  command->add_option("--every", options->every, "Draw every Nth frame")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]; the run's when absent")
+      ->check(CLI::Range(0.001, 100'000.0));
+  command->footer("Example: motorcade draw RUN --out PICTURES --every 10");
+  command->callback([options, frames, &action] {
+    action = [options, frames] {
+      options->frames = parseFrameRange(*frames);
+      return runDraw(*options);
+    };
+  });
+}
+
+}  // namespace motorcade

@@ -1,0 +1,67 @@
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/check/check_command.hpp"
+#include "apps/commands/commands.hpp"
+#include "apps/inject/fault_spec.hpp"
+#include "apps/run/run_command.hpp"
+
+namespace motorcade {
+
+void addRun(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Follow the camera and the moving vehicles through a stereo sequence");
+  command->add_option("SEQUENCE", options->sequence, "Folder of a plain, KITTI tracking, odometry or raw sequence")
+      ->required();
+  command->add_option("--out", options->out, "Folder for the results")->required();
+  command->add_option("--rate", options->rate, "Pace of the replay in pairs per second, or max (the default)");
+  command->add_option("--fps", options->fps_hz, "Capture rate of a sequence without times [Hz]")
+      ->check(CLI::Range(0.001, 100'000.0))
+      ->capture_default_str();
+  command->add_flag("--live", options->live,
+                    "Behave like a camera that does not wait: the newest pair wins, others are dropped");
+  command->add_flag("--masks", options->masks,
+                    "Write what the image shows of the objects: masks/NNNNNN.png, outlines.jsonl, object_points.csv");
+  command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
+  command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
+  command
+      ->add_option(
+          "--camera", options->camera,
+          "KITTI pose lines of another camera trajectory, one per frame of the sequence, for backend.kind filter, "
+          "filter_map or pose_graph")
+      ->type_name("POSES.txt");
+  command->add_option("--config", options->config, "Parameters; see effective_config.toml of any run")
+      ->type_name("FILE.toml");
+  command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")
+      ->type_name("KEY=VALUE");
+  command
+      ->add_option("--inject", options->inject,
+                   "Faults on the way from the camera, to see what becomes of the results: "
+                   "KIND[=VALUE][/left|/right][@A[:B[:STEP]]][~SHARE],... and seed=N, as black@20:23,noise=20~0.1\n" +
+                       faultHelp())
+      ->type_name("FAULTS");
+  command->add_option("--require", options->require, "Exit with 5 when fewer frames are tracked")
+      ->type_name("tracked=FRACTION");
+  command->add_flag("--force", options->force,
+                    "Replace a finished run, and go on where the input is found to be worthless");
+  command->footer("Example: motorcade run DRIVE --out RUN --masks");
+  command->callback([options, &action] { action = [options] { return runSequence(*options); }; });
+}
+
+void addCheck(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<CheckOptions>();
+  CLI::App* command = app.add_subcommand("check", "Look for what is wrong with a sequence's first twenty pairs");
+  command->add_option("SEQUENCE", options->sequence, "Folder of a sequence, as for run")->required();
+  command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
+  command->add_option("--fps", options->fps_hz, "Capture rate of a sequence without times [Hz]")
+      ->check(CLI::Range(0.001, 100'000.0))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "File for what was measured and found as JSON");
+  command->add_option("--inject", options->inject, "Faults, as for run, to see whether they are found")
+      ->type_name("FAULTS");
+  command->footer("Example: motorcade check DRIVE");
+  command->callback([options, &action] { action = [options] { return runCheck(*options); }; });
+}
+
+}  // namespace motorcade

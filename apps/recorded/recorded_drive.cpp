@@ -1,0 +1,78 @@
+#include "apps/recorded/recorded_drive.hpp"
+
+#include <filesystem>
+#include <utility>
+
+namespace motorcade {
+namespace {
+
+/// The truth, where there is any, moved into the world of the run's first frame.
+void addTruth(RecordedDrive& drive, const Sequence& sequence) {
+  const auto camera = readCameraTruth(sequence);
+  if (!camera || drive.first_frame >= std::ssize(camera->T_world_cam)) return;
+  const SE3 T_run_world = camera->T_world_cam[drive.first_frame].inverse();
+  for (std::size_t i = 0; i < drive.T_world_cam.size(); ++i) {
+    const std::size_t frame = drive.first_frame + i;
+    if (frame < camera->T_world_cam.size()) drive.T_world_cam_true.push_back(T_run_world * camera->T_world_cam[frame]);
+  }
+  const auto truths = readObjectTruths(sequence, *camera);
+  if (!truths) return;
+  for (ObjectTruth truth : truths->objects) {
+    truth.T_world_object = T_run_world * truth.T_world_object;
+    drive.true_objects[truth.frame.value - drive.first_frame].push_back(std::move(truth));
+  }
+}
+
+void addCovariances(RecordedDrive& drive, const RunFolder& run) {
+  for (const auto& row : run.covariances) {
+    const auto objects = drive.objects.find(row.frame.value - run.first_frame);
+    if (!row.track.valid() || objects == drive.objects.end()) continue;
+    for (ObjectEstimate& object : objects->second)
+      if (object.track == row.track) object.covariance = row.covariance;
+  }
+}
+
+}  // namespace
+
+RecordedDrive recordedDrive(const RunFolder& run, const Sequence& sequence) {
+  RecordedDrive drive;
+  drive.camera = sequence.camera;
+  drive.first_frame = run.first_frame;
+  // A run that was killed has few final poses: what was published online tells more then.
+  const RunFolder::Trajectories& shown = run.final.camera.size() >= run.online.camera.size() ? run.final : run.online;
+  drive.T_world_cam = shown.camera;
+  for (std::size_t i = 0; i < drive.T_world_cam.size(); ++i) {
+    drive.stamps.push_back(sequence.stamps[run.first_frame + i]);
+  }
+  for (const auto& row : shown.objects) drive.objects[row.frame.value - run.first_frame].push_back(row.object);
+  addCovariances(drive, run);
+  const auto points = run.folder / kObjectPointsFile;
+  if (std::filesystem::exists(points))
+    for (const ObjectPoint& point : readObjectPoints(points))
+      drive.points[point.frame.value - run.first_frame].push_back(point);
+  addTruth(drive, sequence);
+  return drive;
+}
+
+std::vector<ObjectEstimate> RecordedDrive::objectsAt(std::size_t frame) const {
+  const auto found = objects.find(static_cast<std::int64_t>(frame));
+  return found == objects.end() ? std::vector<ObjectEstimate>() : found->second;
+}
+
+std::vector<ObjectPoint> RecordedDrive::pointsAt(std::size_t frame) const {
+  const auto found = points.find(static_cast<std::int64_t>(frame));
+  return found == points.end() ? std::vector<ObjectPoint>() : found->second;
+}
+
+std::vector<Eigen::Vector3d> RecordedDrive::wayOf(TrackId track, const Eigen::Vector3d& p_body, std::size_t earliest,
+                                                  std::size_t frame) const {
+  std::vector<Eigen::Vector3d> way;
+  for (auto at = objects.lower_bound(static_cast<std::int64_t>(earliest)); at != objects.end(); ++at) {
+    if (std::cmp_greater(at->first, frame)) break;
+    for (const auto& object : at->second)
+      if (object.track == track) way.push_back(object.T_world_body * p_body);
+  }
+  return way;
+}
+
+}  // namespace motorcade
