@@ -40,6 +40,7 @@ struct StageSpan {
   SteadyTime start, end;
   int worker = -1;    // slot of the arena that did the work
   double cpu_ms = 0;  // of that worker's thread alone: what others did of the stage's parallel loops is not in it
+  bool ran() const { return start != end; }
   double duration_ms() const { return millisecondsBetween(start, end); }
 };
 
@@ -54,11 +55,24 @@ struct FrameTiming {
   SteadyTime admitted;   // taken from the ring and put into the flow graph
   SteadyTime published;  // result ready for the reader
   double decode_ms = 0;  // done ahead, so not part of the latency; filled by who decodes
+  SteadyTime decoded{};  // when that was done
   std::array<StageSpan, kStageCount> stages;
+  int points = 0, inliers = 0, objects = 0;  // followed points, those of them that hold for the ego-motion, objects
 
   StageSpan& of(Stage stage) { return stages[static_cast<std::size_t>(stage)]; }
   const StageSpan& of(Stage stage) const { return stages[static_cast<std::size_t>(stage)]; }
   double latency_ms() const { return millisecondsBetween(due, published); }
+  /// From the moment the pair was due until it entered the flow graph.
+  double entry_wait_ms() const { return admitted > due ? millisecondsBetween(due, admitted) : 0; }
+  /// When all that a stage needs was there.
+  SteadyTime handedTo(Stage stage) const;
+  /// How long a frame then waited for its turn; 0 where the stage did not run.
+  double wait_ms(Stage stage) const;
+  /// From the end of the last stage until the reader could have the result.
+  double publish_wait_ms() const {
+    const StageSpan& last = of(Stage::kObjectShapes);
+    return last.ran() ? millisecondsBetween(last.end, published) : 0;
+  }
 };
 
 }  // namespace motorcade

@@ -28,6 +28,13 @@ double LatencyHistogram::percentile_ms(double fraction) const {
   return max_ms_;
 }
 
+std::vector<LatencyHistogram::Bucket> LatencyHistogram::buckets() const {
+  std::vector<Bucket> filled;
+  for (std::size_t bucket = 0; bucket < kBuckets; ++bucket)
+    if (buckets_[bucket] > 0) filled.push_back({upperBound_ms(bucket), buckets_[bucket]});
+  return filled;
+}
+
 /// The first octave is linear, below 2 * kPerOctave microseconds every bucket is one microsecond wide.
 std::size_t LatencyHistogram::bucketOf(std::uint64_t duration_us) {
   const int octave = std::max(0, static_cast<int>(std::bit_width(duration_us)) - kBits - 1);

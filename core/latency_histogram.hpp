@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace motorcade {
 
@@ -17,6 +18,14 @@ class LatencyHistogram {
   double max_ms() const { return max_ms_; }
   /// Smallest bucket bound that `fraction` (0 to 1) of the durations do not exceed, at most the maximum; 0 when empty.
   double percentile_ms(double fraction) const;
+  double sum_ms() const { return sum_ms_; }
+
+  struct Bucket {
+    double upper_ms;
+    std::int64_t count;
+  };
+  /// Those with something in them, in rising order; `upper_ms` belongs to the next one.
+  std::vector<Bucket> buckets() const;
 
  private:
   static constexpr int kBits = 5;

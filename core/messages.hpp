@@ -50,6 +50,7 @@ struct StereoFrame {
   Image left, right;     // empty when rejected
   std::string problem;   // why the pair is rejected, empty when it is good
   double decode_ms = 0;  // time spent on reading the images, before the pair was due
+  SteadyTime decoded{};  // when they were read
   bool rejected() const { return !problem.empty(); }
 };
 using StereoFramePtr = std::shared_ptr<const StereoFrame>;

@@ -15,23 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kCovariancesHeaderStart = "frame,track_id";
-/// A frame's status as it is written: a good frame with a cause is degraded.
-struct WrittenStatus {
-  FrameStatus status = FrameStatus::kGood;
-  bool degraded = false;
-};
-constexpr std::array kStatuses = {WrittenStatus{FrameStatus::kGood}, WrittenStatus{FrameStatus::kGood, true},
-                                  WrittenStatus{FrameStatus::kLost}, WrittenStatus{FrameStatus::kRejected},
-                                  WrittenStatus{FrameStatus::kDropped}};
-std::string_view writtenName(WrittenStatus written) {
-  return written.degraded ? "degraded" : statusName(written.status);
-}
-constexpr std::array kCauses = {FrameCause::kNone,         FrameCause::kAfterGap,   FrameCause::kFewPoints,
-                                FrameCause::kNothingFound, FrameCause::kUnlinked,   FrameCause::kFailed,
-                                FrameCause::kUnusable,     FrameCause::kOutOfOrder, FrameCause::kTooLate};
-constexpr std::array<std::string_view, kCauseCount> kCauseNames = {
-    "none", "after_gap", "few_points", "nothing_found", "unlinked", "failed", "unusable", "out_of_order", "too_late"};
-
 constexpr std::array kFinalFiles = {"camera_final.txt", "camera_final.tum", "objects_final.csv"};
 constexpr const char* kUnfinished = ".part";  // added to the names of the final files until the run has ended
 
@@ -79,56 +62,6 @@ std::string covariancesHeader() {
   return header;
 }
 
-std::string framesHeader() {
-  std::string header("frame,status,stamp_ns,latency_ms,decode_ms");
-  for (const auto& stage : kStageKeys) header.append(",").append(stage).append("_ms");
-  return header.append(",cause,segment");
-}
-
-std::string frameLine(const FrameTiming& timing) {
-  std::string line;
-  appendInteger(line, timing.frame.value);
-  line += ',';
-  const bool degraded = timing.status == FrameStatus::kGood && timing.cause != FrameCause::kNone;
-  line += writtenName({timing.status, degraded});
-  line += ',';
-  appendInteger(line, timing.stamp.ns);
-  const auto add = [&](double value_ms) {
-    line += ',';
-    appendFixed(line, value_ms, 3);
-  };
-  add(timing.latency_ms());
-  add(timing.decode_ms);
-  for (const auto& span : timing.stages) add(span.duration_ms());
-  line += ',';
-  line += causeName(timing.cause);
-  line += ',';
-  appendInteger(line, timing.segment);
-  return line;
-}
-
-std::string stageEvent(std::string_view name, FrameId frame, const StageSpan& span, SteadyTime origin) {
-  std::string line;
-  line.append(R"({"name":")").append(name).append(R"(","ph":"X","pid":1,"tid":)");
-  appendInteger(line, span.worker);
-  line.append(R"(,"ts":)");
-  appendFixed(line, 1e3 * millisecondsBetween(origin, span.start), 3);
-  line.append(R"(,"dur":)");
-  appendFixed(line, 1e3 * span.duration_ms(), 3);
-  line.append(R"(,"args":{"frame":)");
-  appendInteger(line, frame.value);
-  return line.append("}},");
-}
-
-std::string asyncEvent(char phase, FrameId frame, SteadyTime at, SteadyTime origin) {
-  std::string line;
-  line.append(R"({"name":"frame","cat":"frame","ph":")").append(1, phase).append(R"(","pid":1,"tid":0,"id":)");
-  appendInteger(line, frame.value);
-  line.append(R"(,"ts":)");
-  appendFixed(line, 1e3 * millisecondsBetween(origin, at), 3);
-  return line.append("},");
-}
-
 // ---- reading ----
 
 std::vector<RunFolder::ObjectRow> readObjects(const fs::path& file) {
@@ -164,27 +97,6 @@ std::vector<RunFolder::CovarianceRow> readCovariances(const fs::path& file) {
   return rows;
 }
 
-std::vector<RunFolder::FrameRow> readFrames(const fs::path& file) {
-  std::vector<RunFolder::FrameRow> rows;
-  if (!fs::exists(file)) return rows;
-  for (const auto& line : readTable(file, "frame,status,stamp_ns,latency_ms")) {
-    FieldReader fields(file, line, ',');
-    RunFolder::FrameRow row;
-    row.frame.value = fields.integer("frame");
-    row.status = fields.byName("status", kStatuses, writtenName).status;
-    row.stamp.ns = fields.integer("stamp_ns");
-    row.latency_ms = fields.number("latency_ms");
-    fields.number("decode_ms");
-    for (const auto& stage : kStageKeys) fields.number(stage);
-    if (!fields.atEnd()) {  // files of earlier versions end here
-      row.cause = fields.byName("cause", kCauses, causeName);
-      row.segment = static_cast<int>(fields.integer("segment"));
-    }
-    rows.push_back(row);
-  }
-  return rows;
-}
-
 std::vector<SE3> readCamera(const fs::path& file) {
   std::vector<SE3> poses;
   if (!fs::exists(file)) return poses;
@@ -197,22 +109,6 @@ std::vector<SE3> readCamera(const fs::path& file) {
 }
 
 }  // namespace
-
-std::string_view statusName(FrameStatus status) {
-  switch (status) {
-    case FrameStatus::kGood:
-      return "good";
-    case FrameStatus::kLost:
-      return "lost";
-    case FrameStatus::kRejected:
-      return "rejected";
-    case FrameStatus::kDropped:
-      return "dropped";
-  }
-  return "good";
-}
-
-std::string_view causeName(FrameCause cause) { return kCauseNames[static_cast<std::size_t>(cause)]; }
 
 RunFolderWriter::Files::Files(const fs::path& folder, const std::string& kind, const std::string& suffix)
     : kitti(folder / ("camera_" + kind + ".txt" + suffix)),
@@ -242,7 +138,6 @@ RunFolderWriter::RunFolderWriter(const fs::path& folder)
       trace_(folder_ / "trace.json") {
   frames_.writeLine(framesHeader());
   covariances_.writeLine(covariancesHeader());
-  trace_.writeLine("[");
 }
 
 RunFolderWriter::~RunFolderWriter() {
@@ -269,21 +164,12 @@ void RunFolderWriter::writeFinal(const FrameEstimate& estimate) { final_.write(e
 void RunFolderWriter::writeTiming(const FrameTiming& timing) {
   lock_.check();
   frames_.writeLine(frameLine(timing));
-  if (!origin_) origin_ = timing.due;
-  for (std::size_t i = 0; i < kStageCount; ++i) {
-    const StageSpan& span = timing.stages[i];
-    if (span.start != span.end) trace_.writeLine(stageEvent(kStageKeys[i], timing.frame, span, *origin_));
-  }
-  // The whole way of a frame overlaps with that of the next, which only the asynchronous kind of event can show.
-  trace_.writeLine(asyncEvent('b', timing.frame, timing.due, *origin_));
-  trace_.writeLine(asyncEvent('e', timing.frame, timing.published, *origin_));
+  trace_.write(timing);
 }
 
 void RunFolderWriter::finish(std::string_view summary_json) {
-  // A metadata event closes the array without a comma, so that strict JSON readers accept a complete trace.
-  trace_.writeLine(R"({"name":"process_name","ph":"M","pid":1,"tid":0,"args":{"name":"motorcade"}})");
-  trace_.writeLine("]");
-  for (LineFile* file : {&covariances_, &frames_, &trace_}) file->close();
+  trace_.close();
+  for (LineFile* file : {&covariances_, &frames_}) file->close();
   for (Files* files : {&online_, &settled_, &final_}) files->close();
   for (const char* file : kFinalFiles) replace(folder_ / (file + std::string(kUnfinished)), folder_ / file);
   finished_ = true;

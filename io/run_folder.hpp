@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,7 +8,9 @@
 #include "core/frame_timing.hpp"
 #include "core/messages.hpp"
 #include "io/folder_lock.hpp"
+#include "io/frame_table.hpp"
 #include "io/line_file.hpp"
+#include "io/trace_file.hpp"
 
 namespace motorcade {
 
@@ -47,13 +48,10 @@ class RunFolderWriter {
   std::filesystem::path folder_;
   FolderLock lock_;
   Files online_, settled_, final_;
-  LineFile covariances_, frames_, trace_;
+  LineFile covariances_, frames_;
+  TraceFile trace_;
   bool finished_ = false;
-  std::optional<SteadyTime> origin_;  // of the trace's clock: when the first frame was due
 };
-
-std::string_view statusName(FrameStatus status);
-std::string_view causeName(FrameCause cause);
 
 /// A run folder as read back; a run that was killed has fewer rows and no summary.
 struct RunFolder {
@@ -65,14 +63,6 @@ struct RunFolder {
     FrameId frame;
     TrackId track;  // not valid for the camera
     Matrix6d covariance;
-  };
-  struct FrameRow {
-    FrameId frame;
-    FrameStatus status = FrameStatus::kGood;  // also where `degraded` stands
-    FrameCause cause = FrameCause::kNone;
-    int segment = 0;
-    Timestamp stamp;
-    double latency_ms = 0;
   };
   /// Poses and objects of one kind, online or final. Line i of the camera file belongs to frame first_frame + i.
   struct Trajectories {

@@ -51,7 +51,8 @@ StereoFrame SequenceDecoder::decode(std::size_t index) {
     frame.left = frame.right = Image();
     frame.problem = error.what();
   }
-  frame.decode_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  frame.decoded = std::chrono::steady_clock::now();
+  frame.decode_ms = std::chrono::duration<double, std::milli>(frame.decoded - start).count();
   return frame;
 }
 

@@ -6,6 +6,7 @@
 #include "apps/commands/commands.hpp"
 #include "apps/draw/draw_command.hpp"
 #include "apps/evaluate/evaluate_command.hpp"
+#include "apps/latency/latency_command.hpp"
 
 namespace motorcade {
 
@@ -56,6 +57,15 @@ void addDraw(CLI::App& app, Action& action) {
       return runDraw(*options);
     };
   });
+}
+
+void addLatency(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<LatencyOptions>();
+  CLI::App* command = app.add_subcommand("latency", "Tell where the time of a run's frames went");
+  command->add_option("run", options->run, "Run folder")->required();
+  command->add_option("--json", options->json, "File for the same as JSON");
+  command->footer("Example: motorcade latency RUN");
+  command->callback([options, &action] { action = [options] { return runLatency(*options); }; });
 }
 
 }  // namespace motorcade

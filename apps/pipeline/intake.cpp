@@ -99,6 +99,7 @@ void Intake::admit(Job& job, StereoFrame frame) {
   job.timing.stamp = frame.stamp;
   job.timing.due = frame.due;
   job.timing.decode_ms = frame.decode_ms;
+  job.timing.decoded = frame.decoded;
   job.dropped = headersBefore(frame.frame);
   for (const FrameHeader& header : job.dropped)
     if (header.status == FrameStatus::kRejected)

@@ -41,7 +41,8 @@ struct PipelineSummary {
   std::array<std::int64_t, kCauseCount> causes{};  // frames by FrameCause
   std::int64_t segments = 0;
   LatencyHistogram latency, latency_with_decoding;
-  std::array<LatencyHistogram, kStageCount> stages;
+  LatencyHistogram entry_wait;  // see FrameTiming, as for the next ones
+  std::array<LatencyHistogram, kStageCount> stages, waits, cpu;
   std::vector<QueueMark> queues;
   SolverCounters solver;
 };

@@ -17,6 +17,15 @@ std::string takeProblems(Job& job) {
   return text;
 }
 
+void countWhatWasSeen(const PipelineResult& result, FrameTiming& timing) {
+  const FrameMeasurements& seen = *result.measurements;
+  timing.inliers = static_cast<int>(seen.at_rest.size());
+  timing.points = timing.inliers + static_cast<int>(seen.undecided.size());
+  for (const ObjectObservation& object : seen.objects)
+    if (object.frame == seen.frame) timing.points += static_cast<int>(object.measured.size());
+  timing.objects = static_cast<int>(result.online.objects.size());
+}
+
 }  // namespace
 
 Publisher::Publisher(const PipelineParams& params, FreeJobs& free_jobs)
@@ -29,6 +38,7 @@ void Publisher::publish(Job& job) {
   job.timing.status = result.online.status;
   job.timing.cause = result.online.cause;
   job.timing.segment = result.online.segment;
+  countWhatWasSeen(result, job.timing);
   result.timing = job.timing;
   count(job, result);
   results_.tryPush(result);
@@ -78,8 +88,12 @@ void Publisher::count(const Job& job, const PipelineResult& result) {
   summary_.segments = result.online.segment + 1;
   summary_.latency.add(job.timing.latency_ms());
   summary_.latency_with_decoding.add(job.timing.latency_ms() + job.timing.decode_ms);
-  for (std::size_t stage = 0; stage < kStageCount; ++stage)
+  summary_.entry_wait.add(job.timing.entry_wait_ms());
+  for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     summary_.stages[stage].add(job.timing.stages[stage].duration_ms());
+    summary_.waits[stage].add(job.timing.wait_ms(static_cast<Stage>(stage)));
+    summary_.cpu[stage].add(job.timing.stages[stage].cpu_ms);
+  }
   if (result.problem.empty() || result.counters.updates > 0) summary_.solver = result.counters;
 }
 

@@ -25,6 +25,21 @@ Json toJson(const LatencyHistogram& histogram) {
           {"max", rounded(histogram.max_ms())}};
 }
 
+/// With its buckets: the upper bound of each, and how many are in it.
+Json withBuckets(const LatencyHistogram& histogram) {
+  Json json = toJson(histogram), buckets = Json::array();
+  for (const auto& bucket : histogram.buckets()) buckets.push_back({rounded(bucket.upper_ms), bucket.count});
+  json["buckets"] = buckets;
+  return json;
+}
+
+Json byStage(const std::array<LatencyHistogram, kStageCount>& histograms) {
+  Json json;
+  for (std::size_t stage = 0; stage < kStageCount; ++stage)
+    json[std::string(kStageKeys[stage])] = toJson(histograms[stage]);
+  return json;
+}
+
 Json toJson(const SolverCounters& solver) {
   return {{"updates", solver.updates},
           {"relinearizations", solver.relinearizations},
@@ -70,9 +85,7 @@ double RunSummary::throughput_hz() const {
 
 std::string toJson(const RunSummary& summary) {
   const PipelineSummary& pipeline = summary.pipeline;
-  Json stages, queues = Json::array({toJson(summary.decoded)});
-  for (std::size_t stage = 0; stage < kStageCount; ++stage)
-    stages[std::string(kStageKeys[stage])] = toJson(pipeline.stages[stage]);
+  Json queues = Json::array({toJson(summary.decoded)});
   for (const QueueMark& queue : pipeline.queues) queues.push_back(toJson(queue));
   Json json{{"complete", summary.signal == 0},
             {"sequence", summary.sequence},
@@ -94,9 +107,12 @@ std::string toJson(const RunSummary& summary) {
               {"by_cause", byCause(pipeline)},
               {"segments", pipeline.segments},
               {"tracked_fraction", rounded(summary.trackedFraction())}}},
-            {"latency_ms", toJson(pipeline.latency)},
-            {"latency_with_decoding_ms", toJson(pipeline.latency_with_decoding)},
-            {"stages_ms", stages},
+            {"latency_ms", withBuckets(pipeline.latency)},
+            {"latency_with_decoding_ms", withBuckets(pipeline.latency_with_decoding)},
+            {"entry_wait_ms", toJson(pipeline.entry_wait)},
+            {"stages_ms", byStage(pipeline.stages)},
+            {"stage_waits_ms", byStage(pipeline.waits)},
+            {"stage_cpu_ms", byStage(pipeline.cpu)},
             {"wall_s", rounded(summary.wall_s)},
             {"cpu_s", rounded(summary.used.cpu_s)},
             {"throughput_hz", rounded(summary.throughput_hz())},

@@ -38,5 +38,17 @@ TEST(LatencyHistogram, AcceptsNegativeAndHugeDurations) {
   EXPECT_LE(histogram.percentile_ms(0.5), 0.001);
 }
 
+TEST(LatencyHistogram, ItsBucketsHoldEveryDurationBelowTheirBounds) {
+  LatencyHistogram histogram;
+  for (const double duration_ms : {0.5, 0.5, 20.0, 300.0}) histogram.add(duration_ms);
+  const auto buckets = histogram.buckets();
+  ASSERT_EQ(buckets.size(), 3u);
+  EXPECT_EQ(buckets[0].count, 2);
+  EXPECT_GT(buckets[1].upper_ms, 20);
+  EXPECT_LE(buckets[1].upper_ms, 20 * (1 + kBucket) + 0.001);
+  EXPECT_EQ(buckets[1].count + buckets[2].count, 2);
+  EXPECT_DOUBLE_EQ(histogram.sum_ms(), 321);
+}
+
 }  // namespace
 }  // namespace motorcade

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/frame_timing.hpp"
+#include "core/messages.hpp"
+
+/// `frames.csv` of a run folder: what became of each frame, and where its time went.
+namespace motorcade {
+
+std::string_view statusName(FrameStatus status);
+std::string_view causeName(FrameCause cause);
+
+/// A row as read back.
+struct FrameRow {
+  struct StageTime {
+    double work_ms = 0, wait_ms = 0, cpu_ms = 0;
+  };
+  FrameId frame;
+  FrameStatus status = FrameStatus::kGood;  // also where `degraded` stands
+  FrameCause cause = FrameCause::kNone;
+  int segment = 0;
+  Timestamp stamp;
+  double latency_ms = 0, decode_ms = 0;
+  std::array<StageTime, kStageCount> stages{};
+  double entry_wait_ms = 0, publish_wait_ms = 0;
+  int points = 0, inliers = 0, objects = 0;
+  bool has_waits = false;  // false in files of earlier versions: what stands in them ends with the segment
+};
+
+std::string framesHeader();
+std::string frameLine(const FrameTiming& timing);
+/// Empty where there is no such file. Throws InputError naming file and line.
+std::vector<FrameRow> readFrames(const std::filesystem::path& file);
+
+}  // namespace motorcade
