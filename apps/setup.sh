@@ -9,7 +9,7 @@ packages=(
   libopencv-core-dev libopencv-imgproc-dev libopencv-features2d-dev
   libpng-dev libjpeg62-turbo-dev
   libspdlog-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libyaml-cpp-dev
-  libcairo2-dev fonts-dejavu-core libcpp-httplib-dev libjs-three libjs-chart.js libprotobuf-dev protobuf-compiler
+  pkg-config libcairo2-dev fonts-dejavu-core libcpp-httplib-dev libjs-three libjs-chart.js libprotobuf-dev protobuf-compiler
   libgtest-dev libgmock-dev
   "$@"
 )

@@ -51,7 +51,7 @@ int runDraw(const DrawOptions& options) {
     try {
       const auto mask = maskFile(options.run / kMasksFolder, {static_cast<std::int64_t>(frame)});
       const DrawnImages images = imagesOf(sequence.frames[frame].left, mask, pool);
-      writePngRgb(options.out / pictureName(frame), drawFrame(images, drive, i).image());
+      writePngRgb(options.out / pictureName(frame), drawFrame(images, drive, i));
       ++pictures;
     } catch (const InputError& problem) {
       std::cerr << "left out: " << problem.what() << '\n';

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "apps/draw/palette.hpp"
-#include "apps/recorded/recorded_drive.hpp"
+#include "apps/draw/image_view.hpp"
 
 namespace motorcade {
 
-/// The image above the view from the top.
-Canvas drawFrame(const DrawnImages& images, const RecordedDrive& run, std::size_t frame);
+/// The left image above the view from the top, with what the frame is between them and a legend of what is shown below.
+/// All frames of a drive have the same size.
+RgbImage drawFrame(const DrawnImages& images, const RecordedDrive& drive, std::size_t frame);
 
 }  // namespace motorcade

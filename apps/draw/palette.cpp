@@ -1,11 +1,10 @@
 #include "apps/draw/palette.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <array>
+#include <cstdint>
 
 namespace motorcade {
-
-Color lightened(Color color) { return {(color.red + 255) / 2, (color.green + 255) / 2, (color.blue + 255) / 2}; }
 
 Color trackColor(TrackId track) {
   constexpr std::array<Color, 10> kColors{{{255, 176, 32},

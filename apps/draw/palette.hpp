@@ -1,34 +1,15 @@
 #pragma once
 
-#include <array>
-#include <cstdio>
-#include <optional>
-#include <string>
-
-#include "apps/draw/canvas.hpp"
+#include "apps/canvas/color.hpp"
 #include "core/ids.hpp"
-#include "io/image_file.hpp"
 
+/// The colors of pictures.
 namespace motorcade {
 
-/// What is drawn on: the left image and the mask of the objects, where there is one.
-struct DrawnImages {
-  Image left;
-  std::optional<Gray16Image> mask{};
-};
+inline constexpr Color kGround{14, 18, 24}, kBar{22, 28, 36}, kGridLine{44, 53, 64}, kDark{10, 13, 18},
+    kInk{232, 237, 243}, kDimInk{146, 158, 172}, kTruth{245, 245, 245}, kOwn{126, 172, 255};
 
 /// Each track its color, the same in every picture.
 Color trackColor(TrackId track);
-
-/// Halfway to white: for points on what has the color itself.
-Color lightened(Color color);
-
-/// As printf.
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  std::array<char, 128> text;
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
 
 }  // namespace motorcade

@@ -1,10 +1,21 @@
 #include "apps/draw/top_view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include <Eigen/Eigenvalues>
+
+#include "apps/draw/palette.hpp"
+#include "apps/draw/seen_extent.hpp"
+#include "apps/draw/tags.hpp"
+#include "apps/draw/top_map.hpp"
+#include "apps/draw/truth_view.hpp"
 #include "core/object_place.hpp"
 
 namespace motorcade {
@@ -12,200 +23,224 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-constexpr Color kGrid{38, 45, 54}, kDimText{120, 132, 146}, kText{222, 228, 235}, kTruth{235, 235, 235},
-    kCamera{255, 255, 255}, kTrueCamera{255, 90, 90}, kDark{17, 21, 27};
-constexpr double kSigmas = 2;  // of the footprint's margin
+/// What every part of the view needs.
+struct View {
+  Sheet& sheet;
+  const RecordedDrive& drive;
+  std::size_t frame;
+  SE3 T_cam_world;
+  TopMap map;
 
-/// Meters ahead and to the right of the camera to pixels: the camera heads right, at a quarter of the width.
-struct TopMap {
-  int width, height;
-  double px_per_m;
-  Vector2d operator()(const Vector3d& p_cam) const {
-    return {0.26 * width + px_per_m * p_cam.z(), 0.5 * height + px_per_m * p_cam.x()};
+  Vector2d at(const Vector3d& p_world) const { return map(T_cam_world * p_world); }
+  std::vector<Vector2d> at(const std::vector<Vector3d>& points_world) const {
+    std::vector<Vector2d> points;
+    for (const auto& p_world : points_world) points.push_back(at(p_world));
+    return points;
   }
 };
 
-double cameraSpeed_mps(const RecordedDrive& run, std::size_t frame) {
-  const std::size_t from = frame > 0 ? frame - 1 : 0, to = std::min(from + 1, run.T_world_cam.size() - 1);
-  const double dt_s = secondsBetween(run.stamps[from], run.stamps[to]);
-  return dt_s > 0 ? (run.T_world_cam[to].translation() - run.T_world_cam[from].translation()).norm() / dt_s : 0;
+/// The least of 1, 2, 5, 10, ... m that leaves room between lines.
+double gridStep_m(double px_per_m) {
+  constexpr double kApart_px = 70;
+  for (double decade = 1; decade < 1e6; decade *= 10)
+    for (const double step_m : {decade, 2 * decade, 5 * decade})
+      if (step_m * px_per_m >= kApart_px) return step_m;
+  return 1e6;
 }
 
 void drawGrid(Canvas& canvas, const TopMap& map) {
-  constexpr int kReach_m = 120, kStep_m = 10;
-  for (int m = -kReach_m; m <= kReach_m; m += kStep_m) {
-    const double x = map({0, 0, static_cast<double>(m)}).x(), y = map({static_cast<double>(m), 0, 0}).y();
-    canvas.line({x, 0}, {x, static_cast<double>(map.height)}, kGrid, 1);
-    canvas.line({0, y}, {static_cast<double>(map.width), y}, kGrid, 1);
-    if (m % (2 * kStep_m) == 0) canvas.text({x + 4, map.height - 20.0}, format("%d m", m), kDimText);
-  }
-}
-
-std::vector<Vector2d> mapped(const std::vector<Vector3d>& points_world, const SE3& T_cam_world, const TopMap& map) {
-  std::vector<Vector2d> points;
-  for (const auto& p_world : points_world) points.push_back(map(T_cam_world * p_world));
-  return points;
-}
-
-/// Stands for what a run without cuboids does not know.
-const ObjectBox kUsualCar{.size_m = {4.2, 1.8, 1.5}};
-
-/// An outline on the ground, its center at the pose's origin.
-std::vector<Vector2d> footprint(const SE3& T_cam_box, const Vector3d& across, double length_m, double width_m,
-                                const TopMap& map) {
-  std::vector<Vector2d> corners;
-  for (const auto& [ahead, aside] : {std::pair(1, 1), std::pair(1, -1), std::pair(-1, -1), std::pair(-1, 1)}) {
-    corners.push_back(
-        map(T_cam_box * (Vector3d::UnitX() * (0.5 * ahead * length_m) + across * (0.5 * aside * width_m))));
-  }
-  return corners;
-}
-
-void drawCameraFromAbove(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const TopMap& map) {
-  const double half_width = 0.5 * run.camera.width_px / run.camera.fx_px, far_m = 60;
-  canvas.fillPolygon({map({0, 0, 0}), map({half_width * far_m, 0, far_m}), map({-half_width * far_m, 0, far_m})},
-                     {120, 150, 190}, 0.09);
-  const auto path = [&](const std::vector<SE3>& poses) {
-    std::vector<Vector3d> way;
-    for (std::size_t i = 0; i <= frame; ++i) way.push_back(poses[i].translation());
-    return mapped(way, poses[frame].inverse(), map);
-  };
-  canvas.polyline(path(run.T_world_cam), kCamera, 3);
-  if (frame < run.T_world_cam_true.size()) canvas.dashedPolyline(path(run.T_world_cam_true), kTrueCamera, 1.5, 7);
-  const Vector2d at = map({0, 0, 0});
-  canvas.fillPolygon({at + Vector2d(11, 0), at + Vector2d(-9, 8), at + Vector2d(-9, -8)}, kCamera);
-}
-
-void drawTruthFromAbove(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const TopMap& map) {
-  const auto here = run.true_objects.find(static_cast<std::int64_t>(frame));
-  if (here == run.true_objects.end() || frame >= run.T_world_cam_true.size()) return;
-  const SE3 T_cam_world = run.T_world_cam_true[frame].inverse();
-  for (const auto& truth : here->second) {
-    std::vector<Vector3d> way;
-    for (const auto& [at, objects] : run.true_objects) {
-      if (at > here->first) break;
-      for (const auto& object : objects)
-        if (object.id == truth.id) way.push_back(object.T_world_object.translation());
+  const double width = canvas.width(), height = canvas.height(), step_m = gridStep_m(map.px_per_m);
+  const TextStyle style{.color = kDimInk, .size_px = 10.5};
+  const auto lines = [&](double origin, double size, const auto& draw) {
+    for (auto k = static_cast<int>(std::ceil(-origin / (step_m * map.px_per_m)));; ++k) {
+      const double at = std::round(origin + k * step_m * map.px_per_m);
+      if (at > size) break;
+      draw(at, k * step_m);
     }
-    canvas.dashedPolyline(mapped(way, T_cam_world, map), kTruth, 1.2, 6, 0.7);
-    canvas.outline(
-        footprint(T_cam_world * truth.T_world_object, Vector3d::UnitZ(), truth.size_m.z(), truth.size_m.y(), map),
-        kTruth, 1.2, 0.8);
-  }
-}
-
-/// By how much each end of a footprint may be off, along the body's axes: the place of its middle and half its size.
-Vector3d footprintSigma_m(const ObjectEstimate& object, const ObjectBox& box) {
-  const Eigen::Matrix3d& R = object.T_world_body.rotation();
-  const Vector3d place_m2 = (R.transpose() * placeOf(object).center_covariance * R).diagonal();
-  return (place_m2 + 0.25 * box.size_sigma_m.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
-}
-
-void drawFootprint(Canvas& canvas, const ObjectEstimate& object, const SE3& T_cam_body, const TopMap& map) {
-  const Color color = trackColor(object.track);
-  const ObjectBox box = object.cuboid.value_or(kUsualCar);
-  const SE3 T_cam_box = T_cam_body * SE3(Eigen::Matrix3d::Identity(), box.center_body);
-  const auto outlined = [&](const Vector3d& size_m) {
-    return footprint(T_cam_box, Vector3d::UnitY(), size_m.x(), size_m.y(), map);
   };
-  const bool predicted = object.state == ObjectState::kPredicted;
-  const auto margin = outlined(box.size_m + 2 * kSigmas * footprintSigma_m(object, box));
-  canvas.fillPolygon(margin, color, 0.18);
-  canvas.outline(margin, color, 1, 0.45);
-  canvas.fillPolygon(outlined(box.size_m), color, predicted ? 0.35 : 0.85);
-  // The way that it heads, also when it stands.
-  const double nose_m = 0.5 * box.size_m.x(), half_m = 0.3 * box.size_m.y(), back_m = nose_m - 2 * half_m;
-  canvas.fillPolygon({map(T_cam_box * Vector3d(0.95 * nose_m, 0, 0)), map(T_cam_box * Vector3d(back_m, half_m, 0)),
-                      map(T_cam_box * Vector3d(back_m, -half_m, 0))},
-                     kDark, 0.7);
+  lines(map.origin_px.x(), width, [&](double x, double m) {
+    canvas.line({x, 0}, {x, height}, {.color = kGridLine, .opacity = m == 0 ? 0.999 : 0.6});
+    if (x < width - 40) canvas.text({x + 5, height - 7}, format("%.0f m", m), style);
+  });
+  lines(map.origin_px.y(), height, [&](double y, double m) {
+    canvas.line({0, y}, {width, y}, {.color = kGridLine, .opacity = m == 0 ? 0.999 : 0.6});
+    const char* const side = m < 0 ? "%.0f m left" : "%.0f m right";
+    if (m != 0 && y > 14 && y < height - 22) canvas.text({6, y - 5}, format(side, std::abs(m)), style);
+  });
 }
 
-void drawObjectFromAbove(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const ObjectEstimate& object,
-                         const TopMap& map) {
-  const SE3 T_cam_world = run.T_world_cam[frame].inverse(), T_cam_body = T_cam_world * object.T_world_body;
-  const ObjectBox box = object.cuboid.value_or(kUsualCar);
-  drawFootprint(canvas, object, T_cam_body, map);
-  if (object.state == ObjectState::kStopped) return;
-  const Vector3d nose_cam = T_cam_body * (box.center_body + Vector3d(0.5 * box.size_m.x(), 0, 0)),
-                 motion_cam = T_cam_world.rotation() * object.velocity_world_mps;
-  canvas.arrow(map(nose_cam), map(nose_cam + motion_cam), trackColor(object.track), 2);
+void drawOwnCamera(const View& view) {
+  constexpr double kFar_m = 200;
+  Canvas& canvas = view.sheet.canvas;
+  const double half_width = 0.5 * view.drive.camera.width_px / view.drive.camera.fx_px;
+  const std::array field{view.map({0, 0, 0}), view.map({half_width * kFar_m, 0, kFar_m}),
+                         view.map({-half_width * kFar_m, 0, kFar_m})};
+  canvas.fill(field, {kOwn, 0.07});
 }
 
-/// On a dark plate below the footprint, over all else.
-void drawName(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const ObjectEstimate& object,
-              const TopMap& map) {
-  const ObjectBox box = object.cuboid.value_or(kUsualCar);
-  const Vector3d middle_cam = run.T_world_cam[frame].inverse() * (object.T_world_body * box.center_body);
-  const auto name = format("#%lld", static_cast<long long>(object.track.value));
-  const double below_px = 0.5 * map.px_per_m * std::max(box.size_m.y(), 2.0) + 8, width_px = Canvas::textWidth(name);
-  const Vector2d at = map(middle_cam) + Vector2d(-0.5 * width_px, below_px), size_px(width_px, 14);
-  canvas.fillPolygon({at, at + Vector2d(size_px.x(), 0), at + size_px, at + Vector2d(0, size_px.y())}, kDark, 0.7);
-  canvas.text(at, name, trackColor(object.track));
-}
-
-/// Followed points, each at the distance that its disparity says.
-void drawPointsFromAbove(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const TopMap& map) {
-  for (const ObjectPoint& point : run.pointsAt(frame)) {
-    if (!(point.uvd_px.z() > 0)) continue;
-    const Vector2d at = map(run.camera.triangulate(point.uvd_px));
-    canvas.line(at, at, kDark, 3.5, 0.6);
-    canvas.line(at, at, lightened(trackColor(point.track)), 2);
-  }
+void drawOwnPath(const View& view) {
+  constexpr double kPath_px = 2.6;
+  std::vector<Vector3d> way;
+  for (std::size_t i = 0; i <= view.frame; ++i) way.push_back(view.drive.T_world_cam[i].translation());
+  const auto path = view.at(way);
+  if (path.size() > 1 && view.sheet.note(Mark::kOwnPath, path))
+    view.sheet.canvas.polyline(path, {.color = kOwn, .width_px = kPath_px});
+  const Vector2d at = view.map({0, 0, 0});
+  const std::array corners{Vector2d(at + Vector2d(12, 0)), Vector2d(at + Vector2d(-8, 8)),
+                           Vector2d(at + Vector2d(-4, 0)), Vector2d(at + Vector2d(-8, -8))};
+  if (!view.sheet.note(Mark::kOwnCamera, corners)) return;
+  view.sheet.canvas.outline(corners, {.color = kDark, .width_px = 3, .opacity = 0.7});
+  view.sheet.canvas.fill(corners, {kOwn, 1});
 }
 
 /// Of the objects that are there, and, fainter, of those that were followed once.
-void drawWays(Canvas& canvas, const RecordedDrive& run, std::size_t frame, const TopMap& map) {
+void drawWays(const View& view) {
   std::set<TrackId> earlier;
-  for (const auto& [at, objects] : run.objects) {
-    if (std::cmp_greater(at, frame)) break;
+  for (const auto& [at, objects] : view.drive.objects) {
+    if (std::cmp_greater(at, view.frame)) break;
     for (const auto& object : objects) earlier.insert(object.track);
   }
-  const auto draw = [&](TrackId track, const Vector3d& p_body, double opacity) {
-    const auto way = run.wayOf(track, p_body, 0, frame);
-    canvas.polyline(mapped(way, run.T_world_cam[frame].inverse(), map), trackColor(track), 2, opacity);
-  };
-  const auto objects = run.objectsAt(frame);
+  const auto objects = view.drive.objectsAt(view.frame);
   for (const auto& object : objects) earlier.erase(object.track);
-  for (const TrackId track : earlier) draw(track, Vector3d::Zero(), 0.4);
-  for (const auto& object : objects) draw(object.track, object.cuboid.value_or(kUsualCar).center_body, 1);
+  const auto draw = [&](TrackId track, const Vector3d& p_body, Mark mark, const Pen& pen) {
+    const auto way = view.at(view.drive.wayOf(track, p_body, 0, view.frame));
+    if (way.size() > 1 && view.sheet.note(mark, way)) view.sheet.canvas.polyline(way, pen);
+  };
+  for (const TrackId track : earlier)
+    draw(track, Vector3d::Zero(), Mark::kEarlierWay, {.color = trackColor(track), .width_px = 1.5, .opacity = 0.4});
+  for (const auto& object : objects) {
+    const auto extent = seenExtent(view.drive, view.frame, object);
+    draw(object.track, extent ? extent->middle_body() : Vector3d::Zero(), Mark::kWay,
+         {.color = trackColor(object.track), .width_px = 2, .opacity = 0.8});
+  }
 }
 
-void drawLegend(Canvas& canvas, const RecordedDrive& run, std::size_t frame) {
-  canvas.text({12, 10}, format("frame %lld", static_cast<long long>(run.first_frame) + static_cast<long long>(frame)),
-              kText);
-  canvas.text({12, 32}, format("camera %.1f m/s", cameraSpeed_mps(run, frame)), kText);
-  const auto objects = run.objectsAt(frame);
-  canvas.text(
-      {12, 54},
-      format("%d moving", static_cast<int>(std::ranges::count(objects, ObjectState::kMoving, &ObjectEstimate::state))),
-      kText);
-  const double left = canvas.width() - 172.0;
-  const std::vector<Vector2d> estimated{{left + 8, 12}, {left + 32, 12}, {left + 32, 22}, {left + 8, 22}},
-      margin{{left + 2, 8}, {left + 38, 8}, {left + 38, 26}, {left + 2, 26}};
-  canvas.fillPolygon(margin, kCamera, 0.18);
-  canvas.outline(margin, kCamera, 1, 0.45);
-  canvas.fillPolygon(estimated, kCamera, 0.85);
-  canvas.text({left + 50, 10}, format("%.0f sigma", kSigmas), kDimText);
-  if (run.T_world_cam_true.empty()) return;
-  canvas.dashedPolyline({{left, 39}, {left + 40, 39}}, kTruth, 1.5, 6);
-  canvas.text({left + 50, 32}, "truth", kDimText);
+std::vector<Vector2d> footprint(const View& view, const ObjectEstimate& object, const SeenExtent& extent) {
+  const Vector3d &least = extent.least_body, &most = extent.most_body;
+  return view.at({object.T_world_body * Vector3d(most.x(), most.y(), least.z()),
+                  object.T_world_body * Vector3d(most.x(), least.y(), least.z()),
+                  object.T_world_body * Vector3d(least.x(), least.y(), least.z()),
+                  object.T_world_body * Vector3d(least.x(), most.y(), least.z())});
+}
+
+void drawFootprint(const View& view, const ObjectEstimate& object, const SeenExtent& extent) {
+  const Color color = trackColor(object.track);
+  const auto corners = footprint(view, object, extent);
+  const bool predicted = object.state == ObjectState::kPredicted;
+  if (!view.sheet.note(predicted ? Mark::kPredicted : Mark::kFootprint, corners)) return;
+  Canvas& canvas = view.sheet.canvas;
+  canvas.fill(corners, {color, predicted ? 0.15 : 0.85});
+  if (predicted) {
+    canvas.outline(corners, {.color = color, .width_px = 1.5, .dashes_px = {4, 3}});
+    return;
+  }
+  canvas.outline(corners, {.color = lightened(color), .width_px = 1});
+  // The way that it heads, also when it stands.
+  const Vector2d front = 0.5 * (corners[0] + corners[1]), side = 0.3 * (corners[1] - corners[0]);
+  const Vector2d back = corners[3] - corners[0];
+  if (!(back.norm() > 0)) return;
+  const Vector2d to_back = back.normalized() * std::min(side.norm() * 1.4, 0.7 * back.norm()),
+                 tip = front + 0.15 * to_back;
+  const std::array notch{tip, Vector2d(tip + side + to_back), Vector2d(tip - side + to_back)};
+  canvas.fill(notch, {kDark, 0.55});
+}
+
+/// Of the cuboid's middle, where the run tells how sure it is of it.
+void drawEllipse(const View& view, const ObjectEstimate& object) {
+  constexpr double kSigmas = 2;
+  const ObjectPlace place = placeOf(object);
+  const Eigen::Matrix3d& R = view.T_cam_world.rotation();
+  const Eigen::Matrix3d covariance = R * place.center_covariance * R.transpose();
+  Eigen::Matrix2d on_ground;  // ahead and to the right
+  on_ground << covariance(2, 2), covariance(2, 0), covariance(0, 2), covariance(0, 0);
+  if (!on_ground.allFinite() || !(on_ground.trace() > 0)) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(on_ground);
+  const Eigen::Matrix2d axes = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  const auto corners = ellipse(view.at(place.center_world), kSigmas * view.map.px_per_m * axes);
+  if (!view.sheet.note(Mark::kEllipse, corners)) return;
+  view.sheet.canvas.fill(corners, {lightened(trackColor(object.track)), 0.25});
+  view.sheet.canvas.outline(corners, {.color = kDark, .width_px = 3, .opacity = 0.5});
+  view.sheet.canvas.outline(corners, {.color = lightened(lightened(trackColor(object.track))), .width_px = 1.2});
+}
+
+void drawMotion(const View& view, const ObjectEstimate& object, const Vector3d& front_body) {
+  if (object.state == ObjectState::kStopped) return;
+  const Vector3d front_world = object.T_world_body * front_body;
+  const std::array ends{view.at(front_world), view.at(front_world + object.velocity_world_mps)};
+  if (!view.sheet.note(Mark::kMotion, ends)) return;
+  view.sheet.canvas.arrow(ends[0], ends[1], {.color = trackColor(object.track), .width_px = 2.2});
+}
+
+/// Followed points, each at the distance that its disparity says.
+void drawPoints(const View& view) {
+  for (const ObjectPoint& point : view.drive.pointsAt(view.frame)) {
+    if (!(point.uvd_px.z() > 0)) continue;
+    const std::array at{view.map(view.drive.camera.triangulate(point.uvd_px))};
+    if (!view.sheet.note(Mark::kPoint, at)) continue;
+    view.sheet.canvas.dot(at[0], 2.1, {kDark, 0.7});
+    view.sheet.canvas.dot(at[0], 1.3, {lightened(lightened(trackColor(point.track))), 1});
+  }
+}
+
+Rectangle boundsOf(const std::vector<Vector2d>& corners) {
+  Vector2d least = corners.front(), most = corners.front();
+  for (const Vector2d& corner : corners) {
+    least = least.cwiseMin(corner);
+    most = most.cwiseMax(corner);
+  }
+  return {least.x(), least.y(), most.x() - least.x(), most.y() - least.y()};
+}
+
+void drawObjects(const View& view) {
+  std::vector<Tag> tags;
+  const auto objects = view.drive.objectsAt(view.frame);
+  for (const ObjectEstimate& object : objects) {
+    const auto extent = seenExtent(view.drive, view.frame, object);
+    if (extent) drawFootprint(view, object, *extent);
+    const Vector3d front_body =
+        extent ? Vector3d(extent->most_body.x(), extent->middle_body().y(), 0) : Vector3d(0, 0, 0);
+    drawMotion(view, object, front_body);
+    const auto corners =
+        extent ? footprint(view, object, *extent) : std::vector<Vector2d>{view.at(object.T_world_body.translation())};
+    const Rectangle bounds = boundsOf(corners);
+    if (view.sheet.area().overlap(bounds.grownBy(1)) > 0)
+      tags.push_back(
+          {trackColor(object.track), format("#%lld", static_cast<long long>(object.track.value)), "", bounds});
+  }
+  drawPoints(view);
+  for (const ObjectEstimate& object : objects) drawEllipse(view, object);
+  paintTruth(view.sheet, view.drive, view.frame, view.map);
+  paintTags(view.sheet, tags);
 }
 
 }  // namespace
 
-Canvas drawTopView(const RecordedDrive& run, std::size_t frame, int width, int height) {
-  Canvas canvas(width, height, kDark);
-  constexpr double kShown_m = 95;
-  const TopMap map{width, height, width / kShown_m};
-  drawGrid(canvas, map);
-  drawCameraFromAbove(canvas, run, frame, map);
-  drawWays(canvas, run, frame, map);
-  for (const auto& object : run.objectsAt(frame)) drawObjectFromAbove(canvas, run, frame, object, map);
-  drawPointsFromAbove(canvas, run, frame, map);
-  drawTruthFromAbove(canvas, run, frame, map);
-  for (const auto& object : run.objectsAt(frame)) drawName(canvas, run, frame, object, map);
-  drawLegend(canvas, run, frame);
-  return canvas;
+void paintTopView(Sheet& sheet, const RecordedDrive& drive, std::size_t frame) {
+  constexpr double kLabels_px = 22;  // of the grid, at the lower edge
+  Rectangle area = sheet.area();
+  area.height -= kLabels_px;
+  const TopMap map = topMapOf(drive, frame, area);
+  drawGrid(sheet.canvas, map);
+  if (frame >= drive.T_world_cam.size()) return;
+  const View view{sheet, drive, frame, drive.T_world_cam[frame].inverse(), map};
+  drawOwnCamera(view);
+  drawWays(view);
+  drawOwnPath(view);
+  drawObjects(view);
+}
+
+RgbImage drawTopView(const RecordedDrive& drive, std::size_t frame, ImageSize size) {
+  Canvas canvas(size.width, size.height, kGround);
+  Marks marks;
+  const int legend = legendHeight(size.width);
+  const bool roomy = size.height > 2 * legend;
+  Canvas scene = canvas.part(0, 0, size.width, roomy ? size.height - legend : size.height);
+  Sheet sheet{scene, marks};
+  paintTopView(sheet, drive, frame);
+  if (!roomy) return canvas.image();
+  Canvas below = canvas.part(0, size.height - legend, size.width, legend);
+  drawLegend(below, marks);
+  return canvas.image();
 }
 
 }  // namespace motorcade

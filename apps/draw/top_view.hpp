@@ -1,12 +1,17 @@
 #pragma once
 
-#include "apps/draw/palette.hpp"
+#include "apps/draw/marks.hpp"
 #include "apps/recorded/recorded_drive.hpp"
+#include "io/image_file.hpp"
 
 namespace motorcade {
 
-/// The scene from above, the camera heading right: the ways so far of camera and objects, the objects' points and
-/// footprints, where these may be by two standard deviations, and their motion of one second; the truth is dashed.
-Canvas drawTopView(const RecordedDrive& run, std::size_t frame, int width, int height);
+/// The scene from above, the camera heading right, over a grid in meters: the ways so far of camera and objects, the
+/// objects' points, footprints as far as they were seen, the 2-sigma ellipses of their middles, and their motion of one
+/// second; the truth is dashed, that of parked cars dotted. A legend stands below where there is room for it.
+RgbImage drawTopView(const RecordedDrive& drive, std::size_t frame, ImageSize size);
+
+/// The same without a legend, over the whole sheet.
+void paintTopView(Sheet& sheet, const RecordedDrive& drive, std::size_t frame);
 
 }  // namespace motorcade

@@ -1,6 +1,8 @@
 #include "apps/recorded/recorded_drive.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace motorcade {
@@ -32,10 +34,17 @@ void addCovariances(RecordedDrive& drive, const RunFolder& run) {
   }
 }
 
+std::string nameOf(const std::filesystem::path& folder) {
+  std::error_code unreachable;  // then the name stays as it was given
+  const auto whole = std::filesystem::absolute(folder, unreachable).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
 }  // namespace
 
 RecordedDrive recordedDrive(const RunFolder& run, const Sequence& sequence) {
   RecordedDrive drive;
+  drive.name = nameOf(run.folder);
   drive.camera = sequence.camera;
   drive.first_frame = run.first_frame;
   // A run that was killed has few final poses: what was published online tells more then.
@@ -62,6 +71,13 @@ std::vector<ObjectEstimate> RecordedDrive::objectsAt(std::size_t frame) const {
 std::vector<ObjectPoint> RecordedDrive::pointsAt(std::size_t frame) const {
   const auto found = points.find(static_cast<std::int64_t>(frame));
   return found == points.end() ? std::vector<ObjectPoint>() : found->second;
+}
+
+const ObjectEstimate* RecordedDrive::find(std::size_t frame, TrackId track) const {
+  const auto here = objects.find(static_cast<std::int64_t>(frame));
+  if (here == objects.end()) return nullptr;
+  const auto found = std::ranges::find(here->second, track, &ObjectEstimate::track);
+  return found == here->second.end() ? nullptr : &*found;
 }
 
 std::vector<Eigen::Vector3d> RecordedDrive::wayOf(TrackId track, const Eigen::Vector3d& p_body, std::size_t earliest,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "core/stereo_camera.hpp"
@@ -14,6 +15,7 @@ namespace motorcade {
 
 /// All that pictures and pages of a run show, but for the images. Poses are in the world of the run, its first frame.
 struct RecordedDrive {
+  std::string name{};  // of the run's folder
   StereoCamera camera;
   std::vector<Timestamp> stamps;  // of the run's frames
   std::int64_t first_frame = 0;
@@ -25,6 +27,8 @@ struct RecordedDrive {
 
   std::vector<ObjectEstimate> objectsAt(std::size_t frame) const;
   std::vector<ObjectPoint> pointsAt(std::size_t frame) const;
+  /// What the frame knows of a track, or null.
+  const ObjectEstimate* find(std::size_t frame, TrackId track) const;
   /// Where a point of an object's body was, from `earliest` up to `frame`, in the world.
   std::vector<Eigen::Vector3d> wayOf(TrackId track, const Eigen::Vector3d& p_body, std::size_t earliest,
                                      std::size_t frame) const;

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "apps/draw/marks.hpp"
+#include "io/image_file.hpp"
+
+namespace motorcade {
+
+/// Tints what a mask shows of each object, in the color of its track, with a crisp rim.
+void paintMask(Sheet& sheet, const Gray16Image& mask);
+
+}  // namespace motorcade
