@@ -27,9 +27,13 @@ echo "== Accuracy against the exact truth"
 echo "== Drawing every fourth frame"
 "$motorcade" draw "$results/run" --sequence "$results/sequence" --out "$results/pictures" --every 4
 
+echo "== Writing the report"
+"$motorcade" report "$results/run" --sequence "$results/sequence"
+
 echo "== Results"
 echo "images and truth   $PWD/$results/sequence"
 echo "trajectories       $PWD/$results/run"
-echo "pictures           $PWD/$results/pictures"
 echo "accuracy           $PWD/$results/evaluation.json"
 echo "latency            $PWD/$results/run/summary.json"
+echo "a picture          $PWD/$results/pictures/frame_000032.png"
+echo "the report         $PWD/$results/run/report.html"

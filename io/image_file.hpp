@@ -60,6 +60,7 @@ enum class PngEffort { kFast, kSmall };
 void writePng(const std::filesystem::path& file, const Image& image, PngEffort effort = PngEffort::kFast);
 /// As a JPEG file's bytes; `quality` is 1 to 100.
 std::string encodeJpeg(const Image& image, int quality);
+std::string encodeJpeg(const RgbImage& image, int quality);
 void writePng16(const std::filesystem::path& file, const Gray16Image& image, PngEffort effort = PngEffort::kFast);
 void writePngRgb(const std::filesystem::path& file, const RgbImage& image, PngEffort effort = PngEffort::kSmall);
 

@@ -19,6 +19,7 @@ void addCheck(CLI::App& app, Action& action);
 void addEvaluate(CLI::App& app, Action& action);
 void addDraw(CLI::App& app, Action& action);
 void addLatency(CLI::App& app, Action& action);
+void addReport(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
 void addSolve(CLI::App& app, Action& action);
 

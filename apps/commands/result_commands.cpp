@@ -7,6 +7,7 @@
 #include "apps/draw/draw_command.hpp"
 #include "apps/evaluate/evaluate_command.hpp"
 #include "apps/latency/latency_command.hpp"
+#include "apps/report/report_command.hpp"
 
 namespace motorcade {
 
@@ -57,6 +58,21 @@ void addDraw(CLI::App& app, Action& action) {
       return runDraw(*options);
     };
   });
+}
+
+void addReport(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<ReportOptions>();
+  CLI::App* command = app.add_subcommand("report", "Write a page that tells of a run, in one file");
+  command->add_option("run", options->run, "Run folder")->required();
+  command->add_option("--out", options->out, "File to write; report.html in the run folder when absent");
+  command->add_option("--sequence", options->sequence, "The sequence that was run, where it is no longer where it was");
+  command
+      ->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]; the run's when absent")
+      ->check(CLI::Range(0.001, 100'000.0));
+  command->add_option("--baseline", options->baseline,
+                      "KITTI pose lines of another camera trajectory, to compare with");
+  command->footer("Example: motorcade report RUN");
+  command->callback([options, &action] { action = [options] { return runReport(*options); }; });
 }
 
 void addLatency(CLI::App& app, Action& action) {

@@ -5,26 +5,15 @@
 #include <string>
 
 #include "apps/console/log.hpp"
+#include "apps/draw/drawn_images.hpp"
 #include "apps/draw/frame_view.hpp"
 #include "apps/recorded/recorded_drive.hpp"
 #include "apps/recorded/recorded_run.hpp"
 #include "io/errors.hpp"
 #include "io/image_file.hpp"
-#include "io/mask_image.hpp"
 
 namespace motorcade {
 namespace {
-
-/// With the mask where the run wrote masks.
-DrawnImages imagesOf(const std::filesystem::path& left, const std::filesystem::path& mask, ImagePool& pool) {
-  DrawnImages images{.left = readImage(left, pool)};
-  if (!std::filesystem::exists(mask)) return images;
-  images.mask = readPng16(mask);
-  const ImageSize size{images.mask->width, images.mask->height}, wanted{images.left.width(), images.left.height()};
-  if (size != wanted)
-    throw InputError(mask.string() + ": has " + size.text() + " pixels, the image has " + wanted.text());
-  return images;
-}
 
 std::string pictureName(std::int64_t frame) {
   char name[40];
@@ -49,8 +38,7 @@ int runDraw(const DrawOptions& options) {
         (frame - options.frames.begin) % options.every != 0)
       continue;
     try {
-      const auto mask = maskFile(options.run / kMasksFolder, {static_cast<std::int64_t>(frame)});
-      const DrawnImages images = imagesOf(sequence.frames[frame].left, mask, pool);
+      const DrawnImages images = readDrawnImages(sequence, frame, options.run, pool);
       writePngRgb(options.out / pictureName(frame), drawFrame(images, drive, i));
       ++pictures;
     } catch (const InputError& problem) {

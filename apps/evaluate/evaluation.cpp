@@ -88,20 +88,6 @@ CameraTruth neededTruth(const Sequence& sequence, bool uninterpolated) {
   return *std::move(truth);
 }
 
-/// The baseline's poses of the frames that the run has; the file may cover the sequence or just the run.
-std::vector<SE3> baselinePoses(const std::filesystem::path& file, std::int64_t first_frame, std::size_t frames_run,
-                               std::size_t sequence_frames) {
-  std::vector<SE3> poses = readKittiPoses(file);
-  if (poses.size() == sequence_frames) {
-    poses.erase(poses.begin(), poses.begin() + std::min<std::ptrdiff_t>(first_frame, std::ssize(poses)));
-  } else if (poses.size() != frames_run) {
-    throw InputError(file.string() + ": has " + std::to_string(poses.size()) + " poses; the sequence has " +
-                     std::to_string(sequence_frames) + " frames and the run " + std::to_string(frames_run));
-  }
-  poses.resize(std::min(poses.size(), frames_run));
-  return poses;
-}
-
 void compareCameras(Evaluation& evaluation, const KindEvaluation& baseline) {
   if (!evaluation.final.camera || !baseline.camera) return;
   evaluation.camera_against_baseline = {evaluation.final.camera->ate_m.rmse, baseline.camera->ate_m.rmse};
@@ -138,6 +124,19 @@ std::string truthRow(const TrueObject& object) {
 }
 
 }  // namespace
+
+std::vector<SE3> baselinePoses(const std::filesystem::path& file, std::int64_t first_frame, std::size_t frames_run,
+                               std::size_t sequence_frames) {
+  std::vector<SE3> poses = readKittiPoses(file);
+  if (poses.size() == sequence_frames) {
+    poses.erase(poses.begin(), poses.begin() + std::min<std::ptrdiff_t>(first_frame, std::ssize(poses)));
+  } else if (poses.size() != frames_run) {
+    throw InputError(file.string() + ": has " + std::to_string(poses.size()) + " poses; the sequence has " +
+                     std::to_string(sequence_frames) + " frames and the run " + std::to_string(frames_run));
+  }
+  poses.resize(std::min(poses.size(), frames_run));
+  return poses;
+}
 
 double Evaluation::latencyQuantile_ms(double part) const {
   if (latency_ms.empty()) return 0;

@@ -40,25 +40,37 @@ std::string nameOf(const std::filesystem::path& folder) {
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
-}  // namespace
-
-RecordedDrive recordedDrive(const RunFolder& run, const Sequence& sequence) {
+/// `stamps`: of the run's frames, at least as many as it has poses, or the last poses are left out.
+RecordedDrive driveOf(const RunFolder& run, std::vector<Timestamp> stamps) {
   RecordedDrive drive;
   drive.name = nameOf(run.folder);
-  drive.camera = sequence.camera;
   drive.first_frame = run.first_frame;
   // A run that was killed has few final poses: what was published online tells more then.
   const RunFolder::Trajectories& shown = run.final.camera.size() >= run.online.camera.size() ? run.final : run.online;
   drive.T_world_cam = shown.camera;
-  for (std::size_t i = 0; i < drive.T_world_cam.size(); ++i) {
-    drive.stamps.push_back(sequence.stamps[run.first_frame + i]);
-  }
+  stamps.resize(std::min(drive.T_world_cam.size(), stamps.size()));
+  drive.T_world_cam.resize(stamps.size());
+  drive.stamps = std::move(stamps);
   for (const auto& row : shown.objects) drive.objects[row.frame.value - run.first_frame].push_back(row.object);
   addCovariances(drive, run);
   const auto points = run.folder / kObjectPointsFile;
   if (std::filesystem::exists(points))
     for (const ObjectPoint& point : readObjectPoints(points))
       drive.points[point.frame.value - run.first_frame].push_back(point);
+  return drive;
+}
+
+}  // namespace
+
+RecordedDrive recordedDrive(const RunFolder& run) {
+  std::vector<Timestamp> stamps;
+  for (const FrameRow& row : run.frames) stamps.push_back(row.stamp);
+  return driveOf(run, std::move(stamps));
+}
+
+RecordedDrive recordedDrive(const RunFolder& run, const Sequence& sequence) {
+  RecordedDrive drive = driveOf(run, {sequence.stamps.begin() + run.first_frame, sequence.stamps.end()});
+  drive.camera = sequence.camera;
   addTruth(drive, sequence);
   return drive;
 }

@@ -36,5 +36,7 @@ struct RecordedDrive {
 
 /// What a run and the truth of its sequence tell. Throws InputError naming the file that cannot be read.
 RecordedDrive recordedDrive(const RunFolder& run, const Sequence& sequence);
+/// What the run alone tells: nothing of the truth, nor of the camera.
+RecordedDrive recordedDrive(const RunFolder& run);
 
 }  // namespace motorcade

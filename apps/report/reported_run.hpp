@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/evaluate/evaluation.hpp"
+#include "apps/recorded/recorded_drive.hpp"
+#include "apps/report/report_command.hpp"
+#include "io/run_folder.hpp"
+#include "io/sequence.hpp"
+
+namespace motorcade {
+
+/// All that a report tells of.
+struct ReportedRun {
+  RunFolder run;
+  std::optional<Sequence> sequence{};      // empty where it is no longer there
+  std::string without_sequence{};          // why
+  RecordedDrive drive;                     // without truth and camera where there is no sequence
+  std::optional<Evaluation> evaluation{};  // where there is truth
+  std::vector<SE3> baseline{};             // poses in the run's world; may be empty
+};
+
+/// Throws InputError where the run cannot be read, or what the user named.
+ReportedRun readReportedRun(const ReportOptions& options);
+
+}  // namespace motorcade

@@ -1,0 +1,106 @@
+#include <filesystem>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/html/html_page.hpp"
+#include "apps/report/report_sections.hpp"
+#include "io/text_file.hpp"
+
+namespace motorcade {
+namespace {
+
+using Json = nlohmann::json;
+
+/// An object without keys where there is no summary that can be read.
+Json summaryOf(const RunFolder& run) {
+  Json json = Json::parse(run.summary_json, nullptr, /*allow_exceptions=*/false);
+  return json.is_object() ? json : Json::object();
+}
+
+std::string card(const std::string& value, const std::string& label) {
+  return "<div class=\"card\"><div class=\"value\">" + escaped(value) + "</div><div class=\"label\">" + escaped(label) +
+         "</div></div>\n";
+}
+
+double lengthOf_m(const std::vector<SE3>& path) {
+  double length_m = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) length_m += (path[i].translation() - path[i - 1].translation()).norm();
+  return length_m;
+}
+
+std::size_t objectCount(const RecordedDrive& drive) {
+  std::set<std::int64_t> tracks;
+  for (const auto& [frame, objects] : drive.objects)
+    for (const ObjectEstimate& object : objects) tracks.insert(object.track.value);
+  return tracks.size();
+}
+
+std::string framesText(const ReportedRun& reported) {
+  int unsure = 0;
+  for (const FrameRow& row : reported.run.frames) unsure += row.status != FrameStatus::kGood;
+  const std::size_t frames = reported.drive.T_world_cam.size();
+  return unsure == 0 ? fmt::format("{} frames, all tracked", frames)
+                     : fmt::format("{} frames, {} lost, rejected or dropped", frames, unsure);
+}
+
+std::string cards(const ReportedRun& reported, const Json& summary) {
+  std::string text = "<div class=\"cards\">\n";
+  text += card(fmt::format("{:.0f} m", lengthOf_m(reported.drive.T_world_cam)), "driven");
+  text += card(fmt::format("{}", objectCount(reported.drive)), "moving objects followed");
+  if (reported.evaluation && reported.evaluation->final.camera) {
+    const TrajectoryErrors& camera = *reported.evaluation->final.camera;
+    text += card(fmt::format("{:.3f} m", camera.ate_m.rmse), "camera ATE (RMSE)");
+    text += card(fmt::format("{:.1f} mm", 1e3 * camera.rpe_m.rmse), "camera RPE per frame");
+    const auto& near = reported.evaluation->final.detection.within_30m;
+    if (near.labels > 0) text += card(fmt::format("{:.0f} %", 100 * near.recall()), "of movers within 30 m found");
+  }
+  if (const auto latency = summary.find("latency_ms"); latency != summary.end() && latency->contains("p99"))
+    text += card(fmt::format("{:.0f} ms", (*latency)["p99"].get<double>()), "latency, 99 of 100 frames");
+  if (summary.contains("cpu_s") && summary.contains("frames")) {
+    const double frames = std::max(1.0, summary["frames"].value("received", 1.0));
+    text +=
+        card(fmt::format("{:.0f} ms", 1e3 * summary["cpu_s"].get<double>() / frames), "CPU per frame, with decoding");
+  }
+  return text + "</div>\n";
+}
+
+std::string versionRows(const Json& summary) {
+  std::string rows;
+  if (const auto versions = summary.find("versions"); versions != summary.end() && versions->is_object())
+    for (const auto& [name, version] : versions->items())
+      rows += "<tr><th>" + escaped(name) + "</th><td>" +
+              escaped(version.is_string() ? version.get<std::string>() : version.dump()) + "</td></tr>\n";
+  return rows;
+}
+
+}  // namespace
+
+std::string runSection(const ReportedRun& reported) {
+  const Json summary = summaryOf(reported.run);
+  std::string text = "<h1>" + escaped(reported.drive.name) + "</h1>\n<p class=\"muted\">" +
+                     escaped(summary.value("sequence", reported.run.folder.string())) + " &middot; " +
+                     escaped(framesText(reported)) + "</p>\n";
+  if (!reported.run.complete())
+    text +=
+        "<div class=\"finding warn\"><p>The run did not come to its end: the estimates of its last frames are as "
+        "they were published, and the rest as it was settled by then.</p></div>\n";
+  if (!reported.without_sequence.empty())
+    text += "<div class=\"finding warn\"><p>Without pictures and truth: " + escaped(reported.without_sequence) +
+            "</p></div>\n";
+  return text + cards(reported, summary);
+}
+
+std::string settingsSection(const ReportedRun& reported) {
+  const Json summary = summaryOf(reported.run);
+  std::string text = "<h2>Settings and versions</h2>\n";
+  if (const std::string rows = versionRows(summary); !rows.empty())
+    text += "<div class=\"wide\"><table><tbody>\n" + rows + "</tbody></table></div>\n";
+  if (const auto file = reported.run.folder / "effective_config.toml"; std::filesystem::exists(file))
+    text += "<details><summary>Every parameter in force (effective_config.toml)</summary><pre>" +
+            escaped(readWhole(file)) + "</pre></details>\n";
+  return text;
+}
+
+}  // namespace motorcade

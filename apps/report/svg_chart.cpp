@@ -1,0 +1,152 @@
+#include "apps/report/svg_chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "apps/report/chart_frame.hpp"
+
+namespace motorcade {
+namespace {
+
+/// More points than a chart has pixels only make the page large.
+constexpr std::size_t kMostPoints = 700;
+
+bool isShown(const Eigen::Vector2d& point) { return point.allFinite(); }
+
+void widen(double& low, double& high) {
+  if (!(low <= high)) low = 0, high = 1;
+  if (high - low < 1e-9) low -= 0.5, high += 0.5;
+}
+
+/// What of a band the range of a chart makes room for: the first, unsure estimates would leave none for the others.
+double roomFor(const ChartLine& line) {
+  constexpr double kTimesMedian = 3;
+  std::vector<double> half = line.half_width;
+  std::erase_if(half, [](double width) { return !std::isfinite(width); });
+  if (half.empty()) return 0;
+  const auto middle = half.begin() + static_cast<std::ptrdiff_t>(half.size() / 2);
+  std::ranges::nth_element(half, middle);
+  return kTimesMedian * *middle;
+}
+
+ChartRange rangeOf(const ChartAxes& axes, const std::vector<ChartLine>& lines) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  ChartRange range{kFar, -kFar, kFar, -kFar};
+  for (const ChartLine& line : lines) {
+    const double most_half = roomFor(line);
+    for (std::size_t i = 0; i < line.points.size(); ++i) {
+      const Eigen::Vector2d& point = line.points[i];
+      if (!isShown(point)) continue;
+      const double half = i < line.half_width.size() ? std::min(line.half_width[i], most_half) : 0;
+      range.x_low = std::min(range.x_low, point.x());
+      range.x_high = std::max(range.x_high, point.x());
+      range.y_low = std::min(range.y_low, point.y() - half);
+      range.y_high = std::max(range.y_high, point.y() + half);
+    }
+  }
+  if (axes.from_zero && !axes.equal_scales) range.y_low = 0;
+  widen(range.x_low, range.x_high);
+  widen(range.y_low, range.y_high);
+  const double margin = 0.06 * (range.y_high - range.y_low);
+  range.y_high += margin;
+  if (!axes.from_zero || axes.equal_scales) range.y_low -= margin;
+  return range;
+}
+
+/// Every n-th point, and the last.
+std::vector<std::size_t> shownPoints(const ChartLine& line) {
+  std::vector<std::size_t> shown;
+  const std::size_t step = std::max<std::size_t>(1, (line.points.size() + kMostPoints - 1) / kMostPoints);
+  for (std::size_t i = 0; i < line.points.size(); i += step) shown.push_back(i);
+  if (!shown.empty() && shown.back() + 1 != line.points.size()) shown.push_back(line.points.size() - 1);
+  return shown;
+}
+
+std::string pathOf(const ChartFrame& frame, const ChartLine& line) {
+  std::string path;
+  bool broken = true;
+  for (const std::size_t i : shownPoints(line)) {
+    const Eigen::Vector2d& point = line.points[i];
+    if (!isShown(point)) {
+      broken = true;
+      continue;
+    }
+    const Eigen::Vector2d at = frame.at(point.x(), point.y());
+    path.append(broken ? "M" : "L").append(coordinate(at.x())).append(" ").append(coordinate(at.y()));
+    broken = false;
+  }
+  return path;
+}
+
+/// Up along the upper edge and back along the lower one.
+std::string bandOf(const ChartFrame& frame, const ChartLine& line) {
+  std::string forth, back;
+  for (const std::size_t i : shownPoints(line)) {
+    const Eigen::Vector2d& point = line.points[i];
+    if (!isShown(point) || i >= line.half_width.size() || !std::isfinite(line.half_width[i])) continue;
+    const Eigen::Vector2d upper = frame.within(point.x(), point.y() + line.half_width[i]),
+                          lower = frame.within(point.x(), point.y() - line.half_width[i]);
+    forth.append(forth.empty() ? "M" : "L").append(coordinate(upper.x())).append(" ").append(coordinate(upper.y()));
+    back.insert(0, fmt::format("L{} {}", coordinate(lower.x()), coordinate(lower.y())));
+  }
+  return forth.append(back).append("Z");
+}
+
+}  // namespace
+
+std::vector<double> ticksBetween(double low, double high, int wanted) {
+  const double rough = (high - low) / std::max(wanted, 1);
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  const double share = rough / power;
+  const double step = power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
+  std::vector<double> ticks;
+  for (double tick = std::ceil(low / step - 1e-9) * step; tick <= high + 1e-9 * step; tick += step)
+    ticks.push_back(tick);
+  return ticks;
+}
+
+std::string lineChart(const ChartAxes& axes, const std::vector<ChartLine>& lines) {
+  ChartFrame frame(axes, rangeOf(axes, lines));
+  for (const ChartLine& line : lines)
+    if (!line.half_width.empty())
+      frame.add(fmt::format(R"(<path class="band" style="fill:{}" d="{}"/>)", line.color, bandOf(frame, line)));
+  std::vector<ChartPart> legend;
+  for (const ChartLine& line : lines) {
+    frame.add(fmt::format(R"(<path class="{}" style="stroke:{}" d="{}"/>)", line.dashed ? "line dashed" : "line",
+                          line.color, pathOf(frame, line)));
+    legend.push_back({line.name, line.color});
+  }
+  frame.addLegend(legend);
+  return frame.svg();
+}
+
+std::string barChart(const ChartAxes& axes, const std::vector<ChartPart>& parts, const std::vector<ChartBar>& bars) {
+  double highest = 0, left = 0, right = 1;
+  if (!bars.empty()) left = bars.front().from, right = bars.back().to;
+  for (const ChartBar& bar : bars) {
+    double sum = 0;
+    for (const double part : bar.parts) sum += part;
+    highest = std::max(highest, sum);
+  }
+  ChartFrame frame(axes, {left, right, 0, highest > 0 ? 1.06 * highest : 1});
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    std::string path;
+    for (const ChartBar& bar : bars) {
+      double below = 0;
+      for (std::size_t k = 0; k < part; ++k) below += bar.parts[k];
+      if (bar.parts[part] <= 0) continue;
+      const Eigen::Vector2d upper = frame.at(bar.from, below + bar.parts[part]), lower = frame.at(bar.to, below);
+      path += fmt::format("M{} {}H{}V{}H{}Z", coordinate(upper.x()), coordinate(upper.y()), coordinate(lower.x()),
+                          coordinate(lower.y()), coordinate(upper.x()));
+    }
+    frame.add(fmt::format(R"(<path style="fill:{}" d="{}"/>)", parts[part].color, path));
+  }
+  frame.addLegend(parts);
+  return frame.svg();
+}
+
+}  // namespace motorcade

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+/// Charts as SVG inside of a page: they follow its colors, scale with it and print.
+namespace motorcade {
+
+/// A line of a chart. Where a point is not finite, the line is broken.
+struct ChartLine {
+  std::string name;   // in the legend; none when empty
+  std::string color;  // CSS
+  std::vector<Eigen::Vector2d> points{};
+  std::vector<double> half_width{};  // of a band around the line, one per point; none when empty
+  bool dashed = false;
+};
+
+struct ChartAxes {
+  std::string x, y;           // labels, with their units
+  bool from_zero = true;      // the y axis begins at 0
+  bool equal_scales = false;  // as on a map, with a grid in both directions
+  bool wide = false;          // over the width of a page; maps always are
+};
+
+/// Lines over common axes, with a legend where lines have names.
+std::string lineChart(const ChartAxes& axes, const std::vector<ChartLine>& lines);
+
+/// A bar of several parts, from `from` to `to` on the x axis.
+struct ChartBar {
+  double from = 0, to = 0;
+  std::vector<double> parts;  // one per part's name
+};
+
+struct ChartPart {
+  std::string name;   // in the legend; none when empty
+  std::string color;  // CSS
+};
+
+/// Bars whose parts stand on one another.
+std::string barChart(const ChartAxes& axes, const std::vector<ChartPart>& parts, const std::vector<ChartBar>& bars);
+
+/// Round numbers from `low` to `high` that a scale may show, about `wanted` of them.
+std::vector<double> ticksBetween(double low, double high, int wanted);
+
+}  // namespace motorcade
