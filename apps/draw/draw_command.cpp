@@ -11,13 +11,14 @@
 #include "io/errors.hpp"
 #include "io/image_file.hpp"
 #include "io/mask_image.hpp"
+#include "io/pair_reader.hpp"
 
 namespace motorcade {
 namespace {
 
 /// With the mask where the run wrote masks.
-DrawnImages imagesOf(const std::filesystem::path& left, const std::filesystem::path& mask, ImagePool& pool) {
-  DrawnImages images{.left = readImage(left, pool)};
+DrawnImages imagesOf(const FramePaths& frame, const std::filesystem::path& mask, PairReader& reader) {
+  DrawnImages images{.left = reader.read(frame, StereoSide::kLeft)};
   if (!std::filesystem::exists(mask)) return images;
   images.mask = readPng16(mask);
   const ImageSize size{images.mask->width, images.mask->height}, wanted{images.left.width(), images.left.height()};
@@ -41,7 +42,7 @@ int runDraw(const DrawOptions& options) {
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
   if (error) throw OutputError(options.out.string() + ": cannot be made a folder: " + error.message());
-  ImagePool pool;
+  PairReader reader(sequence);
   int pictures = 0;
   for (std::size_t i = 0; i < drive.T_world_cam.size(); ++i) {
     const std::size_t frame = drive.first_frame + i;
@@ -50,7 +51,7 @@ int runDraw(const DrawOptions& options) {
       continue;
     try {
       const auto mask = maskFile(options.run / kMasksFolder, {static_cast<std::int64_t>(frame)});
-      const DrawnImages images = imagesOf(sequence.frames[frame].left, mask, pool);
+      const DrawnImages images = imagesOf(sequence.frames[frame], mask, reader);
       writePngRgb(options.out / pictureName(frame), drawFrame(images, drive, i).image());
       ++pictures;
     } catch (const InputError& problem) {

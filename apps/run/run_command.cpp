@@ -79,9 +79,11 @@ void requireBelievable(const Sequence& sequence, bool force) {
 
 void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) {
   const StereoCamera& camera = sequence.camera;
-  spdlog::info("{}: {} layout, {} of {} frames, {} x {} px, baseline {:.4f} m", sequence.folder.string(),
-               sequence.layout, range.size(), sequence.frames.size(), camera.width_px, camera.height_px,
-               camera.baseline_m);
+  spdlog::info(
+      "{}: {} layout, {} of {} frames, {} x {} px, {}fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px, baseline {:.4f} m",
+      sequence.folder.string(), sequence.layout, range.size(), sequence.frames.size(), camera.width_px,
+      camera.height_px, sequence.rectification ? "rectified on the way to " : "", camera.fx_px, camera.fy_px,
+      camera.cx_px, camera.cy_px, camera.baseline_m);
   if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
 }
 
@@ -181,7 +183,7 @@ int runSequence(const RunOptions& options) {
   const FaultSpec fault_spec = parseFaultSpec(options.inject);
   const auto rate_hz = replayRate_hz(options, config.pipeline.policy);
   requireReplaceable(options);
-  const Sequence sequence = openSequence(options.sequence, options.fps_hz);
+  const Sequence sequence = openSequence(options.sequence, options.fps_hz, options.given);
   requireWithin(config.input, sequence);
   requireBelievable(sequence, options.force);
   const FrameRange range = selectedFrames(options.frames, sequence);
@@ -198,6 +200,7 @@ int runSequence(const RunOptions& options) {
   summary.sequence = sequence.folder.string();
   summary.inject = options.inject;
   summary.layout = sequence.layout;
+  summary.given = sequence.given;
   summary.rate_hz = rate_hz;
   summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
   ObjectViewWriter::removeEarlier(options.out);

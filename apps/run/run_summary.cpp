@@ -77,6 +77,8 @@ std::string toJson(const RunSummary& summary) {
   Json json{{"complete", summary.signal == 0},
             {"sequence", summary.sequence},
             {"layout", summary.layout},
+            {"camera", summary.given.camera},
+            {"calibration", summary.given.calibration},
             {"inject", summary.inject},
             {"capture_rate_hz", rounded(summary.capture_rate_hz)},
             {"rate", summary.rate_hz ? Json(*summary.rate_hz) : Json("max")},
