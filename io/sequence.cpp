@@ -32,7 +32,6 @@ FrameRange parseFrameRange(std::string_view text) {
 }
 
 Sequence openSequence(const fs::path& path, double fps_hz, const GivenCameras& given) {
-  if (!fs::exists(path)) throw InputError(path.string() + ": does not exist");
   // Parents are looked at, so "." and a slash at the end must go.
   SequenceSource source{fs::absolute(path).lexically_normal(), fps_hz, given};
   if (!source.path.has_filename()) source.path = source.path.parent_path();
@@ -40,6 +39,7 @@ Sequence openSequence(const fs::path& path, double fps_hz, const GivenCameras& g
     for (const auto open :
          {openImageList, openEuroc, openKitti360, openKittiRaw, openArgoverse, openKittiTracking, openPlain})
       if (auto sequence = open(source)) return *std::move(sequence);
+    if (!fs::exists(path)) throw InputError(path.string() + ": does not exist");
     failUnknownLayout(source.path);
   } catch (const fs::filesystem_error& error) {
     throw InputError(error.path1().string() + ": " + error.code().message());

@@ -197,10 +197,8 @@ int runSequence(const RunOptions& options) {
   folder.writeConfig(toToml(config));
   RunSummary summary;
   summary.params = config.pipeline;
-  summary.sequence = sequence.folder.string();
+  summary.setSequence(sequence);
   summary.inject = options.inject;
-  summary.layout = sequence.layout;
-  summary.given = sequence.given;
   summary.rate_hz = rate_hz;
   summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
   ObjectViewWriter::removeEarlier(options.out);

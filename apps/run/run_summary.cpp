@@ -60,6 +60,12 @@ Json programVersions() {
 
 }  // namespace
 
+void RunSummary::setSequence(const Sequence& of) {
+  sequence = of.folder.string();
+  layout = of.layout;
+  given = of.given;
+}
+
 double RunSummary::trackedFraction() const {
   return pipeline.received > 0 ? static_cast<double>(good_frames) / static_cast<double>(pipeline.received) : 0;
 }

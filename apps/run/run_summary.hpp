@@ -25,6 +25,7 @@ struct RunSummary {
   ProcessUsage used;
   int signal = 0;  // that ended the run early
 
+  void setSequence(const Sequence& of);
   /// Share of the received frames that have a measured ego-motion.
   double trackedFraction() const;
   double throughput_hz() const;

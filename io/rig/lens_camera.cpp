@@ -74,7 +74,8 @@ std::optional<Eigen::Vector2d> LensModel::project(const Eigen::Vector3d& ray) co
 }
 
 std::optional<Eigen::Vector3d> LensModel::rayThrough(const Eigen::Vector2d& pixel_px) const {
-  constexpr int kRounds = 20;  // the tangential part is small, so that each round gains two digits and more
+  constexpr int kRounds = 20;  // the tangential part is small: each round gains two digits and more
+  constexpr double kConverged = 1e-15;
   const Eigen::Vector2d seen((pixel_px.x() - camera_.cx_px) / camera_.fx_px,
                              (pixel_px.y() - camera_.cy_px) / camera_.fy_px);
   Eigen::Vector2d point = Eigen::Vector2d::Zero();
@@ -84,7 +85,10 @@ std::optional<Eigen::Vector3d> LensModel::rayThrough(const Eigen::Vector2d& pixe
     const auto found = undistorted(radial.norm());
     if (!found) return std::nullopt;
     distance = *found;
-    point = radial.norm() > 0 ? Eigen::Vector2d(distance / radial.norm() * radial) : Eigen::Vector2d::Zero();
+    const double scale = radial.norm() > 0 ? distance / radial.norm() : 0;
+    const double change = (scale * radial - point).norm();
+    point = scale * radial;
+    if (change < kConverged) break;
   }
   if (camera_.distortion != Distortion::kEquidistant) return Eigen::Vector3d(point.x(), point.y(), 1);
   const double scale = distance > 0 ? std::sin(distance) / distance : 1;

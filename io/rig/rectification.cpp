@@ -48,7 +48,7 @@ Axes commonAxes(const Rig& rig) {
 /// The largest frame that one camera fills: the innermost points of each of its image's edges.
 Frame filledFrame(const LensCamera& camera, const Eigen::Matrix3d& R, ImageSize size) {
   constexpr double kFar = 10;  // beyond 84 degrees aside nothing is worth having
-  constexpr int kSteps = 64;
+  constexpr int kSteps = 128;
   const LensModel lens(camera);
   Frame frame{-kFar, -kFar, kFar, kFar};
   const auto seen = [&](double u, double v) -> std::optional<Eigen::Vector2d> {

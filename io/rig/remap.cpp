@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstring>
@@ -10,37 +11,50 @@ namespace motorcade {
 namespace {
 
 constexpr int kOne = 1 << Remap::kFractionBits;
-constexpr int kBlock = 32;  // pixels at a time: arrays of this length become vectors
+static_assert(std::endian::native == std::endian::little);  // the left one of two pixels lies in the low byte
+constexpr int kBlock = 32;                                  // pixels at a time: arrays of this length become vectors
 
 /// A position along one axis: the first of two pixels, and the share of the second in 64ths.
 struct Place {
   std::int16_t first;
   std::uint8_t share;
+  bool inside;  // of the image, else the nearest place in it
 };
 
 Place placed(double position_px, int size) {
-  const auto last = static_cast<double>(kOne) * (size - 1);
-  const auto fixed = static_cast<int>(std::floor(std::clamp(kOne * position_px, 0.0, last) + 0.5));
+  const int last = kOne * (size - 1);
+  const double exact = std::floor(kOne * position_px + 0.5);
+  const auto fixed = static_cast<int>(std::clamp<double>(exact, 0, last));
   const int first = std::min(fixed / kOne, size - 2);
-  return {static_cast<std::int16_t>(first), static_cast<std::uint8_t>(fixed - kOne * first)};
+  return {static_cast<std::int16_t>(first), static_cast<std::uint8_t>(fixed - kOne * first), exact == fixed};
 }
+
+/// Where the pixels of a block come from; see Remap.
+struct Sources {
+  const std::int16_t *x, *y;
+  const std::uint8_t *right, *down;
+};
 
 /// Weighs four neighbors for each pixel of a block. Only the gathering goes pixel by pixel; the two neighbors in a row
 /// are taken at once.
-void weighBlock(const std::uint8_t* raw, int stride, const std::int16_t* x, const std::int16_t* y,
-                const std::uint8_t* right, const std::uint8_t* down, std::uint8_t* out) {
+void weighBlock(const std::uint8_t* raw, int stride, const Sources& from, std::uint8_t* out) {
   std::array<std::int32_t, kBlock> offsets;
-  for (int i = 0; i < kBlock; ++i) offsets[i] = y[i] * stride + x[i];
-  std::array<std::uint8_t, 2 * kBlock> upper, lower;
+  for (int i = 0; i < kBlock; ++i) offsets[i] = from.y[i] * stride + from.x[i];
+  std::array<std::uint16_t, kBlock> upper, lower;
   for (int i = 0; i < kBlock; ++i) {
-    std::memcpy(&upper[2 * i], raw + offsets[i], 2);
-    std::memcpy(&lower[2 * i], raw + offsets[i] + stride, 2);
+    std::memcpy(&upper[i], raw + offsets[i], 2);
+    std::memcpy(&lower[i], raw + offsets[i] + stride, 2);
+  }
+  // The sums of a row fit into 16 bits, of which a vector holds twice as many as of 32.
+  std::array<std::uint16_t, kBlock> above, below;
+  for (int i = 0; i < kBlock; ++i) {
+    const auto to_right = static_cast<std::uint16_t>(from.right[i]);
+    const auto to_left = static_cast<std::uint16_t>(kOne - to_right);
+    above[i] = static_cast<std::uint16_t>((upper[i] & 0xFF) * to_left + (upper[i] >> 8) * to_right);
+    below[i] = static_cast<std::uint16_t>((lower[i] & 0xFF) * to_left + (lower[i] >> 8) * to_right);
   }
   for (int i = 0; i < kBlock; ++i) {
-    const int to_right = right[i], to_left = kOne - to_right;
-    const int above = upper[2 * i] * to_left + upper[2 * i + 1] * to_right;
-    const int below = lower[2 * i] * to_left + lower[2 * i + 1] * to_right;
-    const int sum = above * (kOne - down[i]) + below * down[i];
+    const int sum = above[i] * (kOne - from.down[i]) + below[i] * from.down[i];
     out[i] = static_cast<std::uint8_t>((sum + kOne * kOne / 2) >> (2 * Remap::kFractionBits));
   }
 }
@@ -72,9 +86,7 @@ void Remap::fillRow(int v, const LensModel& lens, const Eigen::Matrix3d& R, cons
     y_[row + u] = along.first;
     right_[row + u] = across.share;
     down_[row + u] = along.share;
-    const bool inside =
-        at_px.x() >= 0 && at_px.y() >= 0 && at_px.x() <= raw_size_.width - 1 && at_px.y() <= raw_size_.height - 1;
-    outside_ += inside ? 0 : 1;
+    outside_ += across.inside && along.inside ? 0 : 1;
   }
 }
 
@@ -88,7 +100,7 @@ Image Remap::operator()(const Image& raw, ImagePool& pool) const {
     for (int u = 0; u < size_.width; u += kBlock) {
       const std::size_t at = row + u;
       const int count = std::min(kBlock, size_.width - u);
-      weighBlock(raw.data(), raw.stride(), &x_[at], &y_[at], &right_[at], &down_[at],
+      weighBlock(raw.data(), raw.stride(), {&x_[at], &y_[at], &right_[at], &down_[at]},
                  count == kBlock ? out + u : last.data());
       if (count < kBlock) std::copy_n(last.begin(), count, out + u);
     }
