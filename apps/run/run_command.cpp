@@ -87,6 +87,15 @@ void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) 
   if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
 }
 
+void tellOutside(double share) {
+  constexpr double kTold = 0.02;
+  if (share > kTold)
+    spdlog::warn(
+        "{:.0f} % of a rectified image lies outside of what its camera saw: what is followed there is not real; "
+        "calibrate with a projection that crops (alpha 0)",
+        100 * share);
+}
+
 /// Takes the pipeline's results into the run folder.
 class Recorder {
  public:
@@ -155,6 +164,7 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   if (clock && config.pipeline.policy == InputPolicy::kLive)
     decoding.wanted = [&](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };
   SequenceDecoder decoder(replay.sequence, replay.range, decoding);
+  tellOutside(decoder.shareOutside());
   Pipeline pipeline(config.pipeline, std::move(stages), logToSpdlog);
   const auto start = std::chrono::steady_clock::now();
   {

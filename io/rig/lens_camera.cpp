@@ -70,7 +70,8 @@ std::optional<Eigen::Vector2d> LensModel::project(const Eigen::Vector3d& ray) co
     x = scale * point.x() + aside.x();
     y = scale * point.y() + aside.y();
   }
-  return Eigen::Vector2d(camera_.fx_px * x + camera_.cx_px, camera_.fy_px * y + camera_.cy_px);
+  const Eigen::Vector2d pixel_px(camera_.fx_px * x + camera_.cx_px, camera_.fy_px * y + camera_.cy_px);
+  return std::isfinite(pixel_px.x()) && std::isfinite(pixel_px.y()) ? std::optional(pixel_px) : std::nullopt;
 }
 
 std::optional<Eigen::Vector3d> LensModel::rayThrough(const Eigen::Vector2d& pixel_px) const {

@@ -23,7 +23,7 @@ struct Axes {
 };
 
 Axes commonAxes(const Rig& rig) {
-  constexpr double kLeastBaseline_m = 1e-6, kMostTurn = 0.8;  // cosine of 37 degrees
+  constexpr double kLeastBaseline_m = 1e-6, kMostTurn = 0.8, kLeastAhead = 0.5;  // cosines
   const Eigen::Vector3d right_center = rig.T_right_left.inverse().translation();
   const double baseline_m = right_center.norm();
   if (!(baseline_m > kLeastBaseline_m))
@@ -39,6 +39,8 @@ Axes commonAxes(const Rig& rig) {
                      std::to_string(right_center.x()) + " " + std::to_string(right_center.y()) + " " +
                      std::to_string(right_center.z()) + " m); only pairs side by side are followed");
   const Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ() + rig.T_right_left.rotation().row(2).transpose();
+  if (!(ahead.cross(x).norm() > kLeastAhead))
+    throw InputError(rig.file.string() + ": the two cameras see nothing in common; one looks where the other does not");
   const Eigen::Vector3d y = ahead.cross(x).normalized();
   Eigen::Matrix3d R_rectified_left;
   R_rectified_left << x.transpose(), y.transpose(), x.cross(y).transpose();

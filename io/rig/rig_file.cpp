@@ -8,6 +8,7 @@
 #include "io/errors.hpp"
 #include "io/rig/rig_parts.hpp"
 #include "io/rig/yaml_file.hpp"
+#include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {
@@ -28,7 +29,8 @@ LensCamera kalibrCamera(const YamlPart& part) {
   LensCamera camera;
   if (const std::string model = textOr(part, "camera_model", "pinhole"); model != "pinhole")
     part.at({"camera_model"})
-        .fail("is " + model + ", only pinhole is understood; calibrate anew with pinhole-radtan " + "or pinhole-equi");
+        .fail("is " + printable(model) + ", only pinhole is understood; calibrate anew with pinhole-radtan " +
+              "or pinhole-equi");
   setIntrinsics(camera, part.at({"intrinsics"}));
   setDistortion(camera, textOr(part, "distortion_model", "none"),
                 part.at({"distortion_coeffs", "distortion_coefficients"}));
@@ -108,7 +110,7 @@ SE3 eurocPlacement(const YamlPart& sensor) { return transform44(sensor.at({"T_BS
 LensCamera eurocCamera(const YamlPart& sensor) {
   LensCamera camera;
   if (const std::string model = textOr(sensor, "camera_model", "pinhole"); model != "pinhole")
-    sensor.at({"camera_model"}).fail("is " + model + ", only pinhole is understood");
+    sensor.at({"camera_model"}).fail("is " + printable(model) + ", only pinhole is understood");
   setIntrinsics(camera, sensor.at({"intrinsics"}));
   setDistortion(camera, textOr(sensor, "distortion_model", "none"),
                 sensor.at({"distortion_coefficients", "distortion_coeffs"}));

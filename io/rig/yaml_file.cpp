@@ -44,7 +44,7 @@ YamlPart YamlPart::ofFile(const std::filesystem::path& file) {
     if (!root.IsMap()) throw InputError(file.string() + ": holds no keys; a calibration in YAML is expected");
     return {file, "", root};
   } catch (const YAML::Exception& error) {
-    throw InputError(file.string() + lineOf(error.mark) + ": is no YAML: " + error.msg);
+    throw InputError(file.string() + lineOf(error.mark) + ": is no YAML: " + printable(error.msg, 80));
   }
 }
 
