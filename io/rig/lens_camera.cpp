@@ -5,15 +5,19 @@
 
 namespace motorcade {
 
-LensModel::LensModel(const LensCamera& camera) : camera_(camera), limit_(limit()) {}
+LensModel::LensModel(const LensCamera& camera)
+    : camera_(camera),
+      rational_(camera.coefficients[5] != 0 || camera.coefficients[6] != 0 || camera.coefficients[7] != 0),
+      limit_(limit()) {}
 
 /// OpenCV's models: the rational one of Heikkilae and Silven (1997), extended, and that of Kannala and Brandt (2006).
 double LensModel::factor(double squared) const {
   const auto& k = camera_.coefficients;
   switch (camera_.distortion) {
-    case Distortion::kRadialTangential:
-      return (1 + squared * (k[0] + squared * (k[1] + squared * k[4]))) /
-             (1 + squared * (k[5] + squared * (k[6] + squared * k[7])));
+    case Distortion::kRadialTangential: {
+      const double numerator = 1 + squared * (k[0] + squared * (k[1] + squared * k[4]));
+      return rational_ ? numerator / (1 + squared * (k[5] + squared * (k[6] + squared * k[7]))) : numerator;
+    }
     case Distortion::kEquidistant:
       return 1 + squared * (k[0] + squared * (k[1] + squared * (k[2] + squared * k[3])));
     case Distortion::kNone:
@@ -54,19 +58,20 @@ std::optional<double> LensModel::undistorted(double distorted_distance) const {
 }
 
 std::optional<Eigen::Vector2d> LensModel::project(const Eigen::Vector3d& ray) const {
-  const double across = std::sqrt(ray.x() * ray.x() + ray.y() * ray.y());
+  const double across_squared = ray.x() * ray.x() + ray.y() * ray.y();
   double x = 0, y = 0;
   if (camera_.distortion == Distortion::kEquidistant) {
-    const double angle_rad = std::atan2(across, ray.z());
+    const double across = std::sqrt(across_squared), angle_rad = std::atan2(across, ray.z());
     if (angle_rad > limit_) return std::nullopt;
     const double scale = across > 0 ? distorted(angle_rad) / across : 0;
     x = scale * ray.x();
     y = scale * ray.y();
   } else {
-    if (!(ray.z() > 0) || across > limit_ * ray.z()) return std::nullopt;
-    const Eigen::Vector2d point(ray.x() / ray.z(), ray.y() / ray.z());
-    const Eigen::Vector2d aside = tangential(point);
-    const double scale = factor(point.x() * point.x() + point.y() * point.y());
+    if (!(ray.z() > 0)) return std::nullopt;
+    const double inverse = 1 / ray.z(), squared = across_squared * inverse * inverse;
+    if (squared > limit_ * limit_) return std::nullopt;
+    const Eigen::Vector2d point(inverse * ray.x(), inverse * ray.y()), aside = tangential(point);
+    const double scale = factor(squared);
     x = scale * point.x() + aside.x();
     y = scale * point.y() + aside.y();
   }

@@ -41,6 +41,7 @@ class LensModel {
   double limit() const;
 
   LensCamera camera_;
+  bool rational_;  // whether k4 to k6 matter
   double limit_;  // up to which the distorted distance grows
 };
 
