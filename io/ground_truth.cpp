@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "io/errors.hpp"
+#include "io/stamped_poses.hpp"
 #include "io/text_file.hpp"
 #include "io/timestamps.hpp"
 #include "io/trajectory.hpp"
@@ -49,16 +50,6 @@ std::vector<SE3> mercatorPoses(const std::vector<OxtsPacket>& packets) {
     poses.emplace_back(attitude.toRotationMatrix(), position_m);
   }
   return poses;
-}
-
-/// The pose at a time between, or a little outside, the packets: position and attitude each at a constant rate.
-SE3 poseAt(Timestamp stamp, const std::vector<SE3>& poses, const std::vector<Timestamp>& stamps) {
-  const auto after = std::ranges::upper_bound(stamps, stamp) - stamps.begin();
-  const std::size_t i = std::clamp<std::ptrdiff_t>(after - 1, 0, std::ssize(stamps) - 2);
-  const double part = secondsBetween(stamps[i], stamp) / secondsBetween(stamps[i], stamps[i + 1]);
-  const auto &from = poses[i], &to = poses[i + 1];
-  return {from.rotation() * expSO3(part * logSO3(from.rotation().transpose() * to.rotation())),
-          from.translation() + part * (to.translation() - from.translation())};
 }
 
 std::vector<SE3> interpolated(const std::vector<SE3>& poses, const Sequence::Truth& truth) {
@@ -107,6 +98,28 @@ CameraTruth truthFromPoses(const Sequence& sequence) {
   }
   const SE3 T_left_cam0 = sequence.calibration.T_left_cam0(sequence.pair);
   for (auto& pose : truth.T_world_cam) pose = T_left_cam0 * pose * T_left_cam0.inverse();
+  return truth;
+}
+
+/// Of poses that are stamped otherwise than the images, for the frames between the first and the last of them.
+std::optional<CameraTruth> truthFromStampedPoses(const Sequence& sequence) {
+  const bool numbered = sequence.truth.stamped_poses.empty();
+  const fs::path& file = numbered ? sequence.truth.numbered_poses : sequence.truth.stamped_poses;
+  if (file.empty()) return std::nullopt;
+  const StampedPoses known = numbered ? readNumberedPoses(file, sequence) : readStampedPoses(file);
+  CameraTruth truth{.T_world_cam = {}, .source = file.filename().string()};
+  const auto& stamps = sequence.stamps;
+  if (known.stamps.size() < 2 || known.stamps.front() > stamps.back() || known.stamps.back() < stamps.front())
+    throw InputError(file.string() + ": has no poses of the time of the images");
+  const auto first = std::ranges::lower_bound(stamps, known.stamps.front()) - stamps.begin();
+  const auto end = std::ranges::upper_bound(stamps, known.stamps.back()) - stamps.begin();
+  truth.first_frame = first;
+  const SE3& T_posed_cam = sequence.truth.T_posed_cam;
+  const auto poseOf = [&](std::ptrdiff_t frame) {
+    return poseAt(stamps[std::max(frame, first)], known.poses, known.stamps) * T_posed_cam;
+  };
+  const SE3 T_world_reference = poseOf(first).inverse();
+  for (std::ptrdiff_t frame = 0; frame < end; ++frame) truth.T_world_cam.push_back(T_world_reference * poseOf(frame));
   return truth;
 }
 
@@ -160,6 +173,7 @@ std::optional<CameraTruth> readCameraTruth(const Sequence& sequence, OxtsTimes t
     if (auto truth = truthFromOxts(sequence, times)) return truth;
   }
   if (!sequence.truth.poses.empty()) return truthFromPoses(sequence);
+  if (auto truth = truthFromStampedPoses(sequence)) return truth;
   return truthFromOxts(sequence, times);
 }
 

@@ -25,10 +25,12 @@ struct OxtsPacket {
 std::vector<OxtsPacket> readOxts(const std::filesystem::path& file_or_folder);
 
 struct CameraTruth {
-  std::vector<SE3> T_world_cam;  // one per frame
+  std::vector<SE3> T_world_cam;  // one per frame, but for those after the last that is known
   std::string source;            // for reports: which file, in what form
+  std::int64_t first_frame = 0;  // that is known; those before it have the same pose
 };
-/// From `poses.txt`; where that is missing, or the uninterpolated form is asked for, from oxts. Empty without either.
+/// From `poses.txt`; where that is missing, from poses with times or numbers of their own, or else from oxts, as where
+/// the uninterpolated form is asked for. Empty without any.
 std::optional<CameraTruth> readCameraTruth(const Sequence& sequence, OxtsTimes times = OxtsTimes::kInterpolated);
 
 /// A labeled object in one frame.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,8 +12,14 @@
 
 namespace motorcade {
 
+struct Rectification;
+
+enum class StereoSide { kLeft, kRight };
+
 struct FramePaths {
   std::filesystem::path left, right;
+
+  const std::filesystem::path& of(StereoSide side) const { return side == StereoSide::kLeft ? left : right; }
 };
 
 /// A half-open range of frames, cut to a sequence's length by `within`.
@@ -26,6 +33,14 @@ struct FrameRange {
 /// Reads `A:B`, `A:` or `:B`; throws UsageError.
 FrameRange parseFrameRange(std::string_view text);
 
+/// What a user says of the cameras where the sequence's own files do not; at most one of the two.
+struct GivenCameras {
+  std::string camera{};       // fx,fy,cx,cy,baseline of a rectified pair [px, m]
+  std::string calibration{};  // FILE, or two as LEFT,RIGHT
+
+  bool empty() const { return camera.empty() && calibration.empty(); }
+};
+
 /// A recorded drive: where its images are, when they were taken, with what camera, and what is known of the truth.
 struct Sequence {
   /// Files with ground truth; an empty path where there is none.
@@ -37,10 +52,13 @@ struct Sequence {
     std::filesystem::path oxts{};              // a file with a line per packet, or a folder with a file per packet
     std::filesystem::path oxts_timestamps{};   // capture time of each packet
     std::filesystem::path image_timestamps{};  // capture time of each image, on the same clock
+    std::filesystem::path stamped_poses{};     // EuRoC's table of poses by time, on the images' clock
+    std::filesystem::path numbered_poses{};    // KITTI-360's poses by the number in the image's name
+    SE3 T_posed_cam{};                         // the pair's left camera, seen from what either of these is about
   };
 
   std::filesystem::path folder{};
-  std::string layout{};  // plain, odometry, tracking or raw
+  std::string layout{};  // plain, odometry, tracking, raw, euroc, kitti360, argoverse or list
   CameraPair pair = CameraPair::kGray;
   Calibration calibration{};
   StereoCamera camera{};  // with the size of the images
@@ -48,20 +66,26 @@ struct Sequence {
   std::vector<Timestamp> stamps{};  // one per frame, strictly increasing
   bool stamps_measured = false;     // read from a file, not made from the frame rate
   Truth truth{};
+  std::shared_ptr<const Rectification> rectification{};  // none where the images are rectified
+  GivenCameras given{};                                  // with absolute paths
 };
 
 /// Finds out what lies in a folder:
-///   plain     calib.txt and two folders of images: image_0 + image_1, image_00 + image_01,
-///             image_2 + image_3, image_02 + image_03 or left + right
-///   odometry  a plain folder sequences/NN whose poses are in poses/NN.txt
-///   tracking  .../training/image_02/0003, or .../training/0003 for short;
-///             calib/0003.txt, oxts/0003.txt, label_02/0003.txt
-///   raw       DATE/DATE_drive_NNNN_sync with image_00/data; DATE/calib_cam_to_cam.txt
+///   plain      two folders of images (image_0 + image_1, image_00 + image_01, image_2 + image_3, image_02 + image_03,
+///              left + right or cam0 + cam1), with calib.txt or the calibration of a pair that is not rectified
+///   odometry   a plain folder sequences/NN whose poses are in poses/NN.txt
+///   tracking   .../training/image_02/0003, or .../training/0003 for short;
+///              calib/0003.txt, oxts/0003.txt, label_02/0003.txt
+///   raw        DATE/DATE_drive_NNNN_sync with image_00/data; DATE/calib_cam_to_cam.txt
+///   euroc      the folder mav0, or the one that holds it, with cam0 and cam1
+///   kitti360   data_2d_raw/DATE_drive_NNNN_sync with image_00/data_rect; calibration/perspective.txt
+///   argoverse  a log with stereo_front_left_rect and stereo_front_right_rect
+///   list       a text file with a line LEFT RIGHT or STAMP LEFT RIGHT for each pair
 ///
-/// Where gray and color images are both there, the gray ones are taken. Without a file of times, frames come at
-/// `fps_hz`. Throws InputError naming the file and how to fix it. Single images are not read: a damaged one becomes a
-/// rejected frame later.
-Sequence openSequence(const std::filesystem::path& folder, double fps_hz = 10);
+/// Where gray and color images are both there, the gray ones are taken. Without times, frames come at `fps_hz`.
+/// Throws InputError naming the file and how to fix it. Single images are not read: a damaged one becomes a rejected
+/// frame later.
+Sequence openSequence(const std::filesystem::path& path, double fps_hz = 10, const GivenCameras& given = {});
 
 /// The frames of a sequence that an option --frames names, all of them where it is empty. Throws UsageError where there
 /// are none.

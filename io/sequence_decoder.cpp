@@ -6,8 +6,6 @@
 
 #include <sys/resource.h>
 
-#include "io/image_file.hpp"
-
 namespace motorcade {
 namespace {
 
@@ -23,8 +21,8 @@ void giveWay() {
 SequenceDecoder::SequenceDecoder(Sequence sequence, FrameRange range, const Params& params)
     : sequence_(std::move(sequence)),
       wanted_(params.wanted),
-      max_file_mb_(params.max_file_mb),
       range_(range.within(sequence_.frames.size())),
+      reader_(sequence_, params.max_file_mb),
       ring_(params.ahead) {
   thread_ = std::jthread([this] {
     giveWay();
@@ -43,10 +41,9 @@ StereoFrame SequenceDecoder::decode(std::size_t index) {
   StereoFrame frame;
   frame.frame.value = static_cast<std::int64_t>(index);
   frame.stamp = sequence_.stamps[index];
-  const ImageSize expected{sequence_.camera.width_px, sequence_.camera.height_px};
   try {
-    frame.left = readImage(sequence_.frames[index].left, pool_, expected, max_file_mb_);
-    frame.right = readImage(sequence_.frames[index].right, pool_, expected, max_file_mb_);
+    frame.left = reader_.read(sequence_.frames[index], StereoSide::kLeft);
+    frame.right = reader_.read(sequence_.frames[index], StereoSide::kRight);
   } catch (const std::exception& error) {  // nothing may leave the thread: also a lack of memory only costs the frame
     frame.left = frame.right = Image();
     frame.problem = error.what();

@@ -9,13 +9,14 @@
 #include "core/messages.hpp"
 #include "core/spsc_ring.hpp"
 #include "io/image_limits.hpp"
+#include "io/pair_reader.hpp"
 #include "io/sequence.hpp"
 
 namespace motorcade {
 
-/// Decodes a sequence's images on a thread of its own, a bounded number of pairs ahead of whoever takes them.
-/// Takes frames from one thread only. A pair that cannot be read, or has the wrong size, comes out without images and
-/// with its `problem`.
+/// Decodes and rectifies a sequence's images on a thread of its own, a bounded number of pairs ahead of whoever takes
+/// them. Takes frames from one thread only. A pair that cannot be read, or has the wrong size, comes out without images
+/// and with its `problem`.
 class SequenceDecoder {
  public:
   struct Params {
@@ -41,6 +42,8 @@ class SequenceDecoder {
   FrameId first() const { return {static_cast<std::int64_t>(range_.begin)}; }
   Timestamp stampOf(FrameId frame) const { return sequence_.stamps[frame.value]; }
   std::size_t frameCount() const { return range_.size(); }
+  /// See PairReader.
+  double shareOutside() const { return reader_.shareOutside(); }
   /// Most pairs ever waiting. Final once `next` has returned nothing.
   std::size_t highWater() const { return ring_.highWater(); }
   std::size_t capacity() const { return ring_.capacity(); }
@@ -53,9 +56,8 @@ class SequenceDecoder {
 
   Sequence sequence_;
   std::function<bool(Timestamp)> wanted_;
-  int max_file_mb_;
   FrameRange range_;
-  ImagePool pool_;
+  PairReader reader_;
   SpscRing<StereoFrame> ring_;
   std::jthread thread_;  // last: it uses all of the above
 };

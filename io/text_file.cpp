@@ -66,6 +66,12 @@ std::string printable(std::string_view text, std::size_t most_characters) {
   return shown;
 }
 
+std::string trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(" \t") + 1 - first));
+}
+
 bool isRotation(const Eigen::Matrix3d& matrix) {
   constexpr double kMaxDeviation = 1e-3;  // files with few digits are accepted, matrices that are no rotation are not
   return (matrix * matrix.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kMaxDeviation &&

@@ -39,6 +39,9 @@ std::string readWhole(const std::filesystem::path& file, std::size_t limit_bytes
 /// no more than fits into a line.
 std::string printable(std::string_view text, std::size_t most_characters = 40);
 
+/// Without the blanks around it.
+std::string trimmed(std::string_view text);
+
 /// Larger numbers are refused, so that squares of products stay finite.
 inline constexpr double kLargestNumber = 1e50;
 

@@ -48,29 +48,54 @@ std::optional<std::int64_t> dateTime_ns(const std::string& text) {
   return minutes_s * kSecond_ns + *seconds_ns;
 }
 
+Timestamp parseTime(const std::filesystem::path& file, const TextLine& line) {
+  FieldReader fields(file, line);
+  const std::string text = trimmed(line.text);
+  if (const auto date_ns = dateTime_ns(text)) return {*date_ns};
+  if (const auto plain_ns = plainSeconds_ns(text)) return {*plain_ns};
+  const double time_s = fields.number("a time in seconds");
+  fields.expectEnd();
+  if (std::abs(time_s) >= static_cast<double>(kMaxTime_s))
+    fields.fail("the time is out of range; seconds are expected");
+  return {std::llround(time_s * 1e9)};
+}
+
+/// Appends a time; it must be later than the one before.
+void append(std::vector<Timestamp>& stamps, Timestamp stamp, const std::filesystem::path& file, const TextLine& line) {
+  if (!stamps.empty() && stamp <= stamps.back())
+    FieldReader(file, line).fail("the time is not later than the one before");
+  stamps.push_back(stamp);
+}
+
+/// The lines as nanoseconds, where all are whole numbers and they cannot be seconds.
+std::optional<std::vector<std::int64_t>> wholeNanoseconds(const std::vector<TextLine>& lines) {
+  constexpr std::int64_t kLongest_s = 100'000;  // between two images
+  std::vector<std::int64_t> all_ns;
+  for (const TextLine& line : lines) {
+    std::int64_t value_ns = 0;
+    const char* const end = line.text.data() + line.text.size();
+    const auto [stop, error] = std::from_chars(line.text.data(), end, value_ns);
+    if (error != std::errc() || stop != end || value_ns < 0) return std::nullopt;
+    all_ns.push_back(value_ns);
+  }
+  const bool seconds = all_ns.back() < kMaxTime_s && (all_ns.size() < 2 || all_ns[1] - all_ns[0] < kLongest_s);
+  return seconds ? std::nullopt : std::optional(all_ns);
+}
+
 }  // namespace
 
 std::vector<Timestamp> readTimestamps(const std::filesystem::path& file) {
   std::vector<Timestamp> stamps;
-  for (const auto& line : readLines(file)) {
-    FieldReader fields(file, line);
-    std::string text = line.text.substr(line.text.find_first_not_of(" \t"));
-    text.resize(text.find_last_not_of(" \t") + 1);
-    Timestamp stamp;
-    if (const auto date_ns = dateTime_ns(text)) {
-      stamp.ns = *date_ns;
-    } else if (const auto plain_ns = plainSeconds_ns(text)) {
-      stamp.ns = *plain_ns;
-    } else {
-      const double time_s = fields.number("a time in seconds");
-      fields.expectEnd();
-      if (std::abs(time_s) >= static_cast<double>(kMaxTime_s))
-        fields.fail("the time is out of range; seconds are expected");
-      stamp.ns = std::llround(time_s * 1e9);
-    }
-    if (!stamps.empty() && stamp <= stamps.back()) fields.fail("the time is not later than the one before");
-    stamps.push_back(stamp);
-  }
+  for (const TextLine& line : readLines(file)) append(stamps, parseTime(file, line), file, line);
+  return stamps;
+}
+
+std::vector<Timestamp> parseTimestamps(const std::filesystem::path& file, const std::vector<TextLine>& lines) {
+  std::vector<Timestamp> stamps;
+  if (lines.empty()) return stamps;
+  const auto all_ns = wholeNanoseconds(lines);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    append(stamps, all_ns ? Timestamp{(*all_ns)[i]} : parseTime(file, lines[i]), file, lines[i]);
   return stamps;
 }
 

@@ -73,7 +73,7 @@ void writeJson(const std::filesystem::path& file, const PairGeometry& geometry, 
 }  // namespace
 
 int runCheck(const CheckOptions& options) {
-  const Sequence sequence = openSequence(options.sequence, options.fps_hz);
+  const Sequence sequence = openSequence(options.sequence, options.fps_hz, options.given);
   const InputCheck check = lookedAt(sequence, options);
   const PairGeometry geometry = check.geometry();
   std::vector<Finding> findings;

@@ -3,10 +3,13 @@
 #include <filesystem>
 #include <string>
 
+#include "io/sequence.hpp"
+
 namespace motorcade {
 
 struct CheckOptions {
   std::filesystem::path sequence;
+  GivenCameras given;
   double fps_hz = 10;  // where the sequence has no times
   std::string frames;  // A:B; the first twenty are looked at
   std::string inject;  // faults, to see whether they are found

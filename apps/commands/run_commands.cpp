@@ -8,12 +8,34 @@
 #include "apps/run/run_command.hpp"
 
 namespace motorcade {
+namespace {
+
+constexpr const char* kSequenceHelp =
+    "Folder of a sequence: KITTI (tracking, odometry, raw), KITTI-360, EuRoC, Argoverse stereo, or two folders of "
+    "images, left and right, with their calibration; or a list of images, a line LEFT RIGHT or STAMP LEFT RIGHT for "
+    "each pair";
+
+void addGivenCameras(CLI::App& command, GivenCameras& given) {
+  CLI::Option* const camera = command
+                                  .add_option("--camera", given.camera,
+                                              "The cameras of a rectified pair, in pixels and, the last, meters; "
+                                              "comes before the sequence's own calibration")
+                                  ->type_name("FX,FY,CX,CY,BASELINE");
+  command
+      .add_option("--calibration", given.calibration,
+                  "Calibration of the pair, which is rectified on the way: Kalibr's camchain, OpenCV's intrinsics and "
+                  "extrinsics, ROS' camera_info of both; KITTI's (*.txt) of a rectified pair")
+      ->type_name("FILE[,FILE]")
+      ->excludes(camera);
+}
+
+}  // namespace
 
 void addRun(CLI::App& app, Action& action) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Follow the camera and the moving vehicles through a stereo sequence");
-  command->add_option("SEQUENCE", options->sequence, "Folder of a plain, KITTI tracking, odometry or raw sequence")
-      ->required();
+  command->add_option("SEQUENCE", options->sequence, kSequenceHelp)->required();
+  addGivenCameras(*command, options->given);
   command->add_option("--out", options->out, "Folder for the results")->required();
   command->add_option("--rate", options->rate, "Pace of the replay in pairs per second, or max (the default)");
   command->add_option("--fps", options->fps_hz, "Capture rate of a sequence without times [Hz]")
@@ -27,7 +49,7 @@ void addRun(CLI::App& app, Action& action) {
   command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
   command
       ->add_option(
-          "--camera", options->camera,
+          "--camera-poses", options->camera_poses,
           "KITTI pose lines of another camera trajectory, one per frame of the sequence, for backend.kind filter, "
           "filter_map or pose_graph")
       ->type_name("POSES.txt");
@@ -52,7 +74,8 @@ void addRun(CLI::App& app, Action& action) {
 void addCheck(CLI::App& app, Action& action) {
   const auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand("check", "Look for what is wrong with a sequence's first twenty pairs");
-  command->add_option("SEQUENCE", options->sequence, "Folder of a sequence, as for run")->required();
+  command->add_option("SEQUENCE", options->sequence, kSequenceHelp)->required();
+  addGivenCameras(*command, options->given);
   command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
   command->add_option("--fps", options->fps_hz, "Capture rate of a sequence without times [Hz]")
       ->check(CLI::Range(0.001, 100'000.0))

@@ -11,6 +11,7 @@
 #include "apps/recorded/recorded_run.hpp"
 #include "io/errors.hpp"
 #include "io/image_file.hpp"
+#include "io/pair_reader.hpp"
 
 namespace motorcade {
 namespace {
@@ -30,7 +31,7 @@ int runDraw(const DrawOptions& options) {
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
   if (error) throw OutputError(options.out.string() + ": cannot be made a folder: " + error.message());
-  ImagePool pool;
+  PairReader reader(sequence);
   int pictures = 0;
   for (std::size_t i = 0; i < drive.T_world_cam.size(); ++i) {
     const std::size_t frame = drive.first_frame + i;
@@ -38,7 +39,7 @@ int runDraw(const DrawOptions& options) {
         (frame - options.frames.begin) % options.every != 0)
       continue;
     try {
-      const DrawnImages images = readDrawnImages(sequence, frame, options.run, pool);
+      const DrawnImages images = readDrawnImages(sequence, frame, options.run, reader);
       writePngRgb(options.out / pictureName(frame), drawFrame(images, drive, i));
       ++pictures;
     } catch (const InputError& problem) {

@@ -6,8 +6,8 @@
 namespace motorcade {
 
 DrawnImages readDrawnImages(const Sequence& sequence, std::size_t frame, const std::filesystem::path& run_folder,
-                            ImagePool& pool) {
-  DrawnImages images{.left = readImage(sequence.frames[frame].left, pool)};
+                            PairReader& reader) {
+  DrawnImages images{.left = reader.read(sequence.frames[frame], StereoSide::kLeft)};
   const auto mask = maskFile(run_folder / kMasksFolder, {static_cast<std::int64_t>(frame)});
   if (!std::filesystem::exists(mask)) return images;
   images.mask = readPng16(mask);

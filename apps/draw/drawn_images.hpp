@@ -3,12 +3,13 @@
 #include <filesystem>
 
 #include "apps/draw/image_view.hpp"
+#include "io/pair_reader.hpp"
 #include "io/sequence.hpp"
 
 namespace motorcade {
 
 /// What a frame of a sequence is drawn on, with the mask where the run wrote masks. Throws InputError naming the file.
 DrawnImages readDrawnImages(const Sequence& sequence, std::size_t frame, const std::filesystem::path& run_folder,
-                            ImagePool& pool);
+                            PairReader& reader);
 
 }  // namespace motorcade

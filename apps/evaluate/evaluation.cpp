@@ -88,6 +88,15 @@ CameraTruth neededTruth(const Sequence& sequence, bool uninterpolated) {
   return *std::move(truth);
 }
 
+/// Poses are compared in the frame of the run's first camera, of which the truth must tell.
+void requireTruthFrom(std::int64_t first_frame, const CameraTruth& camera) {
+  if (first_frame < camera.first_frame || first_frame >= std::ssize(camera.T_world_cam))
+    throw InputError(camera.source + ": tells of the frames from " + std::to_string(camera.first_frame) + " up to " +
+                     std::to_string(std::ssize(camera.T_world_cam) - 1) + ", the run begins with frame " +
+                     std::to_string(first_frame) + "; run --frames " + std::to_string(camera.first_frame) + ":" +
+                     std::to_string(std::ssize(camera.T_world_cam)));
+}
+
 void compareCameras(Evaluation& evaluation, const KindEvaluation& baseline) {
   if (!evaluation.final.camera || !baseline.camera) return;
   evaluation.camera_against_baseline = {evaluation.final.camera->ate_m.rmse, baseline.camera->ate_m.rmse};
@@ -152,6 +161,7 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   RunFolder run = readRunFolder(options.run);
   const Sequence sequence = openSequenceOf(run, {options.sequence, options.fps_hz});
   const CameraTruth camera = neededTruth(sequence, options.uninterpolated);
+  requireTruthFrom(run.first_frame, camera);
   const auto truths = readObjectTruths(sequence, camera);
   const auto compare = [&](const RunFolder::Trajectories& trajectories, std::int64_t first_frame) {
     return compareFrames(trajectories, first_frame, camera, truths ? &*truths : nullptr, sequence.stamps);

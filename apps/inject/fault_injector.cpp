@@ -73,15 +73,21 @@ void FaultInjector::applyTo(StereoFrame& frame, const Fault& fault, std::uint64_
   if (frame.rejected()) return;
   const FramePaths& files = sequence_.frames[static_cast<std::size_t>(frame.frame.value)];
   try {
-    if (fault.side != FaultSide::kRight) applyTo(frame.left, files.left, fault, 2 * seed);
-    if (fault.side != FaultSide::kLeft) applyTo(frame.right, files.right, fault, 2 * seed + 1);
+    if (fault.side != FaultSide::kRight) applyTo(frame.left, files, StereoSide::kLeft, fault, 2 * seed);
+    if (fault.side != FaultSide::kLeft) applyTo(frame.right, files, StereoSide::kRight, fault, 2 * seed + 1);
   } catch (const std::exception& error) {
     frame.left = frame.right = Image();
     frame.problem = error.what();
   }
 }
 
-void FaultInjector::applyTo(Image& image, const std::filesystem::path& file, const Fault& fault, std::uint64_t seed) {
+PairReader& FaultInjector::reader() {
+  if (!reader_) reader_.emplace(sequence_);
+  return *reader_;
+}
+
+void FaultInjector::applyTo(Image& image, const FramePaths& files, StereoSide side, const Fault& fault,
+                            std::uint64_t seed) {
   constexpr std::uint8_t kBlack = 0, kWhite = 255;
   if (image.empty()) return;
   switch (fault.kind) {
@@ -113,14 +119,14 @@ void FaultInjector::applyTo(Image& image, const std::filesystem::path& file, con
       image = distorted(image, fault.value, pool_);
       break;
     case FaultKind::kTruncated: {
-      std::string bytes = readImageBytes(file);
+      std::string bytes = readImageBytes(files.of(side));
       bytes.resize(static_cast<std::size_t>(fault.value * static_cast<double>(bytes.size())));
-      image = decodeImage(bytes, file, pool_, ImageSize{image.width(), image.height()});
+      image = reader().decode(bytes, files.of(side), side);
       break;
     }
     case FaultKind::kBitFlips:
-      image = decodeImage(withBitFlips(readImageBytes(file), static_cast<int>(fault.value), seed), file, pool_,
-                          ImageSize{image.width(), image.height()});
+      image = reader().decode(withBitFlips(readImageBytes(files.of(side)), static_cast<int>(fault.value), seed),
+                              files.of(side), side);
       break;
     case FaultKind::kOneEyed:
       image = Image();

@@ -11,6 +11,7 @@
 #include "core/image.hpp"
 #include "core/messages.hpp"
 #include "core/timestamp.hpp"
+#include "io/pair_reader.hpp"
 #include "io/sequence.hpp"
 
 namespace motorcade {
@@ -41,12 +42,15 @@ class FaultInjector {
     std::int64_t after = 0;  // the frame that overtakes it
   };
   void applyTo(StereoFrame& frame, const Fault& fault, std::uint64_t seed);
-  void applyTo(Image& image, const std::filesystem::path& file, const Fault& fault, std::uint64_t seed);
+  /// `files` and `side` say which image it is.
+  void applyTo(Image& image, const FramePaths& files, StereoSide side, const Fault& fault, std::uint64_t seed);
+  PairReader& reader();
   bool giveLate(std::int64_t frame, const Outlet& outlet);
 
   FaultSpec spec_;
   const Sequence& sequence_;
   ImagePool pool_;
+  std::optional<PairReader> reader_;  // made for the first fault of a file
   std::int64_t jumps_ns_ = 0;
   Image left_before_, right_before_;  // as they were given on
   Image right_taken_;                 // as the camera took it before

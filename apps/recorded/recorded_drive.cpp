@@ -11,7 +11,8 @@ namespace {
 /// The truth, where there is any, moved into the world of the run's first frame.
 void addTruth(RecordedDrive& drive, const Sequence& sequence) {
   const auto camera = readCameraTruth(sequence);
-  if (!camera || drive.first_frame >= std::ssize(camera->T_world_cam)) return;
+  if (!camera || drive.first_frame < camera->first_frame || drive.first_frame >= std::ssize(camera->T_world_cam))
+    return;
   const SE3 T_run_world = camera->T_world_cam[drive.first_frame].inverse();
   for (std::size_t i = 0; i < drive.T_world_cam.size(); ++i) {
     const std::size_t frame = drive.first_frame + i;

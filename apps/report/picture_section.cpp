@@ -35,12 +35,12 @@ std::vector<std::size_t> chosenFrames(const RecordedDrive& drive) {
 std::string pictureSection(const ReportedRun& reported) {
   if (!reported.sequence) return "";
   const RecordedDrive& drive = reported.drive;
-  ImagePool pool;
+  PairReader reader(*reported.sequence);
   std::string text;
   for (const std::size_t frame : chosenFrames(drive)) {
     try {
       const auto number = static_cast<std::size_t>(drive.first_frame) + frame;
-      const DrawnImages images = readDrawnImages(*reported.sequence, number, reported.run.folder, pool);
+      const DrawnImages images = readDrawnImages(*reported.sequence, number, reported.run.folder, reader);
       const std::string jpeg = encodeJpeg(drawFrame(images, drive, frame), kQuality);
       text += fmt::format("<figure><img alt=\"frame {}\" src=\"{}\"></figure>\n", number, dataUri("image/jpeg", jpeg));
     } catch (const InputError& problem) {

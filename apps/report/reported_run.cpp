@@ -14,7 +14,22 @@ void findSequence(ReportedRun& reported, const ReportOptions& options) {
     reported.sequence = openSequenceOf(reported.run, {options.sequence, options.fps_hz});
   } catch (const InputError& problem) {
     if (!options.sequence.empty() || !options.baseline.empty()) throw;
-    reported.without_sequence = problem.what();
+    reported.missing = problem.what();
+  }
+}
+
+/// The truth may not tell of the frames that were run.
+void measure(ReportedRun& reported, const ReportOptions& options) {
+  EvaluateOptions evaluate;
+  evaluate.run = options.run;
+  evaluate.sequence = options.sequence;
+  evaluate.fps_hz = options.fps_hz;
+  evaluate.baseline = options.baseline;
+  try {
+    reported.evaluation = evaluateRun(evaluate);
+  } catch (const InputError& problem) {
+    if (!options.baseline.empty()) throw;
+    reported.missing = problem.what();
   }
 }
 
@@ -37,14 +52,7 @@ ReportedRun readReportedRun(const ReportOptions& options) {
   }
   const Sequence& sequence = *reported.sequence;
   reported.drive = recordedDrive(reported.run, sequence);
-  if (readCameraTruth(sequence)) {
-    EvaluateOptions evaluate;
-    evaluate.run = options.run;
-    evaluate.sequence = options.sequence;
-    evaluate.fps_hz = options.fps_hz;
-    evaluate.baseline = options.baseline;
-    reported.evaluation = evaluateRun(evaluate);
-  }
+  if (readCameraTruth(sequence)) measure(reported, options);
   if (!options.baseline.empty())
     reported.baseline = fromFirst(baselinePoses(options.baseline, reported.run.first_frame,
                                                 reported.drive.T_world_cam.size(), sequence.frames.size()));

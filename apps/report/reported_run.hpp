@@ -16,7 +16,7 @@ namespace motorcade {
 struct ReportedRun {
   RunFolder run;
   std::optional<Sequence> sequence{};      // empty where it is no longer there
-  std::string without_sequence{};          // why
+  std::string missing{};                   // why there is no sequence, or no evaluation though there is truth
   RecordedDrive drive;                     // without truth and camera where there is no sequence
   std::optional<Evaluation> evaluation{};  // where there is truth
   std::vector<SE3> baseline{};             // poses in the run's world; may be empty

@@ -86,8 +86,9 @@ std::string runSection(const ReportedRun& reported) {
     text +=
         "<div class=\"finding warn\"><p>The run did not come to its end: the estimates of its last frames are as "
         "they were published, and the rest as it was settled by then.</p></div>\n";
-  if (!reported.without_sequence.empty())
-    text += "<div class=\"finding warn\"><p>Without pictures and truth: " + escaped(reported.without_sequence) +
+  if (!reported.missing.empty())
+    text += std::string("<div class=\"finding warn\"><p>") +
+            (reported.sequence ? "Without measures: " : "Without pictures and truth: ") + escaped(reported.missing) +
             "</p></div>\n";
   return text + cards(reported, summary);
 }

@@ -12,15 +12,16 @@ namespace motorcade {
 
 std::optional<std::vector<SE3>> otherCamera(const RunOptions& options, const PipelineConfig& config,
                                             const Sequence& sequence) {
-  if (options.camera.empty()) return std::nullopt;
+  if (options.camera_poses.empty()) return std::nullopt;
   if (config.backend.kind == BackendKind::kJoint)
     throw UsageError(
-        "--camera: the joint back-end estimates the camera from points and takes no other path; use backend.kind "
+        "--camera-poses: the joint back-end estimates the camera from points and takes no other path; use backend.kind "
         "\"filter\", \"filter_map\" or \"pose_graph\"");
-  std::vector<SE3> poses = readKittiPoses(options.camera);
+  std::vector<SE3> poses = readKittiPoses(options.camera_poses);
   if (poses.size() != sequence.frames.size())
-    throw InputError(options.camera.string() + ": " + std::to_string(poses.size()) + " poses, but the sequence has " +
-                     std::to_string(sequence.frames.size()) + " frames; write one line for each of them");
+    throw InputError(options.camera_poses.string() + ": " + std::to_string(poses.size()) +
+                     " poses, but the sequence has " + std::to_string(sequence.frames.size()) +
+                     " frames; write one line for each of them");
   return poses;
 }
 

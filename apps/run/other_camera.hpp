@@ -12,7 +12,7 @@ namespace motorcade {
 struct PipelineConfig;
 struct RunOptions;
 
-/// The camera's path of `--camera`, one pose for each frame of the sequence; empty without that option. Throws
+/// The camera's path of `--camera-poses`, one pose for each frame of the sequence; empty without that option. Throws
 /// UsageError for the joint back-end, which makes its own odometry of the points at rest, and InputError for a file
 /// that does not fit the sequence.
 std::optional<std::vector<SE3>> otherCamera(const RunOptions& options, const PipelineConfig& config,

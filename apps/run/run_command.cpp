@@ -79,10 +79,21 @@ void requireBelievable(const Sequence& sequence, bool force) {
 
 void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) {
   const StereoCamera& camera = sequence.camera;
-  spdlog::info("{}: {} layout, {} of {} frames, {} x {} px, baseline {:.4f} m", sequence.folder.string(),
-               sequence.layout, range.size(), sequence.frames.size(), camera.width_px, camera.height_px,
-               camera.baseline_m);
+  spdlog::info(
+      "{}: {} layout, {} of {} frames, {} x {} px, {}fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px, baseline {:.4f} m",
+      sequence.folder.string(), sequence.layout, range.size(), sequence.frames.size(), camera.width_px,
+      camera.height_px, sequence.rectification ? "rectified on the way to " : "", camera.fx_px, camera.fy_px,
+      camera.cx_px, camera.cy_px, camera.baseline_m);
   if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
+}
+
+void tellOutside(double share) {
+  constexpr double kTold = 0.02;
+  if (share > kTold)
+    spdlog::warn(
+        "{:.0f} % of a rectified image lies outside of what its camera saw: what is followed there is not real; "
+        "calibrate with a projection that crops (alpha 0)",
+        100 * share);
 }
 
 /// Takes the pipeline's results into the run folder.
@@ -153,6 +164,7 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   if (clock && config.pipeline.policy == InputPolicy::kLive)
     decoding.wanted = [&](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };
   SequenceDecoder decoder(replay.sequence, replay.range, decoding);
+  tellOutside(decoder.shareOutside());
   Pipeline pipeline(config.pipeline, std::move(stages), logToSpdlog);
   const auto start = std::chrono::steady_clock::now();
   {
@@ -181,7 +193,7 @@ int runSequence(const RunOptions& options) {
   const FaultSpec fault_spec = parseFaultSpec(options.inject);
   const auto rate_hz = replayRate_hz(options, config.pipeline.policy);
   requireReplaceable(options);
-  const Sequence sequence = openSequence(options.sequence, options.fps_hz);
+  const Sequence sequence = openSequence(options.sequence, options.fps_hz, options.given);
   requireWithin(config.input, sequence);
   requireBelievable(sequence, options.force);
   const FrameRange range = selectedFrames(options.frames, sequence);
@@ -195,9 +207,8 @@ int runSequence(const RunOptions& options) {
   folder.writeConfig(toToml(config));
   RunSummary summary;
   summary.params = config.pipeline;
-  summary.sequence = sequence.folder.string();
+  summary.setSequence(sequence);
   summary.inject = options.inject;
-  summary.layout = sequence.layout;
   summary.rate_hz = rate_hz;
   summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
   ObjectViewWriter::removeEarlier(options.out);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/pipeline/pipeline_params.hpp"
+#include "io/sequence.hpp"
 
 namespace motorcade {
 
@@ -21,7 +22,8 @@ struct RunOptions {
   std::optional<int> threads;
   std::string frames;  // A:B
   std::filesystem::path config;
-  std::filesystem::path camera;          // KITTI pose lines
+  GivenCameras given;                    // --camera and --calibration
+  std::filesystem::path camera_poses;    // KITTI pose lines
   std::vector<std::string> assignments;  // key=value
   std::string require;                   // tracked=FRACTION
   std::string inject;                    // faults, see FaultSpec

@@ -75,6 +75,12 @@ Json programVersions() {
 
 }  // namespace
 
+void RunSummary::setSequence(const Sequence& of) {
+  sequence = of.folder.string();
+  layout = of.layout;
+  given = of.given;
+}
+
 double RunSummary::trackedFraction() const {
   return pipeline.received > 0 ? static_cast<double>(good_frames) / static_cast<double>(pipeline.received) : 0;
 }
@@ -90,6 +96,8 @@ std::string toJson(const RunSummary& summary) {
   Json json{{"complete", summary.signal == 0},
             {"sequence", summary.sequence},
             {"layout", summary.layout},
+            {"camera", summary.given.camera},
+            {"calibration", summary.given.calibration},
             {"inject", summary.inject},
             {"capture_rate_hz", rounded(summary.capture_rate_hz)},
             {"rate", summary.rate_hz ? Json(*summary.rate_hz) : Json("max")},

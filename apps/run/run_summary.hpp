@@ -16,6 +16,7 @@ struct RunSummary {
   PipelineParams params;
   QueueMark decoded;  // pairs waiting for the feeder
   std::string sequence, layout;
+  GivenCameras given;             // what the user said of them
   std::string inject;             // faults on the way from the camera, as the user gave them
   std::optional<double> rate_hz;  // of the replay; empty for as fast as it went
   double capture_rate_hz = 0;
@@ -24,6 +25,7 @@ struct RunSummary {
   ProcessUsage used;
   int signal = 0;  // that ended the run early
 
+  void setSequence(const Sequence& of);
   /// Share of the received frames that have a measured ego-motion.
   double trackedFraction() const;
   double throughput_hz() const;

@@ -123,15 +123,15 @@ TEST_F(Run, RunsTheOtherDetectorAndTheOtherBackends) {
 
 TEST_F(Run, TakesAnotherCameraPathWhereTheBackendUsesOne) {
   ASSERT_EQ(run("first", "--set backend=filter"), 0) << contentOf(errors());
-  const std::string camera = " --camera " + (out("first") / "camera_final.txt").string();
+  const std::string camera = " --camera-poses " + (out("first") / "camera_final.txt").string();
   ASSERT_EQ(run("second", "--set backend=filter" + camera), 0) << contentOf(errors());
   const auto first = readRunFolder(out("first")).final.camera, second = readRunFolder(out("second")).final.camera;
   constexpr double kPrinted_m = 1e-6;  // nine digits
   EXPECT_NEAR((first.back().translation() - second.back().translation()).norm(), 0, kPrinted_m);
   EXPECT_EQ(run("joint", "--set backend=joint" + camera), 2);
-  EXPECT_THAT(contentOf(errors()), HasSubstr("--camera"));
+  EXPECT_THAT(contentOf(errors()), HasSubstr("--camera-poses"));
   std::ofstream(out("short.txt")) << "1 0 0 0 0 1 0 0 0 0 1 0\n";
-  EXPECT_EQ(run("short", "--set backend=filter --camera " + out("short.txt").string()), 3);
+  EXPECT_EQ(run("short", "--set backend=filter --camera-poses " + out("short.txt").string()), 3);
   EXPECT_THAT(contentOf(errors()), HasSubstr("1 poses"));
 }
 

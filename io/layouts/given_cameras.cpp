@@ -1,0 +1,76 @@
+#include "io/layouts/given_cameras.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "io/errors.hpp"
+#include "io/layouts/layout_parts.hpp"
+#include "io/rig/rig_file.hpp"
+
+namespace motorcade {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<double> positiveNumber(std::string_view text) {
+  constexpr double kMost = 1e6;
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value > 0) || value > kMost) return std::nullopt;
+  return value;
+}
+
+std::vector<std::string> partsOf(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream rest(text);
+  for (std::string part; std::getline(rest, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+StereoCamera cameraOf(const std::string& text) {
+  std::vector<double> numbers;
+  for (const std::string& part : partsOf(text))
+    if (const auto number = positiveNumber(part)) numbers.push_back(*number);
+  if (numbers.size() != 5 || partsOf(text).size() != 5)
+    throw UsageError("--camera " + text +
+                     ": write fx,fy,cx,cy,baseline, five positive numbers in pixels and, the last, in meters, as "
+                     "718.9,718.9,607.2,185.2,0.54");
+  return {.fx_px = numbers[0], .fy_px = numbers[1], .cx_px = numbers[2], .cy_px = numbers[3], .baseline_m = numbers[4]};
+}
+
+/// One file, or two with a comma between them.
+std::vector<fs::path> calibrationFiles(const std::string& text) {
+  if (fs::exists(text)) return {text};
+  const auto parts = partsOf(text);
+  return {parts.begin(), parts.end()};
+}
+
+}  // namespace
+
+GivenCameras absolute(const GivenCameras& given) {
+  GivenCameras result{.camera = given.camera};
+  if (given.calibration.empty()) return result;
+  for (const fs::path& file : calibrationFiles(given.calibration)) {
+    if (!result.calibration.empty()) result.calibration += ',';
+    result.calibration += fs::absolute(file).lexically_normal().string();
+  }
+  return result;
+}
+
+StereoCamera givenCamera(Sequence& sequence, const GivenCameras& given, ImageSize size) {
+  if (!given.camera.empty() && !given.calibration.empty())
+    throw UsageError("--camera and --calibration: give one of them");
+  if (!given.camera.empty()) return cameraOf(given.camera);
+  const auto files = calibrationFiles(given.calibration);
+  if (files.size() != 1 || files.front().extension() != ".txt") return rectifiedCamera(sequence, readRig(files), size);
+  sequence.calibration = readCalibration(files.front());
+  if (sequence.pair == CameraPair::kGray && !sequence.calibration.P[0] && sequence.calibration.P[2])
+    sequence.pair = CameraPair::kColor;
+  return sequence.calibration.stereoCamera(sequence.pair);
+}
+
+}  // namespace motorcade

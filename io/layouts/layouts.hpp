@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "io/sequence.hpp"
+
+/// One function per layout: each gives a sequence where it finds its own, nothing elsewhere.
+namespace motorcade {
+
+/// Where to look, as an absolute path without a slash at its end, and what the user says.
+struct SequenceSource {
+  std::filesystem::path path;
+  double fps_hz = 10;
+  GivenCameras given{};
+};
+
+std::optional<Sequence> openKittiRaw(const SequenceSource& source);
+std::optional<Sequence> openKittiTracking(const SequenceSource& source);
+std::optional<Sequence> openKitti360(const SequenceSource& source);
+std::optional<Sequence> openEuroc(const SequenceSource& source);
+std::optional<Sequence> openArgoverse(const SequenceSource& source);
+std::optional<Sequence> openPlain(const SequenceSource& source);
+std::optional<Sequence> openImageList(const SequenceSource& source);
+
+/// Throws InputError that tells what lies there, and what to write or run so that it can be used.
+[[noreturn]] void failUnknownLayout(const std::filesystem::path& path);
+
+}  // namespace motorcade

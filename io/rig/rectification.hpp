@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "core/se3.hpp"
+#include "core/stereo_camera.hpp"
+#include "io/rig/lens_camera.hpp"
+
+namespace motorcade {
+
+/// How two raw images become a rectified pair.
+struct Rectification {
+  LensCamera left, right;
+  Eigen::Matrix3d R_left = Eigen::Matrix3d::Identity();  // p_rectified = R * p_raw, of each camera
+  Eigen::Matrix3d R_right = Eigen::Matrix3d::Identity();
+  StereoCamera camera{};  // what takes the rectified pair
+};
+
+/// Two cameras as a calibration tells of them.
+struct Rig {
+  std::filesystem::path file{};  // that tells, for messages
+  LensCamera left{}, right{};
+  SE3 T_right_left{};
+  std::optional<Rectification> given{};  // where the calibration also tells how to rectify
+};
+
+/// The rectification that the calibration gives, else our own: both cameras turn until their x axes lie along the
+/// baseline, and their z axes along the mean of both viewing directions as far as that allows; the focal length is the
+/// shortest at which both images fill the frame, but at least `kLeastZoom` of the cameras'. The rectified images are as
+/// large as the raw ones. Throws InputError naming the file.
+Rectification rectificationOf(const Rig& rig, ImageSize size);
+
+/// Of a very wide lens, the edges are given up rather than the resolution in the middle.
+inline constexpr double kLeastZoom = 0.7;
+
+}  // namespace motorcade

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace YAML {  // NOLINT(readability-identifier-naming): yaml-cpp's
+class Node;
+}
+
+namespace motorcade {
+
+/// A part of a YAML file, with its name for messages. Whatever is wrong in it is an InputError that names file, key and
+/// line.
+class YamlPart {
+ public:
+  /// Reads a file of at most a megabyte. OpenCV's first line, `%YAML:1.0`, is accepted though YAML has none such.
+  static YamlPart ofFile(const std::filesystem::path& file);
+
+  /// The first of several spellings of a key that is there.
+  std::optional<YamlPart> find(std::initializer_list<std::string_view> keys) const;
+  /// The same, where one of them must be there.
+  YamlPart at(std::initializer_list<std::string_view> keys) const;
+
+  /// All numbers in the order of the file: of a list, of a list of lists, or of the `data` of a matrix.
+  std::vector<double> numbers() const;
+  std::vector<double> numbers(std::size_t count) const;
+  std::string text() const;
+
+  const std::filesystem::path& file() const { return file_; }
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  YamlPart(std::filesystem::path file, std::string key, const YAML::Node& node);
+
+  std::filesystem::path file_;
+  std::string key_;
+  std::shared_ptr<const YAML::Node> node_;
+};
+
+}  // namespace motorcade
