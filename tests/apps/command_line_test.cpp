@@ -56,8 +56,8 @@ TEST_F(CommandLine, NamesWhatWasLikelyMeant) {
   EXPECT_THAT(said("evalaute --help", 2), HasSubstr("did you mean evaluate?"));
   EXPECT_THAT(said("help evalaute", 2), HasSubstr("did you mean evaluate?"));
   EXPECT_THAT(said("--threads 2 run x --out y", 2), HasSubstr("--threads must stand behind the command's name"));
-  EXPECT_THAT(said("run x --out y --calibrate", 2),
-              AllOf(HasSubstr("unknown option --calibrate\n"), Not(HasSubstr("did you mean"))));
+  EXPECT_THAT(said("run x --out y --polarize", 2),
+              AllOf(HasSubstr("unknown option --polarize\n"), Not(HasSubstr("did you mean"))));
 }
 
 TEST_F(CommandLine, SaysWhatIsMissing) {
