@@ -31,14 +31,19 @@ FrameRange parseFrameRange(std::string_view text) {
   return range;
 }
 
+std::optional<Sequence> openKnownLayout(const SequenceSource& source) {
+  for (const auto open :
+       {openImageList, openEuroc, openKitti360, openKittiRaw, openArgoverse, openKittiTracking, openPlain})
+    if (auto sequence = open(source)) return sequence;
+  return std::nullopt;
+}
+
 Sequence openSequence(const fs::path& path, double fps_hz, const GivenCameras& given) {
   // Parents are looked at, so "." and a slash at the end must go.
   SequenceSource source{fs::absolute(path).lexically_normal(), fps_hz, given};
   if (!source.path.has_filename()) source.path = source.path.parent_path();
   try {
-    for (const auto open :
-         {openImageList, openEuroc, openKitti360, openKittiRaw, openArgoverse, openKittiTracking, openPlain})
-      if (auto sequence = open(source)) return *std::move(sequence);
+    if (auto sequence = openKnownLayout(source)) return *std::move(sequence);
     if (!fs::exists(path)) throw InputError(path.string() + ": does not exist");
     failUnknownLayout(source.path);
   } catch (const fs::filesystem_error& error) {

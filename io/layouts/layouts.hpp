@@ -24,6 +24,9 @@ std::optional<Sequence> openArgoverse(const SequenceSource& source);
 std::optional<Sequence> openPlain(const SequenceSource& source);
 std::optional<Sequence> openImageList(const SequenceSource& source);
 
+/// What the first of them finds.
+std::optional<Sequence> openKnownLayout(const SequenceSource& source);
+
 /// Throws InputError that tells what lies there, and what to write or run so that it can be used.
 [[noreturn]] void failUnknownLayout(const std::filesystem::path& path);
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <exception>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -62,18 +63,41 @@ std::string described(const Content& content) {
   return text;
 }
 
-/// What to run so that two folders of images, or whatever there is, become a sequence.
+/// The folders in it that are sequences.
+std::vector<std::string> sequencesIn(const fs::path& folder) {
+  constexpr std::size_t kMostTried = 50;
+  std::vector<std::string> names;
+  std::size_t tried = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (!entry.is_directory() || ++tried > kMostTried) continue;
+    try {
+      if (openKnownLayout({entry.path(), 10, {}})) names.push_back(printable(entry.path().filename().string()));
+    } catch (const std::exception&) {
+      continue;  // it may be one, but not as it is
+    }
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+/// What to run so that what there is becomes a sequence.
 std::string advice(const fs::path& folder, const Content& content) {
+  if (const auto sequences = sequencesIn(folder); !sequences.empty())
+    return "\nThese folders in it are sequences: " + listed(sequences) + ". Name one of them.";
+  if (content.images == 0 && content.of_images.empty())
+    return "\nImages are PNG, JPEG or PGM files: lay those of the left camera into a folder left, those of the right "
+           "one "
+           "into right, and a calib.txt, camchain.yaml or left.yaml and right.yaml beside them.";
   const bool two = content.of_images.size() >= 2;
-  const std::string left = two ? content.of_images[0].string() : (folder / "LEFT").string(),
-                    right = two ? content.of_images[1].string() : (folder / "RIGHT").string();
-  return "\nTwo folders of images become a sequence by a list of their pairs, and a calibration:\n"
+  const std::string left = two ? content.of_images[0].string() + "/*" : (folder / "*left*").string(),
+                    right = two ? content.of_images[1].string() + "/*" : (folder / "*right*").string();
+  return "\nTwo sets of images become a sequence by a list of their pairs, the left one first, and a calibration:\n"
          "  paste -d' ' <(ls -d " +
-         left + "/*) <(ls -d " + right +
-         "/*) > LIST.txt\n"
+         left + ") <(ls -d " + right +
+         ") > LIST.txt\n"
          "  motorcade run LIST.txt --camera fx,fy,cx,cy,baseline --out RUN    (rectified; else --calibration "
          "FILE.yaml)\n"
-         "or by being named left and right, beside a calib.txt, camchain.yaml or left.yaml and right.yaml.";
+         "or by lying in folders named left and right, beside a calib.txt, camchain.yaml or left.yaml and right.yaml.";
 }
 
 [[noreturn]] void failBag(const fs::path& bag) {

@@ -42,7 +42,7 @@ class LensModel {
 
   LensCamera camera_;
   bool rational_;  // whether k4 to k6 matter
-  double limit_;  // up to which the distorted distance grows
+  double limit_;   // up to which the distorted distance grows
 };
 
 }  // namespace motorcade

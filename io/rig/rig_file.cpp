@@ -51,9 +51,8 @@ LensCamera rosCamera(const YamlPart& root) {
   setIntrinsics(camera, root.at({"camera_matrix", "K", "k"}));
   setDistortion(camera, textOr(root, "distortion_model", "plumb_bob"), root.at({"distortion_coefficients", "D", "d"}));
   const auto width = root.find({"image_width", "width"}), height = root.find({"image_height", "height"});
-  if (width && height) {
-    camera.size = {static_cast<int>(width->numbers(1)[0]), static_cast<int>(height->numbers(1)[0])};
-  }
+  if (width && height)
+    camera.size = {imageSide(*width, width->numbers(1)[0]), imageSide(*height, height->numbers(1)[0])};
   return camera;
 }
 

@@ -71,11 +71,14 @@ void setDistortion(LensCamera& camera, const std::string& model, const YamlPart&
     camera.distortion = Distortion::kNone;
 }
 
+int imageSide(const YamlPart& part, double side_px) {
+  if (!(side_px >= 1 && side_px <= kMaxImage_pixels)) part.fail("is no size of an image");
+  return static_cast<int>(side_px);
+}
+
 void setSize(LensCamera& camera, const YamlPart& part) {
   const auto numbers = part.numbers(2);
-  for (const double side_px : numbers)
-    if (!(side_px >= 1 && side_px <= kMaxImage_pixels)) part.fail("is no size of an image");
-  camera.size = {static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};
+  camera.size = {imageSide(part, numbers[0]), imageSide(part, numbers[1])};
 }
 
 }  // namespace motorcade

@@ -19,6 +19,8 @@ SE3 transform44(const YamlPart& part);
 void setIntrinsics(LensCamera& camera, const YamlPart& part);
 /// Sets the distortion from a model's name in any of the spellings in use, and its coefficients.
 void setDistortion(LensCamera& camera, const std::string& model, const YamlPart& coefficients);
+/// Width or height of an image; fails for what cannot be one.
+int imageSide(const YamlPart& part, double side_px);
 /// Sets the size of the images from two numbers.
 void setSize(LensCamera& camera, const YamlPart& part);
 

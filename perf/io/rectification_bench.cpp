@@ -32,12 +32,12 @@ Remap remapOf(const Sequence& sequence, StereoSide side) {
   return {left ? rig.left : rig.right, left ? rig.R_left : rig.R_right, rig.camera, sizeOf(sequence)};
 }
 
-/// Runs `work(sequence)` once per iteration, or says that there is no data.
+/// Runs what `make_work(sequence)` gives once per iteration, or says that there is no data.
 template <class Work>
-void overRecording(benchmark::State& state, const Work& makeWork) {
+void overRecording(benchmark::State& state, const Work& make_work) {
   const auto sequence = recording();
   if (!sequence) return state.SkipWithError("MOTORCADE_DATA holds no euroc_v101");
-  auto work = makeWork(*sequence);
+  auto work = make_work(*sequence);
   std::size_t index = 0;
   for (auto _ : state) work(index++ % kPairs);
   state.SetItemsProcessed(state.iterations());

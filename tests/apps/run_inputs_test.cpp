@@ -82,7 +82,7 @@ class RunInputs : public Run {
   fs::path bentDrive() {
     const Sequence drive = openSequence(kSequence);
     const BentRig rig = bentRig(drive.camera);
-    const fs::path folder = out("bent");
+    fs::path folder = out("bent");
     ImagePool pool;
     for (const StereoSide side : {StereoSide::kLeft, StereoSide::kRight}) {
       const bool left = side == StereoSide::kLeft;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -8,7 +9,7 @@
 
 using namespace motorcade;
 
-/// The calibration of a pair that is not rectified, its rectification, and a map by it.
+/// The calibration of a pair that is not rectified, its rectification, a map by it, and an image by that.
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static fuzz::MemoryFile file;
   constexpr std::array<std::string_view, 6> kNoLine{"is missing", "holds no keys", "is no calibration of a pair",
@@ -27,6 +28,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
           fuzz::require(source_px.x() >= 0 && source_px.x() <= kSize.width - 1, "a column outside");
           fuzz::require(source_px.y() >= 0 && source_px.y() <= kSize.height - 1, "a row outside");
         }
+      ImagePool pool;
+      Image raw = pool.acquire(kSize.width, kSize.height);
+      for (int v = 0; v < kSize.height; ++v) std::fill_n(raw.mutableRow(v), kSize.width, std::uint8_t{9});
+      fuzz::require(remap(raw, pool).at(kSize.width - 1, kSize.height - 1) == 9, "a pixel that is not in the image");
     });
   }
   return 0;

@@ -262,6 +262,20 @@ TEST_F(Layouts, UnknownFolderIsDescribedAndToldHowToUseIt) {
                                  HasSubstr("--camera fx,fy,cx,cy,baseline"), Not(HasSubstr("bag"))));
 }
 
+TEST_F(Layouts, FolderOfSequencesNamesThem) {
+  writeImage("drives/first/left/0.png");
+  writeImage("drives/first/right/0.png");
+  folder_.write("drives/first/calib.txt", "P0: 70 0 32 0 0 70 24 0 0 0 1 0\nP1: 70 0 32 -35 0 70 24 0 0 0 1 0\n");
+  writeImage("drives/second/left/0.png");
+  EXPECT_THAT(openError("drives"), AllOf(HasSubstr("are sequences: first."), Not(HasSubstr("paste"))));
+  writeImage("mixed/left_0.png");
+  writeImage("mixed/right_0.png");
+  EXPECT_THAT(openError("mixed"), AllOf(HasSubstr("it holds 2 images"), HasSubstr("/mixed/*left*)")));
+  folder_.write("empty/notes.txt", "");
+  EXPECT_THAT(openError("empty"),
+              AllOf(HasSubstr("notes.txt"), HasSubstr("PNG, JPEG or PGM"), Not(HasSubstr("paste"))));
+}
+
 TEST_F(Layouts, BagIsToldHowToBecomeImages) {
   folder_.write("one/drive.bag", "#ROSBAG V2.0\n");
   folder_.write("two/drive_0.db3", "SQLite");
