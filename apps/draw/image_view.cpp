@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <string>
 #include <utility>
 #include <vector>
@@ -177,7 +178,7 @@ void paintImageView(Sheet& sheet, const DrawnImages& images, const RecordedDrive
     by_distance.emplace_back(std::isnan(distance_m) ? std::numeric_limits<double>::infinity() : distance_m, &object);
   }
   std::ranges::stable_sort(by_distance, {}, [](const auto& entry) { return entry.first; });
-  for (auto entry = by_distance.rbegin(); entry != by_distance.rend(); ++entry) drawObject(sheet, eye, *entry->second);
+  for (const auto& [distance_m, object] : std::views::reverse(by_distance)) drawObject(sheet, eye, *object);
   drawPoints(sheet, drive.pointsAt(frame));
   std::vector<Tag> tags;
   for (const auto& [distance_m, object] : by_distance) {
