@@ -44,7 +44,7 @@ class Video : public testing::Test {
  protected:
   /// A program that stands in for ffmpeg.
   fs::path standIn(const std::string& script) const {
-    const fs::path program = folder_.write("bin/ffmpeg", "#!/bin/sh\n" + script + "\n");
+    fs::path program = folder_.write("bin/ffmpeg", "#!/bin/sh\n" + script + "\n");
     fs::permissions(program, fs::perms::owner_all);
     return program;
   }
