@@ -55,6 +55,8 @@ std::string readImageBytes(const std::filesystem::path& file, int max_mb = kMaxI
 /// A gray PNG of 16 bits; one of 8 bits is widened without scaling.
 Gray16Image readPng16(const std::filesystem::path& file);
 
+/// As a PNG file's bytes.
+std::string encodePng(const RgbImage& image);
 /// kFast trades a larger file for time.
 enum class PngEffort { kFast, kSmall };
 void writePng(const std::filesystem::path& file, const Image& image, PngEffort effort = PngEffort::kFast);

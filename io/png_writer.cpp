@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <string>
 
 #include <png.h>
 
@@ -95,6 +96,20 @@ void writePng16(const fs::path& file, const Gray16Image& image, PngEffort effort
 void writePngRgb(const fs::path& file, const RgbImage& image, PngEffort effort) {
   writeRows(file, {image.width, image.height}, 8, PNG_COLOR_TYPE_RGB, effort,
             rowPointers(forLibpng(image.pixels.data()), image.height, 3 * image.width));
+}
+
+std::string encodePng(const RgbImage& image) {
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(image.width);
+  header.height = static_cast<png_uint_32>(image.height);
+  header.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
+  std::string bytes(size, '\0');
+  if (!png_image_write_to_memory(&header, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr))
+    throw OutputError(std::string("a PNG cannot be made: ") + header.message);
+  bytes.resize(size);
+  return bytes;
 }
 
 }  // namespace motorcade

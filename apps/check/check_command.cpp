@@ -1,15 +1,18 @@
 #include "apps/check/check_command.hpp"
 
-#include <array>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <numbers>
+#include <functional>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "apps/check/camera_doubts.hpp"
+#include "apps/check/check_page.hpp"
 #include "apps/check/input_check.hpp"
+#include "apps/check/row_error_names.hpp"
 #include "apps/inject/fault_injector.hpp"
 #include "io/line_file.hpp"
 #include "io/sequence.hpp"
@@ -19,20 +22,18 @@ namespace motorcade {
 namespace {
 
 constexpr int kExitInput = 3;
-constexpr std::array<const char*, kRowErrors> kNames{"row offset [px]", "roll [deg]",       "zoom [%]",     "yaw [deg]",
-                                                     "lift / baseline", "ahead / baseline", "distortion k1"};
-constexpr std::array<const char*, kRowErrors> kKeys{"rows_px", "roll_rad", "zoom", "yaw_rad", "lift", "ahead", "k1"};
-constexpr double kDegree = 180 / std::numbers::pi;
-constexpr std::array<double, kRowErrors> kUnits{1, kDegree, 100, kDegree, 1, 1, 1};
+constexpr std::size_t kShownPairs = 3;
 
-/// Shows the first pairs of the sequence, after faults, to the check.
-InputCheck lookedAt(const Sequence& sequence, const CheckOptions& options) {
+bool isWhole(const StereoFrame& pair) { return !pair.rejected() && !pair.left.empty() && !pair.right.empty(); }
+
+/// Shows the first pairs of the sequence, after faults, to the check, and keeps their images where a page needs them.
+void look(InputCheck& check, std::vector<StereoFrame>& kept, const Sequence& sequence, const CheckOptions& options) {
   const FrameRange range = selectedFrames(options.frames, sequence);
-  InputCheck check(sequence.camera);
   FaultInjector faults(parseFaultSpec(options.inject), sequence);
   const FaultInjector::Outlet outlet{.push =
-                                         [&check](const StereoFrame& pair) {
+                                         [&](const StereoFrame& pair) {
                                            check.observe(pair);
+                                           if (!options.page.empty() && isWhole(pair)) kept.push_back(pair);
                                            return !check.complete();
                                          },
                                      .pass_over = [](FrameId, Timestamp) {},
@@ -40,7 +41,20 @@ InputCheck lookedAt(const Sequence& sequence, const CheckOptions& options) {
   SequenceDecoder decoder(sequence, range, {});
   while (auto pair = decoder.next())
     if (!faults.give(std::move(*pair), outlet)) break;
-  return check;
+}
+
+/// Those whose rows agree least.
+std::vector<MatchedPair> worstPairs(const InputCheck& check, const std::vector<StereoFrame>& kept) {
+  std::vector<MatchedPair> pairs;
+  for (const LookedAt& look : check.looks()) {
+    const auto images = std::ranges::find(kept, look.frame, &StereoFrame::frame);
+    if (images != kept.end() && !look.matches.empty())
+      pairs.push_back({look.frame, images->left, images->right, look.matches});
+  }
+  std::ranges::stable_sort(pairs, std::ranges::greater{},
+                           [](const MatchedPair& pair) { return rowRms_px(pair.matches); });
+  if (pairs.size() > kShownPairs) pairs.resize(kShownPairs);
+  return pairs;
 }
 
 void printGeometry(const PairGeometry& geometry) {
@@ -48,7 +62,8 @@ void printGeometry(const PairGeometry& geometry) {
   std::printf("  %-18s %10s %10s %12s\n", "", "measured", "sigma", "effect [px]");
   for (std::size_t k = 0; k < kRowErrors; ++k) {
     const RowErrorEstimate& error = geometry.errors[k];
-    std::printf("  %-18s %10.3f %10.3f %12.2f\n", kNames[k], kUnits[k] * error.value, kUnits[k] * error.sigma,
+    const RowErrorName& name = kRowErrorNames[k];
+    std::printf("  %-18s %10.3f %10.3f %12.2f\n", name.title, name.unit * error.value, name.unit * error.sigma,
                 error.effect_px);
   }
   std::printf(
@@ -62,7 +77,8 @@ void writeJson(const std::filesystem::path& file, const PairGeometry& geometry, 
   json["rms_px"] = geometry.rms_px;
   for (std::size_t k = 0; k < kRowErrors; ++k) {
     const RowErrorEstimate& error = geometry.errors[k];
-    json["row_errors"][kKeys[k]] = {{"value", error.value}, {"sigma", error.sigma}, {"effect_px", error.effect_px}};
+    json["row_errors"][kRowErrorNames[k].key] = {
+        {"value", error.value}, {"sigma", error.sigma}, {"effect_px", error.effect_px}};
   }
   json["findings"] = nlohmann::ordered_json::array();
   for (const Finding& finding : findings)
@@ -70,16 +86,8 @@ void writeJson(const std::filesystem::path& file, const PairGeometry& geometry, 
   writeAtOnce(file, json.dump(2) + "\n");
 }
 
-}  // namespace
-
-int runCheck(const CheckOptions& options) {
-  const Sequence sequence = openSequence(options.sequence, options.fps_hz, options.given);
-  const InputCheck check = lookedAt(sequence, options);
-  const PairGeometry geometry = check.geometry();
-  std::vector<Finding> findings;
-  for (const std::string& doubt : doubtsAbout(sequence.camera)) findings.push_back({"calibration", doubt, true});
-  for (Finding& finding : check.findings()) findings.push_back(std::move(finding));
-  printGeometry(geometry);
+/// Gives whether results would be worthless.
+bool printFindings(const std::vector<Finding>& findings, const CheckOptions& options) {
   bool worthless = false;
   for (const Finding& finding : findings) {
     worthless = worthless || finding.worthless;
@@ -87,8 +95,35 @@ int runCheck(const CheckOptions& options) {
                 finding.text.c_str());
   }
   if (findings.empty()) std::printf("nothing is wrong\n");
+  if (!options.page.empty())
+    std::printf("page        %s\n", options.page.string().c_str());
+  else if (!findings.empty())
+    std::printf("--page FILE.html shows it in pictures, and says more on how to mend it\n");
+  return worthless;
+}
+
+}  // namespace
+
+int runCheck(const CheckOptions& options) {
+  const Sequence sequence = openSequence(options.sequence, options.fps_hz, options.given);
+  InputCheck check(sequence.camera);
+  std::vector<StereoFrame> kept;
+  look(check, kept, sequence, options);
+  const PairGeometry geometry = check.geometry();
+  std::vector<Finding> findings;
+  for (const std::string& doubt : doubtsAbout(sequence.camera)) findings.push_back({"calibration", doubt, true});
+  for (Finding& finding : check.findings()) findings.push_back(std::move(finding));
+  if (check.matches().size() < InputCheck::kFewestMatches)
+    findings.push_back({"points",
+                        "only " + std::to_string(check.matches().size()) +
+                            " points are seen in both images: nothing can be told of their rows; look at the images",
+                        false});
   if (!options.json.empty()) writeJson(options.json, geometry, findings);
-  return worthless ? kExitInput : 0;
+  if (!options.page.empty())
+    writeAtOnce(options.page,
+                checkPage({options.sequence.string(), sequence.camera, &check, findings, worstPairs(check, kept)}));
+  printGeometry(geometry);
+  return printFindings(findings, options) ? kExitInput : 0;
 }
 
 }  // namespace motorcade

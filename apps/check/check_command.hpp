@@ -14,6 +14,7 @@ struct CheckOptions {
   std::string frames;  // A:B; the first twenty are looked at
   std::string inject;  // faults, to see whether they are found
   std::filesystem::path json;
+  std::filesystem::path page;  // HTML, with pictures
 };
 
 /// Says what of a sequence's first pairs would make results worse, or worthless, and prints what was measured.

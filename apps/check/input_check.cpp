@@ -14,7 +14,6 @@ namespace motorcade {
 namespace {
 
 constexpr int kLevels = 4;
-constexpr std::size_t kMinMatches = 60;  // that a rig is judged by
 
 // Effects on the rows from which on an error is told, and from which on results are worthless [px].
 constexpr double kTold_px = 0.8, kWorthless_px = 1.2;
@@ -82,6 +81,7 @@ void InputCheck::lookAt(const StereoFrame& pair) {
   const auto matches = matchUnrectified(now.left, now.right, now.corners);
   compareWithNeighbors(now, matchesInRow(matches), matches.size());
   matches_.insert(matches_.end(), matches.begin(), matches.end());
+  looks_.emplace_back(pair.frame, matches_.size());
   before_ = std::move(now);
 }
 
@@ -138,7 +138,7 @@ std::optional<Finding> InputCheck::exchanged() const {
     behind += match.disparity_px() < -kClear_px ? 1 : 0;
   }
   const auto all = static_cast<double>(matches_.size());
-  if (matches_.size() < kMinMatches || behind < kShare * all || behind < 3 * ahead) return std::nullopt;
+  if (matches_.size() < kFewestMatches || behind < kShare * all || behind < 3 * ahead) return std::nullopt;
   return Finding{"exchanged",
                  text("left and right image are exchanged: %.0f %% of the points would lie behind the camera, %.0f %% "
                       "before it; exchange the folders, or P0 and P1 of the calibration",
@@ -147,7 +147,7 @@ std::optional<Finding> InputCheck::exchanged() const {
 }
 
 void InputCheck::addRowErrors(std::vector<Finding>& findings) const {
-  if (matches_.size() < kMinMatches) return;
+  if (matches_.size() < kFewestMatches) return;
   const PairGeometry geometry = this->geometry();
   const RowErrorEstimate& barrel = geometry[RowError::kBarrel];
   if (barrel.effect_px > kDistorted_px && std::abs(barrel.value) > kSureDistorted * barrel.sigma)
@@ -167,28 +167,47 @@ void InputCheck::addRowErrors(std::vector<Finding>& findings) const {
   }
 }
 
-void InputCheck::addLight(std::vector<Finding>& findings) const {
-  constexpr double kJump = 1.35, kSides = 1.6, kBlurred = 0.4, kUnlike = 2.5, kNoisy = 8;
-  double jump = 1, sides = 1;
+std::vector<LookedAt> InputCheck::looks() const {
+  std::vector<LookedAt> looks;
+  std::size_t begin = 0;
+  for (const auto& [frame, end] : looks_) {
+    looks.push_back({frame, std::span(matches_).subspan(begin, end - begin)});
+    begin = end;
+  }
+  return looks;
+}
+
+LightMeasures InputCheck::light() const {
+  LightMeasures light;
   for (std::size_t i = 0; i < left_means_.size(); ++i) {
     const auto ratio = [](double a, double b) { return std::max(a, b) / std::max(1.0, std::min(a, b)); };
-    sides = std::max(sides, ratio(left_means_[i], right_means_[i]));
-    if (i > 0) jump = std::max(jump, ratio(left_means_[i], left_means_[i - 1]));
+    light.sides = std::max(light.sides, ratio(left_means_[i], right_means_[i]));
+    if (i > 0) light.jump = std::max(light.jump, ratio(left_means_[i], left_means_[i - 1]));
+    light.left_level += left_means_[i] / static_cast<double>(left_means_.size());
+    light.right_level += right_means_[i] / static_cast<double>(left_means_.size());
   }
-  if (jump > kJump)
+  light.left_grain = median(left_grains_);
+  light.right_grain = median(right_grains_);
+  return light;
+}
+
+void InputCheck::addLight(std::vector<Finding>& findings) const {
+  constexpr double kJump = 1.35, kSides = 1.6, kBlurred = 0.4, kUnlike = 2.5, kNoisy = 8;
+  const LightMeasures light = this->light();
+  if (light.jump > kJump)
     findings.push_back({"exposure",
                         text("the exposure jumps by %.2f times from one pair to the next; hold it, or let it "
                              "change slowly",
-                             jump),
+                             light.jump),
                         false});
-  if (sides > kSides)
+  if (light.sides > kSides)
     findings.push_back({"exposure",
                         text("one image of a pair is %.2f times as bright as the other; let both cameras "
                              "have the same exposure",
-                             sides),
+                             light.sides),
                         false});
   if (left_grains_.empty() || right_grains_.empty()) return;
-  const double left = median(left_grains_), right = median(right_grains_);
+  const double left = light.left_grain, right = light.right_grain;
   if (std::min(left, right) < kBlurred || std::max(left, right) > kUnlike * std::min(left, right))
     findings.push_back({"blur",
                         text("images are blurred, smoothed or strongly compressed: the grain is %.2f gray levels "
@@ -203,17 +222,24 @@ void InputCheck::addLight(std::vector<Finding>& findings) const {
          false});
 }
 
-void InputCheck::addTimes(std::vector<Finding>& findings) const {
-  constexpr double kJump = 4;
+TimeMeasures InputCheck::times() const {
   std::vector<double> periods_s;
   for (std::size_t i = 1; i < stamps_.size(); ++i) periods_s.push_back(secondsBetween(stamps_[i - 1], stamps_[i]));
-  if (periods_s.size() < 3) return;
-  const double usual_s = median(periods_s);
+  if (periods_s.empty()) return {};
   const auto [least, most] = std::ranges::minmax(periods_s);
-  if (most > kJump * usual_s || least <= 0)
+  return {median(periods_s), least, most};
+}
+
+void InputCheck::addTimes(std::vector<Finding>& findings) const {
+  constexpr double kJump = 4;
+  constexpr std::size_t kFewest = 4;
+  if (stamps_.size() < kFewest) return;
+  const TimeMeasures times = this->times();
+  const bool late = times.most_s > kJump * times.usual_s;
+  if (late || times.least_s <= 0)
     findings.push_back({"times",
-                        text("the times jump: pairs are %.4g s apart, but once %.4g s; look at times.txt", usual_s,
-                             most > kJump * usual_s ? most : least),
+                        text("the times jump: pairs are %.4g s apart, but once %.4g s; look at times.txt",
+                             times.usual_s, late ? times.most_s : times.least_s),
                         false});
 }
 

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/check/pair_geometry.hpp"
@@ -18,12 +20,32 @@ struct Finding {
   bool worthless = false;  // results would be
 };
 
+/// How bright the images of the pairs so far are, and how much they differ.
+struct LightMeasures {
+  double left_level = 0, right_level = 0;  // gray levels, means
+  double jump = 1;                         // largest ratio from one pair to the next, of the left images
+  double sides = 1;                        // largest ratio of the two images of a pair
+  double left_grain = 0, right_grain = 0;  // gray levels, medians; 0 where it cannot be told
+};
+
+/// Seconds between the pairs so far; all 0 while there are fewer than two.
+struct TimeMeasures {
+  double usual_s = 0, least_s = 0, most_s = 0;
+};
+
+/// The matches of one of the pairs that were looked at.
+struct LookedAt {
+  FrameId frame;
+  std::span<const EpipolarMatch> matches;
+};
+
 /// Looks at the first pairs of a drive for what makes a stereo camera useless without a word: rows that do not agree,
 /// images exchanged or taken at different times, distortion left in, exposure and times that jump, blur. Takes about
 /// as long per pair as following it. Call in the order of the frames.
 class InputCheck {
  public:
   static constexpr std::size_t kPairs = 20;
+  static constexpr std::size_t kFewestMatches = 60;  // that a rig is judged by
   /// With `half`, two of four pairs are looked at, for half the cost.
   explicit InputCheck(const StereoCamera& camera, bool half = false);
 
@@ -33,6 +55,12 @@ class InputCheck {
 
   /// Of the pairs so far.
   PairGeometry geometry() const { return estimatePairGeometry(matches_, camera_); }
+  std::size_t pairs() const { return pairs_; }
+  std::span<const EpipolarMatch> matches() const { return matches_; }
+  /// As long as no other pair is observed.
+  std::vector<LookedAt> looks() const;
+  LightMeasures light() const;
+  TimeMeasures times() const;
   /// Of the pairs so far; empty where all is well.
   std::vector<Finding> findings() const;
 
@@ -61,6 +89,7 @@ class InputCheck {
   std::size_t pairs_ = 0;
   std::optional<Pair> before_;
   std::vector<EpipolarMatch> matches_;
+  std::vector<std::pair<FrameId, std::size_t>> looks_;  // with the number of matches so far
   Apart apart_;
   std::vector<double> left_means_, right_means_, left_grains_, right_grains_;  // gray levels
   std::vector<Timestamp> stamps_;

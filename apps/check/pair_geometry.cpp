@@ -44,12 +44,6 @@ Vector reach(const StereoCamera& camera) {
       .finished();
 }
 
-double rowRms(std::span<const EpipolarMatch> matches) {
-  double squares = 0;
-  for (const EpipolarMatch& match : matches) squares += match.rowDifference_px() * match.rowDifference_px();
-  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, matches.size())));
-}
-
 }  // namespace
 
 PairGeometry estimatePairGeometry(std::span<const EpipolarMatch> matches, const StereoCamera& camera) {
@@ -84,11 +78,25 @@ PairGeometry estimatePairGeometry(std::span<const EpipolarMatch> matches, const 
     geometry.errors[static_cast<std::size_t>(k)] = {solution[k], kCorrelation * std::sqrt(covariance(k, k)),
                                                     std::abs(solution[k]) * reach_px[k]};
   geometry.matches = matches.size();
-  geometry.rms_px = rowRms(matches);
+  geometry.rms_px = rowRms_px(matches);
   geometry.remaining_px = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, agreeing)));
   geometry.agreeing_share =
       static_cast<double>(agreeing) / static_cast<double>(std::max<std::size_t>(1, matches.size()));
   return geometry;
+}
+
+double rowRms_px(std::span<const EpipolarMatch> matches) {
+  double squares = 0;
+  for (const EpipolarMatch& match : matches) squares += match.rowDifference_px() * match.rowDifference_px();
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, matches.size())));
+}
+
+double predictedRowError_px(const PairGeometry& geometry, const StereoCamera& camera, double u_left_px,
+                            double v_left_px, double disparity_px) {
+  const Row row = derivatives({u_left_px, v_left_px, u_left_px - disparity_px, v_left_px}, camera);
+  double error_px = 0;
+  for (int k = 0; k < kSize; ++k) error_px += row[k] * geometry.errors[static_cast<std::size_t>(k)].value;
+  return error_px;
 }
 
 std::size_t matchesInRow(std::span<const EpipolarMatch> matches) {

@@ -42,6 +42,13 @@ struct PairGeometry {
 /// stay at zero, with the standard deviation of what a rig may have.
 PairGeometry estimatePairGeometry(std::span<const EpipolarMatch> matches, const StereoCamera& camera);
 
+/// The row in the right image less that in the left one, of a point there with that disparity.
+double predictedRowError_px(const PairGeometry& geometry, const StereoCamera& camera, double u_left_px,
+                            double v_left_px, double disparity_px);
+
+/// Root mean square of the row differences as they are; 0 of none.
+double rowRms_px(std::span<const EpipolarMatch> matches);
+
 /// Matches whose row differences lie within a pixel of their median.
 std::size_t matchesInRow(std::span<const EpipolarMatch> matches);
 

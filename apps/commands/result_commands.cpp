@@ -43,7 +43,11 @@ void addDraw(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("draw", "Draw a run: the annotated left images above a view from the top");
   command->add_option("run", options->run, "Run folder")->required();
   command->add_option("--sequence", options->sequence, "The sequence that was run, where it is no longer where it was");
-  command->add_option("--out", options->out, "Folder for the pictures")->required();
+  command->add_option("--out", options->out, "Folder for the pictures");
+  command
+      ->add_option("--video", options->video,
+                   "File for a video, .mp4 or .webm, made by ffmpeg; pictures where that is not installed")
+      ->type_name("FILE");
   command->add_option("--frames", *frames, "Frames A:B of the sequence");
   command->add_option("--every", options->every, "Draw every Nth frame")
       ->check(CLI::PositiveNumber)
@@ -51,7 +55,7 @@ void addDraw(CLI::App& app, Action& action) {
   command
       ->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]; the run's when absent")
       ->check(CLI::Range(0.001, 100'000.0));
-  command->footer("Example: motorcade draw RUN --out PICTURES --every 10");
+  command->footer("Example: motorcade draw RUN --video DRIVE.mp4");
   command->callback([options, frames, &action] {
     action = [options, frames] {
       options->frames = parseFrameRange(*frames);

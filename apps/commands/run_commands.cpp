@@ -81,9 +81,13 @@ void addCheck(CLI::App& app, Action& action) {
       ->check(CLI::Range(0.001, 100'000.0))
       ->capture_default_str();
   command->add_option("--json", options->json, "File for what was measured and found as JSON");
+  command
+      ->add_option("--page", options->page,
+                   "File for a page with pictures of the worst pairs and how to mend what is wrong")
+      ->type_name("FILE.html");
   command->add_option("--inject", options->inject, "Faults, as for run, to see whether they are found")
       ->type_name("FAULTS");
-  command->footer("Example: motorcade check DRIVE");
+  command->footer("Example: motorcade check DRIVE --page CHECK.html");
   command->callback([options, &action] { action = [options] { return runCheck(*options); }; });
 }
 

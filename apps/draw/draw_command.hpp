@@ -8,13 +8,16 @@
 namespace motorcade {
 
 struct DrawOptions {
-  std::filesystem::path run{}, sequence{}, out{};  // the sequence that the run names when empty
-  std::optional<double> fps_hz{};                  // of a sequence without times; the run's when empty
-  FrameRange frames{};                             // of the sequence
+  std::filesystem::path run{}, sequence{};  // the sequence that the run names when empty
+  std::filesystem::path out{}, video{};     // folder for pictures, file for a video: one of them or both
+  std::optional<double> fps_hz{};           // of a sequence without times; the run's when empty
+  FrameRange frames{};                      // of the sequence
   int every = 1;
 };
 
-/// Draws frames of a run as PNG pictures `frame_NNNNNN.png`; gives the exit code. Failures are UserErrors.
+/// Draws frames of a run as PNG pictures `frame_NNNNNN.png`, as a video of the pace at which they were taken, or both.
+/// Where no ffmpeg is installed, the video's pictures go into a folder of its name instead. Gives the exit code, that
+/// of the signal where one came. Failures are UserErrors.
 int runDraw(const DrawOptions& options);
 
 }  // namespace motorcade

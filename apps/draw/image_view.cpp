@@ -177,7 +177,8 @@ void paintImageView(Sheet& sheet, const DrawnImages& images, const RecordedDrive
     by_distance.emplace_back(std::isnan(distance_m) ? std::numeric_limits<double>::infinity() : distance_m, &object);
   }
   std::ranges::stable_sort(by_distance, {}, [](const auto& entry) { return entry.first; });
-  for (auto entry = by_distance.rbegin(); entry != by_distance.rend(); ++entry) drawObject(sheet, eye, *entry->second);
+  const std::vector farthest_first(by_distance.rbegin(), by_distance.rend());
+  for (const auto& [distance_m, object] : farthest_first) drawObject(sheet, eye, *object);
   drawPoints(sheet, drive.pointsAt(frame));
   std::vector<Tag> tags;
   for (const auto& [distance_m, object] : by_distance) {

@@ -70,12 +70,14 @@ Extent smoothExtent(const RecordedDrive& drive, std::size_t frame) {
 }  // namespace
 
 TopMap topMapOf(const RecordedDrive& drive, std::size_t frame, const Rectangle& area) {
+  constexpr double kRoomBehind = 0.3;
   const Extent extent = frame < drive.T_world_cam.size() ? smoothExtent(drive, frame) : Extent{};
   const Array2d span_m = extent.most - extent.least, size_px(area.width, area.height);
   TopMap map;
   map.px_per_m = std::max(1e-3, (size_px / span_m).minCoeff());
-  const Array2d middle_m = 0.5 * (extent.least + extent.most);
-  map.origin_px = area.middle() - map.px_per_m * middle_m.matrix();
+  // Room that is left over lies rather ahead than behind, and alike on both sides.
+  const Array2d room_px = size_px - map.px_per_m * span_m, before_px = room_px * Array2d(kRoomBehind, 0.5);
+  map.origin_px = Eigen::Vector2d(area.left, area.top) + (before_px - map.px_per_m * extent.least).matrix();
   return map;
 }
 

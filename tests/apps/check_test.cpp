@@ -100,6 +100,27 @@ TEST_F(Check, NamesACalibrationThatCannotBe) {
   EXPECT_EQ(run("forced", "--force", millimeters), 0);
 }
 
+TEST_F(Check, WritesAPageThatShowsTheWorstPairsAndSaysWhereToFindIt) {
+  check("lowered=4/right");
+  EXPECT_THAT(contentOf(out("stdout")), HasSubstr("--page"));
+  const fs::path file = out("check.html");
+  EXPECT_EQ(motorcade("check " + kSequence.string() + " --inject lowered=4/right --page " + file.string()), 3);
+  EXPECT_THAT(contentOf(out("stdout")), HasSubstr(file.string()));
+  const std::string page = contentOf(file);
+  std::size_t pictures = 0;
+  for (auto at = page.find("data:image/jpeg"); at != std::string::npos; at = page.find("data:image/jpeg", at + 1))
+    ++pictures;
+  EXPECT_EQ(pictures, 4U) << "three pairs and the field of row errors";
+  EXPECT_THAT(page, HasSubstr("The rows of the two images do not agree"));
+  EXPECT_EQ(motorcade("check " + kSequence.string() + " --page " + out("nowhere/check.html").string()), 4);
+}
+
+TEST_F(Check, SaysThatBlackImagesTellNothing) {
+  const Found found = check("black");
+  EXPECT_THAT(found.names, Contains("points"));
+  EXPECT_EQ(found.exit_code, 0);
+}
+
 TEST_F(Check, ARunEndsWhereItsResultsWouldBeWorthless) {
   EXPECT_EQ(run("refused", "--inject lowered=4/right"), 3);
   EXPECT_THAT(contentOf(errors()), HasSubstr("rectify the images anew"));

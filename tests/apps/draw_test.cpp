@@ -1,3 +1,5 @@
+#include <cstdlib>
+
 #include <gmock/gmock.h>
 
 #include "apps/draw/draw_command.hpp"
@@ -120,6 +122,31 @@ TEST_F(DrawnDrive, LeavesAFrameOutWhoseMaskDoesNotFit) {
   EXPECT_THAT(draw(), testing::HasSubstr("2 pictures"));
   EXPECT_THAT(testing::internal::GetCapturedStderr(),
               testing::AllOf(testing::HasSubstr("000005.png"), testing::HasSubstr("399x120")));
+}
+
+TEST_F(DrawnDrive, WithoutFfmpegTheVideosPicturesGoIntoAFolder) {
+  const char* const before = std::getenv("PATH");
+  const std::string kept = before ? before : "";
+  ::setenv("PATH", folder_.path().c_str(), 1);
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  const DrawOptions options{
+      .run = folder_ / "run", .sequence = folder_ / "drive", .video = folder_ / "street.mp4", .every = 3};
+  EXPECT_EQ(runDraw(options), 0);
+  ::setenv("PATH", kept.c_str(), 1);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::HasSubstr("2 pictures"));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::AllOf(testing::HasSubstr("no ffmpeg"), testing::HasSubstr("street.mp4")));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "street/frame_000003.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "street.mp4"));
+}
+
+TEST_F(DrawnDrive, NeedsAPlaceForItsPictures) {
+  EXPECT_THAT(test::messageOf<UsageError>([&] { runDraw({.run = folder_ / "run"}); }), testing::HasSubstr("--video"));
+  EXPECT_THAT(test::messageOf<UsageError>([&] {
+                runDraw({.run = folder_ / "run", .sequence = folder_ / "drive", .video = folder_ / "street.gif"});
+              }),
+              testing::HasSubstr("street.gif"));
 }
 
 }  // namespace

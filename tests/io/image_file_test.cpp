@@ -91,6 +91,20 @@ TEST_F(ImageFile, ColorPngBecomesGrayByItsLuma) {
       EXPECT_NEAR(gray.at(x, y), 0.299 * 10 * x + 0.587 * 15 * y + 0.114 * 77, 1.0);  // rounding of the weights
 }
 
+TEST_F(ImageFile, ColorPicturesAreMadeInMemoryToo) {
+  RgbImage color{40, 32, {}};
+  for (int i = 0; i < 40 * 32; ++i) color.pixels.insert(color.pixels.end(), {200, 30, 90});
+  constexpr double kLuma = 0.299 * 200 + 0.587 * 30 + 0.114 * 90;
+  const Image png = decodeImage(encodePng(color), "made.png", pool_);
+  const Image jpeg = decodeImage(encodeJpeg(color, 95), "made.jpg", pool_);
+  for (const Image& image : {png, jpeg}) {
+    EXPECT_EQ(image.width(), 40);
+    EXPECT_EQ(image.height(), 32);
+    EXPECT_NEAR(image.at(20, 16), kLuma, 3);  // JPEG rounds the colors
+  }
+  EXPECT_NEAR(png.at(3, 30), kLuma, 1);
+}
+
 TEST_F(ImageFile, SixteenBitPngKeepsItsValuesAndItsUpperByteAsGray) {
   Gray16Image image{17, 19, std::vector<std::uint16_t>(17 * 19)};
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<std::uint16_t>(i * 199);

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+
+#include "apps/check/epipolar_matching.hpp"
+#include "apps/check/pair_geometry.hpp"
+#include "core/image.hpp"
+#include "io/image_file.hpp"
+
+namespace motorcade {
+
+/// A pair with the points that were seen in both images.
+struct MatchedPair {
+  FrameId frame;
+  Image left, right;
+  std::span<const EpipolarMatch> matches;
+};
+
+/// Both images side by side, with lines along rows from points on the left to their partners on the right; where a
+/// partner lies above or below the line, a bar shows by how much, enlarged as the legend says, and in color.
+RgbImage drawEpipolarLines(const MatchedPair& pair);
+
+/// The left image with the row errors of all matches as thin bars, and as arrows what the measured geometry makes of
+/// the rows across the image; with a scale.
+RgbImage drawRowErrors(const Image& left, std::span<const EpipolarMatch> matches, const PairGeometry& geometry,
+                       const StereoCamera& camera);
+
+}  // namespace motorcade

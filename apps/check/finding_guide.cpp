@@ -1,0 +1,77 @@
+#include "apps/check/finding_guide.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace motorcade {
+namespace {
+
+constexpr std::string_view kOnRows =
+    "A point and its partner in the other image are looked for on one row. A row error of half a pixel loses matches "
+    "and bends distances; one of more than a pixel leaves little to build on.";
+constexpr std::string_view kRectify =
+    "Rectify the images anew with this rig's calibration. If they were rectified, the rig has moved since it was "
+    "calibrated: calibrate it again.";
+
+constexpr std::array<std::pair<std::string_view, FindingGuide>, 15> kGuides{{
+    {"rows",
+     {"The rows of the two images do not agree", kOnRows,
+      "Crop both images alike, or rectify them anew: an offset alone is often a crop or a resize that was made "
+      "of one image only."}},
+    {"roll", {"One image is turned against the other", kOnRows, kRectify}},
+    {"zoom",
+     {"One image is larger than the other", kOnRows,
+      "Let both images have the same focal length: rectify them with one common camera matrix (P0 and P1 with "
+      "the same fx)."}},
+    {"yaw", {"The cameras do not look in parallel", kOnRows, kRectify}},
+    {"lift", {"One camera stands higher than the other", kOnRows, kRectify}},
+    {"ahead", {"One camera stands ahead of the other", kOnRows, kRectify}},
+    {"distortion",
+     {"The lenses' distortion is still in the images",
+      "Straight lines are bent, so that distances and directions are wrong toward the corners, by "
+      "different amounts as objects cross the image.",
+      "Undistort and rectify the images, or give the calibration of the unrectified images, so that they "
+      "are rectified while they are read."}},
+    {"exchanged",
+     {"Left and right are exchanged", "Every point would lie behind the camera: nothing can be followed.",
+      "Exchange the two folders, or P0 and P1 of the calibration."}},
+    {"apart",
+     {"The two images of a pair were not taken at the same time",
+      "What moves, and all there is when the camera moves, stands elsewhere in the other image: distances are "
+      "those of another moment.",
+      "Pair the images by their times, not by their numbers. Look for a frame that one camera dropped, and "
+      "let the cameras be triggered together."}},
+    {"exposure",
+     {"The exposure is not steady",
+      "Points are followed by how their surroundings look; a jump in brightness loses them.",
+      "Fix the exposure, let it change slowly, and let both cameras have the same one."}},
+    {"blur",
+     {"The images are blurred, smoothed or strongly compressed",
+      "Fine texture is what points are made of: there are fewer, and they are less exact.",
+      "Look at focus, exposure time, compression, and at denoising in the camera."}},
+    {"noise",
+     {"The images are noisy", "Points are less exact, and fewer are found.",
+      "More light, a longer exposure or less gain."}},
+    {"points",
+     {"Hardly any point is seen in both images", "Neither the rig can be judged nor anything be followed.",
+      "Look at the images: are they dark, blurred, without texture, or not of one rig?"}},
+    {"times",
+     {"The times of the pairs jump",
+      "Speeds are distances over times: a wrong time is a wrong speed, and a gap loses what was followed.",
+      "Look at times.txt (seconds, one line per pair, growing), or leave it out and give the rate with --fps."}},
+    {"calibration",
+     {"The calibration cannot be that of these images",
+      "Distances come from focal length and baseline: all of them would be off by a factor.",
+      "Look at the units (meters, pixels) and at the image size that the calibration was made for."}},
+}};
+
+}  // namespace
+
+FindingGuide guideTo(std::string_view finding) {
+  const auto found = std::ranges::find(kGuides, finding, [](const auto& entry) { return entry.first; });
+  if (found != kGuides.end()) return found->second;
+  return {finding, "Results would be less exact, or none.", "See what was measured."};
+}
+
+}  // namespace motorcade

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <sys/types.h>
+
+#include "io/file_descriptor.hpp"
+#include "io/image_file.hpp"
+
+namespace motorcade {
+
+/// Where the `ffmpeg` of PATH is.
+std::optional<std::filesystem::path> findFfmpeg();
+
+/// Throws UsageError unless a video can have that name: .mp4 (H.264) and .webm (VP9) can.
+void requireVideoName(const std::filesystem::path& file);
+
+/// Hands pictures to ffmpeg, which makes a video of them: beside the file, which is replaced when all is well. Failures
+/// are OutputErrors with ffmpeg's own words.
+class VideoWriter {
+ public:
+  struct Format {
+    ImageSize size;
+    double rate_hz;
+  };
+  /// Once `stop` is set, nothing is waited for any more.
+  VideoWriter(const std::filesystem::path& file, const Format& format, const std::filesystem::path& ffmpeg,
+              const std::atomic<bool>& stop);
+  /// Without `finish`, ffmpeg is ended and what it wrote is removed.
+  ~VideoWriter();
+  VideoWriter(const VideoWriter&) = delete;
+  VideoWriter& operator=(const VideoWriter&) = delete;
+
+  /// All pictures have the size of the format.
+  void write(const RgbImage& picture);
+  void finish();
+
+ private:
+  void start(const std::filesystem::path& ffmpeg, const Format& format);
+  [[noreturn]] void fail(const std::string& what);
+  bool hasEnded(int& status);
+
+  std::filesystem::path file_, partial_;
+  ImageSize size_;
+  const std::atomic<bool>& stop_;
+  std::optional<FileDescriptor> pictures_;
+  FileDescriptor words_;  // what ffmpeg writes to its standard error
+  pid_t process_ = -1;    // running, or not waited for
+};
+
+}  // namespace motorcade
