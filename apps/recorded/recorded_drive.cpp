@@ -34,12 +34,15 @@ void addCovariances(RecordedDrive& drive, const RunFolder& run) {
 
 }  // namespace
 
+const RunFolder::Trajectories& fullerTrajectories(const RunFolder& run) {
+  return run.final.camera.size() >= run.online.camera.size() ? run.final : run.online;
+}
+
 RecordedDrive recordedDrive(const RunFolder& run, const Sequence& sequence) {
   RecordedDrive drive;
   drive.camera = sequence.camera;
   drive.first_frame = run.first_frame;
-  // A run that was killed has few final poses: what was published online tells more then.
-  const RunFolder::Trajectories& shown = run.final.camera.size() >= run.online.camera.size() ? run.final : run.online;
+  const RunFolder::Trajectories& shown = fullerTrajectories(run);
   drive.T_world_cam = shown.camera;
   for (std::size_t i = 0; i < drive.T_world_cam.size(); ++i) {
     drive.stamps.push_back(sequence.stamps[run.first_frame + i]);

@@ -21,6 +21,7 @@
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/feeder.hpp"
 #include "apps/run/input_watch.hpp"
+#include "apps/run/mcap_recorder.hpp"
 #include "apps/run/object_view_writer.hpp"
 #include "apps/run/other_camera.hpp"
 #include "apps/run/plausibility.hpp"
@@ -172,6 +173,23 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   summary.signal = signals.received();
 }
 
+/// Makes the file of `--mcap`, where it is asked for, so that one that cannot be written is known before the run.
+void startMcap(std::optional<McapRecorder>& recorder, const RunOptions& options, const StereoCamera& camera,
+               InputPolicy policy) {
+  if (options.mcap.empty()) return;
+  recorder.emplace(options.mcap, camera,
+                   policy == InputPolicy::kLive ? McapRecorder::Behind::kLeaveOut : McapRecorder::Behind::kWait);
+}
+
+McapSummary endMcap(McapRecorder& recorder, const std::filesystem::path& file) {
+  recorder.close();
+  const auto [images, frames] = recorder.leftOut();
+  if (images + frames > 0)
+    spdlog::warn("{}: {} images and {} whole frames are left out: writing was too slow, or they came too late",
+                 file.string(), images, frames);
+  return {file.string(), recorder.bytes(), images, frames};
+}
+
 }  // namespace
 
 int runSequence(const RunOptions& options) {
@@ -205,12 +223,16 @@ int runSequence(const RunOptions& options) {
   if (options.masks) views.emplace(options.out, sequence.camera);
   RunListeners listeners;
   if (views) listeners.push_back(&*views);
+  std::optional<McapRecorder> mcap;
+  startMcap(mcap, options, sequence.camera, config.pipeline.policy);
+  if (mcap) listeners.push_back(&*mcap);
   Recorder recorder(folder, listeners, range.size());
   FaultInjector faults(fault_spec, sequence);
   InputWatch watch(sequence.camera, options.force);
   follow({sequence, range, options.inject.empty() ? nullptr : &faults, &watch, listeners}, config, std::move(stages),
          recorder, summary);
   if (views) views->close();
+  if (mcap) summary.mcap = endMcap(*mcap, options.mcap);
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));
   if (tellsProgress()) std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);
