@@ -45,7 +45,8 @@ void set(foxglove::Vector3* message, const Eigen::Vector3d& vector) {
 }
 
 void set(foxglove::Quaternion* message, const Eigen::Matrix3d& rotation) {
-  const Eigen::Quaterniond q(rotation);
+  Eigen::Quaterniond q(rotation);
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
   message->set_x(q.x());
   message->set_y(q.y());
   message->set_z(q.z());

@@ -104,14 +104,14 @@ function checkTimes(topics, frames) {
 function checkCuboid(cube, row) {
   const rotation = [0, 1, 2].map((i) => [0, 1, 2].map((j) => Number(row[`r${i}${j}`])));
   const translation = [row.tx, row.ty, row.tz].map(Number);
-  const center = [row.box_x, row.box_y, row.box_z].map(Number);
+  const center = [row.box_x_m, row.box_y_m, row.box_z_m].map(Number);
   const { position, orientation } = cube.pose;
   ["x", "y", "z"].forEach((axis, i) => {
     const expected = translation[i] + rotation[i].reduce((sum, r, j) => sum + r * center[j], 0);
     near(position[axis] ?? 0, expected, 2e-3, `center ${axis} in frame ${row.frame}`); // the table has millimeters
     rotationOf(orientation)[i].forEach((r, j) => near(r, rotation[i][j], 1e-6, `rotation in frame ${row.frame}`));
   });
-  ["length", "width", "height"].forEach((name, i) => near(cube.size[["x", "y", "z"][i]] ?? 0, Number(row[name]), 1e-3, name));
+  ["length", "width", "height"].forEach((name, i) => near(cube.size[["x", "y", "z"][i]] ?? 0, Number(row[`${name}_m`]), 1e-3, name));
 }
 
 function checkObjects(topics, frames) {
@@ -128,7 +128,7 @@ function checkObjects(topics, frames) {
       const facts = Object.fromEntries(entity.metadata.map(({ key, value: fact }) => [key, fact]));
       assert.equal(facts.state, there[i].state);
       near(Number(facts.speed_mps), Math.hypot(...["vx", "vy", "vz"].map((v) => Number(there[i][v]))), 2e-4, "speed");
-      assert.equal(entity.cubes.length, Number(there[i].length) > 0 ? 1 : 0);
+      assert.equal(entity.cubes.length, Number(there[i].length_m) > 0 ? 1 : 0);
       for (const cube of entity.cubes) checkCuboid(cube, there[i]), ++cuboids;
     });
     assert.equal(shown.size, value.entities.length, "what is gone is deleted");
@@ -148,7 +148,7 @@ function checkPoses(topics) {
   });
   for (const { value } of topics.get("/tf")) {
     const [map, camera] = value.transforms;
-    assert.deepEqual([map.parentFrameId, map.childFrameId, camera.parentFrameId, camera.childFrameId], ["map", "world", "world", "camera"]);
+    assert.deepEqual([map.parent_frame_id, map.child_frame_id, camera.parent_frame_id, camera.child_frame_id], ["map", "world", "world", "camera"]);
     const upright = rotationOf(map.rotation); // the camera's axes are right, down, ahead; the map's ahead, left, up
     [[0, 0, 1], [-1, 0, 0], [0, -1, 0]].forEach((row, i) => row.forEach((r, j) => near(upright[i][j], r, 1e-9, "map")));
   }
@@ -157,7 +157,7 @@ function checkPoses(topics) {
 function checkImages(topics) {
   for (const { value } of topics.get("/camera/left/compressed")) {
     assert.equal(value.format, "jpeg");
-    assert.equal(value.frameId, "camera");
+    assert.equal(value.frame_id, "camera");
     assert.deepEqual([...value.data.subarray(0, 2), ...value.data.subarray(-2)], [0xff, 0xd8, 0xff, 0xd9]);
   }
 }
@@ -193,7 +193,7 @@ async function main() {
   const cuboids = checkObjects(topics, frames);
   assert.ok(cuboids > 0);
   checkCut(bytes, frames.length);
-  console.log(`${path.basename(file)}: ${frames.length} frames, ${cuboids} cuboids, ${reader.chunkIndexes.length} chunks, ${schemas} messages types as Foxglove has them`);
+  console.log(`${path.basename(file)}: ${frames.length} frames, ${cuboids} cuboids, ${reader.chunkIndexes.length} chunks, ${schemas} message types compared with Foxglove's`);
 }
 
 main().catch((error) => {
