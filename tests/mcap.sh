@@ -17,7 +17,7 @@ timeout 300 npm install --prefix "$work" --no-audit --no-fund --ignore-scripts -
   leave_out "npm cannot install its packages"
 
 sequence=${2:-$work/drive}
-[[ -n ${2:-} ]] || "$program" synth "$sequence" --scene lead --frames 40 --size 621x187 >/dev/null
+[[ -n ${2:-} ]] || "$program" synth "$sequence" --scene lead --frames 40 --size 621x187 --quiet
 "$program" run "$sequence" --out "$work/run" --masks --mcap "$work/live.mcap" --quiet
 "$program" export "$work/run" --mcap "$work/exported.mcap" --quiet
 node "$work/read_mcap.js" "$work/run" "$work/live.mcap" online

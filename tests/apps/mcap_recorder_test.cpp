@@ -20,7 +20,9 @@ constexpr StereoCamera kCamera{300, 300, 160, 60, 0.5, 320, 120};
 class McapRecorderFile : public testing::Test {
  protected:
   StereoFrame pair(int index) {
-    StereoFrame frame{.frame = {index}, .stamp = stampOf(index)};
+    StereoFrame frame;
+    frame.frame = {index};
+    frame.stamp = stampOf(index);
     frame.left = pool_.acquire(kCamera.width_px, kCamera.height_px);
     for (int y = 0; y < kCamera.height_px; ++y)
       std::fill_n(frame.left.mutableRow(y), kCamera.width_px, std::uint8_t{9});

@@ -40,7 +40,7 @@ TEST_F(McapWriter, WritesWhatAReaderFromTheStartFinds) {
   EXPECT_EQ(found.schemas.at(1).descriptors, "descriptors");
   const auto& fast = found.messages.at("/fast");
   ASSERT_EQ(fast.size(), 35U);
-  for (std::uint32_t i = 0; i < fast.size(); ++i) {
+  for (std::uint64_t i = 0; i < fast.size(); ++i) {
     EXPECT_EQ(fast[i].data, "message " + std::to_string(i));
     EXPECT_EQ(fast[i].sequence, i);
     EXPECT_EQ(fast[i].log_ns, 2'000'000'000U + 100'000'000U * i);
