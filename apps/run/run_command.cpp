@@ -173,22 +173,43 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   summary.signal = signals.received();
 }
 
-/// Makes the file of `--mcap`, where it is asked for, so that one that cannot be written is known before the run.
-void startMcap(std::optional<McapRecorder>& recorder, const RunOptions& options, const StereoCamera& camera,
-               InputPolicy policy) {
-  if (options.mcap.empty()) return;
-  recorder.emplace(options.mcap, camera,
-                   policy == InputPolicy::kLive ? McapRecorder::Behind::kLeaveOut : McapRecorder::Behind::kWait);
-}
+/// What the user asked for beside the run folder's own files. Made before the run, so that what cannot be written is
+/// known by then.
+class ExtraOutputs {
+ public:
+  ExtraOutputs(const RunOptions& options, const StereoCamera& camera, InputPolicy policy) : mcap_file_(options.mcap) {
+    ObjectViewWriter::removeEarlier(options.out);
+    if (options.masks) views_.emplace(options.out, camera);
+    if (options.mcap.empty()) return;
+    using Behind = McapRecorder::Behind;
+    mcap_.emplace(options.mcap, camera, policy == InputPolicy::kLive ? Behind::kLeaveOut : Behind::kWait);
+  }
 
-McapSummary endMcap(McapRecorder& recorder, const std::filesystem::path& file) {
-  recorder.close();
-  const auto [images, frames] = recorder.leftOut();
-  if (images + frames > 0)
-    spdlog::warn("{}: {} images and {} whole frames are left out: writing was too slow, or they came too late",
-                 file.string(), images, frames);
-  return {file.string(), recorder.bytes(), images, frames};
-}
+  RunListeners listeners() {
+    RunListeners listeners;
+    if (views_) listeners.push_back(&*views_);
+    if (mcap_) listeners.push_back(&*mcap_);
+    return listeners;
+  }
+  void close(RunSummary& summary) {
+    if (views_) views_->close();
+    if (mcap_) closeMcap(summary);
+  }
+
+ private:
+  void closeMcap(RunSummary& summary) {
+    mcap_->close();
+    const auto [images, frames] = mcap_->leftOut();
+    if (images + frames > 0)
+      spdlog::warn("{}: {} images and {} whole frames are left out, as writing was too slow", mcap_file_.string(),
+                   images, frames);
+    summary.mcap = {mcap_file_.string(), mcap_->bytes(), images, frames};
+  }
+
+  std::filesystem::path mcap_file_;
+  std::optional<ObjectViewWriter> views_;
+  std::optional<McapRecorder> mcap_;
+};
 
 }  // namespace
 
@@ -218,21 +239,13 @@ int runSequence(const RunOptions& options) {
   summary.layout = sequence.layout;
   summary.rate_hz = rate_hz;
   summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
-  ObjectViewWriter::removeEarlier(options.out);
-  std::optional<ObjectViewWriter> views;
-  if (options.masks) views.emplace(options.out, sequence.camera);
-  RunListeners listeners;
-  if (views) listeners.push_back(&*views);
-  std::optional<McapRecorder> mcap;
-  startMcap(mcap, options, sequence.camera, config.pipeline.policy);
-  if (mcap) listeners.push_back(&*mcap);
-  Recorder recorder(folder, listeners, range.size());
+  ExtraOutputs extras(options, sequence.camera, config.pipeline.policy);
+  Recorder recorder(folder, extras.listeners(), range.size());
   FaultInjector faults(fault_spec, sequence);
   InputWatch watch(sequence.camera, options.force);
-  follow({sequence, range, options.inject.empty() ? nullptr : &faults, &watch, listeners}, config, std::move(stages),
-         recorder, summary);
-  if (views) views->close();
-  if (mcap) summary.mcap = endMcap(*mcap, options.mcap);
+  follow({sequence, range, options.inject.empty() ? nullptr : &faults, &watch, extras.listeners()}, config,
+         std::move(stages), recorder, summary);
+  extras.close(summary);
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));
   if (tellsProgress()) std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);
