@@ -25,7 +25,7 @@ void addFile(const pb::FileDescriptor& file, std::set<std::string>& added, pb::F
 
 }  // namespace
 
-SE3 T_map_world() {
+SE3 mapFromWorld() {
   Eigen::Matrix3d map_world;
   map_world << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   return {map_world, Eigen::Vector3d::Zero()};

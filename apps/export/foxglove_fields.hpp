@@ -26,7 +26,8 @@ struct Color;
 inline constexpr const char* kMapFrame = "map";
 inline constexpr const char* kWorldFrame = "world";
 inline constexpr const char* kCameraFrame = "camera";
-SE3 T_map_world();
+/// T_map_world
+SE3 mapFromWorld();
 
 void set(google::protobuf::Timestamp* message, Timestamp stamp);
 void set(foxglove::Vector3* message, const Eigen::Vector3d& vector);

@@ -94,7 +94,7 @@ std::string calibrationMessage(const StereoCamera& camera, Timestamp stamp) {
 
 std::string transformsMessage(const FrameEstimate& estimate) {
   foxglove::FrameTransforms transforms;
-  addTransform(transforms, estimate.stamp, kMapFrame, kWorldFrame, T_map_world());
+  addTransform(transforms, estimate.stamp, kMapFrame, kWorldFrame, mapFromWorld());
   addTransform(transforms, estimate.stamp, kWorldFrame, kCameraFrame, estimate.T_world_cam);
   for (const ObjectEstimate& object : estimate.objects)
     addTransform(transforms, estimate.stamp, kWorldFrame, "object_" + std::to_string(object.track.value),
