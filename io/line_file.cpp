@@ -1,37 +1,13 @@
 #include "io/line_file.hpp"
 
-#include <cerrno>
-#include <cstring>
-
-#include <unistd.h>
-
 #include "io/errors.hpp"
 
 namespace motorcade {
-namespace {
-
-[[noreturn]] void fail(const std::filesystem::path& file, const char* what) {
-  throw OutputError(file.string() + ": " + what + ": " + std::strerror(errno));
-}
-
-}  // namespace
-
-LineFile::LineFile(const std::filesystem::path& file) : file_(file), descriptor_(createOutput(file)) {}
 
 void LineFile::writeLine(std::string_view line) {
   buffer_.assign(line);
   buffer_ += '\n';
-  std::string_view rest = buffer_;
-  while (!rest.empty()) {
-    const ssize_t written = ::write(descriptor_.number(), rest.data(), rest.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(file_, "cannot be written");
-    rest.remove_prefix(written);  // a disk that is almost full takes a part, and refuses the next
-  }
-}
-
-void LineFile::close() {
-  if (descriptor_.number() >= 0 && ::close(descriptor_.release()) != 0) fail(file_, "cannot be closed");
+  file_.write(buffer_);
 }
 
 void replace(const std::filesystem::path& from, const std::filesystem::path& to) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/file_descriptor.hpp"
+#include "io/output_file.hpp"
 
 namespace motorcade {
 
@@ -13,17 +13,16 @@ namespace motorcade {
 class LineFile {
  public:
   /// Makes the file anew (`createOutput`).
-  explicit LineFile(const std::filesystem::path& file);
+  explicit LineFile(const std::filesystem::path& file) : file_(file) {}
 
   /// Writes the line and its end.
   void writeLine(std::string_view line);
   /// Reports errors that the system held back until now. The destructor closes without reporting.
-  void close();
+  void close() { file_.close(); }
 
  private:
-  std::filesystem::path file_;
+  OutputFile file_;
   std::string buffer_;
-  FileDescriptor descriptor_;
 };
 
 /// Gives a file another name, also one that another file has. Throws OutputError.

@@ -4,6 +4,12 @@
 #include "io/text_file.hpp"
 
 namespace motorcade {
+namespace {
+
+/// Files of earlier versions name the other columns without their unit.
+constexpr std::string_view kHeaderStart = "frame,track_id,point_id";
+
+}  // namespace
 
 std::string objectPointLine(const ObjectPoint& point) {
   std::string line;
@@ -21,7 +27,7 @@ std::string objectPointLine(const ObjectPoint& point) {
 
 std::vector<ObjectPoint> readObjectPoints(const std::filesystem::path& file) {
   std::vector<ObjectPoint> points;
-  for (const auto& line : readTable(file, kObjectPointsHeader)) {
+  for (const auto& line : readTable(file, kHeaderStart)) {
     FieldReader fields(file, line, ',');
     ObjectPoint point;
     point.frame.value = fields.integer("frame");

@@ -11,7 +11,7 @@
 namespace motorcade {
 
 inline constexpr const char* kObjectPointsFile = "object_points.csv";
-inline constexpr std::string_view kObjectPointsHeader = "frame,track_id,point_id,u,v,disparity";
+inline constexpr std::string_view kObjectPointsHeader = "frame,track_id,point_id,u_px,v_px,disparity_px";
 
 /// A point of an object in one frame: left pixel and disparity as measured.
 struct ObjectPoint {

@@ -56,9 +56,10 @@ std::string covarianceLine(FrameId frame, TrackId track, const Matrix6d& covaria
 
 std::string covariancesHeader() {
   std::string header(kCovariancesHeaderStart);
+  const auto unit = [](int row, int column) { return column < 3 ? "_m2" : row < 3 ? "_m_rad" : "_rad2"; };
   for (int row = 0; row < 6; ++row)
     for (int column = row; column < 6; ++column)
-      header.append(",c").append(std::to_string(row)).append(std::to_string(column));
+      header.append(",c").append(std::to_string(row)).append(std::to_string(column)).append(unit(row, column));
   return header;
 }
 

@@ -22,3 +22,4 @@ fi
 cmake --preset $preset --log-level=WARNING
 cmake --build --preset $preset
 ctest --preset $preset "$@"
+if [[ $preset == release && $# -eq 0 ]]; then tests/mcap.sh; fi

@@ -20,6 +20,7 @@ void addEvaluate(CLI::App& app, Action& action);
 void addDraw(CLI::App& app, Action& action);
 void addLatency(CLI::App& app, Action& action);
 void addReport(CLI::App& app, Action& action);
+void addExport(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
 void addSolve(CLI::App& app, Action& action);
 

@@ -6,6 +6,7 @@
 #include "apps/commands/commands.hpp"
 #include "apps/draw/draw_command.hpp"
 #include "apps/evaluate/evaluate_command.hpp"
+#include "apps/export/export_command.hpp"
 #include "apps/latency/latency_command.hpp"
 #include "apps/report/report_command.hpp"
 
@@ -86,6 +87,23 @@ void addLatency(CLI::App& app, Action& action) {
   command->add_option("--json", options->json, "File for the same as JSON");
   command->footer("Example: motorcade latency RUN");
   command->callback([options, &action] { action = [options] { return runLatency(*options); }; });
+}
+
+void addExport(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<ExportOptions>();
+  CLI::App* command = app.add_subcommand("export", "Write a run for other programs: Foxglove, Rerun, evo");
+  command->add_option("run", options->run, "Run folder")->required();
+  command->add_option("--sequence", options->sequence, "The sequence that was run, where it is no longer where it was");
+  command->add_option("--mcap", options->mcap, "File for images, poses, cuboids and points, for Foxglove and Rerun")
+      ->type_name("FILE");
+  command->add_option("--tum", options->tum, "Folder for trajectories: camera.tum, object_NNN.tum")->type_name("DIR");
+  command->add_flag("--predicted", options->with_predicted,
+                    "Also poses in the trajectories that were predicted, not measured");
+  command
+      ->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]; the run's when absent")
+      ->check(CLI::Range(0.001, 100'000.0));
+  command->footer("Example: motorcade export RUN --mcap RUN.mcap --tum TRAJECTORIES");
+  command->callback([options, &action] { action = [options] { return runExport(*options); }; });
 }
 
 }  // namespace motorcade

@@ -45,6 +45,11 @@ void addRun(CLI::App& app, Action& action) {
                     "Behave like a camera that does not wait: the newest pair wins, others are dropped");
   command->add_flag("--masks", options->masks,
                     "Write what the image shows of the objects: masks/NNNNNN.png, outlines.jsonl, object_points.csv");
+  command
+      ->add_option(
+          "--mcap", options->mcap,
+          "Write images, poses, cuboids and points to a file that Foxglove and Rerun open, while the run goes on")
+      ->type_name("FILE");
   command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
   command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
   command

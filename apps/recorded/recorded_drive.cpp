@@ -46,8 +46,7 @@ RecordedDrive driveOf(const RunFolder& run, std::vector<Timestamp> stamps) {
   RecordedDrive drive;
   drive.name = nameOf(run.folder);
   drive.first_frame = run.first_frame;
-  // A run that was killed has few final poses: what was published online tells more then.
-  const RunFolder::Trajectories& shown = run.final.camera.size() >= run.online.camera.size() ? run.final : run.online;
+  const RunFolder::Trajectories& shown = fullerTrajectories(run);
   drive.T_world_cam = shown.camera;
   stamps.resize(std::min(drive.T_world_cam.size(), stamps.size()));
   drive.T_world_cam.resize(stamps.size());
@@ -62,6 +61,10 @@ RecordedDrive driveOf(const RunFolder& run, std::vector<Timestamp> stamps) {
 }
 
 }  // namespace
+
+const RunFolder::Trajectories& fullerTrajectories(const RunFolder& run) {
+  return run.final.camera.size() >= run.online.camera.size() ? run.final : run.online;
+}
 
 RecordedDrive recordedDrive(const RunFolder& run) {
   std::vector<Timestamp> stamps;

@@ -34,6 +34,9 @@ struct RecordedDrive {
                                      std::size_t frame) const;
 };
 
+/// Of a run that was killed what was published online, as it has few final poses.
+const RunFolder::Trajectories& fullerTrajectories(const RunFolder& run);
+
 /// What a run and the truth of its sequence tell. Throws InputError naming the file that cannot be read.
 RecordedDrive recordedDrive(const RunFolder& run, const Sequence& sequence);
 /// What the run alone tells: nothing of the truth, nor of the camera.

@@ -21,6 +21,7 @@
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/feeder.hpp"
 #include "apps/run/input_watch.hpp"
+#include "apps/run/mcap_recorder.hpp"
 #include "apps/run/object_view_writer.hpp"
 #include "apps/run/other_camera.hpp"
 #include "apps/run/plausibility.hpp"
@@ -184,6 +185,44 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   summary.signal = signals.received();
 }
 
+/// What the user asked for beside the run folder's own files. Made before the run, so that what cannot be written is
+/// known by then.
+class ExtraOutputs {
+ public:
+  ExtraOutputs(const RunOptions& options, const StereoCamera& camera, InputPolicy policy) : mcap_file_(options.mcap) {
+    ObjectViewWriter::removeEarlier(options.out);
+    if (options.masks) views_.emplace(options.out, camera);
+    if (options.mcap.empty()) return;
+    using Behind = McapRecorder::Behind;
+    mcap_.emplace(options.mcap, camera, policy == InputPolicy::kLive ? Behind::kLeaveOut : Behind::kWait);
+  }
+
+  RunListeners listeners() {
+    RunListeners listeners;
+    if (views_) listeners.push_back(&*views_);
+    if (mcap_) listeners.push_back(&*mcap_);
+    return listeners;
+  }
+  void close(RunSummary& summary) {
+    if (views_) views_->close();
+    if (mcap_) closeMcap(summary);
+  }
+
+ private:
+  void closeMcap(RunSummary& summary) {
+    mcap_->close();
+    const auto [images, frames] = mcap_->leftOut();
+    if (images + frames > 0)
+      spdlog::warn("{}: {} images and {} whole frames are left out, as writing was too slow", mcap_file_.string(),
+                   images, frames);
+    summary.mcap = {mcap_file_.string(), mcap_->bytes(), images, frames};
+  }
+
+  std::filesystem::path mcap_file_;
+  std::optional<ObjectViewWriter> views_;
+  std::optional<McapRecorder> mcap_;
+};
+
 }  // namespace
 
 int runSequence(const RunOptions& options) {
@@ -211,17 +250,13 @@ int runSequence(const RunOptions& options) {
   summary.inject = options.inject;
   summary.rate_hz = rate_hz;
   summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
-  ObjectViewWriter::removeEarlier(options.out);
-  std::optional<ObjectViewWriter> views;
-  if (options.masks) views.emplace(options.out, sequence.camera);
-  RunListeners listeners;
-  if (views) listeners.push_back(&*views);
-  Recorder recorder(folder, listeners, range.size());
+  ExtraOutputs extras(options, sequence.camera, config.pipeline.policy);
+  Recorder recorder(folder, extras.listeners(), range.size());
   FaultInjector faults(fault_spec, sequence);
   InputWatch watch(sequence.camera, options.force);
-  follow({sequence, range, options.inject.empty() ? nullptr : &faults, &watch, listeners}, config, std::move(stages),
-         recorder, summary);
-  if (views) views->close();
+  follow({sequence, range, options.inject.empty() ? nullptr : &faults, &watch, extras.listeners()}, config,
+         std::move(stages), recorder, summary);
+  extras.close(summary);
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));
   if (tellsProgress()) std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);

@@ -19,6 +19,7 @@ struct RunOptions {
   double fps_hz = 10;
   bool live = false;
   bool masks = false;
+  std::filesystem::path mcap;  // file, for other programs
   std::optional<int> threads;
   std::string frames;  // A:B
   std::filesystem::path config;

@@ -130,6 +130,11 @@ std::string toJson(const RunSummary& summary) {
             {"queues", queues},
             {"solver", toJson(pipeline.solver)},
             {"versions", programVersions()}};
+  if (summary.mcap)
+    json["mcap"] = {{"file", summary.mcap->file},
+                    {"bytes", summary.mcap->bytes},
+                    {"images_left_out", summary.mcap->images_left_out},
+                    {"frames_left_out", summary.mcap->frames_left_out}};
   if (summary.signal != 0) json["interrupted_by"] = summary.signal == SIGINT ? "SIGINT" : "SIGTERM";
   return json.dump(2) + "\n";
 }

@@ -10,6 +10,13 @@
 
 namespace motorcade {
 
+/// What became of `run --mcap`.
+struct McapSummary {
+  std::string file;
+  std::uint64_t bytes = 0;
+  std::int64_t images_left_out = 0, frames_left_out = 0;
+};
+
 /// All that `summary.json` tells about a run.
 struct RunSummary {
   PipelineSummary pipeline;
@@ -23,6 +30,7 @@ struct RunSummary {
   std::int64_t good_frames = 0;
   double wall_s = 0;
   ProcessUsage used;
+  std::optional<McapSummary> mcap{};
   int signal = 0;  // that ended the run early
 
   void setSequence(const Sequence& of);

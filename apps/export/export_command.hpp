@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+namespace motorcade {
+
+/// The command line of `motorcade export`.
+struct ExportOptions {
+  std::filesystem::path run, sequence;
+  std::optional<double> fps_hz;
+  std::filesystem::path mcap;  // file
+  std::filesystem::path tum;   // folder
+  bool with_predicted = false;
+};
+
+/// Writes a run, also one that was killed, for other programs; gives the exit code. Failures are UserErrors.
+int runExport(const ExportOptions& options);
+
+}  // namespace motorcade

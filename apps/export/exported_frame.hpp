@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/recorded/recorded_drive.hpp"
+#include "core/frame_timing.hpp"
+#include "core/messages.hpp"
+#include "io/frame_table.hpp"
+
+namespace motorcade {
+
+/// All that a file for other programs tells of one frame, whether the run goes on or has ended.
+struct ExportedFrame {
+  using StageTimes = std::array<FrameRow::StageTime, kStageCount>;
+  struct Point {
+    TrackId track;  // not valid for a point at rest
+    Eigen::Vector3d p_cam;
+  };
+  FrameEstimate estimate;
+  std::vector<Point> points;
+  std::string jpeg;  // the left image; empty where it is left out
+  double latency_ms = 0, decode_ms = 0;
+  std::optional<StageTimes> stages;
+  int points_at_rest = 0, points_undecided = 0;
+};
+
+/// Of the points, those that the front-end took for points at rest or of an object in this very frame.
+std::vector<ExportedFrame::Point> exportedPoints(const FrameMeasurements& measurements, const StereoCamera& camera);
+
+/// What each stage did of a frame, as `frames.csv` tells it.
+ExportedFrame::StageTimes stageTimes(const FrameTiming& timing);
+
+/// One frame of a run folder, by its index in the run, without its image.
+ExportedFrame exportedFrame(const RecordedDrive& drive, const RunFolder& run, std::size_t index);
+
+/// The left image as a JPEG file. One choice for all inputs: what the pipeline saw, in a third of a PNG's bytes.
+std::string exportedImage(const Image& left);
+
+}  // namespace motorcade

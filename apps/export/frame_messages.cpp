@@ -1,0 +1,167 @@
+#include "apps/export/frame_messages.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+#include <foxglove/CameraCalibration.pb.h>
+#include <foxglove/CompressedImage.pb.h>
+#include <foxglove/FrameTransforms.pb.h>
+#include <foxglove/PointCloud.pb.h>
+#include <foxglove/PoseInFrame.pb.h>
+#include <foxglove/PosesInFrame.pb.h>
+#include <motorcade/FrameDiagnostics.pb.h>
+
+#include "apps/draw/palette.hpp"
+#include "apps/export/foxglove_fields.hpp"
+#include "io/run_folder.hpp"
+
+namespace motorcade {
+namespace {
+
+/// How a point lies in a point cloud, one behind the other.
+struct PackedPoint {
+  float x_m, y_m, z_m;
+  std::int32_t track;
+  std::uint8_t red, green, blue, alpha;
+};
+constexpr std::uint32_t kPoint_bytes = 20;
+static_assert(sizeof(PackedPoint) == kPoint_bytes && std::endian::native == std::endian::little);
+constexpr Color kAtRest{150, 160, 170};
+
+void addField(foxglove::PointCloud& cloud, const char* name, std::size_t offset,
+              foxglove::PackedElementField::NumericType type) {
+  foxglove::PackedElementField* const field = cloud.add_fields();
+  field->set_name(name);
+  field->set_offset(static_cast<std::uint32_t>(offset));
+  field->set_type(type);
+}
+
+PackedPoint packed(const ExportedFrame::Point& point) {
+  const Color color = point.track.valid() ? trackColor(point.track) : kAtRest;
+  const Eigen::Vector3f p_cam = point.p_cam.cast<float>();
+  return {.x_m = p_cam.x(),
+          .y_m = p_cam.y(),
+          .z_m = p_cam.z(),
+          .track = static_cast<std::int32_t>(point.track.value),
+          .red = static_cast<std::uint8_t>(color.red),
+          .green = static_cast<std::uint8_t>(color.green),
+          .blue = static_cast<std::uint8_t>(color.blue),
+          .alpha = 255};
+}
+
+/// Where the child's origin lies in its parent, and how it is turned there.
+void addTransform(foxglove::FrameTransforms& transforms, Timestamp stamp, const char* parent, const std::string& child,
+                  const SE3& T_parent_child) {
+  foxglove::FrameTransform* const transform = transforms.add_transforms();
+  set(transform->mutable_timestamp(), stamp);
+  transform->set_parent_frame_id(parent);
+  transform->set_child_frame_id(child);
+  set(transform->mutable_translation(), T_parent_child.translation());
+  set(transform->mutable_rotation(), T_parent_child.rotation());
+}
+
+int pointsOnObjects(const ExportedFrame& frame) {
+  return static_cast<int>(std::ranges::count_if(frame.points, [](const auto& point) { return point.track.valid(); }));
+}
+
+}  // namespace
+
+std::string imageMessage(const ExportedFrame& frame) {
+  foxglove::CompressedImage image;
+  set(image.mutable_timestamp(), frame.estimate.stamp);
+  image.set_frame_id(kCameraFrame);
+  image.set_format("jpeg");
+  image.set_data(frame.jpeg);
+  return image.SerializeAsString();
+}
+
+std::string calibrationMessage(const StereoCamera& camera, Timestamp stamp) {
+  foxglove::CameraCalibration calibration;
+  set(calibration.mutable_timestamp(), stamp);
+  calibration.set_frame_id(kCameraFrame);
+  calibration.set_width(static_cast<std::uint32_t>(camera.width_px));
+  calibration.set_height(static_cast<std::uint32_t>(camera.height_px));
+  for (const double k : {camera.fx_px, 0.0, camera.cx_px, 0.0, camera.fy_px, camera.cy_px, 0.0, 0.0, 1.0})
+    calibration.add_k(k);
+  for (int i = 0; i < 9; ++i) calibration.add_r(i % 4 == 0 ? 1 : 0);
+  for (const double p :
+       {camera.fx_px, 0.0, camera.cx_px, 0.0, 0.0, camera.fy_px, camera.cy_px, 0.0, 0.0, 0.0, 1.0, 0.0})
+    calibration.add_p(p);
+  return calibration.SerializeAsString();
+}
+
+std::string transformsMessage(const FrameEstimate& estimate) {
+  foxglove::FrameTransforms transforms;
+  addTransform(transforms, estimate.stamp, kMapFrame, kWorldFrame, mapFromWorld());
+  addTransform(transforms, estimate.stamp, kWorldFrame, kCameraFrame, estimate.T_world_cam);
+  for (const ObjectEstimate& object : estimate.objects)
+    addTransform(transforms, estimate.stamp, kWorldFrame, "object_" + std::to_string(object.track.value),
+                 object.T_world_body);
+  return transforms.SerializeAsString();
+}
+
+std::string poseMessage(const FrameEstimate& estimate) {
+  foxglove::PoseInFrame pose;
+  set(pose.mutable_timestamp(), estimate.stamp);
+  pose.set_frame_id(kWorldFrame);
+  set(pose.mutable_pose(), estimate.T_world_cam);
+  return pose.SerializeAsString();
+}
+
+std::string pathMessage(Timestamp stamp, const std::vector<SE3>& T_world_cam) {
+  foxglove::PosesInFrame path;
+  set(path.mutable_timestamp(), stamp);
+  path.set_frame_id(kWorldFrame);
+  for (const SE3& pose : T_world_cam) set(path.add_poses(), pose);
+  return path.SerializeAsString();
+}
+
+std::string pointsMessage(const ExportedFrame& frame) {
+  using foxglove::PackedElementField;
+  foxglove::PointCloud cloud;
+  set(cloud.mutable_timestamp(), frame.estimate.stamp);
+  cloud.set_frame_id(kCameraFrame);
+  set(cloud.mutable_pose(), SE3());
+  cloud.set_point_stride(kPoint_bytes);
+  addField(cloud, "x", offsetof(PackedPoint, x_m), PackedElementField::FLOAT32);
+  addField(cloud, "y", offsetof(PackedPoint, y_m), PackedElementField::FLOAT32);
+  addField(cloud, "z", offsetof(PackedPoint, z_m), PackedElementField::FLOAT32);
+  addField(cloud, "track_id", offsetof(PackedPoint, track), PackedElementField::INT32);
+  addField(cloud, "red", offsetof(PackedPoint, red), PackedElementField::UINT8);
+  addField(cloud, "green", offsetof(PackedPoint, green), PackedElementField::UINT8);
+  addField(cloud, "blue", offsetof(PackedPoint, blue), PackedElementField::UINT8);
+  addField(cloud, "alpha", offsetof(PackedPoint, alpha), PackedElementField::UINT8);
+  std::string data(frame.points.size() * kPoint_bytes, '\0');
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    const PackedPoint point = packed(frame.points[i]);
+    std::memcpy(&data[i * kPoint_bytes], &point, kPoint_bytes);
+  }
+  cloud.set_data(std::move(data));
+  return cloud.SerializeAsString();
+}
+
+std::string diagnosticsMessage(const ExportedFrame& frame) {
+  FrameDiagnostics diagnostics;
+  set(diagnostics.mutable_timestamp(), frame.estimate.stamp);
+  diagnostics.set_frame(frame.estimate.frame.value);
+  diagnostics.set_status(std::string(statusName(frame.estimate.status)));
+  diagnostics.set_cause(std::string(causeName(frame.estimate.cause)));
+  diagnostics.set_segment(frame.estimate.segment);
+  diagnostics.set_latency_ms(frame.latency_ms);
+  diagnostics.set_decode_ms(frame.decode_ms);
+  for (std::size_t i = 0; frame.stages && i < kStageCount; ++i) {
+    StageTime* const stage = diagnostics.add_stages();
+    stage->set_stage(std::string(kStageKeys[i]));
+    stage->set_work_ms((*frame.stages)[i].work_ms);
+    stage->set_cpu_ms((*frame.stages)[i].cpu_ms);
+  }
+  diagnostics.set_objects(static_cast<std::int32_t>(frame.estimate.objects.size()));
+  diagnostics.set_points_on_objects(pointsOnObjects(frame));
+  diagnostics.set_points_at_rest(frame.points_at_rest);
+  diagnostics.set_points_undecided(frame.points_undecided);
+  return diagnostics.SerializeAsString();
+}
+
+}  // namespace motorcade

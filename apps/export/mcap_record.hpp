@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+
+/// Records of MCAP files (https://mcap.dev/spec).
+namespace motorcade::mcap {
+
+/// At the file's beginning and at its end.
+inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
+
+enum class Opcode : std::uint8_t {
+  kHeader = 0x01,
+  kFooter = 0x02,
+  kSchema = 0x03,
+  kChannel = 0x04,
+  kMessage = 0x05,
+  kChunk = 0x06,
+  kMessageIndex = 0x07,
+  kChunkIndex = 0x08,
+  kStatistics = 0x0B,
+  kSummaryOffset = 0x0E,
+  kDataEnd = 0x0F,
+};
+
+/// The content of a record, field by field: numbers with the lowest byte first, strings and maps after their length.
+class Fields {
+ public:
+  Fields& u8(std::uint8_t value) { return number(value, 1); }
+  Fields& u16(std::uint16_t value) { return number(value, 2); }
+  Fields& u32(std::uint32_t value) { return number(value, 4); }
+  Fields& u64(std::uint64_t value) { return number(value, 8); }
+  Fields& text(std::string_view value);
+  /// Bytes up to the end of the record.
+  Fields& bytes(std::string_view value);
+  /// From a channel's number.
+  Fields& map(const std::map<std::uint16_t, std::uint64_t>& value);
+
+  const std::string& content() const { return content_; }
+
+ private:
+  Fields& number(std::uint64_t value, int bytes);
+
+  std::string content_;
+};
+
+/// Appends a whole record; gives its length with its head.
+std::uint64_t append(std::string& records, Opcode opcode, const Fields& fields);
+
+/// As in zlib, on top of the sum of what came before.
+std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0);
+
+}  // namespace motorcade::mcap

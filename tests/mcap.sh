@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Writes a short rendered drive as MCAP, live and from its run folder, and reads both files with the readers and schemas that others
+# use (npm's @mcap/core, @foxglove/schemas): tests/mcap.sh [PROGRAM] [FOLDER of a sequence]
+# Prints one line and ends well where Node.js is missing or npm cannot reach its packages.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+program=$(realpath "${1:-build/release/apps/motorcade}")
+
+leave_out() { echo "tests/mcap.sh: left out, $1"; exit 0; }
+command -v node >/dev/null || leave_out "Node.js is not there"
+command -v npm >/dev/null || leave_out "npm is not there"
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cp tests/mcap/package.json tests/mcap/read_mcap.js "$work"
+timeout 300 npm install --prefix "$work" --no-audit --no-fund --ignore-scripts --loglevel=error >"$work/npm.log" 2>&1 ||
+  leave_out "npm cannot install its packages"
+
+sequence=${2:-$work/drive}
+[[ -n ${2:-} ]] || "$program" synth "$sequence" --scene lead --frames 40 --size 621x187 --quiet
+"$program" run "$sequence" --out "$work/run" --masks --mcap "$work/live.mcap" --quiet
+"$program" export "$work/run" --mcap "$work/exported.mcap" --quiet
+node "$work/read_mcap.js" "$work/run" "$work/live.mcap" online
+node "$work/read_mcap.js" "$work/run" "$work/exported.mcap" final
