@@ -108,7 +108,8 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   app.set_version_flag("--version", versionsText);
   app.require_subcommand(1);
   CommandLine command_line;
-  for (const auto add : {addRun, addCheck, addSynth, addEvaluate, addDraw, addSolve}) add(app, command_line.action);
+  for (const auto add : {addRun, addCheck, addSynth, addEvaluate, addDraw, addView, addSolve})
+    add(app, command_line.action);
   std::optional<std::string> help;
   addHelp(app, help);
   Talk talk;

@@ -18,6 +18,7 @@ void addRun(CLI::App& app, Action& action);
 void addCheck(CLI::App& app, Action& action);
 void addEvaluate(CLI::App& app, Action& action);
 void addDraw(CLI::App& app, Action& action);
+void addView(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
 void addSolve(CLI::App& app, Action& action);
 
