@@ -25,7 +25,7 @@ struct DurationBuckets {
 
 /// A run's counts at one moment.
 struct RunSnapshot {
-  std::string state;  // running, paused, ended or recorded
+  std::string state{};  // running, paused, ended or recorded
   std::int64_t received = 0, processed = 0, dropped = 0, rejected = 0, lost = 0;
   DurationBuckets latency{};
   std::array<DurationBuckets, kStageCount> stages{};

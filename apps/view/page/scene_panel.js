@@ -1,5 +1,5 @@
 // The scene in three dimensions, from behind or above, with the camera followed if wanted.
-import { dispose, dots, ego, ellipse, headingOf, place, ribbon, vehicle } from "/scene_shapes.js";
+import { dispose, dots, ego, ellipse, headingOf, place, ribbon, roadGrid, vehicle } from "/scene_shapes.js";
 
 const kPast = 150, kPredicted_s = 2, kCell_m = 5, kUsualHeight_m = 1.65;
 
@@ -54,10 +54,9 @@ export class ScenePanel {
 
   addGrid() {
     if (this.grid) { this.scene.remove(this.grid); dispose(this.grid); }
-    this.grid = new THREE.GridHelper(400, 400 / kCell_m, css("--grid"), css("--grid"));
+    this.grid = roadGrid(kCell_m, css("--grid"));
     this.grid.visible = this.road !== null;
     this.scene.add(this.grid);
-    this.scene.fog = new THREE.Fog(new THREE.Color(css("--scene")), 60, 190);
   }
 
   color(object) { return new THREE.Color(object.color).multiplyScalar(this.dark.matches ? 1 : 0.74); }
@@ -88,8 +87,8 @@ export class ScenePanel {
     const { up } = this.road;
     this.grid.visible = this.road.seen;
     this.grid.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), up);
-    const snapped = (value) => Math.round(value / kCell_m) * kCell_m;
-    this.grid.position.copy(this.below(new THREE.Vector3(snapped(at.x), 0, snapped(at.z)), -0.03));
+    this.grid.position.copy(this.below(at, -0.03));
+    this.grid.material.uniforms.eye.value.copy(at);
   }
 
   show(frame, past, chosen) {
@@ -100,7 +99,7 @@ export class ScenePanel {
     const at = this.below(place([frame.T[3], frame.T[7], frame.T[11]]), 0.05);
     group.add(ego(frame.T, at, this.rig, colors));
     const way = past.slice(-600).map(({ T }) => this.below(place([T[3], T[7], T[11]]), 0.02));
-    if (way.length > 1) group.add(ribbon(way, 0.35, colors.accent, 0.75));
+    if (way.length > 1) group.add(ribbon(way, 0.3, colors.accent, 0.7));
     for (const object of frame.objects) this.addObject(group, object);
     this.addPoints(group);
     if (this.content) { this.scene.remove(this.content); dispose(this.content); }
@@ -119,7 +118,7 @@ export class ScenePanel {
       const then = objects.find(({ id }) => id === object.id);
       if (then) way.push(this.below(place(then.center), 0.04));
     }
-    if (way.length > 1) group.add(ribbon(way, 0.22, color, 0.9));
+    if (way.length > 1) group.add(ribbon(way, 0.16, color, 0.85));
     if (object.state !== "stopped" && object.speed > 0.5) group.add(dots(this.predicted(object, center), 0.17, 0.85, color));
   }
 
@@ -168,7 +167,7 @@ export class ScenePanel {
   look(from) {
     if (!this.pose) return;
     const tall = this.element.clientHeight > 1.2 * this.element.clientWidth;
-    const [eye, target] = from === "above" ? [[0, tall ? 82 : 62, -19.9], [0, 0, -20]] : [[0, tall ? 13 : 9, tall ? 19 : 14], [0, 0, tall ? -12 : -13]];
+    const [eye, target] = from === "above" ? [[0, tall ? 82 : 62, -19.9], [0, 0, -20]] : [[0, tall ? 15 : 12.5, tall ? 22 : 17], [0, 0, tall ? -13 : -14]];
     const axis = new THREE.Vector3(0, 1, 0);
     this.camera.position.set(...eye).applyAxisAngle(axis, this.pose.heading).add(this.pose.at);
     this.orbit.target.set(...target).applyAxisAngle(axis, this.pose.heading).add(this.pose.at);

@@ -90,10 +90,25 @@ export function vehicle(object, color, chosen) {
   return group;
 }
 
+// Lines on the road every so many meters of the world, fading away from where the camera is.
+export function roadGrid(cell_m, color) {
+  const material = new THREE.ShaderMaterial({
+    transparent: true, depthWrite: false, side: THREE.DoubleSide, extensions: { derivatives: true },
+    uniforms: { color: { value: new THREE.Color(color) }, eye: { value: new THREE.Vector3() } },
+    vertexShader: `varying vec3 world;
+      void main() { vec4 p = modelMatrix * vec4(position, 1.); world = p.xyz; gl_Position = projectionMatrix * viewMatrix * p; }`,
+    fragmentShader: `varying vec3 world; uniform vec3 color, eye;
+      float lines(vec2 at) { vec2 w = fwidth(at), d = abs(fract(at - .5) - .5) / w; return max(0., 1. - min(d.x, d.y) * .8) * clamp(.6 / max(w.x, w.y), 0., 1.); }
+      void main() { float far = distance(world.xz, eye.xz);
+        gl_FragColor = vec4(color, lines(world.xz / ${cell_m.toFixed(1)}) * clamp(1.15 - far / 110., 0., 1.)); }`,
+  });
+  return new THREE.Mesh(new THREE.PlaneBufferGeometry(300, 300).rotateX(-Math.PI / 2), material);
+}
+
 // The camera with its field of view on the ground.
 export function ego(T, road, camera, colors) {
   const group = new THREE.Group();
-  const shape = new THREE.Shape([[0, 1.9], [0.85, -1.5], [0, -0.9], [-0.85, -1.5]].map((p) => new THREE.Vector2(...p)));
+  const shape = new THREE.Shape([[0, 2.1], [0.8, -1.3], [0, -0.8], [-0.8, -1.3]].map((p) => new THREE.Vector2(...p)));
   const arrow = new THREE.Mesh(new THREE.ShapeBufferGeometry(shape).rotateX(-Math.PI / 2), flat(colors.accent, 1));
   group.add(arrow);
   const half = 0.5 * camera.width / camera.fx, far = 50;

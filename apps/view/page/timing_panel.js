@@ -51,19 +51,31 @@ export class TimingPanel {
         scales: { x: { grid: { display: false }, ticks: { maxRotation: 0, autoSkipPadding: 8 } }, y: { beginAtZero: true, ticks: { maxTicksLimit: 4, precision: 0 } } },
       },
     });
+    this.recent = new Chart(this.element("plot-recent"), {
+      type: "line",
+      data: { datasets: [{ data: [], pointRadius: 0, borderWidth: 1.5, fill: "origin" }] },
+      options: {
+        animation: false, parsing: false, maintainAspectRatio: false, events: [], plugins: { legend: { display: false } },
+        scales: { x: { type: "linear", grid: { display: false }, ticks: { maxTicksLimit: 7, maxRotation: 0, precision: 0 } }, y: { beginAtZero: true, ticks: { maxTicksLimit: 4 } } },
+      },
+    });
     this.paint();
-    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { this.paint(); this.chart.update(); });
+    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { this.paint(); this.chart.update(); this.recent.update(); });
   }
 
   paint() {
     this.chart.data.datasets[0].backgroundColor = css("--bar");
-    for (const axis of ["x", "y"]) this.chart.options.scales[axis].ticks.color = css("--dim");
-    this.chart.options.scales.y.grid = { color: css("--line"), drawBorder: false };
+    Object.assign(this.recent.data.datasets[0], { borderColor: css("--bar"), backgroundColor: `${css("--bar")}33` });
+    for (const chart of [this.chart, this.recent]) {
+      for (const axis of ["x", "y"]) chart.options.scales[axis].ticks.color = css("--dim");
+      chart.options.scales.y.grid = { color: css("--line"), drawBorder: false };
+    }
   }
 
   showFrame(frame, past) {
     const timed = past.slice(-kRecent).map(({ timing }) => timing).filter(Boolean);
     const sorted = timed.map(({ latency_ms }) => latency_ms).sort((a, b) => a - b);
+    this.showRecent(past.slice(-200));
     const text = (value) => (value === null || value === undefined ? "\u2013" : value.toFixed(1));
     facts(this.element("percentiles"), [["now", text(frame.timing?.latency_ms)], ["p50", text(quantile(sorted, 0.5))],
       ["p95", text(quantile(sorted, 0.95))], ["p99", text(quantile(sorted, 0.99))], ["max", text(sorted[sorted.length - 1])]]);
@@ -73,10 +85,21 @@ export class TimingPanel {
       ({ name, share: (now[i] ?? 0) / scale, mark: high[i] / scale, text: text(now[i]) })));
   }
 
+  showRecent(past) {
+    this.recent.data.datasets[0].data = past.filter(({ timing }) => timing).map(({ frame, timing }) => ({ x: frame, y: timing.latency_ms }));
+    const scale = this.recent.options.scales.x;
+    scale.min = past[0]?.frame;
+    scale.max = past[past.length - 1]?.frame;
+    const now = performance.now();
+    if (now - (this.recent_drawn ?? 0) < 200) return;
+    this.recent_drawn = now;
+    this.recent.update();
+  }
+
   showRun(run) {
     if (run.received === undefined) return;
     facts(this.element("counts"), [["received", run.received], ["processed", run.processed], ["dropped", run.dropped],
-      ["rejected", run.rejected], ["lost", run.lost], ["viewers", run.viewers]]);
+      ["rejected", run.rejected], ["lost", run.lost], ...(this.info.recorded ? [] : [["viewers", run.viewers]])]);
     const queues = run.queues ?? [];
     this.element("queues-title").hidden = queues.length === 0;
     bars(this.element("queues"), queues.map(({ name, waiting, bound }) =>
