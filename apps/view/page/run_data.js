@@ -35,7 +35,10 @@ export class RunData {
 
   listen() {
     const events = new EventSource("/events");
-    events.onmessage = (event) => this.receive(JSON.parse(event.data));
+    events.onmessage = (event) => {
+      this.receive(JSON.parse(event.data));
+      if (this.state === "ended") events.close();
+    };
     events.onerror = () => {
       if (this.state === "ended") return events.close();
       if (events.readyState === EventSource.CLOSED) return this.tellRefusal();
@@ -57,7 +60,7 @@ export class RunData {
 
   receive(event) {
     this.tell(event.run);
-    if (!event.frame) return;
+    if (!event.frame || this.state === "ended") return;  // its image could not be loaded any more
     const number = event.frame.frame;
     const missing = this.newest !== null && number > this.newest + 1;
     if (missing) this.fetchFrames(this.newest + 1).catch(() => {});
