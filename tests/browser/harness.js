@@ -46,7 +46,7 @@ export async function withPage(browser, options, use) {
 }
 
 export async function screenshot(page, name, options = {}) {
-  if (kScreenshots) await page.screenshot({ path: `${kScreenshots}/${name}.png`, ...options });
+  if (kScreenshots) await page.screenshot({ path: `${kScreenshots}/${name}.jpg`, type: "jpeg", quality: 82, ...options });
 }
 
 // No wider than the screen.

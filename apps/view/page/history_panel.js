@@ -62,8 +62,10 @@ export class HistoryPanel {
     const points = (sign) => rows.filter(({ object }) => value(object) != null)
       .map(({ time, object }) => ({ x: time, y: value(object) + sign * (sigma(object) ?? 0) }));
     [-1, 1, 0].forEach((sign, i) => { chart.data.datasets[i].data = points(sign); });
+    Object.assign(chart.options.scales.x, { min: rows[0].time, max: Math.max(rows[rows.length - 1].time, rows[0].time + 1) });
     const last = rows[rows.length - 1].object;
+    const text = (number) => number.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
     this.element(`now-${name}`).textContent = value(last) == null ? "" :
-      `${value(last).toFixed(digits)} \u00b1 ${(sigma(last) ?? 0).toFixed(digits)} ${unit}`;
+      `${text(value(last))}${sigma(last) == null ? "" : ` \u00b1 ${text(sigma(last))}`} ${unit}`;
   }
 }
