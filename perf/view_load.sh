@@ -17,15 +17,15 @@ end_viewers() {
 }
 trap 'end_viewers; rm -rf "$out"' EXIT
 
-viewer() {  # URL: takes each event, then the image that it names
+viewer() {  # URL PORT: takes each event, then the image that it names
   local line number
-  # One process for all images, on a pipe: starting curl anew would cost more than what is measured.
+  # Without a program for each image, whose start would cost more than what is measured.
   curl -sN --max-time 120 "$1events" | while read -r line; do
     [[ $line =~ \"frame\":\{\"frame\":([0-9]+) ]] || continue
     number=${BASH_REMATCH[1]}
     exec 3<>"/dev/tcp/127.0.0.1/$2" || break
     printf 'GET /image/%s.jpg HTTP/1.1\r\nHost: 127.0.0.1:%s\r\nConnection: close\r\n\r\n' "$number" "$2" >&3
-    cat <&3 >/dev/null
+    LC_ALL=C read -r -d '' -n 4000000 -u 3 _ || true
     exec 3<&-
   done
 }
@@ -35,7 +35,7 @@ stalled() {  # PORT: asks for events and never reads one
   sleep 120
 }
 
-measure() {  # KIND ROUND
+measure() {  # KIND
   local options=(--rate 10 --force -q) url="" port viewers=0 run
   [[ $1 == without ]] || options+=(--view 127.0.0.1:0)
   case $1 in one) viewers=1 ;; eight) viewers=7 ;; esac
@@ -49,10 +49,10 @@ measure() {  # KIND ROUND
       sleep 0.02
     done
     port=${url##*:} port=${port%/}
-    for _ in $(seq "$viewers"); do viewer "$url" "$port" & started+=($!); done
-    if [[ $1 == eight ]]; then stalled "$port" & started+=($!); fi
+    for _ in $(seq "$viewers"); do viewer "$url" "$port" 2>/dev/null & started+=($!); done
+    if [[ $1 == eight ]]; then stalled "$port" 2>/dev/null & started+=($!); fi
   fi
-  wait "$run"
+  wait "$run" || { cat "$out/log" >&2; exit 1; }
   end_viewers
   local unit
   unit=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "decode_ms") column = i } NR > 1 { print $column }' "$out/run/frames.csv" | sort -n | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }')
@@ -60,8 +60,8 @@ measure() {  # KIND ROUND
     '[$kind, .latency_ms.p50, .latency_ms.p99, 1000 * .cpu_s / .frames.received, $unit] | @tsv' "$out/run/summary.json" >>"$out/rows"
 }
 
-for round in $(seq "$rounds"); do
-  for kind in without nobody one eight; do measure $kind "$round"; done
+for _ in $(seq "$rounds"); do
+  for kind in without nobody one eight; do measure "$kind"; done
 done
 median() { sort -n | awk '{ v[NR] = $1 } END { print (v[int((NR + 1) / 2)] + v[int(NR / 2) + 1]) / 2 }'; }
 printf '%-10s %10s %10s %14s %10s %14s\n' viewers "p50 ms" "p99 ms" "CPU ms/frame" "unit ms" "p99 - without"

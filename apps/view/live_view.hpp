@@ -19,7 +19,7 @@ namespace motorcade {
 
 /// Shows a run on a page while it goes on. What the run tells is taken from bounded queues by a thread of the view's
 /// own; where that is too slow, it is the page that misses frames. Nothing is made for the page that nobody looks at.
-class LiveView : public RunListener, public PageSource {
+class LiveView final : public RunListener, public PageSource {
  public:
   /// The page's last frames, for those who come later or look back.
   static constexpr std::size_t kKeptFrames = 600;
