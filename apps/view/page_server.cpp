@@ -105,7 +105,11 @@ PageServer::Impl::Impl(ListenAddress address, PageSource& source, Viewers& viewe
     ::setpriority(PRIO_PROCESS, 0, kNice);  // of this thread and of those that it starts
     server_.listen_after_bind();
   });
-  while (!server_.is_running()) std::this_thread::sleep_for(1ms);  // stopping it earlier would have no effect
+  const auto deadline = std::chrono::steady_clock::now() + 10s;
+  while (!server_.is_running()) {  // stopping it earlier would have no effect
+    if (std::chrono::steady_clock::now() > deadline) throw OutputError(address_.text() + ": the server does not start");
+    std::this_thread::sleep_for(1ms);
+  }
 }
 
 PageServer::Impl::~Impl() {

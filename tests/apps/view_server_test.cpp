@@ -68,7 +68,8 @@ class Client {
   std::string hear(const std::string& until = "") const {
     std::string answer;
     std::array<char, 4096> part{};
-    while (until.empty() || answer.find(until) == std::string::npos) {
+    const auto deadline = std::chrono::steady_clock::now() + 20s;
+    while (std::chrono::steady_clock::now() < deadline && (until.empty() || answer.find(until) == std::string::npos)) {
       const ssize_t got = ::recv(socket_, part.data(), part.size(), 0);
       if (got <= 0) break;
       answer.append(part.data(), static_cast<std::size_t>(got));
