@@ -109,7 +109,7 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   app.require_subcommand(1);
   CommandLine command_line;
   for (const auto add :
-       {addRun, addCheck, addSynth, addEvaluate, addDraw, addReport, addLatency, addExport, addSolve})
+       {addRun, addCheck, addSynth, addEvaluate, addDraw, addReport, addLatency, addExport, addView, addSolve})
     add(app, command_line.action);
   std::optional<std::string> help;
   addHelp(app, help);

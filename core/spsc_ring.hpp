@@ -77,6 +77,11 @@ class SpscRing {
   }
   bool closed() const { return closed_.load(std::memory_order_acquire); }
 
+  /// About how many values are held; from any thread.
+  std::size_t size() const {
+    const auto head = head_.load(std::memory_order_acquire);
+    return std::min<std::size_t>(tail_.load(std::memory_order_acquire) - head, slots_.size());
+  }
   /// Most values ever held at once. Read it from the producer or after it has ended.
   std::size_t highWater() const { return high_water_; }
 

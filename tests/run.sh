@@ -3,6 +3,7 @@
 #   tests/run.sh --asan ...   under AddressSanitizer and UndefinedBehaviorSanitizer
 #   tests/run.sh --asan-quick ...   the same for the tests of core and io alone, without what else takes long to build
 #   tests/run.sh --tsan ...   the lock-free parts and the flow graph's wiring under ThreadSanitizer (arguments go to the tests)
+# A whole run ends with the pages in a browser (tests/browser.sh).
 # Tests on real drives read the folder MOTORCADE_DATA (default: ../shared/data) and are skipped where a drive is not there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -22,4 +23,7 @@ fi
 cmake --preset $preset --log-level=WARNING
 cmake --build --preset $preset
 ctest --preset $preset "$@"
-if [[ $preset == release && $# -eq 0 ]]; then tests/mcap.sh; fi
+if [[ $preset == release && $# -eq 0 ]]; then
+  tests/mcap.sh
+  tests/browser.sh
+fi

@@ -21,6 +21,7 @@ void addDraw(CLI::App& app, Action& action);
 void addLatency(CLI::App& app, Action& action);
 void addReport(CLI::App& app, Action& action);
 void addExport(CLI::App& app, Action& action);
+void addView(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
 void addSolve(CLI::App& app, Action& action);
 

@@ -72,6 +72,13 @@ void addRun(CLI::App& app, Action& action) {
       ->type_name("tracked=FRACTION");
   command->add_flag("--force", options->force,
                     "Replace a finished run, and go on where the input is found to be worthless");
+  command
+      ->add_option("--view", options->view,
+                   "Serve a page that follows the run, under http://127.0.0.1:8080/ unless told otherwise")
+      ->type_name("[ADDR:PORT]")
+      ->expected(0, 1)
+      ->default_str("")
+      ->each([options](const std::string&) { options->shown = true; });
   command->footer("Example: motorcade run DRIVE --out RUN --masks");
   command->callback([options, &action] { action = [options] { return runSequence(*options); }; });
 }

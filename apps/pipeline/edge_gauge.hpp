@@ -15,6 +15,7 @@ class EdgeGauge {
     }
   }
   void leave() { waiting_.fetch_sub(1, std::memory_order_relaxed); }
+  std::int64_t waiting() const { return waiting_.load(std::memory_order_relaxed); }
   std::int64_t highWater() const { return high_water_.load(std::memory_order_relaxed); }
 
  private:

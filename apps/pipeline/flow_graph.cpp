@@ -88,6 +88,7 @@ class FlowGraph::Impl {
   void fail(const std::exception_ptr& reason);
   bool failed() { return failed_ || context_.is_group_execution_cancelled(); }
   std::vector<QueueMark> queues(std::int64_t bound) const;
+  std::vector<QueueDepth> depths(std::int64_t bound) const;
 
  private:
   void run(std::promise<void>& wired);
@@ -238,6 +239,13 @@ std::vector<QueueMark> FlowGraph::Impl::queues(std::int64_t bound) const {
   return marks;
 }
 
+std::vector<QueueDepth> FlowGraph::Impl::depths(std::int64_t bound) const {
+  std::vector<QueueDepth> depths;
+  for (std::size_t edge = 0; edge < kEdges; ++edge)
+    depths.push_back({kEdgeNames[edge], gauges_[edge].waiting(), bound});
+  return depths;
+}
+
 FlowGraph::FlowGraph(int threads, Work work) : impl_(std::make_unique<Impl>(threads, std::move(work))) {}
 FlowGraph::~FlowGraph() = default;
 
@@ -246,6 +254,7 @@ void FlowGraph::close() { impl_->close(); }
 void FlowGraph::fail(const std::exception_ptr& reason) { impl_->fail(reason); }
 bool FlowGraph::failed() { return impl_->failed(); }
 void FlowGraph::join() { impl_->join(); }
+std::vector<QueueDepth> FlowGraph::depths(std::int64_t bound) const { return impl_->depths(bound); }
 std::vector<QueueMark> FlowGraph::queues(std::int64_t bound) const { return impl_->queues(bound); }
 
 }  // namespace motorcade

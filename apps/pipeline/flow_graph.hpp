@@ -41,6 +41,8 @@ class FlowGraph {
   /// After `close`: waits until all jobs are out. Throws what the graph failed of.
   void join();
 
+  /// Any thread: how many jobs wait on each edge now.
+  std::vector<QueueDepth> depths(std::int64_t bound) const;
   /// After `join`: how many jobs waited on each edge.
   std::vector<QueueMark> queues(std::int64_t bound) const;
 

@@ -42,6 +42,8 @@ class Intake {
   std::int64_t late() const { return late_.load(); }
   /// After the end: frames after the last admitted one that never entered.
   std::vector<FrameHeader> headersLeft();
+  /// Any thread: frames in the ring of replay; live keeps one frame at most.
+  std::size_t waiting() const { return input_.size(); }
   std::size_t highWater() const { return input_.highWater(); }
 
  private:

@@ -23,6 +23,7 @@ class Pipeline::Impl {
   Intake& intake() { return intake_; }
   Publisher& publisher() { return publisher_; }
   PipelineEnd finish();
+  PipelineState state() const;
 
  private:
   void pump();
@@ -98,6 +99,14 @@ std::vector<QueueMark> Pipeline::Impl::queues() const {
   return marks;
 }
 
+PipelineState Pipeline::Impl::state() const {
+  const std::int64_t bound = params_.frames_in_flight;
+  PipelineState state{.received = intake_.received(), .queues = graph_.depths(bound)};
+  state.queues.insert(state.queues.begin(), {"input>admit", static_cast<std::int64_t>(intake_.waiting()), bound});
+  state.queues.push_back({"publish>output", static_cast<std::int64_t>(publisher_.waiting()), bound});
+  return state;
+}
+
 Pipeline::Pipeline(const PipelineParams& params, Stages stages, LogCallback log) {
   if (!log) log = [](LogLevel, const std::string&) {};
   impl_ = std::make_unique<Impl>(requireValid(params), std::move(stages), log);
@@ -109,6 +118,7 @@ void Pipeline::passOver(const FrameHeader& frame) { impl_->intake().passOver(fra
 void Pipeline::close() { impl_->intake().close(); }
 std::optional<PipelineResult> Pipeline::next() { return impl_->publisher().next(); }
 std::optional<PipelineResult> Pipeline::poll() { return impl_->publisher().poll(); }
+PipelineState Pipeline::state() const { return impl_->state(); }
 PipelineEnd Pipeline::finish() { return impl_->finish(); }
 
 }  // namespace motorcade

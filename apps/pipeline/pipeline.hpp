@@ -42,6 +42,9 @@ class Pipeline {
   /// memory to tell of a frame.
   PipelineEnd finish();
 
+  /// Any thread: how many frames came so far and where they wait. Waits for nobody.
+  PipelineState state() const;
+
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;

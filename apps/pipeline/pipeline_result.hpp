@@ -32,6 +32,18 @@ struct QueueMark {
   std::int64_t high_water = 0, bound = 0;
 };
 
+/// The frames that wait in one queue at this moment.
+struct QueueDepth {
+  std::string name;
+  std::int64_t waiting = 0, bound = 0;
+};
+
+/// Where a pipeline stands while it works.
+struct PipelineState {
+  std::int64_t received = 0;
+  std::vector<QueueDepth> queues;  // in the order of the data
+};
+
 /// received == processed + dropped + rejected, once the run has ended. Frames that came late are in none of them.
 struct PipelineSummary {
   std::int64_t received = 0, processed = 0, dropped = 0, rejected = 0;

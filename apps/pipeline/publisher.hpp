@@ -34,6 +34,8 @@ class Publisher {
   /// After `lastDropped`: all frames that are not final yet, oldest first. `last` are the back-end's.
   std::vector<FrameEstimate> lastFinals(const std::vector<FrameEstimate>& last);
   const PipelineSummary& summary() const { return summary_; }
+  /// Any thread: results that were not taken yet.
+  std::size_t waiting() const { return results_.size(); }
   std::size_t highWater() const { return results_.highWater(); }
 
  private:

@@ -18,6 +18,8 @@ class CameraClock {
     first_ = first;
     origin_.store(now.time_since_epoch().count(), std::memory_order_release);
   }
+  /// Everything that is still to come is due later, as the replay was held.
+  void postpone(SteadyTime::duration held) { origin_.fetch_add(held.count(), std::memory_order_acq_rel); }
   bool started() const { return origin_.load(std::memory_order_acquire) != 0; }
 
   /// Call it after `start`.

@@ -26,6 +26,7 @@ Feeder::Feeder(SequenceDecoder& decoder, Pipeline& pipeline, const Between& betw
       faults_(between.faults),
       watch_(between.watch),
       listeners_(between.listeners),
+      gate_(between.gate),
       next_(decoder.first()),
       thread_([this](const std::stop_token& stopped) { feed(stopped); }) {}
 
@@ -41,6 +42,7 @@ void Feeder::stop() {
 
 void Feeder::feed(const std::stop_token& stopped) {
   while (auto frame = decoder_.next()) {
+    passGate(stopped);
     if (clock_) {
       if (!clock_->started()) clock_->start(frame->stamp, std::chrono::steady_clock::now());
       frame->due = clock_->due(frame->stamp);
@@ -51,6 +53,13 @@ void Feeder::feed(const std::stop_token& stopped) {
   if (faults_ && !stopped.stop_requested()) faults_->finish(pipelineAfterFaults(stopped));
   if (watch_) watch_->finish();
   pipeline_.close();
+}
+
+/// Pairs are due later by as long as the replay was held.
+void Feeder::passGate(const std::stop_token& stopped) {
+  if (!gate_) return;
+  const auto held = gate_->pass(stopped);
+  if (clock_ && clock_->started()) clock_->postpone(held);
 }
 
 /// Tells first of the pairs before it that the decoder left out.

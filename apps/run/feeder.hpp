@@ -7,6 +7,7 @@
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/input_watch.hpp"
 #include "apps/run/run_listener.hpp"
+#include "apps/view/replay_gate.hpp"
 #include "io/sequence_decoder.hpp"
 
 namespace motorcade {
@@ -21,6 +22,7 @@ class Feeder {
     FaultInjector* faults = nullptr;  // change the pairs on their way
     InputWatch* watch = nullptr;      // sees them as they enter, and may end the drive
     RunListeners listeners{};         // see those that entered
+    ReplayGate* gate = nullptr;       // may hold the replay
   };
   /// Pairs that the decoder leaves out are passed over.
   Feeder(SequenceDecoder& decoder, Pipeline& pipeline, const Between& between);
@@ -32,6 +34,7 @@ class Feeder {
 
  private:
   void feed(const std::stop_token& stopped);
+  void passGate(const std::stop_token& stopped);
   bool enter(StereoFrame frame, const std::stop_token& stopped);
   bool push(StereoFrame frame);
   FaultInjector::Outlet pipelineAfterFaults(const std::stop_token& stopped);
@@ -42,6 +45,7 @@ class Feeder {
   FaultInjector* faults_;
   InputWatch* watch_;
   RunListeners listeners_;
+  ReplayGate* gate_;
   FrameId next_;  // after the last pair that entered
   std::jthread thread_;
 };

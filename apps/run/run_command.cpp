@@ -4,6 +4,7 @@
 #include <bit>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,6 +30,7 @@
 #include "apps/run/run_listener.hpp"
 #include "apps/run/run_options.hpp"
 #include "apps/run/run_summary.hpp"
+#include "apps/view/live_view.hpp"
 #include "io/errors.hpp"
 #include "io/run_folder.hpp"
 
@@ -151,12 +153,57 @@ struct Replay {
   FaultInjector* faults = nullptr;
   InputWatch* watch = nullptr;
   RunListeners listeners{};
+  LiveView* view = nullptr;
 };
 
+/// While it lasts, the page may ask where the pipeline stands.
+class FollowedPipeline {
+ public:
+  FollowedPipeline(LiveView* view, const Pipeline& pipeline) : view_(view) {
+    if (view_) view_->followPipeline([&pipeline] { return pipeline.state(); });
+  }
+  ~FollowedPipeline() {
+    if (view_) view_->followPipeline({});
+  }
+  FollowedPipeline(const FollowedPipeline&) = delete;
+  FollowedPipeline& operator=(const FollowedPipeline&) = delete;
+
+ private:
+  LiveView* view_;
+};
+
+/// Shows the run on a page, where the user wants that.
+std::unique_ptr<LiveView> makeView(const RunOptions& options, const Sequence& sequence, const FrameRange& range,
+                                   const RunSummary& summary) {
+  if (!options.shown) return nullptr;
+  const ShownRun run{.name = sequence.folder.filename().string(),
+                     .folder = options.out.string(),
+                     .can_pause = summary.params.policy != InputPolicy::kLive,
+                     .first_frame = static_cast<std::int64_t>(range.begin),
+                     .end_frame = static_cast<std::int64_t>(range.end),
+                     .first_stamp = sequence.stamps[range.begin],
+                     .rate_hz = summary.capture_rate_hz,
+                     .camera = sequence.camera};
+  auto view = std::make_unique<LiveView>(parseListenAddress(options.view, "--view"), run, sequence);
+  std::fprintf(stderr, "the page is at %s\n", view->url().c_str());
+  return view;
+}
+
+RunSummary summaryBefore(const RunOptions& options, const PipelineConfig& config, const Sequence& sequence,
+                         const FrameRange& range, std::optional<double> rate_hz) {
+  RunSummary summary;
+  summary.params = config.pipeline;
+  summary.sequence = sequence.folder.string();
+  summary.inject = options.inject;
+  summary.layout = sequence.layout;
+  summary.rate_hz = rate_hz;
+  summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
+  return summary;
+}
+
 /// Runs the frames through the pipeline and writes all results but the summary.
-void follow(const Replay& replay, const PipelineConfig& config, Stages stages, Recorder& recorder,
-            RunSummary& summary) {
-  StopSignals signals;
+void follow(const Replay& replay, const PipelineConfig& config, Stages stages, Recorder& recorder, RunSummary& summary,
+            StopSignals& signals) {
   std::optional<CameraClock> clock;
   if (summary.rate_hz) clock.emplace(*summary.rate_hz / summary.capture_rate_hz, 1 / summary.capture_rate_hz);
   SequenceDecoder::Params decoding{.ahead = std::bit_floor(static_cast<std::size_t>(config.pipeline.frames_in_flight)),
@@ -169,7 +216,10 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   Pipeline pipeline(config.pipeline, std::move(stages), logToSpdlog);
   const auto start = std::chrono::steady_clock::now();
   {
-    Feeder feeder(decoder, pipeline, {clock ? &*clock : nullptr, replay.faults, replay.watch, replay.listeners});
+    Feeder feeder(decoder, pipeline,
+                  {clock ? &*clock : nullptr, replay.faults, replay.watch, replay.listeners,
+                   replay.view ? replay.view->gate() : nullptr});
+    const FollowedPipeline followed(replay.view, pipeline);
     const auto watch = signals.watch([&feeder] { feeder.stop(); });
     while (const auto result = pipeline.next()) recorder.record(*result);
   }
@@ -242,20 +292,19 @@ int runSequence(const RunOptions& options) {
   spdlog::debug("{} threads, {} frames in flight; results go to {}", config.pipeline.threads,
                 config.pipeline.frames_in_flight, options.out.string());
 
+  RunSummary summary = summaryBefore(options, config, sequence, range, rate_hz);
+  StopSignals signals;  // before all threads
+  const auto view = makeView(options, sequence, range, summary);
   RunFolderWriter folder(options.out);
   folder.writeConfig(toToml(config));
-  RunSummary summary;
-  summary.params = config.pipeline;
-  summary.setSequence(sequence);
-  summary.inject = options.inject;
-  summary.rate_hz = rate_hz;
-  summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
   ExtraOutputs extras(options, sequence.camera, config.pipeline.policy);
-  Recorder recorder(folder, extras.listeners(), range.size());
+  RunListeners listeners = extras.listeners();
+  if (view) listeners.push_back(view.get());
+  Recorder recorder(folder, listeners, range.size());
   FaultInjector faults(fault_spec, sequence);
   InputWatch watch(sequence.camera, options.force);
-  follow({sequence, range, options.inject.empty() ? nullptr : &faults, &watch, extras.listeners()}, config,
-         std::move(stages), recorder, summary);
+  follow({sequence, range, options.inject.empty() ? nullptr : &faults, &watch, listeners, view.get()}, config,
+         std::move(stages), recorder, summary, signals);
   extras.close(summary);
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));

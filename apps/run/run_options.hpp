@@ -28,6 +28,8 @@ struct RunOptions {
   std::vector<std::string> assignments;  // key=value
   std::string require;                   // tracked=FRACTION
   std::string inject;                    // faults, see FaultSpec
+  bool shown = false;                    // on a page
+  std::string view;                      // ADDR:PORT of that page, empty for the default
   bool force = false;                    // replace a finished run, go on where results will be worthless
 };
 

@@ -1,0 +1,174 @@
+#include "apps/view/frame_json.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/draw/palette.hpp"
+#include "core/object_place.hpp"
+#include "io/object_row.hpp"
+#include "io/run_folder.hpp"
+
+namespace motorcade {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Without digits that nobody sees; what is not finite becomes null.
+double rounded(double value, double digits = 1e3) { return std::round(value * digits) / digits; }
+
+Json toJson(const Eigen::Vector3d& vector) { return {rounded(vector.x()), rounded(vector.y()), rounded(vector.z())}; }
+
+Json toJson(const SE3& T) {
+  constexpr double kFiveDigits = 1e5;
+  Json json = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) json.push_back(rounded(T.rotation()(row, column), kFiveDigits));
+    json.push_back(rounded(T.translation()[row]));
+  }
+  return json;
+}
+
+std::string colorOf(TrackId track) {
+  const Color color = trackColor(track);
+  return fmt::format("#{:02x}{:02x}{:02x}", color.red, color.green, color.blue);
+}
+
+/// How far the object's middle is from the camera, and how sure that is.
+void addDistance(Json& json, const ObjectPlace& place, const Eigen::Vector3d& camera_world) {
+  const Eigen::Vector3d way = place.center_world - camera_world;
+  const double distance_m = way.norm();
+  if (!(distance_m > 0)) return;
+  const Eigen::Vector3d sight = way / distance_m;
+  json["distance"] = rounded(distance_m);
+  const double variance_m2 = sight.dot(place.center_covariance * sight);
+  if (variance_m2 > 0) json["distance_sigma"] = rounded(std::sqrt(variance_m2));
+}
+
+Json objectJson(const ObjectEstimate& object, const Eigen::Vector3d& camera_world) {
+  const ObjectPlace place = placeOf(object);
+  const Eigen::Matrix3d& C = place.center_covariance;
+  Json json{{"id", object.track.value},
+            {"color", colorOf(object.track)},
+            {"state", stateName(object.state)},
+            {"T", toJson(object.T_world_body)},
+            {"velocity", toJson(object.velocity_world_mps)},
+            {"speed", rounded(object.velocity_world_mps.norm())},
+            {"speed_sigma", rounded(object.speed_sigma_mps)},
+            {"yaw_rate", rounded(object.yaw_rate_radps, 1e4)},
+            {"yaw_rate_sigma", rounded(object.yaw_rate_sigma_radps, 1e4)},
+            {"center", toJson(place.center_world)},
+            {"points", object.points},
+            {"age", rounded(object.age_s)},
+            {"box",
+             {rounded(object.box.left_px, 10), rounded(object.box.top_px, 10), rounded(object.box.right_px, 10),
+              rounded(object.box.bottom_px, 10)}}};
+  if (C.trace() > 0)
+    json["center_covariance_xz"] = {rounded(C(0, 0), 1e5), rounded(C(0, 2), 1e5), rounded(C(2, 2), 1e5)};
+  addDistance(json, place, camera_world);
+  if (object.cuboid)
+    json["cuboid"] = {{"center", toJson(object.cuboid->center_body)},
+                      {"size", toJson(object.cuboid->size_m)},
+                      {"kind", kindName(object.cuboid->kind)},
+                      {"probability", rounded(object.cuboid->kind_probability)}};
+  return json;
+}
+
+Json outlinesJson(const std::vector<ShownOutline>& outlines) {
+  Json json = Json::array();
+  for (const ShownOutline& outline : outlines) {
+    Json polygons = Json::array();
+    for (const Polygon& polygon : outline.polygons) {
+      Json corners = Json::array();
+      for (const auto& corner : polygon) {
+        corners.push_back(corner.x());
+        corners.push_back(corner.y());
+      }
+      polygons.push_back(std::move(corners));
+    }
+    json.push_back({{"id", outline.track.value}, {"polygons", std::move(polygons)}});
+  }
+  return json;
+}
+
+/// Of each point the track, the left pixel and the place in the world.
+Json pointsJson(const std::vector<ShownPoint>& points) {
+  Json json = Json::array();
+  for (const ShownPoint& point : points)
+    json.push_back({point.track.value, rounded(point.uv_px.x(), 10), rounded(point.uv_px.y(), 10),
+                    rounded(point.p_world.x(), 100), rounded(point.p_world.y(), 100), rounded(point.p_world.z(), 100)});
+  return json;
+}
+
+Json timingJson(const ShownTiming& timing) {
+  Json stages = Json::array();
+  for (const double stage_ms : timing.stages_ms) stages.push_back(rounded(stage_ms));
+  return {{"latency_ms", rounded(timing.latency_ms)}, {"decode_ms", rounded(timing.decode_ms)}, {"stages_ms", stages}};
+}
+
+}  // namespace
+
+std::string toJson(const ShownRun& run) {
+  const StereoCamera& camera = run.camera;
+  Json stages = Json::array();
+  for (const auto& name : kStageNames) stages.push_back(name);
+  return Json{{"name", run.name},
+              {"folder", run.folder},
+              {"recorded", run.recorded},
+              {"can_pause", run.can_pause},
+              {"first_frame", run.first_frame},
+              {"end_frame", run.end_frame},
+              {"rate_hz", rounded(run.rate_hz)},
+              {"token", run.token},
+              {"stages", stages},
+              {"latency_bounds_ms", kLatencyBounds_ms},
+              {"camera",
+               {{"fx", camera.fx_px},
+                {"fy", camera.fy_px},
+                {"cx", camera.cx_px},
+                {"cy", camera.cy_px},
+                {"baseline", camera.baseline_m},
+                {"width", camera.width_px},
+                {"height", camera.height_px}}}}
+      .dump();
+}
+
+std::string toJson(const ShownFrame& frame, Timestamp first_stamp, FrameDetail detail) {
+  const FrameEstimate& estimate = frame.estimate;
+  const bool degraded = estimate.status == FrameStatus::kGood && estimate.cause != FrameCause::kNone;
+  Json json{{"frame", estimate.frame.value},
+            {"time", rounded(secondsBetween(first_stamp, estimate.stamp))},
+            {"status", degraded ? "degraded" : std::string(statusName(estimate.status))},
+            {"cause", causeName(estimate.cause)},
+            {"segment", estimate.segment},
+            {"T", toJson(estimate.T_world_cam)},
+            {"objects", Json::array()}};
+  for (const ObjectEstimate& object : estimate.objects)
+    json["objects"].push_back(objectJson(object, estimate.T_world_cam.translation()));
+  if (frame.road) json["road"] = {{"point", toJson(frame.road->point_world)}, {"up", toJson(frame.road->up_world)}};
+  if (frame.timing) json["timing"] = timingJson(*frame.timing);
+  if (detail == FrameDetail::kAll) {
+    json["outlines"] = outlinesJson(frame.outlines);
+    json["points"] = pointsJson(frame.points);
+  }
+  return json.dump();
+}
+
+std::string eventJson(const RunSnapshot& run, const std::string& frame_json) {
+  Json queues = Json::array();
+  for (const QueueDepth& queue : run.queues)
+    queues.push_back({{"name", queue.name}, {"waiting", queue.waiting}, {"bound", queue.bound}});
+  const Json json{{"state", run.state},
+                  {"received", run.received},
+                  {"processed", run.processed},
+                  {"dropped", run.dropped},
+                  {"rejected", run.rejected},
+                  {"lost", run.lost},
+                  {"viewers", run.viewers},
+                  {"latency_counts", run.latency.counts},
+                  {"queues", queues}};
+  return R"({"run":)" + json.dump() + R"(,"frame":)" + (frame_json.empty() ? "null" : frame_json) + "}";
+}
+
+}  // namespace motorcade

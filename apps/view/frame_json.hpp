@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "apps/view/run_counts.hpp"
+#include "apps/view/shown_frame.hpp"
+
+/// What the server tells the page (docs/view.md), as JSON.
+namespace motorcade {
+
+/// What is being shown.
+struct ShownRun {
+  std::string name{}, folder{};  // of the sequence; of the results
+  bool recorded = false;         // a run that is over, so that every frame is there
+  bool can_pause = false;
+  std::int64_t first_frame = 0, end_frame = 0;
+  Timestamp first_stamp{};
+  double rate_hz = 10;  // of the capture
+  StereoCamera camera{};
+  std::string token{};  // that control calls must carry
+};
+
+enum class FrameDetail { kAll, kWithoutImageParts };
+
+std::string toJson(const ShownRun& run);
+std::string toJson(const ShownFrame& frame, Timestamp first_stamp, FrameDetail detail = FrameDetail::kAll);
+/// `{"run":...,"frame":...}`; `frame_json` may be empty.
+std::string eventJson(const RunSnapshot& run, const std::string& frame_json);
+
+}  // namespace motorcade

@@ -1,0 +1,71 @@
+// Speed, yaw rate and distance of one object over time, each with the band of one standard deviation.
+
+const kDegrees = 180 / Math.PI;
+const kQuantities = {
+  speed: { value: (o) => o.speed, sigma: (o) => o.speed_sigma, digits: 2, unit: "m/s" },
+  yaw: { value: (o) => o.yaw_rate * kDegrees, sigma: (o) => o.yaw_rate_sigma * kDegrees, digits: 1, unit: "deg/s" },
+  distance: { value: (o) => o.distance, sigma: (o) => o.distance_sigma, digits: 2, unit: "m" },
+};
+const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+export class HistoryPanel {
+  constructor() {
+    this.element = (id) => document.getElementById(id);
+    this.dark = window.matchMedia("(prefers-color-scheme: dark)");
+    this.dark.addEventListener("change", () => this.paint());
+  }
+
+  // Made when first needed: a hidden canvas has no size.
+  charts() {
+    this.made ??= Object.fromEntries(Object.keys(kQuantities).map((name) => [name, new Chart(this.element(`plot-${name}`), {
+      type: "line",
+      data: { datasets: [{ pointRadius: 0, borderWidth: 0 }, { pointRadius: 0, borderWidth: 0, fill: "-1" }, { pointRadius: 0, borderWidth: 2 }] },
+      options: {
+        animation: false, parsing: false, normalized: true, maintainAspectRatio: false, events: [],
+        plugins: { legend: { display: false }, tooltip: { enabled: false } },
+        scales: { x: { type: "linear", display: name === "distance", grid: { display: false }, ticks: { maxTicksLimit: 6, maxRotation: 0, callback: (s) => `${+s.toFixed(1)} s` } },
+          y: { ticks: { maxTicksLimit: 3 }, afterFit: (axis) => { axis.width = 40; } } },
+      },
+    })]));
+    return this.made;
+  }
+
+  paint() {
+    if (!this.made) return;
+    for (const chart of Object.values(this.made)) {
+      for (const axis of ["x", "y"]) chart.options.scales[axis].ticks.color = css("--dim");
+      chart.options.scales.y.grid = { color: css("--line"), drawBorder: false };
+      chart.data.datasets[1].backgroundColor = `${this.color}44`;
+      chart.data.datasets[2].borderColor = this.dark.matches ? this.color : `color-mix(in srgb, ${this.color} 74%, black)`;
+      chart.update();
+    }
+  }
+
+  show(id, past) {
+    const rows = id === null ? [] : past.flatMap((frame) => {
+      const object = frame.objects.find((o) => o.id === id);
+      return object ? [{ time: frame.time, object }] : [];
+    });
+    const known = rows.length > 0;
+    this.element("history").hidden = !known;
+    this.element("history-hint").hidden = known;
+    this.element("history-hint").textContent = id === null ? "Choose an object in the image, the scene or the list." : `#${id} has not been seen yet.`;
+    this.element("history-title").textContent = known ? `History of #${id}` : "History";
+    if (!known) return;
+    this.color = rows[rows.length - 1].object.color;
+    for (const [name, chart] of Object.entries(this.charts())) this.fill(name, chart, rows);
+    this.paint();
+  }
+
+  fill(name, chart, rows) {
+    const { value, sigma, digits, unit } = kQuantities[name];
+    const points = (sign) => rows.filter(({ object }) => value(object) != null)
+      .map(({ time, object }) => ({ x: time, y: value(object) + sign * (sigma(object) ?? 0) }));
+    [-1, 1, 0].forEach((sign, i) => { chart.data.datasets[i].data = points(sign); });
+    Object.assign(chart.options.scales.x, { min: rows[0].time, max: Math.max(rows[rows.length - 1].time, rows[0].time + 1) });
+    const last = rows[rows.length - 1].object;
+    const text = (number) => number.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
+    this.element(`now-${name}`).textContent = value(last) == null ? "" :
+      `${text(value(last))}${sigma(last) == null ? "" : ` \u00b1 ${text(sigma(last))}`} ${unit}`;
+  }
+}

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "apps/view/listen_address.hpp"
+#include "apps/view/page_source.hpp"
+#include "apps/view/viewers.hpp"
+
+namespace motorcade {
+
+/// Serves the page of a run (docs/view.md) on threads of its own, from memory alone. Source and viewers must outlive
+/// it. Its threads give way to the pipeline's.
+class PageServer {
+ public:
+  /// Throws OutputError, naming the address, where it cannot listen there.
+  PageServer(const ListenAddress& address, PageSource& source, Viewers& viewers);
+  /// Closes the viewers' places and ends all answers under way within about a second.
+  ~PageServer();
+  PageServer(const PageServer&) = delete;
+  PageServer& operator=(const PageServer&) = delete;
+
+  int port() const;
+  std::string url() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "apps/view/frame_json.hpp"
+#include "apps/view/run_counts.hpp"
+
+namespace motorcade {
+
+/// What the server asks whoever has the run, from several threads at once.
+class PageSource {
+ public:
+  virtual ~PageSource() = default;
+  virtual ShownRun run() const = 0;
+  virtual RunSnapshot snapshot() const = 0;
+  /// `{"frames":[...]}` from a frame of the sequence on, at most `count` of those that are still known, without what
+  /// only the image shows.
+  virtual std::string framesJson(std::int64_t from, std::size_t count) const = 0;
+  /// With all that there is; empty where the frame is not known any more.
+  virtual std::string frameJson(std::int64_t frame) const = 0;
+  /// The left image as JPEG; null where it cannot be had.
+  virtual std::shared_ptr<const std::string> picture(std::int64_t frame) = 0;
+  /// `pause`, `resume` or `step`; false where the run cannot be held.
+  virtual bool control(const std::string& action) = 0;
+};
+
+}  // namespace motorcade

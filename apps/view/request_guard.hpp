@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/view/listen_address.hpp"
+
+namespace motorcade {
+
+/// What a request says of itself and of whom it comes from; what is missing is empty.
+struct RequestFacts {
+  std::string method, path;
+  std::string host, origin, fetch_site;  // the headers Host, Origin and Sec-Fetch-Site
+  std::string token;                     // of a control call
+};
+
+struct Refusal {
+  int status = 0;
+  std::string sentence;
+};
+
+/// Keeps other pages of the same browser out: a name that somebody else's server gives to this address (DNS rebinding)
+/// is no name of this server, another site's scripts may neither read nor control, and nothing but GET and HEAD is
+/// answered.
+class RequestGuard {
+ public:
+  explicit RequestGuard(const ListenAddress& listening);
+
+  /// Empty where the request may be answered.
+  std::optional<Refusal> refusalOf(const RequestFacts& request) const;
+  /// What a control call must carry; only pages of this server can know it.
+  const std::string& token() const { return token_; }
+
+ private:
+  bool isOwnName(const std::string& host) const;
+
+  std::vector<std::string> names_;  // with port
+  bool any_address_;                // reachable under every address of the machine
+  std::string port_, token_;
+};
+
+}  // namespace motorcade

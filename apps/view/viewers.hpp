@@ -1,0 +1,68 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace motorcade {
+
+/// What is told to all viewers, made once.
+using EventText = std::shared_ptr<const std::string>;
+
+/// The pages that follow a run. Each has a mailbox for one event, the newest: a slow viewer loses events and delays
+/// neither the others nor who publishes. Any thread may call.
+class Viewers {
+ public:
+  static constexpr std::size_t kMost = 8;
+
+  /// One viewer's place, given back with its last owner.
+  class Seat {
+   public:
+    explicit Seat(Viewers& viewers) : viewers_(viewers) {}
+    ~Seat();
+    Seat(const Seat&) = delete;
+    Seat& operator=(const Seat&) = delete;
+
+    /// The newest event not yet taken, waiting for one; null when none came in that time, or all have been taken and
+    /// no further one comes.
+    EventText next(std::chrono::milliseconds patience);
+    /// No further event comes, and all were taken.
+    bool over() const;
+    /// Events that were replaced by newer ones before they were taken.
+    std::int64_t missed() const;
+
+   private:
+    friend class Viewers;
+    Viewers& viewers_;
+    EventText newest_;
+    std::int64_t missed_ = 0;
+  };
+
+  /// Null when all places are taken, or the show is over.
+  std::shared_ptr<Seat> admit();
+  void publish(const EventText& event);
+  /// No further event comes; ends all waits.
+  void close();
+
+  /// Waits for nobody.
+  std::size_t count() const { return count_.load(std::memory_order_relaxed); }
+  /// How long nobody has been there; nothing while somebody is.
+  std::chrono::steady_clock::duration absence() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Seat*> seats_;
+  std::atomic<std::size_t> count_{0};
+  EventText last_;
+  bool closed_ = false;
+  std::chrono::steady_clock::time_point last_left_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace motorcade

@@ -1,0 +1,105 @@
+// What the tests of all pages share: a headless Chromium, pages that must not complain, programs that are started and ended.
+import { spawn } from "node:child_process";
+import { chromium } from "playwright-core";
+
+export const kProgram = process.env.MOTORCADE_PROGRAM;
+export const kScreenshots = process.env.MOTORCADE_SCREENSHOTS || "";
+const kPatience_ms = 30_000;
+
+export function check(condition, sentence) {
+  if (!condition) throw new Error(sentence);
+}
+
+export async function withBrowser(use) {
+  const browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM || "/usr/bin/chromium",
+    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"],
+  });
+  try {
+    await use(browser);
+  } finally {
+    await browser.close();
+  }
+}
+
+// Opens a page, and fails where it wrote an error to the console, threw one, or asked another server for anything.
+export async function withPage(browser, options, use) {
+  const { url, ends = false, width = 1440, height = 900, scheme = "light", phone = false } = options;
+  const context = await browser.newContext({
+    viewport: { width, height }, colorScheme: scheme, deviceScaleFactor: phone ? 2 : 1, isMobile: phone, hasTouch: phone });
+  const page = await context.newPage(), complaints = [], origin = new URL(url).origin;
+  page.on("console", (message) => { if (message.type() === "error") complaints.push(message.text()); });
+  page.on("pageerror", (error) => complaints.push(error.stack || String(error)));
+  page.on("request", (request) => {
+    if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(origin)) complaints.push(`asked ${request.url()}`);
+  });
+  page.setDefaultTimeout(kPatience_ms);
+  try {
+    await page.goto(url);
+    await use(page);
+    // Where the server ends before the page, what was under way cannot be loaded.
+    if (ends) complaints.splice(0, complaints.length, ...complaints.filter((text) => !/Failed to load resource: net::ERR_/.test(text)));
+    check(complaints.length === 0, `the page complained: ${complaints.join("; ")}`);
+  } finally {
+    await context.close();
+  }
+}
+
+export async function screenshot(page, name, options = {}) {
+  if (kScreenshots) await page.screenshot({ path: `${kScreenshots}/${name}.jpg`, type: "jpeg", quality: 82, ...options });
+}
+
+// No wider than the screen.
+export async function checkWidth(page) {
+  const [content, screen] = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
+  check(content <= screen, `the page is ${content} px wide on a screen of ${screen} px`);
+}
+
+// Starts the program and waits until it has printed what the pattern finds; `end` interrupts it and gives its exit code.
+export async function start(args, pattern) {
+  const child = spawn(kProgram, args, { stdio: ["ignore", "pipe", "pipe"] });
+  let text = "";
+  const ended = new Promise((resolve) => child.on("exit", (code) => resolve(code)));
+  const found = new Promise((resolve, reject) => {
+    const read = (part) => {
+      text += part;
+      const match = text.match(pattern);
+      if (match) resolve(match[0]);
+    };
+    child.stdout.on("data", read);
+    child.stderr.on("data", read);
+    ended.then((code) => reject(new Error(`${args.join(" ")} ended with ${code}: ${text}`)));
+    setTimeout(() => reject(new Error(`${args.join(" ")} printed no ${pattern}: ${text}`)), kPatience_ms).unref();
+  });
+  const end = async () => {
+    if (child.exitCode === null) child.kill("SIGINT");
+    const late = setTimeout(() => child.kill("SIGKILL"), kPatience_ms);
+    const code = await ended;
+    clearTimeout(late);
+    return code;
+  };
+  try {
+    return { found: await found, end, ended };
+  } catch (error) {
+    child.kill("SIGKILL");
+    throw error;
+  }
+}
+
+// Runs the program to its end.
+export async function run(args) {
+  const child = spawn(kProgram, args, { stdio: ["ignore", "ignore", "inherit"] });
+  const code = await new Promise((resolve) => child.on("exit", resolve));
+  check(code === 0, `motorcade ${args.join(" ")} ended with ${code}`);
+}
+
+export async function test(name, use) {
+  const begin = Date.now();
+  try {
+    await use();
+    console.log(`ok   ${name} (${((Date.now() - begin) / 1000).toFixed(1)} s)`);
+  } catch (error) {
+    console.log(`FAIL ${name}: ${error.message}`);
+    process.exitCode = 1;
+  }
+}
