@@ -29,6 +29,24 @@ void addGivenCameras(CLI::App& command, GivenCameras& given) {
       ->excludes(camera);
 }
 
+/// What a run writes and serves for the eye, beside its folder of results.
+void addWaysToSee(CLI::App& command, const std::shared_ptr<RunOptions>& options) {
+  command.add_flag("--masks", options->masks,
+                   "Write what the image shows of the objects: masks/NNNNNN.png, outlines.jsonl, object_points.csv");
+  command
+      .add_option(
+          "--mcap", options->mcap,
+          "Write images, poses, cuboids and points to a file that Foxglove and Rerun open, while the run goes on")
+      ->type_name("FILE");
+  command
+      .add_option("--view", options->view,
+                  "Serve a page that follows the run, under http://127.0.0.1:8080/ unless told otherwise")
+      ->type_name("[ADDR:PORT]")
+      ->expected(0, 1)
+      ->default_str("")
+      ->each([options](const std::string&) { options->shown = true; });
+}
+
 }  // namespace
 
 void addRun(CLI::App& app, Action& action) {
@@ -43,13 +61,7 @@ void addRun(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_flag("--live", options->live,
                     "Behave like a camera that does not wait: the newest pair wins, others are dropped");
-  command->add_flag("--masks", options->masks,
-                    "Write what the image shows of the objects: masks/NNNNNN.png, outlines.jsonl, object_points.csv");
-  command
-      ->add_option(
-          "--mcap", options->mcap,
-          "Write images, poses, cuboids and points to a file that Foxglove and Rerun open, while the run goes on")
-      ->type_name("FILE");
+  addWaysToSee(*command, options);
   command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
   command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
   command
@@ -72,13 +84,6 @@ void addRun(CLI::App& app, Action& action) {
       ->type_name("tracked=FRACTION");
   command->add_flag("--force", options->force,
                     "Replace a finished run, and go on where the input is found to be worthless");
-  command
-      ->add_option("--view", options->view,
-                   "Serve a page that follows the run, under http://127.0.0.1:8080/ unless told otherwise")
-      ->type_name("[ADDR:PORT]")
-      ->expected(0, 1)
-      ->default_str("")
-      ->each([options](const std::string&) { options->shown = true; });
   command->footer("Example: motorcade run DRIVE --out RUN --masks");
   command->callback([options, &action] { action = [options] { return runSequence(*options); }; });
 }

@@ -193,9 +193,8 @@ RunSummary summaryBefore(const RunOptions& options, const PipelineConfig& config
                          const FrameRange& range, std::optional<double> rate_hz) {
   RunSummary summary;
   summary.params = config.pipeline;
-  summary.sequence = sequence.folder.string();
+  summary.setSequence(sequence);
   summary.inject = options.inject;
-  summary.layout = sequence.layout;
   summary.rate_hz = rate_hz;
   summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
   return summary;
