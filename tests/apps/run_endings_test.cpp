@@ -62,8 +62,8 @@ constexpr bool kReservesAddresses = true;  // far more than any limit here
 constexpr bool kReservesAddresses = false;
 #endif
 
-/// The limits begin where the program hardly starts (its shared libraries alone take over 50 MB of addresses) and end where
-/// it has enough.
+/// The limits begin where the program hardly starts (its shared libraries alone take over 50 MB of addresses) and end
+/// where it has enough.
 TEST_F(Run, EndsWithAMessageWhereMemoryRunsOut) {
   if (kReservesAddresses) GTEST_SKIP() << "sanitizers reserve address space";
   constexpr int kLeast_mb = 70, kMost_mb = 350, kStep_mb = 10;
