@@ -44,7 +44,7 @@ std::string TraceFile::event(std::string_view name, char phase, int thread, Stea
   return text;
 }
 
-void TraceFile::add(std::string event) { lines_.append(event).append("},\n"); }
+void TraceFile::add(const std::string& event) { lines_.append(event).append("},\n"); }
 
 /// All lines of a frame in one write: each is whole, also when the run is killed.
 void TraceFile::write(const FrameTiming& timing) {

@@ -30,7 +30,7 @@ class TraceFile {
   void addInFlight(const FrameTiming& timing);
   void addMark(const FrameTiming& timing);
   std::string event(std::string_view name, char phase, int thread, SteadyTime at) const;
-  void add(std::string event);
+  void add(const std::string& event);
 
   LineFile file_;
   std::string lines_;                  // of the frame that is being written

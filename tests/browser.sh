@@ -14,7 +14,7 @@ skip() { echo "tests/browser.sh: the pages are not looked at: $1"; exit 0; }
 [[ -x $CHROMIUM ]] || apps/setup.sh chromium >/dev/null 2>&1 || skip "Chromium cannot be installed"
 [[ -x $CHROMIUM ]] || skip "there is no $CHROMIUM"
 command -v node >/dev/null && command -v npm >/dev/null || apps/setup.sh nodejs npm >/dev/null 2>&1 || skip "Node.js cannot be installed"
-node -e "process.exit(parseInt(process.versions.node) < 20 ? 1 : 0)" || skip "playwright-core needs Node.js 20, this is $(node --version)"
+node -e "process.exit(parseInt(process.versions.node) < 18 ? 1 : 0)" || skip "playwright-core needs Node.js 18, this is $(node --version)"
 if [[ ! -d tests/browser/node_modules/playwright-core ]]; then
   (cd tests/browser && timeout 120 npm ci --no-audit --no-fund --silent >/dev/null 2>&1) || skip "npm cannot install playwright-core"
 fi

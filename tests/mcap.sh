@@ -1,14 +1,13 @@
 #!/usr/bin/env bash
 # Writes a short rendered drive as MCAP, live and from its run folder, and reads both files with the readers and schemas that others
 # use (npm's @mcap/core, @foxglove/schemas): tests/mcap.sh [PROGRAM] [FOLDER of a sequence]
-# Prints one line and ends well where Node.js is missing or npm cannot reach its packages.
+# Installs Node.js where it is missing; prints one line and ends well where that cannot be, or npm cannot reach its packages.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=$(realpath "${1:-build/release/apps/motorcade}")
 
 leave_out() { echo "tests/mcap.sh: left out, $1"; exit 0; }
-command -v node >/dev/null || leave_out "Node.js is not there"
-command -v npm >/dev/null || leave_out "npm is not there"
+command -v node >/dev/null && command -v npm >/dev/null || apps/setup.sh nodejs npm >/dev/null 2>&1 || leave_out "Node.js cannot be installed"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -27,7 +27,8 @@ export async function withPage(browser, options, use) {
   const { url, ends = false, width = 1440, height = 900, scheme = "light", phone = false } = options;
   const context = await browser.newContext({
     viewport: { width, height }, colorScheme: scheme, deviceScaleFactor: phone ? 2 : 1, isMobile: phone, hasTouch: phone });
-  const page = await context.newPage(), complaints = [], origin = new URL(url).origin;
+  const page = await context.newPage(), complaints = [];
+  const origin = url.startsWith("file:") ? url : new URL(url).origin;
   page.on("console", (message) => { if (message.type() === "error") complaints.push(message.text()); });
   page.on("pageerror", (error) => complaints.push(error.stack || String(error)));
   page.on("request", (request) => {
