@@ -10,6 +10,7 @@ packages=(
   libpng-dev libjpeg62-turbo-dev zlib1g-dev
   libspdlog-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libyaml-cpp-dev
   pkg-config libcairo2-dev fonts-dejavu-core libcpp-httplib-dev libjs-three libjs-chart.js libprotobuf-dev protobuf-compiler
+  help2man
   libgtest-dev libgmock-dev
   "$@"
 )
