@@ -94,7 +94,7 @@ void addExport(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("export", "Write a run for other programs: Foxglove, Rerun, evo");
   command->add_option("run", options->run, "Run folder")->required();
   command->add_option("--sequence", options->sequence, "The sequence that was run, where it is no longer where it was");
-  command->add_option("--mcap", options->mcap, "File for images, poses, cuboids and points, for Foxglove and Rerun")
+  command->add_option("--mcap", options->mcap, "MCAP file of images, poses, cuboids and points, for Foxglove and Rerun")
       ->type_name("FILE");
   command->add_option("--tum", options->tum, "Folder for trajectories: camera.tum, object_NNN.tum")->type_name("DIR");
   command->add_flag("--predicted", options->with_predicted,

@@ -36,7 +36,7 @@ void addWaysToSee(CLI::App& command, const std::shared_ptr<RunOptions>& options)
   command
       .add_option(
           "--mcap", options->mcap,
-          "Write images, poses, cuboids and points to a file that Foxglove and Rerun open, while the run goes on")
+          "Write images, poses, cuboids and points to an MCAP file for Foxglove and Rerun, while the run goes on")
       ->type_name("FILE");
   command
       .add_option("--view", options->view,

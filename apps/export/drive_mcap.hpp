@@ -10,7 +10,7 @@
 
 namespace motorcade {
 
-/// Writes a drive as an MCAP file that Foxglove and Rerun open (docs/formats.md). Frames come in order. Every failure
+/// Writes a drive as an MCAP file for Foxglove and Rerun (docs/formats.md). Frames come in order. Every failure
 /// is an OutputError naming the file.
 class DriveMcap {
  public:
