@@ -75,8 +75,18 @@ void ChartFrame::drawAxes(const ChartAxes& axes) {
                        coordinate(bottom), coordinate(bottom));
   body_ += fmt::format(R"(<text x="{}" y="{}" text-anchor="end">{}</text>)", coordinate(right), coordinate(bottom + 33),
                        escaped(axes.x));
-  body_ += fmt::format(R"(<text x="{}" y="{}" class="ylabel">{}</text>)", coordinate(left_ + 4), coordinate(top_ + 10),
+  body_ += fmt::format(R"(<text x="{}" y="{}" class="ylabel">{}</text>)", coordinate(left_), coordinate(top_ - 10),
                        escaped(axes.y));
+}
+
+void ChartFrame::addMark(const Eigen::Vector2d& point, std::string_view color, std::string_view text) {
+  const Eigen::Vector2d p = at(point.x(), point.y());
+  const bool at_edge = p.x() + 10 + kLetter * static_cast<double>(text.size()) > width_ - right_;
+  body_ +=
+      fmt::format(R"(<circle cx="{}" cy="{}" r="3.5" style="fill:{}"/>)", coordinate(p.x()), coordinate(p.y()), color);
+  body_ += fmt::format(R"(<text class="mark" x="{}" y="{}" text-anchor="{}">{}</text>)",
+                       coordinate(p.x() + (at_edge ? -7 : 7)), coordinate(p.y() - 6), at_edge ? "end" : "start",
+                       escaped(text));
 }
 
 /// In the line of the x axis' label, from the left; what does not fit there goes into lines below.

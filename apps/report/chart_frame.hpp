@@ -26,6 +26,8 @@ class ChartFrame {
   Eigen::Vector2d within(double x, double y) const;
   /// An element between axes and legend.
   void add(std::string_view svg) { body_ += svg; }
+  /// A dot at a point, and a word beside it that stays within the frame.
+  void addMark(const Eigen::Vector2d& point, std::string_view color, std::string_view text);
   /// Call it last.
   void addLegend(const std::vector<ChartPart>& entries);
   /// The whole element.
@@ -36,7 +38,7 @@ class ChartFrame {
 
   ChartRange range_;
   bool is_map_, is_wide_;
-  double width_ = 560, height_ = 250, left_ = 48, right_ = 12, top_ = 10, bottom_ = 42;
+  double width_ = 560, height_ = 250, left_ = 48, right_ = 12, top_ = 26, bottom_ = 42;
   double legend_height_ = 0;  // of the lines of the legend below the first
   std::string body_;
 };

@@ -73,6 +73,7 @@ void addObjects(std::vector<ChartLine>& lines, const RecordedDrive& drive, const
   for (const auto& [track, rows] : rowsByTrack(drive)) {
     ChartLine line{.name = "", .color = css(trackColor({track}))};
     for (const ObjectEstimate* row : rows) line.points.emplace_back(axes * placeOf(*row).center_world);
+    if (rows.size() >= kLeastRows) line.mark = fmt::format("{}", track);
     lines.push_back(std::move(line));
   }
 }
@@ -112,7 +113,7 @@ std::string driveMap(const ReportedRun& reported) {
   if (!reported.baseline.empty()) others += others.empty() ? "the baseline" : ", and the baseline";
   return chartFigure(
       lineChart({.x = "m along the drive", .y = "m to the left", .equal_scales = true}, lines),
-      "The drive from above: the camera and each followed object in its color" +
+      "The drive from above: the camera and each followed object in its color, with its number where it was last seen" +
           std::string(others.empty() ? "." : "; " + others + ", moved onto the camera's path as a whole."));
 }
 

@@ -29,7 +29,7 @@ constexpr std::string_view kStyle = R"css(
 }
 .chart { width: 100%; font-size: 11.5px; } .chart.across { min-width: 40rem; }
 @media print { .chart.across { min-width: 0; } }
-.chart text { fill: var(--muted); } .chart .ylabel { fill: var(--muted); paint-order: stroke; stroke: var(--card);
+.chart text { fill: var(--muted); } .chart .mark { fill: var(--ink); paint-order: stroke; stroke: var(--card);
   stroke-width: 4px; stroke-linejoin: round; }
 .chart .grid { stroke: var(--rule); stroke-width: 1; } .chart .axis { stroke: var(--muted); stroke-width: 1; }
 .chart .line { fill: none; stroke-width: 1.8; stroke-linejoin: round; stroke-linecap: round; }

@@ -79,9 +79,11 @@ std::string versionRows(const Json& summary) {
 
 std::string runSection(const ReportedRun& reported) {
   const Json summary = summaryOf(reported.run);
-  std::string text = "<h1>" + escaped(reported.drive.name) + "</h1>\n<p class=\"muted\">" +
-                     escaped(summary.value("sequence", reported.run.folder.string())) + " &middot; " +
-                     escaped(framesText(reported)) + "</p>\n";
+  const std::filesystem::path sequence = summary.value("sequence", "");
+  const std::string name = reported.drive.name;
+  std::string text = "<h1>" + escaped(sequence.has_filename() ? sequence.filename().string() : name) +
+                     "</h1>\n<p class=\"muted\">" + escaped(sequence.empty() ? "" : sequence.string() + " · ") +
+                     "results in " + escaped(name) + " &middot; " + escaped(framesText(reported)) + "</p>\n";
   if (!reported.run.complete())
     text +=
         "<div class=\"finding warn\"><p>The run did not come to its end: the estimates of its last frames are as "

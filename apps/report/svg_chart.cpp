@@ -120,6 +120,9 @@ std::string lineChart(const ChartAxes& axes, const std::vector<ChartLine>& lines
                           line.color, pathOf(frame, line)));
     legend.push_back({line.name, line.color});
   }
+  for (const ChartLine& line : lines)
+    if (!line.mark.empty() && !line.points.empty() && isShown(line.points.back()))
+      frame.addMark(line.points.back(), line.color, line.mark);
   frame.addLegend(legend);
   return frame.svg();
 }

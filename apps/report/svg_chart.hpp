@@ -15,6 +15,7 @@ struct ChartLine {
   std::vector<Eigen::Vector2d> points{};
   std::vector<double> half_width{};  // of a band around the line, one per point; none when empty
   bool dashed = false;
+  std::string mark{};  // beside a dot at the last point; none when empty
 };
 
 struct ChartAxes {

@@ -77,6 +77,22 @@ TEST(LineChart, NamesItsLinesInTheLegendAndEscapesThem) {
   EXPECT_EQ(countOf(svg, "<rect"), 1u);
 }
 
+TEST(LineChart, AMarkStandsAtTheLastPointAndWithinTheSheet) {
+  const std::string svg =
+      lineChart({.x = "s", .y = "m"}, {{.name = "", .color = "red", .points = {{0, 1}, {2, 2}}, .mark = "at the edge"},
+                                       {.name = "", .color = "blue", .points = {{0, 1}, {1, 2}}, .mark = "in between"},
+                                       {.name = "", .color = "green", .points = {{0, 1}, {1, 2}}}});
+  EXPECT_EQ(countOf(svg, "<circle"), 2u);
+  EXPECT_THAT(svg, HasSubstr(R"(text-anchor="end">at the edge)"));
+  EXPECT_THAT(svg, HasSubstr(R"(text-anchor="start">in between)"));
+  const auto numberAfter = [&](const std::string& word, std::size_t from) {
+    return std::stod(svg.substr(svg.find(word, from) + word.size()));
+  };
+  const auto red = svg.find("stroke:red"), dot = svg.find("fill:red") - 40;
+  const auto second = svg.find('L', svg.find(" d=\"M", red));
+  EXPECT_NEAR(std::stod(svg.substr(second + 1)), numberAfter("cx=\"", dot - 20), 0.11);
+}
+
 TEST(BarChart, PartsStandOnOneAnother) {
   const std::string svg =
       barChart({.x = "frame", .y = "ms"}, {{"one", "red"}, {"two", "blue"}}, {{0, 1, {3, 2}}, {1, 2, {1, 0}}});

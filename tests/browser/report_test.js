@@ -6,14 +6,15 @@ import { pathToFileURL } from "node:url";
 import { check, checkWidth, run, screenshot, test, withBrowser, withPage } from "./harness.js";
 
 const folder = mkdtempSync(join(tmpdir(), "motorcade_browser_"));
-const drive = join(folder, "drive"), results = join(folder, "run");
+const scene = process.env.MOTORCADE_SCENE || "overtake";
+const drive = join(folder, scene), results = join(folder, "run");
 
 const kLooks = {
   report_desktop_light: {}, report_desktop_dark: { scheme: "dark" },
   report_phone_light: { width: 390, height: 844, phone: true }, report_phone_dark: { width: 390, height: 844, phone: true, scheme: "dark" } };
 
 try {
-  await run(["synth", drive, "--scene", process.env.MOTORCADE_SCENE || "overtake", "-q"]);
+  await run(["synth", drive, "--scene", scene, "-q"]);
   await run(["run", drive, "--out", results, "--masks", "-q", "--rate", "10"]);
   await run(["report", results, "-q"]);
   const url = pathToFileURL(join(results, "report.html")).href;
