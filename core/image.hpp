@@ -29,6 +29,11 @@ class Image {
   int width_ = 0, height_ = 0, stride_ = 0;
 };
 
+/// Brightness of a color, weighted as in BT.601.
+constexpr std::uint8_t grayOf(int red, int green, int blue) {
+  return static_cast<std::uint8_t>((77 * red + 150 * green + 29 * blue + 128) >> 8);
+}
+
 /// Hands out images and takes their buffers back when the last view is gone, so that a steady stream of frames touches
 /// no fresh memory. Any thread may acquire and release images, without locks, and once the stream is warm
 /// without the heap.

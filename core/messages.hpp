@@ -145,6 +145,8 @@ struct ObjectEstimate {
   SE3 T_world_body;
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();
   double speed_sigma_mps = 0;
+  /// Of the velocity, in the world's axes, as far as the camera tells: its own drift is not in it.
+  std::optional<Eigen::Matrix3d> velocity_covariance{};
   double yaw_rate_radps = 0, yaw_rate_sigma_radps = 0;  // about the body's z axis
   int points = 0;
   Box box;

@@ -18,9 +18,7 @@ namespace fs = std::filesystem;
 bool isPng(std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
 
 /// BT.601 in 8-bit integers.
-std::uint8_t grayOf(const std::uint8_t* rgb) {
-  return static_cast<std::uint8_t>((77 * rgb[0] + 150 * rgb[1] + 29 * rgb[2] + 128) >> 8);
-}
+std::uint8_t grayOf(const std::uint8_t* rgb) { return motorcade::grayOf(rgb[0], rgb[1], rgb[2]); }
 
 std::uint64_t bigEndian32(std::string_view bytes, std::size_t at) {
   std::uint64_t value = 0;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <exception>
 #include <future>
+#include <optional>
 #include <thread>
 #include <tuple>
 #include <utility>
@@ -13,6 +14,7 @@
 #include <oneapi/tbb/flow_graph.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_scheduler_observer.h>
 
 #include "apps/pipeline/edge_gauge.hpp"
 #include "apps/pipeline/entrance.hpp"
@@ -68,6 +70,28 @@ class Drained {
   flow::graph& graph_;
 };
 
+/// Places the workers of an arena, which come from other arenas and go back to them.
+class PlacedWorkers : public oneapi::tbb::task_scheduler_observer {
+ public:
+  PlacedWorkers(oneapi::tbb::task_arena& arena, const ThreadPlacement& placement)
+      : task_scheduler_observer(arena), placement_(placement) {
+    if (!placement.asItIs()) observe(true);
+  }
+  ~PlacedWorkers() override { observe(false); }
+  PlacedWorkers(const PlacedWorkers&) = delete;
+  PlacedWorkers& operator=(const PlacedWorkers&) = delete;
+
+  void on_scheduler_entry(bool) override { ofThisThread().emplace(placement_); }
+  void on_scheduler_exit(bool) override { ofThisThread().reset(); }
+
+ private:
+  static std::optional<PlacedThread>& ofThisThread() {
+    thread_local std::optional<PlacedThread> placed;
+    return placed;
+  }
+  ThreadPlacement placement_;
+};
+
 constexpr auto kSequence = [](const Job* job) { return job->sequence; };
 constexpr auto kSequenceOfPair = [](const JobPair& pair) { return std::get<0>(pair)->sequence; };
 
@@ -75,7 +99,7 @@ constexpr auto kSequenceOfPair = [](const JobPair& pair) { return std::get<0>(pa
 
 class FlowGraph::Impl {
  public:
-  Impl(int threads, Work work);
+  Impl(const PipelineParams& params, Work work);
   ~Impl() { close(); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -102,6 +126,7 @@ class FlowGraph::Impl {
   Work work_;
   std::array<EdgeGauge, kEdges> gauges_;
   oneapi::tbb::task_arena arena_;
+  PlacedWorkers placed_workers_;
   oneapi::tbb::task_group_context context_;  // of the graph: canceled where the library itself lacked memory for a task
   std::atomic<bool> closed_ = false, failed_ = false;
   std::exception_ptr failure_;
@@ -110,9 +135,12 @@ class FlowGraph::Impl {
   std::jthread thread_;
 };
 
-/// One slot of the arena is reserved for the thread of `run`, which works too: together they are `threads` workers.
-FlowGraph::Impl::Impl(int threads, Work work)
-    : work_(std::move(work)), arena_(std::min(threads, oneapi::tbb::info::default_concurrency()), 1) {
+/// One slot of the arena is reserved for the thread of `run`, which works too: together they are `params.threads`
+/// workers.
+FlowGraph::Impl::Impl(const PipelineParams& params, Work work)
+    : work_(std::move(work)),
+      arena_(std::min(params.threads, oneapi::tbb::info::default_concurrency()), 1),
+      placed_workers_(arena_, params.placement) {
   std::promise<void> promise;
   auto wired = promise.get_future();
   thread_ = std::jthread([this, &promise] { run(promise); });
@@ -246,7 +274,8 @@ std::vector<QueueDepth> FlowGraph::Impl::depths(std::int64_t bound) const {
   return depths;
 }
 
-FlowGraph::FlowGraph(int threads, Work work) : impl_(std::make_unique<Impl>(threads, std::move(work))) {}
+FlowGraph::FlowGraph(const PipelineParams& params, Work work)
+    : impl_(std::make_unique<Impl>(params, std::move(work))) {}
 FlowGraph::~FlowGraph() = default;
 
 void FlowGraph::put(Job& job) { impl_->put(job); }

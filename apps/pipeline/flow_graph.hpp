@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/pipeline/job.hpp"
+#include "apps/pipeline/pipeline_params.hpp"
 #include "apps/pipeline/pipeline_result.hpp"
 
 namespace motorcade {
@@ -26,7 +27,7 @@ class FlowGraph {
     /// Called once, from any thread, when the graph cannot go on: jobs may have been lost.
     std::function<void()> stop;
   };
-  FlowGraph(int threads, Work work);
+  FlowGraph(const PipelineParams& params, Work work);
   /// Waits for the jobs in flight.
   ~FlowGraph();
 

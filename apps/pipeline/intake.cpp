@@ -36,12 +36,12 @@ Intake::Intake(const PipelineParams& params, FreeJobs& free_jobs, Entrance& entr
       input_(ringCapacity(params)),
       headers_(kHeaders) {}
 
-bool Intake::push(StereoFrame frame) {
-  if (input_.closed()) return false;
+Admission Intake::push(StereoFrame frame) {
+  if (input_.closed()) return Admission::kClosed;
   if (!frame.frame.valid()) frame.frame = next_id_;
   if (frame.frame < next_id_) {
     late_.fetch_add(1, std::memory_order_relaxed);
-    return true;
+    return Admission::kLate;
   }
   next_id_ = {frame.frame.value + 1};
   const auto time = clock_.read(frame.stamp);
@@ -49,18 +49,19 @@ bool Intake::push(StereoFrame frame) {
     announce({frame.frame, clock_.expected(), FrameStatus::kRejected, FrameCause::kOutOfOrder});
     refused_.fetch_add(1, std::memory_order_relaxed);
     received_.fetch_add(1, std::memory_order_relaxed);
-    return true;
+    return Admission::kOutOfOrder;
   }
   frame.stamp = *time;
   clock_ahead_ns_.store(clock_.ahead_ns(), std::memory_order_relaxed);
-  if (live()) {
-    announce({frame.frame, frame.stamp});
-    newest_.put(std::move(frame));
-  } else if (!input_.push(std::move(frame))) {
-    return false;
-  }
-  received_.fetch_add(1, std::memory_order_relaxed);
-  return true;
+  const Admission admission = enter(std::move(frame));
+  if (isTaken(admission)) received_.fetch_add(1, std::memory_order_relaxed);
+  return admission;
+}
+
+Admission Intake::enter(StereoFrame frame) {
+  if (!live()) return input_.push(std::move(frame)) ? Admission::kTaken : Admission::kClosed;
+  announce({frame.frame, frame.stamp});
+  return newest_.put(std::move(frame)) ? Admission::kReplacedOlder : Admission::kTaken;
 }
 
 void Intake::passOver(const FrameHeader& frame) {

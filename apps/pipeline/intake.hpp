@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "apps/pipeline/admission.hpp"
 #include "apps/pipeline/entrance.hpp"
 #include "apps/pipeline/frame_clock.hpp"
 #include "apps/pipeline/gap_filler.hpp"
@@ -26,7 +27,7 @@ class Intake {
   Intake(const PipelineParams& params, FreeJobs& free_jobs, Entrance& entrance, LogCallback log);
 
   /// Producer: see `Pipeline`.
-  bool push(StereoFrame frame);
+  Admission push(StereoFrame frame);
   void passOver(const FrameHeader& frame);
   /// Any thread: no further frame comes.
   void close();
@@ -48,6 +49,7 @@ class Intake {
 
  private:
   bool live() const { return policy_ == InputPolicy::kLive; }
+  Admission enter(StereoFrame frame);
   void announce(FrameHeader header);
   void tellOfClock(const StereoFrame& frame);
   void admit(Job& job, StereoFrame frame);

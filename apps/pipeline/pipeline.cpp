@@ -24,10 +24,10 @@ class Pipeline::Impl {
   Publisher& publisher() { return publisher_; }
   PipelineEnd finish();
   PipelineState state() const;
+  void stop();
 
  private:
   void pump();
-  void stop();
   std::vector<QueueMark> queues() const;
 
   PipelineParams params_;
@@ -47,8 +47,7 @@ Pipeline::Impl::Impl(const PipelineParams& params, Stages stages, const LogCallb
       intake_(params, free_jobs_, entrance_, log),
       stages_(std::move(stages), log),
       publisher_(params, free_jobs_),
-      graph_(params.threads,
-             {.stages = stages_, .publisher = publisher_, .entrance = entrance_, .stop = [this] { stop(); }}),
+      graph_(params, {.stages = stages_, .publisher = publisher_, .entrance = entrance_, .stop = [this] { stop(); }}),
       pump_thread_([this] { pump(); }) {}
 
 Pipeline::Impl::~Impl() { stop(); }
@@ -61,6 +60,7 @@ void Pipeline::Impl::stop() {
 }
 
 void Pipeline::Impl::pump() {
+  const PlacedThread placed(params_.placement);
   try {
     while (Job* const job = intake_.next([this] { return graph_.failed(); })) graph_.put(*job);
   } catch (...) {
@@ -113,8 +113,9 @@ Pipeline::Pipeline(const PipelineParams& params, Stages stages, LogCallback log)
 }
 Pipeline::~Pipeline() = default;
 
-bool Pipeline::push(StereoFrame frame) { return impl_->intake().push(std::move(frame)); }
+Admission Pipeline::push(StereoFrame frame) { return impl_->intake().push(std::move(frame)); }
 void Pipeline::passOver(const FrameHeader& frame) { impl_->intake().passOver(frame); }
+void Pipeline::abandon() { impl_->stop(); }
 void Pipeline::close() { impl_->intake().close(); }
 std::optional<PipelineResult> Pipeline::next() { return impl_->publisher().next(); }
 std::optional<PipelineResult> Pipeline::poll() { return impl_->publisher().poll(); }

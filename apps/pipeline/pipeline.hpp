@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/pipeline/admission.hpp"
 #include "apps/pipeline/gap_filler.hpp"
 #include "apps/pipeline/log_callback.hpp"
 #include "apps/pipeline/pipeline_params.hpp"
@@ -22,16 +23,18 @@ class Pipeline {
   /// Abandons what was not finished.
   ~Pipeline();
 
-  /// Producer: false after `close`. Frames without an id are numbered; one whose id is not after the last one's is late
-  /// and ignored, one whose time is not after the last one's is rejected; where the camera's clock was set back, times
-  /// go on from the last one (see `FrameClock`).
-  /// A frame without a due time is due when the pipeline takes it.
-  /// Under the live policy it takes no lock and, with images from an ImagePool, asks nothing of the heap.
-  bool push(StereoFrame frame);
+  /// Producer: what becomes of the frame. Frames without an id are numbered; one whose id is not after the last one's
+  /// is late and ignored, one whose time is not after the last one's is rejected; where the camera's clock was set
+  /// back, times go on from the last one (see `FrameClock`). A frame without a due time is due when the pipeline takes
+  /// it. Under the live policy it takes no lock and, with images from an ImagePool, asks nothing of the heap.
+  Admission push(StereoFrame frame);
   /// Producer, between two pushes: this frame was there, but does not come. It counts as received and dropped.
   void passOver(const FrameHeader& frame);
   /// Producer: no further frame comes.
   void close();
+
+  /// Any thread: no further frame comes, and those in flight are given up; ends every wait.
+  void abandon();
 
   /// Consumer: the next result, waiting for it; empty after the last one of a closed pipeline.
   std::optional<PipelineResult> next();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/parameters.hpp"
+#include "core/thread_placement.hpp"
 
 namespace motorcade {
 
@@ -16,6 +17,7 @@ struct PipelineParams {
   int threads = 2;           // workers of the pipeline's own arena, at most one per processor
   int frames_in_flight = 4;  // bound of every queue; live: at most `threads`, so that frames do not grow old on the way
   InputPolicy policy = InputPolicy::kReplay;
+  ThreadPlacement placement{};  // of the pipeline's threads; no key of the configuration
 };
 
 std::vector<Parameter> parametersOf(PipelineParams& params);

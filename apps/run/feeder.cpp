@@ -75,7 +75,7 @@ bool Feeder::enter(StereoFrame frame, const std::stop_token& stopped) {
 /// The pair enters first, so that looking at it does not delay it.
 bool Feeder::push(StereoFrame frame) {
   const StereoFrame seen = frame;
-  if (!pipeline_.push(std::move(frame))) return false;
+  if (pipeline_.push(std::move(frame)) == Admission::kClosed) return false;
   for (RunListener* const listener : listeners_) listener->frameEntered(seen);
   return !watch_ || watch_->admits(seen);
 }

@@ -280,6 +280,7 @@ void JointGraph::keep(FrameId frame, const JointCovariances& covariances) {
   for (const JointCovariances::Object& object : covariances.objects) {
     JointRecord& record = objects_.at(object.track).records.at(frame);
     record.covariance = object.T_cam_body;
+    record.velocity_cam_covariance = object.velocity_cam;
     record.speed_sigma_mps = object.speed_sigma_mps;
     record.yaw_rate_sigma_radps = object.yaw_rate_sigma_radps;
   }

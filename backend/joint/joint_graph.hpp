@@ -34,6 +34,7 @@ struct JointRecord {
   std::optional<FactorId> motion;  // since the record before
   std::optional<SE3> frozen;       // T_world_body when the pose has left the window
   std::optional<Matrix6d> covariance;
+  std::optional<Eigen::Matrix3d> velocity_cam_covariance;  // in the camera's axes
   std::optional<double> speed_sigma_mps, yaw_rate_sigma_radps;
 };
 
@@ -66,7 +67,8 @@ bool showsPoints(const FrameMeasurements& measurements);
 struct JointCovariances {
   struct Object {
     TrackId track;
-    Matrix6d T_cam_body;  // covariance of the pose seen from the camera, right perturbation
+    Matrix6d T_cam_body;           // covariance of the pose seen from the camera, right perturbation
+    Eigen::Matrix3d velocity_cam;  // of the velocity over ground, in the camera's axes
     double speed_sigma_mps = 0, yaw_rate_sigma_radps = 0;
   };
   std::optional<Matrix6d> camera;  // of T_cam(before)_cam(now), kCameraCovarianceFrames apart

@@ -11,6 +11,15 @@ namespace {
 
 using Matrix6x12d = Eigen::Matrix<double, 6, 12>;
 
+/// Of R_cam_body * v_body, both perturbed: R (dv - [v] x phi).
+Eigen::Matrix3d velocityCovariance(const SE3& T_cam_body, const Eigen::Vector3d& velocity_body_mps,
+                                   const Eigen::Matrix<double, 12, 12>& joint) {
+  Eigen::Matrix<double, 3, 12> J = Eigen::Matrix<double, 3, 12>::Zero();
+  J.middleCols<3>(3) = -T_cam_body.rotation() * hat(velocity_body_mps);
+  J.middleCols<3>(6) = T_cam_body.rotation();
+  return J * joint * J.transpose();
+}
+
 }  // namespace
 
 JointCovariances JointReader::covariances(FrameId frame) const {
@@ -51,10 +60,12 @@ std::optional<JointCovariances::Object> JointReader::objectCovariance(TrackId id
   const Eigen::Vector3d direction = velocity.norm() > kStanding_mps ? velocity.normalized() : Eigen::Vector3d::UnitX();
   const Eigen::Matrix<double, 12, 12> covariance = graph_.designEffect() * *joint;
   const double variance = direction.dot(covariance.block<3, 3>(6, 6) * direction);
-  return JointCovariances::Object{.track = id,
-                                  .T_cam_body = covariance.topLeftCorner<6, 6>(),
-                                  .speed_sigma_mps = std::sqrt(std::max(0.0, variance)),
-                                  .yaw_rate_sigma_radps = std::sqrt(std::max(0.0, covariance(11, 11)))};
+  return JointCovariances::Object{
+      .track = id,
+      .T_cam_body = covariance.topLeftCorner<6, 6>(),
+      .velocity_cam = velocityCovariance(graph_.solver().pose(record.c), velocity, covariance),
+      .speed_sigma_mps = std::sqrt(std::max(0.0, variance)),
+      .yaw_rate_sigma_radps = std::sqrt(std::max(0.0, covariance(11, 11)))};
 }
 
 FrameEstimate JointReader::read(FrameId frame) const {
@@ -74,11 +85,16 @@ ObjectEstimate JointReader::readObject(TrackId id, const JointObject& object, Fr
   constexpr double kUnknownSpeedSigma_mps = 10.0, kUnknownYawRateSigma_radps = 0.3;  // of a single observation
   const JointRecord& record = object.records.at(frame);
   const double yaw_rate_radps = record.w.valid() ? std::get<SmallVector>(graph_.solver().estimate(record.w))[5] : 0;
+  const Eigen::Matrix3d R_world_cam = graph_.solver().pose(graph_.frames().at(frame).x).rotation();
+  std::optional<Eigen::Matrix3d> velocity_covariance;
+  if (record.velocity_cam_covariance)
+    velocity_covariance = R_world_cam * *record.velocity_cam_covariance * R_world_cam.transpose();
   return {.track = id,
           .state = record.seen.state,
           .T_world_body = graph_.objectPose(object, frame),
           .velocity_world_mps = graph_.objectVelocity_mps(object, frame),
           .speed_sigma_mps = record.speed_sigma_mps.value_or(kUnknownSpeedSigma_mps),
+          .velocity_covariance = velocity_covariance,
           .yaw_rate_radps = yaw_rate_radps,
           .yaw_rate_sigma_radps = record.yaw_rate_sigma_radps.value_or(kUnknownYawRateSigma_radps),
           .points = record.seen.points,

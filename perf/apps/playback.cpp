@@ -18,7 +18,7 @@ void feed(FrameSource& source, Pipeline& pipeline, std::optional<double> rate_hz
       frame->due = start + std::chrono::duration_cast<Clock::duration>(after);
       std::this_thread::sleep_until(frame->due);
     }
-    if (!pipeline.push(std::move(*frame))) break;
+    if (pipeline.push(std::move(*frame)) == Admission::kClosed) break;
   }
   pipeline.close();
 }

@@ -80,7 +80,7 @@ TEST(CameraThread, NeitherLocksNorAsksTheHeapHoweverManyPairsAreDropped) {
     StereoFrame frame = frameAt(pairs++);
     frame.left = pool.acquire(64, 32);
     frame.right = pool.acquire(64, 32);
-    EXPECT_TRUE(pipeline.push(std::move(frame)));
+    EXPECT_TRUE(isTaken(pipeline.push(std::move(frame))));
   };
   shoot();
   while (!in_motion) std::this_thread::yield();

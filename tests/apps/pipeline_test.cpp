@@ -191,7 +191,7 @@ TEST(Pipeline, EndsWithTheReasonWhenItCannotTellOfAFrame) {
                     [](LogLevel, const std::string&) { throw std::logic_error("no paper left"); });
   std::jthread producer([&] {
     for (StereoFrame& frame : framesFrom0To(50))
-      if (!pipeline.push(std::move(frame))) return;
+      if (!isTaken(pipeline.push(std::move(frame)))) return;
   });
   std::vector<PipelineResult> results;
   while (auto result = pipeline.next()) results.push_back(std::move(*result));
@@ -212,7 +212,7 @@ TEST(Pipeline, CanBeAbandonedAtAnyMoment) {
   for (int frames = 0; frames < 8; ++frames) {
     ToyStages toys{.work = unevenWork};
     Pipeline pipeline({.frames_in_flight = 8}, toys.stages());
-    for (int index = 0; index < frames; ++index) EXPECT_TRUE(pipeline.push(frameAt(index)));
+    for (int index = 0; index < frames; ++index) EXPECT_TRUE(isTaken(pipeline.push(frameAt(index))));
   }
 }
 
@@ -224,7 +224,7 @@ TEST(Pipeline, KeepsNoImageAliveThroughItsResults) {
   for (int index = 0; index < 50; ++index) {
     StereoFrame frame = frameAt(index);
     frame.left = pool.acquire(64, 32);
-    ASSERT_TRUE(pipeline.push(std::move(frame)));
+    ASSERT_TRUE(isTaken(pipeline.push(std::move(frame))));
     results.push_back(*pipeline.next());
   }
   EXPECT_LE(pool.buffersMade(), 3u);  // the frame in work, and two that their last owners are just letting go

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+
+#include "core/image.hpp"
+#include "core/stereo_camera.hpp"
+#include "io/rig/remap.hpp"
+#include "motorcade/motorcade.hpp"
+
+namespace motorcade {
+
+/// A caller's camera as the stages need it: that of the rectified pair, and how its images become such.
+class CameraModel {
+ public:
+  /// Throws Error naming the field.
+  explicit CameraModel(const Camera& camera);
+
+  const StereoCamera& rectified() const { return rectified_; }
+  /// From what was pushed, as gray, to what the stages take.
+  Image leftOf(Image gray, ImagePool& pool) const { return remaps_ ? remaps_->left(gray, pool) : gray; }
+  Image rightOf(Image gray, ImagePool& pool) const { return remaps_ ? remaps_->right(gray, pool) : gray; }
+
+ private:
+  struct Remaps {
+    Remap left, right;
+  };
+  StereoCamera rectified_;
+  std::optional<Remaps> remaps_;
+};
+
+/// The other way round, of a pair that is rectified.
+Camera cameraOf(const StereoCamera& camera);
+
+}  // namespace motorcade

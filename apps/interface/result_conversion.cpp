@@ -1,0 +1,166 @@
+#include "apps/interface/result_conversion.hpp"
+
+#include <algorithm>
+
+namespace motorcade {
+namespace {
+
+using RowMajor34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+
+template <int kSize>
+std::array<double, std::size_t{kSize} * kSize> rowsOf(const Eigen::Matrix<double, kSize, kSize>& matrix) {
+  std::array<double, std::size_t{kSize} * kSize> rows{};
+  Eigen::Map<Eigen::Matrix<double, kSize, kSize, Eigen::RowMajor>>(rows.data()) = matrix;
+  return rows;
+}
+
+std::array<double, 12> rowsOf(const SE3& T) {
+  std::array<double, 12> rows{};
+  Eigen::Map<RowMajor34> matrix(rows.data());
+  matrix << T.rotation(), T.translation();
+  return rows;
+}
+
+std::array<double, 3> arrayOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+/// With perturbations (rho, phi) in the axes that R leads to.
+Matrix6d turned(const Matrix6d& covariance, const Eigen::Matrix3d& R) {
+  Matrix6d J = Matrix6d::Zero();
+  J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = R;
+  return J * covariance * J.transpose();
+}
+
+Result::Status statusOf(FrameStatus status) {
+  switch (status) {
+    case FrameStatus::kGood:
+      return Result::Status::kGood;
+    case FrameStatus::kLost:
+      return Result::Status::kLost;
+    case FrameStatus::kRejected:
+    case FrameStatus::kDropped:
+      return Result::Status::kRejected;
+  }
+  return Result::Status::kRejected;
+}
+
+Result::State stateOf(ObjectState state) {
+  switch (state) {
+    case ObjectState::kMoving:
+      return Result::State::kMoving;
+    case ObjectState::kStopped:
+      return Result::State::kStopped;
+    case ObjectState::kPredicted:
+      return Result::State::kPredicted;
+  }
+  return Result::State::kPredicted;
+}
+
+Result::Kind kindOf(ObjectKind kind) {
+  switch (kind) {
+    case ObjectKind::kUnknown:
+      return Result::Kind::kUnknown;
+    case ObjectKind::kCar:
+      return Result::Kind::kCar;
+    case ObjectKind::kLargeVehicle:
+      return Result::Kind::kLargeVehicle;
+    case ObjectKind::kTwoWheeler:
+      return Result::Kind::kTwoWheeler;
+    case ObjectKind::kPedestrian:
+      return Result::Kind::kPedestrian;
+  }
+  return Result::Kind::kUnknown;
+}
+
+Result::Cause causeOf(FrameCause cause) {
+  static_assert(static_cast<int>(Result::Cause::kTooLate) == static_cast<int>(FrameCause::kTooLate));
+  static_assert(static_cast<int>(Result::Cause::kTooLate) + 1 == kCauseCount);
+  return static_cast<Result::Cause>(cause);
+}
+
+void setCuboid(const ObjectBox& cuboid, Result::Object& object) {
+  object.box_center_body_m = arrayOf(cuboid.center_body);
+  object.box_size_m = arrayOf(cuboid.size_m);
+  object.box_size_sigma_m = arrayOf(cuboid.size_sigma_m);
+  object.kind = kindOf(cuboid.kind);
+  object.kind_probability = cuboid.kind_probability;
+}
+
+void setMask(const std::vector<ObjectMask>& masks, Result::Object& object) {
+  const auto mask = std::ranges::find(masks, object.id, [](const ObjectMask& m) { return m.track.value; });
+  if (mask == masks.end()) return;
+  object.mask = Result::Mask{.left_px = mask->left_px,
+                             .top_px = mask->top_px,
+                             .cell_px = mask->cell_px,
+                             .width_cells = mask->width,
+                             .height_cells = mask->height,
+                             .inside = mask->inside};
+}
+
+Eigen::Matrix3d axesFrom(Tracker::Axes axes) {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  if (axes == Tracker::Axes::kRep103) R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return R;
+}
+
+}  // namespace
+
+ResultConversion::ResultConversion(Tracker::Axes axes, bool masks) : R_out_cam_(axesFrom(axes)), masks_(masks) {}
+
+Result ResultConversion::operator()(const PipelineResult& result) {
+  const FrameEstimate& online = result.online;
+  const SE3 T_out_cam(R_out_cam_, Eigen::Vector3d::Zero());
+  Result converted;
+  converted.frame = online.frame.value;
+  converted.stamp_ns = online.stamp.ns;
+  converted.status = statusOf(online.status);
+  converted.cause = causeOf(online.cause);
+  converted.segment = online.segment;
+  converted.T_world_cam = rowsOf(T_out_cam * online.T_world_cam * T_out_cam.inverse());
+  if (online.camera_covariance) converted.motion_covariance = rowsOf<6>(turned(*online.camera_covariance, R_out_cam_));
+  setVelocity(result, converted);
+  for (const ObjectEstimate& estimate : online.objects) {
+    converted.objects.push_back(object(estimate, online.T_world_cam));
+    if (masks_) setMask(result.masks, converted.objects.back());
+  }
+  converted.dropped_before = static_cast<int>(
+      std::ranges::count(result.dropped, FrameStatus::kDropped, [](const FrameEstimate& f) { return f.status; }));
+  converted.latency_ms = result.timing.latency_ms();
+  converted.problem = result.problem;
+  return converted;
+}
+
+/// By the motion since the frame before, as measured; none in the first frame.
+void ResultConversion::setVelocity(const PipelineResult& result, Result& converted) {
+  const Timestamp now = result.online.stamp;
+  const double dt_s = before_ ? secondsBetween(*before_, now) : 0;
+  before_ = now;
+  if (!result.measurements || !(dt_s > 0)) return;
+  const Vector6d motion = result.measurements->T_previous_now.log();
+  Eigen::Map<Eigen::Vector3d>(converted.velocity.data()) = R_out_cam_ * motion.head<3>() / dt_s;
+  Eigen::Map<Eigen::Vector3d>(converted.velocity.data() + 3) = R_out_cam_ * motion.tail<3>() / dt_s;
+  converted.velocity_covariance =
+      rowsOf<6>(turned(result.measurements->odometry_covariance, R_out_cam_) / (dt_s * dt_s));
+}
+
+Result::Object ResultConversion::object(const ObjectEstimate& object, const SE3& T_world_cam) const {
+  const SE3 T_out_cam(R_out_cam_, Eigen::Vector3d::Zero());
+  Result::Object converted;
+  converted.id = object.track.value;
+  converted.state = stateOf(object.state);
+  converted.T_world_body = rowsOf(T_out_cam * object.T_world_body);
+  converted.T_cam_body = rowsOf(T_out_cam * T_world_cam.inverse() * object.T_world_body);
+  if (object.covariance) converted.covariance = rowsOf<6>(*object.covariance);
+  converted.velocity_world_mps = arrayOf(R_out_cam_ * object.velocity_world_mps);
+  const Eigen::Matrix3d isotropic = Eigen::Matrix3d::Identity() * (object.speed_sigma_mps * object.speed_sigma_mps);
+  const Eigen::Matrix3d velocity_covariance = object.velocity_covariance.value_or(isotropic);
+  converted.velocity_covariance = rowsOf<3>(R_out_cam_ * velocity_covariance * R_out_cam_.transpose());
+  converted.yaw_rate_radps = object.yaw_rate_radps;
+  converted.yaw_rate_sigma_radps = object.yaw_rate_sigma_radps;
+  converted.age_s = object.age_s;
+  converted.points = object.points;
+  converted.image_box_px = {object.box.left_px, object.box.top_px, object.box.right_px, object.box.bottom_px};
+  if (object.cuboid) setCuboid(*object.cuboid, converted);
+  return converted;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,19 @@
+#pragma once
+
+namespace motorcade {
+
+/// What became of a frame that was pushed.
+enum class Admission {
+  kTaken,
+  kReplacedOlder,  // taken, and one that still waited is dropped
+  kLate,           // ignored: its id is not after the last one's
+  kOutOfOrder,     // rejected: its time does not follow the last one's
+  kClosed,         // ignored: no further frame may come
+};
+
+/// Does a result come of the frame, unless a newer one replaces it?
+constexpr bool isTaken(Admission admission) {
+  return admission == Admission::kTaken || admission == Admission::kReplacedOlder;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,205 @@
+#pragma once
+
+/// Motorcade: follows a car's own path and the moving vehicles around it from one stereo camera.
+///
+///   motorcade::Tracker tracker(camera, options);       // throws Error, naming the field
+///   tracker.push({.left = {pixels, width, height}, .right = ..., .stamp_ns = stamp});
+///   while (const auto result = tracker.wait(100ms)) use(*result);
+///
+/// Units are in the names: meters, seconds, radians, pixels, integer nanoseconds of the capture clock. `T_a_b` takes
+/// coordinates in b to coordinates in a, p_a = T_a_b * p_b: the upper three rows of a 4x4 matrix, row by row. Frames:
+///   cam    the left camera, rectified: x right, y down, z ahead (optical, as in OpenCV); with `Axes::kRep103` x ahead,
+///          y left, z up (as ROS wants of bodies)
+///   world  the first frame's cam
+///   body   of an object, fixed to it: x in the direction of travel, y left, z up, with either axes
+/// Covariances are row by row, of perturbations (rho, phi) [m, rad] on the right, T exp(rho, phi). On real drives they
+/// are too small: keep a margin.
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#define MOTORCADE_API __attribute__((visibility("default")))
+#define MOTORCADE_INTERNAL __attribute__((visibility("hidden")))
+
+namespace motorcade {
+
+/// What was asked for cannot be done. `field` names what is to be mended, as `camera.baseline_m`, and the message how.
+class MOTORCADE_API Error : public std::runtime_error {
+ public:
+  Error(std::string field, const std::string& message)
+      : runtime_error(field + ": " + message), field_(std::move(field)) {}
+  ~Error() override;
+  const std::string& field() const { return field_; }
+
+ private:
+  std::string field_;
+};
+
+/// The stereo camera: of a rectified pair, or with `rig` of one that is still to be rectified, which is done inside.
+struct Camera {
+  int width_px = 0, height_px = 0;                                    // of the images that are pushed
+  double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0, baseline_m = 0;  // rectified; not read where there is a rig
+
+  enum class Distortion { kNone, kRadialTangential, kEquidistant };
+  struct Lens {
+    double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0;
+    Distortion distortion = Distortion::kNone;
+    std::array<double, 8> coefficients{};  // k1 k2 p1 p2 k3 k4 k5 k6 as OpenCV orders them; equidistant: k1 k2 k3 k4
+  };
+  struct Rig {
+    Lens left, right;
+    std::array<double, 12> T_right_left{};
+  };
+  std::optional<Rig> rig{};
+};
+
+/// One moment's two images. The pixels are copied by `Tracker::push`.
+struct Pair {
+  enum class Format { kGray8, kGray16, kRgb8, kBgr8 };  // gray is BT.601; of 16 bits the upper eight are used
+  struct Image {
+    const void* pixels = nullptr;
+    int width_px = 0, height_px = 0;
+    std::int64_t stride_bytes = 0;  // from row to row; 0: rows without gaps
+    Format format = Format::kGray8;
+  };
+  Image left{}, right{};
+  std::int64_t stamp_ns = 0;  // capture time, after that of the pair before
+  std::int64_t frame = -1;    // number, after that of the pair before; -1: the next one
+};
+
+/// What is known in one frame, as soon as it is.
+struct Result {
+  enum class Status { kGood, kLost, kRejected };  // lost and rejected: the pose is predicted, with a wide covariance
+  /// Why a frame is not simply good; good with a cause: measured, but less surely.
+  enum class Cause { kNone, kAfterGap, kFewPoints, kNoPoints, kUnlinked, kFailed, kUnusable, kOutOfOrder, kTooLate };
+  enum class State { kMoving, kStopped, kPredicted };  // predicted: not seen in this frame
+  enum class Kind { kUnknown, kCar, kLargeVehicle, kTwoWheeler, kPedestrian };
+
+  /// The left image's pixels that show an object: cells of `cell_px` pixels each way, row by row, 1 where it is seen.
+  struct Mask {
+    int left_px = 0, top_px = 0, cell_px = 1, width_cells = 0, height_cells = 0;
+    std::vector<std::uint8_t> inside{};
+  };
+  struct Object {
+    std::int64_t id = -1;  // never used twice by one tracker
+    State state = State::kMoving;
+    std::array<double, 12> T_world_body{}, T_cam_body{};
+    std::optional<std::array<double, 36>> covariance{};   // of T_cam_body
+    std::array<double, 3> velocity_world_mps{};           // of the body's origin, over ground
+    std::array<double, 9> velocity_covariance{};          // [m^2/s^2], the camera's own drift left out
+    double yaw_rate_radps = 0, yaw_rate_sigma_radps = 0;  // about the body's z axis
+    double age_s = 0;                                     // since it was first reported
+    int points = 0;                                       // seen on it in this frame
+    std::array<double, 4> image_box_px{};                 // left, top, right, bottom in the left image, inclusive
+    /// The cuboid along the body's axes, its bottom on the ground; length 0 where it is not known yet.
+    std::array<double, 3> box_center_body_m{}, box_size_m{}, box_size_sigma_m{};  // length, width, height
+    Kind kind = Kind::kUnknown;
+    double kind_probability = 0;
+    std::optional<Mask> mask{};  // with `Options::masks`, where the outline was found
+  };
+
+  std::int64_t frame = -1, stamp_ns = 0;
+  Status status = Status::kGood;
+  Cause cause = Cause::kNone;
+  int segment = 0;  // counts up where nothing measured links the poses before and after
+  std::array<double, 12> T_world_cam{};
+  std::optional<std::array<double, 36>> motion_covariance{};  // of T_cam(before)_cam(now), ten frames apart
+  /// The camera's own motion since the frame before, in its axes: velocity [m/s] and turn rate [rad/s].
+  std::array<double, 6> velocity{};
+  std::array<double, 36> velocity_covariance{};
+  std::vector<Object> objects{};  // by id
+  int dropped_before = 0;         // pairs since the result before that a newer one replaced
+  double latency_ms = 0;          // from `push` to the result
+  std::string problem{};          // why the pair was lost or rejected, in a sentence
+};
+
+/// Follows the camera and the objects. One thread pushes, one takes results; every other call is for any thread.
+/// Several trackers in one process share nothing but the processors.
+class MOTORCADE_API Tracker {
+ public:
+  enum class Policy {
+    kLive,    // the newest pair wins: `push` never waits, and once warm asks nothing of the heap
+    kReplay,  // no pair is lost: `push` waits for room; results do not depend on time or threads
+  };
+  enum class Axes { kOptical, kRep103 };
+  enum class LogLevel { kInfo, kWarning, kError };
+  struct Options {
+    Policy policy = Policy::kLive;
+    Axes axes = Axes::kOptical;
+    bool masks = false;
+    int threads = 2;                           // 1 to 64, at most one per processor is used
+    int realtime_priority = 0;                 // of its threads: 1 to 99 is SCHED_FIFO, which may need a privilege
+    std::vector<int> cpus{};                   // that its threads may run on; empty: all
+    std::chrono::milliseconds patience{5000};  // replay: a `push` waits so long at most for results to be taken
+    std::string settings{};                    // lines of the program's configuration file: "frontend.max_points = 400"
+    std::function<void(LogLevel, const std::string&)> log{};  // called from the tracker's threads, several at once
+  };
+  struct Push {
+    enum class Status { kAccepted, kReplacedOlder, kRejected };
+    Status status = Status::kAccepted;  // replaced: accepted, and an older pair that still waited is dropped
+    const char* why = "";               // it was rejected; static text
+  };
+  struct Counts {
+    std::int64_t pushed = 0, rejected = 0;  // by `push`; no result comes of a rejected pair
+    std::int64_t dropped = 0;               // replaced by a newer one
+    std::int64_t results = 0, untaken = 0;  // given so far; lost since nobody took them (live: beyond 256)
+  };
+
+  /// Throws Error. Parts of `options` keep their default where it is not given.
+  Tracker(const Camera& camera, const Options& options);
+  explicit Tracker(const Camera& camera);
+  /// Abandons what is in flight, and joins its threads.
+  ~Tracker();
+  Tracker(const Tracker&) = delete;
+  Tracker& operator=(const Tracker&) = delete;
+
+  /// A pair of another size than the camera's, without pixels, not after the one before (a clock that was set back is
+  /// followed after four pairs), after `close`, or beside another thread's push is rejected.
+  Push push(const Pair& pair) noexcept;
+  /// No further pair comes: the results of those that were accepted still do.
+  void close() noexcept;
+
+  /// The next result if there is one already.
+  std::optional<Result> poll();
+  /// Waits for the next result; empty when there is none in time, and at once when there will be none (`done`).
+  std::optional<Result> wait(std::chrono::milliseconds timeout);
+  bool done() const noexcept;
+  /// From now on results come by this call, on a thread of the tracker, not by `poll` and `wait`. What it throws is
+  /// logged. It must not destroy the tracker.
+  void on_result(std::function<void(Result)> take);
+
+  Counts counts() const noexcept;
+
+ private:
+  class MOTORCADE_INTERNAL Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A recorded drive: a folder of KITTI, EuRoC, Argoverse or plain images (docs/formats.md).
+class MOTORCADE_API Recording {
+ public:
+  /// Throws Error.
+  explicit Recording(const std::string& folder);
+  ~Recording();
+  Recording(const Recording&) = delete;
+  Recording& operator=(const Recording&) = delete;
+
+  Camera camera() const;  // rectified, as the pairs are
+  std::int64_t size() const;
+  /// Its pixels live until the next call. An image that cannot be read has none, and the tracker will reject the pair.
+  Pair read(std::int64_t index);
+
+ private:
+  class MOTORCADE_INTERNAL Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+MOTORCADE_API const char* version() noexcept;  // as "0.1.0"
+
+}  // namespace motorcade
