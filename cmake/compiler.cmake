@@ -35,9 +35,6 @@ function(motorcade_library folder)
   target_include_directories(motorcade_${folder} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/motorcade>)
   motorcade_options(motorcade_${folder})
-  if(folder STREQUAL core OR folder STREQUAL frontend)
-    motorcade_same_bits(motorcade_${folder})
-  endif()
   if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)  # else io would wait for the back-end all the same
     motorcade_precompiled_headers(${folder})
   endif()
@@ -57,30 +54,17 @@ function(motorcade_precompiled_headers folder)
   endif()
 endfunction()
 
-# The front-end's choices (a hypothesis, a point at a gate) hang on last bits: round in the same way on every processor, without fusing
-# multiplications with additions and without Eigen's vectors, whose sums depend on their width. Alignment stays what it is elsewhere.
-function(motorcade_same_bits target)
-  if(MOTORCADE_PORTABLE)
-    set(alignment 16)
-  else()
-    set(alignment 32)
-  endif()
-  target_compile_options(${target} PRIVATE -ffp-contract=off)
-  target_compile_definitions(${target} PRIVATE
-    EIGEN_DONT_VECTORIZE EIGEN_MAX_ALIGN_BYTES=${alignment} EIGEN_MAX_STATIC_ALIGN_BYTES=${alignment})
-endfunction()
-
 function(motorcade_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wold-style-cast -Werror
     -Wno-array-bounds)  # GCC 12 mistakes Eigen's vector loads from 3-vectors for overruns
   # Errno is not read after a square root, and no floating-point exception is trapped: such loops become vector code, with the same values.
   target_compile_options(${target} PRIVATE -fno-math-errno -fno-trapping-math)
-  if(MOTORCADE_PORTABLE)
-    # Vectors of 32 bytes pass between functions of one file only, so that no caller depends on how.
-    target_compile_options(${target} PRIVATE -Wno-psabi)
-  else()
-    # Public: Eigen's alignment and inlined kernels must agree between the library and its users.
-    target_compile_options(${target} PUBLIC -march=x86-64-v3)
-  endif()
+  # Choices (a hypothesis, a point at a gate) hang on last bits: round in the same way on every processor, without fusing multiplications with
+  # additions and without Eigen's vectors, whose sums depend on their width. Alignment stays what it is elsewhere.
+  target_compile_options(${target} PRIVATE -ffp-contract=off)
+  target_compile_definitions(${target} PRIVATE EIGEN_DONT_VECTORIZE EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+  # Vectors of 32 bytes pass between functions of one file only, so that no caller depends on how. Without Eigen's vectors GCC 12 takes the
+  # entries that a short vector does not use for read.
+  target_compile_options(${target} PRIVATE -Wno-psabi $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endfunction()

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/elementary.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -16,7 +18,7 @@ ObjectPlace placeOf(const ObjectEstimate& object) {
   const Eigen::Matrix3d& R = object.T_world_body.rotation();
   const Eigen::Vector3d ahead = R.col(0);
   ObjectPlace place{.center_world = object.T_world_body * cuboid.center_body,
-                    .heading_rad = std::atan2(-ahead.x(), ahead.z())};
+                    .heading_rad = arcTangent(-ahead.x(), ahead.z())};
   if (!object.covariance || !object.covariance->allFinite()) return place;
 
   Eigen::Matrix<double, 3, 6> J_center;

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/elementary.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -21,7 +23,7 @@ struct RodriguesCoefficients {
 RodriguesCoefficients rodrigues(double theta_rad) {
   const double t2 = theta_rad * theta_rad;
   if (theta_rad < kSmallAngle_rad) return {1.0 - t2 / 6.0, 0.5 - t2 / 24.0, 1.0 / 6.0 - t2 / 120.0};
-  const double s = std::sin(theta_rad), half = std::sin(0.5 * theta_rad);
+  const double s = sine(theta_rad), half = sine(0.5 * theta_rad);
   return {s / theta_rad, 2.0 * half * half / t2, (theta_rad - s) / (t2 * theta_rad)};
 }
 
@@ -36,7 +38,7 @@ Eigen::Matrix3d leftJacobianInverseSO3(const Eigen::Vector3d& phi) {
   const Eigen::Matrix3d W = hat(phi);
   const double t2 = theta * theta;
   double k = 1.0 / 12.0 + t2 / 720.0;
-  if (theta >= kSmallAngleOfInverse_rad) k = 1.0 / t2 - (1.0 + std::cos(theta)) / (2.0 * theta * std::sin(theta));
+  if (theta >= kSmallAngleOfInverse_rad) k = 1.0 / t2 - (1.0 + cosine(theta)) / (2.0 * theta * sine(theta));
   return Eigen::Matrix3d::Identity() - 0.5 * W + k * W * W;
 }
 
@@ -45,7 +47,7 @@ Eigen::Matrix3d leftJacobianCoupling(const Eigen::Vector3d& rho, const Eigen::Ve
   const double t = phi.norm(), t2 = t * t;
   double a = 1.0 / 6.0 - t2 / 120.0, b = 1.0 / 24.0 - t2 / 720.0, c = 1.0 / 120.0 - t2 / 2520.0;
   if (t >= kSmallAngleOfCoupling_rad) {
-    const double s = std::sin(t), co = std::cos(t);
+    const auto [s, co] = sineCosine(t);
     a = (t - s) / (t2 * t);
     b = (t2 + 2.0 * co - 2.0) / (2.0 * t2 * t2);
     c = (2.0 * t - 3.0 * s + t * co) / (2.0 * t2 * t2 * t);
@@ -80,7 +82,7 @@ Eigen::Vector3d logSO3(const Eigen::Matrix3d& rotation) {
   if (q.w() < 0) q.coeffs() = -q.coeffs();
   const double n = q.vec().norm();
   if (n < kSmallHalfAngle) return 2.0 / q.w() * q.vec();
-  return 2.0 * std::atan2(n, q.w()) / n * q.vec();
+  return 2.0 * arcTangent(n, q.w()) / n * q.vec();
 }
 
 SE3 SE3::exp(const Vector6d& xi) {

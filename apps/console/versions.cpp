@@ -12,6 +12,8 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/version.h>
 
+#include "core/instruction_set.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -24,12 +26,6 @@ constexpr const char* kJpegVersion = MOTORCADE_TEXT(LIBJPEG_TURBO_VERSION);
 #else
 constexpr const char* kJpegName = "libjpeg";
 constexpr const char* kJpegVersion = MOTORCADE_TEXT(JPEG_LIB_VERSION);
-#endif
-
-#if defined(__AVX2__) && defined(__FMA__)
-constexpr const char* kInstructionSet = "x86-64-v3";
-#else
-constexpr const char* kInstructionSet = "portable";
 #endif
 
 #ifdef __clang__
@@ -46,7 +42,7 @@ std::vector<std::pair<std::string, std::string>> versions() {
   return {{"motorcade", MOTORCADE_VERSION},
           {"build", MOTORCADE_BUILD},
           {"compiler", kCompiler},
-          {"instruction_set", kInstructionSet},
+          {"instruction_set", nameOf(instructionSet())},
           {"onetbb", TBB_runtime_version()},
           {"eigen", numbered(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
           {"opencv", CV_VERSION},

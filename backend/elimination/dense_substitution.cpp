@@ -68,6 +68,22 @@ void forwardSubstituteColumns(const Panel& panel, int first, double* g) {
     for (int c = 0; c < N; ++c) g[i] -= L[i + c * ld] * d[c];
 }
 
+/// N vectors of columns of several right-hand sides, from `y` on.
+template <int N>
+void forwardSubstituteRows(const Panel& panel, double* y, int stride) {
+  for (int i = 0; i + 1 < panel.rows; ++i) {
+    Vec rest[N];
+    for (int c = 0; c < N; ++c) rest[c] = load(y + i * stride + c * kLanes);
+    for (int k = 0; k < std::min(i, panel.columns); ++k) {
+      const Vec factor = broadcast(panel.data[i + k * panel.ld]);
+#pragma GCC unroll 4
+      for (int c = 0; c < N; ++c) rest[c] -= factor * load(y + k * stride + c * kLanes);
+    }
+    const Vec inverse = broadcast(i < panel.columns ? 1 / panel.data[i + i * panel.ld] : 1);
+    for (int c = 0; c < N; ++c) store(y + i * stride + c * kLanes, rest[c] * inverse);
+  }
+}
+
 }  // namespace
 
 void backSubstitute(const Panel& panel, const double* x_separator, double* x_frontal) {
@@ -85,6 +101,13 @@ void forwardSubstitute(const Panel& panel, std::span<const int> singular, double
   }
   for (const int k : singular) g[k] = 0;  // it has touched nothing: its column is zero below the pivot
   for (int k = 0; k < panel.columns; ++k) panel.data[panel.rows - 1 + k * panel.ld] = g[k];
+}
+
+void forwardSubstitute(const Panel& panel, double* y, int stride) {
+  constexpr int kMost = 4;
+  for (int first = 0; first < stride; first += kMost * kLanes)
+    withConstant<kMost>(std::min((stride - first) / kLanes, kMost),
+                        [&]<int N>() { forwardSubstituteRows<N>(panel, y + first, stride); });
 }
 
 }  // namespace motorcade

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/elementary.hpp"
 #include "core/robust_loss.hpp"
 
 namespace motorcade {
@@ -50,7 +51,7 @@ void ObjectFilter::adaptNoise(double normalized_innovation) {
   constexpr double kMostInTotal = 100.0;  // in variance: a tenth to ten times the accelerations that were set
   const double bounded = std::clamp(normalized_innovation, 1 / kMostPerStep, kMostPerStep);
   noise_scale_ =
-      std::clamp(noise_scale_ * std::pow(bounded, dt_s_ / params_.adaptation_time_s), 1 / kMostInTotal, kMostInTotal);
+      std::clamp(noise_scale_ * power(bounded, dt_s_ / params_.adaptation_time_s), 1 / kMostInTotal, kMostInTotal);
 }
 
 double ObjectFilter::speedSigma_mps() const {

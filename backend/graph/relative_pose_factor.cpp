@@ -7,6 +7,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "core/elementary.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -39,7 +41,7 @@ struct RotationLog {
       k = 1.0 / 12 + n2 / 180;
       return;
     }
-    const double n = std::sqrt(n2), half_rad = std::atan2(n, q.w());
+    const double n = std::sqrt(n2), half_rad = arcTangent(n, q.w());
     phi_rad = 2 * half_rad / n * q.vec();
     k = (1 - half_rad * q.w() / n) / (4 * half_rad * half_rad);
   }
@@ -115,7 +117,7 @@ void RelativePoseFactorSE2::linearize(std::span<const Value* const> values, Eige
   const SE2 &Xi = std::get<SE2>(*values[0]), &Xj = std::get<SE2>(*values[1]);
   const Eigen::Vector2d t_m = Xi.rotation().transpose() * (Xj.translation() - Xi.translation());
   const double turn_rad = Xj.angle_rad() - Xi.angle_rad(), angle_rad = wrapped(turn_rad - angle_z_rad_);
-  const double cosine = std::cos(turn_rad), sine = std::sin(turn_rad);
+  const auto [sine, cosine] = sineCosine(turn_rad);
 
   term.block<2, 2>(0, 0) = -A_RzT_;
   term.block<2, 1>(0, 2) = A_RzT_ * Eigen::Vector2d(t_m.y(), -t_m.x()) - b_;

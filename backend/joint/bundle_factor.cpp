@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "backend/elimination/dense_kernels.hpp"
+#include "backend/joint/row_products.hpp"
 
 namespace motorcade {
 namespace {
@@ -36,7 +37,8 @@ class LandmarkSum {
     if (columns_ == 0) first_row_ = 6 * views.front().frame / 4 * 4;  // rows come in fours
     // Y = W L^-T with the landmark's information L L^T, so that W (L L^T)^-1 W^T = Y Y^T.
     const Matrix4d L = fit.information().matrixL();
-    Matrix4d right;  // L^-T, row by row: Eigen unrolls the solution for a vector only
+    // L^-T, row by row: Eigen unrolls the solution for a vector only.
+    Eigen::Matrix<double, kLandmark, kLandmark, Eigen::RowMajor> right;
     for (int i = 0; i < kLandmark; ++i)
       right.row(i) = L.triangularView<Eigen::Lower>().solve(Vector4d::Unit(i).eval()).transpose();
     Eigen::Map<Eigen::MatrixXd> Y(Y_.data() + std::size_t(columns_) * stride_, stride_, kLandmark);
@@ -47,9 +49,10 @@ class LandmarkSum {
     const auto linear = fit.views();
     int row = first_row_;
     for (std::size_t i = 0; i < views.size(); ++i) {
-      own_[views[i].frame].noalias() += linear[i].J.transpose() * linear[i].J;
-      const Eigen::Matrix<double, 3, kLandmark, Eigen::RowMajor> B = linear[i].B * right;
-      const Matrix84d W = linear[i].J.transpose() * B;
+      addOuterProducts(linear[i].J, linear[i].J, own_[views[i].frame]);
+      const Eigen::Matrix<double, 3, kLandmark, Eigen::RowMajor> B = rowProduct(linear[i].B, right);
+      Matrix84d W = Matrix84d::Zero();
+      addOuterProducts(linear[i].J, B, W);
       Y.middleRows(row, 6 * views[i].frame - row).setZero();
       Y.middleRows<6>(6 * views[i].frame) = W.topRows<6>();
       row = 6 * views[i].frame + 6;

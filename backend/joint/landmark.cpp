@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "backend/joint/row_products.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -68,7 +70,7 @@ bool LandmarkFit::linearizeView(const LandmarkView& view, const Eigen::Vector3d&
   LinearView& linear = linear_.emplace_back();
   linear.B.leftCols<3>().noalias() = J * (T.rotation() * G);
   linear.B.col(3) << 0, 0, -whiten.z();
-  V_.noalias() += linear.B.transpose() * linear.B;
+  addOuterProducts(linear.B, linear.B, V_);
   gradient_.noalias() += linear.B.transpose() * r;
   linear.J.col(7) = r;
   if (!with_poses) return true;

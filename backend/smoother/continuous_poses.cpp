@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/elementary.hpp"
+
 namespace motorcade {
 
 void ContinuousPoses::operator()(FrameEstimate& online, const EarlierPose& earlier) {
@@ -13,7 +15,7 @@ void ContinuousPoses::operator()(FrameEstimate& online, const EarlierPose& earli
         last == last_.end() || !(correction_s_ > 0) ? std::nullopt : earlier(object.track, last->second.frame);
     if (then) {
       const SE3 predicted = object.T_world_body * then->inverse() * last->second.T_world_body;
-      const double share = 1 - std::exp(-secondsBetween(last->second.stamp, online.stamp) / correction_s_);
+      const double share = 1 - exponential(-secondsBetween(last->second.stamp, online.stamp) / correction_s_);
       const Vector6d correction = (predicted.inverse() * object.T_world_body).log();
       object.T_world_body = (predicted * SE3::exp(share * correction)).normalized();
     }

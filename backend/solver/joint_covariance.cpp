@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "backend/elimination/dense_substitution.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -26,11 +28,13 @@ Path pathFrom(const FactorGraph& graph, const EliminationTree& tree, std::span<c
   return path;
 }
 
+using RowMajorMatrixXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// The columns of the identity that belong to the variables, in the rows of the path.
-Eigen::MatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables) {
+RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables) {
   int columns = 0;
   for (const VariableId v : variables) columns += graph.sizeOf(v);
-  Eigen::MatrixXd chosen = Eigen::MatrixXd::Zero(path.rows, columns);
+  RowMajorMatrixXd chosen = RowMajorMatrixXd::Zero(path.rows, columns);
   int column = 0;
   for (const VariableId v : variables) {
     chosen.block(path.row[v.value], column, graph.sizeOf(v), graph.sizeOf(v)).setIdentity();
@@ -39,27 +43,33 @@ Eigen::MatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::s
   return chosen;
 }
 
+/// The rows of the path that a clique's scalars have, in the order of its factor.
+std::vector<Eigen::Index> rowsOf(const FactorGraph& graph, const Path& path, const Clique& clique) {
+  std::vector<Eigen::Index> rows;
+  for (const VariableId v : clique.variables)
+    for (int i = 0; i < graph.sizeOf(v); ++i) rows.push_back(path.row[v.value] + i);
+  return rows;
+}
+
 /// With the information H = L L^T and E the chosen columns of the identity, E^T H^-1 E = Y^T Y, Y = L^-1 E. Forward
 /// substitution meets only the cliques from the chosen variables up to the root; no back-substitution is needed.
 /// `rest` holds E, and what is left of it after the cliques so far.
 std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const EliminationTree& tree, const Path& path,
-                                                Eigen::MatrixXd rest) {
-  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(rest.cols(), rest.cols());
+                                                RowMajorMatrixXd rest) {
+  const int columns = static_cast<int>(rest.cols()), stride = padded(columns);
+  Eigen::MatrixXd minus_square = Eigen::MatrixXd::Zero(stride, stride);
+  RowMajorMatrixXd y;
   for (const int c : path.cliques) {
     const Clique& clique = tree[c];
     if (!clique.singular.empty()) return std::nullopt;
-    const int n = clique.frontal_size;
-    const auto L = clique.factor();
-    auto y = rest.middleRows(path.row[clique.variables.front().value], n);
-    L.topRows(n).triangularView<Eigen::Lower>().solveInPlace(y);
-    square.selfadjointView<Eigen::Lower>().rankUpdate(y.transpose());
-    const Eigen::MatrixXd passed = L.bottomRows(clique.separatorSize()) * y;
-    int at = 0;
-    for (const VariableId v : clique.separator()) {
-      rest.middleRows(path.row[v.value], graph.sizeOf(v)) -= passed.middleRows(at, graph.sizeOf(v));
-      at += graph.sizeOf(v);
-    }
+    const std::vector<Eigen::Index> rows = rowsOf(graph, path, clique);
+    y.setZero(clique.size, stride);
+    for (int i = 0; i < clique.size; ++i) y.row(i).head(columns) = rest.row(rows[i]);
+    forwardSubstitute(clique.panelView(), y.data(), stride);
+    subtractOuterProduct(minus_square.data(), stride, y.data(), stride, columns, clique.frontal_size);
+    for (int i = clique.frontal_size; i < clique.size; ++i) rest.row(rows[i]) = y.row(i).head(columns);
   }
+  Eigen::MatrixXd square = -minus_square.topLeftCorner(columns, columns);
   square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
   return square;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/elementary.hpp"
 #include "frontend/image/image_pyramid.hpp"
 #include "frontend/image/patch_sampling.hpp"
 #include "frontend/image/window_differences.hpp"
@@ -160,7 +161,7 @@ std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& 
     if (ncc < params.min_ncc) return std::nullopt;
     const float sigma = std::max(shiftSigma(patch, moments, ncc, 0), shiftSigma(patch, moments, ncc, 1));
     return AlignedPatch{u + patch.off_grid_px, v, ncc, -step[2],
-                        std::hypot(sigma, static_cast<float>(kPatchSigmaFloor_px))};
+                        hypotenuse(sigma, static_cast<float>(kPatchSigmaFloor_px))};
   }
   return std::nullopt;
 }
@@ -209,7 +210,7 @@ std::optional<StereoMatch> acceptedMatch(float disparity_px, const PatchTemplate
   constexpr double kMinNcc = 0.65;
   constexpr float kMaxSigma_px = 1;
   const float ncc = explainedCorrelation(patch, moments);
-  const float sigma = std::hypot(shiftSigma(patch, moments, ncc, 0), static_cast<float>(kPatchSigmaFloor_px));
+  const float sigma = hypotenuse(shiftSigma(patch, moments, ncc, 0), static_cast<float>(kPatchSigmaFloor_px));
   if (ncc < kMinNcc || sigma > kMaxSigma_px || disparity_px <= 0) return std::nullopt;
   return StereoMatch{disparity_px, sigma};
 }

@@ -4,6 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/elementary.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -28,13 +30,13 @@ void moveTo(FollowedPoint& point, const AlignedPatch& found, const Image& now) {
   Keyframe& keyframe = point.keyframe;
   AlignedPatch position = found;
   ++keyframe.frames;
-  keyframe.scale *= std::exp(found.log_growth);
+  keyframe.scale *= exponential(found.log_growth);
   bool anchored = keyframe.frames == 1;  // then the keyframe's own patch was aligned
   if (!anchored) {
     const auto aligned = alignToKeyframe(keyframe, found, now);
     if (aligned) {
       position = *aligned;
-      keyframe.scale *= std::exp(aligned->log_growth);
+      keyframe.scale *= exponential(aligned->log_growth);
     }
     anchored = aligned.has_value();
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/elementary.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -27,7 +29,7 @@ bool isHalfOccluded(std::size_t i, const std::vector<Corner>& corners,
   for (std::size_t k = 0; k < corners.size(); ++k) {
     const float du = corners[k].u_px - here.u_px, dv = corners[k].v_px - here.v_px;
     if (k == i || !of_corner[k] || du < 0 || du > kReachAcross_px || std::abs(dv) > kReachDown_px) continue;
-    const float distance_px = std::hypot(du, dv), disparity_px = of_corner[k]->disparity_px;
+    const float distance_px = hypotenuse(du, dv), disparity_px = of_corner[k]->disparity_px;
     if (distance_px >= nearest.back().distance_px) continue;
     const bool is_nearer = disparity_px > kNearer * of_corner[i]->disparity_px;
     nearest.back() = {distance_px, is_nearer && leavesRightImage(here.u_px, disparity_px)};

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/elementary.hpp"
 #include "frontend/features/sift_features.hpp"
 #include "frontend/image/image_pyramid.hpp"
 #include "frontend/matching/corner_lookup.hpp"
@@ -188,7 +189,7 @@ void OpticalFlowTracker::State::removeLost(const Image& now) {
               last_v = static_cast<float>(now.height() - 1) - kBorder;
   std::erase_if(points, [&](const FollowedPoint& point) {
     const FlowObservation& p = point.observation;
-    if (!point.moved || std::hypot(point.shift.du_px, point.shift.dv_px) > params.max_flow_px) return true;
+    if (!point.moved || hypotenuse(point.shift.du_px, point.shift.dv_px) > params.max_flow_px) return true;
     const bool inside = p.u_px >= kBorder && p.v_px >= kBorder && p.u_px <= last_u && p.v_px <= last_v;
     if (!inside || occupancy.near(p.u_px, p.v_px)) return true;
     occupancy.take(p.u_px, p.v_px);
@@ -200,7 +201,7 @@ void OpticalFlowTracker::State::removeLost(const Image& now) {
 bool OpticalFlowTracker::State::isFrozen(const Features& now) const {
   if (!sameContent(now.left.levels.back(), previous->left.levels.back())) return false;
   const auto moved = std::ranges::count_if(
-      points, [](const FollowedPoint& p) { return std::hypot(p.shift.du_px, p.shift.dv_px) > kStanding_px; });
+      points, [](const FollowedPoint& p) { return hypotenuse(p.shift.du_px, p.shift.dv_px) > kStanding_px; });
   return 2 * moved > std::ssize(points);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/elementary.hpp"
 #include "frontend/image/image_pyramid.hpp"
 
 namespace motorcade {
@@ -47,7 +48,7 @@ std::optional<AlignedPatch> PointFollower::refine(const FlowObservation& point, 
   const auto forward = alignPatch(from_, point_px, to_, point_px + shift_px, level, kFine);
   if (!forward) return std::nullopt;
   const auto back = alignPatch(to_, {forward->u_px, forward->v_px}, from_, point_px, 0, kFine);
-  if (!back || std::hypot(back->u_px - point.u_px, back->v_px - point.v_px) > max_round_trip_px_) return std::nullopt;
+  if (!back || hypotenuse(back->u_px - point.u_px, back->v_px - point.v_px) > max_round_trip_px_) return std::nullopt;
   return forward;
 }
 

@@ -8,6 +8,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "core/elementary.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -73,7 +75,7 @@ GroundPlaneEstimator::GroundPlaneEstimator(const Params& params) : params_(requi
 
 bool GroundPlaneEstimator::plausible(const GroundPlane& plane) const {
   return plane.height_m > params_.min_height_m && plane.height_m < params_.max_height_m &&
-         plane.normal_cam.y() > std::cos(params_.max_tilt_rad);
+         plane.normal_cam.y() > cosine(params_.max_tilt_rad);
 }
 
 GroundPlane GroundPlaneEstimator::operator()(std::span<const GroundCandidate> points, std::uint64_t seed) {
@@ -81,7 +83,7 @@ GroundPlane GroundPlaneEstimator::operator()(std::span<const GroundCandidate> po
   for (const auto& c : points) {
     const bool near = c.p_cam.z() < kMaxDepth_m && std::abs(c.p_cam.x()) < kMaxSide_m;
     if (near && c.p_cam.y() > kMinHeightShare * params_.min_height_m)
-      low.push_back({c.p_cam, std::hypot(kRoughness_m, c.height_sigma_m)});
+      low.push_back({c.p_cam, hypotenuse(kRoughness_m, c.height_sigma_m)});
   }
   if (static_cast<int>(low.size()) < kMinInliers) return plane_;
   const auto plane = refine(low, bestHypothesis(low, seed));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/elementary.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -34,7 +36,7 @@ std::optional<GeometricResidual> geometricResidual(const StereoCamera& camera, c
   if (length < kMinLine_px) return std::nullopt;
 
   const Eigen::Vector2d along = (*near - *far) / length, offset = point.uvd_now_px.head<2>() - *far;
-  const double sigma_px = std::hypot(point.sigma_now_px.x(), point.sigma_then_px.x());
+  const double sigma_px = hypotenuse(point.sigma_now_px.x(), point.sigma_then_px.x());
   GeometricResidual residual;
   residual.epipolar_sigmas = std::abs(along.x() * offset.y() - along.y() * offset.x()) / sigma_px;
   const double s = along.dot(offset);

@@ -6,6 +6,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/elementary.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -39,13 +41,17 @@ FaceInformation priorOf(const KindPrior& kind) {
   Vector6d ahead = Vector6d::Zero(), aside = Vector6d::Zero(), bottom = Vector6d::Zero();
   ahead[kRear] = ahead[kFront] = aside[kRight] = aside[kLeft] = 0.5;
   bottom[kBottom] = 1;
-  prior.add(ahead, 0, std::hypot(kAheadSigma_m, 0.25 * kind.size_m.x()));
+  prior.add(ahead, 0, hypotenuse(kAheadSigma_m, 0.25 * kind.size_m.x()));
   prior.add(aside, 0, kAsideSigma_m);
   prior.add(bottom, kBottom_m, kBottomSigma_m);
   return prior;
 }
 
-double logDeterminant(const Eigen::LLT<Matrix6d>& llt) { return 2 * llt.matrixLLT().diagonal().array().log().sum(); }
+double logDeterminant(const Eigen::LLT<Matrix6d>& llt) {
+  double sum = 0;
+  for (const double pivot : Vector6d(llt.matrixLLT().diagonal())) sum += logarithm(pivot);
+  return 2 * sum;
+}
 
 struct Posterior {
   BoxEstimate estimate;
@@ -63,7 +69,7 @@ Posterior posteriorOf(const KindPrior& kind, const FaceInformation& evidence, do
   posterior.estimate.kind = kind.kind;
   const double misfit = both.c - both.b.dot(posterior.estimate.faces);
   const double too_fast = std::max(0.0, speed_mps - kind.top_speed_mps) / kSpeedSlack_mps;
-  posterior.log_evidence = std::log(kind.share) - 0.5 * misfit - 0.5 * too_fast * too_fast +
+  posterior.log_evidence = logarithm(kind.share) - 0.5 * misfit - 0.5 * too_fast * too_fast +
                            0.5 * (logDeterminant(prior_llt) - logDeterminant(llt));
   return posterior;
 }
@@ -111,7 +117,7 @@ BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps) {
   const auto likeliest = std::ranges::max_element(posteriors, {}, &Posterior::log_evidence);
   double all = 0, same = 0;
   for (const Posterior& p : posteriors) {
-    const double likelihood = std::exp(p.log_evidence - likeliest->log_evidence);
+    const double likelihood = exponential(p.log_evidence - likeliest->log_evidence);
     all += likelihood;
     if (p.estimate.kind == likeliest->estimate.kind) same += likelihood;
   }
@@ -121,7 +127,7 @@ BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps) {
   estimate.usual_most = estimate.most().cwiseMax(car.most());
   estimate.possible_least = estimate.usual_least, estimate.possible_most = estimate.usual_most;
   for (const Posterior& p : posteriors) {
-    if (p.log_evidence < likeliest->log_evidence + std::log(kRuledOut)) continue;
+    if (p.log_evidence < likeliest->log_evidence + logarithm(kRuledOut)) continue;
     const Vector6d sigma = p.estimate.covariance.diagonal().cwiseSqrt();
     for (int axis = 0; axis < 3; ++axis) {
       double &least = estimate.possible_least[axis], &most = estimate.possible_most[axis];

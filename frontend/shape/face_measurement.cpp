@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/elementary.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -138,7 +140,7 @@ void FaceMeasurement::addSurfacePoint(int column, int row, std::array<Surface, 6
   if (face < 0) return;
   const double along = direction[face / 2], noise_m = z * kSurfaceSigma_px * (1 << disparities_.level) / d;
   if (noise_m < kSharp_m) sharp_.push_back(origin + z * direction);
-  const double sigma_z = std::hypot(noise_m, kUneven_m / std::abs(along));
+  const double sigma_z = hypotenuse(noise_m, kUneven_m / std::abs(along));
   const double chi = (z - entry) / sigma_z, weight = 1 / (1 + chi * chi / (kGrossChi * kGrossChi));
   if (chi < -kGrossChi) return;  // before the cuboid: of another face, which reaches farther than is believed
   const double at = origin[face / 2] + z * along, information = weight / (sigma_z * sigma_z * along * along);
@@ -204,7 +206,7 @@ void FaceMeasurement::addBound(const Bound& bound) {
   }
   if (cut && (least ? extreme <= bound_px : extreme >= bound_px)) return;
   const double rounded_px = kRounded_m * camera_.fx_px / depth_m;
-  information_.add(row, bound_px - extreme + row.dot(faces), std::hypot(sigma_px, rounded_px));
+  information_.add(row, bound_px - extreme + row.dot(faces), hypotenuse(sigma_px, rounded_px));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/elementary.hpp"
 #include "frontend/image/image_pyramid.hpp"
 #include "frontend/shape/face_measurement.hpp"
 #include "frontend/shape/outline_completion.hpp"
@@ -28,7 +29,7 @@ constexpr double kWhole = 0.85;                         // of a cuboid where bot
 constexpr int kFewLooks = 5;                            // so few are too few to do without one
 constexpr int kIterations = 2;  // of the faces, as what is seen of them depends on where they are
 
-double fading(std::int64_t frames) { return std::pow(kFading, static_cast<double>(std::abs(frames))); }
+double fading(std::int64_t frames) { return power(kFading, static_cast<double>(std::abs(frames))); }
 
 /// Around the points of an object, in its body frame, without the outermost tenth at each side.
 std::optional<Eigen::AlignedBox3d> extentOf(const std::vector<PointMeasurement>& points, const StereoCamera& camera,

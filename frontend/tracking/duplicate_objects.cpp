@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/elementary.hpp"
 #include "frontend/tracking/vehicle_size.hpp"
 
 namespace motorcade {
@@ -30,14 +31,14 @@ bool areDuplicates(const TrackedObject& older, const TrackedObject& younger) {
   // A younger one that was observed for longer than the older one is lost is another vehicle.
   if (older.life.missed() > 0 && younger.life.observations() > 1) return false;
   const double slack_m = std::min(
-      kMaxSlack_m, kSigmas * std::hypot(older.kinematics.positionSigma_m(), younger.kinematics.positionSigma_m()));
+      kMaxSlack_m, kSigmas * hypotenuse(older.kinematics.positionSigma_m(), younger.kinematics.positionSigma_m()));
   const bool one_vehicle = kOrdinaryVehicle.holds(own.merged(other), slack_m);
   if (!one_vehicle && !isWithin(younger, T_older_younger, older) &&
       !isWithin(older, T_older_younger.inverse(), younger))
     return false;
   const Eigen::Vector3d dv =
       older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps();
-  const double sigma_mps = std::hypot(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());
+  const double sigma_mps = hypotenuse(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());
   return dv.norm() < kMaxSpeedDifference_mps + (one_vehicle ? kSigmas * sigma_mps : 0);
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/elementary.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr int kLongObserved = 7;
 constexpr double kMinExtent_m = 0.3;  // span of the points: less is a blot, no vehicle
 constexpr double kMinExtent_px = 20;  // in the image too: points whose patches overlap are one measurement
 
-double diagonal_px(const Box& box) { return std::hypot(box.right_px - box.left_px, box.bottom_px - box.top_px); }
+double diagonal_px(const Box& box) { return hypotenuse(box.right_px - box.left_px, box.bottom_px - box.top_px); }
 
 }  // namespace
 

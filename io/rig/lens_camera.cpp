@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/elementary.hpp"
+
 namespace motorcade {
 
 LensModel::LensModel(const LensCamera& camera)
@@ -61,7 +63,7 @@ std::optional<Eigen::Vector2d> LensModel::project(const Eigen::Vector3d& ray) co
   const double across_squared = ray.x() * ray.x() + ray.y() * ray.y();
   double x = 0, y = 0;
   if (camera_.distortion == Distortion::kEquidistant) {
-    const double across = std::sqrt(across_squared), angle_rad = std::atan2(across, ray.z());
+    const double across = std::sqrt(across_squared), angle_rad = arcTangent(across, ray.z());
     if (angle_rad > limit_) return std::nullopt;
     const double scale = across > 0 ? distorted(angle_rad) / across : 0;
     x = scale * ray.x();
@@ -97,8 +99,8 @@ std::optional<Eigen::Vector3d> LensModel::rayThrough(const Eigen::Vector2d& pixe
     if (change < kConverged) break;
   }
   if (camera_.distortion != Distortion::kEquidistant) return Eigen::Vector3d(point.x(), point.y(), 1);
-  const double scale = distance > 0 ? std::sin(distance) / distance : 1;
-  return Eigen::Vector3d(scale * point.x(), scale * point.y(), std::cos(distance));
+  const double scale = distance > 0 ? sine(distance) / distance : 1;
+  return Eigen::Vector3d(scale * point.x(), scale * point.y(), cosine(distance));
 }
 
 }  // namespace motorcade
