@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "apps/interface/camera_model.hpp"
 #include "apps/interface/gray_image.hpp"
@@ -38,6 +39,15 @@ class OneAtATime {
   std::atomic_flag& busy_;
   bool entered_;
 };
+
+/// Puts as many buffers into the pool as images are ever in use at once, in flight, in the entrance and in the stages'
+/// memories, and some to spare: a pool may miss one that comes back in that moment. Their pages are untouched, and so
+/// cost no memory until they are used.
+void stock(ImagePool& pool, const Camera& camera) {
+  constexpr std::size_t kImages = 32;
+  std::vector<Image> images;
+  while (images.size() < kImages) images.push_back(pool.acquire(camera.width_px, camera.height_px));
+}
 
 /// A call that is under way: the tracker outlives it.
 class Visit {
@@ -105,7 +115,9 @@ Tracker::Impl::Impl(const Camera& camera, const Options& options, const Pipeline
       results_(options.policy),
       placement_(config.pipeline.placement),
       pipeline_(config.pipeline, makeStages(config, model_.rectified()), log_),
-      deliverer_([this] { deliver(); }) {}
+      deliverer_([this] { deliver(); }) {
+  if (!replay_) stock(pool_, camera);
+}
 
 /// Calls of other threads that wait come back first.
 Tracker::Impl::~Impl() {

@@ -125,7 +125,7 @@ struct Result {
 class MOTORCADE_API Tracker {
  public:
   enum class Policy {
-    kLive,    // the newest pair wins: `push` never waits, and once warm asks nothing of the heap
+    kLive,    // the newest pair wins: `push` never waits, and asks nothing of the heap
     kReplay,  // no pair is lost: `push` waits for room; results do not depend on time or threads
   };
   enum class Axes { kOptical, kRep103 };
