@@ -73,10 +73,12 @@ std::string ddsConfiguration(const DdsPlace& place) {
                                                kLoopback)
                                          : "";
   // What is not acknowledged yet is bounded by the writers' history. By default they wait from 30 kB on, which is one
-  // array of markers, and for a second when they are deleted.
+  // array of markers, and for a second when they are deleted; and ask for acknowledgments every 100 ms, in which a
+  // replay at full speed fills the history.
   return "<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface " + interface + "/></Interfaces>" +
          multicast + "</General>" + discovery +
          "<Internal><Watermarks><WhcAdaptive>false</WhcAdaptive><WhcHigh>64 MB</WhcHigh></Watermarks>"
+         "<HeartbeatInterval min=\"5 ms\" minsched=\"5 ms\">10 ms</HeartbeatInterval>"
          "<WriterLingerDuration>0 s</WriterLingerDuration></Internal>"
          "</Domain></CycloneDDS>";
 }
