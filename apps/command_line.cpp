@@ -111,6 +111,9 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   for (const auto add :
        {addRun, addCheck, addSynth, addEvaluate, addDraw, addReport, addLatency, addExport, addView, addSolve})
     add(app, command_line.action);
+#ifdef MOTORCADE_WITH_BRIDGE
+  addBridge(app, command_line.action);
+#endif
   std::optional<std::string> help;
   addHelp(app, help);
   Talk talk;

@@ -11,6 +11,7 @@ packages=(
   libspdlog-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libyaml-cpp-dev
   pkg-config libcairo2-dev fonts-dejavu-core libcpp-httplib-dev libjs-three libjs-chart.js libprotobuf-dev protobuf-compiler
   help2man
+  cyclonedds-dev cyclonedds-tools
   libgtest-dev libgmock-dev
   "$@"
 )

@@ -1,4 +1,5 @@
 include(${CMAKE_CURRENT_LIST_DIR}/library_dependencies.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/opencv.cmake)
 if(MOTORCADE_BUILD_APPS OR MOTORCADE_BUILD_TESTS OR MOTORCADE_BUILD_PERF)
   find_package(spdlog REQUIRED)
   find_package(CLI11 REQUIRED)

@@ -1,14 +1,6 @@
 # What the libraries need, here and in a project that uses the installed package. Everything comes from Debian's packages; apps/setup.sh
 # installs them.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-# Debian ships OpenCV's CMake files only with libopencv-dev, which drags in the GUI, codecs and Java: find the modules by hand.
-find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
-foreach(module core imgproc features2d)
-  find_library(OPENCV_${module}_LIBRARY opencv_${module} REQUIRED)
-  add_library(opencv::${module} UNKNOWN IMPORTED)
-  set_target_properties(opencv::${module} PROPERTIES
-    IMPORTED_LOCATION ${OPENCV_${module}_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${OPENCV_INCLUDE_DIR})
-endforeach()
 find_package(TBB 2021 REQUIRED)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)

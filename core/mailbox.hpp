@@ -14,9 +14,9 @@ namespace motorcade {
 template <class T>
 class Mailbox {
  public:
-  /// Producer: publishes `value` and returns the unread one that it replaced, if any. Ignored once closed.
+  /// Producer: publishes `value` and returns the unread one that it replaced, if any. One that is put while or after
+  /// the mailbox is closed is there for `tryTake`.
   std::optional<T> put(T value) {
-    if (closed()) return value;
     slots_[back_] = std::move(value);
     const auto before = middle_.exchange(static_cast<std::uint32_t>(back_) | kFresh, std::memory_order_acq_rel);
     back_ = before & kSlot;
@@ -47,7 +47,7 @@ class Mailbox {
     }
   }
 
-  /// Ends every wait; the last value can still be taken. Call it from the producer, or after its last `put`.
+  /// Any thread: ends every wait; the last value can still be taken.
   void close() {
     closed_.store(true, std::memory_order_release);
     signal();

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs the lock-free parts and the flow graph's wiring under ThreadSanitizer, with an instrumented oneTBB (built once per version, two
-# minutes, see tests/tsan/build_onetbb.sh), and makes sure that planted races are found. Arguments go to the tests:
+# Runs the lock-free parts, the flow graph's wiring and the public interface under ThreadSanitizer, with an instrumented oneTBB (built once
+# per version, two minutes, see tests/tsan/build_onetbb.sh), and makes sure that planted races are found. Arguments go to the tests:
 #   tests/run_tsan.sh --gtest_filter='SpscRing.*'
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -23,4 +23,6 @@ for race in threads ring stage; do
   fi
   echo "planted race '$race': found"
 done
-TSAN_OPTIONS="exitcode=66 halt_on_error=1 second_deadlock_stack=1" $build/tsan_tests "$@"
+for tests in tsan_tests tracker_tsan_tests; do
+  TSAN_OPTIONS="exitcode=66 halt_on_error=1 second_deadlock_stack=1" $build/$tests "$@"
+done

@@ -24,5 +24,6 @@ void addExport(CLI::App& app, Action& action);
 void addView(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
 void addSolve(CLI::App& app, Action& action);
+void addBridge(CLI::App& app, Action& action);  // where the program was built with Cyclone DDS
 
 }  // namespace motorcade

@@ -1,7 +1,10 @@
 #include "apps/interface/camera_model.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
+#include <utility>
 
 #include "io/errors.hpp"
 #include "io/image_limits.hpp"
@@ -10,6 +13,7 @@
 namespace motorcade {
 namespace {
 
+constexpr const char* kTransform = "camera.rig.T_right_left";
 constexpr int kLeastSide_px = 64, kMostSide_px = 16384;
 
 void require(bool holds, const std::string& field, const std::string& message) {
@@ -32,9 +36,10 @@ void requireSize(const Camera& camera) {
 /// Of one lens, or of the rectified pair.
 template <class Intrinsics>
 void requireIntrinsics(const std::string& name, const Intrinsics& lens, const Camera& camera) {
+  constexpr double kMostFocal_px = 1e6;
   const auto focal = [&](const char* key, double value_px) {
-    require(std::isfinite(value_px) && value_px > 0, name + key,
-            "is " + text(value_px) + "; a focal length is positive, in pixels");
+    require(value_px >= 1 && value_px <= kMostFocal_px, name + key,
+            "is " + text(value_px) + "; a focal length is in pixels, from 1 to a million");
   };
   const auto inside = [&](const char* key, double value_px, int side_px) {
     require(value_px > 0 && value_px < side_px, name + key,
@@ -46,13 +51,28 @@ void requireIntrinsics(const std::string& name, const Intrinsics& lens, const Ca
   inside(".cy_px", lens.cy_px, camera.height_px);
 }
 
+/// The model, and how many coefficients it has.
+std::pair<Distortion, std::ptrdiff_t> distortionOf(const std::string& name, Camera::Distortion distortion) {
+  switch (distortion) {
+    case Camera::Distortion::kNone:
+      return {Distortion::kNone, 0};
+    case Camera::Distortion::kRadialTangential:
+      return {Distortion::kRadialTangential, 8};
+    case Camera::Distortion::kEquidistant:
+      return {Distortion::kEquidistant, 4};
+  }
+  throw Error(name + ".distortion", "is none of those that there are");
+}
+
 LensCamera lensOf(const std::string& name, const Camera::Lens& lens, const Camera& camera) {
+  constexpr double kMostCoefficient = 1e6;
   requireIntrinsics(name, lens, camera);
   for (const double coefficient : lens.coefficients)
-    require(std::isfinite(coefficient), name + ".coefficients", "are not all numbers");
-  Distortion distortion = Distortion::kNone;
-  if (lens.distortion == Camera::Distortion::kRadialTangential) distortion = Distortion::kRadialTangential;
-  if (lens.distortion == Camera::Distortion::kEquidistant) distortion = Distortion::kEquidistant;
+    require(std::abs(coefficient) < kMostCoefficient, name + ".coefficients", "are not all numbers below a million");
+  const auto [distortion, count] = distortionOf(name, lens.distortion);
+  require(std::all_of(lens.coefficients.begin() + count, lens.coefficients.end(), [](double c) { return c == 0; }),
+          name + ".coefficients",
+          "has values beyond the " + std::to_string(count) + " of this distortion; the others are 0");
   return {.fx_px = lens.fx_px,
           .fy_px = lens.fy_px,
           .cx_px = lens.cx_px,
@@ -68,27 +88,27 @@ SE3 transformOf(const std::array<double, 12>& rows) {
   const Eigen::Matrix3d R = T.leftCols<3>();
   require(
       T.allFinite() && (R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < kRoundedDigits && R.determinant() > 0,
-      "camera.rig.T_right_left", "has no rotation in its first three columns; rows are r00 r01 r02 tx, ...");
+      kTransform, "has no rotation in its first three columns; rows are r00 r01 r02 tx, ...");
   return SE3(R, T.col(3)).normalized();
 }
 
 Rectification rectificationOf(const Camera& camera, const Camera::Rig& rig) {
-  const Rig raw{.file = "camera.rig",
+  const Rig raw{.file = kTransform,
                 .left = lensOf("camera.rig.left", rig.left, camera),
                 .right = lensOf("camera.rig.right", rig.right, camera),
                 .T_right_left = transformOf(rig.T_right_left)};
   try {
     return rectificationOf(raw, ImageSize{camera.width_px, camera.height_px});
   } catch (const InputError& error) {
-    throw Error("camera.rig", error.what());
+    throw Error(kTransform, std::string(error.what()).substr(std::string(kTransform).size() + 2));  // named once
   }
 }
 
-StereoCamera checked(const StereoCamera& camera) {
-  constexpr double kMostBaseline_m = 10;
-  require(camera.baseline_m > 0 && camera.baseline_m < kMostBaseline_m, "camera.baseline_m",
-          "is " + text(camera.baseline_m) +
-              "; the right camera lies to the right of the left one, by so many meters, less than ten");
+StereoCamera checked(const StereoCamera& camera, const std::string& field) {
+  constexpr double kLeastBaseline_m = 1e-3, kMostBaseline_m = 10;
+  require(camera.baseline_m >= kLeastBaseline_m && camera.baseline_m <= kMostBaseline_m, field,
+          "gives a baseline of " + text(camera.baseline_m) +
+              " m; the right camera lies to the right of the left one, by a millimeter to ten meters");
   return camera;
 }
 
@@ -99,12 +119,13 @@ CameraModel::CameraModel(const Camera& camera) {
   if (!camera.rig) {
     requireIntrinsics("camera", camera, camera);
     rectified_ = checked(
-        {camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, camera.baseline_m, camera.width_px, camera.height_px});
+        {camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, camera.baseline_m, camera.width_px, camera.height_px},
+        "camera.baseline_m");
     return;
   }
   const Rectification rectification = rectificationOf(camera, *camera.rig);
   const ImageSize size{camera.width_px, camera.height_px};
-  rectified_ = checked(rectification.camera);
+  rectified_ = checked(rectification.camera, kTransform);
   remaps_.emplace(Remaps{.left = Remap(rectification.left, rectification.R_left, rectified_, size),
                          .right = Remap(rectification.right, rectification.R_right, rectified_, size)});
 }

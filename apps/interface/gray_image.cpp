@@ -61,10 +61,12 @@ const char* problemOf(const Pair::Image& image, const Camera& camera) {
   if (image.pixels == nullptr) return "an image has no pixels";
   if (image.width_px != camera.width_px || image.height_px != camera.height_px)
     return "an image is not of the camera's size";
+  constexpr std::ptrdiff_t kMostStride_bytes = 1 << 24;
   const std::ptrdiff_t bytes = bytesPerPixel(image.format);
   if (bytes == 0) return "an image's format is none of those that there are";
   if (image.stride_bytes != 0 && image.stride_bytes < bytes * image.width_px)
     return "an image's stride is shorter than its rows";
+  if (image.stride_bytes > kMostStride_bytes) return "an image's stride is above 2^24 bytes";
   return nullptr;
 }
 

@@ -1,6 +1,11 @@
 #include "apps/interface/result_conversion.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <new>
+
+#include "apps/pipeline/log_callback.hpp"
+#include "core/unknown_motion.hpp"
 
 namespace motorcade {
 namespace {
@@ -102,6 +107,11 @@ Eigen::Matrix3d axesFrom(Tracker::Axes axes) {
   return R;
 }
 
+/// Of a frame that the odometry passes over, the next one's motion is not since then.
+bool wasLookedAt(const FrameMeasurements& measured) {
+  return measured.cause != FrameCause::kNothingFound && measured.cause != FrameCause::kUnusable;
+}
+
 }  // namespace
 
 ResultConversion::ResultConversion(Tracker::Axes axes, bool masks) : R_out_cam_(axesFrom(axes)), masks_(masks) {}
@@ -117,29 +127,49 @@ Result ResultConversion::operator()(const PipelineResult& result) {
   converted.segment = online.segment;
   converted.T_world_cam = rowsOf(T_out_cam * online.T_world_cam * T_out_cam.inverse());
   if (online.camera_covariance) converted.motion_covariance = rowsOf<6>(turned(*online.camera_covariance, R_out_cam_));
-  setVelocity(result, converted);
-  for (const ObjectEstimate& estimate : online.objects) {
-    converted.objects.push_back(object(estimate, online.T_world_cam));
-    if (masks_) setMask(result.masks, converted.objects.back());
-  }
+  if (result.measurements) setVelocity(*result.measurements, converted);
   converted.dropped_before = static_cast<int>(
       std::ranges::count(result.dropped, FrameStatus::kDropped, [](const FrameEstimate& f) { return f.status; }));
   converted.latency_ms = result.timing.latency_ms();
-  converted.problem = result.problem;
+  try {
+    setObjects(result, converted);
+    converted.problem = result.problem;
+  } catch (const std::bad_alloc&) {
+    converted.objects.clear();
+    converted.status = Result::Status::kLost;
+    converted.cause = Result::Cause::kFailed;
+    converted.problem = kNoMemoryLeft;
+  }
   return converted;
 }
 
-/// By the motion since the frame before, as measured; none in the first frame.
-void ResultConversion::setVelocity(const PipelineResult& result, Result& converted) {
-  const Timestamp now = result.online.stamp;
-  const double dt_s = before_ ? secondsBetween(*before_, now) : 0;
-  before_ = now;
-  if (!result.measurements || !(dt_s > 0)) return;
-  const Vector6d motion = result.measurements->T_previous_now.log();
-  Eigen::Map<Eigen::Vector3d>(converted.velocity.data()) = R_out_cam_ * motion.head<3>() / dt_s;
-  Eigen::Map<Eigen::Vector3d>(converted.velocity.data() + 3) = R_out_cam_ * motion.tail<3>() / dt_s;
-  converted.velocity_covariance =
-      rowsOf<6>(turned(result.measurements->odometry_covariance, R_out_cam_) / (dt_s * dt_s));
+void ResultConversion::setObjects(const PipelineResult& result, Result& converted) const {
+  converted.objects.reserve(result.online.objects.size());
+  for (const ObjectEstimate& estimate : result.online.objects) {
+    converted.objects.push_back(object(estimate, result.online.T_world_cam));
+    if (masks_) setMask(result.masks, converted.objects.back());
+  }
+}
+
+/// A motion is measured since the last frame that was looked at; one that is predicted is so since the frame before. In
+/// the first frame nothing is known of it.
+void ResultConversion::setVelocity(const FrameMeasurements& measured, Result& converted) {
+  const bool seen = wasLookedAt(measured);
+  const std::optional<Timestamp> since = seen ? seen_ : before_;
+  const double dt_s = since ? secondsBetween(*since, measured.stamp) : 0;
+  T_seen_before_ = (T_seen_before_ * measured.T_previous_now).normalized();
+  Matrix6d covariance = unknownMotionCovariance(std::numeric_limits<double>::infinity());  // per second
+  if (dt_s > 0) {
+    const Vector6d velocity = (seen ? T_seen_before_ : measured.T_previous_now).log() / dt_s;
+    Eigen::Map<Eigen::Vector3d>(converted.velocity.data()) = R_out_cam_ * velocity.head<3>();
+    Eigen::Map<Eigen::Vector3d>(converted.velocity.data() + 3) = R_out_cam_ * velocity.tail<3>();
+    covariance = measured.odometry_covariance / (dt_s * dt_s);
+  }
+  converted.velocity_covariance = rowsOf<6>(turned(covariance, R_out_cam_));
+  before_ = measured.stamp;
+  if (!seen) return;
+  seen_ = measured.stamp;
+  T_seen_before_ = SE3{};
 }
 
 Result::Object ResultConversion::object(const ObjectEstimate& object, const SE3& T_world_cam) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 #include "apps/pipeline/pipeline_result.hpp"
@@ -7,20 +9,23 @@
 
 namespace motorcade {
 
-/// Turns the pipeline's results into the caller's, in the axes that were chosen. Takes them in order: it remembers the
-/// time of the frame before, for velocities.
+/// Turns the pipeline's results into the caller's, in the axes that were chosen. Takes them in order: it remembers
+/// since when a motion is measured.
 class ResultConversion {
  public:
   ResultConversion(Tracker::Axes axes, bool masks);
+  /// A result for which there is no memory tells so, without objects.
   Result operator()(const PipelineResult& result);
 
  private:
+  void setObjects(const PipelineResult& result, Result& converted) const;
   Result::Object object(const ObjectEstimate& object, const SE3& T_world_cam) const;
-  void setVelocity(const PipelineResult& result, Result& converted);
+  void setVelocity(const FrameMeasurements& measured, Result& converted);
 
   Eigen::Matrix3d R_out_cam_;  // from optical axes to those that were chosen
   bool masks_;
-  std::optional<Timestamp> before_;
+  std::optional<Timestamp> before_, seen_;  // the last frame, and the last one that was looked at
+  SE3 T_seen_before_;
 };
 
 }  // namespace motorcade

@@ -1,24 +1,35 @@
 #include "apps/interface/result_queue.hpp"
 
+#include <algorithm>
+#include <new>
 #include <utility>
 
 namespace motorcade {
+namespace {
 
-ResultQueue::Taker ResultQueue::put(Result& result) {
-  const std::scoped_lock lock(mutex_);
+/// Of a time that a clock can count to.
+std::chrono::milliseconds bounded(std::chrono::milliseconds time) {
+  constexpr std::chrono::milliseconds kYear = std::chrono::hours(24 * 365);
+  return std::clamp(time, std::chrono::milliseconds(0), kYear);
+}
+
+}  // namespace
+
+void ResultQueue::put(Result result) {
+  std::unique_lock lock(mutex_);
+  if (live_) went_.wait(lock, [this] { return !callbackIsBusy() || abandoned_; });
   ++given_;
-  if (taker_) {
-    if (under_way_ > 0) --under_way_;
-    went_.notify_all();
-    return taker_;
-  }
   if (results_.size() == kMost) {
     results_.pop_front();
     ++untaken_;
   }
-  results_.push_back(std::move(result));
-  came_.notify_one();
-  return {};
+  try {
+    results_.push_back(std::move(result));
+  } catch (const std::bad_alloc&) {
+    ++untaken_;
+    if (under_way_ > 0) --under_way_;
+  }
+  came_.notify_all();
 }
 
 void ResultQueue::close() {
@@ -28,16 +39,30 @@ void ResultQueue::close() {
   went_.notify_all();
 }
 
+void ResultQueue::abandon() {
+  const std::scoped_lock lock(mutex_);
+  closed_ = abandoned_ = room_for_all_ = true;
+  came_.notify_all();
+  went_.notify_all();
+}
+
 bool ResultQueue::waitForRoom(std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);
-  if (!went_.wait_for(lock, patience, [this] { return under_way_ < kMost || closed_; })) return false;
+  if (!went_.wait_for(lock, bounded(patience), [this] { return under_way_ < kMost || room_for_all_; })) return false;
   ++under_way_;
   return true;
+}
+
+void ResultQueue::endWaitsForRoom() {
+  const std::scoped_lock lock(mutex_);
+  room_for_all_ = true;
+  went_.notify_all();
 }
 
 void ResultQueue::giveUpRoom() {
   const std::scoped_lock lock(mutex_);
   if (under_way_ > 0) --under_way_;
+  went_.notify_all();
 }
 
 std::optional<Result> ResultQueue::take() {
@@ -51,23 +76,60 @@ std::optional<Result> ResultQueue::take() {
 
 std::optional<Result> ResultQueue::poll() {
   const std::scoped_lock lock(mutex_);
-  return take();
+  return taker_ ? std::nullopt : take();
 }
 
 std::optional<Result> ResultQueue::wait(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  came_.wait_for(lock, timeout, [this] { return !results_.empty() || closed_; });
-  return take();
+  came_.wait_for(lock, bounded(timeout), [this] { return !results_.empty() || closed_ || taker_; });
+  return taker_ ? std::nullopt : take();
 }
 
 bool ResultQueue::done() const {
   const std::scoped_lock lock(mutex_);
-  return closed_ && results_.empty();
+  return abandoned_ || (closed_ && results_.empty() && handing_ == std::thread::id{});
 }
 
 void ResultQueue::handTo(Taker taker) {
-  const std::scoped_lock lock(mutex_);
-  taker_ = std::move(taker);
+  auto next = taker ? std::make_shared<const Taker>(std::move(taker)) : nullptr;
+  std::unique_lock lock(mutex_);
+  taker_.swap(next);
+  came_.notify_all();
+  went_.notify_all();
+  went_.wait(lock, [this] { return handing_ == std::thread::id{} || handing_ == std::this_thread::get_id(); });
+  lock.unlock();  // the callback before may do what it likes when it is destroyed
+}
+
+/// While it lives, a callback is called on this thread.
+class ResultQueue::Handing {
+ public:
+  Handing(ResultQueue& queue, std::shared_ptr<const Taker> taker) : queue_(queue), taker_(std::move(taker)) {
+    queue_.handing_ = std::this_thread::get_id();
+  }
+  ~Handing() {
+    taker_.reset();
+    const std::scoped_lock lock(queue_.mutex_);
+    queue_.handing_ = {};
+    queue_.went_.notify_all();
+  }
+  Handing(const Handing&) = delete;
+  Handing& operator=(const Handing&) = delete;
+  void call(Result result) const { (*taker_)(std::move(result)); }
+
+ private:
+  ResultQueue& queue_;
+  std::shared_ptr<const Taker> taker_;
+};
+
+bool ResultQueue::handNext() {
+  std::unique_lock lock(mutex_);
+  came_.wait(lock, [this] { return abandoned_ || (taker_ && !results_.empty()) || (closed_ && results_.empty()); });
+  if (abandoned_ || results_.empty()) return false;
+  auto result = take();
+  const Handing handing(*this, taker_);
+  lock.unlock();
+  handing.call(std::move(*result));
+  return true;
 }
 
 std::int64_t ResultQueue::given() const {

@@ -5,47 +5,66 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <thread>
 
 #include "motorcade/motorcade.hpp"
 
 namespace motorcade {
 
-/// Results between a tracker and whoever takes them, or on their way to a callback. Bounded: in live the oldest gives
-/// way; in replay the producer waits for takers (`waitForRoom`).
+/// Results between a tracker and whoever takes them: by `poll` and `wait`, or through a callback. Bounded: in live the
+/// oldest gives way, or with a callback the tracker waits for it; in replay the producer of pairs waits
+/// (`waitForRoom`). Each member is for any thread.
 class ResultQueue {
  public:
   static constexpr std::size_t kMost = 256;
   using Taker = std::function<void(Result)>;
 
-  /// Tracker: a result; gives back the callback that is to take it where there is one.
-  Taker put(Result& result);
+  explicit ResultQueue(Tracker::Policy policy) : live_(policy == Tracker::Policy::kLive) {}
+
+  /// Tracker: a result.
+  void put(Result result);
   /// Tracker: none comes after those that are there.
   void close();
+  /// Nobody takes results any more: ends every wait.
+  void abandon();
 
   /// Producer of pairs: one more is under way; waits until less than `kMost` results are or wait, false when nobody
-  /// took one in time.
+  /// took one in time. Does not wait after `endWaitsForRoom`.
   bool waitForRoom(std::chrono::milliseconds patience);
+  void endWaitsForRoom();
   /// Of that pair no result comes.
   void giveUpRoom();
 
   std::optional<Result> poll();
+  /// Also empty, and at once, when there is a callback.
   std::optional<Result> wait(std::chrono::milliseconds timeout);
+  /// No result comes any more, and the callback has returned from the last one.
   bool done() const;
+
+  /// From now on results, those that wait first, go to the callback, or where it is empty to `poll` and `wait` again.
+  /// The callback before has returned by then, unless it is the caller.
   void handTo(Taker taker);
+  /// The thread that calls callbacks: waits for a result and hands it on; false when there will be none.
+  bool handNext();
 
   std::int64_t given() const;
   std::int64_t untaken() const;
 
  private:
+  class Handing;
   std::optional<Result> take();
+  bool callbackIsBusy() const { return taker_ != nullptr && (!results_.empty() || handing_ != std::thread::id{}); }
 
+  const bool live_;
   mutable std::mutex mutex_;
-  std::condition_variable came_, went_;
+  std::condition_variable came_, went_;  // what `take`, or `put` and producers wait for
   std::deque<Result> results_;
-  Taker taker_;
-  bool closed_ = false;
+  std::shared_ptr<const Taker> taker_;
+  std::thread::id handing_;  // that is in the callback
+  bool closed_ = false, abandoned_ = false, room_for_all_ = false;
   std::size_t under_way_ = 0;  // replay: pairs that were accepted, and whose result was not taken
   std::int64_t given_ = 0, untaken_ = 0;
 };

@@ -1,15 +1,20 @@
-#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
+#include <functional>
+#include <mutex>
+#include <new>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "apps/interface/camera_model.hpp"
 #include "apps/interface/gray_image.hpp"
 #include "apps/interface/result_conversion.hpp"
 #include "apps/interface/result_queue.hpp"
-#include "apps/pipeline/configuration.hpp"
+#include "apps/interface/tracker_options.hpp"
 #include "apps/pipeline/pipeline.hpp"
 #include "io/errors.hpp"
 #include "motorcade/motorcade.hpp"
@@ -18,69 +23,6 @@ namespace motorcade {
 namespace {
 
 using PushStatus = Tracker::Push::Status;
-
-/// Tries the placement on a thread of its own, so that a refusal is the constructor's to tell.
-void requirePlacement(const ThreadPlacement& placement) {
-  for (const int cpu : placement.cpus)
-    if (cpu < 0) throw Error("options.cpus", "has " + std::to_string(cpu) + "; processors count from 0");
-  if (placement.realtime_priority < 0 || placement.realtime_priority > 99)
-    throw Error("options.realtime_priority", "is " + std::to_string(placement.realtime_priority) + "; it is 0 to 99");
-  const auto problemWith = [](const ThreadPlacement& part) {
-    std::string problem;
-    std::jthread([&] { problem = PlacedThread(part).problem(); }).join();
-    return problem;
-  };
-  if (const auto problem = problemWith({.cpus = placement.cpus}); !problem.empty())
-    throw Error("options.cpus", problem);
-  if (const auto problem = problemWith({.realtime_priority = placement.realtime_priority}); !problem.empty())
-    throw Error("options.realtime_priority", problem);
-}
-
-PipelineConfig configOf(const Tracker::Options& options) {
-  PipelineConfig config;
-  try {
-    applyToml(config, options.settings, "options.settings");
-  } catch (const UsageError& error) {
-    throw Error("options.settings", error.what());
-  }
-  if (options.threads < 1 || options.threads > 64)
-    throw Error("options.threads", "is " + std::to_string(options.threads) + "; it is 1 to 64");
-  if (options.patience.count() < 0) throw Error("options.patience", "is negative");
-  config.pipeline.threads = options.threads;
-  config.pipeline.policy = options.policy == Tracker::Policy::kLive ? InputPolicy::kLive : InputPolicy::kReplay;
-  config.pipeline.placement = {.cpus = options.cpus, .realtime_priority = options.realtime_priority};
-  requirePlacement(config.pipeline.placement);
-  return config;
-}
-
-LogCallback logOf(const Tracker::Options& options) {
-  if (!options.log) return [](motorcade::LogLevel, const std::string&) {};
-  return [log = options.log](motorcade::LogLevel level, const std::string& text) {
-    switch (level) {
-      case LogLevel::kInfo:
-        return log(Tracker::LogLevel::kInfo, text);
-      case LogLevel::kWarning:
-        return log(Tracker::LogLevel::kWarning, text);
-      case LogLevel::kError:
-        return log(Tracker::LogLevel::kError, text);
-    }
-  };
-}
-
-const char* reasonOf(Admission admission) {
-  switch (admission) {
-    case Admission::kLate:
-      return "its number is not after that of the pair before";
-    case Admission::kOutOfOrder:
-      return "its stamp does not follow that of the pair before";
-    case Admission::kClosed:
-      return "the tracker was closed";
-    case Admission::kTaken:
-    case Admission::kReplacedOlder:
-      break;
-  }
-  return "";
-}
 
 /// Holds off a second thread that pushes at the same time.
 class OneAtATime {
@@ -98,25 +40,51 @@ class OneAtATime {
   bool entered_;
 };
 
+/// Puts as many buffers into the pool as images are ever in use at once, in flight, in the entrance and in the stages'
+/// memories, and some to spare: a pool may miss one that comes back in that moment. Their pages are untouched, and so
+/// cost no memory until they are used.
+void stock(ImagePool& pool, const Camera& camera) {
+  constexpr std::size_t kImages = 32;
+  std::vector<Image> images;
+  while (images.size() < kImages) images.push_back(pool.acquire(camera.width_px, camera.height_px));
+}
+
+/// A call that is under way: the tracker outlives it.
+class Visit {
+ public:
+  explicit Visit(std::atomic<int>& visits) : visits_(visits) { ++visits_; }
+  ~Visit() { --visits_; }
+  Visit(const Visit&) = delete;
+  Visit& operator=(const Visit&) = delete;
+
+ private:
+  std::atomic<int>& visits_;
+};
+
 }  // namespace
 
-/// Pairs go through checks, one copy and the rectification into the pipeline; a thread takes the pipeline's results,
-/// converts them and hands them on.
+/// Pairs go through checks, one copy and the rectification into the pipeline; a thread takes the pipeline's results and
+/// converts them for those who take them, a second one calls the callback where there is one.
 class Tracker::Impl {
  public:
   Impl(const Camera& camera, const Options& options, const PipelineConfig& config);
   ~Impl();
 
-  Push push(const Pair& pair);
-  void close() { pipeline_.close(); }
-  ResultQueue& results() { return results_; }
+  Push push(const Pair& pair) noexcept;
+  void close();
+  std::optional<Result> poll();
+  std::optional<Result> wait(std::chrono::milliseconds timeout);
+  bool done() const { return results_.done(); }
+  void handTo(std::function<void(Result)> take);
   Counts counts() const;
 
  private:
+  Push judge(const Pair& pair) noexcept;
   const char* problemWith(const Pair& pair) const;
   Push enter(const Pair& pair);
+  const char* reasonOf(Admission admission) const;
   void deliver();
-  void hand(Result result);
+  void handOn();
 
   Camera camera_;
   CameraModel model_;
@@ -124,13 +92,17 @@ class Tracker::Impl {
   std::chrono::milliseconds patience_;
   LogCallback log_;
   ImagePool pool_;
+  std::atomic<int> visits_{0};
   std::atomic_flag pushing_;
+  std::atomic<bool> closed_{false}, failed_{false};
   std::atomic<std::int64_t> pushed_{0}, rejected_{0}, dropped_{0};
   ResultConversion convert_;  // the delivering thread's
   ResultQueue results_;
   ThreadPlacement placement_;
   Pipeline pipeline_;
   std::jthread deliverer_;
+  std::once_flag callback_wanted_;
+  std::jthread caller_;  // of callbacks
 };
 
 Tracker::Impl::Impl(const Camera& camera, const Options& options, const PipelineConfig& config)
@@ -140,33 +112,62 @@ Tracker::Impl::Impl(const Camera& camera, const Options& options, const Pipeline
       patience_(options.patience),
       log_(logOf(options)),
       convert_(options.axes, options.masks),
+      results_(options.policy),
       placement_(config.pipeline.placement),
       pipeline_(config.pipeline, makeStages(config, model_.rectified()), log_),
-      deliverer_([this] { deliver(); }) {}
+      deliverer_([this] { deliver(); }) {
+  if (!replay_) stock(pool_, camera);
+}
 
-Tracker::Impl::~Impl() { pipeline_.abandon(); }
+/// Calls of other threads that wait come back first.
+Tracker::Impl::~Impl() {
+  constexpr std::chrono::microseconds kPause(100);
+  closed_ = true;
+  pipeline_.abandon();
+  results_.abandon();
+  while (visits_ > 0) std::this_thread::sleep_for(kPause);
+}
 
-Tracker::Push Tracker::Impl::push(const Pair& pair) {
+void Tracker::Impl::close() {
+  const Visit visit(visits_);
+  closed_ = true;
+  pipeline_.close();
+  results_.endWaitsForRoom();
+}
+
+Tracker::Push Tracker::Impl::push(const Pair& pair) noexcept {
+  const Visit visit(visits_);
   pushed_.fetch_add(1, std::memory_order_relaxed);
-  const OneAtATime one(pushing_);
-  Push outcome{.status = PushStatus::kRejected, .why = "another thread is pushing"};
-  if (one.entered()) {
-    outcome.why = problemWith(pair);
-    if (outcome.why == nullptr) outcome = enter(pair);
-  }
+  const Push outcome = judge(pair);
   if (outcome.status == PushStatus::kRejected) rejected_.fetch_add(1, std::memory_order_relaxed);
   if (outcome.status == PushStatus::kReplacedOlder) dropped_.fetch_add(1, std::memory_order_relaxed);
   return outcome;
 }
 
+Tracker::Push Tracker::Impl::judge(const Pair& pair) noexcept {
+  const OneAtATime one(pushing_);
+  if (!one.entered()) return {PushStatus::kRejected, "another thread is pushing"};
+  if (const char* const problem = problemWith(pair)) return {PushStatus::kRejected, problem};
+  if (replay_ && !results_.waitForRoom(patience_))
+    return {PushStatus::kRejected, "256 results wait, and nobody takes them"};
+  Push outcome{.status = PushStatus::kRejected, .why = "out of memory"};
+  try {
+    outcome = enter(pair);
+  } catch (const std::bad_alloc&) {  // the pair has not entered
+  }
+  if (replay_ && outcome.status == PushStatus::kRejected) results_.giveUpRoom();
+  return outcome;
+}
+
 const char* Tracker::Impl::problemWith(const Pair& pair) const {
+  constexpr std::int64_t kMost = std::int64_t{1} << 62;  // differences of two still are numbers
+  if (pair.frame < -1 || pair.frame > kMost) return "its number is neither -1 nor one from 0 to 2^62";
+  if (pair.stamp_ns < -kMost || pair.stamp_ns > kMost) return "its stamp is beyond 2^62 ns";
   const char* const left = problemOf(pair.left, camera_);
   return left != nullptr ? left : problemOf(pair.right, camera_);
 }
 
 Tracker::Push Tracker::Impl::enter(const Pair& pair) {
-  if (replay_ && !results_.waitForRoom(patience_))
-    return {PushStatus::kRejected, "256 results wait, and nobody takes them"};
   StereoFrame frame;
   frame.frame = {pair.frame};
   frame.stamp = {pair.stamp_ns};
@@ -174,31 +175,60 @@ Tracker::Push Tracker::Impl::enter(const Pair& pair) {
   frame.left = model_.leftOf(grayImage(pair.left, pool_), pool_);
   frame.right = model_.rightOf(grayImage(pair.right, pool_), pool_);
   const Admission admission = pipeline_.push(std::move(frame));
-  if (isTaken(admission))
-    return {admission == Admission::kReplacedOlder ? PushStatus::kReplacedOlder : PushStatus::kAccepted, ""};
-  if (replay_) results_.giveUpRoom();
-  return {PushStatus::kRejected, reasonOf(admission)};
+  if (!isTaken(admission)) return {PushStatus::kRejected, reasonOf(admission)};
+  return {admission == Admission::kReplacedOlder ? PushStatus::kReplacedOlder : PushStatus::kAccepted, ""};
 }
 
+/// Static text.
+const char* Tracker::Impl::reasonOf(Admission admission) const {
+  if (admission == Admission::kLate) return "its number is not after that of the pair before";
+  if (admission == Admission::kOutOfOrder) return "its stamp does not follow that of the pair before";
+  return failed_ ? "the tracker has failed, as its log tells" : "the tracker was closed";
+}
+
+/// A pipeline that ends unasked tells why when it is finished.
 void Tracker::Impl::deliver() {
-  const PlacedThread placed(placement_);
   try {
-    while (const auto result = pipeline_.next()) hand(convert_(*result));
+    const PlacedThread placed(placement_);
+    while (const auto result = pipeline_.next()) results_.put(convert_(*result));
+    if (!closed_) pipeline_.finish();
   } catch (const std::exception& error) {
+    failed_ = true;
     pipeline_.abandon();
+    results_.endWaitsForRoom();
     tell(log_, motorcade::LogLevel::kError, [&] { return std::string("no further results: ") + error.what(); });
   }
   results_.close();
 }
 
-void Tracker::Impl::hand(Result result) {
-  const auto take = results_.put(result);
-  if (!take) return;
-  try {
-    take(std::move(result));
-  } catch (const std::exception& error) {
-    tell(log_, motorcade::LogLevel::kError, [&] { return std::string("the callback for results: ") + error.what(); });
-  }
+std::optional<Result> Tracker::Impl::poll() {
+  const Visit visit(visits_);
+  return results_.poll();
+}
+
+std::optional<Result> Tracker::Impl::wait(std::chrono::milliseconds timeout) {
+  const Visit visit(visits_);
+  return results_.wait(timeout);
+}
+
+void Tracker::Impl::handTo(std::function<void(Result)> take) {
+  const Visit visit(visits_);
+  std::call_once(callback_wanted_, [this] { caller_ = std::jthread([this] { handOn(); }); });
+  results_.handTo(std::move(take));
+}
+
+void Tracker::Impl::handOn() {
+  const PlacedThread placed(placement_);
+  const auto complain = [this](const char* what) {
+    tell(log_, motorcade::LogLevel::kError, [&] { return std::string("the callback for results: ") + what; });
+  };
+  for (bool more = true; more;) try {
+      more = results_.handNext();
+    } catch (const std::exception& error) {
+      complain(error.what());
+    } catch (...) {
+      complain("it threw what is no std::exception");
+    }
 }
 
 Tracker::Counts Tracker::Impl::counts() const {
@@ -214,23 +244,19 @@ Tracker::Tracker(const Camera& camera, const Options& options) try
     : impl_(std::make_unique<Impl>(camera, options, configOf(options))) {
 } catch (const Error&) {
   throw;
+} catch (const UsageError& error) {  // a setting that needs what is not installed
+  throw Error("options.settings", error.what());
 } catch (const std::exception& error) {
   throw Error("options", error.what());
 }
 Tracker::~Tracker() = default;
 
-Tracker::Push Tracker::push(const Pair& pair) noexcept {
-  try {
-    return impl_->push(pair);
-  } catch (...) {
-    return {Push::Status::kRejected, "out of memory"};
-  }
-}
+Tracker::Push Tracker::push(const Pair& pair) noexcept { return impl_->push(pair); }
 void Tracker::close() noexcept { impl_->close(); }
-std::optional<Result> Tracker::poll() { return impl_->results().poll(); }
-std::optional<Result> Tracker::wait(std::chrono::milliseconds timeout) { return impl_->results().wait(timeout); }
-bool Tracker::done() const noexcept { return impl_->results().done(); }
-void Tracker::on_result(std::function<void(Result)> take) { impl_->results().handTo(std::move(take)); }
+std::optional<Result> Tracker::poll() { return impl_->poll(); }
+std::optional<Result> Tracker::wait(std::chrono::milliseconds timeout) { return impl_->wait(timeout); }
+bool Tracker::done() const noexcept { return impl_->done(); }
+void Tracker::on_result(std::function<void(Result)> take) { impl_->handTo(std::move(take)); }
 Tracker::Counts Tracker::counts() const noexcept { return impl_->counts(); }
 
 }  // namespace motorcade

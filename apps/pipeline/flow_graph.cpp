@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <exception>
 #include <future>
@@ -70,26 +71,43 @@ class Drained {
   flow::graph& graph_;
 };
 
-/// Places the workers of an arena, which come from other arenas and go back to them.
+/// Places the workers of an arena, which come from other arenas and go back to them. Also where they stay as they are:
+/// a worker may come placed from an arena that ended before the worker had left it.
 class PlacedWorkers : public oneapi::tbb::task_scheduler_observer {
  public:
   PlacedWorkers(oneapi::tbb::task_arena& arena, const ThreadPlacement& placement)
       : task_scheduler_observer(arena), placement_(placement) {
-    if (!placement.asItIs()) observe(true);
+    observe(true);
   }
-  ~PlacedWorkers() override { observe(false); }
+  ~PlacedWorkers() override {
+    if (!placement_.asItIs()) awaitDeparture();
+    observe(false);
+  }
   PlacedWorkers(const PlacedWorkers&) = delete;
   PlacedWorkers& operator=(const PlacedWorkers&) = delete;
 
-  void on_scheduler_entry(bool) override { ofThisThread().emplace(placement_); }
-  void on_scheduler_exit(bool) override { ofThisThread().reset(); }
+  void on_scheduler_entry(bool) override {
+    ++inside_;
+    ofThisThread().emplace(placement_);
+  }
+  void on_scheduler_exit(bool) override {
+    ofThisThread().reset();
+    --inside_;
+  }
 
  private:
+  /// Workers stay for a moment where there is nothing left to do, and no longer hear of their exit afterwards.
+  void awaitDeparture() const {
+    constexpr int kTries = 200;
+    constexpr std::chrono::microseconds kPause(100);
+    for (int tries = 0; inside_ > 0 && tries < kTries; ++tries) std::this_thread::sleep_for(kPause);
+  }
   static std::optional<PlacedThread>& ofThisThread() {
     thread_local std::optional<PlacedThread> placed;
     return placed;
   }
   ThreadPlacement placement_;
+  std::atomic<int> inside_{0};
 };
 
 constexpr auto kSequence = [](const Job* job) { return job->sequence; };
@@ -110,7 +128,8 @@ class FlowGraph::Impl {
   }
   void join();
   void fail(const std::exception_ptr& reason);
-  bool failed() { return failed_ || context_.is_group_execution_cancelled(); }
+  void abandon() { abandoned_ = true; }
+  bool failed() { return failed_ || abandoned_ || context_.is_group_execution_cancelled(); }
   std::vector<QueueMark> queues(std::int64_t bound) const;
   std::vector<QueueDepth> depths(std::int64_t bound) const;
 
@@ -119,7 +138,7 @@ class FlowGraph::Impl {
   void wireAndRun(std::promise<void>& wired);
   void await(flow::graph& graph, std::promise<void>& wired);
   template <class Act>
-  void unlessFailed(const Act& act);
+  void unlessGivenUp(const Act& act);
   auto stage(std::vector<Edge> in, void (StageRunner::*work)(Job&), std::vector<Edge> out);
   void publish(Job& job);
 
@@ -128,7 +147,7 @@ class FlowGraph::Impl {
   oneapi::tbb::task_arena arena_;
   PlacedWorkers placed_workers_;
   oneapi::tbb::task_group_context context_;  // of the graph: canceled where the library itself lacked memory for a task
-  std::atomic<bool> closed_ = false, failed_ = false;
+  std::atomic<bool> closed_ = false, failed_ = false, abandoned_ = false;
   std::exception_ptr failure_;
   flow::graph* graph_ = nullptr;  // on the stack of `run`, like all nodes
   flow::receiver<Job*>* first_node_ = nullptr;
@@ -172,8 +191,8 @@ void FlowGraph::Impl::join() {
 
 /// An exception ends the graph's work: jobs still go through, so that all come out, but nothing is done with them.
 template <class Act>
-void FlowGraph::Impl::unlessFailed(const Act& act) {
-  if (failed_) return;
+void FlowGraph::Impl::unlessGivenUp(const Act& act) {
+  if (failed_ || abandoned_) return;
   try {
     act();
   } catch (...) {
@@ -185,7 +204,7 @@ void FlowGraph::Impl::unlessFailed(const Act& act) {
 auto FlowGraph::Impl::stage(std::vector<Edge> in, void (StageRunner::*work)(Job&), std::vector<Edge> out) {
   return [this, in = std::move(in), work, out = std::move(out)](Job* job) {
     for (const Edge edge : in) gauges_[edge].leave();
-    unlessFailed([this, job, work] { (work_.stages.*work)(*job); });
+    unlessGivenUp([this, job, work] { (work_.stages.*work)(*job); });
     for (const Edge edge : out) gauges_[edge].enter();
     return job;
   };
@@ -193,7 +212,7 @@ auto FlowGraph::Impl::stage(std::vector<Edge> in, void (StageRunner::*work)(Job&
 
 void FlowGraph::Impl::publish(Job& job) {
   gauges_[kToPublish].leave();
-  unlessFailed([this, &job] { work_.publisher.publish(job); });
+  unlessGivenUp([this, &job] { work_.publisher.publish(job); });
 }
 
 /// The wiring: stateless stages `unlimited`, stages with memory `serial` behind a sequencer (a serial node may start
@@ -280,6 +299,7 @@ FlowGraph::~FlowGraph() = default;
 
 void FlowGraph::put(Job& job) { impl_->put(job); }
 void FlowGraph::close() { impl_->close(); }
+void FlowGraph::abandon() { impl_->abandon(); }
 void FlowGraph::fail(const std::exception_ptr& reason) { impl_->fail(reason); }
 bool FlowGraph::failed() { return impl_->failed(); }
 void FlowGraph::join() { impl_->join(); }

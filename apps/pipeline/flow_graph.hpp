@@ -37,7 +37,9 @@ class FlowGraph {
   void close();
   /// Any thread: puts an end to the work of the graph, for a reason that `join` throws.
   void fail(const std::exception_ptr& reason);
-  /// The graph cannot go on; it has been closed or is to be.
+  /// Any thread: nothing more is done with the jobs in flight, nor with those that come; they only come out.
+  void abandon();
+  /// The graph cannot or shall not go on; it has been closed or is to be.
   bool failed();
   /// After `close`: waits until all jobs are out. Throws what the graph failed of.
   void join();

@@ -37,7 +37,14 @@ Intake::Intake(const PipelineParams& params, FreeJobs& free_jobs, Entrance& entr
       headers_(kHeaders) {}
 
 Admission Intake::push(StereoFrame frame) {
-  if (input_.closed()) return Admission::kClosed;
+  entering_.store(true);
+  const Admission admission = closed_.load() ? Admission::kClosed : judge(std::move(frame));
+  entering_.store(false);
+  entering_.notify_one();
+  return admission;
+}
+
+Admission Intake::judge(StereoFrame frame) {
   if (!frame.frame.valid()) frame.frame = next_id_;
   if (frame.frame < next_id_) {
     late_.fetch_add(1, std::memory_order_relaxed);
@@ -66,7 +73,7 @@ Admission Intake::enter(StereoFrame frame) {
 
 void Intake::passOver(const FrameHeader& frame) {
   assert(frame.frame >= next_id_);
-  if (input_.closed()) return;
+  if (closed_.load()) return;
   next_id_ = {frame.frame.value + 1};
   FrameHeader header = frame;
   header.stamp.ns += clock_.ahead_ns();
@@ -78,6 +85,7 @@ void Intake::passOver(const FrameHeader& frame) {
 void Intake::announce(FrameHeader header) { headers_.tryPush(header); }
 
 void Intake::close() {
+  closed_.store(true);
   input_.close();
   newest_.close();
 }
@@ -86,10 +94,18 @@ Job* Intake::next(const std::function<bool()>& given_up) {
   Job* const job = free_jobs_.take(given_up);
   if (!job) return nullptr;
   if (live()) entrance_.waitForTurn(given_up);
-  auto frame = live() ? newest_.take() : input_.pop();
+  auto frame = take();
   if (!frame) return nullptr;
   admit(*job, std::move(*frame));
   return job;
+}
+
+/// No frame is lost that another thread's `close` overtakes on its way in.
+std::optional<StereoFrame> Intake::take() {
+  auto frame = live() ? newest_.take() : input_.pop();
+  if (frame) return frame;
+  entering_.wait(true);
+  return live() ? newest_.tryTake() : input_.tryPop();
 }
 
 void Intake::admit(Job& job, StereoFrame frame) {

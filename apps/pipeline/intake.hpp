@@ -49,7 +49,9 @@ class Intake {
 
  private:
   bool live() const { return policy_ == InputPolicy::kLive; }
+  Admission judge(StereoFrame frame);
   Admission enter(StereoFrame frame);
+  std::optional<StereoFrame> take();
   void announce(FrameHeader header);
   void tellOfClock(const StereoFrame& frame);
   void admit(Job& job, StereoFrame frame);
@@ -65,6 +67,9 @@ class Intake {
   SpscRing<StereoFrame> input_;
   Mailbox<StereoFrame> newest_;
   SpscRing<FrameHeader> headers_;
+  // The producer raises the one before it looks at the other: who has closed the input waits for a push that came
+  // before.
+  std::atomic<bool> entering_{false}, closed_{false};
   std::atomic<std::int64_t> received_{0}, passed_over_{0}, refused_{0}, late_{0};
   std::atomic<std::int64_t> clock_ahead_ns_{0};
 

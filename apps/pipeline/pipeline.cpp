@@ -24,10 +24,11 @@ class Pipeline::Impl {
   Publisher& publisher() { return publisher_; }
   PipelineEnd finish();
   PipelineState state() const;
-  void stop();
+  void abandon();
 
  private:
   void pump();
+  void stop();
   std::vector<QueueMark> queues() const;
 
   PipelineParams params_;
@@ -50,7 +51,13 @@ Pipeline::Impl::Impl(const PipelineParams& params, Stages stages, const LogCallb
       graph_(params, {.stages = stages_, .publisher = publisher_, .entrance = entrance_, .stop = [this] { stop(); }}),
       pump_thread_([this] { pump(); }) {}
 
-Pipeline::Impl::~Impl() { stop(); }
+Pipeline::Impl::~Impl() { abandon(); }
+
+/// What is in flight comes out at once, but for the stages at work.
+void Pipeline::Impl::abandon() {
+  graph_.abandon();
+  stop();
+}
 
 /// Ends all waits for frames, jobs and results.
 void Pipeline::Impl::stop() {
@@ -115,7 +122,7 @@ Pipeline::~Pipeline() = default;
 
 Admission Pipeline::push(StereoFrame frame) { return impl_->intake().push(std::move(frame)); }
 void Pipeline::passOver(const FrameHeader& frame) { impl_->intake().passOver(frame); }
-void Pipeline::abandon() { impl_->stop(); }
+void Pipeline::abandon() { impl_->abandon(); }
 void Pipeline::close() { impl_->intake().close(); }
 std::optional<PipelineResult> Pipeline::next() { return impl_->publisher().next(); }
 std::optional<PipelineResult> Pipeline::poll() { return impl_->publisher().poll(); }

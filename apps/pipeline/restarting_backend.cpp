@@ -56,13 +56,16 @@ std::vector<FrameEstimate> RestartingBackend::finish() {
   return finals;
 }
 
-/// Covariances are relative to the camera, and stay.
+/// Covariances of poses are relative to the camera, and stay.
 void RestartingBackend::moveToWorld(FrameEstimate& estimate) const {
   if (!restarted_) return;
   estimate.T_world_cam = T_world_start_ * estimate.T_world_cam;
   for (ObjectEstimate& object : estimate.objects) {
     object.T_world_body = T_world_start_ * object.T_world_body;
-    object.velocity_world_mps = T_world_start_.rotation() * object.velocity_world_mps;
+    const Eigen::Matrix3d& R_world_start = T_world_start_.rotation();
+    object.velocity_world_mps = R_world_start * object.velocity_world_mps;
+    if (object.velocity_covariance)
+      object.velocity_covariance = R_world_start * *object.velocity_covariance * R_world_start.transpose();
   }
 }
 

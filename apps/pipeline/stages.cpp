@@ -6,6 +6,8 @@
 
 #include "apps/pipeline/pipeline_config.hpp"
 #include "apps/pipeline/restarting_backend.hpp"
+#include "core/module.hpp"
+#include "io/errors.hpp"
 
 namespace motorcade {
 namespace {
@@ -30,6 +32,12 @@ std::unique_ptr<Backend> makeBackend(const BackendParams& params, const StereoCa
   return std::make_unique<PoseGraphBackend>(params.smoother, camera);
 }
 
+std::shared_ptr<const FeaturePreparation> makePreparation(const FeaturePreparation::Params& params) try {
+  return std::make_shared<const FeaturePreparation>(params);
+} catch (const ModuleError& error) {  // the detector's
+  throw UsageError(error.what());
+}
+
 /// Throws where an image is missing or has not the size that the camera says.
 void requireImages(const StereoFrame& frame, const StereoCamera& camera) {
   const auto require = [&](const Image& image, const std::string& side) {
@@ -47,7 +55,7 @@ void requireImages(const StereoFrame& frame, const StereoCamera& camera) {
 
 /// The stages live behind shared pointers, because a std::function copies what it holds.
 Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
-  const auto prepare = std::make_shared<FeaturePreparation>(config.preparation);
+  const auto prepare = makePreparation(config.preparation);
   const auto stereo = std::make_shared<StereoMatcher>(config.stereo);
   const auto flow = std::make_shared<OpticalFlowTracker>(config.optical_flow);
   const auto motion = std::make_shared<SceneFlowSegmentation>(config.scene_flow_segmentation, camera);

@@ -27,7 +27,7 @@ struct Stages {
 };
 
 /// The real stages, for a camera whose images have the size that it says. Throws std::invalid_argument on a bad
-/// parameter.
+/// parameter, UsageError where the detector's module is missing.
 Stages makeStages(const PipelineConfig& config, const StereoCamera& camera);
 
 }  // namespace motorcade

@@ -18,8 +18,10 @@ double scoreShare(float grain_gray) {
 
 }  // namespace
 
-FeaturePreparation::FeaturePreparation(const Params& params)
-    : params_(params), detect_corners_(params.corners), detect_sift_(params.sift) {}
+FeaturePreparation::FeaturePreparation(const Params& params) : detect_corners_(params.corners) {
+  requireValid(params.sift);
+  if (params.detector == DetectorKind::kSift) detect_sift_.emplace(params.sift);
+}
 
 FeaturesPtr FeaturePreparation::operator()(const StereoFramePtr& frame) const {
   Features features;
@@ -33,10 +35,10 @@ FeaturesPtr FeaturePreparation::operator()(const StereoFramePtr& frame) const {
   const Image left = denoised(frame->left, grain, pool_), right = denoised(frame->right, grain, pool_);
   features.left = buildPyramid(left, kPyramidLevels, pool_);
   features.right = buildPyramid(right, kPyramidLevels, pool_);
-  if (params_.detector == DetectorKind::kCorners) {
+  if (!detect_sift_) {
     features.corners = detect_corners_(left, scoreShare(left_grain));
   } else {
-    SiftPoints in_left = detect_sift_(left), in_right = detect_sift_(right);
+    SiftPoints in_left = (*detect_sift_)(left), in_right = (*detect_sift_)(right);
     features.corners = std::move(in_left.corners);
     features.descriptors = std::move(in_left.descriptors);
     features.right_corners = std::move(in_right.corners);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/parameters.hpp"
@@ -26,10 +27,9 @@ class FeaturePreparation {
   FeaturesPtr operator()(const StereoFramePtr& frame) const;
 
  private:
-  Params params_;
   CornerDetector detect_corners_;
-  SiftDetector detect_sift_;
-  mutable ImagePool pool_;  // itself safe for several threads
+  std::optional<SiftDetector> detect_sift_;  // where it is the detector
+  mutable ImagePool pool_;                   // itself safe for several threads
 };
 
 std::vector<Parameter> parametersOf(FeaturePreparation::Params& params);

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
-#include <opencv2/features2d.hpp>
+#include "core/module.hpp"
 
 namespace motorcade {
 namespace {
@@ -12,10 +15,6 @@ namespace {
 /// Greatest distance of matching descriptors, whose norm is about 512. It bounds matches without a second nearest
 /// candidate, which the ratio cannot judge.
 constexpr double kMaxDistance = 250;
-
-// Parameters of Lowe (2004): three scales per octave, and a contrast threshold that OpenCV divides by their number.
-constexpr int kOctaveLayers = 3;
-constexpr double kContrastThreshold = 0.03;
 
 float squaredDistance(const SiftDescriptor& a, const SiftDescriptor& b) {
   float sum = 0;
@@ -44,23 +43,25 @@ struct Nearest {
 
 }  // namespace
 
-SiftPoints SiftDetector::operator()(const Image& image) const {
-  const cv::Mat view(image.height(), image.width(), CV_8UC1, const_cast<std::uint8_t*>(image.data()), image.stride());
-  const auto sift = cv::SIFT::create(params_.max_points, kOctaveLayers, kContrastThreshold);
-  std::vector<cv::KeyPoint> keypoints;
-  cv::Mat descriptors;
-  sift->detectAndCompute(view, cv::noArray(), keypoints, descriptors);
+extern "C" [[gnu::weak, gnu::visibility("hidden")]] decltype(motorcade_sift_1) motorcade_sift_1;
 
+SiftDetector::SiftDetector(const Params& params) try
+    : params_(requireValid(params)), detect_(linkedOrLoaded(&motorcade_sift_1, kSiftModule, kSiftFunction)) {
+} catch (const ModuleError& error) {
+  throw ModuleError(std::string("frontend.detector = \"sift\": ") + error.what());
+}
+
+SiftPoints SiftDetector::operator()(const Image& image) const {
+  std::vector<SiftKeypoint> keypoints;
+  std::string problem;
+  detect_(
+      {.pixels = image.data(), .width_px = image.width(), .height_px = image.height(), .stride_bytes = image.stride()},
+      params_.max_points, keypoints, problem);
+  if (!problem.empty()) throw std::runtime_error("SIFT: " + problem);
   SiftPoints points;
-  for (int i = 0; i < static_cast<int>(keypoints.size()); ++i) {
-    const cv::KeyPoint& keypoint = keypoints[i];
-    // Keypoints at the same position with different orientations follow one another and are one point.
-    if (!points.corners.empty() && points.corners.back().u_px == keypoint.pt.x &&
-        points.corners.back().v_px == keypoint.pt.y)
-      continue;
-    points.corners.push_back({keypoint.pt.x, keypoint.pt.y, keypoint.response});
-    SiftDescriptor& descriptor = points.descriptors.emplace_back();
-    std::copy_n(descriptors.ptr<float>(i), descriptor.size(), descriptor.begin());
+  for (const SiftKeypoint& keypoint : keypoints) {
+    points.corners.push_back({keypoint.u_px, keypoint.v_px, keypoint.response});
+    points.descriptors.push_back(keypoint.descriptor);
   }
   return points;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/parameters.hpp"
+#include "frontend/features/sift_module.hpp"
 #include "frontend/messages.hpp"
 
 /// The paper's own front-end: SIFT points matched by their descriptors. An option; about 115 ms per image.
@@ -16,17 +17,19 @@ struct SiftPoints {
   std::vector<SiftDescriptor> descriptors;
 };
 
-/// Detects and describes SIFT points (Lowe 2004). Stateless; safe to call from several threads.
+/// Detects and describes SIFT points (Lowe 2004). Stateless; safe to call from several threads. OpenCV does it, in a
+/// module that the constructor loads where it is not linked in; it throws where there is none.
 class SiftDetector {
  public:
   struct Params {
     int max_points = 1500;
   };
-  explicit SiftDetector(const Params& params) : params_(requireValid(params)) {}
+  explicit SiftDetector(const Params& params);
   SiftPoints operator()(const Image& image) const;
 
  private:
   Params params_;
+  decltype(&motorcade_sift_1) detect_;
 };
 
 /// The region of the other image, relative to a point, in which its match must lie. Bounds are inclusive.

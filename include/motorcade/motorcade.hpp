@@ -12,8 +12,7 @@
 ///          y left, z up (as ROS wants of bodies)
 ///   world  the first frame's cam
 ///   body   of an object, fixed to it: x in the direction of travel, y left, z up, with either axes
-/// Covariances are row by row, of perturbations (rho, phi) [m, rad] on the right, T exp(rho, phi). On real drives they
-/// are too small: keep a margin.
+/// Covariances are row by row, of (rho, phi) in T exp(rho, phi) [m, rad]. On real drives they are too small.
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -70,15 +69,17 @@ struct Pair {
   };
   Image left{}, right{};
   std::int64_t stamp_ns = 0;  // capture time, after that of the pair before
-  std::int64_t frame = -1;    // number, after that of the pair before; -1: the next one
+  std::int64_t frame = -1;    // number, from 0, after that of the pair before; -1: the next one
 };
 
 /// What is known in one frame, as soon as it is.
 struct Result {
   enum class Status { kGood, kLost, kRejected };  // lost and rejected: the pose is predicted, with a wide covariance
-  /// Why a frame is not simply good; good with a cause: measured, but less surely.
+  /// Good, but less sure: measured across missing frames (kAfterGap), by hardly points enough (kFewPoints). Lost:
+  /// nothing is found again, as in the dark (kNoPoints), points are seen, but not how the camera moved (kUnlinked), a
+  /// fault inside (kFailed). Rejected: the images are of no use (kUnusable). No result has the last two.
   enum class Cause { kNone, kAfterGap, kFewPoints, kNoPoints, kUnlinked, kFailed, kUnusable, kOutOfOrder, kTooLate };
-  enum class State { kMoving, kStopped, kPredicted };  // predicted: not seen in this frame
+  enum class State { kMoving, kStopped, kPredicted };  // stopped: moved before; predicted: not seen in this frame
   enum class Kind { kUnknown, kCar, kLargeVehicle, kTwoWheeler, kPedestrian };
 
   /// The left image's pixels that show an object: cells of `cell_px` pixels each way, row by row, 1 where it is seen.
@@ -104,13 +105,13 @@ struct Result {
     std::optional<Mask> mask{};  // with `Options::masks`, where the outline was found
   };
 
-  std::int64_t frame = -1, stamp_ns = 0;
+  std::int64_t frame = -1, stamp_ns = 0;  // of the pair; where the clock was set back, stamps go on all the same
   Status status = Status::kGood;
   Cause cause = Cause::kNone;
   int segment = 0;  // counts up where nothing measured links the poses before and after
   std::array<double, 12> T_world_cam{};
   std::optional<std::array<double, 36>> motion_covariance{};  // of T_cam(before)_cam(now), ten frames apart
-  /// The camera's own motion since the frame before, in its axes: velocity [m/s] and turn rate [rad/s].
+  /// The camera's own, along its axes [m/s] and about them [rad/s]: since the frame before that was seen.
   std::array<double, 6> velocity{};
   std::array<double, 36> velocity_covariance{};
   std::vector<Object> objects{};  // by id
@@ -120,11 +121,11 @@ struct Result {
 };
 
 /// Follows the camera and the objects. One thread pushes, one takes results; every other call is for any thread.
-/// Several trackers in one process share nothing but the processors.
+/// Several trackers in one process share nothing but the processors. Cannot be copied.
 class MOTORCADE_API Tracker {
  public:
   enum class Policy {
-    kLive,    // the newest pair wins: `push` never waits, and once warm asks nothing of the heap
+    kLive,    // the newest pair wins: `push` never waits, and asks nothing of the heap
     kReplay,  // no pair is lost: `push` waits for room; results do not depend on time or threads
   };
   enum class Axes { kOptical, kRep103 };
@@ -138,7 +139,7 @@ class MOTORCADE_API Tracker {
     std::vector<int> cpus{};                   // that its threads may run on; empty: all
     std::chrono::milliseconds patience{5000};  // replay: a `push` waits so long at most for results to be taken
     std::string settings{};                    // lines of the program's configuration file: "frontend.max_points = 400"
-    std::function<void(LogLevel, const std::string&)> log{};  // called from the tracker's threads, several at once
+    std::function<void(LogLevel, const std::string&)> log{};  // called from its threads, several at once
   };
   struct Push {
     enum class Status { kAccepted, kReplacedOlder, kRejected };
@@ -154,10 +155,8 @@ class MOTORCADE_API Tracker {
   /// Throws Error. Parts of `options` keep their default where it is not given.
   Tracker(const Camera& camera, const Options& options);
   explicit Tracker(const Camera& camera);
-  /// Abandons what is in flight, and joins its threads.
+  /// Abandons what is in flight, ends calls that wait in other threads, and joins its own.
   ~Tracker();
-  Tracker(const Tracker&) = delete;
-  Tracker& operator=(const Tracker&) = delete;
 
   /// A pair of another size than the camera's, without pixels, not after the one before (a clock that was set back is
   /// followed after four pairs), after `close`, or beside another thread's push is rejected.
@@ -170,10 +169,10 @@ class MOTORCADE_API Tracker {
   /// Waits for the next result; empty when there is none in time, and at once when there will be none (`done`).
   std::optional<Result> wait(std::chrono::milliseconds timeout);
   bool done() const noexcept;
-  /// From now on results come by this call, on a thread of the tracker, not by `poll` and `wait`. What it throws is
-  /// logged. It must not destroy the tracker.
+  /// From now on results, those that wait first, go to this callback, one by one on a thread of the tracker, not to
+  /// `poll` and `wait`; empty: to them again. The one before has returned then. It may throw, and call all but
+  /// ~Tracker.
   void on_result(std::function<void(Result)> take);
-
   Counts counts() const noexcept;
 
  private:
@@ -184,12 +183,8 @@ class MOTORCADE_API Tracker {
 /// A recorded drive: a folder of KITTI, EuRoC, Argoverse or plain images (docs/formats.md).
 class MOTORCADE_API Recording {
  public:
-  /// Throws Error.
-  explicit Recording(const std::string& folder);
+  explicit Recording(const std::string& folder);  // throws Error
   ~Recording();
-  Recording(const Recording&) = delete;
-  Recording& operator=(const Recording&) = delete;
-
   Camera camera() const;  // rectified, as the pairs are
   std::int64_t size() const;
   /// Its pixels live until the next call. An image that cannot be read has none, and the tracker will reject the pair.

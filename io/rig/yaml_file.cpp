@@ -2,58 +2,90 @@
 
 #include <algorithm>
 #include <cmath>
+#include <locale>
+#include <sstream>
 #include <utility>
 
-#include <yaml-cpp/yaml.h>
-
+#include "core/module.hpp"
 #include "io/errors.hpp"
+#include "io/rig/yaml_module.hpp"
 #include "io/text_file.hpp"
 
 namespace motorcade {
+
+extern "C" [[gnu::weak, gnu::visibility("hidden")]] decltype(motorcade_yaml_1) motorcade_yaml_1;
+
 namespace {
+
+using Kind = YamlNode::Kind;
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 20, kMostNumbers = 256;
 
-std::string lineOf(const YAML::Mark& mark) { return mark.is_null() ? "" : ", line " + std::to_string(mark.line + 1); }
+std::string lineText(int line) { return line == 0 ? "" : ", line " + std::to_string(line); }
+
+/// Parsed by the module, which is loaded where it is not linked in.
+YamlAnswer parsed(const std::filesystem::path& file, const std::string& text) {
+  YamlAnswer answer;
+  try {
+    linkedOrLoaded(&motorcade_yaml_1, kYamlModule, kYamlFunction)(text, answer);
+  } catch (const ModuleError& error) {
+    throw InputError(file.string() + ": is YAML, which is read by a module: " + error.what());
+  }
+  return answer;
+}
+
+/// The first part of that name; null where there is none.
+const YamlNode* partNamed(const YamlNode& node, std::string_view key) {
+  if (node.kind != Kind::kMap) return nullptr;
+  const auto found = std::ranges::find(node.parts, key, &YamlNode::key);
+  return found == node.parts.end() ? nullptr : &*found;
+}
+
+std::optional<double> numberOf(const std::string& text) {
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  double value = 0;
+  if (!(stream >> std::noskipws >> value) || !(stream >> std::ws).eof()) return std::nullopt;
+  if (!std::isfinite(value) || std::abs(value) > kLargestNumber) return std::nullopt;
+  return value;
+}
 
 /// Appends the numbers of a list, however deep. False where there are too many, or something else.
-bool collect(const YAML::Node& node, std::vector<double>& numbers, int depth = 0) {
+bool collect(const YamlNode& node, std::vector<double>& numbers, int depth = 0) {
   constexpr int kDeepest = 4;
-  if (node.IsMap() && depth == 0 && node["data"]) return collect(node["data"], numbers, depth + 1);
-  if (node.IsScalar()) {
-    double value = 0;
-    if (!YAML::convert<double>::decode(node, value) || !std::isfinite(value) || std::abs(value) > kLargestNumber)
-      return false;
-    numbers.push_back(value);
-    return numbers.size() <= kMostNumbers;
+  if (const YamlNode* data = partNamed(node, "data"); data != nullptr && depth == 0)
+    return collect(*data, numbers, depth + 1);
+  if (node.kind == Kind::kScalar) {
+    const auto value = numberOf(node.text);
+    if (value) numbers.push_back(*value);
+    return value && numbers.size() <= kMostNumbers;
   }
-  if (!node.IsSequence() || depth == kDeepest) return false;
-  return std::ranges::all_of(node, [&](const YAML::Node& item) { return collect(item, numbers, depth + 1); });
+  if (node.kind != Kind::kSequence || depth == kDeepest) return false;
+  return std::ranges::all_of(node.parts, [&](const YamlNode& item) { return collect(item, numbers, depth + 1); });
 }
 
 }  // namespace
 
-YamlPart::YamlPart(std::filesystem::path file, std::string key, const YAML::Node& node)
-    : file_(std::move(file)), key_(std::move(key)), node_(std::make_shared<const YAML::Node>(node)) {}
+YamlPart::YamlPart(std::filesystem::path file, std::string key, std::shared_ptr<const YamlNode> node)
+    : file_(std::move(file)), key_(std::move(key)), node_(std::move(node)) {}
 
 YamlPart YamlPart::ofFile(const std::filesystem::path& file) {
   std::string text = readWhole(file, kMostBytes);
   if (text.starts_with("%YAML")) std::fill_n(text.begin(), std::min(text.find_first_of("\r\n"), text.size()), ' ');
-  try {
-    const YAML::Node root = YAML::Load(text);
-    if (!root.IsMap()) throw InputError(file.string() + ": holds no keys; a calibration in YAML is expected");
-    return {file, "", root};
-  } catch (const YAML::Exception& error) {
-    throw InputError(file.string() + lineOf(error.mark) + ": is no YAML: " + printable(error.msg, 80));
-  }
+  YamlAnswer answer = parsed(file, text);
+  if (answer.outcome != YamlAnswer::Outcome::kRead)
+    throw InputError(file.string() + lineText(answer.line) +
+                     (answer.outcome == YamlAnswer::Outcome::kNoYaml ? ": is no YAML: " : ": is no calibration: ") +
+                     printable(answer.problem, 80));
+  if (answer.root.kind != Kind::kMap)
+    throw InputError(file.string() + ": holds no keys; a calibration in YAML is expected");
+  return {file, "", std::make_shared<const YamlNode>(std::move(answer.root))};
 }
 
 std::optional<YamlPart> YamlPart::find(std::initializer_list<std::string_view> keys) const {
-  if (!node_->IsMap()) return std::nullopt;
-  for (const std::string_view key : keys) {
-    const YAML::Node found = (*node_)[std::string(key)];
-    if (found) return YamlPart(file_, (key_.empty() ? "" : key_ + ".") + std::string(key), found);
-  }
+  for (const std::string_view key : keys)
+    if (const YamlNode* found = partNamed(*node_, key))
+      return YamlPart(file_, (key_.empty() ? "" : key_ + ".") + std::string(key), {node_, found});
   return std::nullopt;
 }
 
@@ -77,12 +109,12 @@ std::vector<double> YamlPart::numbers(std::size_t count) const {
 }
 
 std::string YamlPart::text() const {
-  if (!node_->IsScalar()) fail("holds no word");
-  return node_->Scalar();
+  if (node_->kind != Kind::kScalar) fail("holds no word");
+  return node_->text;
 }
 
 void YamlPart::fail(const std::string& what) const {
-  throw InputError(file_.string() + lineOf(node_->Mark()) + ": key " + printable(key_) + " " + what);
+  throw InputError(file_.string() + lineText(node_->line) + ": key " + printable(key_) + " " + what);
 }
 
 }  // namespace motorcade

@@ -8,11 +8,9 @@
 #include <string_view>
 #include <vector>
 
-namespace YAML {  // NOLINT(readability-identifier-naming): yaml-cpp's
-class Node;
-}
-
 namespace motorcade {
+
+struct YamlNode;
 
 /// A part of a YAML file, with its name for messages. Whatever is wrong in it is an InputError that names file, key and
 /// line.
@@ -35,11 +33,11 @@ class YamlPart {
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
-  YamlPart(std::filesystem::path file, std::string key, const YAML::Node& node);
+  YamlPart(std::filesystem::path file, std::string key, std::shared_ptr<const YamlNode> node);
 
   std::filesystem::path file_;
   std::string key_;
-  std::shared_ptr<const YAML::Node> node_;
+  std::shared_ptr<const YamlNode> node_;
 };
 
 }  // namespace motorcade

@@ -1,0 +1,167 @@
+#include "apps/bridge/bridge_command.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+
+#include "apps/bridge/bridge_options.hpp"
+#include "apps/bridge/dds_publisher.hpp"
+#include "apps/bridge/drive_player.hpp"
+#include "apps/bridge/message_conversion.hpp"
+#include "apps/bridge/object_markers.hpp"
+#include "apps/bridge/path_covariance.hpp"
+#include "apps/console/progress.hpp"
+#include "apps/console/stop_signals.hpp"
+#include "io/errors.hpp"
+#include "motorcade/motorcade.hpp"
+
+namespace motorcade {
+namespace {
+
+using namespace std::chrono_literals;
+
+void logToSpdlog(Tracker::LogLevel level, const std::string& text) {
+  switch (level) {
+    case Tracker::LogLevel::kInfo:
+      return spdlog::info(text);
+    case Tracker::LogLevel::kWarning:
+      return spdlog::warn(text);
+    case Tracker::LogLevel::kError:
+      return spdlog::error(text);
+  }
+}
+
+/// A marker outlives three frames, and a second.
+double markerLifetime_s(std::optional<double> speed, double capture_rate_hz) {
+  constexpr double kLeast_s = 1, kFrames = 3;
+  return speed && capture_rate_hz > 0 ? std::max(kLeast_s, kFrames / (*speed * capture_rate_hz)) : kLeast_s;
+}
+
+/// Turns the results of one pass into messages and publishes them.
+class ResultPublisher {
+ public:
+  ResultPublisher(DdsPublisher& out, const FrameIds& ids, double marker_lifetime_s)
+      : out_(out), ids_(ids), markers_({.frame_id = ids.world, .lifetime_s = marker_lifetime_s}) {}
+
+  void publish(const Result& result) {
+    out_.publish(poseStampedOf(result, ids_));
+    out_.publish(odometryOf(result, covariance_(result), ids_));
+    out_.publish(markers_(result));
+  }
+
+ private:
+  DdsPublisher& out_;
+  FrameIds ids_;
+  PathCovariance covariance_;
+  ObjectMarkers markers_;
+};
+
+/// The public interface's error, without the name of the field: users know files and options.
+std::string textOf(const Error& error) { return std::string(error.what()).substr(error.field().size() + 2); }
+
+Recording opened(const std::filesystem::path& drive) {
+  try {
+    return Recording(drive.string());
+  } catch (const Error& error) {
+    throw InputError(textOf(error));
+  }
+}
+
+std::unique_ptr<Tracker> makeTracker(const Camera& camera, const Tracker::Options& tracker_options,
+                                     const BridgeOptions& options) {
+  try {
+    return std::make_unique<Tracker>(camera, tracker_options);
+  } catch (const Error& error) {
+    if (error.field().starts_with("camera")) throw InputError(options.drive.string() + ": " + error.what());
+    if (error.field() == "options.settings") throw UsageError(options.config.string() + ": " + textOf(error));
+    throw UsageError(error.what());
+  }
+}
+
+/// One pass of the drive through one tracker. Gives the number of pairs that a newer one replaced.
+std::int64_t playOnce(Tracker& tracker, DrivePlayer& player, const DrivePlayer::Pace& pace, ResultPublisher results,
+                      Progress& progress, std::stop_source& stop) {
+  std::int64_t done = 0;
+  const std::jthread feeder([&, token = stop.get_token()] { player.play(tracker, pace, token); });
+  try {
+    while (!tracker.done()) {
+      const auto result = tracker.wait(100ms);
+      if (!result) continue;
+      results.publish(*result);
+      progress.show(static_cast<std::size_t>(++done), fmt::format("latency {:.1f} ms", result->latency_ms));
+    }
+  } catch (...) {
+    stop.request_stop();  // else the feeder would go on to the end of the drive
+    throw;
+  }
+  return tracker.counts().dropped;
+}
+
+void tellDriven(const DrivePlayer::Counts& player, std::int64_t dropped) {
+  spdlog::info("{} pairs; {} dropped by a newer one, {} overtaken before they were read", player.pushed, dropped,
+               player.overtaken);
+  if (player.rejected > 0) spdlog::warn("{} pairs were rejected: damaged, or without a later stamp", player.rejected);
+}
+
+void tellPublished(const std::vector<DdsPublisher::Counts>& topics) {
+  for (const auto& topic : topics) {
+    spdlog::info("{}: {} messages published, {} subscribers at the end", topic.topic, topic.published,
+                 topic.subscribers);
+    if (topic.timed_out > 0) spdlog::warn("{}: {} messages were not sent in time", topic.topic, topic.timed_out);
+    if (topic.overtaken > 0)
+      spdlog::warn("{}: {} messages left the history before every subscriber acknowledged them, and may be missing",
+                   topic.topic, topic.overtaken);
+  }
+}
+
+void awaitSubscribers(const DdsPublisher& out, const BridgeOptions& options, const std::stop_token& stop) {
+  if (options.subscribers == 0) return;
+  const std::chrono::milliseconds patience(std::llround(1e3 * options.patience_s));
+  if (!out.waitForSubscribers(options.subscribers, patience, stop) && !stop.stop_requested())
+    spdlog::warn("not every topic has {} subscribers after {} s (--wait-at-most): going on without",
+                 options.subscribers, options.patience_s);
+}
+
+}  // namespace
+
+int runBridge(const BridgeOptions& options) {
+  const FrameIds ids = frameIdsOf(options);
+  Tracker::Options tracker_options = trackerOptionsOf(options);
+  tracker_options.log = logToSpdlog;
+  const DdsPlace place{.domain = options.domain, .interface = options.interface};
+  StopSignals signals;  // before all threads
+  Recording recording = opened(options.drive);
+  auto tracker = makeTracker(recording.camera(), tracker_options, options);
+  DrivePlayer player(recording);
+  const DrivePlayer::Pace pace{.speed = speedOf(options, player.captureRate_hz()), .live = options.live};
+  DdsPublisher out(place);
+  spdlog::info("/motorcade/pose, /motorcade/odometry and /motorcade/objects in {}", textOf(place));
+  if (isLoopback(place) && !out.isShielded())
+    spdlog::warn("DDS' sockets cannot be bound to the loopback device: others in the network can send to them");
+
+  std::stop_source stop;
+  const auto watch = signals.watch([&stop] { stop.request_stop(); });
+  awaitSubscribers(out, options, stop.get_token());
+  std::int64_t dropped = 0;
+  for (bool again = !stop.stop_requested(); again; again = options.loop && !stop.stop_requested()) {
+    if (!tracker) tracker = makeTracker(recording.camera(), tracker_options, options);
+    Progress progress("frame", static_cast<std::size_t>(recording.size()));
+    dropped += playOnce(*tracker, player, pace, {out, ids, markerLifetime_s(pace.speed, player.captureRate_hz())},
+                        progress, stop);
+    tracker.reset();
+  }
+  tellDriven(player.counts(), dropped);
+  tellPublished(out.counts());
+  return signals.received() == 0 ? 0 : kExitSignal + signals.received();
+}
+
+}  // namespace motorcade

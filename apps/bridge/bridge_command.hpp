@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace motorcade {
+
+/// The command line of `motorcade bridge`, as the user typed it.
+struct BridgeOptions {
+  std::filesystem::path drive{}, config{};
+  std::string rate{};  // `max`, HZ, or empty for the drive's own pace
+  bool live = false, loop = false;
+  int threads = 2;
+  int domain = 0;
+  std::string interface {};               // empty: loopback
+  std::string frame_ids = "odom,camera";  // WORLD,CHILD
+  int subscribers = 0;                    // to wait for, of each topic
+  double patience_s = 30;                 // at most so long
+};
+
+/// Follows a recorded drive and publishes the results as ROS 2 topics; gives the exit code. Failures are UserErrors.
+int runBridge(const BridgeOptions& options);
+
+}  // namespace motorcade

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+
+#include "apps/bridge/bridge_command.hpp"
+#include "apps/bridge/message_conversion.hpp"
+#include "motorcade/motorcade.hpp"
+
+/// What the command line of `motorcade bridge` means. All throw UsageError.
+namespace motorcade {
+
+/// Captured seconds per second; empty for as fast as it goes. `capture_rate_hz` is 0 where nobody knows it.
+std::optional<double> speedOf(const BridgeOptions& options, double capture_rate_hz);
+
+/// Two names, which differ and are as tf2 takes them.
+FrameIds frameIdsOf(const BridgeOptions& options);
+
+/// For the tracker, with the file of parameters read. What the tracker then says about it is the caller's to tell.
+Tracker::Options trackerOptionsOf(const BridgeOptions& options);
+
+}  // namespace motorcade

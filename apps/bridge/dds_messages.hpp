@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include <geometry_msgs.h>
+#include <nav_msgs.h>
+#include <visualization_msgs.h>
+
+#include "apps/bridge/ros_messages.hpp"
+
+/// Views of messages in the types that idlc makes of apps/bridge/idl: strings and sequences are those of the message,
+/// which must outlive the view and is only read.
+namespace motorcade {
+
+geometry_msgs_msg_dds__PoseStamped_ ddsView(const ros::PoseStamped& message);
+nav_msgs_msg_dds__Odometry_ ddsView(const ros::Odometry& message);
+
+class MarkerArrayView {
+ public:
+  explicit MarkerArrayView(const ros::MarkerArray& message);
+  MarkerArrayView(const MarkerArrayView&) = delete;
+  MarkerArrayView& operator=(const MarkerArrayView&) = delete;
+  const visualization_msgs_msg_dds__MarkerArray_& array() const { return array_; }
+
+ private:
+  std::vector<std::vector<geometry_msgs_msg_dds__Point_>> points_;  // of each marker
+  std::vector<visualization_msgs_msg_dds__Marker_> markers_;
+  visualization_msgs_msg_dds__MarkerArray_ array_{};
+};
+
+}  // namespace motorcade

@@ -1,0 +1,162 @@
+#include "apps/bridge/dds_publisher.hpp"
+
+#include <algorithm>
+#include <array>
+#include <thread>
+#include <utility>
+
+#include <dds/dds.h>
+#include <fmt/format.h>
+
+#include "apps/bridge/dds_messages.hpp"
+#include "apps/bridge/loopback_sockets.hpp"
+#include "io/errors.hpp"
+
+namespace motorcade {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kHistory = 10;  // messages; ROS 2's default
+constexpr dds_duration_t kMostBlocking = DDS_MSECS(10);
+constexpr auto kLinger = 1s;  // at the end, of all writers together
+
+/// Ends what was made in it, too.
+class Entity {
+ public:
+  Entity(dds_entity_t entity, const std::string& what) : entity_(entity) {
+    if (entity < 0) throw OutputError(fmt::format("{}: DDS says: {}", what, dds_strretcode(entity)));
+  }
+  ~Entity() { dds_delete(entity_); }
+  Entity(const Entity&) = delete;
+  Entity& operator=(const Entity&) = delete;
+  dds_entity_t get() const { return entity_; }
+
+ private:
+  dds_entity_t entity_;
+};
+
+struct DeleteQos {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, DeleteQos>;
+
+Qos rosDefault() {
+  Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMostBlocking);
+  dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kHistory);
+  const dds_data_representation_id_t as_ros = DDS_DATA_REPRESENTATION_XCDR1;
+  dds_qset_data_representation(qos.get(), 1, &as_ros);
+  return qos;
+}
+
+/// One topic with its writer.
+class Writer {
+ public:
+  /// ROS' topic /NAME is rt/NAME in DDS.
+  Writer(dds_entity_t participant, const dds_topic_descriptor_t& type, const std::string& name)
+      : qos_(rosDefault()),
+        topic_(dds_create_topic(participant, &type, ("rt/" + name).c_str(), qos_.get(), nullptr), "topic " + name),
+        writer_(dds_create_writer(participant, topic_.get(), qos_.get(), nullptr), "topic " + name) {
+    counts_.topic = "/" + name;
+  }
+
+  void write(const void* message) {
+    const bool acknowledged = dds_wait_for_acks(writer_.get(), 0) == DDS_RETCODE_OK;
+    unacknowledged_ = acknowledged ? 0 : unacknowledged_;
+    const dds_return_t outcome = dds_write(writer_.get(), message);
+    if (outcome == DDS_RETCODE_TIMEOUT) {
+      ++counts_.timed_out;
+    } else if (outcome != DDS_RETCODE_OK) {
+      throw OutputError(fmt::format("topic {}: DDS says: {}", counts_.topic, dds_strretcode(outcome)));
+    } else {
+      ++counts_.published;
+      if (++unacknowledged_ > kHistory) ++counts_.overtaken;
+    }
+  }
+  /// Waits until every subscriber acknowledged all.
+  void settle(std::chrono::nanoseconds patience) const { dds_wait_for_acks(writer_.get(), patience.count()); }
+
+  int subscribers() const {
+    dds_publication_matched_status_t status{};
+    dds_get_publication_matched_status(writer_.get(), &status);
+    return static_cast<int>(status.current_count);
+  }
+  DdsPublisher::Counts counts() const {
+    DdsPublisher::Counts counts = counts_;
+    counts.subscribers = subscribers();
+    return counts;
+  }
+
+ private:
+  Qos qos_;
+  Entity topic_, writer_;
+  DdsPublisher::Counts counts_{};
+  int unacknowledged_ = 0;  // since all were
+};
+
+}  // namespace
+
+/// Made and ended in the order of its members.
+struct DdsPublisher::Impl {
+  explicit Impl(const DdsPlace& place)
+      : domain(dds_create_domain(static_cast<dds_domainid_t>(place.domain), ddsConfiguration(place).c_str()),
+               textOf(place)),
+        shielded(isLoopback(place) && bindSocketsToLoopback()),
+        participant(dds_create_participant(static_cast<dds_domainid_t>(place.domain), nullptr, nullptr), textOf(place)),
+        pose(participant.get(), geometry_msgs_msg_dds__PoseStamped__desc, "motorcade/pose"),
+        odometry(participant.get(), nav_msgs_msg_dds__Odometry__desc, "motorcade/odometry"),
+        objects(participant.get(), visualization_msgs_msg_dds__MarkerArray__desc, "motorcade/objects") {}
+  std::array<const Writer*, 3> all() const { return {&pose, &odometry, &objects}; }
+
+  Entity domain;
+  bool shielded;
+  Entity participant;
+  Writer pose, odometry, objects;
+};
+
+DdsPublisher::DdsPublisher(const DdsPlace& place) : impl_(std::make_unique<Impl>(place)) {}
+
+DdsPublisher::~DdsPublisher() {
+  const auto deadline = std::chrono::steady_clock::now() + kLinger;
+  for (const Writer* const writer : impl_->all())
+    writer->settle(std::max<std::chrono::nanoseconds>(0ns, deadline - std::chrono::steady_clock::now()));
+}
+
+bool DdsPublisher::waitForSubscribers(int count, std::chrono::milliseconds patience,
+                                      const std::stop_token& stop) const {
+  constexpr auto kBetween = 10ms;
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  const auto there = [&] {
+    return std::ranges::all_of(impl_->all(), [&](const Writer* writer) { return writer->subscribers() >= count; });
+  };
+  while (!there()) {
+    if (stop.stop_requested() || std::chrono::steady_clock::now() >= deadline) return false;
+    std::this_thread::sleep_for(kBetween);
+  }
+  return true;
+}
+
+void DdsPublisher::publish(const ros::PoseStamped& message) {
+  const auto view = ddsView(message);
+  impl_->pose.write(&view);
+}
+void DdsPublisher::publish(const ros::Odometry& message) {
+  const auto view = ddsView(message);
+  impl_->odometry.write(&view);
+}
+void DdsPublisher::publish(const ros::MarkerArray& message) {
+  const MarkerArrayView view(message);
+  impl_->objects.write(&view.array());
+}
+
+std::vector<DdsPublisher::Counts> DdsPublisher::counts() const {
+  std::vector<Counts> counts;
+  for (const Writer* const writer : impl_->all()) counts.push_back(writer->counts());
+  return counts;
+}
+
+bool DdsPublisher::isShielded() const { return impl_->shielded; }
+
+}  // namespace motorcade

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "apps/bridge/dds_configuration.hpp"
+#include "apps/bridge/ros_messages.hpp"
+
+namespace motorcade {
+
+/// Publishes messages as ROS 2 does by default: reliable, volatile, the last ten kept. Neither an absent nor a slow nor
+/// a stopped subscriber holds it up for more than ten milliseconds a message: it then misses messages, which is
+/// counted. For one thread.
+class DdsPublisher {
+ public:
+  struct Counts {
+    std::string topic{};         // as ROS names it: /motorcade/pose
+    std::int64_t published = 0;  // taken by DDS
+    std::int64_t timed_out = 0;  // not taken in time
+    std::int64_t overtaken = 0;  // left the history of ten before every subscriber acknowledged it: may be missing
+    int subscribers = 0;         // now
+  };
+  /// Throws UsageError or OutputError.
+  explicit DdsPublisher(const DdsPlace& place);
+  /// Gives subscribers up to a second for what they have not acknowledged.
+  ~DdsPublisher();
+  DdsPublisher(const DdsPublisher&) = delete;
+  DdsPublisher& operator=(const DdsPublisher&) = delete;
+
+  /// False when not each topic has so many subscribers in time, or when asked to stop.
+  bool waitForSubscribers(int count, std::chrono::milliseconds patience, const std::stop_token& stop) const;
+
+  void publish(const ros::PoseStamped& message);
+  void publish(const ros::Odometry& message);
+  void publish(const ros::MarkerArray& message);
+
+  std::vector<Counts> counts() const;
+  /// On loopback: nobody outside of this machine can send to it.
+  bool isShielded() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,26 @@
+# OpenCV is for the SIFT detector and for the outlines that the programs draw; the library does without. Debian ships OpenCV's CMake files
+# only with libopencv-dev, which drags in the GUI, codecs and Java: find the modules by hand.
+find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4)
+set(opencv_found ${OPENCV_INCLUDE_DIR})
+foreach(module core imgproc features2d)
+  find_library(OPENCV_${module}_LIBRARY opencv_${module})
+  if(NOT OPENCV_${module}_LIBRARY OR NOT OPENCV_INCLUDE_DIR)
+    set(opencv_found OFF)
+    continue()
+  endif()
+  add_library(opencv::${module} UNKNOWN IMPORTED)
+  set_target_properties(opencv::${module} PROPERTIES
+    IMPORTED_LOCATION ${OPENCV_${module}_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${OPENCV_INCLUDE_DIR})
+endforeach()
+if(opencv_found)
+  option(MOTORCADE_SIFT "Build the SIFT detector, for frontend.detector = \"sift\": with OpenCV, a module of the library" ON)
+else()
+  option(MOTORCADE_SIFT "Build the SIFT detector, for frontend.detector = \"sift\": with OpenCV, a module of the library" OFF)
+endif()
+if((MOTORCADE_SIFT OR MOTORCADE_BUILD_APPS OR MOTORCADE_BUILD_TESTS OR MOTORCADE_BUILD_PERF) AND NOT opencv_found)
+  message(FATAL_ERROR "OpenCV was not found: run apps/setup.sh, or install libopencv-core-dev, libopencv-imgproc-dev and "
+    "libopencv-features2d-dev, or build the library alone with -DMOTORCADE_BUILD_APPS=OFF -DMOTORCADE_BUILD_TESTS=OFF -DMOTORCADE_SIFT=OFF")
+endif()
+if(MOTORCADE_BUILD_TESTS AND NOT MOTORCADE_SIFT)
+  message(FATAL_ERROR "The tests want the SIFT detector: leave MOTORCADE_SIFT on, or switch MOTORCADE_BUILD_TESTS off")
+endif()

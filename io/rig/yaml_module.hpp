@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What the module `yaml.so` (core/module.hpp) has: yaml-cpp's parser. The number in the function's name counts up with
+/// whatever changes in this file, so that a module of another version is refused.
+namespace motorcade {
+
+struct YamlNode {
+  enum class Kind { kEmpty, kScalar, kSequence, kMap };
+  Kind kind = Kind::kEmpty;
+  int line = 0;                   // counted from one
+  std::string key{};              // of a map's part
+  std::string text{};             // of a scalar
+  std::vector<YamlNode> parts{};  // of a map in the order of the file, but for those whose key is no scalar
+};
+
+struct YamlAnswer {
+  enum class Outcome { kRead, kNoYaml, kNoCalibration };  // of the last, what no calibration has, as depth
+  Outcome outcome = Outcome::kRead;
+  YamlNode root{};
+  int line = 0;  // of the problem, where it has one
+  std::string problem{};
+};
+
+inline constexpr char kYamlModule[] = "yaml", kYamlFunction[] = "motorcade_yaml_1";
+
+/// Parses a text's first document. What an alias stands for is copied, within a bound for all copies and parts.
+extern "C" void motorcade_yaml_1(std::string_view text, YamlAnswer& answer) noexcept;
+
+}  // namespace motorcade

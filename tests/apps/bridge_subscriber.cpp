@@ -1,0 +1,139 @@
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <dds/dds.h>
+#include <geometry_msgs.h>
+#include <nav_msgs.h>
+#include <nlohmann/json.hpp>
+#include <visualization_msgs.h>
+
+#include "apps/bridge/dds_configuration.hpp"
+
+/// Subscribes to the topics of `motorcade bridge` on loopback as a node of ROS 2 would, and writes each message as a
+/// line of JSON: bridge_subscriber DOMAIN SECONDS. Ends when all publishers that came have gone, or after so long.
+namespace {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kMostTaken = 64;
+
+json jsonOf(const std_msgs_msg_dds__Header_& header) {
+  return {{"sec", header.stamp.sec}, {"nanosec", header.stamp.nanosec}, {"frame_id", header.frame_id}};
+}
+
+json jsonOf(const geometry_msgs_msg_dds__Pose_& pose) {
+  const auto& p = pose.position;
+  const auto& q = pose.orientation;
+  return {p.x, p.y, p.z, q.x, q.y, q.z, q.w};
+}
+
+template <class Vector>
+json triple(const Vector& v) {
+  return {v.x, v.y, v.z};
+}
+
+json jsonOf(const geometry_msgs_msg_dds__PoseStamped_& message) {
+  return {{"header", jsonOf(message.header)}, {"pose", jsonOf(message.pose)}};
+}
+
+json jsonOf(const nav_msgs_msg_dds__Odometry_& message) {
+  return {{"header", jsonOf(message.header)},
+          {"child_frame_id", message.child_frame_id},
+          {"pose", jsonOf(message.pose.pose)},
+          {"pose_covariance", message.pose.covariance},
+          {"linear", triple(message.twist.twist.linear)},
+          {"angular", triple(message.twist.twist.angular)},
+          {"twist_covariance", message.twist.covariance}};
+}
+
+json jsonOf(const visualization_msgs_msg_dds__Marker_& marker) {
+  return {{"header", jsonOf(marker.header)},
+          {"ns", marker.ns},
+          {"id", marker.id},
+          {"type", marker.type},
+          {"action", marker.action},
+          {"pose", jsonOf(marker.pose)},
+          {"scale", triple(marker.scale)},
+          {"points", marker.points._length},
+          {"text", marker.text},
+          {"lifetime_s", marker.lifetime.sec + 1e-9 * marker.lifetime.nanosec}};
+}
+
+json jsonOf(const visualization_msgs_msg_dds__MarkerArray_& message) {
+  json markers = json::array();
+  for (std::uint32_t i = 0; i < message.markers._length; ++i) markers.push_back(jsonOf(message.markers._buffer[i]));
+  return {{"markers", markers}};
+}
+
+/// A topic's reader: reliable as ROS' are, but it keeps all, so that what is missing was not sent.
+struct Reader {
+  std::string topic;
+  dds_entity_t reader;
+  std::function<json(const void*)> toJson;
+
+  void take() const {
+    std::vector<void*> samples(kMostTaken, nullptr);
+    std::vector<dds_sample_info_t> infos(kMostTaken);
+    const int taken = dds_take(reader, samples.data(), infos.data(), kMostTaken, kMostTaken);
+    for (int i = 0; i < taken; ++i) {
+      if (!infos[i].valid_data) continue;
+      json line = toJson(samples[i]);
+      line["topic"] = topic;
+      std::puts(line.dump().c_str());
+    }
+    if (taken > 0) dds_return_loan(reader, samples.data(), taken);
+  }
+  std::pair<std::uint32_t, std::uint32_t> publishersEverAndNow() const {
+    dds_subscription_matched_status_t status{};
+    dds_get_subscription_matched_status(reader, &status);
+    return {status.total_count, status.current_count};
+  }
+};
+
+template <class Message>
+Reader subscribe(dds_entity_t participant, const dds_topic_descriptor_t& type, const std::string& topic) {
+  dds_qos_t* const qos = dds_create_qos();
+  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+  dds_qset_durability(qos, DDS_DURABILITY_VOLATILE);
+  dds_qset_history(qos, DDS_HISTORY_KEEP_ALL, 0);
+  const dds_entity_t entity = dds_create_topic(participant, &type, topic.c_str(), nullptr, nullptr);
+  const dds_entity_t reader = dds_create_reader(participant, entity, qos, nullptr);
+  dds_delete_qos(qos);
+  if (reader < 0) std::exit(4);
+  return {topic, reader, [](const void* message) { return jsonOf(*static_cast<const Message*>(message)); }};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  const int domain = std::atoi(argv[1]);
+  const auto deadline = Clock::now() + std::chrono::seconds(std::atoi(argv[2]));
+  const auto id = static_cast<dds_domainid_t>(domain);
+  if (dds_create_domain(id, motorcade::ddsConfiguration({.domain = domain}).c_str()) < 0) return 3;
+  const dds_entity_t participant = dds_create_participant(id, nullptr, nullptr);
+  if (participant < 0) return 3;
+  const std::vector<Reader> readers{
+      subscribe<geometry_msgs_msg_dds__PoseStamped_>(participant, geometry_msgs_msg_dds__PoseStamped__desc,
+                                                     "rt/motorcade/pose"),
+      subscribe<nav_msgs_msg_dds__Odometry_>(participant, nav_msgs_msg_dds__Odometry__desc, "rt/motorcade/odometry"),
+      subscribe<visualization_msgs_msg_dds__MarkerArray_>(participant, visualization_msgs_msg_dds__MarkerArray__desc,
+                                                          "rt/motorcade/objects")};
+  for (bool gone = false; !gone && Clock::now() < deadline;) {
+    gone = true;
+    for (const Reader& reader : readers) {
+      const auto [ever, now] = reader.publishersEverAndNow();
+      gone &= ever > 0 && now == 0;
+    }
+    for (const Reader& reader : readers) reader.take();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  dds_delete(participant);
+  return 0;
+}

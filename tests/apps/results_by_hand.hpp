@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+
+#include "core/se3.hpp"
+
+/// Parts of results as the public interface has them, for tests that write results down.
+namespace motorcade::test {
+
+inline std::array<double, 12> rowsOf(const SE3& T) {
+  std::array<double, 12> rows{};
+  Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> matrix(rows.data());
+  matrix << T.rotation(), T.translation();
+  return rows;
+}
+
+inline std::array<double, 36> rowsOf(const Matrix6d& covariance) {
+  std::array<double, 36> rows{};
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(rows.data()) = covariance;
+  return rows;
+}
+
+inline Matrix6d diagonal(double rho, double phi) {
+  Vector6d variances;
+  variances << rho, rho, rho, phi, phi, phi;
+  return variances.asDiagonal();
+}
+
+inline SE3 turned(const Eigen::Vector3d& phi_rad, const Eigen::Vector3d& t_m = Eigen::Vector3d::Zero()) {
+  return {expSO3(phi_rad), t_m};
+}
+
+}  // namespace motorcade::test
