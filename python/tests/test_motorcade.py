@@ -465,6 +465,20 @@ class TakingResults(unittest.TestCase):
         self.assertTrue(tracker.push(black(), black(), 1000).accepted)
         later.join()
 
+    def test_live_the_newest_pair_wins_and_every_pair_is_accounted_for(self) -> None:
+        tracker = self.tracker(policy="live")
+        statuses = [tracker.push(black(), black(), stamp + 1).status for stamp in range(200)]
+        tracker.close()
+        results = list(tracker)
+        replaced = statuses.count(motorcade.PushStatus.REPLACED_OLDER)
+        self.assertGreater(replaced, 0)
+        self.assertEqual(set(statuses), {motorcade.PushStatus.ACCEPTED, motorcade.PushStatus.REPLACED_OLDER})
+        self.assertEqual(sum(result.dropped_before for result in results), replaced)
+        counts = tracker.counts
+        self.assertEqual((counts.pushed, counts.rejected, counts.untaken), (200, 0, 0))
+        self.assertEqual((counts.dropped, counts.results), (replaced, len(results)))
+        self.assertEqual(len(results) + replaced, 200)
+
     def test_iteration_ends_with_the_last_result(self) -> None:
         tracker = self.tracker()
         self.push(tracker, 5)
