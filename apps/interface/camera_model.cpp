@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/LU>
+
 #include "io/errors.hpp"
 #include "io/image_limits.hpp"
 #include "io/rig/rectification.hpp"

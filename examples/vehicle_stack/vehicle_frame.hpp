@@ -42,7 +42,7 @@ class VehicleFrame {
   VehicleFrame(const Mounting& mounting, double margin);
 
   VehicleObject object(const motorcade::Result& result, const motorcade::Result::Object& object) const;
-  /// Empty where no motion was measured, as in the first frame.
+  /// Empty where nothing is known of it, as in a frame that failed; wide where hardly anything is, as in the first.
   std::optional<VehicleMotion> motion(const motorcade::Result& result) const;
 
  private:

@@ -216,6 +216,30 @@ TEST(Pipeline, CanBeAbandonedAtAnyMoment) {
   }
 }
 
+/// The stage at work ends, and no other one begins, so that whoever ends a pipeline need not wait for whole frames.
+TEST(Pipeline, BeginsNoFurtherStageOnceItIsAbandoned) {
+  std::atomic<bool> works{false}, abandoned{false};
+  std::atomic<int> later{0};
+  ToyStages toys{.work = [&](Stage stage, FrameId) {
+    if (stage == Stage::kPrepare) {
+      works = true;
+      works.notify_all();
+      abandoned.wait(false);
+    } else {
+      ++later;
+    }
+  }};
+  {
+    Pipeline pipeline({.frames_in_flight = 4}, toys.stages());
+    for (int index = 0; index < 4; ++index) EXPECT_TRUE(isTaken(pipeline.push(frameAt(index))));
+    works.wait(false);
+    pipeline.abandon();
+    abandoned = true;
+    abandoned.notify_all();
+  }
+  EXPECT_EQ(later, 0);
+}
+
 TEST(Pipeline, KeepsNoImageAliveThroughItsResults) {
   ToyStages toys;
   ImagePool pool;

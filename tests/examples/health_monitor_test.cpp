@@ -124,7 +124,7 @@ TEST_F(HealthMonitorTest, ACameraThatStallsAmidLostFramesIsStillTheCauseThatIsTo
 TEST_F(HealthMonitorTest, AFlickerWhileItRecoversBeginsTheWaitAnew) {
   runFor(5s, Traffic{});
   runFor(1s, {.pushes = false});
-  runFor(900ms, Traffic{});
+  runFor(300ms, Traffic{});
   runFor(600ms, {.pushes = false});
   EXPECT_EQ(health_.level(), Level::kBlind);
   runFor(900ms, Traffic{});

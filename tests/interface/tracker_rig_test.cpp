@@ -105,12 +105,8 @@ TEST(TrackerRig, RectifiesEquidistantLensesAsIfBeforehand) {
 }
 
 /// The rig of the Vicon room's recordings, with the numbers of its two sensor.yaml.
-TEST(TrackerRig, RectifiesARealRigAsIfBeforehand) {
-  const auto folder = test::dataFolder() / "euroc_v101";
-  if (!exists(folder)) GTEST_SKIP() << folder << " is not there";
-  const Sequence sequence = openSequence(folder);
-  DriveInMemory raw;
-  raw.camera.width_px = 752, raw.camera.height_px = 480;
+Camera viconRoomCamera() {
+  Camera camera{.width_px = 752, .height_px = 480};
   const Eigen::Matrix4d T_body_left{{0.0148655429818, -0.999880929698, 0.00414029679422, -0.0216401454975},
                                     {0.999557249008, 0.0149672133247, 0.025715529948, -0.064676986768},
                                     {-0.0257744366974, 0.00375618835797, 0.999660727178, 0.00981073058949},
@@ -120,21 +116,27 @@ TEST(TrackerRig, RectifiesARealRigAsIfBeforehand) {
                                      {-0.0253898008918, 0.0179005838253, 0.999517347078, 0.00786212447038},
                                      {0, 0, 0, 1}};
   const Eigen::Matrix4d T_right_left = T_body_right.inverse() * T_body_left;
-  raw.camera.rig = {.left = {.fx_px = 458.654,
-                             .fy_px = 457.296,
-                             .cx_px = 367.215,
-                             .cy_px = 248.375,
-                             .distortion = Camera::Distortion::kRadialTangential,
-                             .coefficients = {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05}},
-                    .right = {.fx_px = 457.587,
-                              .fy_px = 456.134,
-                              .cx_px = 379.999,
-                              .cy_px = 255.238,
-                              .distortion = Camera::Distortion::kRadialTangential,
-                              .coefficients = {-0.28368365, 0.07451284, -0.00010473, -3.55590700e-05}}};
-  Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(raw.camera.rig->T_right_left.data()) =
-      T_right_left.topRows<3>();
+  camera.rig = {.left = {.fx_px = 458.654,
+                         .fy_px = 457.296,
+                         .cx_px = 367.215,
+                         .cy_px = 248.375,
+                         .distortion = Camera::Distortion::kRadialTangential,
+                         .coefficients = {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05}},
+                .right = {.fx_px = 457.587,
+                          .fy_px = 456.134,
+                          .cx_px = 379.999,
+                          .cy_px = 255.238,
+                          .distortion = Camera::Distortion::kRadialTangential,
+                          .coefficients = {-0.28368365, 0.07451284, -0.00010473, -3.55590700e-05}}};
+  Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(camera.rig->T_right_left.data()) = T_right_left.topRows<3>();
+  return camera;
+}
 
+TEST(TrackerRig, RectifiesARealRigAsIfBeforehand) {
+  const auto folder = test::dataFolder() / "euroc_v101";
+  if (!exists(folder)) GTEST_SKIP() << folder << " is not there";
+  const Sequence sequence = openSequence(folder);
+  DriveInMemory raw{.camera = viconRoomCamera(), .frames = {}};
   ImagePool pool;
   const auto read = [&](const std::filesystem::path& file) {
     const Image image = readImage(file, pool);

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "motorcade/motorcade.h"
+#include "motorcade/motorcade.hpp"
+
+struct motorcade_result {  // NOLINT(readability-identifier-naming): a name of the C interface
+  motorcade::Result result;
+};
+
+namespace motorcade {
+
+/// What the caller gets, in C. Texts and masks stay those of what is given.
+motorcade_frame frameOf(const Result& result);
+motorcade_object objectOf(const Result::Object& object);
+motorcade_mask maskOf(const Result::Mask& mask);
+motorcade_push pushOf(const Tracker::Push& push);
+motorcade_counts countsOf(const Tracker::Counts& counts);
+motorcade_camera cCameraOf(const Camera& camera);  // without its rig
+motorcade_image cImageOf(const Pair::Image& image);
+
+}  // namespace motorcade

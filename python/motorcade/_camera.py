@@ -1,0 +1,65 @@
+"""The stereo camera, as it is described to a tracker."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Matrix: TypeAlias = npt.NDArray[np.float64] | Sequence[Sequence[float]]
+
+
+class Distortion(StrEnum):
+    """The model of a lens's distortion."""
+
+    NONE = "none"
+    RADIAL_TANGENTIAL = "radial_tangential"
+    EQUIDISTANT = "equidistant"
+
+
+@dataclass(frozen=True, eq=False)
+class Lens:
+    """One lens of a pair that is still to be rectified, in pixels of the images that are pushed.
+
+    ``coefficients``, at most eight, are k1 k2 p1 p2 k3 k4 k5 k6 as OpenCV orders them; equidistant: k1 k2 k3 k4.
+    """
+
+    fx_px: float
+    fy_px: float
+    cx_px: float
+    cy_px: float
+    distortion: Distortion | str = Distortion.NONE
+    coefficients: Sequence[float] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """Two lenses and how they are mounted; the tracker rectifies their images.
+
+    ``T_right_left``, 3x4 or 4x4, takes coordinates [m] in the left lens's frame to the right one's: x right, y down,
+    z ahead.
+    """
+
+    left: Lens
+    right: Lens
+    T_right_left: Matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """The stereo camera: of a rectified pair, or with ``rig`` of one that is rectified inside.
+
+    ``width_px`` and ``height_px`` are those of the images that are pushed. The intrinsics [px] and ``baseline_m`` are
+    the rectified pair's; with a rig they are not read.
+    """
+
+    width_px: int
+    height_px: int
+    fx_px: float = 0.0
+    fy_px: float = 0.0
+    cx_px: float = 0.0
+    cy_px: float = 0.0
+    baseline_m: float = 0.0
+    rig: Rig | None = None

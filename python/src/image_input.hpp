@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include <pybind11/pybind11.h>
+
+#include "motorcade/motorcade.hpp"
+
+namespace motorcade::python {
+
+/// The order of colors by its name, "rgb" or "bgr". Throws Error.
+Pair::Format colorFormatOf(const std::string& name);
+
+/// An image of Python's, by the buffer protocol, as the library takes it: without a copy. Holds on to the buffer while
+/// it lives; made and destroyed with the GIL.
+class ImageInput {
+ public:
+  /// None is an image without pixels. Throws TypeError or ValueError, which call the image `name` and tell how to mend
+  /// it.
+  ImageInput(const pybind11::object& image, const std::string& name, Pair::Format color_format);
+  const Pair::Image& view() const { return view_; }
+
+ private:
+  pybind11::buffer_info buffer_;
+  Pair::Image view_;
+};
+
+}  // namespace motorcade::python

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include <pybind11/pybind11.h>
+
+#include "motorcade/motorcade.hpp"
+
+namespace motorcade::python {
+
+/// A tracker as Python holds it. Every call is made with the GIL, which is free while the library works; a Ctrl-C ends
+/// a wait. It can be stopped before it goes, and goes safely wherever the garbage collector runs: within a callback,
+/// too.
+class TrackerBinding {
+ public:
+  /// `log` is None, or can be held weakly.
+  TrackerBinding(const pybind11::object& camera, const pybind11::object& log, const pybind11::kwargs& options);
+  ~TrackerBinding();
+  TrackerBinding(const TrackerBinding&) = delete;
+  TrackerBinding& operator=(const TrackerBinding&) = delete;
+
+  Tracker::Push push(const Pair& pair);
+  std::optional<Result> poll();
+  /// For ever without a timeout.
+  std::optional<Result> wait(std::optional<double> timeout_s);
+  bool done() const;
+  /// `take` is None, or can be held weakly.
+  void handTo(const pybind11::object& take);
+  /// Whether results go to a callback.
+  bool handsOn() const;
+  Tracker::Counts counts() const;
+  void close();
+
+  /// Abandons what is in flight. Calls of other threads have come back, and the tracker's threads have ended, unless
+  /// this one is in a callback: then a thread of its own sees to that.
+  void stop();
+
+  /// Returns when all threads that see to the end of trackers are through.
+  static void waitForLeaving();
+
+ private:
+  struct Running;
+  class Visit;
+  static void end(std::unique_ptr<Running> running);
+  static void endBehindTheScenes(std::unique_ptr<Running> running);
+
+  std::unique_ptr<Running> running_;  // empty once it is stopped; guarded by the GIL
+  Tracker::Counts last_counts_;
+};
+
+/// Adds the class `Tracker` to the module.
+void bindTracker(pybind11::module_& module);
+
+}  // namespace motorcade::python
