@@ -1,3 +1,5 @@
+#include "tests/interface/c_drive.hpp"
+
 #include <array>
 #include <bit>
 #include <chrono>
@@ -22,27 +24,15 @@
 namespace motorcade {
 namespace {
 
+using test::cameraOf;
+using test::kDrive;
+using test::openDrive;
 using test::Owned;
 using test::replayOptions;
 using test::sized;
-using testing::Contains;
-using testing::HasSubstr;
 using CResults = std::vector<Owned<motorcade_result>>;
 
 constexpr int kFrames = 14;  // as it is rendered (tests/apps/CMakeLists.txt)
-const std::string kDrive = MOTORCADE_TINY_SEQUENCE;
-
-Owned<motorcade_recording> openDrive() {
-  motorcade_recording* recording = nullptr;
-  EXPECT_EQ(motorcade_recording_open(kDrive.c_str(), &recording), MOTORCADE_OK) << motorcade_last_error();
-  return Owned<motorcade_recording>(recording);
-}
-
-motorcade_camera cameraOf(const motorcade_recording* recording) {
-  auto camera = sized<motorcade_camera>();
-  EXPECT_EQ(motorcade_recording_camera(recording, &camera), MOTORCADE_OK);
-  return camera;
-}
 
 /// Pushes the whole drive, each pair as `change` makes it.
 template <class Change>
@@ -316,38 +306,6 @@ TEST(CInterfaceDrive, WithoutACallbackResultsAreForWaitAgain) {
   play(drive.get(), tracker.get(), asItIs);
   EXPECT_NE(test::taken(tracker.get()), nullptr);
   EXPECT_TRUE(taken.results.empty());
-}
-
-/// Lines of the log, which come from several threads.
-struct Log {
-  std::mutex mutex;
-  std::vector<std::string> lines;
-
-  static void write(motorcade_log_level level, const char* text, void* user) {
-    auto& log = *static_cast<Log*>(user);
-    const std::scoped_lock lock(log.mutex);
-    log.lines.push_back(std::to_string(level) + " " + text);
-  }
-};
-
-TEST(CInterfaceDrive, TheLogTellsThatTheClockWasSetBack) {
-  Log log;
-  auto options = replayOptions();
-  options.log = Log::write;
-  options.log_user = &log;
-  const auto drive = openDrive();
-  auto tracker = test::trackerOf(cameraOf(drive.get()), &options);
-  auto pair = sized<motorcade_pair>();
-  auto push = sized<motorcade_push>();
-  for (std::int64_t i = 0; motorcade_recording_read(drive.get(), i, &pair) == MOTORCADE_OK; ++i) {
-    if (i < 5) pair.stamp_ns += 3'600'000'000'000;  // an hour later, and back
-    motorcade_tracker_push(tracker.get(), &pair, &push);
-  }
-  motorcade_tracker_close(tracker.get());
-  while (test::taken(tracker.get())) {
-  }
-  tracker.reset();  // from here on nobody writes
-  EXPECT_THAT(log.lines, Contains(testing::AllOf(testing::StartsWith("1 frame "), HasSubstr("set back"))));
 }
 
 }  // namespace
