@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What takes too long for every change: clang-tidy on every source, all tests with and without sanitizers, fuzzing, the portable build's
-# results and a long drive. Goes on after a failure; prints one table at its end, and ends with exit code 1 if any step failed.
+# What takes too long for every change: clang-tidy on every source, all tests with and without sanitizers, fuzzing, the packages, results on
+# an arm64 processor and a long drive. Goes on after a failure; prints one table at its end, and ends with exit code 1 if any step failed.
 #   tests/nightly.sh [FUZZ_SECONDS]   per target, default 600
 set -uo pipefail
 cd "$(dirname "$0")/.."
@@ -21,7 +21,8 @@ step tests tests/run.sh
 step asan tests/run.sh --asan  # with UndefinedBehaviorSanitizer, and LeakSanitizer at the end of each test
 step tsan tests/run.sh --tsan
 step fuzz tests/fuzz.sh "${1:-600}"
-step portable perf/portable.sh
+step packages tests/packages.sh
+step arm64 tests/arm64.sh
 step "long drive" perf/long_drive.sh 100000
 
 echo "| step         | result | duration |"

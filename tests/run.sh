@@ -15,12 +15,17 @@ case ${1:-} in
   --asan-quick) shift && preset=asan quick=yes ;;
 esac
 apps/setup.sh
+options=()
+if [[ $preset == release ]]; then
+  apps/setup.sh pybind11-dev python3-dev python3-numpy python3-matplotlib qemu-user
+  options=(-DMOTORCADE_BUILD_PYTHON=ON)
+fi
 if [[ $quick ]]; then  # in a folder of its own: precompiled headers would have io wait for the back-end
   cmake --preset $preset -B build/asan_quick -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DMOTORCADE_BUILD_APPS=OFF --log-level=WARNING
   cmake --build build/asan_quick --target core_tests io_tests
   exec ctest --test-dir build/asan_quick --output-on-failure -R '^(core|io)\.' "$@"
 fi
-cmake --preset $preset --log-level=WARNING
+cmake --preset $preset "${options[@]}" --log-level=WARNING
 cmake --build --preset $preset
 ctest --preset $preset "$@"
 if [[ $preset == release && $# -eq 0 ]]; then

@@ -1,3 +1,4 @@
+#include <new>
 #include <string>
 
 #include "apps/interface/camera_model.hpp"
@@ -45,6 +46,8 @@ Pair Recording::Impl::read(std::size_t index) {
 }
 
 Recording::Recording(const std::string& folder) try : impl_(std::make_unique<Impl>(folder)) {
+} catch (const std::bad_alloc&) {
+  throw;
 } catch (const std::exception& error) {
   throw Error("folder", error.what());
 }

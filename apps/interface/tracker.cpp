@@ -114,9 +114,9 @@ Tracker::Impl::Impl(const Camera& camera, const Options& options, const Pipeline
       convert_(options.axes, options.masks),
       results_(options.policy),
       placement_(config.pipeline.placement),
-      pipeline_(config.pipeline, makeStages(config, model_.rectified()), log_),
-      deliverer_([this] { deliver(); }) {
+      pipeline_(config.pipeline, makeStages(config, model_.rectified()), log_) {
   if (!replay_) stock(pool_, camera);
+  deliverer_ = std::jthread([this] { deliver(); });  // at last: it would wait for results if anything failed after it
 }
 
 /// Calls of other threads that wait come back first.
@@ -246,6 +246,8 @@ Tracker::Tracker(const Camera& camera, const Options& options) try
   throw;
 } catch (const UsageError& error) {  // a setting that needs what is not installed
   throw Error("options.settings", error.what());
+} catch (const std::bad_alloc&) {
+  throw;
 } catch (const std::exception& error) {
   throw Error("options", error.what());
 }

@@ -64,7 +64,7 @@ struct Pair {
   struct Image {
     const void* pixels = nullptr;
     int width_px = 0, height_px = 0;
-    std::int64_t stride_bytes = 0;  // from row to row; 0: rows without gaps
+    std::int64_t stride_bytes = 0;  // from row to row, downwards; 0: rows without gaps
     Format format = Format::kGray8;
   };
   Image left{}, right{};
@@ -117,7 +117,7 @@ struct Result {
   std::vector<Object> objects{};  // by id
   int dropped_before = 0;         // pairs since the result before that a newer one replaced
   double latency_ms = 0;          // from `push` to the result
-  std::string problem{};          // why the pair was lost or rejected, in a sentence
+  std::string problem{};          // why the pair is of no use, or what failed, in a sentence; see `cause` for the rest
 };
 
 /// Follows the camera and the objects. One thread pushes, one takes results; every other call is for any thread.
@@ -138,7 +138,7 @@ class MOTORCADE_API Tracker {
     int realtime_priority = 0;                 // of its threads: 1 to 99 is SCHED_FIFO, which may need a privilege
     std::vector<int> cpus{};                   // that its threads may run on; empty: all
     std::chrono::milliseconds patience{5000};  // replay: a `push` waits so long at most for results to be taken
-    std::string settings{};                    // lines of the program's configuration file: "frontend.max_points = 400"
+    std::string settings{};                    // lines of the program's configuration: "backend.kind = 'filter'"
     std::function<void(LogLevel, const std::string&)> log{};  // called from its threads, several at once
   };
   struct Push {
@@ -152,7 +152,7 @@ class MOTORCADE_API Tracker {
     std::int64_t results = 0, untaken = 0;  // given so far; lost since nobody took them (live: beyond 256)
   };
 
-  /// Throws Error. Parts of `options` keep their default where it is not given.
+  /// Throws Error, or std::bad_alloc. `options` keep their defaults where they are not given.
   Tracker(const Camera& camera, const Options& options);
   explicit Tracker(const Camera& camera);
   /// Abandons what is in flight, ends calls that wait in other threads, and joins its own.

@@ -51,6 +51,24 @@ TEST(DenseSubstitution, ForwardSubstitutionEqualsTheFactorOfTheNewRightHandSide)
   });
 }
 
+TEST(DenseSubstitution, ForwardSubstitutionOfSeveralRightHandSidesEqualsThatOfEach) {
+  forManySizes([](const test::Elimination& elimination, std::mt19937& random) {
+    const int columns = elimination.columns, rows = elimination.rows() - 1, separator = rows - columns;
+    const MatrixXd L = elimination.factor();
+    PaddedMatrix panel(L);
+    panel.view().topRows(columns).triangularView<Eigen::StrictlyUpper>().setConstant(1e3);
+    for (const int stride : {4, 12, 16, 20}) {
+      const MatrixXd right = randomMatrix(rows, stride, random);
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> y = right;
+      forwardSubstitute(panel.panel(), y.data(), stride);
+      const MatrixXd upper = L.topRows(columns).triangularView<Eigen::Lower>().solve(right.topRows(columns));
+      ASSERT_LT((y.topRows(columns) - upper).cwiseAbs().maxCoeff(), kTol);
+      const MatrixXd lower = right.bottomRows(separator) - L.middleRows(columns, separator) * upper;
+      if (separator > 0) ASSERT_LT((y.bottomRows(separator) - lower).cwiseAbs().maxCoeff(), kTol);
+    }
+  });
+}
+
 TEST(DenseSubstitution, ForwardSubstitutionLeavesSingularScalarsAtZero) {
   std::mt19937 random(23);
   const test::Elimination elimination(20, 9, random);

@@ -66,7 +66,7 @@ TEST(Remap, PixelsAreTheBilinearMeanOfFourToTheNearestLevel) {
     }
 }
 
-/// A digest of all bytes, as the build for x86-64-v3 gave it: the portable one must give the same.
+/// A digest of all bytes: on every processor the same.
 TEST(Remap, BitsAreTheSameInEveryBuild) {
   ImagePool pool;
   std::uint64_t digest = 1469598103934665603U;

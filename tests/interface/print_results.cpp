@@ -1,0 +1,47 @@
+// Prints each number of a drive's results with all its bits: print_results DRIVE. For comparisons between processors.
+#include <motorcade/motorcade.hpp>
+
+#include <cstdio>
+#include <thread>
+
+namespace {
+
+template <class Numbers>
+void print(const char* name, const Numbers& numbers) {
+  std::printf(" %s", name);
+  for (const double number : numbers) std::printf(" %a", number);
+}
+
+void print(const motorcade::Result& result) {
+  std::printf("frame %lld %d %d", static_cast<long long>(result.frame), static_cast<int>(result.status),
+              static_cast<int>(result.cause));
+  print("pose", result.T_world_cam);
+  print("velocity", result.velocity);
+  if (result.motion_covariance) print("covariance", *result.motion_covariance);
+  std::printf("\n");
+  for (const auto& object : result.objects) {
+    std::printf("object %lld %d %d", static_cast<long long>(object.id), static_cast<int>(object.state), object.points);
+    print("pose", object.T_cam_body);
+    print("velocity", object.velocity_world_mps);
+    print("covariance", object.velocity_covariance);
+    print("box", object.box_size_m);
+    std::printf(" mask %zu\n", object.mask ? object.mask->inside.size() : 0);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  motorcade::Recording drive(argc == 2 ? argv[1] : "");
+  motorcade::Tracker tracker(drive.camera(), {.policy = motorcade::Tracker::Policy::kReplay, .masks = true});
+  std::jthread camera([&] {
+    for (std::int64_t i = 0; i < drive.size(); ++i) tracker.push(drive.read(i));
+    tracker.close();
+  });
+  while (!tracker.done())
+    if (const auto result = tracker.wait(std::chrono::seconds(1))) print(*result);
+  return 0;
+} catch (const motorcade::Error& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}
