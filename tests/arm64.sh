@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Builds the library for arm64 with Debian's cross compiler and follows a short drive with it under emulation: the results are those of this
+# machine. Needs root, for packages; what arm64 itself needs is unpacked into build/arm64_root, not installed.
+#   tests/arm64.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+root=$PWD/build/arm64_root build=build/arm64
+
+apps/setup.sh g++-aarch64-linux-gnu debootstrap qemu-user
+if [[ ! -e $root/usr/lib/aarch64-linux-gnu/libtbb.so ]]; then
+  debootstrap --foreign --arch=arm64 --variant=minbase \
+    --include=libtbb-dev,libsuitesparse-dev,libpng-dev,libjpeg62-turbo-dev,zlib1g-dev,libyaml-cpp-dev,libeigen3-dev,nlohmann-json3-dev,libtomlplusplus-dev \
+    bookworm "$root" >/dev/null
+  for package in "$root"/var/cache/apt/archives/*.deb; do dpkg-deb --extract "$package" "$root"; done
+fi
+
+cat >$build.toolchain.cmake <<TOOLCHAIN
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+set(CMAKE_FIND_ROOT_PATH $root)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+add_link_options(LINKER:-rpath-link,$root/usr/lib/aarch64-linux-gnu)
+TOOLCHAIN
+cmake -G Ninja -B $build -DCMAKE_TOOLCHAIN_FILE=$PWD/$build.toolchain.cmake -DCMAKE_BUILD_TYPE=Release -DMOTORCADE_SIFT=OFF \
+  -DMOTORCADE_BUILD_APPS=OFF -DMOTORCADE_BUILD_TESTS=OFF --log-level=WARNING
+cmake --build $build --target libmotorcade
+aarch64-linux-gnu-g++ -std=c++20 -O2 -ffp-contract=off tests/interface/print_results.cpp -Iinclude -L$build/apps/interface -lmotorcade \
+  -Wl,-rpath-link,"$root/usr/lib/aarch64-linux-gnu" -o $build/print_results
+
+cmake --preset release --log-level=WARNING
+cmake --build --preset release --target motorcade print_results
+drive=build/arm64_drive
+[[ -d $drive ]] || build/release/apps/motorcade synth $drive --scene lead --frames 14 --size 310x94 >/dev/null
+build/release/tests/interface/print_results $drive >$build/here.txt
+qemu-aarch64 -L "$root" -E LD_LIBRARY_PATH="$PWD/$build/apps/interface:$root/usr/lib/aarch64-linux-gnu" $build/print_results $drive >$build/arm64.txt
+cmp $build/here.txt $build/arm64.txt
+[[ -s $build/here.txt ]]
+echo "arm64: the same bits in $(wc -l <$build/here.txt) lines"
