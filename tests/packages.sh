@@ -5,13 +5,13 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=${1:-build/clean_root}
-build=build/package
+build=build/release tried=build/packages_tried
 
 apps/setup.sh debootstrap lintian file dpkg-dev gzip python3-dev pybind11-dev python3-numpy
+mkdir -p $tried
 echo "== Packages"
-cmake -G Ninja -B $build -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DMOTORCADE_BUILD_TESTS=OFF -DMOTORCADE_BUILD_PYTHON=ON \
-  --log-level=WARNING
-cmake --build $build
+cmake --preset release -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_INSTALL_LIBDIR="lib/$(gcc -print-multiarch)" -DMOTORCADE_BUILD_PYTHON=ON --log-level=WARNING
+cmake --build --preset release
 rm -rf $build/packages
 (cd $build && cpack -G DEB >cpack.log) || { cat $build/cpack.log; exit 1; }
 ls -sh $build/packages/*.deb
@@ -19,7 +19,7 @@ lintian --fail-on error --suppress-tags bogus-mail-host,initial-upload-closes-no
 tests/symbols.sh $build/apps/interface/libmotorcade.so
 
 echo "== Another prefix"
-moved=$build/moved
+moved=$tried/moved
 rm -rf $moved
 cmake --install $build --prefix $moved/first >/dev/null
 mv $moved/first $moved/second
@@ -29,7 +29,7 @@ library_dir=$(dirname "$(find "$PWD/$moved/second" -name motorcade.pc)")
 c++ -std=c++20 examples/embed/main.cpp -o $moved/by_pkg_config $(PKG_CONFIG_PATH=$library_dir pkg-config --cflags --libs motorcade)
 
 echo "== A new root"
-if [[ ! -x $root/usr/bin/apt-get ]]; then debootstrap --variant=minbase bookworm "$root" >$build/debootstrap.log; fi
+if [[ ! -x $root/usr/bin/apt-get ]]; then debootstrap --variant=minbase bookworm "$root" >$tried/debootstrap.log; fi
 cp /etc/apt/sources.list "$root/etc/apt/" 2>/dev/null || true
 cp /etc/apt/apt.conf.d/*proxy* "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
 cp /etc/resolv.conf "$root/etc/"

@@ -1,8 +1,8 @@
 // Prints each number of a drive's results with all its bits: print_results DRIVE. For comparisons between processors.
-#include <motorcade/motorcade.hpp>
-
 #include <cstdio>
 #include <thread>
+
+#include <motorcade/motorcade.hpp>
 
 namespace {
 
