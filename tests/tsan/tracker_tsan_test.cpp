@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -13,35 +16,53 @@
 namespace motorcade {
 namespace {
 
-/// Dots that a camera which drives ahead sees move apart, so that each stage has something to do.
-DriveInMemory dottedDrive(std::size_t frames) {
-  constexpr int kWidth_px = 128, kHeight_px = 64, kDots = 60;
+constexpr int kWidth_px = 320, kHeight_px = 96;
+constexpr double kFocal_px = 180, kBaseline_m = 0.54;
+
+/// Squares of many brightnesses, the same at each look.
+double brightnessAt(double a_m, double b_m) {
+  constexpr double kSquare_m = 0.35;
+  const auto a = static_cast<std::uint64_t>(std::floor(a_m / kSquare_m) + 1000),
+             b = static_cast<std::uint64_t>(std::floor(b_m / kSquare_m) + 1000);
+  return static_cast<double>((((a * 2654435761u) ^ (b * 40503u * 97u)) >> 7) % 200);
+}
+
+/// What a camera sees in a corridor: a floor, a ceiling and two walls, each in squares.
+double brightnessSeen(double u_px, double v_px, double x_m, double z_m) {
+  constexpr double kWall_m = 5, kHigh_m = 1.6;
+  const double right = (u_px - kWidth_px / 2.0) / kFocal_px, down = (v_px - kHeight_px / 2.0) / kFocal_px;
+  const double to_wall_m = (right > 0 ? kWall_m - x_m : -kWall_m - x_m) / right, to_floor_m = kHigh_m / std::abs(down);
+  const double far_m = std::min({to_wall_m, to_floor_m, 60.0});
+  return to_wall_m < to_floor_m ? brightnessAt(z_m + far_m, down * far_m)
+                                : brightnessAt(z_m + far_m, x_m + right * far_m + (down > 0 ? 0 : 90));
+}
+
+std::vector<std::uint8_t> picture(double x_m, double z_m) {
+  std::vector<std::uint8_t> pixels;
+  for (int v = 0; v < kHeight_px; ++v)
+    for (int u = 0; u < kWidth_px; ++u) {
+      double sum = 0;
+      for (const double du : {-0.3, 0.0, 0.3})
+        for (const double dv : {-0.3, 0.0, 0.3}) sum += brightnessSeen(u + du, v + dv + 0.01, x_m, z_m);
+      pixels.push_back(static_cast<std::uint8_t>(20 + sum / 9));
+    }
+  return pixels;
+}
+
+/// A drive along the corridor, in which each stage has something to do.
+DriveInMemory corridorDrive(std::size_t frames) {
+  constexpr double kStep_m = 0.4;
   DriveInMemory drive = blankDrive(frames);
   drive.camera = {.width_px = kWidth_px,
                   .height_px = kHeight_px,
-                  .fx_px = 100,
-                  .fy_px = 100,
-                  .cx_px = 64,
-                  .cy_px = 32,
-                  .baseline_m = 0.5};
+                  .fx_px = kFocal_px,
+                  .fy_px = kFocal_px,
+                  .cx_px = kWidth_px / 2.0,
+                  .cy_px = kHeight_px / 2.0,
+                  .baseline_m = kBaseline_m};
   for (std::size_t i = 0; i < frames; ++i) {
-    auto& [left, right, stamp_ns] = drive.frames[i];
-    left.assign(std::size_t{kWidth_px} * kHeight_px, 90);
-    right = left;
-    for (int dot = 0; dot < kDots; ++dot) {
-      const double z_m = 6 + (dot * 7) % 11 - 0.3 * static_cast<double>(i), x_m = (dot * 29) % 17 - 8,
-                   y_m = (dot * 13) % 9 * 0.5 - 2;
-      const auto draw = [&](std::vector<std::uint8_t>& image, double shift_px) {
-        const int u = static_cast<int>(100 * x_m / z_m + 64 - shift_px), v = static_cast<int>(100 * y_m / z_m + 32);
-        for (int y = v - 2; y <= v + 2; ++y)
-          for (int x = u - 2; x <= u + 2; ++x)
-            if (x >= 0 && x < kWidth_px && y >= 0 && y < kHeight_px)
-              image[static_cast<std::size_t>(y * kWidth_px + x)] =
-                  static_cast<std::uint8_t>(120 + (dot * 37 + (x - u) * (y - v) * 9) % 120);
-      };
-      draw(left, 0);
-      draw(right, 100 * 0.5 / z_m);
-    }
+    drive.frames[i].left = picture(0, kStep_m * static_cast<double>(i));
+    drive.frames[i].right = picture(kBaseline_m, kStep_m * static_cast<double>(i));
   }
   return drive;
 }
@@ -72,26 +93,32 @@ std::jthread observerOf(const Tracker& tracker) {
 }
 
 TEST(TrackerThreads, TwoAtOnceByWaitAndByCallback) {
-  const DriveInMemory drive = dottedDrive(12);
+  const DriveInMemory drive = corridorDrive(12);
   for (const auto policy : {Tracker::Policy::kReplay, Tracker::Policy::kLive}) {
-    std::atomic<std::int64_t> called = 0, waited = 0;
+    std::atomic<std::int64_t> called = 0, waited = 0, good = 0;
     Tracker first(drive.camera, optionsOf(policy)), second(drive.camera, optionsOf(policy));
     {
       const auto producer = producerFor(first, drive), other_producer = producerFor(second, drive);
       const auto observer = observerOf(first), other_observer = observerOf(second);
       second.on_result([&](const Result&) { ++called; });
       const std::jthread consumer([&] {
-        while (first.wait(std::chrono::hours(1))) ++waited;
+        while (const auto result = first.wait(std::chrono::hours(1))) {
+          ++waited;
+          good += result->status == Result::Status::kGood && result->cause == Result::Cause::kNone ? 1 : 0;
+        }
       });
     }
     EXPECT_EQ(waited, first.counts().results);
+    if (policy == Tracker::Policy::kReplay) {
+      EXPECT_GE(good, 10);  // the stages had something to do
+    }
     EXPECT_EQ(called, second.counts().results);
     EXPECT_EQ(waited + first.counts().dropped, static_cast<std::int64_t>(drive.frames.size()));
   }
 }
 
 TEST(TrackerThreads, EndAtAnyMomentWithCallsUnderWay) {
-  const DriveInMemory drive = dottedDrive(6);
+  const DriveInMemory drive = corridorDrive(6);
   for (std::size_t pairs = 0; pairs < drive.frames.size(); ++pairs) {
     auto tracker = std::make_unique<Tracker>(drive.camera, optionsOf(Tracker::Policy::kReplay));
     if (pairs % 2 == 1) tracker->on_result([](const Result&) {});
@@ -107,7 +134,7 @@ TEST(TrackerThreads, EndAtAnyMomentWithCallsUnderWay) {
 
 /// As a program that is told to stop: another thread closes while pairs come.
 TEST(TrackerThreads, CloseAmidPushes) {
-  const DriveInMemory drive = dottedDrive(8);
+  const DriveInMemory drive = corridorDrive(8);
   for (const auto policy : {Tracker::Policy::kReplay, Tracker::Policy::kLive}) {
     Tracker tracker(drive.camera, optionsOf(policy));
     std::atomic<int> pushed = 0;
