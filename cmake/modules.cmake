@@ -22,7 +22,7 @@ function(motorcade_module name folder)
   set(symbols ${PROJECT_SOURCE_DIR}/cmake/module_symbols.map)
   add_library(motorcade_${name}_module MODULE $<TARGET_OBJECTS:motorcade_${name}>)
   set_target_properties(motorcade_${name}_module PROPERTIES
-    PREFIX "" OUTPUT_NAME ${name} LINKER_LANGUAGE CXX LINK_DEPENDS ${symbols}
+    NO_SONAME ON PREFIX "" OUTPUT_NAME ${name} LINKER_LANGUAGE CXX LINK_DEPENDS ${symbols}
     LIBRARY_OUTPUT_DIRECTORY ${library_folder}/motorcade)
   target_link_options(motorcade_${name}_module PRIVATE LINKER:--version-script=${symbols} LINKER:--as-needed LINKER:-z,defs)
   target_link_libraries(motorcade_${name}_module PRIVATE ${module_LIBRARIES})

@@ -34,6 +34,7 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/apps/interface)
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
 
@@ -54,7 +55,6 @@ debian_package(program science "multibody visual SLAM from a stereo camera - pro
 debian_package(python python "multibody visual SLAM from a stereo camera - Python" "${about}\n.\nThis package holds the interface for Python.")
 
 set(same_version "(= ${PROJECT_VERSION})")
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "${package_modules} ${same_version}")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "${library_package} ${same_version}")
 set(CPACK_DEBIAN_MODULES_PACKAGE_DEPENDS "${library_package} ${same_version}")

@@ -26,3 +26,4 @@ page motorcade "" "follow a car and the vehicles around it from a stereo camera"
   purpose=$("$motorcade" "$command" --help | sed -n 1p)
   page "motorcade-$command" "$command" "${purpose,}"
 done
+gzip -9nkf "$pages"/*.1  # as they are installed

@@ -77,7 +77,7 @@ TEST(Elementary, ExponentialsAndLogarithmsAreThoseOfTheCLibrary) {
 
 TEST(Elementary, PowersAreAsExactAsTheirLogarithm) {
   constexpr double kUnitsOfPower = 50;  // the error of a logarithm of up to twenty, twice
-  forManyNumbers(0.1, 3, [](double x) { ASSERT_LE(unitsApart(power(x, 7.5), std::pow(x, 7.5)), kUnitsOfPower) << x; });
+  forManyNumbers(0.1, 3, [&](double x) { ASSERT_LE(unitsApart(power(x, 7.5), std::pow(x, 7.5)), kUnitsOfPower) << x; });
 }
 
 TEST(Elementary, LengthsAreThoseOfTheCLibrary) {
