@@ -44,17 +44,18 @@ function(debian_package component section summary text)
   set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${section} PARENT_SCOPE)
   set(CPACK_COMPONENT_${upper}_DESCRIPTION "${summary}\n${text}" PARENT_SCOPE)
 endfunction()
-set(about "Motorcade follows a car's own path and the paths of the moving vehicles around it\nfrom one stereo camera, in real time, on two processor cores.")
+set(about "Motorcade follows a car's own path and the paths of the moving vehicles\naround it from one stereo camera, in real time, on two processor cores.")
 debian_package(runtime libs "multibody visual SLAM from a stereo camera - library" "${about}\n.\nThis package holds the shared library.")
 debian_package(dev libdevel "multibody visual SLAM from a stereo camera - headers"
   "${about}\n.\nThis package holds what programs in C and C++ are built with.")
 debian_package(modules libs "multibody visual SLAM from a stereo camera - modules"
   "${about}\n.\nThis package holds what the library loads on request: SIFT points, and the\nreader of calibrations in YAML.")
 debian_package(program science "multibody visual SLAM from a stereo camera - program"
-  "${about}\n.\nThis package holds the program that follows recorded drives, measures, draws and\nreports.")
+  "${about}\n.\nThis package holds the program that follows recorded drives, measures, draws\nand reports.")
 debian_package(python python "multibody visual SLAM from a stereo camera - Python" "${about}\n.\nThis package holds the interface for Python.")
 
 set(same_version "(= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/triggers)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "${package_modules} ${same_version}")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "${library_package} ${same_version}")
 set(CPACK_DEBIAN_MODULES_PACKAGE_DEPENDS "${library_package} ${same_version}")

@@ -12,10 +12,10 @@ InstructionSet suited() {
   __builtin_cpu_init();
   const char* const wanted = secure_getenv("MOTORCADE_INSTRUCTIONS");
   if (wanted != nullptr && std::strcmp(wanted, "any") == 0) return InstructionSet::kAny;
-  return __builtin_cpu_supports("x86-64-v3") != 0 ? InstructionSet::kX86_64_v3 : InstructionSet::kAny;
+  return __builtin_cpu_supports("x86-64-v3") != 0 ? InstructionSet::kX86V3 : InstructionSet::kAny;
 }
 #elif defined(__x86_64__)
-InstructionSet suited() { return InstructionSet::kX86_64_v3; }
+InstructionSet suited() { return InstructionSet::kX86V3; }
 #else
 InstructionSet suited() { return InstructionSet::kAny; }
 #endif
@@ -26,14 +26,14 @@ InstructionSet instructionSet() { return suited(); }
 
 const char* nameOf(InstructionSet instructions) {
 #ifdef __x86_64__
-  return instructions == InstructionSet::kX86_64_v3 ? "x86-64-v3" : "x86-64";
+  return instructions == InstructionSet::kX86V3 ? "x86-64-v3" : "x86-64";
 #else
-  return instructions == InstructionSet::kX86_64_v3 ? "" : "generic";
+  return instructions == InstructionSet::kX86V3 ? "" : "generic";
 #endif
 }
 
 }  // namespace motorcade
 
 void motorcade_choose_kernels(void** chosen, void* const* v3, std::size_t count) {
-  if (motorcade::instructionSet() == motorcade::InstructionSet::kX86_64_v3) std::copy_n(v3, count, chosen);
+  if (motorcade::instructionSet() == motorcade::InstructionSet::kX86V3) std::copy_n(v3, count, chosen);
 }

@@ -7,7 +7,7 @@ namespace motorcade {
 /// The instructions that the kernels use (cmake/kernels.cmake), chosen once, when the program starts: those of
 /// x86-64-v3 where the processor has them, unless the environment says MOTORCADE_INSTRUCTIONS=any. Results are the
 /// same.
-enum class InstructionSet { kAny, kX86_64_v3 };
+enum class InstructionSet { kAny, kX86V3 };
 InstructionSet instructionSet();
 const char* nameOf(InstructionSet instructions);
 

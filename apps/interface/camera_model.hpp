@@ -17,8 +17,8 @@ class CameraModel {
 
   const StereoCamera& rectified() const { return rectified_; }
   /// From what was pushed, as gray, to what the stages take.
-  Image leftOf(Image gray, ImagePool& pool) const { return remaps_ ? remaps_->left(gray, pool) : gray; }
-  Image rightOf(Image gray, ImagePool& pool) const { return remaps_ ? remaps_->right(gray, pool) : gray; }
+  Image leftOf(const Image& gray, ImagePool& pool) const { return remaps_ ? remaps_->left(gray, pool) : gray; }
+  Image rightOf(const Image& gray, ImagePool& pool) const { return remaps_ ? remaps_->right(gray, pool) : gray; }
 
  private:
   struct Remaps {

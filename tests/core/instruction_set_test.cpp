@@ -15,7 +15,7 @@ TEST(InstructionSet, KernelsAreTakenAsTheProcessorAllows) {
   std::array<void*, 3> chosen{&any, &any, &any};
   const std::array<void*, 3> better{&v3, &v3, &v3};
   motorcade_choose_kernels(chosen.data(), better.data(), 2);
-  void* const expected = instructionSet() == InstructionSet::kX86_64_v3 ? &v3 : &any;
+  void* const expected = instructionSet() == InstructionSet::kX86V3 ? &v3 : &any;
   EXPECT_THAT(chosen, ElementsAre(expected, expected, &any));
 }
 
