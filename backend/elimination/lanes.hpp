@@ -1,6 +1,6 @@
 #pragma once
 
-/// Vectors of four doubles for the dense kernels, which alone include this. GCC's vector extension turns them into the
+/// Vectors of four doubles for the kernels, which alone include this. GCC's vector extension turns them into the
 /// processor's instructions.
 namespace motorcade::lanes {
 

@@ -36,11 +36,7 @@ class LandmarkSum {
     if (columns_ == kColumns) subtract();
     if (columns_ == 0) first_row_ = 6 * views.front().frame / 4 * 4;  // rows come in fours
     // Y = W L^-T with the landmark's information L L^T, so that W (L L^T)^-1 W^T = Y Y^T.
-    const Matrix4d L = fit.information().matrixL();
-    // L^-T, row by row: Eigen unrolls the solution for a vector only.
-    Eigen::Matrix<double, kLandmark, kLandmark, Eigen::RowMajor> right;
-    for (int i = 0; i < kLandmark; ++i)
-      right.row(i) = L.triangularView<Eigen::Lower>().solve(Vector4d::Unit(i).eval()).transpose();
+    const auto right = inverseTransposed(fit.information().matrixL());
     Eigen::Map<Eigen::MatrixXd> Y(Y_.data() + std::size_t(columns_) * stride_, stride_, kLandmark);
     const double shared = fit.sharedError_px() / fit.sharedErrorSigma_px();
     shared_squared_ += shared * shared;
@@ -49,7 +45,7 @@ class LandmarkSum {
     const auto linear = fit.views();
     int row = first_row_;
     for (std::size_t i = 0; i < views.size(); ++i) {
-      addOuterProducts(linear[i].J, linear[i].J, own_[views[i].frame]);
+      addOuterProducts<true>(linear[i].J, linear[i].J, own_[views[i].frame]);
       const Eigen::Matrix<double, 3, kLandmark, Eigen::RowMajor> B = rowProduct(linear[i].B, right);
       Matrix84d W = Matrix84d::Zero();
       addOuterProducts(linear[i].J, B, W);
@@ -88,7 +84,7 @@ class LandmarkSum {
     columns_ = 0;
   }
 
-  std::vector<Matrix8d> own_;  // J' J of each frame, J = [A D r]
+  std::vector<Matrix8d> own_;  // J' J of each frame, J = [A D r]; lower triangle
   double shared_squared_ = 0;
   int size_, stride_, columns_ = 0, first_row_ = 0;
   std::vector<double> Y_, system_;  // the landmarks that are still to be subtracted; lower triangle

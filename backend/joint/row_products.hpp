@@ -2,31 +2,55 @@
 
 #include <Eigen/Core>
 
+#include "backend/elimination/lanes.hpp"
+
+/// Small products of matrices that lie in memory row by row, by vectors of four numbers: each number is added up in the
+/// same order, whatever the processor.
 namespace motorcade {
 
-/// sum += a' b of matrices of three rows that lie in memory row by row, as sums of outer products: the compiler makes
-/// vectors of whatever width of the columns of `sum`, and each number is added up in the same order.
-template <int Rows, int Cols>
+/// sum += a' b of matrices of three rows, as sums of outer products; with `kLower` at least its lower triangle.
+template <bool kLower = false, int Rows, int Cols>
 inline void addOuterProducts(const Eigen::Matrix<double, 3, Rows, Eigen::RowMajor>& a,
                              const Eigen::Matrix<double, 3, Cols, Eigen::RowMajor>& b,
                              Eigen::Matrix<double, Rows, Cols>& sum) {
-  const double *const of_a = a.data(), *const of_b = b.data();
-  double* column = sum.data();
-  for (int c = 0; c < Cols; ++c, column += Rows)
-    for (int r = 0; r < Rows; ++r)
-      column[r] += (of_a[r] * of_b[c] + of_a[Rows + r] * of_b[Cols + c]) + of_a[2 * Rows + r] * of_b[2 * Cols + c];
+  static_assert(Rows % lanes::kLanes == 0);
+  constexpr int kVectors = Rows / lanes::kLanes;
+  lanes::Vec of_a[3][kVectors];
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < kVectors; ++i) of_a[k][i] = lanes::load(a.data() + k * Rows + i * lanes::kLanes);
+  for (int c = 0; c < Cols; ++c) {
+    const lanes::Vec b0 = lanes::broadcast(b(0, c)), b1 = lanes::broadcast(b(1, c)), b2 = lanes::broadcast(b(2, c));
+    for (int i = kLower ? c / lanes::kLanes : 0; i < kVectors; ++i) {
+      double* const at = sum.data() + c * Rows + i * lanes::kLanes;
+      lanes::store(at, lanes::load(at) + ((of_a[0][i] * b0 + of_a[1][i] * b1) + of_a[2][i] * b2));
+    }
+  }
 }
 
-/// a b, where b lies row by row too.
+/// a b.
 inline Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rowProduct(const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>& a,
                                                                const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>& b) {
   Eigen::Matrix<double, 3, 4, Eigen::RowMajor> product;
-  const double *of_a = a.data(), *const of_b = b.data();
-  double* row = product.data();
-  for (int r = 0; r < 3; ++r, of_a += 4, row += 4)
-    for (int c = 0; c < 4; ++c)
-      row[c] = (of_a[0] * of_b[c] + of_a[1] * of_b[4 + c]) + (of_a[2] * of_b[8 + c] + of_a[3] * of_b[12 + c]);
+  lanes::Vec of_b[4];
+  for (int k = 0; k < 4; ++k) of_b[k] = lanes::load(b.data() + 4 * k);
+  for (int r = 0; r < 3; ++r)
+    lanes::store(product.data() + 4 * r,
+                 (lanes::broadcast(a(r, 0)) * of_b[0] + lanes::broadcast(a(r, 1)) * of_b[1]) +
+                     (lanes::broadcast(a(r, 2)) * of_b[2] + lanes::broadcast(a(r, 3)) * of_b[3]));
   return product;
+}
+
+/// L^-T of a lower triangle L, row by row.
+inline Eigen::Matrix<double, 4, 4, Eigen::RowMajor> inverseTransposed(const Eigen::Matrix<double, 4, 4>& L) {
+  Eigen::Matrix<double, 4, 4, Eigen::RowMajor> inverse = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>::Zero();
+  for (int i = 0; i < 4; ++i) inverse(i, i) = 1 / L(i, i);
+  for (int j = 0; j < 4; ++j)
+    for (int i = j + 1; i < 4; ++i) {
+      double sum = 0;
+      for (int k = j; k < i; ++k) sum += L(i, k) * inverse(j, k);
+      inverse(j, i) = -sum * inverse(i, i);
+    }
+  return inverse;
 }
 
 }  // namespace motorcade
