@@ -77,7 +77,8 @@ class PlacedWorkers : public oneapi::tbb::task_scheduler_observer {
  public:
   PlacedWorkers(oneapi::tbb::task_arena& arena, const ThreadPlacement& placement)
       : task_scheduler_observer(arena), placement_(placement) {
-    arena.initialize();  // `observe` would do it, too, but where there is no memory for it, leave what cannot be destroyed
+    // `observe` would do it, too, but where there is no memory for it, leave what cannot be destroyed.
+    arena.initialize();
     observe(true);
   }
   ~PlacedWorkers() override {

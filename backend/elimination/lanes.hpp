@@ -4,7 +4,8 @@
 /// processor's instructions.
 namespace motorcade::lanes {
 
-typedef double Vec __attribute__((vector_size(32)));
+using Vec = double __attribute__((vector_size(32)));
+// NOLINTNEXTLINE(modernize-use-using): only a typedef may lower an alignment
 typedef double UnalignedVec __attribute__((vector_size(32), may_alias, aligned(8)));
 
 /// Numbers in a vector of AVX.
