@@ -25,6 +25,7 @@ set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+include_directories(SYSTEM $root/usr/include/aarch64-linux-gnu)
 add_link_options(LINKER:-rpath-link,$root/usr/lib/aarch64-linux-gnu)
 TOOLCHAIN
 cmake -G Ninja -B $build -DCMAKE_TOOLCHAIN_FILE=$PWD/$build.toolchain.cmake -DCMAKE_BUILD_TYPE=Release -DMOTORCADE_SIFT=OFF \
