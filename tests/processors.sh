@@ -16,10 +16,24 @@ same() {
   echo "$name: the same bytes"
 }
 
+instructions() { "$@" --version | sed -n 's/^instruction_set *//p'; }
+kernels_are() {  # WHICH COMMAND...: else the comparison would be one of equal programs
+  local which=$1 found
+  shift
+  found=$(instructions "$@")
+  [[ $found == "$which" ]] || { echo "$* has kernels for $found, not for $which" >&2; exit 1; }
+}
+
 name=here follow "$motorcade"
+if [[ $(instructions "$motorcade") != x86-64-v3 ]]; then
+  echo "skipped, as this processor has no AVX2"
+  exit 0
+fi
+kernels_are x86-64 env MOTORCADE_INSTRUCTIONS=any "$motorcade"
 name=any MOTORCADE_INSTRUCTIONS=any follow "$motorcade"
 name=any same
 if command -v qemu-x86_64 >/dev/null; then
+  kernels_are x86-64 qemu-x86_64 -cpu Nehalem "$motorcade"
   name=emulated follow qemu-x86_64 -cpu Nehalem "$motorcade"
   name=emulated same
 else

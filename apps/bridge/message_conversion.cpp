@@ -1,6 +1,5 @@
 #include "apps/bridge/message_conversion.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <limits>
 
@@ -20,11 +19,6 @@ ros::Covariance rowsOf(const Matrix6d& covariance) {
 
 ros::Header headerOf(const Result& result, const FrameIds& ids) {
   return {.stamp = timeOf(result.stamp_ns), .frame_id = ids.world};
-}
-
-/// Results without measured motion have zeros.
-bool isMeasured(const std::array<double, 36>& velocity_covariance) {
-  return std::ranges::any_of(velocity_covariance, [](double value) { return value != 0; });
 }
 
 }  // namespace
@@ -72,7 +66,7 @@ ros::Odometry odometryOf(const Result& result, const std::optional<Matrix6d>& co
           .pose_covariance = covariance ? covarianceInParent(*covariance, T_world_cam.rotation()) : rowsOf(unknown),
           .linear_mps = {v[0], v[1], v[2]},
           .angular_radps = {v[3], v[4], v[5]},
-          .twist_covariance = isMeasured(result.velocity_covariance) ? result.velocity_covariance : rowsOf(unknown)};
+          .twist_covariance = result.velocity_covariance};
 }
 
 }  // namespace motorcade

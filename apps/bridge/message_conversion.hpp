@@ -35,7 +35,7 @@ ros::Covariance covarianceInParent(const Matrix6d& covariance, const Eigen::Matr
 ros::PoseStamped poseStampedOf(const Result& result, const FrameIds& ids);
 
 /// `covariance` is that of the pose, of a perturbation on the right; empty where it is not known. The twist is the
-/// motion since the frame before, and of unknown covariance where nothing was measured.
+/// motion since the frame before, and its covariance wide where nothing was measured.
 ros::Odometry odometryOf(const Result& result, const std::optional<Matrix6d>& covariance, const FrameIds& ids);
 
 }  // namespace motorcade

@@ -36,10 +36,10 @@ std::optional<PathCovariance::Chain> PathCovariance::overSpan(const Result& resu
 std::optional<PathCovariance::Chain> PathCovariance::overStep(const Result& result, const SE3& T_world_cam) const {
   const Place& before = places_.back();
   const double dt_s = 1e-9 * static_cast<double>(result.stamp_ns - before.stamp_ns);
-  const Matrix6d velocity_covariance = matrixOf(result.velocity_covariance);
-  if (before.segment != result.segment || !before.chain || velocity_covariance.isZero(0)) return std::nullopt;
+  if (before.segment != result.segment || !before.chain) return std::nullopt;
   Chain chain = *before.chain;
-  chain.sum = carried(chain.sum, T_world_cam.inverse() * before.T_world_cam) + dt_s * dt_s * velocity_covariance;
+  chain.sum = carried(chain.sum, T_world_cam.inverse() * before.T_world_cam) +
+              dt_s * dt_s * matrixOf(result.velocity_covariance);
   chain.spans += chain.steps % kSpan_frames == 0 ? 1 : 0;
   ++chain.steps;
   return chain;

@@ -66,13 +66,8 @@ void addOrNull(JsonLine& line, const char* key, const std::optional<Matrix<kSize
   }
 }
 
-void addMotion(JsonLine& line, const std::optional<VehicleMotion>& motion) {
-  if (motion) {
-    line.add("ego_velocity", motion->velocity.values);
-    line.add("ego_velocity_covariance", motion->covariance.values);
-  } else {
-    line.addNull("ego_velocity").addNull("ego_velocity_covariance");
-  }
+void addMotion(JsonLine& line, const VehicleMotion& motion) {
+  line.add("ego_velocity", motion.velocity.values).add("ego_velocity_covariance", motion.covariance.values);
 }
 
 void addBox(JsonLine& line, const std::optional<VehicleObject::Box>& box) {

@@ -98,11 +98,10 @@ VehicleObject VehicleFrame::object(const motorcade::Result& result, const motorc
   return converted;
 }
 
-std::optional<VehicleMotion> VehicleFrame::motion(const motorcade::Result& result) const {
-  if (!(result.velocity_covariance[0] > 0)) return std::nullopt;
+VehicleMotion VehicleFrame::motion(const motorcade::Result& result) const {
   const Matrix6 J = motionJacobian(R_vehicle_cam_, t_vehicle_cam_m_);
-  return VehicleMotion{.velocity = J * Matrix<6, 1>{result.velocity},
-                       .covariance = variance_factor_ * propagated(J, Matrix6{result.velocity_covariance})};
+  return {.velocity = J * Matrix<6, 1>{result.velocity},
+          .covariance = variance_factor_ * propagated(J, Matrix6{result.velocity_covariance})};
 }
 
 }  // namespace vehicle_stack

@@ -42,8 +42,8 @@ class VehicleFrame {
   VehicleFrame(const Mounting& mounting, double margin);
 
   VehicleObject object(const motorcade::Result& result, const motorcade::Result::Object& object) const;
-  /// Empty where nothing is known of it, as in a frame that failed; wide where hardly anything is, as in the first.
-  std::optional<VehicleMotion> motion(const motorcade::Result& result) const;
+  /// Its covariance is wide where hardly anything is known, as in the first frame and in one that is lost.
+  VehicleMotion motion(const motorcade::Result& result) const;
 
  private:
   Matrix3 R_vehicle_cam_;

@@ -149,7 +149,7 @@ typedef struct {
   int segment;                                    // counts up where nothing measured links the poses before and after
   int dropped_before;                             // pairs since the result before that a newer one replaced
   double T_world_cam[12], motion_covariance[36];  // the latter of T_cam(before)_cam(now), ten frames apart
-  double velocity[6], velocity_covariance[36];    // own, since the frame before, in its axes: [m/s], turn rate [rad/s]
+  double velocity[6], velocity_covariance[36];    // own, since the last frame seen, in its axes [m/s], [rad/s]
   bool has_motion_covariance;
   size_t object_count;
   double latency_ms;    // from push to the result

@@ -84,14 +84,19 @@ TEST(PathCovariance, IsNotKnownBehindAGapThatNothingLinks) {
   }
 }
 
-TEST(PathCovariance, OutlivesAFrameThatWasNotMeasured) {
+TEST(PathCovariance, IsWideAfterAFrameThatWasNotMeasuredUntilASpanLeadsAcross) {
   PathCovariance covariance;
   for (int frame = 0; frame < 15; ++frame) covariance(onBend(frame));
   Result lost = onBend(15);
-  lost.velocity_covariance = {};
+  lost.velocity_covariance = rowsOf(diagonal(900, 0.25));
   lost.motion_covariance.reset();
-  EXPECT_FALSE(covariance(lost));
-  EXPECT_TRUE(covariance(onBend(16))) << "ten frames before, it was known";
+  constexpr double kVariance_m2 = 900 * 0.1 * 0.1;  // of the frame that was not measured
+  const auto wide = covariance(lost);
+  ASSERT_TRUE(wide);
+  EXPECT_GE((*wide)(0, 0), kVariance_m2);
+  const auto across = covariance(onBend(16));
+  ASSERT_TRUE(across);
+  EXPECT_LT((*across)(0, 0), kVariance_m2);
 }
 
 }  // namespace

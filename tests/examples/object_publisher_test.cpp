@@ -55,7 +55,7 @@ TEST_F(ObjectPublisherTest, ALineTellsOfTheFrameAndOneOfEachObject) {
   EXPECT_EQ(lines_[0]["type"], "frame");
   EXPECT_EQ(lines_[0]["objects"], 2);
   EXPECT_EQ(lines_[0]["stamp_ns"], 1'300'000'000'123'456'789);
-  EXPECT_TRUE(lines_[0]["ego_velocity"].is_null());
+  EXPECT_EQ(lines_[0]["ego_velocity"].size(), 6u);
   EXPECT_EQ(lines_[1]["id"], 4);
   EXPECT_EQ(last()["kind"], "car");
   EXPECT_EQ(last()["position_m"], json({12, 3, 0.5}));
