@@ -24,7 +24,6 @@ constexpr std::array kAllStages = {Stage::kPrepare,     Stage::kStereoMatching,
                                    Stage::kTracking,    Stage::kIncrementalOptimization};
 
 using std::chrono::milliseconds;
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// Frame-dependent pauses that make later frames overtake earlier ones wherever the wiring lets them.
