@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace motorcade {
+
+/// Where things are in the folder of a batch (docs/formats.md). Nothing in it is written twice by two processes under
+/// one name: what takes long is made in a folder of its own and renamed when it is complete.
+class BatchFolder {
+ public:
+  explicit BatchFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  const std::filesystem::path& path() const { return folder_; }
+  std::filesystem::path plan() const { return folder_ / "plan.json"; }
+  std::filesystem::path sequences() const { return folder_ / "sequences"; }
+  std::filesystem::path attempts() const { return folder_ / "attempts"; }
+  std::filesystem::path cluster() const { return folder_ / "cluster"; }
+  std::filesystem::path merged() const { return folder_ / "merged"; }
+  /// Of a task that was performed to its end.
+  std::filesystem::path result(const std::string& task) const { return folder_ / "results" / task; }
+  /// What the last attempt left that failed.
+  std::filesystem::path failure(const std::string& task) const { return folder_ / "failed" / task; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// What lies in the folder of an attempt, which becomes that of a result or of a failure.
+inline std::filesystem::path recordIn(const std::filesystem::path& attempt) { return attempt / "task.json"; }
+inline std::filesystem::path logIn(const std::filesystem::path& attempt) { return attempt / "log.txt"; }
+inline std::filesystem::path runIn(const std::filesystem::path& attempt) { return attempt / "run"; }
+/// Absent where the sequence has no truth.
+inline std::filesystem::path evaluationIn(const std::filesystem::path& attempt) { return attempt / "evaluation.json"; }
+
+}  // namespace motorcade

@@ -1,0 +1,72 @@
+#include "apps/tasks/plan.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "apps/tasks/task_json.hpp"
+#include "io/errors.hpp"
+#include "io/line_file.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr int kFormat = 1;
+
+Json jsonOf(const Task& task) {
+  return {{"name", task.name},
+          {"drive", task.drive},
+          {"set", task.set},
+          {"seed", orNull(task.seed)},
+          {"repetition", task.repetition},
+          {"sequence", task.sequence.string()},
+          {"render_arguments", task.render_arguments},
+          {"run_arguments", task.run_arguments},
+          {"evaluate_arguments", task.evaluate_arguments},
+          {"frames", task.frames},
+          {"threads", task.threads},
+          {"fingerprint", task.fingerprint},
+          {"problem", task.problem}};
+}
+
+Task taskOf(const Json& json) {
+  return {.name = json.at("name"),
+          .drive = json.at("drive"),
+          .set = json.at("set"),
+          .seed = seedOf(json),
+          .repetition = json.at("repetition"),
+          .sequence = json.at("sequence").get<std::string>(),
+          .render_arguments = json.at("render_arguments"),
+          .run_arguments = json.at("run_arguments"),
+          .evaluate_arguments = json.at("evaluate_arguments"),
+          .frames = json.at("frames"),
+          .threads = json.at("threads"),
+          .fingerprint = json.at("fingerprint"),
+          .problem = json.at("problem")};
+}
+
+Plan planOf(const Json& json) {
+  if (json.at("format") != kFormat) throw InputError("is the plan of a batch by another version of motorcade");
+  Plan plan{.manifest = json.at("manifest").get<std::string>(),
+            .program = json.at("program").get<std::string>(),
+            .baseline_set = json.at("baseline_set")};
+  for (const Json& task : json.at("tasks")) plan.tasks.push_back(taskOf(task));
+  return plan;
+}
+
+}  // namespace
+
+void writePlan(const std::filesystem::path& file, const Plan& plan) {
+  Json tasks = Json::array();
+  for (const Task& task : plan.tasks) tasks.push_back(jsonOf(task));
+  const Json json = {{"format", kFormat},
+                     {"manifest", plan.manifest.string()},
+                     {"program", plan.program.string()},
+                     {"baseline_set", plan.baseline_set},
+                     {"tasks", std::move(tasks)}};
+  writeAtOnce(file, textOf(json));
+}
+
+Plan readPlan(const std::filesystem::path& file) {
+  return readJson<Plan>(file, "the plan of a batch; run `motorcade batch MANIFEST --out` anew", planOf);
+}
+
+}  // namespace motorcade

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace motorcade {
+
+/// One drive to run once, with one set of parameters: the unit of work of a batch.
+struct Task {
+  std::string name{};                   // of its folder: DRIVE[-SEED].SET[.REPETITION]
+  std::string drive{}, set{};           // as the manifest names them
+  std::optional<std::uint32_t> seed{};  // of a scene, or of injected faults
+  int repetition = 1;
+  std::filesystem::path sequence{};               // absolute
+  std::vector<std::string> render_arguments{};    // of `motorcade synth`, behind its folder; empty for a recorded drive
+  std::vector<std::string> run_arguments{};       // of `motorcade run`, behind its sequence and folder
+  std::vector<std::string> evaluate_arguments{};  // of `motorcade evaluate`, behind its run
+  std::int64_t frames = 0;                        // expected; 0 where it is not known before a scene is rendered
+  int threads = 2;
+  std::string fingerprint{};  // of all that its result depends on
+  std::string problem{};      // why it cannot be performed; empty where it can
+};
+
+/// All tasks of a batch, in the order of the manifest.
+struct Plan {
+  std::filesystem::path manifest{}, program{};  // absolute; the program that tasks run
+  std::string baseline_set{};                   // whose objects others are compared with when merging; empty for none
+  std::vector<Task> tasks{};
+};
+
+/// Throws OutputError.
+void writePlan(const std::filesystem::path& file, const Plan& plan);
+/// Throws InputError naming the file and how to fix it.
+Plan readPlan(const std::filesystem::path& file);
+
+}  // namespace motorcade
