@@ -3,8 +3,8 @@
 #include "apps/evaluate/report.hpp"
 #include "apps/evaluate/trajectory_error.hpp"
 #include "apps/html/html_page.hpp"
+#include "apps/html/svg_chart.hpp"
 #include "apps/report/report_sections.hpp"
-#include "apps/report/svg_chart.hpp"
 
 namespace motorcade {
 namespace {

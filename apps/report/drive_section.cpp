@@ -9,8 +9,8 @@
 #include "apps/draw/palette.hpp"
 #include "apps/draw/truth.hpp"
 #include "apps/evaluate/trajectory_error.hpp"
+#include "apps/html/svg_chart.hpp"
 #include "apps/report/report_sections.hpp"
-#include "apps/report/svg_chart.hpp"
 #include "core/object_place.hpp"
 
 namespace motorcade {

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "apps/html/html_page.hpp"
+#include "apps/html/svg_chart.hpp"
 #include "apps/latency/latency_table.hpp"
 #include "apps/report/report_sections.hpp"
-#include "apps/report/svg_chart.hpp"
 
 namespace motorcade {
 namespace {

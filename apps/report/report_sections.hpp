@@ -20,7 +20,4 @@ std::string latencySection(const ReportedRun& reported);
 /// Every parameter in force, and what the program was made of.
 std::string settingsSection(const ReportedRun& reported);
 
-/// A chart with what it shows.
-std::string chartFigure(const std::string& svg, const std::string& caption);
-
 }  // namespace motorcade

@@ -1,4 +1,4 @@
-#include "apps/report/svg_chart.hpp"
+#include "apps/html/svg_chart.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "apps/report/svg_chart.hpp"
+#include "apps/html/svg_chart.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "apps/report/chart_frame.hpp"
+#include "apps/html/chart_frame.hpp"
+#include "apps/html/html_page.hpp"
 
 namespace motorcade {
 namespace {
@@ -97,6 +98,37 @@ std::string bandOf(const ChartFrame& frame, const ChartLine& line) {
 }
 
 }  // namespace
+
+const std::string_view kChartStyle = R"css(
+:root {
+  --line1: #0b62c4; --line2: #c2410c; --truth: #4b5563; --s1: #2f6fb7; --s2: #69a5dc; --s3: #2a9d8f; --s4: #d9a62e;
+  --s5: #b4558a; --s6: #6b5bbf; --s7: #d1663a; --wait: #c3cad2;
+}
+@media (prefers-color-scheme: dark) {
+  :root {
+    --line1: #6cb2ff; --line2: #ff9d66; --truth: #b6c0cb; --s1: #4f8fd6; --s2: #8cc3f2; --s3: #4cc0b0; --s4: #e8bf55;
+    --s5: #d982b2; --s6: #9a8cec; --s7: #f08d63; --wait: #46505c;
+  }
+}
+@media print {
+  :root {
+    --line1: #0b4ea2; --line2: #b33c0a; --truth: #444444; --s1: #2f6fb7; --s2: #69a5dc; --s3: #2a9d8f; --s4: #d9a62e;
+    --s5: #b4558a; --s6: #6b5bbf; --s7: #d1663a; --wait: #c3cad2;
+  }
+}
+.chart { width: 100%; font-size: 11.5px; } .chart.across { min-width: 40rem; }
+@media print { .chart.across { min-width: 0; } }
+.chart text { fill: var(--muted); } .chart .mark { fill: var(--ink); paint-order: stroke; stroke: var(--card);
+  stroke-width: 4px; stroke-linejoin: round; }
+.chart .grid { stroke: var(--rule); stroke-width: 1; } .chart .axis { stroke: var(--muted); stroke-width: 1; }
+.chart .line { fill: none; stroke-width: 1.8; stroke-linejoin: round; stroke-linecap: round; }
+.chart .dashed { stroke-dasharray: 5 5; stroke-width: 1.5; } .chart .band { opacity: 0.2; }
+figure.plate { background: var(--card); border: 1px solid var(--rule); border-radius: 10px; padding: 0.8rem; }
+)css";
+
+std::string chartFigure(const std::string& svg, const std::string& caption) {
+  return "<figure class=\"plate\">" + svg + "<figcaption>" + escaped(caption) + "</figcaption></figure>\n";
+}
 
 std::vector<double> ticksBetween(double low, double high, int wanted) {
   const double rough = (high - low) / std::max(wanted, 1);

@@ -1,12 +1,17 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
 /// Charts as SVG inside of a page: they follow its colors, scale with it and print.
 namespace motorcade {
+
+/// What a page with charts has after its base style. Colors are var(--line1 | --line2), var(--s1) to var(--s7),
+/// var(--truth) and var(--wait), beside those of the page.
+extern const std::string_view kChartStyle;
 
 /// A line of a chart. Where a point is not finite, the line is broken.
 struct ChartLine {
@@ -41,6 +46,9 @@ struct ChartPart {
 
 /// Bars whose parts stand on one another.
 std::string barChart(const ChartAxes& axes, const std::vector<ChartPart>& parts, const std::vector<ChartBar>& bars);
+
+/// A chart with what it shows.
+std::string chartFigure(const std::string& svg, const std::string& caption);
 
 /// Round numbers from `low` to `high` that a scale may show, about `wanted` of them.
 std::vector<double> ticksBetween(double low, double high, int wanted);

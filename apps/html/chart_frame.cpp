@@ -1,4 +1,4 @@
-#include "apps/report/chart_frame.hpp"
+#include "apps/html/chart_frame.hpp"
 
 #include <algorithm>
 #include <cmath>

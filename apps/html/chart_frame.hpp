@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "apps/report/svg_chart.hpp"
+#include "apps/html/svg_chart.hpp"
 
 namespace motorcade {
 
