@@ -22,6 +22,7 @@ Json jsonOf(const Task& task) {
           {"run_arguments", task.run_arguments},
           {"evaluate_arguments", task.evaluate_arguments},
           {"frames", task.frames},
+          {"has_truth", task.has_truth},
           {"threads", task.threads},
           {"fingerprint", task.fingerprint},
           {"problem", task.problem}};
@@ -38,6 +39,7 @@ Task taskOf(const Json& json) {
           .run_arguments = json.at("run_arguments"),
           .evaluate_arguments = json.at("evaluate_arguments"),
           .frames = json.at("frames"),
+          .has_truth = json.at("has_truth"),
           .threads = json.at("threads"),
           .fingerprint = json.at("fingerprint"),
           .problem = json.at("problem")};

@@ -19,6 +19,7 @@ struct Task {
   std::vector<std::string> run_arguments{};       // of `motorcade run`, behind its sequence and folder
   std::vector<std::string> evaluate_arguments{};  // of `motorcade evaluate`, behind its run
   std::int64_t frames = 0;                        // expected; 0 where it is not known before a scene is rendered
+  bool has_truth = false;                         // the run can be evaluated
   int threads = 2;
   std::string fingerprint{};  // of all that its result depends on
   std::string problem{};      // why it cannot be performed; empty where it can

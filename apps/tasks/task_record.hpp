@@ -24,6 +24,7 @@ struct TaskRecord {
   int repetition = 1;
   std::filesystem::path sequence{};
   std::string fingerprint{};
+  std::string rendering{};  // of a scene: which rendering of it was run
   std::string host{};
   std::vector<int> processors{};  // that its processes were kept to; empty for any
   std::string started{};          // UTC, ISO 8601

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "io/sequence.hpp"
+
+namespace motorcade {
+
+/// Tells whether what a result depends on is still the same. The same values in the same order give the same text; not
+/// meant to withstand somebody who looks for a collision.
+class Fingerprint {
+ public:
+  Fingerprint();
+  ~Fingerprint();
+  Fingerprint(const Fingerprint&) = delete;
+  Fingerprint& operator=(const Fingerprint&) = delete;
+
+  /// Two texts in a row are not the same as one that joins them.
+  void add(std::string_view text);
+  void add(double number);
+  /// Name, size and time of change; a file that is not there counts as such.
+  void addFile(const std::filesystem::path& file);
+  /// 32 hexadecimal digits.
+  std::string text() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Of a program's bytes and those of its modules. Throws UsageError where it cannot be read.
+std::string programFingerprint(const std::filesystem::path& program);
+
+/// Of a recorded drive: its images and files of truth by name, size and time of change, its cameras by their numbers.
+std::string sequenceFingerprint(const Sequence& sequence);
+
+}  // namespace motorcade

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace motorcade {
+
+/// A set of parameters by which every drive is run.
+struct ParameterSet {
+  std::string name{};
+  std::vector<std::string> assignments{};  // key=value, as `run --set` takes them
+};
+
+/// A line of a manifest: a drive, a glob of several, or a scene to render, with how to run it.
+struct ManifestEntry {
+  std::string path{};               // of a recorded drive, or a glob of several
+  std::string scene{};              // of a rendered one, in its place
+  std::string name{};               // of the drive; from its path or scene when empty
+  int length = 0;                   // frames to render; the scene's own when 0
+  std::string size{};               // of rendered images, WIDTHxHEIGHT
+  std::vector<std::string> sets{};  // names of parameter sets; all of them when empty
+  std::vector<std::uint32_t> seeds{};
+  int repetitions = 1;
+  std::map<std::string, std::string> options{};  // of `run` by their names, and `baseline`, of `evaluate`
+  std::string where{};                           // file and line, for messages
+};
+
+/// Many drives and how to run them, as its file says; nothing is looked for yet. Formats: docs/formats.md.
+struct Manifest {
+  std::filesystem::path file{};  // absolute
+  std::filesystem::path root{};  // absolute: what paths of drives and baselines are relative to
+  std::string baseline_set{};
+  std::vector<ParameterSet> sets{};  // in the order of the file; at least one
+  std::vector<ManifestEntry> entries{};
+};
+
+/// Reads TOML or, where the name ends with .csv, a table. `root` comes before the manifest's own where it is not empty.
+/// Throws UsageError naming file, line, key and how to fix it.
+Manifest readManifest(const std::filesystem::path& file, const std::filesystem::path& root = {});
+
+}  // namespace motorcade

@@ -1,0 +1,137 @@
+#include "apps/tasks/manifest_fields.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <string_view>
+
+#include "core/edit_distance.hpp"
+#include "io/errors.hpp"
+#include "io/text_file.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr int kMostRepetitions = 100'000, kMostFrames = 1'000'000;
+constexpr std::uint32_t kMostSeeds = 100'000;
+
+constexpr std::array<const char*, 8> kEntryKeys{"path", "scene", "name",  "length",
+                                                "size", "sets",  "seeds", "repetitions"};
+/// Of `run`; the last one of `evaluate`.
+constexpr std::array<const char*, 11> kOptionKeys{"frames",      "fps",    "rate",   "live",    "masks",   "camera",
+                                                  "calibration", "config", "inject", "require", "baseline"};
+
+template <class Number>
+std::optional<Number> numberIn(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+/// Takes the keys of one entry; each failure is a UsageError that names the place and the key.
+class EntryReader {
+ public:
+  explicit EntryReader(const ManifestFields& fields) : fields_(fields) {}
+
+  void requireKnown() const {
+    std::vector<std::string> known(kEntryKeys.begin(), kEntryKeys.end());
+    known.insert(known.end(), kOptionKeys.begin(), kOptionKeys.end());
+    for (const auto& [key, words] : fields_.words) {
+      if (std::ranges::find(known, key) != known.end()) continue;
+      const std::string nearest = nearestName(key, known);
+      fail("unknown key '" + printable(key) + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+    }
+  }
+
+  std::string word(const char* key) const {
+    const auto found = fields_.words.find(key);
+    if (found == fields_.words.end() || found->second.empty()) return "";
+    if (found->second.size() > 1) fail(std::string("'") + key + "' has several values; write one");
+    return found->second.front();
+  }
+
+  std::vector<std::string> words(const char* key) const {
+    const auto found = fields_.words.find(key);
+    return found == fields_.words.end() ? std::vector<std::string>{} : found->second;
+  }
+
+  int wholeNumber(const char* key, int fallback, int most) const {
+    const std::string text = word(key);
+    if (text.empty()) return fallback;
+    const auto value = numberIn<int>(text);
+    if (!value || *value < 1 || *value > most)
+      fail(std::string("'") + key + "' is " + printable(text) + "; write a whole number from 1 to " +
+           std::to_string(most));
+    return *value;
+  }
+
+  /// Numbers and ranges of them, as 1-5.
+  std::vector<std::uint32_t> seeds() const {
+    std::vector<std::uint32_t> all;
+    for (const std::string& text : words("seeds")) {
+      const auto dash = text.find('-');
+      const auto first = numberIn<std::uint32_t>(std::string_view(text).substr(0, dash));
+      const auto last =
+          dash == std::string::npos ? first : numberIn<std::uint32_t>(std::string_view(text).substr(dash + 1));
+      if (!first || !last || *last < *first || *last - *first >= kMostSeeds)
+        fail("'seeds' has " + printable(text) + "; write whole numbers or a range of them, as 1-5");
+      for (std::uint32_t offset = 0; offset <= *last - *first; ++offset) all.push_back(*first + offset);
+    }
+    std::ranges::sort(all);
+    if (std::ranges::adjacent_find(all) != all.end()) fail("'seeds' has a number twice");
+    return all;
+  }
+
+  [[noreturn]] void fail(const std::string& message) const { throw UsageError(fields_.where + ": " + message); }
+
+ private:
+  const ManifestFields& fields_;
+};
+
+void requireConsistent(const ManifestEntry& entry, const EntryReader& reader) {
+  if (entry.path.empty() == entry.scene.empty()) reader.fail("needs either 'path', of a drive, or 'scene', to render");
+  if (entry.scene.empty() && entry.length > 0) reader.fail("'length' is for scenes; 'frames' = \"A:B\" selects");
+  if (entry.scene.empty() && !entry.size.empty()) reader.fail("'size' is for scenes");
+  const bool random = !entry.scene.empty() || entry.options.contains("inject");
+  if (!entry.seeds.empty() && !random)
+    reader.fail(
+        "'seeds' are for scenes and injected faults: a run of the same drive gives the same results; for "
+        "times, write 'repetitions'");
+}
+
+}  // namespace
+
+void requireName(const std::string& name, const std::string& where) {
+  constexpr std::size_t kMostCharacters = 100;
+  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  if (name.empty() || name.size() > kMostCharacters || !std::ranges::all_of(name, fits))
+    throw UsageError(where + ": '" + printable(name) + "' is no name; write letters, digits, - and _, at most 100");
+}
+
+ManifestEntry manifestEntry(const ManifestFields& fields) {
+  const EntryReader reader(fields);
+  reader.requireKnown();
+  ManifestEntry entry{.path = reader.word("path"),
+                      .scene = reader.word("scene"),
+                      .name = reader.word("name"),
+                      .length = reader.wholeNumber("length", 0, kMostFrames),
+                      .size = reader.word("size"),
+                      .sets = reader.words("sets"),
+                      .seeds = reader.seeds(),
+                      .repetitions = reader.wholeNumber("repetitions", 1, kMostRepetitions),
+                      .where = fields.where};
+  for (const char* const key : kOptionKeys)
+    if (const std::string value = reader.word(key); !value.empty()) entry.options[key] = value;
+  for (const char* const flag : {"live", "masks"}) {
+    const auto found = entry.options.find(flag);
+    if (found == entry.options.end()) continue;
+    if (found->second != "true" && found->second != "false")
+      reader.fail(std::string("'") + flag + "' is " + printable(found->second) + "; write true or false");
+  }
+  requireConsistent(entry, reader);
+  if (!entry.name.empty()) requireName(entry.name, fields.where);
+  return entry;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "apps/tasks/manifest.hpp"
+
+/// What both forms of a manifest have in common: keys with one or several words.
+namespace motorcade {
+
+struct ManifestFields {
+  std::map<std::string, std::vector<std::string>> words{};
+  std::string where{};  // file and line, for messages
+};
+
+/// Throws UsageError naming the place, the key and how to fix it.
+ManifestEntry manifestEntry(const ManifestFields& fields);
+
+/// Of a drive or a set, as names of folders have it. Throws UsageError.
+void requireName(const std::string& name, const std::string& where);
+
+Manifest readManifestToml(const std::filesystem::path& file, const std::string& text);
+Manifest readManifestCsv(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace motorcade

@@ -1,0 +1,110 @@
+#include <sstream>
+
+#include "apps/pipeline/toml_document.hpp"
+#include "apps/tasks/manifest_fields.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr const char* kForm = "; a manifest has root, baseline_set, [defaults], [sets.NAME] and [[drives]]";
+
+std::string wordOf(const toml::node& node) {
+  if (const auto text = node.value_exact<std::string>()) return *text;
+  std::ostringstream text;
+  node.visit([&](const auto& value) { text << value; });
+  return text.str();
+}
+
+TomlPosition positionOf(const toml::node& node, const std::filesystem::path& file) {
+  return {file.string(), node.source().begin.line};
+}
+
+std::string stringOf(const toml::node& node, const std::string& key, const std::filesystem::path& file) {
+  const auto text = node.value_exact<std::string>();
+  if (!text) failAt(positionOf(node, file), "'" + key + "' must be a text in quotes");
+  return *text;
+}
+
+/// Adds the keys of a table, each with its values as words.
+void addFields(ManifestFields& fields, const toml::table& table, const std::filesystem::path& file) {
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    if (node.is_table()) failAt(positionOf(node, file), "'" + name + "' is a table; parameters stand in [sets.NAME]");
+    auto& words = fields.words[name];
+    words.clear();
+    if (const toml::array* const values = node.as_array())
+      for (const auto& value : *values) words.push_back(wordOf(value));
+    else
+      words.push_back(wordOf(node));
+  }
+}
+
+void addAssignments(ParameterSet& set, const toml::table& table, const std::string& prefix) {
+  for (const auto& [key, node] : table) {
+    const std::string name = prefix + std::string(key.str());
+    if (const toml::table* const section = node.as_table())
+      addAssignments(set, *section, name + ".");
+    else
+      set.assignments.push_back(name + "=" + wordOf(node));
+  }
+}
+
+/// In the order of the file: a TOML table forgets it.
+std::vector<ParameterSet> setsOf(const toml::table& table, const std::filesystem::path& file) {
+  std::map<toml::source_index, ParameterSet> by_line;
+  for (const auto& [key, node] : table) {
+    const TomlPosition position = positionOf(node, file);
+    const toml::table* const parameters = node.as_table();
+    if (parameters == nullptr) failAt(position, "a set of parameters is a table: [sets.NAME]");
+    ParameterSet set{.name = std::string(key.str())};
+    requireName(set.name, position.text());
+    addAssignments(set, *parameters, "");
+    by_line[key.source().begin.line] = std::move(set);
+  }
+  std::vector<ParameterSet> sets;
+  for (auto& [line, set] : by_line) sets.push_back(std::move(set));
+  return sets;
+}
+
+void addEntries(Manifest& manifest, const toml::node& drives, const toml::table& defaults) {
+  const toml::array* const list = drives.as_array();
+  if (list == nullptr) failAt(positionOf(drives, manifest.file), std::string("'drives' is no list") + kForm);
+  for (const auto& node : *list) {
+    const TomlPosition position = positionOf(node, manifest.file);
+    const toml::table* const table = node.as_table();
+    if (table == nullptr) failAt(position, std::string("a drive is a table") + kForm);
+    ManifestFields fields{.where = position.text()};
+    addFields(fields, defaults, manifest.file);
+    addFields(fields, *table, manifest.file);
+    manifest.entries.push_back(manifestEntry(fields));
+  }
+}
+
+}  // namespace
+
+Manifest readManifestToml(const std::filesystem::path& file, const std::string& text) {
+  const toml::table document = parseToml(text, file.string());
+  Manifest manifest{.file = file};
+  toml::table defaults;
+  const toml::node* drives = nullptr;
+  for (const auto& [key, node] : document) {
+    const std::string name(key.str());
+    const toml::table* const table = node.as_table();
+    if (name == "root")
+      manifest.root = stringOf(node, name, file);
+    else if (name == "baseline_set")
+      manifest.baseline_set = stringOf(node, name, file);
+    else if (name == "drives")
+      drives = &node;
+    else if (name == "defaults" && table != nullptr)
+      defaults = *table;
+    else if (name == "sets" && table != nullptr)
+      manifest.sets = setsOf(*table, file);
+    else
+      failAt(positionOf(node, file), "unknown key '" + name + "'" + kForm);
+  }
+  if (drives != nullptr) addEntries(manifest, *drives, defaults);
+  return manifest;
+}
+
+}  // namespace motorcade

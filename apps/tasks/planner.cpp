@@ -1,0 +1,247 @@
+#include "apps/tasks/planner.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+
+#include "apps/pipeline/configuration.hpp"
+#include "apps/run/run_options.hpp"
+#include "apps/synth/synth_command.hpp"
+#include "apps/tasks/fingerprint.hpp"
+#include "apps/tasks/found_drives.hpp"
+#include "io/errors.hpp"
+#include "io/ground_truth.hpp"
+#include "io/sequence.hpp"
+
+namespace motorcade {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string optionOf(const ManifestEntry& entry, const std::string& name) {
+  const auto found = entry.options.find(name);
+  return found == entry.options.end() ? "" : found->second;
+}
+
+fs::path fileOption(const ManifestEntry& entry, const std::string& name, const fs::path& root) {
+  const std::string file = optionOf(entry, name);
+  return file.empty() ? fs::path() : (root / file).lexically_normal();
+}
+
+/// One file, or two with a comma between them.
+std::string calibrationOption(const ManifestEntry& entry, const fs::path& root) {
+  const std::string given = optionOf(entry, "calibration");
+  const auto comma = given.find(',');
+  if (given.empty()) return "";
+  const std::string left = (root / given.substr(0, comma)).lexically_normal().string();
+  if (comma == std::string::npos) return left;
+  return left + "," + (root / given.substr(comma + 1)).lexically_normal().string();
+}
+
+/// What a run of the entry's drives is asked for with a set of parameters.
+RunOptions runOptionsOf(const Manifest& manifest, const ManifestEntry& entry, const ParameterSet& set, int threads) {
+  RunOptions run;
+  run.rate = optionOf(entry, "rate");
+  run.live = optionOf(entry, "live") == "true";
+  run.masks = optionOf(entry, "masks") == "true";
+  run.threads = threads;
+  run.frames = optionOf(entry, "frames");
+  run.config = fileOption(entry, "config", manifest.file.parent_path());
+  run.given = {.camera = optionOf(entry, "camera"), .calibration = calibrationOption(entry, manifest.root)};
+  run.assignments = set.assignments;
+  run.require = optionOf(entry, "require");
+  run.inject = optionOf(entry, "inject");
+  return run;
+}
+
+std::vector<std::string> wordsOf(const RunOptions& run, const std::string& fps, std::optional<std::uint32_t> seed) {
+  std::vector<std::string> words{"--threads", std::to_string(run.threads.value_or(1))};
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {option, value});
+  };
+  add("--rate", run.rate);
+  add("--fps", fps);
+  add("--frames", run.frames);
+  add("--config", run.config.string());
+  add("--camera", run.given.camera);
+  add("--calibration", run.given.calibration);
+  for (const std::string& assignment : run.assignments) add("--set", assignment);
+  add("--require", run.require);
+  add("--inject", run.inject.empty() || !seed ? run.inject : run.inject + ",seed=" + std::to_string(*seed));
+  if (run.live) words.emplace_back("--live");
+  if (run.masks) words.emplace_back("--masks");
+  return words;
+}
+
+/// What is known of a drive before it is run.
+struct Drive {
+  FoundDrive found;
+  std::int64_t frames = 0;
+  bool has_truth = false;
+  std::string fingerprint{};
+};
+
+double fpsOf(const ManifestEntry& entry) {
+  constexpr double kDefault_hz = 10;
+  const std::string text = optionOf(entry, "fps");
+  if (text.empty()) return kDefault_hz;
+  char* end = nullptr;
+  const double fps_hz = std::strtod(text.c_str(), &end);
+  if (*end != '\0' || !(fps_hz > 0))
+    throw UsageError(entry.where + ": 'fps' is " + text + "; write a positive number of pairs per second");
+  return fps_hz;
+}
+
+/// Opens a recorded drive; what is wrong with it becomes its problem.
+Drive opened(const Manifest& manifest, const ManifestEntry& entry, const FoundDrive& found) {
+  Drive drive{.found = found};
+  if (!found.problem.empty()) return drive;
+  try {
+    const GivenCameras given{optionOf(entry, "camera"), calibrationOption(entry, manifest.root)};
+    const Sequence sequence = openSequence(found.path, fpsOf(entry), given);
+    drive.frames = static_cast<std::int64_t>(selectedFrames(optionOf(entry, "frames"), sequence).size());
+    drive.has_truth = readCameraTruth(sequence).has_value();
+    drive.fingerprint = sequenceFingerprint(sequence);
+  } catch (const UserError& error) {
+    drive.found.problem = error.what();
+  }
+  return drive;
+}
+
+/// A scene's sequence depends on what `synth` is asked for.
+Drive toRender(const ManifestEntry& entry, const FoundDrive& found) {
+  Drive drive{.found = found, .frames = entry.length, .has_truth = true};
+  const auto known = synthSceneNames();
+  if (std::ranges::find(known, entry.scene) == known.end())
+    drive.found.problem = entry.where + ": there is no scene '" + entry.scene + "'; see motorcade help synth";
+  return drive;
+}
+
+/// What the entries of one manifest become, one after the other.
+class Planner {
+ public:
+  Planner(const Manifest& manifest, const PlanOptions& options)
+      : manifest_(manifest), options_(options), program_(programFingerprint(options.program)) {
+    plan_ = {.manifest = manifest.file, .program = options.program, .baseline_set = manifest.baseline_set};
+  }
+
+  void add(const ManifestEntry& entry) {
+    for (const FoundDrive& found : findDrives(entry, manifest_.root)) {
+      requireOneMeaning(found, entry);
+      if (entry.scene.empty()) {
+        const Drive drive = opened(manifest_, entry, found);
+        forEachSeed(entry, [&](std::optional<std::uint32_t> seed) { addTasks(entry, drive, seed, {}); });
+      } else {
+        forEachSeed(entry, [&](std::optional<std::uint32_t> seed) { addScene(entry, found, seed.value_or(1)); });
+      }
+    }
+  }
+
+  Plan plan() {
+    requireNames();
+    return std::move(plan_);
+  }
+
+ private:
+  template <class Use>
+  static void forEachSeed(const ManifestEntry& entry, const Use& use) {
+    if (entry.seeds.empty()) return use(std::nullopt);
+    for (const std::uint32_t seed : entry.seeds) use(seed);
+  }
+
+  void requireOneMeaning(const FoundDrive& found, const ManifestEntry& entry) {
+    const std::string source = entry.scene.empty() ? found.path.string() : "scene " + entry.scene;
+    const auto [known, added] = sources_.emplace(found.name, source);
+    if (!added && known->second != source)
+      throw UsageError(entry.where + ": '" + found.name + "' is the name of " + known->second + " and of " + source +
+                       "; give one of them another 'name'");
+  }
+
+  void addScene(const ManifestEntry& entry, const FoundDrive& found, std::uint32_t seed) {
+    std::string folder = entry.scene + "-" + std::to_string(seed);
+    std::vector<std::string> words{"--scene", entry.scene, "--seed", std::to_string(seed)};
+    if (entry.length > 0) {
+      folder += "-" + std::to_string(entry.length) + "frames";
+      words.insert(words.end(), {"--frames", std::to_string(entry.length)});
+    }
+    if (!entry.size.empty()) {
+      folder += "-" + entry.size;
+      words.insert(words.end(), {"--size", entry.size});
+    }
+    Drive drive = toRender(entry, found);
+    drive.found.path = options_.sequences / folder;
+    addTasks(entry, drive, seed, words);
+  }
+
+  void addTasks(const ManifestEntry& entry, const Drive& drive, std::optional<std::uint32_t> seed,
+                const std::vector<std::string>& render_arguments) {
+    for (const ParameterSet& set : manifest_.sets) {
+      if (!entry.sets.empty() && std::ranges::find(entry.sets, set.name) == entry.sets.end()) continue;
+      Task task{.drive = drive.found.name,
+                .set = set.name,
+                .seed = seed,
+                .sequence = drive.found.path,
+                .render_arguments = render_arguments,
+                .frames = drive.frames,
+                .has_truth = drive.has_truth,
+                .threads = options_.threads,
+                .problem = drive.found.problem};
+      describeRun(task, entry, set);
+      addRepetitions(task, entry.repetitions, drive.fingerprint);
+    }
+  }
+
+  /// The command lines of the task, after a look at whether they can be right.
+  void describeRun(Task& task, const ManifestEntry& entry, const ParameterSet& set) const {
+    const RunOptions run = runOptionsOf(manifest_, entry, set, options_.threads);
+    task.run_arguments = wordsOf(run, optionOf(entry, "fps"), task.seed);
+    const fs::path baseline = fileOption(entry, "baseline", manifest_.root);
+    if (!baseline.empty()) task.evaluate_arguments = {"--baseline", baseline.string()};
+    Fingerprint fingerprint;
+    if (!baseline.empty()) fingerprint.addFile(baseline);
+    try {
+      fingerprint.add(toToml(configurationOf(run)));
+    } catch (const UserError& error) {
+      if (task.problem.empty()) task.problem = "set " + set.name + ": " + error.what();
+    }
+    task.fingerprint = fingerprint.text();
+  }
+
+  void addRepetitions(Task task, int repetitions, const std::string& sequence) {
+    Fingerprint fingerprint;
+    for (const std::string& part : {program_, sequence, task.fingerprint, task.problem}) fingerprint.add(part);
+    for (const auto* words : {&task.render_arguments, &task.run_arguments, &task.evaluate_arguments})
+      for (const std::string& word : *words) fingerprint.add(word);
+    task.fingerprint = fingerprint.text();
+    const std::string name = task.drive + (task.seed ? "-" + std::to_string(*task.seed) : "") + "." + task.set;
+    for (task.repetition = 1; task.repetition <= repetitions; ++task.repetition) {
+      task.name = repetitions > 1 ? name + "." + std::to_string(task.repetition) : name;
+      plan_.tasks.push_back(task);
+    }
+  }
+
+  void requireNames() const {
+    std::map<std::string, int> count;
+    for (const Task& task : plan_.tasks)
+      if (++count[task.name] == 2)
+        throw UsageError(manifest_.file.string() + ": there are two tasks " + task.name +
+                         ", of the same drive, seed and set; write 'repetitions', or another 'name' or set");
+  }
+
+  const Manifest& manifest_;
+  const PlanOptions& options_;
+  std::string program_;
+  Plan plan_;
+  std::map<std::string, std::string> sources_;  // of the drives by their names
+};
+
+}  // namespace
+
+Plan planOf(const Manifest& manifest, const PlanOptions& options) {
+  Planner planner(manifest, options);
+  for (const ManifestEntry& entry : manifest.entries) planner.add(entry);
+  return planner.plan();
+}
+
+}  // namespace motorcade

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+
+#include "apps/tasks/manifest.hpp"
+#include "apps/tasks/plan.hpp"
+
+namespace motorcade {
+
+/// How the tasks of a manifest are to be performed.
+struct PlanOptions {
+  std::filesystem::path program{};    // that tasks run; absolute
+  std::filesystem::path sequences{};  // folder that scenes are rendered into; absolute
+  int threads = 2;                    // of each run
+};
+
+/// One task for every drive, seed, parameter set and repetition of a manifest. What is wrong with a drive or a set, but
+/// for the manifest itself, becomes the `problem` of its tasks. Throws UsageError where two drives have one name.
+Plan planOf(const Manifest& manifest, const PlanOptions& options);
+
+}  // namespace motorcade
