@@ -40,6 +40,8 @@ void reportProgress(int done, int frames, std::chrono::steady_clock::time_point&
 
 std::vector<std::string> synthSceneNames() { return synth::sceneNames(); }
 
+int synthSceneFrames(const std::string& scene, std::uint32_t seed) { return synth::makeScene(scene, seed).frames; }
+
 int runSynth(const SynthOptions& options) {
   const StereoCamera camera = cameraOfSize(options.size);
   const synth::Scene scene = synth::makeScene(options.scene, options.seed);

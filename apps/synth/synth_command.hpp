@@ -18,6 +18,8 @@ struct SynthOptions {
 
 /// The scenes that there are.
 std::vector<std::string> synthSceneNames();
+/// A scene's own length. The name is one of those above.
+int synthSceneFrames(const std::string& scene, std::uint32_t seed);
 
 /// Renders a sequence; gives the exit code. Failures are UserErrors.
 int runSynth(const SynthOptions& options);

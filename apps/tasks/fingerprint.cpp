@@ -46,6 +46,12 @@ std::string Fingerprint::text() const {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
+std::string fileStamp(const fs::path& file) {
+  Fingerprint fingerprint;
+  fingerprint.addFile(file);
+  return fingerprint.text();
+}
+
 std::string programFingerprint(const fs::path& program) {
   Fingerprint fingerprint;
   try {

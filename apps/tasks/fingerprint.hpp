@@ -31,6 +31,9 @@ class Fingerprint {
   std::unique_ptr<State> state_;
 };
 
+/// Of one file's name, size and time of change.
+std::string fileStamp(const std::filesystem::path& file);
+
 /// Of a program's bytes and those of its modules. Throws UsageError where it cannot be read.
 std::string programFingerprint(const std::filesystem::path& program);
 

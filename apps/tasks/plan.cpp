@@ -39,7 +39,7 @@ Task taskOf(const Json& json) {
           .run_arguments = json.at("run_arguments"),
           .evaluate_arguments = json.at("evaluate_arguments"),
           .frames = json.at("frames"),
-          .has_truth = json.at("has_truth"),
+          .has_truth = json.value("has_truth", false),
           .threads = json.at("threads"),
           .fingerprint = json.at("fingerprint"),
           .problem = json.at("problem")};
@@ -49,6 +49,7 @@ Plan planOf(const Json& json) {
   if (json.at("format") != kFormat) throw InputError("is the plan of a batch by another version of motorcade");
   Plan plan{.manifest = json.at("manifest").get<std::string>(),
             .program = json.at("program").get<std::string>(),
+            .program_stamp = json.value("program_stamp", ""),
             .baseline_set = json.at("baseline_set")};
   for (const Json& task : json.at("tasks")) plan.tasks.push_back(taskOf(task));
   return plan;
@@ -62,6 +63,7 @@ void writePlan(const std::filesystem::path& file, const Plan& plan) {
   const Json json = {{"format", kFormat},
                      {"manifest", plan.manifest.string()},
                      {"program", plan.program.string()},
+                     {"program_stamp", plan.program_stamp},
                      {"baseline_set", plan.baseline_set},
                      {"tasks", std::move(tasks)}};
   writeAtOnce(file, textOf(json));

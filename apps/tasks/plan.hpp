@@ -28,6 +28,7 @@ struct Task {
 /// All tasks of a batch, in the order of the manifest.
 struct Plan {
   std::filesystem::path manifest{}, program{};  // absolute; the program that tasks run
+  std::string program_stamp{};                  // its file as it was when this was planned
   std::string baseline_set{};                   // whose objects others are compared with when merging; empty for none
   std::vector<Task> tasks{};
 };

@@ -110,11 +110,13 @@ Drive opened(const Manifest& manifest, const ManifestEntry& entry, const FoundDr
 }
 
 /// A scene's sequence depends on what `synth` is asked for.
-Drive toRender(const ManifestEntry& entry, const FoundDrive& found) {
+Drive toRender(const ManifestEntry& entry, const FoundDrive& found, std::uint32_t seed) {
   Drive drive{.found = found, .frames = entry.length, .has_truth = true};
   const auto known = synthSceneNames();
   if (std::ranges::find(known, entry.scene) == known.end())
     drive.found.problem = entry.where + ": there is no scene '" + entry.scene + "'; see motorcade help synth";
+  else if (entry.length == 0)
+    drive.frames = synthSceneFrames(entry.scene, seed);
   return drive;
 }
 
@@ -123,7 +125,10 @@ class Planner {
  public:
   Planner(const Manifest& manifest, const PlanOptions& options)
       : manifest_(manifest), options_(options), program_(programFingerprint(options.program)) {
-    plan_ = {.manifest = manifest.file, .program = options.program, .baseline_set = manifest.baseline_set};
+    plan_ = {.manifest = manifest.file,
+             .program = options.program,
+             .program_stamp = fileStamp(options.program),
+             .baseline_set = manifest.baseline_set};
   }
 
   void add(const ManifestEntry& entry) {
@@ -169,7 +174,7 @@ class Planner {
       folder += "-" + entry.size;
       words.insert(words.end(), {"--size", entry.size});
     }
-    Drive drive = toRender(entry, found);
+    Drive drive = toRender(entry, found, seed);
     drive.found.path = options_.sequences / folder;
     addTasks(entry, drive, seed, words);
   }

@@ -30,7 +30,7 @@ TaskRecord recordOf(const Json& json) {
                     .repetition = json.at("repetition"),
                     .sequence = json.at("sequence").get<std::string>(),
                     .fingerprint = json.at("fingerprint"),
-                    .rendering = json.at("rendering"),
+                    .rendering = json.value("rendering", ""),
                     .host = json.at("host"),
                     .processors = json.at("processors"),
                     .started = json.at("started"),

@@ -1,0 +1,190 @@
+#include "apps/tasks/task_performer.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "apps/tasks/fingerprint.hpp"
+#include "apps/tasks/task_steps.hpp"
+#include "io/errors.hpp"
+#include "io/text_file.hpp"
+
+namespace motorcade {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Does something to folders. Throws OutputError with both names.
+void makeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw OutputError(folder.string() + ": cannot be made: " + error.message());
+}
+
+std::string hostName() {
+  char name[256] = {};
+  return ::gethostname(name, sizeof(name) - 1) == 0 ? name : "unknown";
+}
+
+std::string now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
+
+/// Gives a folder its place; what lies there is replaced, unless somebody else puts his own there meanwhile: then his
+/// one stays. True where ours is there.
+bool putInPlace(const fs::path& from, const fs::path& to) {
+  makeFolder(to.parent_path());
+  fs::path before = from;
+  before += ".before";
+  std::error_code error;
+  fs::rename(to, before, error);  // there may be none
+  fs::rename(from, to, error);
+  const bool ours = !error;
+  const bool others = error == std::errc::directory_not_empty || error == std::errc::file_exists;
+  std::error_code ignored;
+  fs::remove_all(before, ignored);
+  if (!ours && !others) throw OutputError(to.string() + ": cannot be put in place: " + error.message());
+  if (!ours) fs::remove_all(from, ignored);
+  return ours;
+}
+
+/// Which rendering of a scene lies in a folder; empty for a recorded drive, or where there is none.
+std::string renderingOf(const Task& task) {
+  return task.render_arguments.empty() || !fs::exists(task.sequence) ? "" : fileStamp(task.sequence / "poses.txt");
+}
+
+fs::path attemptFolder(const Task& task, const Workplace& workplace) {
+  return workplace.folder.attempts() / (task.name + "~" + workplace.attempt);
+}
+
+/// Those parts of a record that are known before the work.
+TaskRecord recordOf(const Task& task, const Workplace& workplace) {
+  TaskRecord record{.task = task.name,
+                    .drive = task.drive,
+                    .set = task.set,
+                    .seed = task.seed,
+                    .repetition = task.repetition,
+                    .sequence = task.sequence,
+                    .fingerprint = task.fingerprint,
+                    .host = hostName(),
+                    .processors = workplace.processors,
+                    .started = now()};
+  return record;
+}
+
+/// Run and evaluation; the names of files are relative to the attempt's folder, which is to be renamed.
+bool runSteps(const Task& task, TaskSteps& steps) {
+  std::vector<std::string> run{task.sequence.string(), "--out", "run"};
+  run.insert(run.end(), task.run_arguments.begin(), task.run_arguments.end());
+  if (!steps.run("run", run)) return false;
+  if (!task.has_truth) return true;
+  std::vector<std::string> evaluate{"run", "--json", "evaluation.json"};
+  evaluate.insert(evaluate.end(), task.evaluate_arguments.begin(), task.evaluate_arguments.end());
+  return steps.run("evaluate", evaluate);
+}
+
+/// Does all the work; the record tells what became of it. Empty when it was stopped.
+std::optional<TaskRecord> work(const Task& task, const Workplace& workplace, const fs::path& attempt) {
+  const auto start = std::chrono::steady_clock::now();
+  TaskRecord record = recordOf(task, workplace);
+  TaskSteps steps(workplace, attempt);
+  if (!task.problem.empty())
+    record.failure = TaskFailure{.step = "plan", .message = task.problem};
+  else if (fileStamp(workplace.program) != workplace.program_stamp)
+    record.failure = TaskFailure{.step = "plan",
+                                 .message = workplace.program.string() +
+                                            ": was changed since the tasks were planned; " + "start the batch again"};
+  else if (auto failure = renderSequence(task, workplace))
+    record.failure = std::move(failure);
+  else if (!runSteps(task, steps))
+    record.failure = steps.failure();
+  if (steps.stopped()) return std::nullopt;
+  record.rendering = renderingOf(task);
+  record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record.cpu_s = steps.cpu_s();
+  record.peak_memory_bytes = steps.peakMemory_bytes();
+  return record;
+}
+
+std::optional<TaskRecord> recordOfSame(const Task& task, const fs::path& folder) {
+  std::error_code none;
+  if (!fs::exists(recordIn(folder), none)) return std::nullopt;
+  try {
+    TaskRecord record = readTaskRecord(recordIn(folder));
+    if (record.fingerprint != task.fingerprint) return std::nullopt;
+    const std::string rendering = renderingOf(task);
+    if (!rendering.empty() && rendering != record.rendering) return std::nullopt;
+    return record;
+  } catch (const InputError&) {
+    return std::nullopt;  // it is performed again
+  }
+}
+
+}  // namespace
+
+std::optional<TaskRecord> performTask(const Task& task, const Workplace& workplace) {
+  const fs::path attempt = attemptFolder(task, workplace);
+  std::error_code ignored;
+  fs::remove_all(attempt, ignored);
+  makeFolder(attempt);
+  const auto record = work(task, workplace, attempt);
+  if (!record) {
+    fs::remove_all(attempt, ignored);
+    return std::nullopt;
+  }
+  const bool failed = record->failure.has_value();
+  try {
+    writeTaskRecord(recordIn(attempt), *record);
+    putInPlace(attempt, failed ? workplace.folder.failure(task.name) : workplace.folder.result(task.name));
+  } catch (const OutputError& error) {
+    TaskRecord unwritten = *record;
+    if (!failed) unwritten.failure = TaskFailure{.step = "record", .message = error.what()};
+    return unwritten;
+  }
+  if (!failed) fs::remove_all(workplace.folder.failure(task.name), ignored);
+  return record;
+}
+
+std::optional<TaskFailure> renderSequence(const Task& task, const Workplace& workplace) {
+  if (task.render_arguments.empty() || fs::exists(task.sequence)) return std::nullopt;
+  fs::path attempt = task.sequence;
+  attempt += "~" + workplace.attempt;
+  std::error_code ignored;
+  fs::remove_all(attempt, ignored);
+  makeFolder(attempt);
+  TaskSteps steps(workplace, attempt);
+  std::vector<std::string> words{".", "--threads", std::to_string(task.threads)};
+  words.insert(words.end(), task.render_arguments.begin(), task.render_arguments.end());
+  if (!steps.run("synth", words)) {
+    fs::remove_all(attempt, ignored);
+    return steps.failure();
+  }
+  fs::rename(attempt, task.sequence, ignored);
+  if (ignored) fs::remove_all(attempt, ignored);  // somebody else's is there: it is the same
+  return std::nullopt;
+}
+
+std::optional<TaskRecord> finishedRecord(const Task& task, const BatchFolder& folder) {
+  return recordOfSame(task, folder.result(task.name));
+}
+
+std::optional<TaskRecord> failedRecord(const Task& task, const BatchFolder& folder) {
+  return recordOfSame(task, folder.failure(task.name));
+}
+
+std::vector<std::string> lastLines(const fs::path& file, std::size_t most) {
+  constexpr std::size_t kMostCharacters = 300;
+  std::vector<std::string> last;
+  try {
+    for (const TextLine& line : readLines(file)) {
+      last.push_back(printable(line.text, kMostCharacters));
+      if (last.size() > most) last.erase(last.begin());
+    }
+  } catch (const InputError&) {
+    return {};
+  }
+  return last;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/tasks/batch_folder.hpp"
+#include "apps/tasks/plan.hpp"
+#include "apps/tasks/task_record.hpp"
+
+namespace motorcade {
+
+/// Where and how a task is performed.
+struct Workplace {
+  BatchFolder folder;
+  std::filesystem::path program{};          // the motorcade that does the work
+  std::string program_stamp{};              // as it was when the tasks were planned
+  std::string attempt{};                    // what sets this attempt's folder apart from those of others
+  std::vector<int> processors{};            // that its processes are kept to; empty for any
+  std::chrono::seconds limit{0};            // of one task; 0 for none
+  const std::atomic<bool>* stop = nullptr;  // set from outside: end in order
+};
+
+/// Does the work of a task in a folder of its own, `attempts/TASK~ATTEMPT`: renders the sequence if need be, runs it
+/// and, where there is truth, evaluates the run. When all is done, the folder gets its place among the results; a
+/// second attempt at the same task, at the same time or later, does no harm. What fails is kept among the failures,
+/// with a record that says why. Empty when it was stopped: then nothing is left. Throws OutputError where not even that
+/// can be written.
+std::optional<TaskRecord> performTask(const Task& task, const Workplace& workplace);
+
+/// Makes sure that the task's sequence has been rendered; in the folder of the sequence nothing is seen before all of
+/// it is there. Gives what went wrong. Of a recorded drive there is nothing to do.
+std::optional<TaskFailure> renderSequence(const Task& task, const Workplace& workplace);
+
+/// The record of a finished task that need not be performed again: the same entry of the manifest, configuration,
+/// program and input. Empty where there is none.
+std::optional<TaskRecord> finishedRecord(const Task& task, const BatchFolder& folder);
+/// The same of a task that failed.
+std::optional<TaskRecord> failedRecord(const Task& task, const BatchFolder& folder);
+
+/// The last lines of a text file, without what would disturb a terminal.
+std::vector<std::string> lastLines(const std::filesystem::path& file, std::size_t most = 8);
+
+}  // namespace motorcade
