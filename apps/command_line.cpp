@@ -108,8 +108,8 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   app.set_version_flag("--version", versionsText);
   app.require_subcommand(1);
   CommandLine command_line;
-  for (const auto add :
-       {addRun, addCheck, addSynth, addEvaluate, addDraw, addReport, addLatency, addExport, addView, addSolve})
+  for (const auto add : {addRun, addCheck, addSynth, addEvaluate, addDraw, addReport, addLatency, addExport, addView,
+                         addSolve, addBatch})
     add(app, command_line.action);
 #ifdef MOTORCADE_WITH_BRIDGE
   addBridge(app, command_line.action);

@@ -24,6 +24,7 @@ void addExport(CLI::App& app, Action& action);
 void addView(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
 void addSolve(CLI::App& app, Action& action);
+void addBatch(CLI::App& app, Action& action);
 void addBridge(CLI::App& app, Action& action);  // where the program was built with Cyclone DDS
 
 }  // namespace motorcade

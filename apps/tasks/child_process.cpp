@@ -8,9 +8,9 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sched.h>
-#include <sys/pidfd.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -91,7 +91,8 @@ int startChild(const ChildCommand& command) {
 
 }  // namespace
 
-ChildProcess::ChildProcess(const ChildCommand& command) : pid_(startChild(command)), handle_(::pidfd_open(pid_, 0)) {}
+ChildProcess::ChildProcess(const ChildCommand& command)
+    : pid_(startChild(command)), handle_(static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0))) {}
 
 ChildProcess::~ChildProcess() {
   if (end_) return;

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "apps/tasks/fingerprint.hpp"
+#include "apps/tasks/host_name.hpp"
 #include "apps/tasks/task_steps.hpp"
 #include "io/errors.hpp"
 #include "io/text_file.hpp"
@@ -22,11 +23,6 @@ void makeFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw OutputError(folder.string() + ": cannot be made: " + error.message());
-}
-
-std::string hostName() {
-  char name[256] = {};
-  return ::gethostname(name, sizeof(name) - 1) == 0 ? name : "unknown";
 }
 
 std::string now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }

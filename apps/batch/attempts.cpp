@@ -1,0 +1,75 @@
+#include "apps/batch/attempts.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstdlib>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "apps/tasks/host_name.hpp"
+
+namespace motorcade {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kSeparator = '~';
+
+std::string environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
+
+/// Of what this machine can tell nothing counts as alive.
+bool isAlive(const std::string& who) {
+  const std::string ours = hostName() + "-";
+  if (!who.starts_with(ours)) return true;
+  int pid = 0;
+  std::from_chars(who.data() + ours.size(), who.data() + who.size(), pid);
+  return pid <= 0 || ::kill(pid, 0) == 0 || errno != ESRCH;
+}
+
+std::vector<Attempt> attemptsIn(const fs::path& folder) {
+  std::vector<Attempt> attempts;
+  std::error_code none;  // no such folder
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    const std::string name = entry.path().filename().string();
+    const auto separator = name.find(kSeparator);
+    if (separator == std::string::npos) continue;
+    const std::string who = name.substr(separator + 1);
+    attempts.push_back({entry.path(), name.substr(0, separator), who, isAlive(who)});
+  }
+  std::ranges::sort(attempts, {}, &Attempt::folder);
+  return attempts;
+}
+
+}  // namespace
+
+std::string localAttemptName(std::size_t slot) { return fmt::format("{}-{}-{}", hostName(), ::getpid(), slot); }
+
+std::string slurmAttemptName() {
+  const std::string job = environment("SLURM_ARRAY_JOB_ID"), index = environment("SLURM_ARRAY_TASK_ID");
+  const std::string restart = environment("SLURM_RESTART_COUNT");
+  if (job.empty() || index.empty()) return "";
+  return "slurm-" + job + "_" + index + "-" + (restart.empty() ? "0" : restart);
+}
+
+std::vector<Attempt> attemptsOf(const BatchFolder& folder) { return attemptsIn(folder.attempts()); }
+
+void removeDeadAttempts(const fs::path& folder) {
+  std::error_code ignored;
+  for (const Attempt& attempt : attemptsIn(folder))
+    if (!attempt.alive) fs::remove_all(attempt.folder, ignored);
+}
+
+void removeEarlierRestarts(const BatchFolder& folder, const std::string& slurm_attempt) {
+  const std::string element = slurm_attempt.substr(0, slurm_attempt.rfind('-') + 1);
+  std::error_code ignored;
+  for (const Attempt& attempt : attemptsOf(folder))
+    if (attempt.who.starts_with(element) && attempt.who != slurm_attempt) fs::remove_all(attempt.folder, ignored);
+}
+
+}  // namespace motorcade

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/tasks/batch_folder.hpp"
+
+/// The folders of attempts that go on, or that somebody left who was killed: TASK~WHO.
+namespace motorcade {
+
+/// WHO of a task that this process performs in one of its slots: HOST-PID-SLOT.
+std::string localAttemptName(std::size_t slot);
+/// WHO of a task that Slurm has this process perform, slurm-JOB_INDEX-RESTART; empty where Slurm does not.
+std::string slurmAttemptName();
+
+struct Attempt {
+  std::filesystem::path folder{};
+  std::string task{}, who{};
+  bool alive = true;  // as far as this machine can tell
+};
+/// All of a batch, in the order of their tasks.
+std::vector<Attempt> attemptsOf(const BatchFolder& folder);
+
+/// Removes what processes of this machine left that are no longer alive, in this folder and that of the sequences.
+void removeDeadAttempts(const std::filesystem::path& folder);
+/// Removes what an element of an array left before Slurm started it anew: its node was lost.
+void removeEarlierRestarts(const BatchFolder& folder, const std::string& slurm_attempt);
+
+}  // namespace motorcade
