@@ -28,10 +28,12 @@ std::ptrdiff_t partsBeforeWildcard(const fs::path& pattern) {
                        }));
 }
 
+/// The parts of a path from one on; a list of images is a file, whose name goes without its end.
 std::string nameFrom(const fs::path& path, std::ptrdiff_t first_part) {
   fs::path name;
   for (auto part = std::next(path.begin(), first_part); part != path.end(); ++part) name /= *part;
-  return nameOf(name.replace_extension().empty() ? path.stem().string() : name.string());
+  if (fs::is_regular_file(path)) name.replace_extension();
+  return nameOf(name.string());
 }
 
 std::vector<fs::path> matchesOf(const fs::path& pattern) {
@@ -40,7 +42,7 @@ std::vector<fs::path> matchesOf(const fs::path& pattern) {
   if (::glob(pattern.c_str(), GLOB_BRACE, nullptr, &found) == 0)
     for (std::size_t i = 0; i < found.gl_pathc; ++i) matches.emplace_back(found.gl_pathv[i]);
   ::globfree(&found);
-  // A list of images is a file, which a pattern asks for by the end of its name; else drives are folders.
+  // A pattern asks for lists of images by the end of their names; else drives are folders.
   if (!pattern.has_extension()) std::erase_if(matches, [](const fs::path& match) { return !fs::is_directory(match); });
   std::ranges::sort(matches);
   return matches;
@@ -64,7 +66,9 @@ std::vector<FoundDrive> findDrives(const ManifestEntry& entry, const fs::path& r
   fs::path path = (root / entry.path).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();
   if (hasWildcard(entry.path)) return matchingDrives(entry, path);
-  FoundDrive drive{.name = entry.name.empty() ? nameOf(path.stem().string()) : entry.name, .path = path};
+  FoundDrive drive{
+      .name = entry.name.empty() ? nameFrom(path, std::distance(path.begin(), path.end()) - 1) : entry.name,
+      .path = path};
   if (std::error_code none; !fs::exists(path, none)) drive.problem = path.string() + ": there is no such drive";
   return {drive};
 }
