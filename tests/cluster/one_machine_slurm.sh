@@ -66,10 +66,20 @@ slurm_restart_slurmd() {
   slurm_wait "$1" "${2:-node1} answers" slurm_node_responds "${2:-node1}"
 }
 
-# slurm_lose_node FOLDER NODE: the power goes: its slurmd and every process of its jobs are killed at once.
+# slurm_lose_node FOLDER NODE: the power goes. Its slurmd and every process of its jobs are killed, and the controller is told at once;
+# by itself it would notice after SlurmdTimeout and some pings, 30 seconds in all. `slurm_start_node` has the node back.
 slurm_lose_node() {
   slurm_stop_node "$1" "$2" KILL
   slurm_end_steps "$1" "$2"
+  scontrol update NodeName="$2" State=DOWN Reason=lost
+}
+
+# slurm_start_requeued: jobs that were requeued start as soon as there is room, not two minutes later.
+slurm_start_requeued() {
+  local job reason
+  squeue --noheader --array --states=PENDING --format='%i %r' | while read -r job reason; do
+    [[ $reason != BeginTime ]] || scontrol update JobId="$job" StartTime=now
+  done
 }
 
 # slurm_wait FOLDER WHAT COMMAND...: until the command succeeds, at most SLURM_WAIT_S (30) seconds; then shows the ends of the logs.
@@ -124,7 +134,7 @@ SwitchType=switch/none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_Core_Memory
 SchedulerType=sched/backfill
-SchedulerParameters=batch_sched_delay=0,sched_min_interval=0,sched_interval=2,bf_interval=2,default_queue_depth=1000
+SchedulerParameters=batch_sched_delay=0,sched_min_interval=0,sched_interval=1,bf_interval=1,default_queue_depth=1000
 JobRequeue=1
 ReturnToService=2
 SlurmdTimeout=10
@@ -136,6 +146,7 @@ MaxArraySize=2001
 MaxJobCount=10000
 SlurmdParameters=config_overrides
 END
+  echo "CgroupPlugin=cgroup/v1" >"$folder/cgroup.conf"  # it is not used, but found out by default, which fails in some containers
   {
     for ((node = 1; node <= nodes; ++node)); do
       echo "NodeName=node$node NodeHostname=$host NodeAddr=127.0.0.1 Port=${ports[$node]} CPUs=$cpus RealMemory=$memory_mb State=UNKNOWN"
@@ -196,6 +207,6 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
   case ${1:-} in
     start) slurm_start "${@:2}" || { slurm_stop "$2"; exit 1; } ;;
     stop) slurm_stop "$2" ;;
-    *) sed -n 's/^# \{0,1\}//p' "$0" | sed -n 1,7p >&2; exit 2 ;;
+    *) sed -n '2,6s/^# //p' "$0" >&2; exit 2 ;;
   esac
 fi
