@@ -55,7 +55,8 @@ Plan planFor(const BatchOptions& options, const BatchFolder& folder) {
   const Manifest manifest = readManifest(options.manifest, options.root);
   return planOf(manifest, {.program = options.program.empty() ? ownProgram() : absoluteOf(options.program),
                            .sequences = options.sequences.empty() ? folder.sequences() : absoluteOf(options.sequences),
-                           .threads = options.threads});
+                           .threads = options.threads,
+                           .only = options.only});
 }
 
 /// The folders that scenes are rendered into.

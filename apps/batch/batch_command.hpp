@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/batch/slurm_script.hpp"
+#include "apps/tasks/planner.hpp"
 
 namespace motorcade {
 
@@ -16,7 +17,8 @@ struct BatchOptions {
   std::filesystem::path program{};    // that tasks run; this one when empty
   int jobs = 0;                       // at a time; 0 for as many as there are processors for
   int threads = 2;                    // of each run
-  bool retry = false;                 // what failed before
+  Selection only{};
+  bool retry = false;  // what failed before
   bool slurm = false;
   SlurmOptions slurm_options{};  // its time is the limit of a task here, too
 };

@@ -55,7 +55,9 @@ Answer ask(std::vector<std::string> words) {
   ChildProcess child({.words = words, .folder = fs::current_path(), .log = output.path()});
   const auto end = child.wait(120s);
   if (!end) return {.exit_code = 1, .text = words[1] + " did not answer within two minutes"};
-  return {.exit_code = end->signal != 0 ? 1 : end->exit_code, .text = trimmed(readWhole(output.path()))};
+  std::string text = readWhole(output.path());
+  text.erase(text.find_last_not_of(" \n") + 1);
+  return {.exit_code = end->signal != 0 ? 1 : end->exit_code, .text = text};
 }
 
 [[noreturn]] void failWith(const std::string& program, const Answer& answer) {

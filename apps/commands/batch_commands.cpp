@@ -28,6 +28,14 @@ void addSlurm(CLI::App& command, const std::shared_ptr<BatchOptions>& options) {
   command.add_flag("--dry-run", slurm.dry_run, "Print the scripts, submit nothing")->needs(asked);
 }
 
+void addSelection(CLI::App& command, Selection& only) {
+  command.add_option("--drives", only.drives, "Only these drives and scenes of the manifest")
+      ->delimiter(',')
+      ->type_name("NAME[,NAME]");
+  command.add_option("--sets", only.sets, "Only these sets of parameters")->delimiter(',')->type_name("NAME[,NAME]");
+  command.add_option("--seeds", only.seeds, "Seeds of all scenes, in place of the manifest's, as 1-5");
+}
+
 void addTask(CLI::App& batch, Action& action) {
   const auto options = std::make_shared<BatchTaskOptions>();
   CLI::App* command = batch.add_subcommand("task", "Perform one task of a planned batch, as Slurm's scripts do");
@@ -84,6 +92,7 @@ void addBatch(CLI::App& app, Action& action) {
   command->add_option("--sequences", options->sequences, "Folder for rendered scenes, which several batches may share");
   command->add_option("--program", options->program, "The motorcade that does the work, as of another version")
       ->check(CLI::ExistingFile);
+  addSelection(*command, options->only);
   addSlurm(*command, options);
   addStatus(*command, action);
   addMerge(*command, action);

@@ -66,23 +66,6 @@ class EntryReader {
     return *value;
   }
 
-  /// Numbers and ranges of them, as 1-5.
-  std::vector<std::uint32_t> seeds() const {
-    std::vector<std::uint32_t> all;
-    for (const std::string& text : words("seeds")) {
-      const auto dash = text.find('-');
-      const auto first = numberIn<std::uint32_t>(std::string_view(text).substr(0, dash));
-      const auto last =
-          dash == std::string::npos ? first : numberIn<std::uint32_t>(std::string_view(text).substr(dash + 1));
-      if (!first || !last || *last < *first || *last - *first >= kMostSeeds)
-        fail("'seeds' has " + printable(text) + "; write whole numbers or a range of them, as 1-5");
-      for (std::uint32_t offset = 0; offset <= *last - *first; ++offset) all.push_back(*first + offset);
-    }
-    std::ranges::sort(all);
-    if (std::ranges::adjacent_find(all) != all.end()) fail("'seeds' has a number twice");
-    return all;
-  }
-
   [[noreturn]] void fail(const std::string& message) const { throw UsageError(fields_.where + ": " + message); }
 
  private:
@@ -109,6 +92,22 @@ void requireName(const std::string& name, const std::string& where) {
     throw UsageError(where + ": '" + printable(name) + "' is no name; write letters, digits, - and _, at most 100");
 }
 
+std::vector<std::uint32_t> seedsIn(const std::vector<std::string>& words, const std::string& where) {
+  std::vector<std::uint32_t> all;
+  for (const std::string& text : words) {
+    const auto dash = text.find('-');
+    const auto first = numberIn<std::uint32_t>(std::string_view(text).substr(0, dash));
+    const auto last =
+        dash == std::string::npos ? first : numberIn<std::uint32_t>(std::string_view(text).substr(dash + 1));
+    if (!first || !last || *last < *first || *last - *first >= kMostSeeds)
+      throw UsageError(where + ": 'seeds' has " + printable(text) + "; write whole numbers or a range of them, as 1-5");
+    for (std::uint32_t offset = 0; offset <= *last - *first; ++offset) all.push_back(*first + offset);
+  }
+  std::ranges::sort(all);
+  if (std::ranges::adjacent_find(all) != all.end()) throw UsageError(where + ": 'seeds' has a number twice");
+  return all;
+}
+
 ManifestEntry manifestEntry(const ManifestFields& fields) {
   const EntryReader reader(fields);
   reader.requireKnown();
@@ -118,7 +117,7 @@ ManifestEntry manifestEntry(const ManifestFields& fields) {
                       .length = reader.wholeNumber("length", 0, kMostFrames),
                       .size = reader.word("size"),
                       .sets = reader.words("sets"),
-                      .seeds = reader.seeds(),
+                      .seeds = seedsIn(reader.words("seeds"), fields.where),
                       .repetitions = reader.wholeNumber("repetitions", 1, kMostRepetitions),
                       .where = fields.where};
   for (const char* const key : kOptionKeys)

@@ -17,6 +17,9 @@ struct ManifestFields {
 /// Throws UsageError naming the place, the key and how to fix it.
 ManifestEntry manifestEntry(const ManifestFields& fields);
 
+/// Numbers and ranges of them, as 1-5, in ascending order. Throws UsageError.
+std::vector<std::uint32_t> seedsIn(const std::vector<std::string>& words, const std::string& where);
+
 /// Of a drive or a set, as names of folders have it. Throws UsageError.
 void requireName(const std::string& name, const std::string& where);
 

@@ -10,6 +10,8 @@
 #include "apps/synth/synth_command.hpp"
 #include "apps/tasks/fingerprint.hpp"
 #include "apps/tasks/found_drives.hpp"
+#include "apps/tasks/manifest_fields.hpp"
+#include "core/edit_distance.hpp"
 #include "io/errors.hpp"
 #include "io/ground_truth.hpp"
 #include "io/sequence.hpp"
@@ -120,6 +122,21 @@ Drive toRender(const ManifestEntry& entry, const FoundDrive& found, std::uint32_
   return drive;
 }
 
+/// An empty list selects everything.
+bool selects(const std::vector<std::string>& list, const std::string& name) {
+  return list.empty() || std::ranges::find(list, name) != list.end();
+}
+
+void requireAmong(const std::vector<std::string>& known, const std::vector<std::string>& wanted, const char* option,
+                  const Manifest& manifest) {
+  for (const std::string& name : wanted) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    const std::string nearest = nearestName(name, known);
+    throw UsageError(std::string(option) + " " + name + ": " + manifest.file.string() + " has none of this name" +
+                     (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+  }
+}
+
 /// What the entries of one manifest become, one after the other.
 class Planner {
  public:
@@ -133,6 +150,8 @@ class Planner {
 
   void add(const ManifestEntry& entry) {
     for (const FoundDrive& found : findDrives(entry, manifest_.root)) {
+      drives_.push_back(found.name);
+      if (!selects(options_.only.drives, found.name)) continue;
       requireOneMeaning(found, entry);
       if (entry.scene.empty()) {
         const Drive drive = opened(manifest_, entry, found);
@@ -144,6 +163,7 @@ class Planner {
   }
 
   Plan plan() {
+    requireSelected();
     requireNames();
     return std::move(plan_);
   }
@@ -182,7 +202,7 @@ class Planner {
   void addTasks(const ManifestEntry& entry, const Drive& drive, std::optional<std::uint32_t> seed,
                 const std::vector<std::string>& render_arguments) {
     for (const ParameterSet& set : manifest_.sets) {
-      if (!entry.sets.empty() && std::ranges::find(entry.sets, set.name) == entry.sets.end()) continue;
+      if (!selects(entry.sets, set.name) || !selects(options_.only.sets, set.name)) continue;
       Task task{.drive = drive.found.name,
                 .set = set.name,
                 .seed = seed,
@@ -226,6 +246,13 @@ class Planner {
     }
   }
 
+  void requireSelected() const {
+    std::vector<std::string> sets;
+    for (const ParameterSet& set : manifest_.sets) sets.push_back(set.name);
+    requireAmong(drives_, options_.only.drives, "--drives", manifest_);
+    requireAmong(sets, options_.only.sets, "--sets", manifest_);
+  }
+
   void requireNames() const {
     std::map<std::string, int> count;
     for (const Task& task : plan_.tasks)
@@ -238,6 +265,7 @@ class Planner {
   const PlanOptions& options_;
   std::string program_;
   Plan plan_;
+  std::vector<std::string> drives_;             // names of all, also of those that are not selected
   std::map<std::string, std::string> sources_;  // of the drives by their names
 };
 
@@ -245,7 +273,12 @@ class Planner {
 
 Plan planOf(const Manifest& manifest, const PlanOptions& options) {
   Planner planner(manifest, options);
-  for (const ManifestEntry& entry : manifest.entries) planner.add(entry);
+  const auto seeds = options.only.seeds.empty() ? std::vector<std::uint32_t>{}
+                                                : seedsIn({options.only.seeds}, "--seeds " + options.only.seeds);
+  for (ManifestEntry entry : manifest.entries) {
+    if (!entry.scene.empty() && !seeds.empty()) entry.seeds = seeds;
+    planner.add(entry);
+  }
   return planner.plan();
 }
 

@@ -1,21 +1,31 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "apps/tasks/manifest.hpp"
 #include "apps/tasks/plan.hpp"
 
 namespace motorcade {
 
+/// What is taken of a manifest; all of what is empty.
+struct Selection {
+  std::vector<std::string> drives{}, sets{};  // names
+  std::string seeds{};                        // of scenes, in place of the manifest's, as 1-5
+};
+
 /// How the tasks of a manifest are to be performed.
 struct PlanOptions {
   std::filesystem::path program{};    // that tasks run; absolute
   std::filesystem::path sequences{};  // folder that scenes are rendered into; absolute
   int threads = 2;                    // of each run
+  Selection only{};
 };
 
 /// One task for every drive, seed, parameter set and repetition of a manifest. What is wrong with a drive or a set, but
-/// for the manifest itself, becomes the `problem` of its tasks. Throws UsageError where two drives have one name.
+/// for the manifest itself, becomes the `problem` of its tasks. Throws UsageError where two drives have one name, or
+/// what is selected is not there.
 Plan planOf(const Manifest& manifest, const PlanOptions& options);
 
 }  // namespace motorcade
