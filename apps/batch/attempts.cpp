@@ -54,7 +54,7 @@ std::string slurmAttemptName() {
   const std::string job = environment("SLURM_ARRAY_JOB_ID"), index = environment("SLURM_ARRAY_TASK_ID");
   const std::string restart = environment("SLURM_RESTART_COUNT");
   if (job.empty() || index.empty()) return "";
-  return "slurm-" + job + "_" + index + "-" + (restart.empty() ? "0" : restart);
+  return fmt::format("slurm-{}_{}-{}-{}", job, index, restart.empty() ? "0" : restart, ::getpid());
 }
 
 std::vector<Attempt> attemptsOf(const BatchFolder& folder) { return attemptsIn(folder.attempts()); }
@@ -66,10 +66,14 @@ void removeDeadAttempts(const fs::path& folder) {
 }
 
 void removeEarlierRestarts(const BatchFolder& folder, const std::string& slurm_attempt) {
-  const std::string element = slurm_attempt.substr(0, slurm_attempt.rfind('-') + 1);
+  const auto restart_end = slurm_attempt.rfind('-');
+  const auto restart = slurm_attempt.rfind('-', restart_end - 1) + 1;
+  const std::string element = slurm_attempt.substr(0, restart);
+  const int ours = std::atoi(slurm_attempt.c_str() + restart);
   std::error_code ignored;
   for (const Attempt& attempt : attemptsOf(folder))
-    if (attempt.who.starts_with(element) && attempt.who != slurm_attempt) fs::remove_all(attempt.folder, ignored);
+    if (attempt.who.starts_with(element) && std::atoi(attempt.who.c_str() + restart) < ours)
+      fs::remove_all(attempt.folder, ignored);
 }
 
 }  // namespace motorcade

@@ -12,20 +12,23 @@ namespace motorcade {
 
 /// WHO of a task that this process performs in one of its slots: HOST-PID-SLOT.
 std::string localAttemptName(std::size_t slot);
-/// WHO of a task that Slurm has this process perform, slurm-JOB_INDEX-RESTART; empty where Slurm does not.
+/// WHO of a task that Slurm has this process perform, slurm-JOB_INDEX-RESTART-PID; empty where Slurm does not. Of a
+/// node that was lost for a while, two processes may perform the same element.
 std::string slurmAttemptName();
 
 struct Attempt {
   std::filesystem::path folder{};
   std::string task{}, who{};
   bool alive = true;  // as far as this machine can tell
+  bool bySlurm() const { return who.starts_with("slurm-"); }
 };
 /// All of a batch, in the order of their tasks.
 std::vector<Attempt> attemptsOf(const BatchFolder& folder);
 
 /// Removes what processes of this machine left that are no longer alive, in this folder and that of the sequences.
 void removeDeadAttempts(const std::filesystem::path& folder);
-/// Removes what an element of an array left before Slurm started it anew: its node was lost.
+/// Removes what an element of an array left before Slurm started it anew, as its node was lost. If it lives on there
+/// all the same, it fails, and does no harm.
 void removeEarlierRestarts(const BatchFolder& folder, const std::string& slurm_attempt);
 
 }  // namespace motorcade

@@ -67,6 +67,16 @@ std::set<fs::path> renderedInto(const Plan& plan) {
   return folders;
 }
 
+/// What was left by processes that are no longer there, here and in Slurm.
+void removeLost(const Plan& plan, const BatchFolder& folder) {
+  removeDeadAttempts(folder.attempts());
+  for (const fs::path& sequences : renderedInto(plan)) removeDeadAttempts(sequences);
+  const auto queued = queuedTasks(folder);
+  std::error_code ignored;
+  for (const Attempt& attempt : attemptsOf(folder))
+    if (attempt.bySlurm() && queued && !queued->contains(attempt.task)) fs::remove_all(attempt.folder, ignored);
+}
+
 LocalRunner::Options slotsFor(const BatchOptions& options) {
   const auto usable = usableProcessors();
   const int processors = std::max(1, static_cast<int>(usable.size()));
@@ -90,8 +100,6 @@ void tellFailures(const std::vector<TaskRecord>& failed) {
 
 int performHere(const BatchOptions& options, const Plan& plan, const BatchFolder& folder, const Remaining& remaining) {
   const LocalLock lock(folder);
-  removeDeadAttempts(folder.attempts());
-  for (const fs::path& sequences : renderedInto(plan)) removeDeadAttempts(sequences);
   StopSignals signals;
   LocalRunner runner(plan, folder, slotsFor(options));
   LocalOutcome outcome;
@@ -110,9 +118,13 @@ int performHere(const BatchOptions& options, const Plan& plan, const BatchFolder
   return failed > 0 ? kExitFailedTasks : 0;
 }
 
-int performInSlurm(const BatchOptions& options, const BatchFolder& folder, const Remaining& remaining) {
+int performInSlurm(const BatchOptions& options, const BatchFolder& folder, Remaining remaining) {
+  const auto queued = queuedTasks(folder);
+  const auto waiting =
+      std::erase_if(remaining.tasks, [&](const Task* task) { return queued && queued->contains(task->name); });
+  if (waiting > 0) std::cout << waiting << " tasks are in Slurm's queue already\n";
   if (remaining.tasks.empty()) {
-    std::cout << "nothing is left to do: motorcade batch merge " << folder.path().string() << "\n";
+    std::cout << "nothing is left to submit; see motorcade batch status " << folder.path().string() << "\n";
     return 0;
   }
   const SlurmSubmission submission = submitTasks(remaining.tasks, folder, options.slurm_options);
@@ -165,6 +177,7 @@ int runBatch(const BatchOptions& options) {
   fs::create_directories(folder.path(), error);
   if (error) throw OutputError(folder.path().string() + ": cannot be made: " + error.message());
   writePlan(folder.plan(), plan);
+  removeLost(plan, folder);
   const Remaining remaining = remainingOf(plan, folder, options.retry);
   return options.slurm ? performInSlurm(options, folder, remaining) : performHere(options, plan, folder, remaining);
 }

@@ -35,23 +35,12 @@ BatchFolder openBatch(const std::filesystem::path& path) {
   return folder;
 }
 
-/// What Slurm says of tasks that have not ended, by their names.
-std::map<std::string, QueuedElement> queuedTasks(const BatchFolder& folder) {
-  std::map<std::string, QueuedElement> queued;
-  for (const SlurmSubmission& submission : readSubmissions(folder))
-    for (const auto& job : submission.jobs) {
-      if (job.array.count == 0 || job.array.only_render) continue;
-      const auto names = readTaskList(job.array.list);
-      for (QueuedElement& element : queuedElements({job.id}))
-        if (const std::size_t line = job.array.first + element.index; line < names.size())
-          queued[names[line]] = std::move(element);
-    }
-  return queued;
-}
-
 class StateReader {
  public:
-  explicit StateReader(const BatchFolder& folder) : folder_(folder), queued_(queuedTasks(folder)) {
+  explicit StateReader(const BatchFolder& folder) : folder_(folder) {
+    auto queued = queuedTasks(folder);
+    slurm_answers_ = queued.has_value();
+    if (queued) queued_ = std::move(*queued);
     for (const Attempt& attempt : attemptsOf(folder)) attempts_[attempt.task] = attempt;
   }
 
@@ -60,8 +49,8 @@ class StateReader {
     const auto queued = queued_.find(task.name);
     const bool in_slurm = queued != queued_.end();
     const auto attempt = attempts_.find(task.name);
-    const bool lost =
-        attempt != attempts_.end() && (!attempt->second.alive || isLeftBySlurm(attempt->second, in_slurm));
+    const bool lost = attempt != attempts_.end() &&
+                      (!attempt->second.alive || (attempt->second.bySlurm() && slurm_answers_ && !in_slurm));
     if (attempt != attempts_.end() && !lost)
       return {task.name, "running",
               fmt::format("{:.0f} of {} frames, {}", framesWritten(runIn(attempt->second.folder)), task.frames,
@@ -72,11 +61,8 @@ class StateReader {
   }
 
  private:
-  static bool isLeftBySlurm(const Attempt& attempt, bool in_slurm) {
-    return attempt.who.starts_with("slurm-") && !in_slurm;
-  }
-
   const BatchFolder& folder_;
+  bool slurm_answers_ = false;
   std::map<std::string, QueuedElement> queued_;
   std::map<std::string, Attempt> attempts_;
 };
@@ -129,11 +115,14 @@ int runBatchCancel(const std::filesystem::path& batch) {
     std::cout << "told process " << runner->pid << " to end\n";
     anything = true;
   }
-  std::set<std::string> waiting;
   std::vector<std::string> jobs;
   for (const SlurmSubmission& submission : readSubmissions(folder))
-    for (const std::string& id : submission.ids()) jobs.push_back(id);
-  for (const std::string& job : queuedJobs(jobs)) waiting.insert(job);
+    for (const auto& job : submission.jobs) jobs.push_back(job.id);
+  std::set<std::string> waiting;
+  const auto queued = queuedElements(jobs);
+  if (!queued)
+    throw UsageError("squeue does not answer: jobs " + fmt::format("{}", fmt::join(jobs, ", ")) + " may go on");
+  for (const QueuedElement& element : *queued) waiting.insert(element.job);
   if (!waiting.empty()) {
     cancelJobs({waiting.begin(), waiting.end()});
     std::cout << "cancelled " << fmt::format("{}", fmt::join(waiting, ", ")) << " in Slurm\n";

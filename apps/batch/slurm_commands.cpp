@@ -96,31 +96,32 @@ std::size_t largestArray() {
   return size > 0 ? size : kDefaultArray;
 }
 
-std::vector<QueuedElement> queuedElements(const std::vector<std::string>& jobs) {
-  std::vector<QueuedElement> elements;
-  for (const std::string& job : jobs) {  // one by one: squeue knows nothing of any where it has forgotten one
-    const Answer answer = ask({"squeue", "--noheader", "--array", "--format=%K|%T|%r", "--jobs=" + job});
-    if (answer.exit_code != 0) continue;
-    std::istringstream lines(answer.text);
-    for (std::string line; std::getline(lines, line);) {
-      const auto first = line.find('|'), second = line.find('|', first + 1);
-      if (second == std::string::npos) continue;
-      QueuedElement element{
-          .job = job, .state = line.substr(first + 1, second - first - 1), .reason = trimmed(line.substr(second + 1))};
-      const auto parsed = std::from_chars(line.data(), line.data() + first, element.index);
-      if (parsed.ec == std::errc()) elements.push_back(std::move(element));
-    }
-  }
-  return elements;
+namespace {
+
+/// Of a line JOB|INDEX|STATE|REASON; the index of a job without elements is N/A.
+QueuedElement elementOf(const std::string& line) {
+  std::istringstream fields(line);
+  QueuedElement element;
+  std::string index;
+  std::getline(fields, element.job, '|');
+  std::getline(fields, index, '|');
+  std::getline(fields, element.state, '|');
+  std::getline(fields, element.reason, '|');
+  std::from_chars(index.data(), index.data() + index.size(), element.index);
+  return element;
 }
 
-std::vector<std::string> queuedJobs(const std::vector<std::string>& jobs) {
-  std::vector<std::string> queued;
-  for (const std::string& job : jobs) {
-    const Answer answer = ask({"squeue", "--noheader", "--format=%i", "--jobs=" + job});
-    if (answer.exit_code == 0 && !answer.text.empty()) queued.push_back(job);
-  }
-  return queued;
+}  // namespace
+
+std::optional<std::vector<QueuedElement>> queuedElements(const std::vector<std::string>& jobs) {
+  std::vector<QueuedElement> elements;
+  if (jobs.empty()) return elements;
+  const Answer answer = ask({"squeue", "--noheader", "--array", "--format=%F|%K|%T|%r", "--jobs=" + joined(jobs, ",")});
+  if (answer.text.find("Invalid job id") != std::string::npos) return elements;  // it has forgotten all of them
+  if (answer.exit_code != 0) return std::nullopt;
+  std::istringstream lines(answer.text);
+  for (std::string line; std::getline(lines, line);) elements.push_back(elementOf(line));
+  return elements;
 }
 
 void cancelJobs(const std::vector<std::string>& jobs) {

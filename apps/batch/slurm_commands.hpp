@@ -1,7 +1,7 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,17 +15,14 @@ std::string submitScript(const std::filesystem::path& script, const std::vector<
 /// The largest index of an array plus one; Slurm's default where there is no Slurm.
 std::size_t largestArray();
 
-/// Where the elements of arrays are that have not ended.
+/// An element of an array, or a job without any, that has not ended.
 struct QueuedElement {
   std::string job{};
-  std::size_t index = 0;
+  std::size_t index = 0;          // in its array
   std::string state{}, reason{};  // as squeue names them
 };
-/// Empty also where there is no Slurm, or it does not answer.
-std::vector<QueuedElement> queuedElements(const std::vector<std::string>& jobs);
-
-/// Those of the jobs that have not ended.
-std::vector<std::string> queuedJobs(const std::vector<std::string>& jobs);
+/// Those of these jobs. No value where there is no Slurm, or it does not answer.
+std::optional<std::vector<QueuedElement>> queuedElements(const std::vector<std::string>& jobs);
 
 /// Throws UsageError with what scancel complains of.
 void cancelJobs(const std::vector<std::string>& jobs);

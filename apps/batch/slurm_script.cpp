@@ -51,6 +51,7 @@ std::string SlurmScripts::array(const SlurmArray& array) const {
 
 std::string SlurmScripts::merge() const {
   return headOf("merge", submission / "merge.log", options) + "#SBATCH --ntasks=1\n" +
+         fmt::format("#SBATCH --mem={}M\n", options.memory_mb) +
          fmt::format("exec {} batch merge {}\n", quoted(program.string()), quoted(batch.string()));
 }
 

@@ -6,7 +6,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/batch/slurm_commands.hpp"
 #include "apps/console/own_program.hpp"
 #include "apps/tasks/task_json.hpp"
 #include "io/errors.hpp"
@@ -122,12 +121,6 @@ class Submitter {
 
 }  // namespace
 
-std::vector<std::string> SlurmSubmission::ids() const {
-  std::vector<std::string> ids;
-  for (const Job& job : jobs) ids.push_back(job.id);
-  return ids;
-}
-
 SlurmSubmission submitTasks(const std::vector<const Task*>& tasks, const BatchFolder& folder,
                             const SlurmOptions& options) {
   requireWritableInScript(folder.path());
@@ -156,6 +149,29 @@ std::vector<SlurmSubmission> readSubmissions(const BatchFolder& folder) {
     submissions.push_back(readJson<SlurmSubmission>(jobsIn(submission), "a list of Slurm's jobs", submissionOf));
     submissions.back().folder = submission;
   }
+}
+
+std::optional<std::map<std::string, QueuedElement>> queuedTasks(const BatchFolder& folder) {
+  std::map<std::string, SlurmArray> arrays;  // by their jobs
+  std::vector<std::string> jobs;
+  for (const SlurmSubmission& submission : readSubmissions(folder))
+    for (const auto& job : submission.jobs)
+      if (job.array.count > 0 && !job.array.only_render) {
+        arrays[job.id] = job.array;
+        jobs.push_back(job.id);
+      }
+  std::map<std::string, QueuedElement> queued;
+  std::map<fs::path, std::vector<std::string>> lists;
+  auto elements = queuedElements(jobs);
+  if (!elements) return std::nullopt;
+  for (QueuedElement& element : *elements) {
+    const SlurmArray& array = arrays[element.job];
+    auto& names = lists[array.list];
+    if (names.empty()) names = readTaskList(array.list);
+    if (const std::size_t line = array.first + element.index; line < names.size())
+      queued[names[line]] = std::move(element);
+  }
+  return queued;
 }
 
 std::vector<std::string> readTaskList(const fs::path& list) {

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/batch/slurm_commands.hpp"
 #include "apps/batch/slurm_script.hpp"
 #include "apps/tasks/batch_folder.hpp"
 #include "apps/tasks/plan.hpp"
@@ -18,8 +21,6 @@ struct SlurmSubmission {
     SlurmArray array{};  // empty, of count 0, for the job that merges
   };
   std::vector<Job> jobs{};
-
-  std::vector<std::string> ids() const;
 };
 
 /// Writes the scripts for these tasks, one array for the scenes that must be rendered before, and submits them; the
@@ -30,6 +31,9 @@ SlurmSubmission submitTasks(const std::vector<const Task*>& tasks, const BatchFo
 
 /// All submissions of a batch, the first one first.
 std::vector<SlurmSubmission> readSubmissions(const BatchFolder& folder);
+
+/// What Slurm says of tasks of a batch that have not ended, by their names. No value where it does not answer.
+std::optional<std::map<std::string, QueuedElement>> queuedTasks(const BatchFolder& folder);
 
 /// The names of tasks in a list, by line.
 std::vector<std::string> readTaskList(const std::filesystem::path& list);
