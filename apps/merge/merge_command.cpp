@@ -1,5 +1,51 @@
-// Provisional: replaced by the author of this room.
 #include "apps/merge/merge_command.hpp"
+
+#include <iostream>
+
+#include "apps/merge/merged_files.hpp"
+#include "apps/tasks/batch_folder.hpp"
+#include "io/errors.hpp"
+#include "io/line_file.hpp"
+
 namespace motorcade {
-int runMerge(const MergeOptions&) { return 0; }
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path absoluteOf(const fs::path& path) {
+  const fs::path absolute = fs::absolute(path).lexically_normal();
+  return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
+Merged mergedOf(const MergeOptions& options) {
+  Merged merged{.batch = readBatch(absoluteOf(options.batch), options.baseline_set)};
+  if (merged.batch.count(TaskOutcome::kDone) == 0)
+    throw InputError(options.batch.string() +
+                     ": no task of this plan is done yet, or all were planned anew since; see motorcade batch status");
+  merged.groups = groupsOf(merged.batch);
+  if (!options.against.empty()) {
+    const MergedBatch other = readBatch(absoluteOf(options.against), "");
+    merged.comparison = compareBatches(merged.groups, groupsOf(other), options.against);
+  }
+  return merged;
+}
+
+}  // namespace
+
+int runMerge(const MergeOptions& options) {
+  const Merged merged = mergedOf(options);
+  const fs::path out = options.out.empty() ? BatchFolder(absoluteOf(options.batch)).merged() : options.out;
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) throw OutputError(out.string() + ": cannot be made: " + error.message());
+  writeAtOnce(out / "results.csv", csvOf(merged));
+  writeAtOnce(out / "results.json", jsonOf(merged));
+  writeAtOnce(out / "results.md", markdownOf(merged));
+  writeAtOnce(out / "report.html", pageOf(merged));
+  std::cout << markdownOf(overviewTable(merged.groups));
+  if (merged.comparison) std::cout << markdownOf(testTable(*merged.comparison));
+  std::cout << "tables and page: " << out.string() << "/results.md, .csv, .json, report.html\n";
+  return 0;
+}
+
 }  // namespace motorcade

@@ -6,12 +6,13 @@
 namespace motorcade {
 
 struct MergeOptions {
-  std::filesystem::path batch{}, out{};  // BATCH/merged when empty
+  std::filesystem::path batch{}, out{};  // `merged` in the batch's folder when empty
   std::filesystem::path against{};       // another batch to compare with; empty for none
-  std::string baseline_set{};            // the plan's when empty
+  std::string baseline_set{};            // whose objects others are compared with; the plan's when empty
 };
 
-/// Writes tables and a page of all results of a batch; gives the exit code.
+/// Writes results.csv, results.json, results.md and report.html of all that is finished, and prints the table to read
+/// first; gives the exit code. Failures are UserErrors.
 int runMerge(const MergeOptions& options);
 
 }  // namespace motorcade

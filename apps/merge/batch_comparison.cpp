@@ -1,0 +1,172 @@
+#include "apps/merge/batch_comparison.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "apps/merge/paired_test.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr double kSignificant = 0.05;
+
+/// What is compared: few measures that say most, as each more makes the test less sharp.
+constexpr std::array<std::string_view, 15> kAccuracy{"camera_ate_m",
+                                                     "camera_rpe_t_rmse_m",
+                                                     "camera_rpe_r_rmse_deg",
+                                                     "me_t_m",
+                                                     "me_r_deg",
+                                                     "speed_error_mps",
+                                                     "objects_as_seen_m",
+                                                     "found_30m",
+                                                     "false_rows",
+                                                     "id_switches",
+                                                     "hota",
+                                                     "box_iou_2d",
+                                                     "box_iou_bird",
+                                                     "mask_iou",
+                                                     "tracked_fraction"};
+constexpr std::array<std::string_view, 4> kCost{"latency_p50_ms", "latency_p99_ms", "cpu_per_frame_ms",
+                                                "peak_memory_mb"};
+
+using SeedValues = std::map<std::string, const MeasureValues*>;  // by drive, seed and set
+
+std::size_t setsIn(const std::vector<ResultGroup>& groups) {
+  std::set<std::string> sets;
+  for (const ResultGroup& group : groups) sets.insert(group.set());
+  return sets.size();
+}
+
+SeedValues valuesBySeed(const std::vector<ResultGroup>& groups, bool with_sets) {
+  SeedValues values;
+  for (const ResultGroup& group : groups)
+    for (const auto& seed : group.seeds()) {
+      std::string name = group.drive();
+      if (seed.seed) name += fmt::format("-{}", *seed.seed);
+      values[with_sets ? name + "." + group.set() : name] = &seed.values;
+    }
+  return values;
+}
+
+/// One result in both batches.
+struct Pair {
+  std::string name;
+  const MeasureValues *before, *now;
+};
+
+/// Those that only one of both batches has are named.
+std::vector<Pair> pairsOf(const SeedValues& ours, const SeedValues& others, std::vector<std::string>& unpaired) {
+  std::vector<Pair> pairs;
+  for (const auto& [name, values] : ours) {
+    const auto other = others.find(name);
+    if (other == others.end())
+      unpaired.push_back(name + " (not in the other batch)");
+    else
+      pairs.push_back({name, other->second, values});
+  }
+  for (const auto& [name, values] : others)
+    if (!ours.contains(name)) unpaired.push_back(name + " (only in the other batch)");
+  return pairs;
+}
+
+double medianOf(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::ranges::sort(values);
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+MeasureComparison compare(std::string_view measure, const std::vector<Pair>& pairs) {
+  const std::size_t index = measureIndex(measure);
+  const bool lower_is_better = allMeasures()[index].better == Better::kLower;
+  MeasureComparison comparison{.measure = measure};
+  std::vector<double> changes;
+  for (const Pair& pair : pairs) {
+    const double before = (*pair.before)[index], now = (*pair.now)[index];
+    if (std::isnan(before) || std::isnan(now)) continue;
+    changes.push_back(relativeChange(before, now));
+    if (changes.back() != 0) ++((changes.back() < 0) == lower_is_better ? comparison.better : comparison.worse);
+  }
+  comparison.pairs = changes.size();
+  comparison.median_change = medianOf(changes);
+  comparison.p = signedRankTest(changes);
+  return comparison;
+}
+
+std::string verdictOn(const MeasureComparison& comparison) {
+  const std::size_t different = comparison.better + comparison.worse;
+  if (different == 0) return "the same";
+  if (different < kFewestDifferences) return "too few pairs differ to tell";
+  if (comparison.corrected_p >= kSignificant) return "no difference that is sure";
+  return comparison.better > comparison.worse ? "better" : "worse";
+}
+
+void addRegressions(BatchComparison& comparison, std::string_view measure, const std::vector<Pair>& pairs) {
+  const std::size_t index = measureIndex(measure);
+  const bool lower_is_better = allMeasures()[index].better == Better::kLower;
+  for (const Pair& pair : pairs) {
+    const double before = (*pair.before)[index], now = (*pair.now)[index];
+    if (std::isnan(before) || std::isnan(now)) continue;
+    const double change = relativeChange(before, now);
+    if ((lower_is_better ? change : -change) > kWorthTelling)
+      comparison.regressions.push_back({pair.name, measure, before, now, change});
+  }
+}
+
+}  // namespace
+
+double relativeChange(double before, double now) {
+  const double mean = (std::abs(before) + std::abs(now)) / 2;
+  return mean > 0 ? (now - before) / mean : 0;
+}
+
+BatchComparison compareBatches(const std::vector<ResultGroup>& ours, const std::vector<ResultGroup>& others,
+                               const std::filesystem::path& against) {
+  BatchComparison comparison{.against = against};
+  const bool with_sets = setsIn(ours) > 1 || setsIn(others) > 1;
+  const auto pairs = pairsOf(valuesBySeed(ours, with_sets), valuesBySeed(others, with_sets), comparison.unpaired);
+  for (const std::string_view measure : kAccuracy) {
+    comparison.measures.push_back(compare(measure, pairs));
+    addRegressions(comparison, measure, pairs);
+  }
+  for (const std::string_view measure : kCost) comparison.measures.push_back(compare(measure, pairs));
+  std::erase_if(comparison.measures, [](const MeasureComparison& measure) { return measure.pairs == 0; });
+  std::vector<double> p_values;
+  for (const auto& measure : comparison.measures) p_values.push_back(measure.p);
+  const auto corrected = holmCorrected(p_values);
+  for (std::size_t i = 0; i < corrected.size(); ++i) {
+    comparison.measures[i].corrected_p = corrected[i];
+    comparison.measures[i].verdict = verdictOn(comparison.measures[i]);
+  }
+  std::ranges::stable_sort(comparison.regressions, std::greater(),
+                           [](const Regression& regression) { return std::abs(regression.change); });
+  return comparison;
+}
+
+ResultTable testTable(const BatchComparison& comparison) {
+  ResultTable table{.title = "Against " + comparison.against.string(),
+                    .heads = {"measure", "verdict", "pairs", "better", "worse", "median change", "p", "p, corrected"},
+                    .names = 2};
+  for (const auto& m : comparison.measures)
+    table.rows.push_back({std::string(m.measure), m.verdict, std::to_string(m.pairs), std::to_string(m.better),
+                          std::to_string(m.worse), fmt::format("{:+.1f} %", 100 * m.median_change), numberText(m.p, 4),
+                          numberText(m.corrected_p, 4)});
+  return table;
+}
+
+ResultTable regressionTable(const BatchComparison& comparison) {
+  ResultTable table{.title = fmt::format("Worse by more than {:.0f} %", 100 * kWorthTelling),
+                    .heads = {"result", "measure", "before", "now", "change"},
+                    .names = 2};
+  for (const auto& regression : comparison.regressions)
+    table.rows.push_back({regression.result, std::string(regression.measure), fmt::format("{:.4g}", regression.before),
+                          fmt::format("{:.4g}", regression.now), fmt::format("{:+.1f} %", 100 * regression.change)});
+  return table;
+}
+
+}  // namespace motorcade

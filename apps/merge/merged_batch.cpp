@@ -1,0 +1,167 @@
+#include "apps/merge/merged_batch.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "apps/evaluate/evaluation.hpp"
+#include "apps/latency/latency_report.hpp"
+#include "apps/tasks/batch_folder.hpp"
+#include "apps/tasks/task_performer.hpp"
+#include "io/errors.hpp"
+#include "io/frame_table.hpp"
+#include "io/text_file.hpp"
+
+namespace motorcade {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostWorst = 20;
+
+nlohmann::json jsonIn(const fs::path& file) {
+  std::error_code none;
+  if (!fs::exists(file, none)) return nullptr;
+  try {
+    return nlohmann::json::parse(readWhole(file));
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(file.string() + ": is damaged (" + printable(error.what(), 100) +
+                     "); remove the folder of this result and run the batch again");
+  }
+}
+
+/// Keeps the largest values; of equal ones the first.
+void keepWorst(std::vector<WorstFrame>& worst, WorstFrame frame) {
+  const auto place = std::ranges::upper_bound(worst, frame.value, std::greater(), &WorstFrame::value);
+  if (place == worst.end() && worst.size() == kMostWorst) return;
+  worst.insert(place, std::move(frame));
+  if (worst.size() > kMostWorst) worst.pop_back();
+}
+
+void addWorstErrors(MergedBatch& batch, const std::string& task, const nlohmann::json& evaluation) {
+  if (!evaluation.contains("worst_frames")) return;  // of an earlier version
+  const auto& worst = evaluation.at("worst_frames");
+  for (const auto& frame : worst.at("camera"))
+    keepWorst(batch.worst_camera_m, {task, frame.at("frame"), frame.at("rpe_t_m"),
+                                     fmt::format("{:.3f} deg", frame.at("rpe_r_deg").get<double>())});
+  for (const auto& frame : worst.at("objects"))
+    keepWorst(batch.worst_object_m,
+              {task, frame.at("frame"), frame.at("me_t_m"),
+               fmt::format("label {}, track {}", frame.at("label").get<int>(), frame.at("track_id").get<int>())});
+}
+
+/// The frames of a run that came out latest, each with what lies most above its median frame.
+void addLatestFrames(MergedBatch& batch, const std::string& task, const fs::path& run) {
+  constexpr std::size_t kPerTask = 5;
+  for (const SlowFrame& slow : latencyReport(readFrames(run / "frames.csv"), kPerTask).slowest) {
+    const std::string most = slow.above_median.empty() ? ""
+                                                       : fmt::format("{} {:+.1f} ms", slow.above_median.front().name,
+                                                                     slow.above_median.front().ms);
+    keepWorst(batch.latest_ms, {task, slow.row.frame.value, slow.row.latency_ms, most});
+  }
+}
+
+void addLatencies(std::map<double, std::int64_t>& latencies, const nlohmann::json& summary) {
+  const nlohmann::json::json_pointer buckets("/latency_ms/buckets");
+  if (summary.is_null() || !summary.contains(buckets)) return;
+  for (const auto& bucket : summary.at(buckets)) latencies[bucket.at(0)] += bucket.at(1).get<std::int64_t>();
+}
+
+void readResult(MergedBatch& batch, MergedTask& merged, const fs::path& result) {
+  const auto evaluation = jsonIn(evaluationIn(result)), summary = jsonIn(runIn(result) / "summary.json");
+  try {
+    merged.values = measuresOf(evaluation, summary);
+    merged.has_labels = evaluation.is_object() && evaluation.at("final").contains("detection");
+    if (evaluation.is_object()) addWorstErrors(batch, merged.task.name, evaluation);
+    addLatencies(batch.latencies[merged.task.set], summary);
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(result.string() + ": has a measure of another kind than expected (" +
+                     printable(error.what(), 100) + "); remove it and run the batch again");
+  }
+  addLatestFrames(batch, merged.task.name, runIn(result));
+}
+
+MergedTask merge(MergedBatch& batch, const Task& task, const BatchFolder& folder) {
+  MergedTask merged{.task = task};
+  merged.values.assign(allMeasures().size(), kNoValue);
+  if (auto record = finishedRecord(task, folder)) {
+    merged.outcome = TaskOutcome::kDone;
+    merged.record = std::move(*record);
+    readResult(batch, merged, folder.result(task.name));
+  } else if (auto failed = failedRecord(task, folder)) {
+    merged.outcome = TaskOutcome::kFailed;
+    merged.record = std::move(*failed);
+  }
+  return merged;
+}
+
+/// What results that are compared with each other have in common.
+std::string pairKey(const Task& task) {
+  return fmt::format("{}/{}/{}", task.drive, task.seed ? std::to_string(*task.seed) : "", task.repetition);
+}
+
+/// Sets the relative errors of a result against that of the baseline's set.
+void compareWith(const Task& baseline, MergedTask& task, const BatchFolder& folder) {
+  EvaluateOptions options;
+  options.run = runIn(folder.result(task.task.name));
+  options.baseline_run = runIn(folder.result(baseline.name));
+  try {
+    const auto compared = evaluateRun(options).objects_against_baseline;
+    if (!compared || compared->objects_of_mean == 0) return;
+    const auto set = [&](std::string_view name, PositionKind kind) {
+      task.values[measureIndex(name)] = compared->mean_relative_error[static_cast<std::size_t>(kind)];
+    };
+    set("re_aligned", PositionKind::kAligned);
+    set("re_offset_removed", PositionKind::kWorldOffsetRemoved);
+    set("re_as_seen", PositionKind::kAsSeenOffsetRemoved);
+  } catch (const UserError& error) {
+    spdlog::warn("{} is not compared with {}: {}", task.task.name, baseline.name, error.what());
+  }
+}
+
+void compareWithBaseline(MergedBatch& batch, const std::string& set) {
+  const BatchFolder folder(batch.folder);
+  std::map<std::string, const Task*> baselines;
+  for (const MergedTask& task : batch.tasks)
+    if (task.task.set == set && task.outcome == TaskOutcome::kDone) baselines[pairKey(task.task)] = &task.task;
+  for (MergedTask& task : batch.tasks) {
+    const auto baseline = baselines.find(pairKey(task.task));
+    if (task.outcome != TaskOutcome::kDone || !task.has_labels || task.task.set == set) continue;
+    if (baseline != baselines.end()) compareWith(*baseline->second, task, folder);
+  }
+}
+
+}  // namespace
+
+std::string_view outcomeName(TaskOutcome outcome) {
+  switch (outcome) {
+    case TaskOutcome::kDone:
+      return "done";
+    case TaskOutcome::kFailed:
+      return "failed";
+    case TaskOutcome::kMissing:
+      return "missing";
+  }
+  return "";
+}
+
+std::size_t MergedBatch::count(TaskOutcome outcome) const {
+  return static_cast<std::size_t>(std::ranges::count(tasks, outcome, &MergedTask::outcome));
+}
+
+MergedBatch readBatch(const fs::path& folder, const std::string& baseline_set) {
+  const BatchFolder batch_folder(folder);
+  if (!fs::exists(batch_folder.plan()))
+    throw InputError(folder.string() + ": is no folder of a batch; start one with motorcade batch MANIFEST --out " +
+                     folder.string());
+  MergedBatch batch{.folder = folder, .plan = readPlan(batch_folder.plan())};
+  for (const Task& task : batch.plan.tasks) batch.tasks.push_back(merge(batch, task, batch_folder));
+  const std::string& baseline = baseline_set.empty() ? batch.plan.baseline_set : baseline_set;
+  if (!baseline.empty()) compareWithBaseline(batch, baseline);
+  return batch;
+}
+
+}  // namespace motorcade

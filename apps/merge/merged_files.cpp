@@ -1,0 +1,165 @@
+#include "apps/merge/merged_files.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/tasks/task_json.hpp"
+
+namespace motorcade {
+namespace {
+
+Json valueOf(double value) { return std::isnan(value) ? Json() : Json(value); }
+
+Json valuesOf(const MeasureValues& values) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < values.size(); ++i) json[std::string(allMeasures()[i].name)] = valueOf(values[i]);
+  return json;
+}
+
+std::string failureOf(const MergedTask& task) {
+  return task.record.failure ? task.record.failure->message : std::string();
+}
+
+Json jsonOf(const MergedTask& task) {
+  Json json = {{"task", task.task.name},
+               {"drive", task.task.drive},
+               {"set", task.task.set},
+               {"seed", orNull(task.task.seed)},
+               {"repetition", task.task.repetition},
+               {"status", std::string(outcomeName(task.outcome))},
+               {"failure", failureOf(task)}};
+  json["measures"] = task.outcome == TaskOutcome::kDone ? valuesOf(task.values) : Json();
+  return json;
+}
+
+Json jsonOf(const ResultGroup& group) {
+  Json measures = Json::object();
+  for (const Measure& measure : allMeasures())
+    if (const auto n = group.count(measure.name); n > 0)
+      measures[std::string(measure.name)] = {{"mean", group.mean(measure.name)},
+                                             {"min", group.smallest(measure.name)},
+                                             {"max", group.largest(measure.name)},
+                                             {"seeds", n}};
+  return {{"drive", group.drive()}, {"set", group.set()}, {"measures", std::move(measures)}};
+}
+
+Json jsonOf(const std::vector<WorstFrame>& frames) {
+  Json json = Json::array();
+  for (const WorstFrame& frame : frames)
+    json.push_back({{"task", frame.task}, {"frame", frame.frame}, {"value", frame.value}, {"more", frame.more}});
+  return json;
+}
+
+Json jsonOf(const BatchComparison& comparison) {
+  Json measures = Json::array(), regressions = Json::array();
+  for (const auto& m : comparison.measures)
+    measures.push_back({{"measure", std::string(m.measure)},
+                        {"pairs", m.pairs},
+                        {"better", m.better},
+                        {"worse", m.worse},
+                        {"median_change", m.median_change},
+                        {"p", m.p},
+                        {"corrected_p", m.corrected_p},
+                        {"verdict", m.verdict}});
+  for (const auto& r : comparison.regressions)
+    regressions.push_back({{"result", r.result},
+                           {"measure", std::string(r.measure)},
+                           {"before", r.before},
+                           {"now", r.now},
+                           {"change", r.change}});
+  return {{"against", comparison.against.string()},
+          {"measures", std::move(measures)},
+          {"regressions", std::move(regressions)},
+          {"unpaired", comparison.unpaired}};
+}
+
+/// Of a table, as RFC 4180 has it.
+std::string csvField(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + '"';
+}
+
+std::string joined(const std::vector<std::string>& fields) { return fmt::format("{}\n", fmt::join(fields, ",")); }
+
+}  // namespace
+
+std::string csvOf(const Merged& merged) {
+  std::vector<std::string> head{"task", "drive", "set", "seed", "repetition", "status", "failure"};
+  for (const Measure& measure : allMeasures()) head.emplace_back(measure.name);
+  std::string csv = joined(head);
+  for (const MergedTask& task : merged.batch.tasks) {
+    std::vector<std::string> row{task.task.name,
+                                 task.task.drive,
+                                 task.task.set,
+                                 task.task.seed ? std::to_string(*task.task.seed) : "",
+                                 std::to_string(task.task.repetition),
+                                 std::string(outcomeName(task.outcome)),
+                                 csvField(failureOf(task))};
+    for (const double value : task.values) row.push_back(std::isnan(value) ? "" : fmt::format("{}", value));
+    csv += joined(row);
+  }
+  return csv;
+}
+
+std::string jsonOf(const Merged& merged) {
+  const MergedBatch& batch = merged.batch;
+  Json tasks = Json::array(), groups = Json::array();
+  for (const MergedTask& task : batch.tasks) tasks.push_back(jsonOf(task));
+  for (const ResultGroup& group : merged.groups) groups.push_back(jsonOf(group));
+  return textOf({{"tasks", std::move(tasks)},
+                 {"groups", std::move(groups)},
+                 {"worst_frames",
+                  {{"camera_rpe_t_m", jsonOf(batch.worst_camera_m)},
+                   {"object_me_t_m", jsonOf(batch.worst_object_m)},
+                   {"latency_ms", jsonOf(batch.latest_ms)}}},
+                 {"comparison", merged.comparison ? jsonOf(*merged.comparison) : Json()}});
+}
+
+std::string markdownOf(const Merged& merged) {
+  const MergedBatch& batch = merged.batch;
+  std::string text =
+      fmt::format("# {} tasks: {} done, {} failed, {} missing\n\n", batch.tasks.size(), batch.count(TaskOutcome::kDone),
+                  batch.count(TaskOutcome::kFailed), batch.count(TaskOutcome::kMissing));
+  const auto add = [&](const ResultTable& table) {
+    if (!table.rows.empty()) text += markdownOf(table);
+  };
+  add(overviewTable(merged.groups));
+  if (merged.comparison) {
+    add(testTable(*merged.comparison));
+    add(regressionTable(*merged.comparison));
+    if (!merged.comparison->unpaired.empty())
+      text += fmt::format("Not compared: {}.\n\n", fmt::join(merged.comparison->unpaired, ", "));
+  }
+  add(unfinishedTable(batch));
+  for (const ResultTable& table : measureTables(merged.groups)) add(table);
+  add(worstFrameTable("Frames with the largest error of the camera's motion", "RPE_t m", batch.worst_camera_m));
+  add(worstFrameTable("Frames with the largest error of an object's motion", "ME_t m", batch.worst_object_m));
+  add(worstFrameTable("Frames that came out latest", "latency ms", batch.latest_ms));
+  return text;
+}
+
+ResultTable unfinishedTable(const MergedBatch& batch) {
+  ResultTable table{.title = "Without result", .heads = {"task", "status", "why", "last line"}, .names = 4};
+  for (const MergedTask& task : batch.tasks) {
+    if (task.outcome == TaskOutcome::kDone) continue;
+    const bool has_lines = task.record.failure && !task.record.failure->last_lines.empty();
+    table.rows.push_back({task.task.name, std::string(outcomeName(task.outcome)), failureOf(task),
+                          has_lines ? task.record.failure->last_lines.back() : ""});
+  }
+  return table;
+}
+
+ResultTable worstFrameTable(const std::string& title, const std::string& value, const std::vector<WorstFrame>& frames) {
+  ResultTable table{.title = title, .heads = {"task", "frame", value, "", "to see it"}, .names = 1};
+  for (const WorstFrame& frame : frames)
+    table.rows.push_back({frame.task, std::to_string(frame.frame), fmt::format("{:.4g}", frame.value), frame.more,
+                          fmt::format("motorcade draw results/{}/run --frames {}:{} --out frames", frame.task,
+                                      std::max<std::int64_t>(0, frame.frame - 1), frame.frame + 1)});
+  return table;
+}
+
+}  // namespace motorcade

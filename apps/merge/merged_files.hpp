@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/merge/batch_comparison.hpp"
+#include "apps/merge/groups.hpp"
+#include "apps/merge/merged_batch.hpp"
+
+/// What is written of a merged batch, each as the content of a file.
+namespace motorcade {
+
+/// All that there is to tell.
+struct Merged {
+  MergedBatch batch{};
+  std::vector<ResultGroup> groups{};
+  std::optional<BatchComparison> comparison{};
+};
+
+/// A row for each task, with every measure.
+std::string csvOf(const Merged& merged);
+/// Tasks, groups, worst frames and the comparison.
+std::string jsonOf(const Merged& merged);
+/// The tables.
+std::string markdownOf(const Merged& merged);
+/// A page in one file, with the tables and charts.
+std::string pageOf(const Merged& merged);
+
+/// Tasks without a result, and why.
+ResultTable unfinishedTable(const MergedBatch& batch);
+/// Frames to look at, of one kind of `value`.
+ResultTable worstFrameTable(const std::string& title, const std::string& value, const std::vector<WorstFrame>& frames);
+
+}  // namespace motorcade

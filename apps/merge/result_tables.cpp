@@ -1,0 +1,215 @@
+#include "apps/merge/result_tables.hpp"
+
+#include <cmath>
+#include <functional>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace motorcade {
+namespace {
+
+struct Column {
+  std::string head;
+  std::function<std::string(const ResultGroup&)> cell;
+};
+
+/// The mean over the seeds.
+Column meanColumn(std::string head, std::string_view measure, int digits, std::string behind = "") {
+  return {std::move(head), [=](const ResultGroup& group) { return numberText(group.mean(measure), digits) + behind; }};
+}
+
+Column percentColumn(std::string head, std::string_view measure, int digits) {
+  return {std::move(head), [=](const ResultGroup& group) { return percentText(group.mean(measure), digits); }};
+}
+
+/// Two means, as `final / online`.
+Column pairColumn(std::string head, std::string_view first, std::string_view second, int digits) {
+  return {std::move(head), [=](const ResultGroup& group) {
+            return numberText(group.mean(first), digits) + " / " + numberText(group.mean(second), digits);
+          }};
+}
+
+/// A share of counts that are summed over the seeds.
+Column recallColumn(std::string head, std::string_view found, std::string_view labels) {
+  return {std::move(head), [=](const ResultGroup& group) {
+            const double of = group.sum(labels), are = group.sum(found);
+            return of > 0 ? fmt::format("{} ({}/{})", percentText(are / of, 0), numberText(are, 1), numberText(of, 1))
+                          : "-";
+          }};
+}
+
+Column falseRowsColumn() {
+  return {"false rows", [](const ResultGroup& group) {
+            return numberText(group.sum("false_rows"), 1) + " of " + numberText(group.sum("rows"), 1);
+          }};
+}
+
+std::string mountedText(const ResultGroup& group) {
+  if (std::isnan(group.mean("camera_mounted_ate_m"))) return "-";
+  return fmt::format("{}, {} %, {}", numberText(group.mean("camera_mounted_ate_m"), 3),
+                     numberText(group.mean("camera_mounted_end_error_percent"), 2),
+                     numberText(group.mean("camera_mounted_rpe_t_rmse_m"), 4));
+}
+
+std::string driftText(const ResultGroup& group) {
+  return fmt::format("{} / {} / {}", numberText(group.largest("origin_drift_along_m"), 2),
+                     numberText(group.largest("origin_drift_up_m"), 2),
+                     numberText(group.largest("origin_drift_across_m"), 2));
+}
+
+Column firstReportColumn(std::string head, std::string_view median, std::string_view mean, std::string_view never) {
+  return {std::move(head), [=](const ResultGroup& group) {
+            const double missed = group.sum(never);
+            return numberText(group.mean(median), 1) + " / " + numberText(group.mean(mean), 1) +
+                   (missed > 0 ? ", " + numberText(missed, 1) + " never" : "");
+          }};
+}
+
+Column kindsColumn() {
+  return {"kinds right final / online", [](const ResultGroup& group) {
+            return percentText(group.mean("kinds_right"), 0) + " / " + percentText(group.mean("online_kinds_right"), 0);
+          }};
+}
+
+std::vector<Column> cameraColumns() {
+  return {meanColumn("frames", "frames", 0),
+          meanColumn("ATE m", "camera_ate_m", 3),
+          meanColumn("end error", "camera_end_error_percent", 2, " %"),
+          pairColumn("RPE_t m rmse / median", "camera_rpe_t_rmse_m", "camera_rpe_t_median_m", 4),
+          pairColumn("RPE_r deg rmse / median", "camera_rpe_r_rmse_deg", "camera_rpe_r_median_deg", 4),
+          {"ATE m, end error, RPE_t m without the truth's mounting", mountedText}};
+}
+
+std::vector<Column> objectColumns() {
+  return {pairColumn("ME_t m final / online", "me_t_m", "online_me_t_m", 4),
+          pairColumn("ME_r deg final / online", "me_r_deg", "online_me_r_deg", 3),
+          pairColumn("speed error m/s final / online", "speed_error_mps", "online_speed_error_mps", 2),
+          recallColumn("recall to 30 m", "found_30m", "labels_30m"),
+          recallColumn("30 to 50 m", "found_30_to_50m", "labels_30_to_50m"),
+          falseRowsColumn(),
+          {"id switches", [](const ResultGroup& group) { return numberText(group.sum("id_switches"), 1); }}};
+}
+
+std::vector<Column> positionColumns() {
+  return {{"objects", [](const ResultGroup& group) { return numberText(group.sum("objects"), 1); }},
+          meanColumn("ATE m aligned", "objects_aligned_m", 3),
+          meanColumn("offset removed", "objects_offset_removed_m", 3),
+          meanColumn("as seen, offset removed", "objects_as_seen_m", 3),
+          meanColumn("ARE deg", "objects_are_deg", 2),
+          percentColumn("RE aligned", "re_aligned", 1),
+          percentColumn("RE offset removed", "re_offset_removed", 1),
+          percentColumn("RE as seen, offset removed", "re_as_seen", 1),
+          {"drift of the origin m along / up / across", driftText}};
+}
+
+std::vector<Column> boxColumns() {
+  return {pairColumn("IoU in the image final / online", "box_iou_2d", "online_box_iou_2d", 2),
+          percentColumn("over .5", "box_over_half_2d", 0),
+          pairColumn("IoU from above final / online", "box_iou_bird", "online_box_iou_bird", 2),
+          meanColumn("IoU in 3D", "box_iou_3d", 2),
+          meanColumn("center m", "box_center_m", 2),
+          meanColumn("heading deg", "box_heading_deg", 1),
+          meanColumn("length m", "box_length_m", 2),
+          meanColumn("width m", "box_width_m", 2),
+          meanColumn("height m", "box_height_m", 2)};
+}
+
+std::vector<Column> trackingColumns() {
+  return {pairColumn("HOTA in the image final / online", "hota", "online_hota", 2),
+          meanColumn("DetA", "det_a", 2),
+          meanColumn("AssA", "ass_a", 2),
+          meanColumn("LocA", "loc_a", 2),
+          meanColumn("to 50 m", "hota_50m", 2),
+          pairColumn("HOTA from above final / online", "hota_above", "online_hota_above", 2),
+          meanColumn("mask IoU", "mask_iou", 2),
+          meanColumn("30 to 50 m", "mask_iou_30_to_50m", 2),
+          meanColumn("boundary px", "mask_boundary_px", 1),
+          kindsColumn(),
+          firstReportColumn("first report, median / mean", "first_report_median_frames", "first_report_mean_frames",
+                            "never_reported"),
+          firstReportColumn("to 50 m", "first_report_50m_median_frames", "first_report_50m_mean_frames",
+                            "never_reported_50m")};
+}
+
+std::vector<Column> covarianceColumns() {
+  return {meanColumn("camera NEES", "camera_nees", 2), percentColumn("inside 95 %", "camera_coverage", 1),
+          percentColumn("rotation over ten frames inside 95 %", "camera_rotation_coverage", 1),
+          meanColumn("objects NEES", "objects_nees", 2), percentColumn("inside 95 %", "objects_coverage", 1)};
+}
+
+std::vector<Column> latencyColumns() {
+  return {meanColumn("latency ms p50", "latency_p50_ms", 1),
+          meanColumn("p95", "latency_p95_ms", 1),
+          meanColumn("p99", "latency_p99_ms", 1),
+          meanColumn("max", "latency_max_ms", 1),
+          meanColumn("CPU ms per pair", "cpu_per_frame_ms", 1),
+          meanColumn("pairs per second", "throughput_hz", 1),
+          meanColumn("memory MB", "peak_memory_mb", 0),
+          percentColumn("tracked", "tracked_fraction", 1)};
+}
+
+std::size_t setsIn(const std::vector<ResultGroup>& groups) {
+  std::set<std::string> sets;
+  for (const ResultGroup& group : groups) sets.insert(group.set());
+  return sets.size();
+}
+
+enum class Labels { kNeeded, kNotNeeded };
+
+ResultTable tableOf(std::string title, const std::vector<ResultGroup>& groups, const std::vector<Column>& columns,
+                    Labels labels) {
+  ResultTable table{.title = std::move(title), .heads = {"drive"}};
+  const bool with_sets = setsIn(groups) > 1;
+  if (with_sets) table.heads.emplace_back("set");
+  table.names = table.heads.size();
+  for (const Column& column : columns) table.heads.push_back(column.head);
+  for (const ResultGroup& group : groups) {
+    if (labels == Labels::kNeeded && !group.hasLabels()) continue;
+    std::vector<std::string> row{group.drive()};
+    if (with_sets) row.push_back(group.set());
+    for (const Column& column : columns) row.push_back(column.cell(group));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace
+
+ResultTable overviewTable(const std::vector<ResultGroup>& groups) {
+  const std::vector<Column> columns{
+      meanColumn("camera ATE m", "camera_ate_m", 3),
+      meanColumn("of the baseline", "baseline_ate_m", 3),
+      meanColumn("objects m", "objects_as_seen_m", 3),
+      meanColumn("motion of objects per frame m", "me_t_m", 4),
+      recallColumn("recall to 30 m", "found_30m", "labels_30m"),
+      {"false rows", [](const ResultGroup& group) { return group.hasLabels() ? falseRowsColumn().cell(group) : "-"; }}};
+  return tableOf("Overview", groups, columns, Labels::kNotNeeded);
+}
+
+std::vector<ResultTable> measureTables(const std::vector<ResultGroup>& groups) {
+  std::vector<ResultTable> tables{tableOf("Camera", groups, cameraColumns(), Labels::kNotNeeded),
+                                  tableOf("Objects", groups, objectColumns(), Labels::kNeeded),
+                                  tableOf("Positions of objects", groups, positionColumns(), Labels::kNeeded),
+                                  tableOf("Boxes of objects within 30 m", groups, boxColumns(), Labels::kNeeded),
+                                  tableOf("Tracking within 30 m", groups, trackingColumns(), Labels::kNeeded),
+                                  tableOf("Covariances", groups, covarianceColumns(), Labels::kNotNeeded),
+                                  tableOf("Latency and cost", groups, latencyColumns(), Labels::kNotNeeded)};
+  std::erase_if(tables, [](const ResultTable& table) { return table.rows.empty(); });
+  return tables;
+}
+
+std::string numberText(double value, int digits) {
+  if (std::isnan(value)) return "-";
+  const double scale = std::pow(10, digits);
+  const double rounded = std::round(value * scale) / scale;
+  return fmt::format("{}", rounded == 0 ? 0.0 : rounded);
+}
+
+std::string percentText(double share, int digits) {
+  constexpr double kPercent = 100;
+  return std::isnan(share) ? "-" : numberText(kPercent * share, digits) + " %";
+}
+
+}  // namespace motorcade

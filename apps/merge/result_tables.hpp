@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/merge/groups.hpp"
+
+namespace motorcade {
+
+/// A table of texts; the first `names` columns are names, the others numbers.
+struct ResultTable {
+  std::string title{};
+  std::vector<std::string> heads{};
+  std::vector<std::vector<std::string>> rows{};
+  std::size_t names = 1;
+};
+
+/// The one to read first: how far camera and objects are from the truth.
+ResultTable overviewTable(const std::vector<ResultGroup>& groups);
+/// Every measure of accuracy, a table for each kind, and latency and cost at the end: a row for each drive and set.
+std::vector<ResultTable> measureTables(const std::vector<ResultGroup>& groups);
+
+/// Rounded to so many digits, without those that are zero; `-` for no value.
+std::string numberText(double value, int digits);
+/// In percent, with its sign; `-` for no value.
+std::string percentText(double share, int digits);
+
+std::string markdownOf(const ResultTable& table);
+/// As HTML, escaped.
+std::string htmlOf(const ResultTable& table);
+
+}  // namespace motorcade

@@ -1,0 +1,45 @@
+#include <fmt/format.h>
+
+#include "apps/html/html_page.hpp"
+#include "apps/merge/result_tables.hpp"
+
+namespace motorcade {
+namespace {
+
+/// What would end a cell of a Markdown table.
+std::string cellText(const std::string& text) {
+  std::string cell;
+  for (const char c : text) {
+    if (c == '|') cell += '\\';
+    cell += c == '\n' ? ' ' : c;
+  }
+  return cell;
+}
+
+}  // namespace
+
+std::string markdownOf(const ResultTable& table) {
+  const auto line = [](const std::vector<std::string>& cells) {
+    std::string text = "|";
+    for (const std::string& cell : cells) text += fmt::format(" {} |", cellText(cell));
+    return text + "\n";
+  };
+  std::string text = fmt::format("## {}\n\n", table.title);
+  text += line(table.heads) + line(std::vector<std::string>(table.heads.size(), "---"));
+  for (const auto& row : table.rows) text += line(row);
+  return text + "\n";
+}
+
+std::string htmlOf(const ResultTable& table) {
+  const auto cells = [&](const std::vector<std::string>& row, const char* element) {
+    std::string html = "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i)
+      html += fmt::format("<{0}{1}>{2}</{0}>", element, i < table.names ? "" : " class=\"number\"", escaped(row[i]));
+    return html + "</tr>\n";
+  };
+  std::string html = "<div class=\"wide\"><table>\n<thead>" + cells(table.heads, "th") + "</thead>\n<tbody>\n";
+  for (const auto& row : table.rows) html += cells(row, "td");
+  return html + "</tbody></table></div>\n";
+}
+
+}  // namespace motorcade
