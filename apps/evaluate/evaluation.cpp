@@ -179,6 +179,7 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
     online[i].entered = run.frames[i].cause != FrameCause::kTooLate && run.frames[i].cause != FrameCause::kOutOfOrder;
   evaluation.online = evaluateFrames(online);
   evaluation.final = evaluateFrames(final);
+  evaluation.worst = worstFrames(final);
   if (mayBeMountedWrongly(sequence)) removeMounting(evaluation, final, online);
   evaluateCovariances(evaluation, online, run.covariances);
   if (!sequence.truth.instances.empty())

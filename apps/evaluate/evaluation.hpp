@@ -13,6 +13,7 @@
 #include "apps/evaluate/run_comparison.hpp"
 #include "apps/evaluate/tracking_measures.hpp"
 #include "apps/evaluate/trajectory_error.hpp"
+#include "apps/evaluate/worst_frames.hpp"
 #include "io/run_folder.hpp"
 #include "io/sequence.hpp"
 
@@ -60,6 +61,7 @@ struct Evaluation {
   int lost = 0, rejected = 0, dropped = 0;
   std::string camera_source, object_source;  // the latter empty without labels
   KindEvaluation final, online;
+  WorstFrames worst;            // of the final estimates
   std::optional<SE3> mounting;  // T_true_cam, fitted to the final path; empty where the truth is exact
   std::vector<FrameNees> camera_nees;
   CovarianceErrors camera_covariance, object_covariance;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSigmas95 = 1.96;  // half the width of the 95 % interval of a Gaussian
 
-/// E = L(k)^-1 H L(k-1) with H the estimated motion, transferred from the estimated to the true camera.
+/// H is transferred from the estimated to the true camera.
 SE3 motionError(const AskedPair& before, const AskedPair& now) {
   const SE3 H_world = now.row->row.object.T_world_body * before.row->row.object.T_world_body.inverse();
   const SE3 H_cam = before.frame->T_world_cam.inverse() * H_world * before.frame->T_world_cam;
@@ -73,22 +73,32 @@ void countLabels(const ComparedFrame& frame, DetectionErrors& errors) {
 
 }  // namespace
 
-MotionErrors motionErrors(const std::vector<ComparedFrame>& frames, std::optional<std::int64_t> label) {
+std::vector<ObjectStepError> objectStepErrors(const std::vector<AskedPair>& pairs) {
   std::map<std::pair<std::int64_t, TrackId>, AskedPair> last;
+  std::vector<ObjectStepError> errors;
+  for (const auto& pair : pairs) {
+    const auto label = pair.object->truth.id;
+    const TrackId track = pair.row->row.object.track;
+    const auto before = last.find({label, track});
+    if (before != last.end() && before->second.frame->frame.value + 1 == pair.frame->frame.value)
+      errors.push_back({pair.frame->frame, label, track, motionError(before->second, pair)});
+    last.insert_or_assign({label, track}, pair);
+  }
+  return errors;
+}
+
+MotionErrors motionErrors(const std::vector<ComparedFrame>& frames, std::optional<std::int64_t> label) {
+  auto pairs = askedPairs(frames);
+  if (label) std::erase_if(pairs, [&](const AskedPair& pair) { return pair.object->truth.id != *label; });
   std::vector<double> me_m, me_deg, speed_mps;
   int covered = 0;
   MotionErrors errors;
-  for (const auto& pair : askedPairs(frames)) {
-    const auto id = pair.object->truth.id;
-    if (label && id != *label) continue;
+  for (const auto& step : objectStepErrors(pairs)) {
+    me_m.push_back(step.error.translation().norm());
+    me_deg.push_back(angleOf_deg(step.error.rotation()));
+  }
+  for (const auto& pair : pairs) {
     const ObjectEstimate& estimate = pair.row->row.object;
-    const auto before = last.find({id, estimate.track});
-    if (before != last.end() && before->second.frame->frame.value + 1 == pair.frame->frame.value) {
-      const SE3 error = motionError(before->second, pair);
-      me_m.push_back(error.translation().norm());
-      me_deg.push_back(angleOf_deg(error.rotation()));
-    }
-    last.insert_or_assign({id, estimate.track}, pair);
     speed_mps.push_back(estimate.velocity_world_mps.norm() - pair.object->speed_mps);
     errors.speed_bias_mps += speed_mps.back();
     covered += std::abs(speed_mps.back()) <= kSigmas95 * estimate.speed_sigma_mps;

@@ -12,9 +12,19 @@
 /// How well objects were found, followed and measured. All over labels that are counted and move.
 namespace motorcade {
 
+/// E = L(k)^-1 H L(k-1) of one frame k: H the estimated motion, L the label's poses, in the true camera.
+struct ObjectStepError {
+  FrameId frame;
+  std::int64_t label = -1;
+  TrackId track;
+  SE3 error;
+};
+/// Of each track on its label, where both frames have a pair; `pairs` in the order of the frames.
+std::vector<ObjectStepError> objectStepErrors(const std::vector<AskedPair>& pairs);
+
 /// Motion of objects from frame to frame, and speed.
 struct MotionErrors {
-  Statistics me_m, me_deg;  // of E = L(k)^-1 H L(k-1): H the estimated motion, L the labels' poses, in the true camera
+  Statistics me_m, me_deg;  // of the step errors
   Statistics speed_mps;     // |estimated| - |true|
   double speed_bias_mps = 0;
   double speed_coverage = 0;  // share of speeds within 1.96 of their sigma

@@ -184,6 +184,18 @@ Json jsonOf(const SE3& T) {
   return {{"rotation_rad", jsonOf(logSO3(T.rotation()))}, {"translation_m", jsonOf(T.translation())}};
 }
 
+Json jsonOf(const WorstFrames& worst) {
+  Json camera = Json::array(), objects = Json::array();
+  for (const CameraFrameError& error : worst.camera)
+    camera.push_back({{"frame", error.frame.value}, {"rpe_t_m", error.rpe_t_m}, {"rpe_r_deg", error.rpe_r_deg}});
+  for (const ObjectFrameError& error : worst.objects)
+    objects.push_back({{"frame", error.frame.value},
+                       {"label", error.label},
+                       {"track_id", error.track.value},
+                       {"me_t_m", error.me_t_m}});
+  return {{"camera", std::move(camera)}, {"objects", std::move(objects)}};
+}
+
 Json jsonOf(const NormalizedErrors& errors) {
   return {{"mean_nees", errors.mean_nees}, {"median_nees", errors.median_nees}, {"coverage_95", errors.coverage_95}};
 }
@@ -228,6 +240,7 @@ std::string jsonOf(const Evaluation& e) {
                {"mounting", e.mounting ? jsonOf(*e.mounting) : Json()},
                {"final", jsonOf(e.final, with_objects)},
                {"online", jsonOf(e.online, with_objects)},
+               {"worst_frames", jsonOf(e.worst)},
                {"masks", jsonOf(e.masks)},
                {"covariance", covarianceJson(e)},
                {"latency_ms",

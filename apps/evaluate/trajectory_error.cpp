@@ -13,6 +13,11 @@ namespace motorcade {
 
 double angleOf_deg(const Eigen::Matrix3d& rotation) { return logSO3(rotation).norm() * 180 / std::numbers::pi; }
 
+SE3 stepError(const SE3& estimate_before, const SE3& estimate, const SE3& truth_before, const SE3& truth) {
+  const SE3 true_step = truth_before.inverse() * truth;
+  return true_step.inverse() * (estimate_before.inverse() * estimate);
+}
+
 Statistics statisticsOf(std::vector<double> errors) {
   Statistics statistics{.count = errors.size()};
   if (errors.empty()) return statistics;
@@ -68,11 +73,10 @@ std::optional<TrajectoryErrors> trajectoryErrors(const std::vector<SE3>& estimat
     are_deg.push_back(angleOf_deg(truth[i].rotation().transpose() * turned * estimate[i].rotation()));
     ate_first_m.push_back((at_first * estimate[i].translation() - truth[i].translation()).norm());
     if (i == 0) continue;
-    const SE3 true_step = truth[i - 1].inverse() * truth[i];
-    const SE3 difference = true_step.inverse() * (estimate[i - 1].inverse() * estimate[i]);
+    const SE3 difference = stepError(estimate[i - 1], estimate[i], truth[i - 1], truth[i]);
     rpe_m.push_back(difference.translation().norm());
     rpe_deg.push_back(angleOf_deg(difference.rotation()));
-    errors.length_m += true_step.translation().norm();
+    errors.length_m += (truth[i - 1].inverse() * truth[i]).translation().norm();
   }
   if (errors.length_m > 0) errors.end_percent = 100 * ate_first_m.back() / errors.length_m;
   errors.ate_m = statisticsOf(std::move(ate_m));

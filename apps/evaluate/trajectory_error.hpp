@@ -33,6 +33,9 @@ struct TrajectoryErrors {
 /// Empty for fewer than two poses.
 std::optional<TrajectoryErrors> trajectoryErrors(const std::vector<SE3>& estimate, const std::vector<SE3>& truth);
 
+/// What the estimated step from a pose to the next adds to the true one.
+SE3 stepError(const SE3& estimate_before, const SE3& estimate, const SE3& truth_before, const SE3& truth);
+
 double angleOf_deg(const Eigen::Matrix3d& rotation);
 
 }  // namespace motorcade

@@ -1,6 +1,9 @@
+#include <cmath>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -80,6 +83,34 @@ TEST_F(EvaluateDrive, TheJsonHasEveryMeasureOfTheAccuracyTables) {
   EXPECT_EQ(json.at("/online/first_report/within_50m/never"_json_pointer), 0);
   EXPECT_TRUE(json.at("masks").is_null());
   EXPECT_GT(json.at("/covariance/halves/objects/samples"_json_pointer), 0);
+}
+
+TEST_F(EvaluateDrive, TheJsonNamesTheFramesWithTheLargestErrors) {
+  writeRun("run", 0, kFrames, [](int i, FrameEstimate& estimate) {
+    const double jump_m = i == 20 ? 0.5 : 0.0, slip_m = i >= 12 ? 0.3 : 0.0;
+    estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {jump_m, 0, 0}) * estimate.T_world_cam;
+    for (auto& object : estimate.objects)
+      object.T_world_body = SE3(Eigen::Matrix3d::Identity(), {jump_m + slip_m, 0, 0}) * object.T_world_body;
+  });
+  const auto worst = nlohmann::json::parse(jsonOf(evaluateRun(options_))).at("worst_frames");
+  constexpr double kDigitsOfTheFiles = 1e-5;
+  ASSERT_EQ(worst.at("camera").size(), 10U);
+  EXPECT_NEAR(worst.at("/camera/0/rpe_t_m"_json_pointer), 0.5, kDigitsOfTheFiles);
+  EXPECT_NEAR(worst.at("/camera/2/rpe_t_m"_json_pointer), 0, kDigitsOfTheFiles);
+  EXPECT_EQ(worst.at("/camera/0/frame"_json_pointer).get<int>() + worst.at("/camera/1/frame"_json_pointer).get<int>(),
+            20 + 21);
+  const auto& objects = worst.at("objects");
+  ASSERT_EQ(objects.size(), 10U);
+  std::vector<double> errors_m;
+  for (const auto& object : objects) errors_m.push_back(object.at("me_t_m"));
+  EXPECT_THAT(errors_m, testing::WhenSortedBy(std::greater(), testing::ElementsAreArray(errors_m)));
+  bool has_slip = false;
+  for (const auto& object : objects) {
+    EXPECT_EQ(object.at("label"), 7);
+    EXPECT_EQ(object.at("track_id"), 3);
+    has_slip |= object.at("frame") == 12 && std::abs(object.at("me_t_m").get<double>() - 0.3) < kDigitsOfTheFiles;
+  }
+  EXPECT_TRUE(has_slip);
 }
 
 TEST_F(EvaluateDrive, TheRunTellsOfWhichSequenceItIs) {
