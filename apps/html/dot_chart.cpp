@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -15,37 +16,59 @@ namespace {
 constexpr double kWidth = 560, kRight = 14, kTop = 28, kBottom = 40, kRow = 20, kPerCharacter = 6.6;
 constexpr std::size_t kMostCharacters = 28;
 
-/// The sheet that dots lie on.
+/// The sheet that dots lie on. Where values are of very different sizes, and all positive, its axis is logarithmic.
 class DotSheet {
  public:
   explicit DotSheet(const std::vector<DotRow>& rows) : height_(kTop + kRow * static_cast<double>(rows.size())) {
+    constexpr double kVeryDifferent = 20;
     std::size_t longest = 0;
     for (const DotRow& row : rows) {
       longest = std::max(longest, std::min(row.name.size(), kMostCharacters));
       for (const auto& values : row.values)
         for (const double value : values)
-          if (std::isfinite(value)) largest_ = std::max(largest_, value);
+          if (std::isfinite(value)) {
+            low_ = std::min(low_, value);
+            high_ = std::max(high_, value);
+          }
     }
-    if (largest_ <= 0) largest_ = 1;
     left_ = 12 + kPerCharacter * static_cast<double>(longest);
+    logarithmic_ = low_ > 0 && high_ > kVeryDifferent * low_;
+    if (!logarithmic_) low_ = 0;
+    if (high_ <= low_) high_ = low_ + 1;
   }
 
-  double x(double value) const { return left_ + (kWidth - kRight - left_) * value / (1.04 * largest_); }
+  double x(double value) const {
+    constexpr double kMargin = 0.03;  // of the width, beside the outermost dots
+    const double share =
+        logarithmic_ ? std::log(value / low_) / std::log(high_ / low_) : (value - low_) / (high_ - low_);
+    return left_ + (kWidth - kRight - left_) * (kMargin + (1 - 2 * kMargin) * share);
+  }
   static double y(std::size_t row) { return kTop + kRow * (static_cast<double>(row) + 0.5); }
   double left() const { return left_; }
   double bottom() const { return height_; }
-  double largest() const { return largest_; }
+
+  std::vector<double> ticks() const {
+    constexpr int kWanted = 6;
+    if (!logarithmic_) return ticksBetween(low_, high_, kWanted);
+    std::vector<double> ticks;
+    for (double power = std::pow(10, std::floor(std::log10(low_))); power <= high_; power *= 10)
+      for (const double digit : {1.0, 2.0, 5.0})
+        if (digit * power >= low_ && digit * power <= high_) ticks.push_back(digit * power);
+    return ticks;
+  }
 
  private:
-  double height_, left_ = 0, largest_ = 0;
+  double height_, left_ = 0, low_ = std::numeric_limits<double>::infinity(), high_ = 0;
+  bool logarithmic_ = false;
 };
 
 std::string axisOf(const DotSheet& sheet, const std::string& label) {
   std::string svg;
-  for (const double tick : ticksBetween(0, sheet.largest(), 6))
+  for (const double tick : sheet.ticks())
     svg += fmt::format(
         R"(<line class="grid" x1="{0}" y1="{1}" x2="{0}" y2="{2}"/><text x="{0}" y="{3}" text-anchor="middle">{4:g}</text>)",
-        coordinate(sheet.x(tick)), coordinate(kTop), coordinate(sheet.bottom()), coordinate(sheet.bottom() + 15), tick);
+        coordinate(sheet.x(tick)), coordinate(kTop), coordinate(sheet.bottom()), coordinate(sheet.bottom() + 15),
+        tick == 0 ? 0 : tick);
   return svg + fmt::format(R"(<text x="{}" y="{}" text-anchor="middle">{}</text>)",
                            coordinate((sheet.left() + kWidth) / 2), coordinate(sheet.bottom() + 32), escaped(label));
 }

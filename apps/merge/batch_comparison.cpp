@@ -16,14 +16,15 @@ namespace {
 constexpr double kSignificant = 0.05;
 
 /// What is compared: few measures that say most, as each more makes the test less sharp.
-constexpr std::array<std::string_view, 15> kAccuracy{"camera_ate_m",
+constexpr std::array<std::string_view, 16> kAccuracy{"camera_ate_m",
                                                      "camera_rpe_t_rmse_m",
                                                      "camera_rpe_r_rmse_deg",
                                                      "me_t_m",
                                                      "me_r_deg",
                                                      "speed_error_mps",
                                                      "objects_as_seen_m",
-                                                     "found_30m",
+                                                     "recall_30m",
+                                                     "recall_30_to_50m",
                                                      "false_rows",
                                                      "id_switches",
                                                      "hota",
@@ -59,6 +60,8 @@ struct Pair {
   const MeasureValues *before, *now;
 };
 
+bool differs(double a, double b) { return !std::isnan(a) && !std::isnan(b) && a != b; }
+
 /// Those that only one of both batches has are named.
 std::vector<Pair> pairsOf(const SeedValues& ours, const SeedValues& others, std::vector<std::string>& unpaired) {
   std::vector<Pair> pairs;
@@ -66,6 +69,8 @@ std::vector<Pair> pairsOf(const SeedValues& ours, const SeedValues& others, std:
     const auto other = others.find(name);
     if (other == others.end())
       unpaired.push_back(name + " (not in the other batch)");
+    else if (const std::size_t frames = measureIndex("frames"); differs((*values)[frames], (*other->second)[frames]))
+      unpaired.push_back(name + " (other frames were run)");
     else
       pairs.push_back({name, other->second, values});
   }

@@ -34,9 +34,11 @@ constexpr std::array kMeasures{
     Measure{"online_speed_error_mps", "/online/motion/speed_error_mps/mean", "/online/motion/speed_error_mps/count",
             kLower},
     Measure{"labels_30m", "/final/detection/within_30m/labels", "", kNeither},
-    Measure{"found_30m", "/final/detection/within_30m/found", "", kHigher},
+    Measure{"found_30m", "/final/detection/within_30m/found", "", kNeither},
     Measure{"labels_30_to_50m", "/final/detection/from_30_to_50m/labels", "", kNeither},
-    Measure{"found_30_to_50m", "/final/detection/from_30_to_50m/found", "", kHigher},
+    Measure{"found_30_to_50m", "/final/detection/from_30_to_50m/found", "", kNeither},
+    Measure{"recall_30m", "", "", kHigher},
+    Measure{"recall_30_to_50m", "", "", kHigher},
     Measure{"rows", "/final/detection/rows", "", kNeither},
     Measure{"false_rows", "/final/detection/false_rows", "", kLower},
     Measure{"id_switches", "/final/detection/id_switches", "", kLower},
@@ -164,6 +166,12 @@ MeasureValues measuresOf(const nlohmann::json& evaluation, const nlohmann::json&
     values.push_back(means_something ? at(measure.path) : kNoValue);
   }
   preferMounted(values, evaluation);
+  for (const std::string_view range : {"30m", "30_to_50m"}) {
+    const auto of = [&](std::string_view count) -> double& {
+      return values[measureIndex(std::string(count).append("_").append(range))];
+    };
+    if (of("labels") > 0) of("recall") = of("found") / of("labels");
+  }
   constexpr double kMsPerS = 1e3, kBytesPerMb = 1e6;
   const double frames = numberAt(summary, "/frames/received");
   if (frames > 0) values[measureIndex("cpu_per_frame_ms")] = kMsPerS * numberAt(summary, "/cpu_s") / frames;

@@ -154,11 +154,12 @@ ResultTable unfinishedTable(const MergedBatch& batch) {
 }
 
 ResultTable worstFrameTable(const std::string& title, const std::string& value, const std::vector<WorstFrame>& frames) {
-  ResultTable table{.title = title, .heads = {"task", "frame", value, "", "to see it"}, .names = 1};
+  ResultTable table{.title = title, .heads = {"task", "what", "to see it", "frame", value}, .names = 3};
   for (const WorstFrame& frame : frames)
-    table.rows.push_back({frame.task, std::to_string(frame.frame), fmt::format("{:.4g}", frame.value), frame.more,
+    table.rows.push_back({frame.task, frame.more,
                           fmt::format("motorcade draw results/{}/run --frames {}:{} --out frames", frame.task,
-                                      std::max<std::int64_t>(0, frame.frame - 1), frame.frame + 1)});
+                                      std::max<std::int64_t>(0, frame.frame - 1), frame.frame + 1),
+                          std::to_string(frame.frame), fmt::format("{:.4g}", frame.value)});
   return table;
 }
 

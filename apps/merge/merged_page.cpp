@@ -33,12 +33,14 @@ std::string cards(const MergedBatch& batch) {
     if (!std::isnan(task.values[cpu])) cpu_s += task.values[cpu];
     if (!std::isnan(task.values[frames])) frame_count += task.values[frames];
   }
-  constexpr double kHour_s = 3600;
+  constexpr double kMinute_s = 60, kHour_s = 3600;
   const std::size_t unfinished = batch.tasks.size() - batch.count(TaskOutcome::kDone);
   return "<div class=\"cards\">" + card(std::to_string(batch.count(TaskOutcome::kDone)), "tasks done") +
          card(std::to_string(unfinished), "without result") +
          card(fmt::format("{:.0f}", frame_count), "frames measured") +
-         card(fmt::format("{:.2f}", cpu_s / kHour_s), "hours of CPU") + "</div>\n";
+         card(cpu_s < kHour_s ? fmt::format("{:.1f} min", cpu_s / kMinute_s) : fmt::format("{:.1f} h", cpu_s / kHour_s),
+              "CPU of all runs") +
+         "</div>\n";
 }
 
 std::vector<std::string> setNames(const std::vector<ResultGroup>& groups) {
@@ -156,7 +158,8 @@ std::string pageOf(const Merged& merged) {
       section(worstFrameTable("Frames with the largest error of an object's motion", "ME_t m", batch.worst_object_m));
   body += section(worstFrameTable("Frames that came out latest", "latency ms", batch.latest_ms));
   for (const ResultTable& table : measureTables(merged.groups)) body += section(table);
-  return htmlPage("Batch " + batch.folder.filename().string(), body, kChartStyle);
+  return htmlPage("Batch " + batch.folder.filename().string(), body,
+                  std::string(kChartStyle) + ".wide th, .wide td { white-space: nowrap; }\n");
 }
 
 }  // namespace motorcade
