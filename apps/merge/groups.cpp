@@ -9,6 +9,7 @@ namespace motorcade {
 
 void ResultGroup::add(const MergedTask& task) {
   has_labels_ = has_labels_ || task.has_labels;
+  worst_.add(task.worst);
   auto seed = std::ranges::find(seeds_, task.task.seed, &Seed::seed);
   if (seed == seeds_.end()) {
     seeds_.push_back({task.task.seed, MeasureValues(allMeasures().size(), 0)});

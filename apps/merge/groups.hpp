@@ -26,6 +26,7 @@ class ResultGroup {
   const std::string& drive() const { return drive_; }
   const std::string& set() const { return set_; }
   bool hasLabels() const { return has_labels_; }
+  const WorstFrameOfEach& worst() const { return worst_; }
   const std::vector<Seed>& seeds() const { return seeds_; }
 
   /// Over the seeds that have a value; kNoValue where none has.
@@ -40,6 +41,7 @@ class ResultGroup {
 
   std::string drive_, set_;
   bool has_labels_ = false;
+  WorstFrameOfEach worst_;
   std::vector<Seed> seeds_;
   std::vector<std::vector<std::size_t>> counts_;  // of the repetitions that have a value, by seed and measure
 };

@@ -41,26 +41,35 @@ void keepWorst(std::vector<WorstFrame>& worst, WorstFrame frame) {
   if (worst.size() > kMostWorst) worst.pop_back();
 }
 
-void addWorstErrors(MergedBatch& batch, const std::string& task, const nlohmann::json& evaluation) {
+/// A frame of a task, which its batch may keep, too.
+void addWorst(std::vector<WorstFrame>& of_batch, WorstFrame& of_task, const WorstFrame& frame) {
+  if (of_task.task.empty() || frame.value > of_task.value) of_task = frame;
+  keepWorst(of_batch, frame);
+}
+
+void addWorstErrors(MergedBatch& batch, MergedTask& merged, const nlohmann::json& evaluation) {
+  const std::string& task = merged.task.name;
   if (!evaluation.contains("worst_frames")) return;  // of an earlier version
   const auto& worst = evaluation.at("worst_frames");
   for (const auto& frame : worst.at("camera"))
-    keepWorst(batch.worst_camera_m, {task, frame.at("frame"), frame.at("rpe_t_m"),
-                                     fmt::format("{:.3f} deg", frame.at("rpe_r_deg").get<double>())});
+    addWorst(
+        batch.worst_camera_m, merged.worst.camera_m,
+        {task, frame.at("frame"), frame.at("rpe_t_m"), fmt::format("{:.3f} deg", frame.at("rpe_r_deg").get<double>())});
   for (const auto& frame : worst.at("objects"))
-    keepWorst(batch.worst_object_m,
-              {task, frame.at("frame"), frame.at("me_t_m"),
-               fmt::format("label {}, track {}", frame.at("label").get<int>(), frame.at("track_id").get<int>())});
+    addWorst(batch.worst_object_m, merged.worst.object_m,
+             {task, frame.at("frame"), frame.at("me_t_m"),
+              fmt::format("label {}, track {}", frame.at("label").get<int>(), frame.at("track_id").get<int>())});
 }
 
 /// The frames of a run that came out latest, each with what lies most above its median frame.
-void addLatestFrames(MergedBatch& batch, const std::string& task, const fs::path& run) {
+void addLatestFrames(MergedBatch& batch, MergedTask& merged, const std::vector<FrameRow>& rows) {
   constexpr std::size_t kPerTask = 5;
-  for (const SlowFrame& slow : latencyReport(readFrames(run / "frames.csv"), kPerTask).slowest) {
+  for (const SlowFrame& slow : latencyReport(rows, kPerTask).slowest) {
     const std::string most = slow.above_median.empty() ? ""
                                                        : fmt::format("{} {:+.1f} ms", slow.above_median.front().name,
                                                                      slow.above_median.front().ms);
-    keepWorst(batch.latest_ms, {task, slow.row.frame.value, slow.row.latency_ms, most});
+    addWorst(batch.latest_ms, merged.worst.latest_ms,
+             {merged.task.name, slow.row.frame.value, slow.row.latency_ms, most});
   }
 }
 
@@ -72,25 +81,37 @@ void addLatencies(std::map<double, std::int64_t>& latencies, const nlohmann::jso
 
 void readResult(MergedBatch& batch, MergedTask& merged, const fs::path& result) {
   const auto evaluation = jsonIn(evaluationIn(result)), summary = jsonIn(runIn(result) / "summary.json");
+  const auto rows = readFrames(runIn(result) / "frames.csv");
   try {
     merged.values = measuresOf(evaluation, summary);
     merged.has_labels = evaluation.is_object() && evaluation.at("final").contains("detection");
-    if (evaluation.is_object()) addWorstErrors(batch, merged.task.name, evaluation);
+    if (evaluation.is_object()) addWorstErrors(batch, merged, evaluation);
     addLatencies(batch.latencies[merged.task.set], summary);
   } catch (const nlohmann::json::exception& error) {
     throw InputError(result.string() + ": has a measure of another kind than expected (" +
                      printable(error.what(), 100) + "); remove it and run the batch again");
   }
-  addLatestFrames(batch, merged.task.name, runIn(result));
+  addLatestFrames(batch, merged, rows);
+}
+
+/// Others are merged all the same where a result cannot be read.
+void readOrFail(MergedBatch& batch, MergedTask& merged, const fs::path& result) {
+  try {
+    readResult(batch, merged, result);
+    merged.outcome = TaskOutcome::kDone;
+  } catch (const InputError& error) {
+    merged.outcome = TaskOutcome::kFailed;
+    merged.record.failure = TaskFailure{.step = "merge", .message = error.what()};
+    merged.values.assign(allMeasures().size(), kNoValue);
+  }
 }
 
 MergedTask merge(MergedBatch& batch, const Task& task, const BatchFolder& folder) {
   MergedTask merged{.task = task};
   merged.values.assign(allMeasures().size(), kNoValue);
   if (auto record = finishedRecord(task, folder)) {
-    merged.outcome = TaskOutcome::kDone;
     merged.record = std::move(*record);
-    readResult(batch, merged, folder.result(task.name));
+    readOrFail(batch, merged, folder.result(task.name));
   } else if (auto failed = failedRecord(task, folder)) {
     merged.outcome = TaskOutcome::kFailed;
     merged.record = std::move(*failed);
@@ -146,6 +167,15 @@ std::string_view outcomeName(TaskOutcome outcome) {
       return "missing";
   }
   return "";
+}
+
+void WorstFrameOfEach::add(const WorstFrameOfEach& other) {
+  const auto keep = [](WorstFrame& mine, const WorstFrame& theirs) {
+    if (!theirs.task.empty() && (mine.task.empty() || theirs.value > mine.value)) mine = theirs;
+  };
+  keep(camera_m, other.camera_m);
+  keep(object_m, other.object_m);
+  keep(latest_ms, other.latest_ms);
 }
 
 std::size_t MergedBatch::count(TaskOutcome outcome) const {

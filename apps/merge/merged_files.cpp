@@ -29,9 +29,15 @@ Json jsonOf(const MergedTask& task) {
                {"seed", orNull(task.task.seed)},
                {"repetition", task.task.repetition},
                {"status", std::string(outcomeName(task.outcome))},
-               {"failure", failureOf(task)}};
+               {"failure", failureOf(task)},
+               {"last_lines", task.record.failure ? task.record.failure->last_lines : std::vector<std::string>()}};
   json["measures"] = task.outcome == TaskOutcome::kDone ? valuesOf(task.values) : Json();
   return json;
+}
+
+Json jsonOf(const WorstFrame& frame) {
+  if (frame.task.empty()) return nullptr;
+  return {{"task", frame.task}, {"frame", frame.frame}, {"value", frame.value}, {"more", frame.more}};
 }
 
 Json jsonOf(const ResultGroup& group) {
@@ -42,13 +48,18 @@ Json jsonOf(const ResultGroup& group) {
                                              {"min", group.smallest(measure.name)},
                                              {"max", group.largest(measure.name)},
                                              {"seeds", n}};
-  return {{"drive", group.drive()}, {"set", group.set()}, {"measures", std::move(measures)}};
+  return {{"drive", group.drive()},
+          {"set", group.set()},
+          {"measures", std::move(measures)},
+          {"worst_frames",
+           {{"camera_rpe_t_m", jsonOf(group.worst().camera_m)},
+            {"object_me_t_m", jsonOf(group.worst().object_m)},
+            {"latency_ms", jsonOf(group.worst().latest_ms)}}}};
 }
 
 Json jsonOf(const std::vector<WorstFrame>& frames) {
   Json json = Json::array();
-  for (const WorstFrame& frame : frames)
-    json.push_back({{"task", frame.task}, {"frame", frame.frame}, {"value", frame.value}, {"more", frame.more}});
+  for (const WorstFrame& frame : frames) json.push_back(jsonOf(frame));
   return json;
 }
 

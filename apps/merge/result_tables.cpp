@@ -150,6 +150,19 @@ std::vector<Column> latencyColumns() {
           percentColumn("tracked", "tracked_fraction", 1)};
 }
 
+std::string worstText(const WorstFrame& frame, int digits) {
+  return frame.task.empty()
+             ? "-"
+             : fmt::format("{} (frame {} of {})", numberText(frame.value, digits), frame.frame, frame.task);
+}
+
+/// Where to look first, drive by drive.
+std::vector<Column> worstColumns() {
+  return {{"RPE_t m", [](const ResultGroup& group) { return worstText(group.worst().camera_m, 3); }},
+          {"ME_t m", [](const ResultGroup& group) { return worstText(group.worst().object_m, 3); }},
+          {"latency ms", [](const ResultGroup& group) { return worstText(group.worst().latest_ms, 1); }}};
+}
+
 std::size_t setsIn(const std::vector<ResultGroup>& groups) {
   std::set<std::string> sets;
   for (const ResultGroup& group : groups) sets.insert(group.set());
@@ -195,7 +208,8 @@ std::vector<ResultTable> measureTables(const std::vector<ResultGroup>& groups) {
                                   tableOf("Boxes of objects within 30 m", groups, boxColumns(), Labels::kNeeded),
                                   tableOf("Tracking within 30 m", groups, trackingColumns(), Labels::kNeeded),
                                   tableOf("Covariances", groups, covarianceColumns(), Labels::kNotNeeded),
-                                  tableOf("Latency and cost", groups, latencyColumns(), Labels::kNotNeeded)};
+                                  tableOf("Latency and cost", groups, latencyColumns(), Labels::kNotNeeded),
+                                  tableOf("Worst frame of each drive", groups, worstColumns(), Labels::kNotNeeded)};
   std::erase_if(tables, [](const ResultTable& table) { return table.rows.empty(); });
   return tables;
 }

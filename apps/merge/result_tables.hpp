@@ -18,7 +18,8 @@ struct ResultTable {
 
 /// The one to read first: how far camera and objects are from the truth.
 ResultTable overviewTable(const std::vector<ResultGroup>& groups);
-/// Every measure of accuracy, a table for each kind, and latency and cost at the end: a row for each drive and set.
+/// Every measure of accuracy, a table for each kind, latency and cost, and the worst frames: a row for each drive and
+/// set.
 std::vector<ResultTable> measureTables(const std::vector<ResultGroup>& groups);
 
 /// Rounded to so many digits, without those that are zero; `-` for no value.
