@@ -14,6 +14,7 @@ namespace motorcade {
 namespace {
 
 constexpr double kSignificant = 0.05;
+constexpr std::size_t kMostRegressions = 40;  // of the table; the JSON file has all
 
 /// What is compared: few measures that say most, as each more makes the test less sharp.
 constexpr std::array<std::string_view, 16> kAccuracy{"camera_ate_m",
@@ -106,9 +107,22 @@ MeasureComparison compare(std::string_view measure, const std::vector<Pair>& pai
 std::string verdictOn(const MeasureComparison& comparison) {
   const std::size_t different = comparison.better + comparison.worse;
   if (different == 0) return "the same";
-  if (different < kFewestDifferences) return "too few pairs differ to tell";
+  if (different < kFewestDifferences) return fmt::format("{} pairs differ, too few to tell", different);
   if (comparison.corrected_p >= kSignificant) return "no difference that is sure";
   return comparison.better > comparison.worse ? "better" : "worse";
+}
+
+/// Measures of which too few pairs differ cannot be significant, and so are no tests.
+void correctForNumber(std::vector<MeasureComparison>& measures) {
+  std::vector<MeasureComparison*> tested;
+  std::vector<double> p_values;
+  for (MeasureComparison& measure : measures) {
+    if (measure.better + measure.worse < kFewestDifferences) continue;
+    tested.push_back(&measure);
+    p_values.push_back(measure.p);
+  }
+  const auto corrected = holmCorrected(p_values);
+  for (std::size_t i = 0; i < tested.size(); ++i) tested[i]->corrected_p = corrected[i];
 }
 
 void addRegressions(BatchComparison& comparison, std::string_view measure, const std::vector<Pair>& pairs) {
@@ -141,13 +155,8 @@ BatchComparison compareBatches(const std::vector<ResultGroup>& ours, const std::
   }
   for (const std::string_view measure : kCost) comparison.measures.push_back(compare(measure, pairs));
   std::erase_if(comparison.measures, [](const MeasureComparison& measure) { return measure.pairs == 0; });
-  std::vector<double> p_values;
-  for (const auto& measure : comparison.measures) p_values.push_back(measure.p);
-  const auto corrected = holmCorrected(p_values);
-  for (std::size_t i = 0; i < corrected.size(); ++i) {
-    comparison.measures[i].corrected_p = corrected[i];
-    comparison.measures[i].verdict = verdictOn(comparison.measures[i]);
-  }
+  correctForNumber(comparison.measures);
+  for (MeasureComparison& measure : comparison.measures) measure.verdict = verdictOn(measure);
   std::ranges::stable_sort(comparison.regressions, std::greater(),
                            [](const Regression& regression) { return std::abs(regression.change); });
   return comparison;
@@ -166,11 +175,16 @@ ResultTable testTable(const BatchComparison& comparison) {
 
 ResultTable regressionTable(const BatchComparison& comparison) {
   ResultTable table{.title = fmt::format("Worse by more than {:.0f} %", 100 * kWorthTelling),
-                    .heads = {"result", "measure", "before", "now", "change"},
+                    .heads = {"result", "measure", "before", "now", "times"},
                     .names = 2};
-  for (const auto& regression : comparison.regressions)
+  for (std::size_t i = 0; i < std::min(kMostRegressions, comparison.regressions.size()); ++i) {
+    const Regression& regression = comparison.regressions[i];
+    const double ratio = regression.before != 0 ? regression.now / regression.before : kNoValue;
     table.rows.push_back({regression.result, std::string(regression.measure), fmt::format("{:.4g}", regression.before),
-                          fmt::format("{:.4g}", regression.now), fmt::format("{:+.1f} %", 100 * regression.change)});
+                          fmt::format("{:.4g}", regression.now), numberText(ratio, 3)});
+  }
+  if (comparison.regressions.size() > kMostRegressions)
+    table.title += fmt::format(", the first {} of {}", kMostRegressions, comparison.regressions.size());
   return table;
 }
 

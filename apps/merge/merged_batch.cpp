@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostWorst = 20;
+constexpr std::ptrdiff_t kMostOfATask = 3;  // so that one bad drive does not fill the list
 
 nlohmann::json jsonIn(const fs::path& file) {
   std::error_code none;
@@ -51,11 +52,16 @@ void addWorstErrors(MergedBatch& batch, MergedTask& merged, const nlohmann::json
   const std::string& task = merged.task.name;
   if (!evaluation.contains("worst_frames")) return;  // of an earlier version
   const auto& worst = evaluation.at("worst_frames");
-  for (const auto& frame : worst.at("camera"))
+  const auto first = [&](const char* kind) {
+    const auto& frames = worst.at(kind);
+    return std::vector<nlohmann::json>(frames.begin(),
+                                       frames.begin() + std::min<std::ptrdiff_t>(kMostOfATask, std::ssize(frames)));
+  };
+  for (const auto& frame : first("camera"))
     addWorst(
         batch.worst_camera_m, merged.worst.camera_m,
         {task, frame.at("frame"), frame.at("rpe_t_m"), fmt::format("{:.3f} deg", frame.at("rpe_r_deg").get<double>())});
-  for (const auto& frame : worst.at("objects"))
+  for (const auto& frame : first("objects"))
     addWorst(batch.worst_object_m, merged.worst.object_m,
              {task, frame.at("frame"), frame.at("me_t_m"),
               fmt::format("label {}, track {}", frame.at("label").get<int>(), frame.at("track_id").get<int>())});
@@ -63,8 +69,7 @@ void addWorstErrors(MergedBatch& batch, MergedTask& merged, const nlohmann::json
 
 /// The frames of a run that came out latest, each with what lies most above its median frame.
 void addLatestFrames(MergedBatch& batch, MergedTask& merged, const std::vector<FrameRow>& rows) {
-  constexpr std::size_t kPerTask = 5;
-  for (const SlowFrame& slow : latencyReport(rows, kPerTask).slowest) {
+  for (const SlowFrame& slow : latencyReport(rows, kMostOfATask).slowest) {
     const std::string most = slow.above_median.empty() ? ""
                                                        : fmt::format("{} {:+.1f} ms", slow.above_median.front().name,
                                                                      slow.above_median.front().ms);

@@ -114,8 +114,8 @@ std::string comparisonSection(const BatchComparison& comparison) {
   std::string html = section(testTable(comparison));
   html +=
       "<p class=\"muted\">Pairs of the same drive, set and seed; repetitions are averaged first. Changes are relative "
-      "to "
-      "the mean of both. p is that of Wilcoxon's signed-rank test, corrected by Holm for the number of measures.</p>\n";
+      "to the mean of both. p is that of Wilcoxon's signed-rank test, corrected by Holm for the number of "
+      "measures.</p>\n";
   const ResultTable regressions = regressionTable(comparison);
   html += regressions.rows.empty() ? "<p class=\"finding good\">No accuracy became worse by more than 2 %.</p>\n"
                                    : section(regressions);

@@ -226,7 +226,7 @@ TEST_F(MergeBatch, FewPairsProveNothing) {
   write("a", {{.drive = "x", .ate_m = 2}});
   write("b", {{.drive = "x", .ate_m = 1}});
   const auto json = nlohmann::json::parse(merged("results.json", {.batch = root_ / "a", .against = root_ / "b"}));
-  EXPECT_EQ(json["comparison"]["measures"][0]["verdict"], "too few pairs differ to tell");
+  EXPECT_EQ(json["comparison"]["measures"][0]["verdict"], "1 pairs differ, too few to tell");
 }
 
 TEST_F(MergeBatch, GivesTheSameBytesTwice) {
