@@ -1,45 +1,23 @@
 #include "apps/tasks/planner.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "apps/pipeline/configuration.hpp"
 #include "apps/run/run_options.hpp"
-#include "apps/synth/synth_command.hpp"
 #include "apps/tasks/fingerprint.hpp"
-#include "apps/tasks/found_drives.hpp"
 #include "apps/tasks/manifest_fields.hpp"
+#include "apps/tasks/planned_drive.hpp"
 #include "core/edit_distance.hpp"
 #include "io/errors.hpp"
-#include "io/ground_truth.hpp"
-#include "io/sequence.hpp"
 
 namespace motorcade {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string optionOf(const ManifestEntry& entry, const std::string& name) {
-  const auto found = entry.options.find(name);
-  return found == entry.options.end() ? "" : found->second;
-}
-
-fs::path fileOption(const ManifestEntry& entry, const std::string& name, const fs::path& root) {
-  const std::string file = optionOf(entry, name);
-  return file.empty() ? fs::path() : (root / file).lexically_normal();
-}
-
-/// One file, or two with a comma between them.
-std::string calibrationOption(const ManifestEntry& entry, const fs::path& root) {
-  const std::string given = optionOf(entry, "calibration");
-  const auto comma = given.find(',');
-  if (given.empty()) return "";
-  const std::string left = (root / given.substr(0, comma)).lexically_normal().string();
-  if (comma == std::string::npos) return left;
-  return left + "," + (root / given.substr(comma + 1)).lexically_normal().string();
-}
 
 /// What a run of the entry's drives is asked for with a set of parameters.
 RunOptions runOptionsOf(const Manifest& manifest, const ManifestEntry& entry, const ParameterSet& set, int threads) {
@@ -70,56 +48,10 @@ std::vector<std::string> wordsOf(const RunOptions& run, const std::string& fps, 
   add("--calibration", run.given.calibration);
   for (const std::string& assignment : run.assignments) add("--set", assignment);
   add("--require", run.require);
-  add("--inject", run.inject.empty() || !seed ? run.inject : run.inject + ",seed=" + std::to_string(*seed));
+  add("--inject", run.inject.empty() || !seed ? run.inject : fmt::format("{},seed={}", run.inject, *seed));
   if (run.live) words.emplace_back("--live");
   if (run.masks) words.emplace_back("--masks");
   return words;
-}
-
-/// What is known of a drive before it is run.
-struct Drive {
-  FoundDrive found;
-  std::int64_t frames = 0;
-  bool has_truth = false;
-  std::string fingerprint{};
-};
-
-double fpsOf(const ManifestEntry& entry) {
-  constexpr double kDefault_hz = 10;
-  const std::string text = optionOf(entry, "fps");
-  if (text.empty()) return kDefault_hz;
-  char* end = nullptr;
-  const double fps_hz = std::strtod(text.c_str(), &end);
-  if (*end != '\0' || !(fps_hz > 0))
-    throw UsageError(entry.where + ": 'fps' is " + text + "; write a positive number of pairs per second");
-  return fps_hz;
-}
-
-/// Opens a recorded drive; what is wrong with it becomes its problem.
-Drive opened(const Manifest& manifest, const ManifestEntry& entry, const FoundDrive& found) {
-  Drive drive{.found = found};
-  if (!found.problem.empty()) return drive;
-  try {
-    const GivenCameras given{optionOf(entry, "camera"), calibrationOption(entry, manifest.root)};
-    const Sequence sequence = openSequence(found.path, fpsOf(entry), given);
-    drive.frames = static_cast<std::int64_t>(selectedFrames(optionOf(entry, "frames"), sequence).size());
-    drive.has_truth = readCameraTruth(sequence).has_value();
-    drive.fingerprint = sequenceFingerprint(sequence);
-  } catch (const UserError& error) {
-    drive.found.problem = error.what();
-  }
-  return drive;
-}
-
-/// A scene's sequence depends on what `synth` is asked for.
-Drive toRender(const ManifestEntry& entry, const FoundDrive& found, std::uint32_t seed) {
-  Drive drive{.found = found, .frames = entry.length, .has_truth = true};
-  const auto known = synthSceneNames();
-  if (std::ranges::find(known, entry.scene) == known.end())
-    drive.found.problem = entry.where + ": there is no scene '" + entry.scene + "'; see motorcade help synth";
-  else if (entry.length == 0)
-    drive.frames = synthSceneFrames(entry.scene, seed);
-  return drive;
 }
 
 /// An empty list selects everything.
@@ -148,22 +80,20 @@ class Planner {
              .baseline_set = manifest.baseline_set};
   }
 
-  void add(const ManifestEntry& entry) {
+  void find(const ManifestEntry& entry) {
     for (const FoundDrive& found : findDrives(entry, manifest_.root)) {
       drives_.push_back(found.name);
       if (!selects(options_.only.drives, found.name)) continue;
       requireOneMeaning(found, entry);
-      if (entry.scene.empty()) {
-        const Drive drive = opened(manifest_, entry, found);
-        forEachSeed(entry, [&](std::optional<std::uint32_t> seed) { addTasks(entry, drive, seed, {}); });
-      } else {
-        forEachSeed(entry, [&](std::optional<std::uint32_t> seed) { addScene(entry, found, seed.value_or(1)); });
-      }
+      found_.push_back({.entry = &entry, .found = found});
     }
   }
 
+  /// Call it after the last `find`.
   Plan plan() {
     requireSelected();
+    openDrives(manifest_, found_);
+    for (const PlannedDrive& drive : found_) add(drive);
     requireNames();
     return std::move(plan_);
   }
@@ -175,32 +105,44 @@ class Planner {
     for (const std::uint32_t seed : entry.seeds) use(seed);
   }
 
+  void add(const PlannedDrive& drive) {
+    const ManifestEntry& entry = *drive.entry;
+    forEachSeed(entry, [&](std::optional<std::uint32_t> seed) {
+      if (entry.scene.empty())
+        addTasks(drive, seed, {});
+      else
+        addScene(drive, seed.value_or(1));
+    });
+  }
+
   void requireOneMeaning(const FoundDrive& found, const ManifestEntry& entry) {
-    const std::string source = entry.scene.empty() ? found.path.string() : "scene " + entry.scene;
+    const std::string source = entry.scene.empty() ? found.path.string() : fmt::format("scene {}", entry.scene);
     const auto [known, added] = sources_.emplace(found.name, source);
     if (!added && known->second != source)
       throw UsageError(entry.where + ": '" + found.name + "' is the name of " + known->second + " and of " + source +
                        "; give one of them another 'name'");
   }
 
-  void addScene(const ManifestEntry& entry, const FoundDrive& found, std::uint32_t seed) {
-    std::string folder = entry.scene + "-" + std::to_string(seed);
+  void addScene(PlannedDrive drive, std::uint32_t seed) {
+    const ManifestEntry& entry = *drive.entry;
+    std::string folder = fmt::format("{}-{}", entry.scene, seed);
     std::vector<std::string> words{"--scene", entry.scene, "--seed", std::to_string(seed)};
     if (entry.length > 0) {
-      folder += "-" + std::to_string(entry.length) + "frames";
+      folder += fmt::format("-{}frames", entry.length);
       words.insert(words.end(), {"--frames", std::to_string(entry.length)});
     }
     if (!entry.size.empty()) {
-      folder += "-" + entry.size;
+      folder += fmt::format("-{}", entry.size);
       words.insert(words.end(), {"--size", entry.size});
     }
-    Drive drive = toRender(entry, found, seed);
+    describeScene(drive, seed);
     drive.found.path = options_.sequences / folder;
-    addTasks(entry, drive, seed, words);
+    addTasks(drive, seed, words);
   }
 
-  void addTasks(const ManifestEntry& entry, const Drive& drive, std::optional<std::uint32_t> seed,
+  void addTasks(const PlannedDrive& drive, std::optional<std::uint32_t> seed,
                 const std::vector<std::string>& render_arguments) {
+    const ManifestEntry& entry = *drive.entry;
     for (const ParameterSet& set : manifest_.sets) {
       if (!selects(entry.sets, set.name) || !selects(options_.only.sets, set.name)) continue;
       Task task{.drive = drive.found.name,
@@ -239,9 +181,10 @@ class Planner {
     for (const auto* words : {&task.render_arguments, &task.run_arguments, &task.evaluate_arguments})
       for (const std::string& word : *words) fingerprint.add(word);
     task.fingerprint = fingerprint.text();
-    const std::string name = task.drive + (task.seed ? "-" + std::to_string(*task.seed) : "") + "." + task.set;
+    const std::string seed = task.seed ? fmt::format("-{}", *task.seed) : "";
+    const std::string name = fmt::format("{}{}.{}", task.drive, seed, task.set);
     for (task.repetition = 1; task.repetition <= repetitions; ++task.repetition) {
-      task.name = repetitions > 1 ? name + "." + std::to_string(task.repetition) : name;
+      task.name = repetitions > 1 ? fmt::format("{}.{}", name, task.repetition) : name;
       plan_.tasks.push_back(task);
     }
   }
@@ -265,20 +208,21 @@ class Planner {
   const PlanOptions& options_;
   std::string program_;
   Plan plan_;
+  std::vector<PlannedDrive> found_;
   std::vector<std::string> drives_;             // names of all, also of those that are not selected
   std::map<std::string, std::string> sources_;  // of the drives by their names
 };
 
 }  // namespace
 
-Plan planOf(const Manifest& manifest, const PlanOptions& options) {
-  Planner planner(manifest, options);
-  const auto seeds = options.only.seeds.empty() ? std::vector<std::uint32_t>{}
-                                                : seedsIn({options.only.seeds}, "--seeds " + options.only.seeds);
-  for (ManifestEntry entry : manifest.entries) {
-    if (!entry.scene.empty() && !seeds.empty()) entry.seeds = seeds;
-    planner.add(entry);
+Plan planOf(Manifest manifest, const PlanOptions& options) {
+  if (!options.only.seeds.empty()) {
+    const auto seeds = seedsIn({options.only.seeds}, fmt::format("--seeds {}", options.only.seeds));
+    for (ManifestEntry& entry : manifest.entries)
+      if (!entry.scene.empty()) entry.seeds = seeds;
   }
+  Planner planner(manifest, options);
+  for (const ManifestEntry& entry : manifest.entries) planner.find(entry);
   return planner.plan();
 }
 

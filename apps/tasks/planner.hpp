@@ -26,6 +26,6 @@ struct PlanOptions {
 /// One task for every drive, seed, parameter set and repetition of a manifest. What is wrong with a drive or a set, but
 /// for the manifest itself, becomes the `problem` of its tasks. Throws UsageError where two drives have one name, or
 /// what is selected is not there.
-Plan planOf(const Manifest& manifest, const PlanOptions& options);
+Plan planOf(Manifest manifest, const PlanOptions& options);
 
 }  // namespace motorcade

@@ -21,7 +21,7 @@ expect() {
 }
 
 bridge=$("$motorcade" --help | sed -n 's/^  \(bridge\) .*/ \1/p')  # not in every build
-expect "run check synth evaluate draw report latency export view solve$bridge help" ""
+expect "run check synth evaluate draw report latency export view solve batch$bridge help" ""
 expect "solve" so
 expect "latency" help la
 expect "--rate --require" run --r

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/tasks/found_drives.hpp"
+#include "apps/tasks/manifest.hpp"
+
+namespace motorcade {
+
+/// A drive of a manifest, and what is known of it before it is run.
+struct PlannedDrive {
+  const ManifestEntry* entry = nullptr;
+  FoundDrive found{};
+  std::int64_t frames = 0;
+  bool has_truth = false;
+  std::string fingerprint{};
+};
+
+/// Opens all recorded drives; what is wrong with one becomes its problem. Each of their files is looked at, which takes
+/// long on a network: several drives at a time.
+void openDrives(const Manifest& manifest, std::vector<PlannedDrive>& drives);
+
+/// Of a scene that is rendered with a seed; its fingerprint is that of its task, as it depends on nothing else.
+void describeScene(PlannedDrive& drive, std::uint32_t seed);
+
+/// An option of `run` or `evaluate` by its name; empty where the entry has none.
+std::string optionOf(const ManifestEntry& entry, const std::string& name);
+/// One that is the name of a file, which is relative to `root`.
+std::filesystem::path fileOption(const ManifestEntry& entry, const std::string& name,
+                                 const std::filesystem::path& root);
+/// `--calibration` of `run`: one file, or two with a comma between them.
+std::string calibrationOption(const ManifestEntry& entry, const std::filesystem::path& root);
+
+}  // namespace motorcade
