@@ -81,20 +81,31 @@ std::string complaintAboutOption(const std::string& word, const CLI::App& app) {
   return "unknown option " + name + suggestion(nearest.empty() ? "" : "--" + nearest);
 }
 
+/// The command that was named, or the program itself; of a command that has some of its own, the one named behind it.
+struct Named {
+  const CLI::App* command;
+  std::string name;  // with those before it
+};
+Named namedCommand(const CLI::App& app) {
+  Named named{&app, app.get_name()};
+  for (auto next = app.get_subcommands(); !next.empty(); next = named.command->get_subcommands())
+    named = {next.front(), named.name + " " + next.front()->get_name()};
+  return named;
+}
+
 /// What is wrong with a word that nothing expected.
 std::string complaintAbout(const std::string& word, const CLI::App& app) {
-  const auto commands = app.get_subcommands();
+  const CLI::App& command = *namedCommand(app).command;
   if (word.starts_with('-') && word.find_first_not_of('-') != std::string::npos)
-    return complaintAboutOption(word, commands.empty() ? app : *commands.front());
-  return commands.empty() ? complaintAboutCommand(word, app) : "unexpected argument " + word;
+    return complaintAboutOption(word, command);
+  return &command == &app ? complaintAboutCommand(word, app) : "unexpected argument " + word;
 }
 
 /// Tells what is wrong with the command line. What nobody knows comes first: a misspelled option is what makes a
 /// required one missing.
 int fail(const CLI::App& app, const std::string& problem) {
-  const auto commands = app.get_subcommands();
   const auto unknown = app.remaining(true);
-  const std::string name = commands.empty() ? "motorcade" : "motorcade " + commands.front()->get_name();
+  const std::string name = namedCommand(app).name;
   std::cerr << name << ": " << (unknown.empty() ? problem : complaintAbout(unknown.front(), app)) << "\nSee " << name
             << " --help\n";
   return kExitUsage;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <optional>
 #include <set>
 
 #include <spdlog/spdlog.h>
@@ -99,7 +100,6 @@ void tellFailures(const std::vector<TaskRecord>& failed) {
 }
 
 int performHere(const BatchOptions& options, const Plan& plan, const BatchFolder& folder, const Remaining& remaining) {
-  const LocalLock lock(folder);
   StopSignals signals;
   LocalRunner runner(plan, folder, slotsFor(options));
   LocalOutcome outcome;
@@ -176,6 +176,8 @@ int runBatch(const BatchOptions& options) {
   std::error_code error;
   fs::create_directories(folder.path(), error);
   if (error) throw OutputError(folder.path().string() + ": cannot be made: " + error.message());
+  std::optional<LocalLock> lock;
+  if (!options.slurm) lock.emplace(folder);
   writePlan(folder.plan(), plan);
   removeLost(plan, folder);
   const Remaining remaining = remainingOf(plan, folder, options.retry);

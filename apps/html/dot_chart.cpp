@@ -65,10 +65,10 @@ class DotSheet {
 std::string axisOf(const DotSheet& sheet, const std::string& label) {
   std::string svg;
   for (const double tick : sheet.ticks())
-    svg += fmt::format(
-        R"(<line class="grid" x1="{0}" y1="{1}" x2="{0}" y2="{2}"/><text x="{0}" y="{3}" text-anchor="middle">{4:g}</text>)",
-        coordinate(sheet.x(tick)), coordinate(kTop), coordinate(sheet.bottom()), coordinate(sheet.bottom() + 15),
-        tick == 0 ? 0 : tick);
+    svg += fmt::format(R"(<line class="grid" x1="{0}" y1="{1}" x2="{0}" y2="{2}"/>)"
+                       R"(<text x="{0}" y="{3}" text-anchor="middle">{4:g}</text>)",
+                       coordinate(sheet.x(tick)), coordinate(kTop), coordinate(sheet.bottom()),
+                       coordinate(sheet.bottom() + 15), tick == 0 ? 0 : tick);
   return svg + fmt::format(R"(<text x="{}" y="{}" text-anchor="middle">{}</text>)",
                            coordinate((sheet.left() + kWidth) / 2), coordinate(sheet.bottom() + 32), escaped(label));
 }

@@ -21,9 +21,23 @@ page() {
     --include="$room/common.h2m" --output="$pages/$1.1" "$calls/$1"
 }
 
+# commands_of WORDS: the commands behind them, one per line
+commands_of() {
+  # shellcheck disable=SC2086
+  "$motorcade" $1 --help | sed -n '/^Subcommands:/,$ s/^  \([a-z]\{1,\}\) .*/\1/p' | grep -vx help || true
+}
+
+# pages_of WORDS: of the commands behind them, and those behind these
+pages_of() {
+  local command purpose
+  for command in $(commands_of "$1"); do
+    # shellcheck disable=SC2086
+    purpose=$("$motorcade" $1 "$command" --help | sed -n 1p)
+    page "motorcade${1:+-${1// /-}}-$command" "${1:+$1 }$command" "${purpose,}"
+    pages_of "${1:+$1 }$command"
+  done
+}
+
 page motorcade "" "follow a car and the vehicles around it from a stereo camera"
-"$motorcade" --help | sed -n '/^Subcommands:/,$ s/^  \([a-z]\{1,\}\) .*/\1/p' | grep -vx help | while read -r command; do
-  purpose=$("$motorcade" "$command" --help | sed -n 1p)
-  page "motorcade-$command" "$command" "${purpose,}"
-done
+pages_of ""
 gzip -9nkf "$pages"/*.1  # as they are installed

@@ -30,7 +30,7 @@ _motorcade() {
   if [[ -z $choices ]]; then
     case $word in
       -*) choices=$(_motorcade_options <<<"$help") ;;
-      *) [[ -z $command || $command == help ]] && choices=$commands ;;
+      *) if [[ -z $command || $command == help ]]; then choices=$commands; else choices=$(_motorcade_commands <<<"$help"); fi ;;
     esac
   fi
   mapfile -t COMPREPLY < <(compgen -W "$choices" -- "$word")

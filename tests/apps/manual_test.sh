@@ -24,6 +24,7 @@ bridge=$("$motorcade" --help | sed -n 's/^  \(bridge\) .*/ \1/p')  # not in ever
 expect "run check synth evaluate draw report latency export view solve batch$bridge help" ""
 expect "solve" so
 expect "latency" help la
+expect "status" batch st
 expect "--rate --require" run --r
 expect "overtake" synth --scene ov
 expect "overtake" synth --scene = ov
