@@ -12,11 +12,14 @@ constexpr double kDepthNoiseSigmas = 2.0;  // by which the margin grows
 constexpr double kFitsChi2 = 9.0;          // of a velocity to the body's; 3 degrees of freedom: 97 %
 constexpr double kNotStaticChi2 = 16.0;  // by which a moving point explains the track better than one at rest: 4 sigma
 constexpr double kMinSpeed_mps = 1.0;    // slower objects cannot be told from the background by motion
+/// A point whose place is known less well may be on anything, and would stretch the object's extent without end.
+constexpr double kMostSlack_m = kLongestVehicle.length_m;
 
 /// Close to the points known so far: a long vehicle is found step by step. Points of a segment that was matched to the
 /// object need no neighbors within the size of an ordinary vehicle.
 bool isWithinReach(const Eigen::AlignedBox3d& known, const BodyPoint& candidate, bool matched) {
   const double slack_m = kDepthNoiseSigmas * std::sqrt(candidate.covariance.trace());
+  if (slack_m > kMostSlack_m) return false;
   const Eigen::AlignedBox3d grown = Eigen::AlignedBox3d(known).extend(candidate.p_body);
   Eigen::AlignedBox3d near = known;
   near.min().array() -= kMargin_m;

@@ -74,6 +74,19 @@ TEST(PointAdoption, TakesThePointsWithinTheObjectThatMoveWithIt) {
   EXPECT_EQ(car.taken, std::vector<bool>({true, true}));
 }
 
+TEST(PointAdoption, LeavesWhatIsTooFarAwayToKnowWhere) {
+  // The velocity of a point without parallax fits every body, and its depth every place along its ray.
+  const auto at_infinity = [](ScenePoint& p) {
+    p.uvd_px.z() = 0.01;
+    p.sigma_px.z() = 0.3;
+    p.flow->covariance *= 1e6;
+  };
+  EXPECT_FALSE(takesAfter(at_infinity));
+  Car car;
+  at_infinity(car.see({0.5, 0.2, 0.3}));
+  EXPECT_FALSE(car.takes(true));
+}
+
 TEST(PointAdoption, LeavesWhatBelongsToAnotherObject) {
   Car car;
   car.see({0.5, 0.2, 0.3});
