@@ -79,7 +79,7 @@ std::string submitScript(const fs::path& script, const std::vector<std::string>&
   const Answer answer = ask(words);
   // Warnings come before the number, and behind it, after a semicolon, the name of a cluster.
   const std::string line = answer.text.substr(answer.text.find_last_of('\n') + 1);
-  const std::string job = line.substr(0, line.find(';'));
+  std::string job = line.substr(0, line.find(';'));
   if (answer.exit_code != 0 || job.empty() ||
       !std::ranges::all_of(job, [](unsigned char c) { return std::isdigit(c); }))
     failWith("sbatch", answer);

@@ -48,7 +48,7 @@ fs::path newSubmissionFolder(const BatchFolder& folder) {
   std::error_code error;
   fs::create_directories(folder.cluster(), error);
   for (int number = 1;; ++number) {
-    const fs::path submission = folder.cluster() / std::to_string(number);
+    fs::path submission = folder.cluster() / std::to_string(number);
     if (fs::create_directory(submission, error)) return submission;
     if (error) throw OutputError(submission.string() + ": cannot be made: " + error.message());
   }

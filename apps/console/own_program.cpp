@@ -6,7 +6,7 @@ namespace motorcade {
 
 std::filesystem::path ownProgram() {
   std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  auto program = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error) throw UsageError("this program's file cannot be found: mount /proc");
   return program;
 }

@@ -16,7 +16,7 @@ struct Column {
 };
 
 /// The mean over the seeds.
-Column meanColumn(std::string head, std::string_view measure, int digits, std::string behind = "") {
+Column meanColumn(std::string head, std::string_view measure, int digits, const std::string& behind = "") {
   return {std::move(head), [=](const ResultGroup& group) { return numberText(group.mean(measure), digits) + behind; }};
 }
 

@@ -30,7 +30,7 @@ std::string calibrationOption(const ManifestEntry& entry, const fs::path& root) 
   const std::string given = optionOf(entry, "calibration");
   const auto comma = given.find(',');
   if (given.empty()) return "";
-  const std::string left = (root / given.substr(0, comma)).lexically_normal().string();
+  std::string left = (root / given.substr(0, comma)).lexically_normal().string();
   if (comma == std::string::npos) return left;
   return left + "," + (root / given.substr(comma + 1)).lexically_normal().string();
 }

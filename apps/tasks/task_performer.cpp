@@ -124,7 +124,7 @@ std::optional<TaskRecord> performTask(const Task& task, const Workplace& workpla
   std::error_code ignored;
   fs::remove_all(attempt, ignored);
   makeFolder(attempt);
-  const auto record = work(task, workplace, attempt);
+  auto record = work(task, workplace, attempt);
   if (!record) {
     fs::remove_all(attempt, ignored);
     return std::nullopt;

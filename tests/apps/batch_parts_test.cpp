@@ -90,8 +90,8 @@ TEST(SlurmScript, AsksForCoresMemoryAndTimeAndGoesOnAfterTheLossOfANode) {
   for (const char* const line :
        {"#SBATCH --array=0-19%7\n", "--cpus-per-task=3\n", "#SBATCH --mem=900M\n", "#SBATCH --time=1:00:00\n",
         "#SBATCH --partition=fast\n", "#SBATCH --requeue\n", "#SBATCH --output=/data/batch/cluster/1/tasks-1_%a.log\n",
-        "exec '/opt/it'\\''s/motorcade' batch task '/data/batch' --list '/data/batch/cluster/1/tasks.txt' "
-        "--index $((1001 + SLURM_ARRAY_TASK_ID))\n"})
+        "exec '/opt/it'\\''s/motorcade' batch task '/data/batch' --list '/data/batch/cluster/1/tasks.txt' --index",
+        " --index $((1001 + SLURM_ARRAY_TASK_ID))\n"})
     EXPECT_THAT(text, HasSubstr(line));
 }
 

@@ -18,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::Not;
 
 TEST(NumberText, HasNoDigitsThatSayNothing) {
   EXPECT_EQ(numberText(0.4004, 3), "0.4");
