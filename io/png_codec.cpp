@@ -8,23 +8,19 @@
 
 #include "io/errors.hpp"
 #include "io/image_codec.hpp"
+#include "io/png_chunks.hpp"
 #include "io/png_context.hpp"
+#include "io/png_fast_decoder.hpp"
 
 namespace motorcade {
 namespace {
 
 namespace fs = std::filesystem;
 
-bool isPng(std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
+bool isPng(std::string_view bytes) { return bytes.starts_with(kPngSignature); }
 
 /// BT.601 in 8-bit integers.
 std::uint8_t grayOf(const std::uint8_t* rgb) { return motorcade::grayOf(rgb[0], rgb[1], rgb[2]); }
-
-std::uint64_t bigEndian32(std::string_view bytes, std::size_t at) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
-  return value;
-}
 
 ImageSize pngSize(std::string_view bytes, const fs::path& file) {
   if (bytes.size() < 26 || bytes.substr(12, 4) != "IHDR") failDamaged(file, "its PNG header is cut");
@@ -87,6 +83,13 @@ struct PngReader {
 };
 
 Image decodePng(std::string_view bytes, const fs::path& file, ImagePool& pool) {
+  if (auto image = decodeCommonPng(bytes, decodableSize(bytes, file), pool)) return *std::move(image);
+  return decodeAnyPng(bytes, file, pool);
+}
+
+}  // namespace
+
+Image decodeAnyPng(std::string_view bytes, const fs::path& file, ImagePool& pool) {
   const ImageSize size = decodableSize(bytes, file);
   PngReader reader(bytes);
   if (!reader.readHeader(false)) failDamaged(file, reader.context.message.data());
@@ -103,8 +106,6 @@ Image decodePng(std::string_view bytes, const fs::path& file, ImagePool& pool) {
   }
   return image;
 }
-
-}  // namespace
 
 const ImageCodec& pngCodec() {
   static constexpr ImageCodec kCodec{ImageFormat::kPng, isPng, pngSize, decodePng};

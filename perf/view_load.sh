@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Measures what the page costs a run: p99 latency and CPU per frame at camera rate without --view, with it and no viewer, with one, and with
 # eight of which one is stalled. A viewer takes every event and its image, as the page does. The kinds take turns; medians over the rounds,
-# also in units of the libpng time of the same run (decode_ms of frames.csv). Needs curl and jq; loopback only.
+# also in units of what decoding a pair took in the same run (decode_ms of frames.csv), which is less than libpng takes. Needs curl and jq; loopback only.
 #   perf/view_load.sh [ROUNDS] [SEQUENCE]
 set -euo pipefail
 cd "$(dirname "$0")/.."

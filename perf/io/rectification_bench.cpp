@@ -6,12 +6,15 @@
 #include <benchmark/benchmark.h>
 
 #include "io/image_file.hpp"
+#include "io/png_fast_decoder.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/rig/remap.hpp"
 #include "io/sequence.hpp"
 #include "tests/support/data_folder.hpp"
 
-/// What it costs to rectify a pair on the way, beside what libpng takes to decode it. Items are pairs, of euroc_v101.
+/// What it costs to rectify a pair on the way, beside what it takes to decode it and what libpng would take. Items are
+/// pairs, of euroc_v101.
+/// pairs, of euroc_v101.
 namespace motorcade::perf {
 namespace {
 
@@ -43,19 +46,28 @@ void overRecording(benchmark::State& state, const Work& make_work) {
   state.SetItemsProcessed(state.iterations());
 }
 
-void BM_DecodePair(benchmark::State& state) {
-  overRecording(state, [](const Sequence& sequence) {
+void overFiles(benchmark::State& state, Image (*decode)(const std::string& bytes, ImagePool& pool)) {
+  overRecording(state, [&](const Sequence& sequence) {
     std::vector<std::string> files;
     for (std::size_t i = 0; i < kPairs; ++i)
       for (const StereoSide side : {StereoSide::kLeft, StereoSide::kRight})
         files.push_back(readImageBytes(sequence.frames[i].of(side)));
-    return [files, pool = ImagePool()](std::size_t index) mutable {
-      for (const std::size_t side : {0, 1})
-        benchmark::DoNotOptimize(decodeImage(files[2 * index + side], "pair", pool).data());
+    return [files, decode, pool = ImagePool()](std::size_t index) mutable {
+      for (const std::size_t side : {0, 1}) benchmark::DoNotOptimize(decode(files[2 * index + side], pool).data());
     };
   });
 }
+
+void BM_DecodePair(benchmark::State& state) {
+  overFiles(state, [](const std::string& bytes, ImagePool& pool) { return decodeImage(bytes, "pair", pool); });
+}
 BENCHMARK(BM_DecodePair)->Unit(benchmark::kMillisecond);
+
+/// The unit of costs, on this drive.
+void BM_DecodePairByLibpng(benchmark::State& state) {
+  overFiles(state, [](const std::string& bytes, ImagePool& pool) { return decodeAnyPng(bytes, "pair", pool); });
+}
+BENCHMARK(BM_DecodePairByLibpng)->Unit(benchmark::kMillisecond);
 
 void BM_RectifyPair(benchmark::State& state) {
   overRecording(state, [](const Sequence& sequence) {

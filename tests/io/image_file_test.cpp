@@ -10,6 +10,7 @@
 #include <zlib.h>
 
 #include "io/errors.hpp"
+#include "tests/io/png_sample.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {
@@ -205,18 +206,6 @@ TEST_F(ImageFile, PixelsThatTheFileCannotHoldAreRefusedBeforeTheyGetMemory) {
   EXPECT_EQ(pool_.buffersMade(), 1u) << "only the image that was written";
 }
 
-/// A chunk of a PNG, with its length and its checksum.
-std::string pngChunk(const std::string& type_and_data) {
-  const auto bigEndian = [](std::uint32_t value) {
-    std::string bytes;
-    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
-    return bytes;
-  };
-  const auto crc =
-      crc32(0, reinterpret_cast<const Bytef*>(type_and_data.data()), static_cast<uInt>(type_and_data.size()));
-  return bigEndian(static_cast<std::uint32_t>(type_and_data.size() - 4)) + type_and_data + bigEndian(crc);
-}
-
 /// Texts in a PNG inflate to up to 8 MB each, a thousand of them.
 TEST_F(ImageFile, TextsInAPngTakeNoMemory) {
   const Image image = noise(40, 24, pool_);
@@ -228,7 +217,7 @@ TEST_F(ImageFile, TextsInAPngTakeNoMemory) {
             Z_OK);
   packed.resize(length);
   std::string texts;
-  for (int i = 0; i < 100; ++i) texts += pngChunk("zTXtkey" + std::string(2, '\0') + packed);
+  for (int i = 0; i < 100; ++i) texts += test::pngChunk("zTXtkey" + std::string(2, '\0') + packed);
   constexpr std::size_t kAfterHeader = 33;  // signature and IHDR
   png.insert(kAfterHeader, texts);
   const auto file = folder_.write("a.png", png);

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace motorcade {
+
+inline constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
+
+/// The number in four bytes, of which the first weighs most.
+constexpr std::uint32_t bigEndian32(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
+  return value;
+}
+
+/// Where the pixels of a common PNG lie: 8-bit gray or color, with or without alpha, not interlaced, and without a
+/// chunk that would change pixels.
+struct CommonPng {
+  int channels = 0;
+  std::string_view image_chunks{};  // the IDATs, one behind the other, each with its length, name and checksum
+  std::size_t packed_bytes = 0;     // what they hold
+};
+
+/// Empty for any other PNG, and where chunks are cut, out of order or of a wrong checksum. `bytes` are a whole file
+/// that begins with the signature.
+std::optional<CommonPng> findCommonPng(std::string_view bytes);
+
+/// Puts together what the IDATs hold; `to` has room for it.
+void joinImageChunks(const CommonPng& png, std::uint8_t* to);
+
+}  // namespace motorcade

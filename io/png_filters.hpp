@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace motorcade {
+
+/// A row of a PNG as it was packed: each byte less what its neighbors tell of it, by the filter that the row names.
+struct FilteredRow {
+  const std::uint8_t* bytes;
+  const std::uint8_t* above;  // the row before, without its filter; of the first row: zeros
+  std::size_t count;          // bytes, whole pixels
+};
+
+/// Takes a filter off a row of 1 to 4 channels of 8 bits. `to` may be the row itself. False when there is no such
+/// filter.
+bool removeFilter(int filter, int channels, FilteredRow row, std::uint8_t* to);
+
+}  // namespace motorcade
