@@ -17,7 +17,7 @@ add_library(motorcade::yaml UNKNOWN IMPORTED)
 set_target_properties(motorcade::yaml PROPERTIES
   IMPORTED_LOCATION ${YAML_CPP_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${YAML_CPP_INCLUDE_DIR})
 find_path(DEFLATE_INCLUDE_DIR libdeflate.h REQUIRED)
-find_library(DEFLATE_LIBRARY deflate REQUIRED)
+find_library(DEFLATE_LIBRARY NAMES libdeflate.a deflate REQUIRED)  # 60 kB in the library rather than one more to load
 add_library(motorcade::deflate UNKNOWN IMPORTED)
 set_target_properties(motorcade::deflate PROPERTIES
   IMPORTED_LOCATION ${DEFLATE_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${DEFLATE_INCLUDE_DIR})

@@ -5,6 +5,7 @@
 #include <CLI/Version.hpp>
 #include <Eigen/Core>
 #include <jpeglib.h>
+#include <libdeflate.h>
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/version.h>
 #include <opencv2/core/version.hpp>
@@ -47,6 +48,7 @@ std::vector<std::pair<std::string, std::string>> versions() {
           {"eigen", numbered(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
           {"opencv", CV_VERSION},
           {"libpng", png_get_libpng_ver(nullptr)},
+          {"libdeflate", LIBDEFLATE_VERSION_STRING},
           {kJpegName, kJpegVersion},
           {"cli11", CLI11_VERSION},
           {"spdlog", numbered(SPDLOG_VER_MAJOR, SPDLOG_VER_MINOR, SPDLOG_VER_PATCH)},
