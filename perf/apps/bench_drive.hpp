@@ -50,4 +50,8 @@ std::unique_ptr<FrameSource> playFromDisk(const Sequence& drive, std::size_t ahe
 /// process.
 double decodingCpu_ms(const Sequence& drive);
 
+/// A unit: CPU time per pair in which libpng alone decodes the drive's images [ms]. Machines differ by two, costs in
+/// units hardly. Empty for images that are no PNGs.
+std::optional<double> unit_ms(const Sequence& drive);
+
 }  // namespace motorcade::perf

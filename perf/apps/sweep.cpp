@@ -38,12 +38,21 @@ struct Material {
   PipelineConfig config;
   HeldDrive held;
   double decoding_cpu_ms = 0;
+  std::optional<double> unit_ms;
 
   explicit Material(const SweepOptions& options)
       : drive(driveOf(options.bench)),
         config(configOf(options.bench)),
         held(drive),
-        decoding_cpu_ms(decodingCpu_ms(drive)) {}
+        decoding_cpu_ms(decodingCpu_ms(drive)),
+        unit_ms(perf::unit_ms(drive)) {}
+
+  /// CPU time as units, a column wide; empty where there is no unit.
+  std::string units(double cpu_ms) const {
+    char text[16] = "-";
+    if (unit_ms) std::snprintf(text, sizeof text, "%.2f", cpu_ms / *unit_ms);
+    return text;
+  }
 };
 
 Playback playOnce(const Cell& cell, const Material& material, const SweepOptions& options) {
@@ -63,18 +72,22 @@ void printHead(const Material& material, const SweepOptions& options) {
   std::printf("%s: %zu pairs of %d x %d px, the fastest of %d runs; decoding alone: %.2f ms of CPU per pair\n",
               options.bench.sequence.c_str(), material.drive.frames.size(), camera.width_px, camera.height_px,
               options.repeat, material.decoding_cpu_ms);
+  if (material.unit_ms)
+    std::printf("a unit is the CPU time in which libpng decodes a pair: %.2f ms here\n", *material.unit_ms);
   std::printf("latency from %s to publication\n\n", options.rate_hz > 0 ? "the moment a pair is due" : "admission");
-  std::printf("%-7s %7s %9s %9s | %9s %10s | %7s %7s %7s %7s | %9s %11s\n", "images", "threads", "in flight",
-              "frames/s", "CPU ms", "less dec.", "p50 ms", "p95", "p99", "max", "stolen s", "inv. switch");
+  std::printf("%-7s %7s %9s %9s | %9s %10s %6s %6s | %7s %7s %7s %7s | %9s %11s\n", "images", "threads", "in flight",
+              "frames/s", "CPU ms", "less dec.", "units", "less", "p50 ms", "p95", "p99", "max", "stolen s",
+              "inv. switch");
 }
 
-void print(const Cell& cell, double decoding_cpu_ms) {
+void print(const Cell& cell, const Material& material) {
   const Playback& run = cell.best;
   const double cpu_ms = run.perFrame(1e3 * run.used.cpu_s);
+  const double less_ms = cell.source == "disk" ? cpu_ms - material.decoding_cpu_ms : cpu_ms;
   const LatencyHistogram& latency = run.summary.latency;
-  std::printf("%-7s %7d %9d %9.1f | %9.2f %10.2f | %7.1f %7.1f %7.1f %7.1f | %9.2f %11lld\n", cell.source.c_str(),
-              cell.threads, cell.in_flight, run.rate_hz(), cpu_ms,
-              cell.source == "disk" ? cpu_ms - decoding_cpu_ms : cpu_ms, latency.percentile_ms(0.5),
+  std::printf("%-7s %7d %9d %9.1f | %9.2f %10.2f %6s %6s | %7.1f %7.1f %7.1f %7.1f | %9.2f %11lld\n",
+              cell.source.c_str(), cell.threads, cell.in_flight, run.rate_hz(), cpu_ms, less_ms,
+              material.units(cpu_ms).c_str(), material.units(less_ms).c_str(), latency.percentile_ms(0.5),
               latency.percentile_ms(0.95), latency.percentile_ms(0.99), latency.max_ms(), run.used.stolen_s,
               static_cast<long long>(run.used.involuntary_switches));
   std::fflush(stdout);
@@ -123,7 +136,7 @@ int sweep(const SweepOptions& options) {
       for (const int in_flight : options.in_flight) {
         Cell cell{.source = source, .threads = threads, .in_flight = in_flight, .best = {}};
         measure(cell);
-        print(cell, material.decoding_cpu_ms);
+        print(cell, material);
         cells.push_back(std::move(cell));
       }
     }

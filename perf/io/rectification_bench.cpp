@@ -14,7 +14,6 @@
 
 /// What it costs to rectify a pair on the way, beside what it takes to decode it and what libpng would take. Items are
 /// pairs, of euroc_v101.
-/// pairs, of euroc_v101.
 namespace motorcade::perf {
 namespace {
 
