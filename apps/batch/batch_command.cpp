@@ -28,11 +28,6 @@ namespace fs = std::filesystem;
 
 constexpr int kExitFailedTasks = 6;
 
-fs::path absoluteOf(const fs::path& path) {
-  const fs::path absolute = fs::absolute(path).lexically_normal();
-  return absolute.has_filename() ? absolute : absolute.parent_path();
-}
-
 /// What is left of a plan, and what is not.
 struct Remaining {
   std::vector<const Task*> tasks{};
@@ -54,10 +49,11 @@ Remaining remainingOf(const Plan& plan, const BatchFolder& folder, bool retry) {
 
 Plan planFor(const BatchOptions& options, const BatchFolder& folder) {
   const Manifest manifest = readManifest(options.manifest, options.root);
-  return planOf(manifest, {.program = options.program.empty() ? ownProgram() : absoluteOf(options.program),
-                           .sequences = options.sequences.empty() ? folder.sequences() : absoluteOf(options.sequences),
-                           .threads = options.threads,
-                           .only = options.only});
+  return planOf(manifest,
+                {.program = options.program.empty() ? ownProgram() : absoluteFolder(options.program),
+                 .sequences = options.sequences.empty() ? folder.sequences() : absoluteFolder(options.sequences),
+                 .threads = options.threads,
+                 .only = options.only});
 }
 
 /// The folders that scenes are rendered into.
@@ -170,7 +166,7 @@ int perform(const Task& task, Workplace workplace, bool only_render) {
 }  // namespace
 
 int runBatch(const BatchOptions& options) {
-  const BatchFolder folder(absoluteOf(options.out));
+  const BatchFolder folder(options.out);
   if (options.slurm) requireWritableInScript(folder.path());
   const Plan plan = planFor(options, folder);
   std::error_code error;
@@ -185,7 +181,7 @@ int runBatch(const BatchOptions& options) {
 }
 
 int runBatchTask(const BatchTaskOptions& options) {
-  const BatchFolder folder(absoluteOf(options.batch));
+  const BatchFolder folder(options.batch);
   const auto names = readTaskList(options.list);
   if (options.index >= names.size())
     throw InputError(options.list.string() + ": has " + std::to_string(names.size()) + " tasks, none of number " +

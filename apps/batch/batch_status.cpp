@@ -28,7 +28,7 @@ struct TaskState {
 };
 
 BatchFolder openBatch(const std::filesystem::path& path) {
-  BatchFolder folder(std::filesystem::absolute(path).lexically_normal());
+  BatchFolder folder(path);
   if (!std::filesystem::exists(folder.plan()))
     throw InputError(path.string() + ": is no folder of a batch; start one with motorcade batch MANIFEST --out " +
                      path.string());

@@ -12,19 +12,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path absoluteOf(const fs::path& path) {
-  const fs::path absolute = fs::absolute(path).lexically_normal();
-  return absolute.has_filename() ? absolute : absolute.parent_path();
-}
-
 Merged mergedOf(const MergeOptions& options) {
-  Merged merged{.batch = readBatch(absoluteOf(options.batch), options.baseline_set)};
+  Merged merged{.batch = readBatch(absoluteFolder(options.batch), options.baseline_set)};
   if (merged.batch.count(TaskOutcome::kDone) == 0)
     throw InputError(options.batch.string() +
                      ": no task of this plan is done yet, or all were planned anew since; see motorcade batch status");
   merged.groups = groupsOf(merged.batch);
   if (!options.against.empty()) {
-    const MergedBatch other = readBatch(absoluteOf(options.against), "");
+    const MergedBatch other = readBatch(absoluteFolder(options.against), "");
     merged.comparison = compareBatches(merged.groups, groupsOf(other), options.against);
   }
   return merged;
@@ -34,7 +29,7 @@ Merged mergedOf(const MergeOptions& options) {
 
 int runMerge(const MergeOptions& options) {
   const Merged merged = mergedOf(options);
-  const fs::path out = options.out.empty() ? BatchFolder(absoluteOf(options.batch)).merged() : options.out;
+  const fs::path out = options.out.empty() ? BatchFolder(options.batch).merged() : options.out;
   std::error_code error;
   fs::create_directories(out, error);
   if (error) throw OutputError(out.string() + ": cannot be made: " + error.message());

@@ -5,11 +5,17 @@
 
 namespace motorcade {
 
+/// As other processes see it, without a slash at its end.
+inline std::filesystem::path absoluteFolder(const std::filesystem::path& folder) {
+  const std::filesystem::path absolute = std::filesystem::absolute(folder).lexically_normal();
+  return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
 /// Where things are in the folder of a batch (docs/formats.md). Nothing in it is written twice by two processes under
 /// one name: what takes long is made in a folder of its own and renamed when it is complete.
 class BatchFolder {
  public:
-  explicit BatchFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit BatchFolder(const std::filesystem::path& folder) : folder_(absoluteFolder(folder)) {}
 
   const std::filesystem::path& path() const { return folder_; }
   std::filesystem::path plan() const { return folder_ / "plan.json"; }

@@ -14,7 +14,7 @@ namespace motorcade {
 namespace {
 
 constexpr int kMostRepetitions = 100'000, kMostFrames = 1'000'000;
-constexpr std::uint32_t kMostSeeds = 100'000;
+constexpr std::size_t kMostSeeds = 100'000;
 
 constexpr std::array<const char*, 8> kEntryKeys{"path", "scene", "name",  "length",
                                                 "size", "sets",  "seeds", "repetitions"};
@@ -99,8 +99,9 @@ std::vector<std::uint32_t> seedsIn(const std::vector<std::string>& words, const 
     const auto first = numberIn<std::uint32_t>(std::string_view(text).substr(0, dash));
     const auto last =
         dash == std::string::npos ? first : numberIn<std::uint32_t>(std::string_view(text).substr(dash + 1));
-    if (!first || !last || *last < *first || *last - *first >= kMostSeeds)
-      throw UsageError(where + ": 'seeds' has " + printable(text) + "; write whole numbers or a range of them, as 1-5");
+    if (!first || !last || *last < *first || *last - *first >= kMostSeeds - all.size())
+      throw UsageError(where + ": 'seeds' has " + printable(text) +
+                       "; write whole numbers or ranges of them, as 1-5, at most 100000 in all");
     for (std::uint32_t offset = 0; offset <= *last - *first; ++offset) all.push_back(*first + offset);
   }
   std::ranges::sort(all);

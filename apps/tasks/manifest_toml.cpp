@@ -2,6 +2,7 @@
 
 #include "apps/pipeline/toml_document.hpp"
 #include "apps/tasks/manifest_fields.hpp"
+#include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {
@@ -29,7 +30,8 @@ std::string stringOf(const toml::node& node, const std::string& key, const std::
 void addFields(ManifestFields& fields, const toml::table& table, const std::filesystem::path& file) {
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
-    if (node.is_table()) failAt(positionOf(node, file), "'" + name + "' is a table; parameters stand in [sets.NAME]");
+    if (node.is_table())
+      failAt(positionOf(node, file), "'" + printable(name) + "' is a table; parameters stand in [sets.NAME]");
     auto& words = fields.words[name];
     words.clear();
     if (const toml::array* const values = node.as_array())
@@ -101,7 +103,7 @@ Manifest readManifestToml(const std::filesystem::path& file, const std::string& 
     else if (name == "sets" && table != nullptr)
       manifest.sets = setsOf(*table, file);
     else
-      failAt(positionOf(node, file), "unknown key '" + name + "'" + kForm);
+      failAt(positionOf(node, file), "unknown key '" + printable(name) + "'" + kForm);
   }
   if (drives != nullptr) addEntries(manifest, *drives, defaults);
   return manifest;

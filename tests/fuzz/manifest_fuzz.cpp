@@ -1,0 +1,28 @@
+#include "apps/tasks/manifest_fields.hpp"
+#include "tests/fuzz/fuzz_input.hpp"
+
+using namespace motorcade;
+
+namespace {
+
+/// What was read can be planned: one of the two kinds of drives, and names that are names of folders.
+void requirePlannable(const Manifest& manifest) {
+  for (const ManifestEntry& entry : manifest.entries) {
+    fuzz::require(entry.path.empty() != entry.scene.empty(), "an entry of both kinds, or of none");
+    fuzz::require(entry.repetitions > 0, "an entry that is never run");
+    fuzz::require(entry.name.find('/') == std::string::npos, "a name that leads elsewhere");
+  }
+  for (const ParameterSet& set : manifest.sets)
+    fuzz::require(!set.name.empty() && set.name.find('/') == std::string::npos, "a set that leads elsewhere");
+}
+
+}  // namespace
+
+/// A manifest, as TOML and as a table.
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(fuzz::textOf(data, size));
+  const std::filesystem::path name = "manifest";
+  fuzz::readOrRefuse(name.native(), {}, [&] { requirePlannable(readManifestToml(name, text)); });
+  fuzz::readOrRefuse(name.native(), {}, [&] { requirePlannable(readManifestCsv(name, text)); });
+  return 0;
+}
