@@ -20,6 +20,8 @@ Merged mergedOf(const MergeOptions& options) {
   merged.groups = groupsOf(merged.batch);
   if (!options.against.empty()) {
     const MergedBatch other = readBatch(absoluteFolder(options.against), "");
+    if (other.count(TaskOutcome::kDone) == 0)
+      throw InputError(options.against.string() + ": no task is done there, so there is nothing to compare with");
     merged.comparison = compareBatches(merged.groups, groupsOf(other), options.against);
   }
   return merged;

@@ -221,6 +221,12 @@ TEST_F(MergeBatch, AgainstAnotherBatchWhatBecameWorseIsFound) {
   EXPECT_EQ(comparison["unpaired"][0], "new (not in the other batch)");
 }
 
+TEST_F(MergeBatch, ABatchWithoutResultsIsNothingToCompareWith) {
+  write("a", {{.drive = "x", .ate_m = 1}});
+  write("b", {});
+  EXPECT_THROW(runMerge({.batch = root_ / "a", .against = root_ / "b"}), InputError);
+}
+
 TEST_F(MergeBatch, FewPairsProveNothing) {
   write("a", {{.drive = "x", .ate_m = 2}});
   write("b", {{.drive = "x", .ate_m = 1}});
