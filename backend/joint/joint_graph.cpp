@@ -20,6 +20,7 @@ IncrementalSolver::Params solverParams(const JointParams& params) {
                               .urgent_flops = std::numeric_limits<double>::infinity(),
                               .polish_flops = std::numeric_limits<double>::infinity()},
           .substitution_tolerance = params.substitution_tolerance,
+          .spread_scalars = params.spread_scalars,
           .iterations_per_update = params.iterations_per_update,
           .iterated_scalars = 0,
           .budget = {.scalars = params.budget_scalars, .ms = params.budget_ms}};

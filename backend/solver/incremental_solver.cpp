@@ -84,6 +84,7 @@ void IncrementalSolver::beginReport() {
 void IncrementalSolver::endReport() {
   report_.eliminated_scalars += tree_.eliminatedScalars();
   report_.deferred_variables = static_cast<int>(relinearization_.deferred());
+  report_.waiting_cliques = static_cast<int>(substitution_.waiting());
   if (report_.relinearized_factors > 0) ++counters_.relinearizations;
   sortUnique(report_.moved);
   problems_.append(graph_, tree_, report_.problems);
@@ -135,7 +136,7 @@ void IncrementalSolver::step(bool fold) {
   work_.apply();
   if (fold) rebuildTop();
   spread_sigmas_ = params_.substitution_tolerance * graph_.rmsResidual();
-  substitute();
+  substitute(params_.spread_scalars);
 }
 
 /// Eliminates the marked cliques' variables and the new ones, in a new order.
@@ -154,8 +155,8 @@ void IncrementalSolver::rebuildTop() {
 }
 
 /// Solves for x where anything changed, and finds the models that are off there.
-void IncrementalSolver::substitute() {
-  const auto solved = substitution_(spread_sigmas_);
+void IncrementalSolver::substitute(std::int64_t most_scalars) {
+  const auto solved = substitution_(spread_sigmas_, most_scalars);
   report_.moved.insert(report_.moved.end(), solved.moved.begin(), solved.moved.end());
   report_.substituted_scalars += solved.scalars;
   report_.largest_change = std::max(report_.largest_change, solved.largest_change);
@@ -181,7 +182,7 @@ void IncrementalSolver::batchStep() {
   work_.markNew(created_);
   ++counters_.reorderings, ++counters_.batch_solves;
   spread_sigmas_ = 0;
-  substitute();
+  substitute(0);
 }
 
 const IncrementalSolver::Report& IncrementalSolver::converge(int max_iterations, double tolerance) {
@@ -206,7 +207,7 @@ const IncrementalSolver::Report& IncrementalSolver::drop(std::span<const Variabl
   beginReport();
   work_.begin();
   work_.markNew(retirement_.drop(variables));
-  substitute();
+  substitute(0);
   endReport();
   return report_;
 }

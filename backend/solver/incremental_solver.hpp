@@ -38,6 +38,9 @@ class IncrementalSolver {
     FluidRelinearization::Params relinearization;  // of kFluid
     /// Steps below that, in conditional standard deviations over the root mean square of the residuals, do not spread.
     double substitution_tolerance = 0.05;
+    /// Scalars substituted in a step beyond those of the cliques that it eliminates or corrects; what is below waits
+    /// for the next steps, with estimates that are a little older. 0: no limit.
+    std::int64_t spread_scalars = 0;
     int iterations_per_update = 2;  // Gauss-Newton steps at most, while models are off
     /// Scalars substituted in an update up to which it may take a further step; 0: no limit.
     std::int64_t iterated_scalars = 3000;
@@ -49,6 +52,7 @@ class IncrementalSolver {
     std::int64_t eliminated_scalars = 0, substituted_scalars = 0;
     int relinearized_variables = 0, relinearized_factors = 0, corrected_factors = 0;
     int deferred_variables = 0;  // whose relinearization the budget put off
+    int waiting_cliques = 0;     // whose estimates are older than what is above them
     double largest_change = 0;   // of any x, m or rad
   };
 
@@ -90,7 +94,7 @@ class IncrementalSolver {
   void step(bool fold);
   void batchStep();
   void rebuildTop();
-  void substitute();
+  void substitute(std::int64_t most_scalars);
 
   Params params_;
   FactorGraph graph_;

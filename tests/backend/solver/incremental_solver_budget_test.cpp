@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "backend/smoother/factors.hpp"
 #include "backend/solver/incremental_solver.hpp"
 #include "tests/backend/dense_system.hpp"
 #include "tests/backend/random_graphs.hpp"
@@ -166,6 +167,56 @@ TEST(IncrementalSolverBudget, ANewMeasurementIsNeverPutOff) {
     ASSERT_TRUE(covariance);
     EXPECT_LT(std::sqrt(covariance->diagonal().head<3>().maxCoeff()), 1.01e-3);
   }
+}
+
+/// A path whose newest pose is measured in each update, which moves all of it; the linear models stay what they are.
+struct MeasuredPath {
+  explicit MeasuredPath(std::int64_t spread_scalars) : solver(linear(spread_scalars)) {
+    test::RandomPoses random(1);
+    const PoseNoise noise{.sqrt_information = 10 * Matrix6d::Identity()};
+    std::vector<VariableId> x;
+    for (int k = 0; k < 60; ++k) {
+      const SE3 step = SE3({}, {1, 0, 0}) * random.pose(0.1, 0.01), at({}, {1.0 * k, 0, 0});
+      x.push_back(solver.addVariable(at));
+      if (k > 0) solver.addFactor(std::make_unique<MotionFactor>(std::array{x[k - 1], x[k]}, MotionModel{step}, noise));
+      const SE3 seen = at * random.pose(0.3, 0.02);
+      solver.addFactor(std::make_unique<PriorFactor>(std::array{x[k]}, PriorModel{seen}, noise));
+      const auto& report = solver.update();
+      most_below = std::max(most_below, report.substituted_scalars - report.eliminated_scalars);
+      most_waiting = std::max(most_waiting, report.waiting_cliques);
+    }
+  }
+  static IncrementalSolver::Params linear(std::int64_t spread_scalars) {
+    IncrementalSolver::Params params = kExact;
+    params.relinearization = {.mismatch_tolerance = 1e9, .jacobian_drift_sigmas = 1e9, .relinearize_rad = 1e9};
+    params.spread_scalars = spread_scalars;
+    return params;
+  }
+  double differenceFrom(const IncrementalSolver& other) const {
+    double difference = 0;
+    for (const VariableId v : solver.graph().variables())
+      difference = std::max(difference, (solver.pose(v).inverse() * other.pose(v)).log().norm());
+    return difference;
+  }
+
+  IncrementalSolver solver;
+  std::int64_t most_below = 0;
+  int most_waiting = 0;
+};
+
+TEST(IncrementalSolverSpread, OldPosesFollowInLaterUpdatesAndGetToTheSameSolution) {
+  constexpr std::int64_t kSpread = 60;
+  constexpr int kClique = 12;  // scalars at most that a clique has as frontals
+  const MeasuredPath at_once(0);
+  MeasuredPath spread(kSpread);
+  EXPECT_EQ(at_once.most_waiting, 0);
+  EXPECT_GT(at_once.most_below, 3 * kSpread);
+  EXPECT_GT(spread.most_waiting, 0);
+  EXPECT_LE(spread.most_below, kSpread + kClique);
+  EXPECT_GT(spread.differenceFrom(at_once.solver), 1e-6);
+  for (int i = 0; i < 100; ++i) spread.solver.update();
+  EXPECT_EQ(spread.solver.update().waiting_cliques, 0);
+  EXPECT_LT(spread.differenceFrom(at_once.solver), 1e-9);
 }
 
 TEST(IncrementalSolverEveryN, ReachesTheBatchSolutionInItsBatchSteps) {
