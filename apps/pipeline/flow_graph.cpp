@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cstddef>
 #include <exception>
 #include <future>
-#include <optional>
 #include <thread>
 #include <tuple>
 #include <utility>
@@ -15,12 +13,13 @@
 #include <oneapi/tbb/flow_graph.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/task_arena.h>
-#include <oneapi/tbb/task_scheduler_observer.h>
 
 #include "apps/pipeline/edge_gauge.hpp"
 #include "apps/pipeline/entrance.hpp"
 #include "apps/pipeline/publisher.hpp"
 #include "apps/pipeline/stage_runner.hpp"
+#include "apps/pipeline/worker_team.hpp"
+#include "core/thread_placement.hpp"
 
 namespace motorcade {
 namespace {
@@ -71,47 +70,6 @@ class Drained {
   flow::graph& graph_;
 };
 
-/// Places the workers of an arena, which come from other arenas and go back to them. Also where they stay as they are:
-/// a worker may come placed from an arena that ended before the worker had left it.
-class PlacedWorkers : public oneapi::tbb::task_scheduler_observer {
- public:
-  PlacedWorkers(oneapi::tbb::task_arena& arena, const ThreadPlacement& placement)
-      : task_scheduler_observer(arena), placement_(placement) {
-    // `observe` would do it, too, but where there is no memory for it, leave what cannot be destroyed.
-    arena.initialize();
-    observe(true);
-  }
-  ~PlacedWorkers() override {
-    if (!placement_.asItIs()) awaitDeparture();
-    observe(false);
-  }
-  PlacedWorkers(const PlacedWorkers&) = delete;
-  PlacedWorkers& operator=(const PlacedWorkers&) = delete;
-
-  void on_scheduler_entry(bool) override {
-    ++inside_;
-    ofThisThread().emplace(placement_);
-  }
-  void on_scheduler_exit(bool) override {
-    ofThisThread().reset();
-    --inside_;
-  }
-
- private:
-  /// Workers stay for a moment where there is nothing left to do, and no longer hear of their exit afterwards.
-  void awaitDeparture() const {
-    constexpr int kTries = 200;
-    constexpr std::chrono::microseconds kPause(100);
-    for (int tries = 0; inside_ > 0 && tries < kTries; ++tries) std::this_thread::sleep_for(kPause);
-  }
-  static std::optional<PlacedThread>& ofThisThread() {
-    thread_local std::optional<PlacedThread> placed;
-    return placed;
-  }
-  ThreadPlacement placement_;
-  std::atomic<int> inside_{0};
-};
-
 constexpr auto kSequence = [](const Job* job) { return job->sequence; };
 constexpr auto kSequenceOfPair = [](const JobPair& pair) { return std::get<0>(pair)->sequence; };
 
@@ -125,9 +83,7 @@ class FlowGraph::Impl {
   Impl& operator=(const Impl&) = delete;
 
   void put(Job& job);
-  void close() {
-    if (graph_ != nullptr && !closed_.exchange(true)) graph_->release_wait();
-  }
+  void close() { team_.close(); }
   void join();
   void fail(const std::exception_ptr& reason);
   void abandon() { abandoned_ = true; }
@@ -146,25 +102,30 @@ class FlowGraph::Impl {
 
   Work work_;
   std::array<EdgeGauge, kEdges> gauges_;
+  int workers_;
   oneapi::tbb::task_arena arena_;
-  PlacedWorkers placed_workers_;
-  oneapi::tbb::task_group_context context_;  // of the graph: canceled where the library itself lacked memory for a task
-  std::atomic<bool> closed_ = false, failed_ = false, abandoned_ = false;
+  WorkerTeam team_;
+  /// Of the graph: canceled where the library itself lacked memory for a task. Waiting for the graph does not reset it,
+  /// as the next frame may come meanwhile.
+  oneapi::tbb::task_group_context context_{oneapi::tbb::task_group_context::isolated,
+                                           oneapi::tbb::task_group_context::concurrent_wait};
+  std::atomic<bool> failed_ = false, abandoned_ = false;
   std::exception_ptr failure_;
-  flow::graph* graph_ = nullptr;  // on the stack of `run`, like all nodes
-  flow::receiver<Job*>* first_node_ = nullptr;
+  flow::receiver<Job*>* first_node_ = nullptr;  // on the stack of `run`, like all nodes; null until all are wired
   std::jthread thread_;
 };
 
-/// One slot of the arena is reserved for the thread of `run`, which works too: together they are `params.threads`
-/// workers.
 FlowGraph::Impl::Impl(const PipelineParams& params, Work work)
     : work_(std::move(work)),
-      arena_(std::min(params.threads, oneapi::tbb::info::default_concurrency()), 1),
-      placed_workers_(arena_, params.placement) {
+      workers_(std::min(params.threads, oneapi::tbb::info::default_concurrency())),
+      arena_(workers_, static_cast<unsigned>(workers_)),
+      team_(arena_, workers_, params.placement) {
   std::promise<void> promise;
   auto wired = promise.get_future();
-  thread_ = std::jthread([this, &promise] { run(promise); });
+  thread_ = std::jthread([this, &promise, &params] {
+    const PlacedThread placed(params.placement);
+    run(promise);
+  });
   wired.get();
 }
 
@@ -173,7 +134,7 @@ void FlowGraph::Impl::run(std::promise<void>& wired) {
   try {
     arena_.execute([this, &wired] { wireAndRun(wired); });
   } catch (...) {
-    if (graph_ == nullptr)
+    if (first_node_ == nullptr)
       wired.set_exception(std::current_exception());
     else
       fail(std::current_exception());
@@ -205,6 +166,7 @@ void FlowGraph::Impl::unlessGivenUp(const Act& act) {
 /// What a node does with a job: takes it off the edges that lead here, works, and leaves it on the edges that lead on.
 auto FlowGraph::Impl::stage(std::vector<Edge> in, void (StageRunner::*work)(Job&), std::vector<Edge> out) {
   return [this, in = std::move(in), work, out = std::move(out)](Job* job) {
+    team_.settle();
     for (const Edge edge : in) gauges_[edge].leave();
     unlessGivenUp([this, job, work] { (work_.stages.*work)(*job); });
     for (const Edge edge : out) gauges_[edge].enter();
@@ -265,11 +227,9 @@ void FlowGraph::Impl::wireAndRun(std::promise<void>& wired) {
 }
 
 void FlowGraph::Impl::await(flow::graph& graph, std::promise<void>& wired) {
-  graph_ = &graph;
-  graph.reserve_wait();
   wired.set_value();
   try {
-    graph.wait_for_all();
+    team_.lead(graph);
   } catch (...) {
     fail(std::current_exception());
   }
@@ -279,6 +239,7 @@ void FlowGraph::Impl::await(flow::graph& graph, std::promise<void>& wired) {
 void FlowGraph::Impl::put(Job& job) {
   gauges_[kToPrepare].enter();
   first_node_->try_put(&job);  // never refused: the node queues
+  team_.call();
 }
 
 std::vector<QueueMark> FlowGraph::Impl::queues(std::int64_t bound) const {

@@ -1,0 +1,65 @@
+#include "apps/pipeline/worker_team.hpp"
+
+#include <atomic>
+#include <functional>
+#include <latch>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace motorcade {
+namespace {
+
+namespace flow = oneapi::tbb::flow;
+
+/// A team that works on a graph of one node.
+class WorkingTeam : public testing::Test {
+ protected:
+  /// Calls the team for each of `tasks` tasks from another thread, as the pump does.
+  void work(int workers, int tasks, const std::function<void(int)>& body) {
+    oneapi::tbb::task_arena arena(workers, static_cast<unsigned>(workers));
+    WorkerTeam team(arena, workers, {});
+    std::latch wired(1);
+    flow::receiver<int>* first = nullptr;
+    std::jthread leader([&] {
+      arena.execute([&] {
+        oneapi::tbb::task_group_context context(oneapi::tbb::task_group_context::isolated,
+                                                oneapi::tbb::task_group_context::concurrent_wait);
+        flow::graph graph(context);
+        flow::function_node<int, flow::continue_msg> node(graph, flow::unlimited, [&](int task) { body(task); });
+        first = &node;
+        wired.count_down();
+        team.lead(graph);
+      });
+    });
+    wired.wait();
+    for (int task = 0; task < tasks; ++task) {
+      first->try_put(task);
+      team.call();
+    }
+    team.close();
+    leader.join();
+  }
+};
+
+TEST_F(WorkingTeam, DoesAllThatItIsCalledFor) {
+  for (const int workers : {1, 2, 3}) {
+    std::atomic<int> done = 0;
+    work(workers, 1000, [&](int) { ++done; });
+    EXPECT_EQ(done, 1000);
+  }
+}
+
+TEST_F(WorkingTeam, IsAwakeAsAWhole) {
+  std::latch all(2);  // each task waits for the other: one worker alone would never end
+  work(2, 2, [&](int) { all.arrive_and_wait(); });
+  SUCCEED();
+}
+
+TEST_F(WorkingTeam, EndsWithoutACall) {
+  for (const int workers : {1, 2, 4}) work(workers, 0, [](int) {});
+  SUCCEED();
+}
+
+}  // namespace
+}  // namespace motorcade
