@@ -128,8 +128,10 @@ Result ResultConversion::operator()(const PipelineResult& result) {
   converted.T_world_cam = rowsOf(T_out_cam * online.T_world_cam * T_out_cam.inverse());
   if (online.camera_covariance) converted.motion_covariance = rowsOf<6>(turned(*online.camera_covariance, R_out_cam_));
   if (result.measurements) setVelocity(*result.measurements, converted);
-  converted.dropped_before = static_cast<int>(
-      std::ranges::count(result.dropped, FrameStatus::kDropped, [](const FrameEstimate& f) { return f.status; }));
+  const auto dropped =
+      std::ranges::count(result.dropped, FrameStatus::kDropped, [](const FrameEstimate& f) { return f.status; }) +
+      result.dropped_unnamed;
+  converted.dropped_before = static_cast<int>(std::min<std::int64_t>(dropped, std::numeric_limits<int>::max()));
   converted.latency_ms = result.timing.latency_ms();
   try {
     setObjects(result, converted);

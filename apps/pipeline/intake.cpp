@@ -1,5 +1,6 @@
 #include "apps/pipeline/intake.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <chrono>
 #include <limits>
@@ -11,7 +12,7 @@
 namespace motorcade {
 namespace {
 
-/// Frames that may be lost between two others and still be named one by one.
+/// Frames that may be lost between two others and still be named one by one; more are counted.
 constexpr std::size_t kHeaders = 4096;
 
 /// A frame for which there is no memory gives up its images.
@@ -66,9 +67,10 @@ Admission Intake::judge(StereoFrame frame) {
 }
 
 Admission Intake::enter(StereoFrame frame) {
-  if (!live()) return input_.push(std::move(frame)) ? Admission::kTaken : Admission::kClosed;
+  const std::int64_t turn = ++turns_;
+  if (!live()) return input_.push({std::move(frame), turn}) ? Admission::kTaken : Admission::kClosed;
   announce({frame.frame, frame.stamp});
-  return newest_.put(std::move(frame)) ? Admission::kReplacedOlder : Admission::kTaken;
+  return newest_.put({std::move(frame), turn}) ? Admission::kReplacedOlder : Admission::kTaken;
 }
 
 void Intake::passOver(const FrameHeader& frame) {
@@ -77,6 +79,7 @@ void Intake::passOver(const FrameHeader& frame) {
   next_id_ = {frame.frame.value + 1};
   FrameHeader header = frame;
   header.stamp.ns += clock_.ahead_ns();
+  ++turns_;
   announce(header);
   passed_over_.fetch_add(1, std::memory_order_relaxed);
   received_.fetch_add(1, std::memory_order_relaxed);
@@ -101,14 +104,15 @@ Job* Intake::next(const std::function<bool()>& given_up) {
 }
 
 /// No frame is lost that another thread's `close` overtakes on its way in.
-std::optional<StereoFrame> Intake::take() {
+std::optional<Intake::Entering> Intake::take() {
   auto frame = live() ? newest_.take() : input_.pop();
   if (frame) return frame;
   entering_.wait(true);
   return live() ? newest_.tryTake() : input_.tryPop();
 }
 
-void Intake::admit(Job& job, StereoFrame frame) {
+void Intake::admit(Job& job, Entering entering) {
+  StereoFrame& frame = entering.frame;
   job.timing = FrameTiming{};
   job.timing.admitted = std::chrono::steady_clock::now();
   if (frame.due == SteadyTime{}) frame.due = job.timing.admitted;
@@ -118,17 +122,33 @@ void Intake::admit(Job& job, StereoFrame frame) {
   job.timing.decode_ms = frame.decode_ms;
   job.timing.decoded = frame.decoded;
   job.dropped = headersBefore(frame.frame);
+  job.dropped_unnamed = droppedUnnamed(job.dropped, entering.turn);
+  tellOfLost(job);
+  tellOfClock(frame);
+  job.frame = shared(std::move(frame));
+  job.sequence = admitted_++;
+  if (job.frame->rejected())
+    tell(log_, LogLevel::kWarning, [&] { return job.name() + " is rejected: " + job.frame->problem; });
+}
+
+/// Of the frames between the last admitted one and that of `turn`.
+std::int64_t Intake::droppedUnnamed(const std::vector<FrameHeader>& named, std::int64_t turn) {
+  const std::int64_t between = turn - std::exchange(last_turn_, turn) - 1;
+  return between - std::ranges::count(named, FrameStatus::kDropped, &FrameHeader::status);
+}
+
+void Intake::tellOfLost(const Job& job) {
   for (const FrameHeader& header : job.dropped)
     if (header.status == FrameStatus::kRejected)
       tell(log_, LogLevel::kWarning, [&] {
         return "frame " + std::to_string(header.frame.value) +
                " is rejected: its time does not follow that of the frame before it";
       });
-  tellOfClock(frame);
-  job.frame = shared(std::move(frame));
-  job.sequence = admitted_++;
-  if (job.frame->rejected())
-    tell(log_, LogLevel::kWarning, [&] { return job.name() + " is rejected: " + job.frame->problem; });
+  if (job.dropped_unnamed > 0)
+    tell(log_, LogLevel::kWarning, [&] {
+      return std::to_string(job.dropped_unnamed) + " frames that were dropped before " + job.name() +
+             " are counted, but have no line in the results: there were too many at once";
+    });
 }
 
 /// The frame may be one of the few before the first with a corrected time.

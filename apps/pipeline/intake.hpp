@@ -50,11 +50,18 @@ class Intake {
  private:
   bool live() const { return policy_ == InputPolicy::kLive; }
   Admission judge(StereoFrame frame);
+  /// A frame on its way in, with the number of frames, this one included, that were or could have been dropped by then.
+  struct Entering {
+    StereoFrame frame;
+    std::int64_t turn = 0;
+  };
   Admission enter(StereoFrame frame);
-  std::optional<StereoFrame> take();
+  std::optional<Entering> take();
   void announce(FrameHeader header);
   void tellOfClock(const StereoFrame& frame);
-  void admit(Job& job, StereoFrame frame);
+  void tellOfLost(const Job& job);
+  void admit(Job& job, Entering entering);
+  std::int64_t droppedUnnamed(const std::vector<FrameHeader>& named, std::int64_t turn);
   std::vector<FrameHeader> headersBefore(FrameId frame);
 
   InputPolicy policy_;
@@ -63,9 +70,9 @@ class Intake {
   LogCallback log_;
 
   // The ring in replay, the mailbox in live. The headers are of frames that were passed over or refused; in live of all
-  // frames, to know those that the mailbox lost.
-  SpscRing<StereoFrame> input_;
-  Mailbox<StereoFrame> newest_;
+  // frames, to know those that the mailbox lost. Where there are too many for the ring, the last of them are missing.
+  SpscRing<Entering> input_;
+  Mailbox<Entering> newest_;
   SpscRing<FrameHeader> headers_;
   // The producer raises the one before it looks at the other: who has closed the input waits for a push that came
   // before.
@@ -74,10 +81,12 @@ class Intake {
   std::atomic<std::int64_t> clock_ahead_ns_{0};
 
   FrameId next_id_{0};                       // producer only
+  std::int64_t turns_ = 0;                   // producer only
   FrameClock clock_;                         // producer only
   std::int64_t told_ahead_ns_ = 0;           // pump only
   std::optional<FrameHeader> header_ahead_;  // pump only: taken from `headers_`, later than the newest frame
   std::size_t admitted_ = 0;                 // pump only
+  std::int64_t last_turn_ = 0;               // pump only: of the last admitted frame
 };
 
 }  // namespace motorcade

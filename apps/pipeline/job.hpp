@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <semaphore>
 #include <string>
 #include <vector>
@@ -18,8 +19,9 @@ namespace motorcade {
 /// One frame on its way through the stages, with the messages that they have made so far.
 /// Each field has one writer; the graph's edges order writers before readers.
 struct Job {
-  std::size_t sequence = 0;  // without gaps, unlike the frame's id
-  std::vector<FrameHeader> dropped;
+  std::size_t sequence = 0;          // without gaps, unlike the frame's id
+  std::vector<FrameHeader> dropped;  // or refused, since the frame before
+  std::int64_t dropped_unnamed = 0;  // more of them, of which nothing is known
   StereoFramePtr frame;
   FeaturesPtr features;
   StereoMatchesPtr matches;

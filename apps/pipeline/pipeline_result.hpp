@@ -16,6 +16,7 @@ namespace motorcade {
 struct PipelineResult {
   FrameEstimate online;
   std::vector<FrameEstimate> dropped;  // frames just before this one that never entered, with predicted poses
+  std::int64_t dropped_unnamed = 0;    // more of them, where they were thousands: only their number is known
   std::vector<FrameEstimate> finals;   // every frame once, in order, when it leaves the smoothing window
   std::vector<FrameEstimate>
       settled;                    // every frame at most once, in order, as soon as hardly anything will change in it

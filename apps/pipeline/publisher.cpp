@@ -51,6 +51,7 @@ PipelineResult Publisher::resultOf(Job& job) {
   const bool seen_by_backend = job.problemOf(Stage::kIncrementalOptimization).empty();
   result.dropped = gaps_.fill(job.dropped);
   settled_gaps_.fill(job.dropped);
+  result.dropped_unnamed = job.dropped_unnamed;
   result.online = job.estimates->online;
   tellWhy(job, result.online);
   online_ages_.fill(result.online);

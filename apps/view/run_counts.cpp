@@ -70,7 +70,7 @@ DurationBuckets RunCounts::Buckets::read() const {
 }
 
 void RunCounts::count(const PipelineResult& result) {
-  increase(dropped_, static_cast<std::int64_t>(result.dropped.size()));
+  increase(dropped_, static_cast<std::int64_t>(result.dropped.size()) + result.dropped_unnamed);
   count(result.online.status);
   latency_.add(result.timing.latency_ms());
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {

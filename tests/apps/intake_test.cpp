@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <thread>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -50,6 +51,44 @@ TEST_P(IntakeClosing, LosesNoFrameThatItTook) {
     ASSERT_EQ(taken, admitted + intake.dropped()) << "round " << round;
     ASSERT_EQ(taken, intake.received());
   }
+}
+
+/// An intake whose pump is the test itself.
+class LiveIntake : public testing::Test {
+ protected:
+  void push(std::int64_t frames) {
+    for (std::int64_t i = 0; i < frames; ++i) intake_.push(frameAt(pushed_++));
+  }
+  /// The next admitted frame's id, and how many it says were dropped before it: named, and in all.
+  std::tuple<std::int64_t, std::size_t, std::int64_t> admitted() {
+    Job* const job = intake_.next([] { return false; });
+    const auto named = job->dropped.size();
+    const std::tuple seen{job->timing.frame.value, named, static_cast<std::int64_t>(named) + job->dropped_unnamed};
+    job->clear();
+    free_jobs_.giveBack(*job);
+    entrance_.pass();
+    return seen;
+  }
+
+ private:
+  PipelineParams params_{.policy = InputPolicy::kLive};
+  FreeJobs free_jobs_{tokens(params_)};
+  Entrance entrance_;
+  Intake intake_{params_, free_jobs_, entrance_, [](LogLevel, const std::string&) {}};
+  std::int64_t pushed_ = 0;
+};
+
+TEST_F(LiveIntake, CountsDroppedFramesAlsoWhereThereAreTooManyToNameThem) {
+  push(100'000);
+  EXPECT_EQ(admitted(), std::tuple(99'999, 4096, 99'999));
+  push(1);
+  EXPECT_EQ(admitted(), std::tuple(100'000, 0, 0));
+  push(4);
+  EXPECT_EQ(admitted(), std::tuple(100'004, 3, 3));
+  push(4097);  // the header of the newest finds no room
+  EXPECT_EQ(admitted(), std::tuple(104'101, 4096, 4096));
+  push(5000);
+  EXPECT_EQ(admitted(), std::tuple(109'101, 4096, 4999));
 }
 
 }  // namespace

@@ -95,6 +95,27 @@ TEST(PipelineLive, IsFreshInTheFrameAfterAStallOfTheMotionStage) {
   EXPECT_EQ(missing(run.summary), 0);
 }
 
+TEST(PipelineLive, CountsMoreDroppedPairsThanItCanName) {
+  constexpr std::int64_t kFrames = 20'000;
+  std::latch stalled(1), stall_ends(1);
+  ToyStages toys;
+  toys.work = [&](Stage stage, FrameId frame) {
+    if (stage != Stage::kSceneFlowSegmentation || frame.value != 0) return;
+    stalled.count_down();
+    stall_ends.wait();
+  };
+  Pipeline pipeline({.threads = 2, .policy = InputPolicy::kLive}, toys.stages());
+  pipeline.push(frameAt(0));
+  stalled.wait();
+  for (std::int64_t index = 1; index < kFrames; ++index) pipeline.push(frameAt(index));
+  stall_ends.count_down();
+  const Outcome run = drain(pipeline);
+  ASSERT_EQ(run.results.size(), 2u);
+  const PipelineResult& fresh = run.results.back();
+  EXPECT_EQ(static_cast<std::int64_t>(fresh.dropped.size()) + fresh.dropped_unnamed, kFrames - 2);
+  EXPECT_EQ(run.summary.dropped, kFrames - 2);
+}
+
 /// One frame is admitted behind the one that stalls, no more: the third is fresh.
 TEST(PipelineLive, IsFreshWithinThreeFramesAfterAStallOfTheBackEnd) {
   std::latch stalled(1), stall_ends(1);
