@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -11,12 +12,13 @@
 #include "io/image_limits.hpp"
 #include "io/pair_reader.hpp"
 #include "io/sequence.hpp"
+#include "io/side_reader.hpp"
 
 namespace motorcade {
 
-/// Decodes and rectifies a sequence's images on a thread of its own, a bounded number of pairs ahead of whoever takes
-/// them. Takes frames from one thread only. A pair that cannot be read, or has the wrong size, comes out without images
-/// and with its `problem`.
+/// Decodes and rectifies a sequence's images on threads of its own, one per side, a bounded number of pairs ahead of
+/// whoever takes them. Takes frames from one thread only. A pair that cannot be read, or has the wrong size, comes out
+/// without images and with its `problem`.
 class SequenceDecoder {
  public:
   struct Params {
@@ -35,7 +37,7 @@ class SequenceDecoder {
 
   /// The next pair, numbered by its index in the sequence, without a due time; waits for it. Empty after the last or
   /// after `stop`.
-  std::optional<StereoFrame> next() { return ring_.pop(); }
+  std::optional<StereoFrame> next();
   /// Ends decoding early, from any thread; pairs already decoded still come out.
   void stop() { ring_.close(); }
 
@@ -49,7 +51,9 @@ class SequenceDecoder {
   std::size_t capacity() const { return ring_.capacity(); }
 
  private:
+  void letThePairGoAhead() const;
   StereoFrame decode(std::size_t index);
+  void readInto(StereoFrame& frame, const FramePaths& paths);
   bool wants(std::size_t index) const {
     return !wanted_ || index + 1 == range_.end || wanted_(sequence_.stamps[index]);
   }
@@ -58,8 +62,10 @@ class SequenceDecoder {
   std::function<bool(Timestamp)> wanted_;
   FrameRange range_;
   PairReader reader_;
+  SideReader right_;
   SpscRing<StereoFrame> ring_;
-  std::jthread thread_;  // last: it uses all of the above
+  std::atomic<SteadyTime::rep> taken_{0};  // when a pair was taken last
+  std::jthread thread_;                    // last: it uses all of the above
 };
 
 }  // namespace motorcade

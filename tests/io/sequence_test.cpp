@@ -195,6 +195,20 @@ TEST_F(SequenceTest, DamagedOrMissizedImagesBecomeRejectedFrames) {
   EXPECT_FALSE(decoder.next()->rejected());
 }
 
+TEST_F(SequenceTest, OfAPairWithTwoDamagedImagesTheLeftOneIsNamed) {
+  writePlain(3);
+  for (const char* file : {"image_0/000001.png", "image_1/000001.png"}) folder_.write(file, "no image");
+  SequenceDecoder decoder(openSequence(folder_.path()), {});
+  EXPECT_FALSE(decoder.next()->rejected());
+  const auto damaged = decoder.next();
+  EXPECT_THAT(damaged->problem, HasSubstr("image_0/000001.png"));
+  EXPECT_TRUE(damaged->left.empty() && damaged->right.empty());
+  const auto good = decoder.next();
+  EXPECT_FALSE(good->rejected());
+  EXPECT_EQ(good->left.at(5, 5), 2);
+  EXPECT_EQ(good->right.at(5, 5), 2);
+}
+
 TEST_F(SequenceTest, DecoderLeavesOutUnwantedPairsButNeverTheLast) {
   writePlain(10);
   const Sequence sequence = openSequence(folder_.path());
