@@ -177,6 +177,7 @@ auto FlowGraph::Impl::stage(std::vector<Edge> in, void (StageRunner::*work)(Job&
 void FlowGraph::Impl::publish(Job& job) {
   gauges_[kToPublish].leave();
   unlessGivenUp([this, &job] { work_.publisher.publish(job); });
+  team_.finish();
 }
 
 /// The wiring: stateless stages `unlimited`, stages with memory `serial` behind a sequencer (a serial node may start
@@ -194,6 +195,7 @@ void FlowGraph::Impl::wireAndRun(std::promise<void>& wired) {
   flow::function_node<JobPair, Job*> scene_flow_segmentation(graph, flow::serial, [this, segment](const JobPair& pair) {
     Job* const job = segment(std::get<0>(pair));
     work_.entrance.pass();
+    team_.reachTail();
     return job;
   });
   InOrder tracking_order(graph, kSequence);
@@ -238,6 +240,7 @@ void FlowGraph::Impl::await(flow::graph& graph, std::promise<void>& wired) {
 
 void FlowGraph::Impl::put(Job& job) {
   gauges_[kToPrepare].enter();
+  team_.expect();
   first_node_->try_put(&job);  // never refused: the node queues
   team_.call();
 }

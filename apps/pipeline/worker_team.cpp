@@ -6,62 +6,104 @@ namespace motorcade {
 
 namespace flow = oneapi::tbb::flow;
 
+void WorkerTeam::Hold::add() {
+  graph_.reserve_wait();
+  ++count_;
+}
+
+void WorkerTeam::Hold::drop() {
+  int count = count_;
+  while (count > 0 && !count_.compare_exchange_weak(count, count - 1)) {
+  }
+  if (count > 0) graph_.release_wait();
+}
+
+void WorkerTeam::Hold::dropAll() {
+  for (int count = count_.exchange(0); count > 0; --count) graph_.release_wait();
+}
+
 WorkerTeam::WorkerTeam(oneapi::tbb::task_arena& arena, int workers, const ThreadPlacement& placement)
     : arena_(arena), placement_(placement), spread_(static_cast<std::size_t>(workers)) {
-  arena_.execute([&] {
-    for (int i = 1; i < workers; ++i) busy_.push_back(std::make_unique<flow::graph>());
+  arena_.execute([&] {  // where the graphs are made, they are awaited
+    for (int i = 0; i < workers; ++i) seats_.push_back(std::make_unique<Seat>());
   });
-  for (const auto& busy : busy_)
-    helpers_.emplace_back([this, &busy = *busy](const std::stop_token& stopped) { help(busy, stopped); });
+  for (int i = 1; i < workers; ++i) helpers_.emplace_back([this](const std::stop_token& stopped) { help(stopped); });
 }
 
-WorkerTeam::~WorkerTeam() { letGo(calls_); }
+WorkerTeam::~WorkerTeam() {
+  for (const auto& seat : seats_) letGo(*seat);
+}
+
+/// A frame wants all workers until its tail; and each frame beyond the first does, until one is finished.
+void WorkerTeam::expect() {
+  for (const auto& seat : seats_) {
+    seat->alone.add();
+    seat->as_one_of_all.add();
+  }
+  if (frames_.fetch_add(1) > 0)
+    for (const auto& seat : seats_) seat->as_one_of_all.add();
+}
 
 void WorkerTeam::call() {
-  for (const auto& busy : busy_) busy->reserve_wait();
-  calls_.fetch_add(1);
-  signal();
-}
-
-void WorkerTeam::close() {
-  closed_ = true;
-  signal();
-}
-
-void WorkerTeam::signal() {
   events_.fetch_add(1, std::memory_order_release);
   events_.notify_all();
 }
 
-/// What was called before `closed_` was seen is done by then.
-void WorkerTeam::lead(flow::graph& graph) {
-  for (;;) {
-    const auto seen = events_.load(std::memory_order_acquire);
-    const bool closed = closed_;
-    const std::uint32_t calls = calls_;
-    settle();
-    graph.wait_for_all();
-    letGo(calls);
-    if (closed) return;
-    events_.wait(seen, std::memory_order_acquire);
+void WorkerTeam::reachTail() {
+  last_ = thisSeat();
+  for (const auto& seat : seats_) seat->as_one_of_all.drop();
+}
+
+void WorkerTeam::finish() {
+  last_ = thisSeat();
+  const bool others = frames_.fetch_sub(1) > 1;
+  for (const auto& seat : seats_) {
+    if (others) seat->as_one_of_all.drop();
+    seat->alone.drop();
   }
 }
 
-void WorkerTeam::letGo(std::uint32_t calls) {
-  for (; done_ != calls; ++done_)
-    for (const auto& busy : busy_) busy->release_wait();
+/// The leader sees how the graph ends from then on, as the frames that it waits for may never be finished.
+void WorkerTeam::close() {
+  closed_ = true;
+  letGo(*seats_[leader_]);
+  call();
 }
 
-/// Nothing may leave the thread: what goes wrong here is no frame's, and the leader works alone.
-void WorkerTeam::help(flow::graph& busy, const std::stop_token& stopped) try {
+void WorkerTeam::letGo(Seat& seat) {
+  seat.as_one_of_all.dropAll();
+  seat.alone.dropAll();
+}
+
+/// Of those who are not wanted any more, one stays until the last frame is finished: a thread that has just worked on
+/// a frame.
+void WorkerTeam::work() {
+  settle();
+  Seat& seat = *seats_[thisSeat()];
+  seat.as_one_of_all.await();
+  if (last_ == thisSeat()) seat.alone.await();
+}
+
+void WorkerTeam::lead(flow::graph& graph) {
+  leader_ = thisSeat();
+  for (;;) {
+    const auto seen = events_.load(std::memory_order_acquire);
+    if (closed_) break;
+    work();
+    events_.wait(seen, std::memory_order_acquire);
+  }
+  graph.wait_for_all();
+}
+
+/// Nothing may leave the thread: what goes wrong here is no frame's, and the others work on without it.
+void WorkerTeam::help(const std::stop_token& stopped) try {
   const PlacedThread placed(placement_);
-  const std::stop_callback wake(stopped, [this] { signal(); });
+  const std::stop_callback wake(stopped, [this] { call(); });
   arena_.execute([&] {
     for (;;) {
       const auto seen = events_.load(std::memory_order_acquire);
       if (stopped.stop_requested()) return;
-      settle();
-      busy.wait_for_all();
+      work();
       events_.wait(seen, std::memory_order_acquire);
     }
   });

@@ -15,9 +15,10 @@
 
 namespace motorcade {
 
-/// The threads that work on a flow graph: its own, in the slots of its arena, and none of oneTBB's, which come from
-/// other arenas and go to them. While there is nothing to do they sleep, and do not look for work first as oneTBB's
-/// would; a call wakes all of them at once. One of them leads: it waits for the graph, the others for it.
+/// The threads that work on the frames in a flow graph: its own, in the slots of its arena, and none of oneTBB's, which
+/// come from other arenas and go to them. While there is nothing to do they sleep, and do not look for work first, as
+/// oneTBB's would for milliseconds; a call wakes all of them at once. A frame that is alone keeps all of them until it
+/// comes to stages that one thread does alone.
 class WorkerTeam {
  public:
   /// Starts all but the leader. `arena` has `workers` slots, all of them reserved for threads that enter it.
@@ -27,29 +28,51 @@ class WorkerTeam {
   WorkerTeam(const WorkerTeam&) = delete;
   WorkerTeam& operator=(const WorkerTeam&) = delete;
 
-  /// The graph got something to do. From one thread.
+  /// From one thread, before and after a frame is put into the graph.
+  void expect();
   void call();
-  /// No further call comes; from any thread.
+  /// In a thread of the team: what is left of a frame is one thread's work; all of a frame is done.
+  void reachTail();
+  void finish();
+  /// No further call comes; from any thread, once the leader is at work.
   void close();
   /// Leader, in the arena: works on the graph until it is closed and all is done. Throws what a node threw.
   void lead(oneapi::tbb::flow::graph& graph);
   /// A thread of the team begins with something.
-  void settle() { spread_.settle(seat()); }
+  void settle() { spread_.settle(thisSeat()); }
 
  private:
-  static std::size_t seat() { return static_cast<std::size_t>(oneapi::tbb::this_task_arena::current_thread_index()); }
-  void help(oneapi::tbb::flow::graph& busy, const std::stop_token& stopped);
-  void letGo(std::uint32_t calls);
-  void signal();
+  /// What a worker waits for: a graph without nodes, which is held as long as it shall work.
+  class Hold {
+   public:
+    void add();
+    void drop();  // without effect once all were dropped
+    void dropAll();
+    void await() { graph_.wait_for_all(); }
+
+   private:
+    oneapi::tbb::flow::graph graph_;
+    std::atomic<int> count_{0};
+  };
+  struct Seat {
+    Hold as_one_of_all, alone;  // while all workers are wanted, and one
+  };
+  static std::size_t thisSeat() {
+    return static_cast<std::size_t>(oneapi::tbb::this_task_arena::current_thread_index());
+  }
+  void help(const std::stop_token& stopped);
+  void work();
+  static void letGo(Seat& seat);
 
   oneapi::tbb::task_arena& arena_;
   ThreadPlacement placement_;
   ThreadSpread spread_;
-  std::atomic<std::uint32_t> events_{0}, calls_{0};
+  std::atomic<std::uint32_t> events_{0};
   std::atomic<bool> closed_{false};
-  std::uint32_t done_ = 0;  // calls of which the leader knows that all is done
-  /// What each helper waits for: a graph without nodes, which is held from a call until all is done.
-  std::vector<std::unique_ptr<oneapi::tbb::flow::graph>> busy_;
+  std::atomic<int> frames_{0};  // expected and not finished
+  std::vector<std::unique_ptr<Seat>> seats_;
+  std::atomic<std::size_t> last_{0};  // who stays where one is enough
+  std::atomic<std::size_t> leader_{0};
   std::vector<std::jthread> helpers_;
 };
 

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <functional>
 #include <latch>
+#include <semaphore>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@ namespace {
 
 namespace flow = oneapi::tbb::flow;
 
-/// A team that works on a graph of one node.
+/// A team that works on tasks of two parts.
 class WorkingTeam : public testing::Test {
  protected:
   /// Calls the team for each of `tasks` tasks from another thread, as the pump does.
@@ -20,13 +21,23 @@ class WorkingTeam : public testing::Test {
     oneapi::tbb::task_arena arena(workers, static_cast<unsigned>(workers));
     WorkerTeam team(arena, workers, {});
     std::latch wired(1);
+    std::counting_semaphore<> finished(0);
     flow::receiver<int>* first = nullptr;
     std::jthread leader([&] {
       arena.execute([&] {
         oneapi::tbb::task_group_context context(oneapi::tbb::task_group_context::isolated,
                                                 oneapi::tbb::task_group_context::concurrent_wait);
         flow::graph graph(context);
-        flow::function_node<int, flow::continue_msg> node(graph, flow::unlimited, [&](int task) { body(task); });
+        flow::function_node<int, int> node(graph, flow::unlimited, [&](int task) {
+          body(task);
+          team.reachTail();
+          return task;
+        });
+        flow::function_node<int, flow::continue_msg> tail(graph, flow::serial, [&](int) {
+          team.finish();
+          if (one_by_one_) finished.release();
+        });
+        flow::make_edge(node, tail);
         first = &node;
         wired.count_down();
         team.lead(graph);
@@ -34,12 +45,15 @@ class WorkingTeam : public testing::Test {
     });
     wired.wait();
     for (int task = 0; task < tasks; ++task) {
+      team.expect();
       first->try_put(task);
       team.call();
+      if (one_by_one_) finished.acquire();
     }
     team.close();
     leader.join();
   }
+  bool one_by_one_ = false;  // the next task comes when the one before is done
 };
 
 TEST_F(WorkingTeam, DoesAllThatItIsCalledFor) {
@@ -54,6 +68,15 @@ TEST_F(WorkingTeam, IsAwakeAsAWhole) {
   std::latch all(2);  // each task waits for the other: one worker alone would never end
   work(2, 2, [&](int) { all.arrive_and_wait(); });
   SUCCEED();
+}
+
+TEST_F(WorkingTeam, ComesTogetherForEachTaskAnew) {
+  one_by_one_ = true;
+  for (const int workers : {1, 2, 3}) {
+    std::atomic<int> done = 0;
+    work(workers, 300, [&](int) { ++done; });
+    EXPECT_EQ(done, 300);
+  }
 }
 
 TEST_F(WorkingTeam, EndsWithoutACall) {
