@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace motorcade {
@@ -21,5 +22,7 @@ ProcessUsage processUsage();
 /// Gives the pages that the heap holds in reserve back to the system. Takes milliseconds, in which other threads may
 /// wait for the heap.
 void giveBackSpareMemory();
+/// How often to do that: the heap's holes grow for hours.
+inline constexpr std::size_t kFramesPerTrim = 200;
 
 }  // namespace motorcade

@@ -38,8 +38,6 @@ namespace motorcade {
 namespace {
 
 constexpr int kExitInput = 3, kExitUntracked = 5;
-/// The heap's holes grow for hours, by 4 % in 100,000 frames.
-constexpr std::size_t kFramesPerTrim = 200;
 
 void logToSpdlog(LogLevel level, const std::string& text) {
   switch (level) {

@@ -32,6 +32,7 @@ class DriveTable {
   void note(const PipelineResult& result) {
     if (frames_ == 0) since_ = result.timing.published;
     ++frames_;
+    if (static_cast<std::size_t>(frames_) % kFramesPerTrim == 0) giveBackSpareMemory();
     backend_ms_ += result.timing.of(Stage::kIncrementalOptimization).cpu_ms;
     objects_ += static_cast<double>(result.online.objects.size());
     if (frames_ % every_ == 0) print(result);
