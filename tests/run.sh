@@ -17,7 +17,7 @@ esac
 apps/setup.sh
 options=()
 if [[ $preset == release ]]; then
-  apps/setup.sh pybind11-dev python3-dev python3-numpy python3-matplotlib qemu-user
+  apps/setup.sh pybind11-dev python3-dev python3-numpy python3-matplotlib qemu-user valgrind
   options=(-DMOTORCADE_BUILD_PYTHON=ON)
 fi
 if [[ $quick ]]; then  # in a folder of its own: precompiled headers would have io wait for the back-end
