@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "core/elementary.hpp"
 
@@ -22,13 +23,14 @@ struct Neighbor {
 bool leavesRightImage(float u_px, float disparity_px) { return u_px - disparity_px < kHalfWindow_px; }
 
 /// True when at least two of the three nearest matched corners to the right of corner i show that it must be hidden.
-bool isHalfOccluded(std::size_t i, const std::vector<Corner>& corners,
+/// `matched` holds all matched corners within reach, in ascending order.
+bool isHalfOccluded(std::size_t i, std::span<const std::size_t> matched, const std::vector<Corner>& corners,
                     const std::vector<std::optional<StereoMatch>>& of_corner) {
   const Corner& here = corners[i];
   std::array<Neighbor, 3> nearest;
-  for (std::size_t k = 0; k < corners.size(); ++k) {
+  for (const std::size_t k : matched) {
     const float du = corners[k].u_px - here.u_px, dv = corners[k].v_px - here.v_px;
-    if (k == i || !of_corner[k] || du < 0 || du > kReachAcross_px || std::abs(dv) > kReachDown_px) continue;
+    if (k == i || du < 0 || du > kReachAcross_px || std::abs(dv) > kReachDown_px) continue;
     const float distance_px = hypotenuse(du, dv), disparity_px = of_corner[k]->disparity_px;
     if (distance_px >= nearest.back().distance_px) continue;
     const bool is_nearer = disparity_px > kNearer * of_corner[i]->disparity_px;
@@ -43,11 +45,12 @@ bool isHalfOccluded(std::size_t i, const std::vector<Corner>& corners,
 void dropHalfOccluded(const std::vector<Corner>& corners, std::vector<std::optional<StereoMatch>>& of_corner) {
   float greatest_px = 0;
   for (const auto& match : of_corner) greatest_px = std::max(greatest_px, match ? match->disparity_px : 0);
-  std::vector<std::size_t> half_occluded;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const bool may_be_hidden = of_corner[i] && leavesRightImage(corners[i].u_px, greatest_px);
-    if (may_be_hidden && isHalfOccluded(i, corners, of_corner)) half_occluded.push_back(i);
-  }
+  std::vector<std::size_t> matched, half_occluded;  // matched: as far to the left as it matters
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    if (of_corner[i] && leavesRightImage(corners[i].u_px - kReachAcross_px - 1, greatest_px)) matched.push_back(i);
+  for (const std::size_t i : matched)
+    if (leavesRightImage(corners[i].u_px, greatest_px) && isHalfOccluded(i, matched, corners, of_corner))
+      half_occluded.push_back(i);
   for (const std::size_t i : half_occluded) of_corner[i].reset();
 }
 
