@@ -51,9 +51,6 @@ struct PngReader {
       throw std::bad_alloc();
     }
     png_set_read_fn(png, &context, PngContext::read);
-    // Texts, profiles and the like are no part of the image, and could inflate to a thousand times 8 MB.
-    constexpr int kAllButTheImage = -1;
-    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, kAllButTheImage);
   }
   ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
   PngReader(const PngReader&) = delete;
@@ -62,6 +59,9 @@ struct PngReader {
   /// Asks for gray or RGB without alpha, of 8 bits, or of 16 when the file has them and `keep_16` says so.
   bool readHeader(bool keep_16) {
     if (setjmp(png_jmpbuf(png))) return false;
+    // Texts, profiles and the like are no part of the image, and could inflate to a thousand times 8 MB.
+    constexpr int kAllButTheImage = -1;
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, kAllButTheImage);
     png_read_info(png, info);
     png_set_expand(png);
     png_set_strip_alpha(png);
