@@ -1,11 +1,17 @@
 #include "backend/elimination/elimination_tree.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "backend/elimination/dense_substitution.hpp"
 #include "backend/graph/sort_unique.hpp"
 
 namespace motorcade {
+namespace {
+
+constexpr std::int64_t kSequenceStep = std::int64_t{1} << 30;  // leaves room for variables that are lifted in between
+
+}  // namespace
 
 int EliminationTree::cliqueOf(VariableId v) const {
   return static_cast<std::size_t>(v.value) < clique_of_.size() ? clique_of_[v.value] : -1;
@@ -138,7 +144,7 @@ void EliminationTree::eliminate(const Elimination& problem, std::vector<int>& cr
   sequence_.resize(graph_.slots(), -1);
   position_.resize(graph_.slots(), -1);
   if (problem.renumber)
-    for (const VariableId v : problem.order) sequence_[v.value] = next_sequence_++;
+    for (const VariableId v : problem.order) sequence_[v.value] = next_sequence_ += kSequenceStep;
   findPattern(problem);
 
   group_clique_.clear();
@@ -159,6 +165,41 @@ void EliminationTree::eliminate(const Elimination& problem, std::vector<int>& cr
     attach(problem.orphans[o], cliqueOfTerm(problem.factors.size() + o));
   for (std::size_t g = group_clique_.size(); g-- > 0;) refresh(group_clique_[g]);
   created.insert(created.end(), group_clique_.begin(), group_clique_.end());
+}
+
+/// Between the clique's variables in the elimination order and all those above it.
+std::int64_t EliminationTree::sequenceAbove(int clique) const {
+  std::int64_t above = next_sequence_ + kSequenceStep;
+  for (const VariableId v : (*this)[clique].separator()) above = std::min(above, sequence_[v.value]);
+  return std::midpoint(sequence(clique), above);
+}
+
+bool EliminationTree::lift(VariableId v, std::span<const int> cliques) {
+  const int top = cliques.back(), parent = (*this)[top].parent;
+  const std::int64_t last = sequence(top), lifted = sequenceAbove(top);
+  if (lifted <= last) return false;
+  const auto separator = (*this)[top].separator();
+  const std::vector<VariableId> boundary(separator.begin(), separator.end());
+  Removed removed;
+  remove(cliques, removed);
+  std::erase(removed.variables, v);
+  removed.variables.push_back(v);
+  sequence_[v.value] = lifted;
+  std::vector<int> created;
+  std::erase_if(removed.orphans, [&](int orphan) {
+    const bool outside = std::ranges::none_of(
+        (*this)[orphan].separator(), [&](VariableId u) { return std::ranges::count(removed.variables, u) > 0; });
+    if (outside) attach(orphan, parent);
+    return outside;
+  });
+  eliminate({.order = removed.variables,
+             .boundary = boundary,
+             .factors = removed.factors,
+             .orphans = removed.orphans,
+             .parent = parent,
+             .renumber = false},
+            created);
+  return true;
 }
 
 /// The terms are the factors, then the separators of the orphans.

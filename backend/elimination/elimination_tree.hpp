@@ -57,6 +57,10 @@ class EliminationTree {
 
   /// Adds the cliques of an elimination; they are appended to `created`, parents before children.
   void eliminate(const Elimination& problem, std::vector<int>& created);
+  /// Moves a variable up the tree: of the variables of these cliques, its own and the next ones above it, it becomes
+  /// the last one. What R says stays, and nothing above the cliques changes. False, and nothing is done, when the order
+  /// has no room left there.
+  bool lift(VariableId v, std::span<const int> cliques);
   /// Eliminates a clique anew, after its children: the linear models of its factors or what its children pass on
   /// changed.
   void refresh(int clique);
@@ -86,6 +90,7 @@ class EliminationTree {
   std::size_t usedBytes() const { return pool_.usedBytes(); }
 
  private:
+  std::int64_t sequenceAbove(int clique) const;
   void findPattern(const Elimination& problem);
   int addClique(const Elimination& problem, const EliminationPattern::Group& group);
   int takeSlot();

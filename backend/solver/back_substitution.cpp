@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "backend/elimination/dense_substitution.hpp"
 
@@ -10,16 +11,17 @@ namespace motorcade {
 BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, std::int64_t most_scalars) {
   result_ = {};
   moved_.clear();
-  has_moved_.reset(graph_.slots());
-  is_waiting_.resize(tree_.slots(), 0);
+  ++call_;
+  moved_in_.resize(graph_.slots(), 0);
+  waiting_since_.resize(graph_.slots(), 0);
   solveWork(threshold_sigmas);
   const std::int64_t with_work = result_.scalars;
-  while (!waiting_.empty() && (most_scalars == 0 || result_.scalars - with_work < most_scalars)) {
-    const int id = waiting_.front();
+  while (!waiting_.empty() && result_.scalars - with_work < most_scalars) {
+    const VariableId v = waiting_.front();
     waiting_.pop_front();
-    const bool is_due = is_waiting_[id] && tree_[id].alive;  // or it was solved since, or left the tree
-    is_waiting_[id] = 0;
-    if (is_due) solve(id, threshold_sigmas);
+    const Call since = std::exchange(waiting_since_[v.value], 0);
+    if (since == 0 || tree_.cliqueOf(v) < 0) continue;  // it was solved since, or left the tree
+    solve(tree_[tree_.cliqueOf(v)], since, threshold_sigmas);
   }
   result_.moved = moved_;
   return result_;
@@ -31,16 +33,17 @@ void BackSubstitution::solveWork(double threshold_sigmas) {
   for (const int root : tree_.roots())
     if (work_.has(root)) open_.push_back(root);
   while (!open_.empty()) {
-    const int id = open_.back();
+    const Clique& clique = tree_[open_.back()];
+    work_.finish(open_.back());
     open_.pop_back();
-    work_.finish(id);
-    solve(id, threshold_sigmas);
+    Call since = call_;
+    for (const VariableId v : clique.frontalVariables())
+      if (waiting_since_[v.value] > 0) since = std::min(since, waiting_since_[v.value]);
+    solve(clique, since, threshold_sigmas);
   }
 }
 
-void BackSubstitution::solve(int id, double threshold_sigmas) {
-  const Clique& clique = tree_[id];
-  is_waiting_[id] = 0;
+void BackSubstitution::solve(const Clique& clique, Call since, double threshold_sigmas) {
   x_separator_.clear();
   for (const VariableId v : clique.separator()) {
     const auto& x = graph_[v].x;
@@ -51,17 +54,26 @@ void BackSubstitution::solve(int id, double threshold_sigmas) {
   result_.scalars += clique.frontal_size;
   moveVariables(clique, threshold_sigmas);
   for (int child = clique.first_child; child >= 0; child = tree_[child].next_sibling) {
-    if (work_.has(child)) {
-      open_.push_back(child);
-    } else if (!is_waiting_[child] && isBelowMoved(child)) {
-      waiting_.push_back(child);
-      is_waiting_[child] = 1;
-    }
+    const bool moved =
+        std::ranges::any_of(tree_[child].separator(), [&](VariableId v) { return moved_in_[v.value] >= since; });
+    if (moved) putOff(tree_[child], since);
+    if (work_.has(child)) open_.push_back(child);
   }
 }
 
-bool BackSubstitution::isBelowMoved(int clique) const {
-  return std::ranges::any_of(tree_[clique].separator(), [&](VariableId v) { return has_moved_.contains(v.value); });
+void BackSubstitution::putOff(const Clique& clique, Call since) {
+  for (const VariableId v : clique.frontalVariables()) {
+    Call& waiting_since = waiting_since_[v.value];
+    if (waiting_since == 0) waiting_.push_back(v);
+    waiting_since = waiting_since == 0 ? since : std::min(waiting_since, since);
+  }
+}
+
+std::int64_t BackSubstitution::waitingScalars() const {
+  std::int64_t scalars = 0;
+  for (const VariableId v : waiting_)
+    if (waiting_since_[v.value] > 0 && tree_.cliqueOf(v) >= 0) scalars += graph_.sizeOf(v);
+  return scalars;
 }
 
 /// Takes over the new x.
@@ -69,6 +81,7 @@ void BackSubstitution::moveVariables(const Clique& clique, double threshold_sigm
   std::size_t at = 0;
   for (const VariableId v : clique.frontalVariables()) {
     auto& variable = graph_[v];
+    waiting_since_[v.value] = 0;
     double change = 0, sigmas_squared = 0;
     for (int i = 0; i < variable.size; ++i, ++at) {
       change = std::max(change, std::abs(x_frontal_[at] - variable.x[i]));
@@ -79,7 +92,7 @@ void BackSubstitution::moveVariables(const Clique& clique, double threshold_sigm
     result_.largest_change = std::max(result_.largest_change, change);
     if (sigmas_squared <= threshold_sigmas * threshold_sigmas) continue;
     variable.x_spread = variable.x;
-    has_moved_.insert(v.value);
+    moved_in_[v.value] = call_;
     moved_.push_back(v);
   }
 }

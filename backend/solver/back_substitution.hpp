@@ -27,26 +27,30 @@ class BackSubstitution {
 
   /// A variable has moved when a component of its step since it moved last exceeds `threshold_sigmas` conditional
   /// standard deviations; smaller steps do not spread. Solves all cliques with work, and up to about `most_scalars`
-  /// below them; 0: no limit.
-  Result operator()(double threshold_sigmas, std::int64_t most_scalars = 0);
-  /// Cliques that wait for a later call.
-  std::size_t waiting() const { return waiting_.size(); }
+  /// below them.
+  Result operator()(double threshold_sigmas, std::int64_t most_scalars);
+  /// Scalars of the cliques that wait for a later call.
+  std::int64_t waitingScalars() const;
 
  private:
+  using Call = std::uint32_t;  // number of a call
+
   void solveWork(double threshold_sigmas);
-  void solve(int id, double threshold_sigmas);
+  /// Its separator may have moved since that call.
+  void solve(const Clique& clique, Call since, double threshold_sigmas);
   void moveVariables(const Clique& clique, double threshold_sigmas);
-  bool isBelowMoved(int clique) const;
+  void putOff(const Clique& clique, Call since);
 
   FactorGraph& graph_;
   const EliminationTree& tree_;
   CliqueWork& work_;
   Result result_;
+  Call call_ = 0;
   std::vector<VariableId> moved_;
-  MarkSet has_moved_;             // variables
-  std::vector<int> open_;         // cliques with work to solve
-  std::deque<int> waiting_;       // cliques below variables that moved, those that wait longest first
-  std::vector<char> is_waiting_;  // per clique
+  std::vector<int> open_;  // cliques with work to solve
+  /// Frontal variables of cliques that wait, those that wait longest first: cliques may be gone by the time.
+  std::deque<VariableId> waiting_;
+  std::vector<Call> moved_in_, waiting_since_;  // per variable; 0: never, and not waiting
   std::vector<double> x_separator_, x_frontal_;
 };
 

@@ -58,13 +58,15 @@ void FluidRelinearization::markStale(VariableId v, double turn_rad) {
   staleness = std::max(staleness, std::max(turn_rad, kLeastStaleness_rad));
 }
 
-FluidRelinearization::Corrections FluidRelinearization::correctModels(std::span<const FactorId> new_factors) {
+FluidRelinearization::Corrections FluidRelinearization::correctModels(std::span<const FactorId> new_factors,
+                                                                      std::span<const FactorId> waiting) {
   corrections_ = {};
   relinearized_.clear();
   is_relinearized_.reset(graph_.factorSlots());
   new_factors_.reset(graph_.factorSlots());
   staleness_rad_.resize(graph_.slots(), 0.0);
-  for (const FactorId f : new_factors) new_factors_.insert(f.value);
+  for (const auto& absent : {new_factors, waiting})
+    for (const FactorId f : absent) new_factors_.insert(f.value);
   // A new factor may have taken the id of one that left.
   std::erase_if(off_, [&](const OffModel& off) {
     return !graph_.contains(off.factor) || new_factors_.contains(off.factor.value);
@@ -73,10 +75,33 @@ FluidRelinearization::Corrections FluidRelinearization::correctModels(std::span<
   relinearizeStale();
   for (const FactorId f : relinearized_) graph_.linearize(f);
   corrections_.relinearized_factors = static_cast<int>(relinearized_.size());
-  for (const OffModel& off : off_)
-    if (!is_relinearized_.contains(off.factor.value)) correctResidual(off.factor);
-  off_.clear();
+  correctResiduals();
   return corrections_;
+}
+
+/// What the budget does not reach stays in the list.
+void FluidRelinearization::correctResiduals() {
+  corrected_.reset(graph_.factorSlots());
+  std::erase_if(off_, [&](const OffModel& off) {
+    if (is_relinearized_.contains(off.factor.value) || corrected_.contains(off.factor.value)) return true;
+    if (!reachesResidual(off.factor)) return false;
+    corrected_.insert(off.factor.value);
+    correctResidual(off.factor);
+    return true;
+  });
+  budget_.saveSubstitutions(!off_.empty());
+}
+
+/// Spends what it takes to carry a new right-hand side from the model's clique to the root.
+bool FluidRelinearization::reachesResidual(FactorId id) {
+  if (!budget_.limited()) return true;
+  std::int64_t scalars = 0;
+  for (int c = tree_.ownerOf(graph_.factor(id)); c >= 0 && !work_.has(c); c = tree_[c].parent) {
+    scalars += tree_[c].frontal_size;
+    if (scalars > budget_.substitutionsLeft()) return false;
+  }
+  budget_.spendSubstitutions(scalars);
+  return true;
 }
 
 void FluidRelinearization::clear() {

@@ -38,8 +38,9 @@ class FluidRelinearization {
 
   /// Finds the models that are off after a step that moved these variables.
   void compareModels(std::span<const VariableId> moved);
-  /// Corrects them, and marks the work that this is. `new_factors` are not in the tree yet.
-  Corrections correctModels(std::span<const FactorId> new_factors);
+  /// Corrects them, as far as the budget reaches, and marks the work that this is. Neither the new factors nor those
+  /// that wait are in the tree yet.
+  Corrections correctModels(std::span<const FactorId> new_factors, std::span<const FactorId> waiting);
   /// Everything has been relinearized.
   void clear();
 
@@ -69,6 +70,8 @@ class FluidRelinearization {
   Reach relinearizeWithin(VariableId v, double& flops_left);
   EliminationCost costOfRelinearizing(VariableId v);
   void relinearize(VariableId v);
+  void correctResiduals();
+  bool reachesResidual(FactorId id);
   void correctResidual(FactorId id);
 
   Params params_;
@@ -81,7 +84,7 @@ class FluidRelinearization {
   std::vector<double> staleness_rad_;  // per variable: its turn when it became stale, 0 when it is not
   Corrections corrections_;            // of the step at hand
   std::vector<FactorId> relinearized_;
-  MarkSet compared_, new_factors_, is_relinearized_;  // factors
+  MarkSet compared_, new_factors_, is_relinearized_, corrected_;  // factors
   std::vector<VariableId> region_;
   MarkSet in_region_;  // variables
   MarkSet counted_;    // cliques

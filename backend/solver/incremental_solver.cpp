@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <limits>
 
 #include "backend/graph/sort_unique.hpp"
 #include "backend/solver/joint_covariance.hpp"
@@ -13,6 +14,8 @@ namespace {
 /// So many new variables in one update have no order that could be kept: at the end of the old one they may all be
 /// neighbors of one that is eliminated before them, at the cost of a dense system.
 constexpr std::size_t kMostAppended = 200;
+
+constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 
 /// A factor over these variables was left out.
 SolverProblem refusal(SolverProblem::Kind kind, VariableId because_of, std::span<const VariableId> variables) {
@@ -46,13 +49,10 @@ bool IncrementalSolver::usable(const Factor& factor) {
 
 std::optional<FactorId> IncrementalSolver::addFactor(std::unique_ptr<const Factor> factor) {
   if (!usable(*factor)) return std::nullopt;
-  const std::size_t count = touched_.size();
-  touched_.insert(touched_.end(), factor->variables().begin(), factor->variables().end());
+  last_.assign(factor->variables().begin(), factor->variables().end());
   const auto id = graph_.addFactor(std::move(factor));
   if (!id) {
-    const auto variables = std::span(touched_).subspan(count);
-    refused_.push_back(refusal(SolverProblem::Kind::kNotFinite, variables.front(), variables));
-    touched_.resize(count);
+    refused_.push_back(refusal(SolverProblem::Kind::kNotFinite, last_.front(), last_));
     return std::nullopt;
   }
   new_factors_.push_back(*id);
@@ -61,7 +61,7 @@ std::optional<FactorId> IncrementalSolver::addFactor(std::unique_ptr<const Facto
 
 void IncrementalSolver::removeFactor(FactorId id) {
   const auto variables = graph_.factor(id).variables();
-  if (std::erase(new_factors_, id) == 0) {
+  if (std::erase(new_factors_, id) == 0 && !waiting_.remove(id)) {
     touched_.insert(touched_.end(), variables.begin(), variables.end());
     tree_.removeFactor(tree_.ownerOf(graph_.factor(id)), id);
   }
@@ -84,7 +84,9 @@ void IncrementalSolver::beginReport() {
 void IncrementalSolver::endReport() {
   report_.eliminated_scalars += tree_.eliminatedScalars();
   report_.deferred_variables = static_cast<int>(relinearization_.deferred());
-  report_.waiting_cliques = static_cast<int>(substitution_.waiting());
+  report_.waiting_factors = static_cast<int>(waiting_.factors().size());
+  report_.waiting_chi2 = waiting_.chi2();
+  report_.waiting_scalars = substitution_.waitingScalars();
   if (report_.relinearized_factors > 0) ++counters_.relinearizations;
   sortUnique(report_.moved);
   problems_.append(graph_, tree_, report_.problems);
@@ -101,6 +103,7 @@ const IncrementalSolver::Report& IncrementalSolver::update() {
   if (params_.policy == Policy::kEveryN && batch_due) {
     batchStep();
   } else {
+    if (params_.policy == Policy::kFluid) waiting_.admit(new_factors_, touched_);
     step(true);
     new_factors_.clear();
     for (int i = 1; i < params_.iterations_per_update && mayIterate(); ++i) step(false);
@@ -124,11 +127,11 @@ bool IncrementalSolver::mayIterate() const {
 void IncrementalSolver::step(bool fold) {
   work_.begin();
   if (fold) {
-    sortUnique(touched_);
+    touchNewFactors();
     for (const VariableId v : touched_) work_.markRemoved(tree_.cliqueOf(v));
   }
   if (params_.policy == Policy::kFluid) {
-    const auto corrections = relinearization_.correctModels(new_factors_);
+    const auto corrections = relinearization_.correctModels(new_factors_, waiting_.factors());
     report_.relinearized_variables += corrections.relinearized_variables;
     report_.relinearized_factors += corrections.relinearized_factors;
     report_.corrected_factors += corrections.corrected_factors;
@@ -136,7 +139,15 @@ void IncrementalSolver::step(bool fold) {
   work_.apply();
   if (fold) rebuildTop();
   spread_sigmas_ = params_.substitution_tolerance * graph_.rmsResidual();
-  substitute(params_.spread_scalars);
+  substitute(params_.spread_scalars > 0 ? params_.spread_scalars : kNoLimit);
+}
+
+void IncrementalSolver::touchNewFactors() {
+  for (const FactorId f : new_factors_) {
+    const auto variables = graph_.factor(f).variables();
+    touched_.insert(touched_.end(), variables.begin(), variables.end());
+  }
+  sortUnique(touched_);
 }
 
 /// Eliminates the marked cliques' variables and the new ones, in a new order.
@@ -147,7 +158,10 @@ void IncrementalSolver::rebuildTop() {
   removed_.factors.insert(removed_.factors.end(), new_factors_.begin(), new_factors_.end());
   if (removed_.variables.empty()) return;
   const bool reorder = params_.policy == Policy::kFluid;
-  const auto order = reorder ? reordered_(removed_.variables, removed_.factors, removed_.orphans, touched_)
+  last_ = touched_;
+  for (const FactorId f : waiting_.factors())  // so that lifted variables stay where they are
+    last_.insert(last_.end(), graph_.factor(f).variables().begin(), graph_.factor(f).variables().end());
+  const auto order = reorder ? reordered_(removed_.variables, removed_.factors, removed_.orphans, last_)
                              : std::span<const VariableId>(removed_.variables);
   created_.clear();
   tree_.eliminate({.order = order, .boundary = {}, .factors = removed_.factors, .orphans = removed_.orphans}, created_);
@@ -156,7 +170,8 @@ void IncrementalSolver::rebuildTop() {
 
 /// Solves for x where anything changed, and finds the models that are off there.
 void IncrementalSolver::substitute(std::int64_t most_scalars) {
-  const auto solved = substitution_(spread_sigmas_, most_scalars);
+  const auto solved = substitution_(spread_sigmas_, std::min(most_scalars, budget_.substitutionsLeft()));
+  budget_.spendSubstitutions(solved.scalars);
   report_.moved.insert(report_.moved.end(), solved.moved.begin(), solved.moved.end());
   report_.substituted_scalars += solved.scalars;
   report_.largest_change = std::max(report_.largest_change, solved.largest_change);
@@ -169,6 +184,9 @@ void IncrementalSolver::batchStep() {
   graph_.restartCoordinates();
   report_.relinearized_factors += static_cast<int>(graph_.factorCount());
   relinearization_.clear();
+  waiting_.clear();
+  touchNewFactors();
+  budget_.lift();
   removed_.clear();
   tree_.remove(tree_.cliques(), removed_);
   const std::vector<VariableId> variables = graph_.variables();
@@ -182,7 +200,7 @@ void IncrementalSolver::batchStep() {
   work_.markNew(created_);
   ++counters_.reorderings, ++counters_.batch_solves;
   spread_sigmas_ = 0;
-  substitute(0);
+  substitute(kNoLimit);
 }
 
 const IncrementalSolver::Report& IncrementalSolver::converge(int max_iterations, double tolerance) {
@@ -197,17 +215,29 @@ const IncrementalSolver::Report& IncrementalSolver::converge(int max_iterations,
 }
 
 void IncrementalSolver::retire(std::span<const VariableId> variables) {
-  assert(touched_.empty() && new_variables_.empty());
+  assert(touched_.empty() && new_variables_.empty() && new_factors_.empty());
+  takeInFactorsOf(variables);
   retirement_.marginalize(variables);
   counters_.retired_variables += static_cast<std::int64_t>(variables.size());
 }
 
+/// Waiting factors whose variables leave can wait no longer.
+void IncrementalSolver::takeInFactorsOf(std::span<const VariableId> leaving) {
+  new_factors_ = waiting_.takeWith(leaving);
+  if (new_factors_.empty()) return;
+  for (const FactorId f : new_factors_) graph_.linearize(f);
+  step(true);
+  touched_.clear();
+  new_factors_.clear();
+}
+
 const IncrementalSolver::Report& IncrementalSolver::drop(std::span<const VariableId> variables) {
-  assert(touched_.empty() && new_variables_.empty());
+  assert(touched_.empty() && new_variables_.empty() && new_factors_.empty());
   beginReport();
+  waiting_.takeWith(variables);  // they leave with the variables
   work_.begin();
   work_.markNew(retirement_.drop(variables));
-  substitute(0);
+  substitute(kNoLimit);
   endReport();
   return report_;
 }

@@ -15,6 +15,7 @@
 #include "backend/solver/problem_reporter.hpp"
 #include "backend/solver/retirement.hpp"
 #include "backend/solver/solver_problem.hpp"
+#include "backend/solver/waiting_factors.hpp"
 #include "core/messages.hpp"
 
 namespace motorcade {
@@ -52,8 +53,11 @@ class IncrementalSolver {
     std::int64_t eliminated_scalars = 0, substituted_scalars = 0;
     int relinearized_variables = 0, relinearized_factors = 0, corrected_factors = 0;
     int deferred_variables = 0;  // whose relinearization the budget put off
-    int waiting_cliques = 0;     // whose estimates are older than what is above them
     double largest_change = 0;   // of any x, m or rad
+    /// Factors that the budget put off, and a bound of what they can take off chi2: their own.
+    int waiting_factors = 0;
+    double waiting_chi2 = 0;
+    std::int64_t waiting_scalars = 0;  // whose substitution the budget put off
   };
 
   explicit IncrementalSolver(const Params& params) : params_(params) {}
@@ -91,6 +95,8 @@ class IncrementalSolver {
   void endReport();
   bool usable(const Factor& factor);
   bool mayIterate() const;
+  void touchNewFactors();
+  void takeInFactorsOf(std::span<const VariableId> leaving);
   void step(bool fold);
   void batchStep();
   void rebuildTop();
@@ -103,6 +109,7 @@ class IncrementalSolver {
   CliqueWork work_{tree_};
   EliminationBudget budget_{params_.budget};
   FluidRelinearization relinearization_{params_.relinearization, graph_, tree_, work_, budget_};
+  WaitingFactors waiting_{graph_, tree_, budget_};
   BackSubstitution substitution_{graph_, tree_, work_};
   Retirement retirement_{graph_, tree_};
   ProblemReporter problems_;
@@ -118,6 +125,7 @@ class IncrementalSolver {
   // Scratch.
   EliminationTree::Removed removed_;
   std::vector<int> created_;
+  std::vector<VariableId> last_;  // of an order
 };
 
 }  // namespace motorcade

@@ -183,7 +183,7 @@ struct MeasuredPath {
       solver.addFactor(std::make_unique<PriorFactor>(std::array{x[k]}, PriorModel{seen}, noise));
       const auto& report = solver.update();
       most_below = std::max(most_below, report.substituted_scalars - report.eliminated_scalars);
-      most_waiting = std::max(most_waiting, report.waiting_cliques);
+      most_waiting = std::max(most_waiting, report.waiting_scalars);
     }
   }
   static IncrementalSolver::Params linear(std::int64_t spread_scalars) {
@@ -201,7 +201,7 @@ struct MeasuredPath {
 
   IncrementalSolver solver;
   std::int64_t most_below = 0;
-  int most_waiting = 0;
+  std::int64_t most_waiting = 0;
 };
 
 TEST(IncrementalSolverSpread, OldPosesFollowInLaterUpdatesAndGetToTheSameSolution) {
@@ -215,7 +215,7 @@ TEST(IncrementalSolverSpread, OldPosesFollowInLaterUpdatesAndGetToTheSameSolutio
   EXPECT_LE(spread.most_below, kSpread + kClique);
   EXPECT_GT(spread.differenceFrom(at_once.solver), 1e-6);
   for (int i = 0; i < 100; ++i) spread.solver.update();
-  EXPECT_EQ(spread.solver.update().waiting_cliques, 0);
+  EXPECT_EQ(spread.solver.update().waiting_scalars, 0);
   EXPECT_LT(spread.differenceFrom(at_once.solver), 1e-9);
 }
 

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "backend/elimination/elimination_tree.hpp"
+#include "backend/graph/mark_set.hpp"
+#include "backend/solver/elimination_budget.hpp"
+
+namespace motorcade {
+
+/// Spreads loop closures over updates. A factor on a variable of long ago asks for the elimination of all cliques from
+/// there up to the root. Where that is more than the budget, the factor waits in the graph, outside of the tree, while
+/// its variables are lifted through the tree a few cliques per update: R stays that of the same problem, and in the end
+/// the factor asks for little.
+class WaitingFactors {
+ public:
+  WaitingFactors(FactorGraph& graph, EliminationTree& tree, EliminationBudget& budget)
+      : graph_(graph), tree_(tree), budget_(budget) {}
+
+  /// Leaves those of the new factors in `fresh` that the next elimination takes in, and adds the ones that waited long
+  /// enough. The cliques of the `touched` variables are eliminated anew in any case.
+  void admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched);
+  /// Those with one of the variables, which are to leave.
+  std::vector<FactorId> takeWith(std::span<const VariableId> variables);
+  /// False when the factor does not wait.
+  bool remove(FactorId id) { return std::erase(waiting_, id) > 0; }
+  /// The tree has taken in everything.
+  void clear() { waiting_.clear(); }
+
+  const std::vector<FactorId>& factors() const { return waiting_; }
+  /// Sum of their squared residuals at the estimates. Where all else has settled, chi2 is not farther above its
+  /// minimum: without these factors it would be there.
+  double chi2() const;
+
+ private:
+  bool isNew(VariableId v) const { return tree_.cliqueOf(v) < 0; }
+  std::int64_t costOf(FactorId id);
+  std::int64_t costAbove(VariableId v);
+  bool canWait(FactorId id) const;
+  void admitFresh(std::vector<FactorId>& fresh);
+  void admitWaiting(std::vector<FactorId>& fresh);
+  void accept(FactorId id, std::int64_t cost);
+  bool liftVariableOf(FactorId id);
+
+  FactorGraph& graph_;
+  EliminationTree& tree_;
+  EliminationBudget& budget_;
+  std::vector<FactorId> waiting_;  // in the order they came
+  std::int64_t allowance_ = 0;     // scalars, of the update at hand
+  MarkSet marked_, counted_;       // cliques that are eliminated anew; scratch
+  MarkSet held_;                   // new variables that a factor holds in all dimensions
+  MarkSet puts_off_;               // factors
+};
+
+}  // namespace motorcade
