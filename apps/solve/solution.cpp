@@ -93,6 +93,9 @@ void feedAll(PoseGraphFeed& feed, const SolveProgress& progress, Solution& solut
     solution.update_ms.push_back(update.cpu_ms);
     solution.update_eliminated_scalars.push_back(update.report.eliminated_scalars);
     solution.total_ms += update.cpu_ms;
+    solution.waiting_edges = update.report.waiting_factors;
+    solution.waiting_chi2 = update.report.waiting_chi2;
+    solution.waiting_scalars = update.report.waiting_scalars;
     addSolverProblems(update.report, feed, solution.problems);
     solution.complete = progress(solution.update_ms.size(), feed.updateCount());
   }

@@ -23,6 +23,10 @@ struct Solution {
   double chi2 = 0, total_ms = 0;
   std::vector<double> update_ms;  // CPU time of each update
   std::vector<std::int64_t> update_eliminated_scalars;
+  /// After the last update: edges that the budget put off, their chi2, and scalars to substitute.
+  int waiting_edges = 0;
+  double waiting_chi2 = 0;
+  std::int64_t waiting_scalars = 0;
   std::vector<SolveProblem> problems;  // of the file, then of the solution
   std::vector<PoseGraph::Vertex> vertices;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace motorcade {
@@ -35,6 +36,9 @@ std::string textOf(const Solution& solution) {
                 solution.poses, solution.edges, solution.update_ms.size(), solution.chi2, 1e-3 * solution.total_ms,
                 times.median_ms, times.p99_ms, times.max_ms);
   std::string text = head;
+  if (solution.waiting_edges > 0 || solution.waiting_scalars > 0)
+    text += fmt::format("put off by the budget: {} edges, whose chi2 is {:.6g}, and {} scalars to substitute\n",
+                        solution.waiting_edges, solution.waiting_chi2, solution.waiting_scalars);
   if (!solution.problems.empty()) text += std::to_string(solution.problems.size()) + " problems\n";
   for (const auto& problem : solution.problems) text += "  " + problem.name + ": " + problem.detail + "\n";
   return text;
@@ -51,7 +55,10 @@ std::string jsonOf(const Solution& solution, const SolveOptions& options) {
                                  {"total_s", 1e-3 * solution.total_ms},
                                  {"median_ms", times.median_ms},
                                  {"p99_ms", times.p99_ms},
-                                 {"max_ms", times.max_ms}};
+                                 {"max_ms", times.max_ms},
+                                 {"waiting_edges", solution.waiting_edges},
+                                 {"waiting_chi2", solution.waiting_chi2},
+                                 {"waiting_scalars", solution.waiting_scalars}};
   json["problems"] = nlohmann::ordered_json::array();
   for (const auto& p : solution.problems)
     json["problems"].push_back({{"kind", p.kind}, {"name", p.name}, {"detail", p.detail}, {"poses", p.poses}});
