@@ -105,6 +105,21 @@ TEST(WaitingFactors, LiftingLeavesTheSolution) {
   EXPECT_LT((after - covariance).norm(), 1e-8 * covariance.norm());  // rounding over a condition number of 1e7
 }
 
+TEST(WaitingFactors, LiftingKeepsTheOrderOfTheTree) {
+  IncrementalSolver solver(withBudget());
+  Circle circle(solver);
+  const FactorId closure = circle.close(1, kPoses - 1);
+  ASSERT_EQ(solver.update().waiting_factors, 1);
+  const EliminationTree& tree = solver.tree();
+  for (const int c : tree.cliques()) {
+    if (tree[c].parent >= 0) EXPECT_LT(tree.sequence(c), tree.sequence(tree[c].parent));
+  }
+  for (const FactorId f : solver.graph().factors()) {
+    const auto& owned = tree[tree.ownerOf(solver.graph().factor(f))].factors;
+    EXPECT_EQ(std::ranges::count(owned, f), f == closure ? 0 : 1);
+  }
+}
+
 TEST(WaitingFactors, AWaitingFactorCanBeRemovedAndItsVariablesRetired) {
   IncrementalSolver solver(withBudget()), unlimited({});
   Circle circle(solver), same(unlimited);
