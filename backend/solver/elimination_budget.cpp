@@ -6,8 +6,8 @@
 namespace motorcade {
 namespace {
 
-/// Substituting a scalar and comparing the models that it moves costs a quarter of eliminating one, or less.
-constexpr std::int64_t kSubstitutionsPerElimination = 4;
+/// Substituting a scalar and comparing the models that it moves costs an eighth of eliminating one.
+constexpr std::int64_t kSubstitutionsPerElimination = 8;
 /// Budgets, or an update would in the end cost a multiple of it.
 constexpr std::int64_t kMostSaved = 1;
 constexpr double kPaceShare = 0.1;  // of the newest update in the mean pace: it follows within some ten updates
