@@ -158,8 +158,12 @@ constexpr float kMinInformation = 60;
 std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px,
                                           PatchDeformation deformation, float scale) {
   assert(window_px % 2 == 1 && window_px <= kMaxPatchWindow_px);
-  std::optional<PatchTemplate> patch;  // the only object returned, so that it is never copied
-  if (!inside(image, u_px, v_px) || scale < kMinTemplateScale) return patch;
+  // The only object returned, so that it is never copied. (An empty one would be cleared first.)
+  std::optional<PatchTemplate> patch(std::in_place);
+  if (!inside(image, u_px, v_px) || scale < kMinTemplateScale) {
+    patch.reset();
+    return patch;
+  }
   const ColumnPosition u(u_px);
   Square square;
   if (scale == 1) {
@@ -167,7 +171,6 @@ std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float 
   } else {
     sampleScaledSquare(image, u, v_px, window_px + 2, scale, square);
   }
-  patch.emplace();
   patch->window_px = window_px;
   patch->off_grid_px = u_px - u.px();
   patch->mean = meanSample(square, window_px);
