@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "frontend/image/float_lanes.hpp"
 #include "frontend/image/grain.hpp"
 #include "frontend/parallel_items.hpp"
 
@@ -120,13 +121,19 @@ void smallerEigenvalues(const ColumnMoments& moments, int first, int last, float
 
 /// True for the greatest value within the minimum distance; of equal ones for the first in reading order.
 bool isMaximum(const RowRing<float>& response, int x, int y) {
-  const float value = response.row(y)[x];
-  for (int dy = -kMinDistance_px; dy <= kMinDistance_px; ++dy) {
-    const float* row = response.row(y + dy) + x;
-    for (int dx = -kMinDistance_px; dx <= kMinDistance_px; ++dx) {
-      const bool earlier = dy < 0 || (dy == 0 && dx < 0);
-      if (row[dx] > value || (earlier && row[dx] == value)) return false;
-    }
+  // Two vectors, one lane apart, cover the columns; those of the value's own row lie on either side of it.
+  static_assert(2 * kMinDistance_px == kFloatLanes);
+  const float* here = response.row(y) + x;
+  const Floats value = allFloats(*here), own = loadFloats(here - kMinDistance_px);
+  constexpr FloatMask kLeft{-1, -1, -1, -1, 0, 0, 0, 0};
+  const Floats right_end = loadFloats(here - kMinDistance_px + 1);
+  if (anyOf(FloatMask(own >= value) & kLeft) || anyOf(FloatMask(right_end > value) & ~kLeft)) return false;
+  for (int dy = 1; dy <= kMinDistance_px; ++dy) {
+    const float *above = response.row(y - dy) + x - kMinDistance_px,
+                *below = response.row(y + dy) + x - kMinDistance_px;
+    if (anyOf((loadFloats(above) >= value) | (loadFloats(above + 1) >= value) | (loadFloats(below) > value) |
+              (loadFloats(below + 1) > value)))
+      return false;
   }
   return true;
 }

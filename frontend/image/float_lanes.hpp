@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
+/// Vectors of eight floats by the compilers' vector extension, to compare a value with many. The operations that it
+/// lacks are here, with the same values in the portable build.
+namespace motorcade {
+
+inline constexpr int kFloatLanes = 8;
+using Floats = float __attribute__((vector_size(4 * kFloatLanes)));
+using FloatMask = std::int32_t __attribute__((vector_size(4 * kFloatLanes)));  // all bits set where it holds
+
+inline Floats loadFloats(const float* p) {
+  Floats floats;
+  std::memcpy(&floats, p, sizeof floats);
+  return floats;
+}
+inline Floats allFloats(float value) { return Floats{} + value; }
+
+#ifdef __AVX2__
+inline bool anyOf(const FloatMask& mask) { return _mm256_testz_si256(__m256i(mask), __m256i(mask)) == 0; }
+#else
+inline bool anyOf(const FloatMask& mask) {
+  std::int32_t bits = 0;
+  for (int i = 0; i < kFloatLanes; ++i) bits |= mask[i];
+  return bits != 0;
+}
+#endif
+
+}  // namespace motorcade
