@@ -57,7 +57,7 @@ class IncrementalSolver {
     /// Factors that the budget put off, and a bound of what they can take off chi2: their own.
     int waiting_factors = 0;
     double waiting_chi2 = 0;
-    std::int64_t waiting_scalars = 0;  // whose substitution the budget put off
+    std::int64_t waiting_scalars = 0;  // whose substitution was put off
   };
 
   explicit IncrementalSolver(const Params& params) : params_(params) {}

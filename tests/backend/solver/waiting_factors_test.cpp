@@ -112,7 +112,8 @@ TEST(WaitingFactors, LiftingKeepsTheOrderOfTheTree) {
   ASSERT_EQ(solver.update().waiting_factors, 1);
   const EliminationTree& tree = solver.tree();
   for (const int c : tree.cliques()) {
-    if (tree[c].parent >= 0) EXPECT_LT(tree.sequence(c), tree.sequence(tree[c].parent));
+    if (tree[c].parent < 0) continue;
+    EXPECT_LT(tree.sequence(c), tree.sequence(tree[c].parent));
   }
   for (const FactorId f : solver.graph().factors()) {
     const auto& owned = tree[tree.ownerOf(solver.graph().factor(f))].factors;
