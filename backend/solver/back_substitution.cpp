@@ -16,12 +16,15 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
   waiting_since_.resize(graph_.slots(), 0);
   solveWork(threshold_sigmas);
   const std::int64_t with_work = result_.scalars;
-  while (!waiting_.empty() && result_.scalars - with_work < most_scalars) {
-    const VariableId v = waiting_.front();
-    waiting_.pop_front();
+  while (first_waiting_ < waiting_.size() && result_.scalars - with_work < most_scalars) {
+    const VariableId v = waiting_[first_waiting_++];
     const Call since = std::exchange(waiting_since_[v.value], 0);
     if (since == 0 || tree_.cliqueOf(v) < 0) continue;  // it was solved since, or left the tree
     solve(tree_[tree_.cliqueOf(v)], since, threshold_sigmas);
+  }
+  if (2 * first_waiting_ >= waiting_.size()) {  // a deque would take memory and give it back
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(first_waiting_));
+    first_waiting_ = 0;
   }
   result_.moved = moved_;
   return result_;
@@ -71,7 +74,7 @@ void BackSubstitution::putOff(const Clique& clique, Call since) {
 
 std::int64_t BackSubstitution::waitingScalars() const {
   std::int64_t scalars = 0;
-  for (const VariableId v : waiting_)
+  for (const VariableId v : std::span(waiting_).subspan(first_waiting_))
     if (waiting_since_[v.value] > 0 && tree_.cliqueOf(v) >= 0) scalars += graph_.sizeOf(v);
   return scalars;
 }

@@ -1,12 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <vector>
 
 #include "backend/elimination/elimination_tree.hpp"
-#include "backend/graph/mark_set.hpp"
 #include "backend/solver/clique_work.hpp"
 
 namespace motorcade {
@@ -49,7 +47,8 @@ class BackSubstitution {
   std::vector<VariableId> moved_;
   std::vector<int> open_;  // cliques with work to solve
   /// Frontal variables of cliques that wait, those that wait longest first: cliques may be gone by the time.
-  std::deque<VariableId> waiting_;
+  std::vector<VariableId> waiting_;
+  std::size_t first_waiting_ = 0;  // those before it are done
   std::vector<Call> moved_in_, waiting_since_;  // per variable; 0: never, and not waiting
   std::vector<double> x_separator_, x_frontal_;
 };
