@@ -48,7 +48,7 @@ class BackSubstitution {
   std::vector<int> open_;  // cliques with work to solve
   /// Frontal variables of cliques that wait, those that wait longest first: cliques may be gone by the time.
   std::vector<VariableId> waiting_;
-  std::size_t first_waiting_ = 0;  // those before it are done
+  std::size_t first_waiting_ = 0;               // those before it are done
   std::vector<Call> moved_in_, waiting_since_;  // per variable; 0: never, and not waiting
   std::vector<double> x_separator_, x_frontal_;
 };
