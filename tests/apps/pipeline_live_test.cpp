@@ -45,14 +45,14 @@ TEST_P(LiveOverload, ProcessesTheNewestPairEachTime) {
   constexpr std::int64_t kProcessed = 40;
   std::atomic<std::int64_t> ordered = 1, delivered = 0;  // pairs
   ToyStages toys;
-  toys.work = [&, factor_ = factor](Stage stage, FrameId frame) {
-    if (stage != Stage::kSceneFlowSegmentation || frame.value >= (kProcessed - 1) * factor_) return;
-    raiseTo(ordered, frame.value + 1 + factor_);
-    waitUntilAtLeast(delivered, frame.value + 1 + factor_);
+  toys.work = [&, times = factor](Stage stage, FrameId frame) {
+    if (stage != Stage::kSceneFlowSegmentation || frame.value >= (kProcessed - 1) * times) return;
+    raiseTo(ordered, frame.value + 1 + times);
+    waitUntilAtLeast(delivered, frame.value + 1 + times);
   };
   Pipeline pipeline({.threads = threads, .policy = InputPolicy::kLive}, toys.stages());
-  std::jthread camera([&, factor_ = factor] {
-    for (std::int64_t index = 0; index <= (kProcessed - 1) * factor_; ++index) {
+  std::jthread camera([&, times = factor] {
+    for (std::int64_t index = 0; index <= (kProcessed - 1) * times; ++index) {
       waitUntilAtLeast(ordered, index + 1);
       pipeline.push(frameAt(index));
       raiseTo(delivered, index + 1);
