@@ -75,20 +75,26 @@ TEST_P(LiveOverload, ProcessesTheNewestPairEachTime) {
   EXPECT_EQ(missing(end.summary), 0);
 }
 
-TEST(PipelineLive, IsFreshInTheFrameAfterAStallOfTheMotionStage) {
+/// A stage stalls in the first frame, until the camera has delivered all others.
+Outcome runThroughAStall(Stage of, PipelineParams params, std::int64_t frames) {
   std::latch stalled(1), stall_ends(1);
   ToyStages toys;
   toys.work = [&](Stage stage, FrameId frame) {
-    if (stage != Stage::kSceneFlowSegmentation || frame.value != 0) return;
+    if (stage != of || frame.value != 0) return;
     stalled.count_down();
     stall_ends.wait();
   };
-  Pipeline pipeline({.threads = 2, .policy = InputPolicy::kLive}, toys.stages());
+  params.policy = InputPolicy::kLive;
+  Pipeline pipeline(params, toys.stages());
   pipeline.push(frameAt(0));
   stalled.wait();
-  for (std::int64_t index = 1; index < 200; ++index) pipeline.push(frameAt(index));
+  for (std::int64_t index = 1; index < frames; ++index) pipeline.push(frameAt(index));
   stall_ends.count_down();
-  const Outcome run = drain(pipeline);
+  return drain(pipeline);
+}
+
+TEST(PipelineLive, IsFreshInTheFrameAfterAStallOfTheMotionStage) {
+  const Outcome run = runThroughAStall(Stage::kSceneFlowSegmentation, {.threads = 2}, 200);
   EXPECT_THAT(idsOf(run.results), ElementsAre(0, 199));
   EXPECT_EQ(idsOf(run.finals), numbersTo(200));
   EXPECT_EQ(run.summary.dropped, 198);
@@ -97,19 +103,7 @@ TEST(PipelineLive, IsFreshInTheFrameAfterAStallOfTheMotionStage) {
 
 TEST(PipelineLive, CountsMoreDroppedPairsThanItCanName) {
   constexpr std::int64_t kFrames = 20'000;
-  std::latch stalled(1), stall_ends(1);
-  ToyStages toys;
-  toys.work = [&](Stage stage, FrameId frame) {
-    if (stage != Stage::kSceneFlowSegmentation || frame.value != 0) return;
-    stalled.count_down();
-    stall_ends.wait();
-  };
-  Pipeline pipeline({.threads = 2, .policy = InputPolicy::kLive}, toys.stages());
-  pipeline.push(frameAt(0));
-  stalled.wait();
-  for (std::int64_t index = 1; index < kFrames; ++index) pipeline.push(frameAt(index));
-  stall_ends.count_down();
-  const Outcome run = drain(pipeline);
+  const Outcome run = runThroughAStall(Stage::kSceneFlowSegmentation, {.threads = 2}, kFrames);
   ASSERT_EQ(run.results.size(), 2u);
   const PipelineResult& fresh = run.results.back();
   EXPECT_EQ(static_cast<std::int64_t>(fresh.dropped.size()) + fresh.dropped_unnamed, kFrames - 2);
@@ -118,19 +112,7 @@ TEST(PipelineLive, CountsMoreDroppedPairsThanItCanName) {
 
 /// One frame is admitted behind the one that stalls, no more: the third is fresh.
 TEST(PipelineLive, IsFreshWithinThreeFramesAfterAStallOfTheBackEnd) {
-  std::latch stalled(1), stall_ends(1);
-  ToyStages toys;
-  toys.work = [&](Stage stage, FrameId frame) {
-    if (stage != Stage::kIncrementalOptimization || frame.value != 0) return;
-    stalled.count_down();
-    stall_ends.wait();
-  };
-  Pipeline pipeline({.threads = 4, .frames_in_flight = 2, .policy = InputPolicy::kLive}, toys.stages());
-  pipeline.push(frameAt(0));
-  stalled.wait();
-  for (std::int64_t index = 1; index < 200; ++index) pipeline.push(frameAt(index));
-  stall_ends.count_down();
-  const Outcome run = drain(pipeline);
+  const Outcome run = runThroughAStall(Stage::kIncrementalOptimization, {.threads = 4, .frames_in_flight = 2}, 200);
   ASSERT_GE(run.results.size(), 2u);
   ASSERT_LE(run.results.size(), 3u);
   EXPECT_EQ(run.results.back().online.frame.value, 199);

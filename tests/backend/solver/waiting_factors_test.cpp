@@ -133,6 +133,9 @@ TEST(WaitingFactors, AWaitingFactorCanBeRemovedAndItsVariablesRetired) {
   ASSERT_EQ(solver.update().waiting_factors, 1);
   solver.retire(std::array{circle.pose(kPoses / 3)});
   EXPECT_EQ(solver.update().waiting_factors, 0);
+  const std::array newest{circle.pose(kPoses - 1)};
+  const Eigen::MatrixXd known = *unlimited.jointCovariance(newest), left = *solver.jointCovariance(newest);
+  EXPECT_LT((left - known).norm(), 0.1 * known.norm()) << "what the closure told stays, at its linearization";
   EXPECT_LT(distance(solver, unlimited, circle.pose(kPoses / 4)), kSigma_m)
       << "a prior keeps the linearization of its time";
 }
