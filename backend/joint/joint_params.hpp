@@ -43,7 +43,7 @@ struct JointParams {
   bool compute_covariances = true;
 
   /// See IncrementalSolver::Params.
-  double mismatch_tolerance = 0.2, jacobian_drift_sigmas = 1.0, substitution_tolerance = 0.05;
+  double mismatch_tolerance = 0.05, jacobian_drift_sigmas = 0.5, substitution_tolerance = 0.05;
   /// Each frame tells a little more of how an object's axes lie along its travel, and with them its whole path turns.
   int spread_scalars = 300;
   int iterations_per_update = 1;
