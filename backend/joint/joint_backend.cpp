@@ -28,7 +28,8 @@ class JointBackend::Estimator {
       graph_.keep(measurements.frame, reader_.covariances(measurements.frame));
     }
     estimates.online = reader_.read(measurements.frame);
-    continuous_(estimates.online, [this](TrackId track, FrameId frame) { return earlierPose(track, frame); });
+    continuous_(estimates.online, {.camera = [this](FrameId frame) { return earlierPose(frame); },
+                                   .object = [this](TrackId id, FrameId frame) { return earlierPose(id, frame); }});
     for (const FrameId frame : settling_(graph_.frames())) estimates.settled.push_back(reader_.read(frame));
     while (params_.window_frames > 0 && graph_.frames().size() > static_cast<std::size_t>(params_.window_frames)) {
       estimates.finals.push_back(reader_.read(graph_.frames().begin()->first));
@@ -59,6 +60,12 @@ class JointBackend::Estimator {
     for (int i = 0; i < kCovarianceLagFrames; ++i)
       if (it == graph_.frames().rend() || ++it == graph_.frames().rend()) return std::nullopt;
     return it->first;
+  }
+
+  std::optional<SE3> earlierPose(FrameId frame) const {
+    const auto camera = graph_.frames().find(frame);
+    if (camera == graph_.frames().end()) return std::nullopt;
+    return graph_.solver().pose(camera->second.x);
   }
 
   std::optional<SE3> earlierPose(TrackId track, FrameId frame) const {

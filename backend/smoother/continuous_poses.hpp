@@ -8,25 +8,33 @@
 
 namespace motorcade {
 
-/// Poses of objects as they are published. Each observation corrects the whole track; published as it is, a correction
-/// would look like a motion of the object. So the published pose moves by the object's estimated motion since, and
-/// corrections are added gradually, over `correction_s`; 0 publishes each pose as it is estimated.
+/// Poses of camera and objects as they are published. Each frame corrects the whole past; published as it is, a
+/// correction would look like a motion. So a published pose moves by the estimated motion since, and corrections are
+/// added gradually, over `correction_s`; 0 publishes each pose as it is estimated.
 class ContinuousPoses {
  public:
   explicit ContinuousPoses(double correction_s) : correction_s_(correction_s) {}
 
-  /// T_world_body of an earlier frame as it is estimated now; empty when it is not known any more.
-  using EarlierPose = std::function<std::optional<SE3>(TrackId, FrameId)>;
-  /// Changes the objects' poses of the newest frame.
-  void operator()(FrameEstimate& online, const EarlierPose& earlier);
+  /// Poses in the world of an earlier frame as they are estimated now; empty when they are not known any more.
+  struct EarlierPoses {
+    std::function<std::optional<SE3>(FrameId)> camera;
+    std::function<std::optional<SE3>(TrackId, FrameId)> object;
+  };
+  /// Changes the poses of the newest frame. Objects remain where they are seen from the camera.
+  void operator()(FrameEstimate& online, const EarlierPoses& earlier);
 
  private:
   struct Published {
     FrameId frame;
     Timestamp stamp;
-    SE3 T_world_body;
+    SE3 T_world;
   };
+  SE3 continued(const Published& last, const SE3& then, const SE3& now, const SE3& target, Timestamp stamp,
+                double correction_s) const;
+  void continueCamera(FrameEstimate& online, const EarlierPoses& earlier);
+
   double correction_s_;
+  std::optional<Published> last_camera_;
   std::map<TrackId, Published> last_;
 };
 

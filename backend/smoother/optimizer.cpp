@@ -29,7 +29,8 @@ class Optimizer::Smoother {
       keepCovariances(measurements.frame);
     }
     estimates.online = reader_.read(measurements.frame);
-    continuous_(estimates.online, [this](TrackId track, FrameId frame) { return earlierPose(track, frame); });
+    continuous_(estimates.online, {.camera = [this](FrameId frame) { return earlierPose(frame); },
+                                   .object = [this](TrackId id, FrameId frame) { return earlierPose(id, frame); }});
     for (const FrameId frame : settling_(graph_.frames())) estimates.settled.push_back(reader_.read(frame));
     while (params_.window_frames > 0 && graph_.frames().size() > static_cast<std::size_t>(params_.window_frames)) {
       estimates.finals.push_back(reader_.read(graph_.frames().begin()->first));
@@ -52,6 +53,11 @@ class Optimizer::Smoother {
   }
 
  private:
+  std::optional<SE3> earlierPose(FrameId frame) const {
+    const auto camera = graph_.frames().find(frame);
+    if (camera == graph_.frames().end()) return std::nullopt;
+    return graph_.solver().pose(camera->second.x);
+  }
   std::optional<SE3> earlierPose(TrackId id, FrameId frame) const {
     const ObjectTrack& track = graph_.tracks().at(id);
     if (!track.records.contains(frame) || !graph_.frames().contains(frame)) return std::nullopt;
