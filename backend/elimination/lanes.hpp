@@ -16,6 +16,16 @@ inline void store(double* to, Vec value) { *reinterpret_cast<UnalignedVec*>(to) 
 inline Vec broadcast(double value) { return Vec{value, value, value, value}; }
 inline double sum(Vec v) { return (v[0] + v[2]) + (v[1] + v[3]); }
 
+/// The rows of a 4 x 4 matrix become its columns.
+inline void transpose(Vec& a, Vec& b, Vec& c, Vec& d) {
+  const Vec even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Vec even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
+  b = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
+  c = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
+  d = __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
+}
+
 /// The first `count` of four numbers and zeros; reads nothing past them.
 inline Vec loadFirst(const double* from, int count) {
   switch (count) {

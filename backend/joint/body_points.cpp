@@ -100,9 +100,11 @@ std::vector<LandmarkTrack*> BodyPoints::current() {
   return tracks;
 }
 
-int BodyPoints::seenNow() {
-  return static_cast<int>(std::ranges::count_if(
-      current(), [&](const LandmarkTrack* track) { return track->views.back().frame == newest_; }));
+std::vector<LandmarkTrack*> BodyPoints::seenNow() {
+  std::vector<LandmarkTrack*> tracks;
+  for (auto& [point, candidate] : candidates_)
+    if (candidate.chosen && candidate.track.views.back().frame == newest_) tracks.push_back(&candidate.track);
+  return tracks;
 }
 
 }  // namespace motorcade

@@ -62,8 +62,8 @@ class BodyPoints {
   std::vector<LandmarkTrack> takeEnded();
   /// The chosen landmarks whose tracks go on, with two views and more.
   std::vector<LandmarkTrack*> current();
-  /// Of the chosen landmarks, how many were seen in the newest frame and before.
-  int seenNow();
+  /// The chosen landmarks that were seen in the newest frame.
+  std::vector<LandmarkTrack*> seenNow();
 
  private:
   struct Candidate {

@@ -1,5 +1,7 @@
 /// The part of JointGraph that links the camera's poses.
 
+#include <algorithm>
+
 #include "backend/joint/joint_graph.hpp"
 #include "backend/smoother/factors.hpp"
 #include "core/unknown_motion.hpp"
@@ -31,7 +33,9 @@ void JointGraph::addCamera(const FrameMeasurements& m) {
     camera.x = solver_.addVariable((solver_.pose(before) * T_previous_now).normalized());
     last_seen_.T_seen_now = (last_seen_.T_seen_now * T_previous_now).normalized();
     if (showsPoints(m)) observeAtRest(m);
-    camera.weak = m.status != FrameStatus::kGood || world_.points.seenNow() < kFewStatic;
+    const auto linked =
+        std::ranges::count_if(world_.points.seenNow(), [](auto* track) { return track->views.size() >= 2; });
+    camera.weak = m.status != FrameStatus::kGood || linked < kFewStatic;
     linkCamera(m, camera);
   }
   if (showsPoints(m)) last_seen_ = {m.frame, SE3{}};

@@ -53,10 +53,7 @@ JointGraph::JointGraph(const JointParams& params, const StereoCamera& camera)
       camera_(camera),
       solver_(solverParams(params)),
       world_{.points = BodyPoints(pointParams(params, camera, params.track_frames, params.max_static_landmarks)),
-             .noise = {},
-             .ended = {},
-             .current = {},
-             .closed = {}},
+             .noise = {}},
       undecided_(kEarlierViews + 1) {
   const SmallVector zero = SmallVector::Zero(1);
   offset_ = solver_.addVariable(zero);
@@ -68,7 +65,7 @@ void JointGraph::add(const FrameMeasurements& measurements) {
   problems_.clear();
   ++added_frames_;
   addCamera(measurements);
-  addPoints(world_, nullptr);
+  addPointsAtRest();
   dropTroubled(solver_.update());
   addObjects(measurements);
   if (showsPoints(measurements)) undecided_.observe(measurements.frame, measurements.undecided);
@@ -94,9 +91,8 @@ JointObject& JointGraph::objectOf(TrackId id) {
   const BodyPoints::Params points =
       pointParams(params_, camera_, params_.object_track_frames, params_.max_object_landmarks);
   return objects_
-      .emplace(id, JointObject{.lever = {},
-                               .records = {},
-                               .points = {BodyPoints(points), NoiseLevel::like(world_.noise), {}, {}, {}}})
+      .emplace(id,
+               JointObject{.travel = {}, .records = {}, .points = {BodyPoints(points), NoiseLevel::like(world_.noise)}})
       .first->second;
 }
 
@@ -126,13 +122,14 @@ void JointGraph::beginObject(JointObject& object, JointRecord& record) {
   twist.head<3>() = T_cam_body.rotation().transpose() * record.seen.velocity_cam_mps;
   record.w = solver_.addVariable(SmallVector(twist));
   addPrior(record.c, T_cam_body,
-           sigmas(params_.object_origin_sigma_m, params_.object_tilt_sigma_rad, params_.object_yaw_sigma_rad));
+           sigmas(params_.object_origin_sigma_m, params_.object_axes_sigma_rad, params_.object_axes_sigma_rad));
   addPrior(record.w, twist,
            sigmas(params_.twist_sigma_mps, params_.tilt_rate_sigma_radps, params_.yaw_rate_sigma_radps));
-  object.lever = solver_.addVariable(SmallVector(SmallVector::Zero(1)));
-  addPrior(object.lever, SmallVector::Zero(1), SmallVector::Constant(1, params_.lever_sigma_m));
+  object.travel = solver_.addVariable(SmallVector(SmallVector::Zero(3)));
+  addPrior(object.travel, SmallVector::Zero(3),
+           Eigen::Vector3d(params_.lever_sigma_m, params_.travel_yaw_sigma_rad, params_.travel_pitch_sigma_rad));
   if (params_.use_smoothness)
-    solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.lever, params_.rolling));
+    solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.travel, params_.rolling));
 }
 
 void JointGraph::continueObject(JointObject& object, const JointRecord& before, JointRecord& record) {
@@ -142,9 +139,9 @@ void JointGraph::continueObject(JointObject& object, const JointRecord& before, 
   const SE3 u = cameraMotion(before, record);
   record.c = solver_.addVariable((u.inverse() * solver_.pose(before.c) * SE3::exp(step)).normalized());
   record.w = solver_.addVariable(twist);
-  addMotion(before, record);
+  addMotion(object, before, record);
   if (params_.use_smoothness)
-    solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.lever, params_.rolling));
+    solver_.addFactor(std::make_unique<RollingFactor>(record.w, object.travel, params_.rolling));
 }
 
 SE3 JointGraph::cameraMotion(const JointRecord& before, const JointRecord& now) const {
@@ -153,14 +150,14 @@ SE3 JointGraph::cameraMotion(const JointRecord& before, const JointRecord& now) 
 
 /// Where the points at rest tell how the camera moved, they tell it a thousand times as well as an object could, whose
 /// acceleration is unknown: the camera's motion enters as known, and objects remain independent of each other.
-void JointGraph::addMotion(const JointRecord& before, JointRecord& now) {
+void JointGraph::addMotion(const JointObject& object, const JointRecord& before, JointRecord& now) {
   ConstantTwistFactor::Variables variables{
       .c_a = before.c, .w_a = before.w, .c_b = now.c, .w_b = now.w, .x_a = {}, .x_b = {}};
   const JointCamera &camera_before = frames_.at(before.seen.frame), &camera = frames_.at(now.seen.frame);
   if (camera_before.weak || camera.weak) variables.x_a = camera_before.x, variables.x_b = camera.x;
   const Vector6d density = (params_.use_smoothness ? 1.0 : kFreeMotion) * params_.acceleration.density();
   now.motion = solver_.addFactor(std::make_unique<ConstantTwistFactor>(
-      variables, cameraMotion(before, now), secondsBetween(before.stamp, now.stamp), density));
+      variables, cameraMotion(before, now), secondsBetween(before.stamp, now.stamp), density, travelAxes(object)));
 }
 
 /// The camera's motion is known better when its window has passed: an object's motion then is told from it anew.
@@ -170,7 +167,7 @@ void JointGraph::settleMotion(JointObject& object, FrameId newest) {
   const JointRecord& before = std::prev(now)->second;
   if (!before.c.valid() || !now->second.c.valid() || !frames_.contains(before.seen.frame)) return;
   solver_.removeFactor(*now->second.motion);
-  addMotion(before, now->second);
+  addMotion(object, before, now->second);
 }
 
 std::optional<FactorId> JointGraph::addGaugePrior(VariableId x, const SE3& mean) {
@@ -187,22 +184,36 @@ void JointGraph::addPrior(VariableId v, const SmallVector& mean, const SmallVect
   solver_.addFactor(std::make_unique<VectorPriorFactor>(v, mean, sigma));
 }
 
+Eigen::Matrix3d JointGraph::travelAxes(const JointObject& object) const {
+  return motorcade::travelAxes(std::get<SmallVector>(solver_.estimate(object.travel)));
+}
+
 SE3 JointGraph::objectPose(const JointObject& object, FrameId frame) const {
   const JointRecord& record = object.records.at(frame);
   if (record.frozen) return *record.frozen;
-  const SE3 T_cam_body = record.c.valid() ? solver_.pose(record.c) : record.seen.T_cam_body;
+  const SE3 T_cam_body = record.c.valid() ? solver_.pose(record.c) * SE3(travelAxes(object), Eigen::Vector3d::Zero())
+                                          : record.seen.T_cam_body;
   return (solver_.pose(frames_.at(frame).x) * T_cam_body).normalized();
 }
 
 Eigen::Vector3d JointGraph::objectVelocity_mps(const JointObject& object, FrameId frame) const {
   const JointRecord& record = object.records.at(frame);
   if (!record.w.valid()) return solver_.pose(frames_.at(frame).x).rotation() * record.seen.velocity_cam_mps;
-  return objectPose(object, frame).rotation() * std::get<SmallVector>(solver_.estimate(record.w)).head<3>();
+  const Eigen::Matrix3d R_world_cam = solver_.pose(frames_.at(frame).x).rotation();
+  const SmallVector twist = std::get<SmallVector>(solver_.estimate(record.w));
+  return R_world_cam * solver_.pose(record.c).rotation() * twist.head<3>();
+}
+
+double JointGraph::yawRate_radps(const JointObject& object, FrameId frame) const {
+  const JointRecord& record = object.records.at(frame);
+  if (!record.w.valid()) return 0;
+  const SmallVector twist = std::get<SmallVector>(solver_.estimate(record.w));
+  return travelAxes(object).col(2).dot(twist.tail<3>());
 }
 
 std::vector<VariableId> JointGraph::variablesOf(const JointObject& object) const {
   std::vector<VariableId> variables;
-  if (object.lever.valid()) variables.push_back(object.lever);
+  if (object.travel.valid()) variables.push_back(object.travel);
   for (const auto& [frame, record] : object.records)
     if (record.c.valid()) variables.insert(variables.end(), {record.c, record.w});
   return variables;
@@ -219,7 +230,7 @@ std::string JointGraph::nameOf(VariableId v) const {
   for (const auto& [frame, camera] : frames_)
     if (camera.x == v) return "camera pose of frame " + std::to_string(frame.value);
   for (const auto& [id, object] : objects_) {
-    if (object.lever == v) return "lever of object " + std::to_string(id.value);
+    if (object.travel == v) return "travel of object " + std::to_string(id.value);
     for (const auto& [frame, record] : object.records) {
       const std::string of = " of object " + std::to_string(id.value) + " in frame " + std::to_string(frame.value);
       if (record.c == v) return "pose" + of;
@@ -242,10 +253,10 @@ void JointGraph::dropTroubled(const IncrementalSolver::Report& report) {
     found.clear();
     for (const TrackId id : troubled) {
       JointObject& object = objects_.at(id);
-      if (!object.lever.valid()) continue;  // dropped just now
+      if (!object.travel.valid()) continue;  // dropped just now
       const auto& after = solver_.drop(variablesOf(object));
       found.insert(found.end(), after.problems.begin(), after.problems.end());
-      object.lever = {};
+      object.travel = {};
       object.points.current.reset();
       object.points.closed.clear();
       for (auto& [frame, record] : object.records) record.c = record.w = {}, record.motion.reset();
@@ -268,7 +279,7 @@ void JointGraph::retireOldest() {
       if (const auto next = std::next(record); next != object.records.end()) next->second.motion.reset();
     }
     const bool over = object.records.empty() || object.records.rbegin()->first <= oldest;
-    if (over && object.lever.valid()) retired.push_back(object.lever);
+    if (over && object.travel.valid()) retired.push_back(object.travel);
     it = over ? objects_.erase(it) : std::next(it);
   }
   forgetClosed([oldest = oldest](const ClosedTracks& closed) { return closed.first <= oldest; });
@@ -290,6 +301,10 @@ void JointGraph::keep(FrameId frame, const JointCovariances& covariances) {
 void JointGraph::converge() {
   constexpr double kConverged = 1e-6;  // m or rad: far below what is published
   problems_.clear();
+  if (!alignments_.empty()) {
+    eliminateAtRest();
+    dropTroubled(solver_.update());
+  }
   dropTroubled(solver_.converge(params_.final_iterations, kConverged));
 }
 

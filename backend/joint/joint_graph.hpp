@@ -49,13 +49,13 @@ struct ClosedTracks {
 struct JointPoints {
   BodyPoints points;
   NoiseLevel noise;
-  std::vector<LandmarkTrack> ended;  // whose factor is still to be made
-  std::optional<FactorId> current;   // of these and of the tracks that go on
-  std::vector<ClosedTracks> closed;  // while the offset may still move
+  std::vector<LandmarkTrack> ended{};  // whose factor is still to be made
+  std::optional<FactorId> current{};   // of these and of the tracks that go on
+  std::vector<ClosedTracks> closed{};  // while the offset may still move
 };
 
 struct JointObject {
-  VariableId lever;  // invalid before the first observation and after a drop
+  VariableId travel;  // see travelAxes; invalid before the first observation and after a drop
   std::map<FrameId, JointRecord> records;
   JointPoints points;
 };
@@ -97,8 +97,13 @@ class JointGraph {
   double offset_px() const;
   double offsetSigma_px() const;
 
+  /// Axes of travel in those of the body's variables.
+  Eigen::Matrix3d travelAxes(const JointObject& object) const;
+  /// With the axes of travel.
   SE3 objectPose(const JointObject& object, FrameId frame) const;
   Eigen::Vector3d objectVelocity_mps(const JointObject& object, FrameId frame) const;
+  /// About the upright axis of travel.
+  double yawRate_radps(const JointObject& object, FrameId frame) const;
 
  private:
   void addCamera(const FrameMeasurements& measurements);
@@ -112,11 +117,15 @@ class JointGraph {
   void addObservation(const ObjectObservation& seen);
   void addObjects(const FrameMeasurements& measurements);
   SE3 cameraMotion(const JointRecord& before, const JointRecord& now) const;
-  void addMotion(const JointRecord& before, JointRecord& now);
+  void addMotion(const JointObject& object, const JointRecord& before, JointRecord& now);
   void settleMotion(JointObject& object, FrameId newest);
   void beginObject(JointObject& object, JointRecord& record);
   void continueObject(JointObject& object, const JointRecord& before, JointRecord& record);
+  void addPointsAtRest();
+  std::optional<FactorId> alignNewest();
+  void eliminateAtRest();
   void addPoints(JointPoints& body, const JointObject* object);
+  bool closesNow(const JointObject* object) const;
   void closeEnded(JointPoints& body, const JointObject* object);
   std::optional<FactorId> addBundle(const std::vector<LandmarkTrack*>& tracks, const NoiseLevel& noise,
                                     const JointObject* object);
@@ -162,6 +171,7 @@ class JointGraph {
   UnseenStart start_;
   std::int64_t added_frames_ = 0;
   JointPoints world_;
+  std::vector<FactorId> alignments_;  // of cameras to landmarks at rest, since these were eliminated
   UndecidedPoints undecided_;
   std::map<FrameId, JointCamera> frames_;
   std::map<TrackId, JointObject> objects_;

@@ -1,9 +1,11 @@
 /// The part of JointGraph that turns points into factors, and finds the disparity offset by them.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "backend/joint/joint_graph.hpp"
+#include "backend/joint/known_landmarks.hpp"
 
 namespace motorcade {
 namespace {
@@ -15,6 +17,7 @@ constexpr double kOffsetStep_px = 0.1;    // of the offset, after which landmark
 constexpr int kFirstLook_frames = 8;      // after which the offset is looked at
 constexpr int kCalibration_frames = 100;  // of the drive, in which the offset may be found
 constexpr int kFramesPerFactor = 5;       // tracks that ended in so many frames share one
+constexpr double kKnownShare = 0.5;       // of the landmarks seen now, to which the camera can be aligned
 
 std::vector<LandmarkTrack*> pointersTo(std::vector<LandmarkTrack>& tracks) {
   std::vector<LandmarkTrack*> pointers;
@@ -58,18 +61,79 @@ class FrameIndex {
   std::vector<int> of_;
 };
 
+/// Appends the views that are in the graph.
+void appendViews(std::span<const LandmarkTrack::View> views, const FrameIndex& index, const NoiseLevel& noise,
+                 std::vector<LandmarkView>& to) {
+  const Eigen::Vector3d level = noise.sigmas();
+  for (const auto& view : views)
+    if (const int frame = index.of(view.frame); frame >= 0)
+      to.push_back(
+          {frame, view.uvd_px.cast<double>(), level.cwiseProduct(view.sigma_px.cast<double>()).cwiseInverse()});
+}
+
 }  // namespace
 
-/// The factor over the tracks that go on, and over those that ended lately, is made anew in each frame.
+/// Landmarks at rest are many: they are eliminated in one of some frames. In the others they stay where they were found
+/// to be, and the newest camera is aligned to them, until the next elimination takes that back.
+void JointGraph::addPointsAtRest() {
+  const bool due = (added_frames_ - 1) % params_.frames_per_elimination == 0 || frames_.rbegin()->second.weak;
+  if (!due && world_.current)
+    if (const auto alignment = alignNewest()) return alignments_.push_back(*alignment);
+  eliminateAtRest();
+}
+
+void JointGraph::eliminateAtRest() {
+  for (const FactorId alignment : alignments_) solver_.removeFactor(alignment);
+  alignments_.clear();
+  addPoints(world_, nullptr);
+}
+
+/// The landmarks are fitted to their earlier views, where the poses are now. Empty where too few are known.
+std::optional<FactorId> JointGraph::alignNewest() {
+  const std::vector<LandmarkTrack*> tracks = world_.points.seenNow();
+  if (tracks.empty()) return std::nullopt;
+  const auto& [frame_before, before] = *std::next(frames_.rbegin());
+  const FrameIndex index(tracks, [&](FrameId frame) { return frames_.contains(frame); });
+  std::vector<SE3> T_cam_body;
+  for (const FrameId frame : index.frames()) T_cam_body.push_back(solver_.pose(frames_.at(frame).x).inverse());
+  LandmarkFit fit(camera_, params_.static_noise, T_cam_body, offset_px());
+  std::vector<LandmarkView> earlier;
+  std::vector<ViewOfKnown> views;
+  for (LandmarkTrack* track : tracks) {
+    earlier.clear();
+    appendViews(std::span(track->views).first(track->views.size() - 1), index, world_.noise, earlier);
+    if (earlier.empty() || index.frames()[earlier.back().frame] != frame_before) continue;
+    if (!fit(earlier, track->estimate)) continue;
+    track->estimate = fit.estimate();
+    const auto known = fit.known();
+    earlier.clear();
+    appendViews(std::span(track->views).last(1), index, world_.noise, earlier);
+    if (known) views.push_back({*known, earlier.back().uvd_px, earlier.back().inverse_sigma});
+  }
+  if (static_cast<double>(views.size()) < kKnownShare * static_cast<double>(tracks.size())) return std::nullopt;
+  std::vector<VariableId> poses{before.x, frames_.rbegin()->second.x};
+  const std::array T_cam_world{solver_.pose(poses[0]).inverse(), T_cam_body.back()};
+  return solver_.addFactor(
+      std::make_unique<BundleFactor>(BundleFactor::Poses::kWorldCam, std::move(poses), offset_,
+                                     alignToKnown(camera_, params_.static_noise, views, T_cam_world, offset_px())));
+}
+
+/// The factor over the tracks that go on, and over those that ended lately, is made anew.
 void JointGraph::addPoints(JointPoints& body, const JointObject* object) {
   if (body.current) solver_.removeFactor(*body.current);
   body.current.reset();
   std::ranges::move(body.points.takeEnded(), std::back_inserter(body.ended));
-  if (object && !object->lever.valid()) return body.ended.clear();
-  if ((first_frame_.value + added_frames_ - 1) % kFramesPerFactor == 0) closeEnded(body, object);
+  if (object && !object->travel.valid()) return body.ended.clear();
+  if (closesNow(object)) closeEnded(body, object);
   std::vector<LandmarkTrack*> tracks = body.points.current();
   std::ranges::copy(pointersTo(body.ended), std::back_inserter(tracks));
   body.current = addBundle(tracks, body.noise, object);
+}
+
+/// At rest, in a frame in which landmarks are eliminated in any case.
+bool JointGraph::closesNow(const JointObject* object) const {
+  const int step = object ? 1 : params_.frames_per_elimination;
+  return (added_frames_ - 1) % ((kFramesPerFactor + step - 1) / step * step) == 0;
 }
 
 /// Tracks that ended become a factor for good.
@@ -96,14 +160,7 @@ std::optional<FactorId> JointGraph::addBundle(const std::vector<LandmarkTrack*>&
   std::vector<LandmarkTrack*> landmark_tracks;
   for (LandmarkTrack* track : tracks) {
     const std::size_t first = landmarks.views.size();
-    for (const auto& view : track->views) {
-      const int at = index.of(view.frame);
-      if (at < 0) continue;
-      Eigen::Vector3d sigma_px = view.sigma_px.cast<double>();
-      sigma_px.head<2>() *= noise.uv();
-      sigma_px.z() *= noise.d();
-      landmarks.views.push_back({at, view.uvd_px.cast<double>(), sigma_px.cwiseInverse()});
-    }
+    appendViews(track->views, index, noise, landmarks.views);
     if (landmarks.views.size() < first + 2) {
       landmarks.views.resize(first);
       continue;
@@ -167,7 +224,7 @@ void JointGraph::linearizeLandmarksAnew() {
   linearized_offset_px_ = offset_px();
   relinearizeClosed(world_, nullptr);
   for (auto& [id, object] : objects_)
-    if (object.lever.valid()) relinearizeClosed(object.points, &object);
+    if (object.travel.valid()) relinearizeClosed(object.points, &object);
   dropTroubled(solver_.update());
 }
 

@@ -15,6 +15,8 @@ struct JointParams {
   /// for long keeps the body's frame where it is.
   int track_frames = 10, object_track_frames = 20;
   int max_static_landmarks = 400, max_object_landmarks = 30;  // followed at a time, of each object
+  /// The landmarks at rest are eliminated in one of so many frames; the camera is aligned to them in the others.
+  int frames_per_elimination = 2;
   int point_half = 0;  // 1 and 2 use the points with odd and even ids only, to compare both; 0 uses all
 
   /// Texture is matched with about the same bias in each frame: standard deviation of the error that all disparities of
@@ -27,11 +29,12 @@ struct JointParams {
   bool use_smoothness = true;
 
   double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
-  /// Gauge of an object: its frame at birth. The axes may turn a little, until they lie along the travel.
-  double object_origin_sigma_m = 1e-3, object_yaw_sigma_rad = 0.1, object_tilt_sigma_rad = 0.03;
+  /// Gauge of an object: its frame at birth.
+  double object_origin_sigma_m = 1e-3, object_axes_sigma_rad = 1e-4;
   /// Of an object's first twist: a vehicle may be fast, but hardly turns.
   double twist_sigma_mps = 20, yaw_rate_sigma_radps = 0.2, tilt_rate_sigma_radps = 0.05;
-  double lever_sigma_m = 2;
+  /// Of how it travels in that frame.
+  double lever_sigma_m = 2, travel_yaw_sigma_rad = 0.1, travel_pitch_sigma_rad = 0.03;
 
   AccelerationNoise acceleration{
       .along_mps2 = 1.0, .sideways_mps2 = 0.3, .vertical_mps2 = 0.1, .yaw_radps2 = 0.05, .tilt_radps2 = 0.01};

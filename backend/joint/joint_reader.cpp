@@ -11,6 +11,15 @@ namespace {
 
 using Matrix6x12d = Eigen::Matrix<double, 6, 12>;
 
+/// Of the pose's axes after those of travel: exp(xi) R_z(yaw + dyaw) R_y(pitch + dpitch), right perturbation.
+Eigen::Matrix<double, 6, 15> byTravel(const Eigen::Matrix3d& R_body_travel) {
+  Eigen::Matrix<double, 6, 15> J = Eigen::Matrix<double, 6, 15>::Zero();
+  J.block<3, 3>(0, 0) = J.block<3, 3>(3, 3) = R_body_travel.transpose();
+  J.block<3, 1>(3, 13) = R_body_travel.row(2).transpose();  // about the body's z axis
+  J(4, 14) = 1;                                             // about the turned y axis
+  return J;
+}
+
 /// Of R_cam_body * v_body, both perturbed: R (dv - [v] x phi).
 Eigen::Matrix3d velocityCovariance(const SE3& T_cam_body, const Eigen::Vector3d& velocity_body_mps,
                                    const Eigen::Matrix<double, 12, 12>& joint) {
@@ -27,7 +36,8 @@ JointCovariances JointReader::covariances(FrameId frame) const {
   for (const auto& [id, object] : graph_.objects()) {
     const auto record = object.records.find(frame);
     if (record == object.records.end()) continue;
-    if (const auto covariance = objectCovariance(id, record->second)) covariances.objects.push_back(*covariance);
+    if (const auto covariance = objectCovariance(id, object, record->second))
+      covariances.objects.push_back(*covariance);
   }
   return covariances;
 }
@@ -50,22 +60,26 @@ std::optional<Matrix6d> JointReader::cameraCovariance(FrameId frame) const {
 
 /// Of the pose seen from the camera, which is a variable, of the speed, the length of the twist's velocity, and of its
 /// turn about the body's z axis.
-std::optional<JointCovariances::Object> JointReader::objectCovariance(TrackId id, const JointRecord& record) const {
+std::optional<JointCovariances::Object> JointReader::objectCovariance(TrackId id, const JointObject& object,
+                                                                      const JointRecord& record) const {
   constexpr double kStanding_mps = 1e-9;  // slower, there is no direction
   if (!record.c.valid()) return std::nullopt;
-  const std::array variables{record.c, record.w};
+  const std::array variables{record.c, record.w, object.travel};
   const auto joint = graph_.solver().jointCovariance(variables);
   if (!joint) return std::nullopt;
   const Eigen::Vector3d velocity = std::get<SmallVector>(graph_.solver().estimate(record.w)).head<3>();
   const Eigen::Vector3d direction = velocity.norm() > kStanding_mps ? velocity.normalized() : Eigen::Vector3d::UnitX();
-  const Eigen::Matrix<double, 12, 12> covariance = graph_.designEffect() * *joint;
+  const Eigen::Matrix<double, 15, 15> covariance = graph_.designEffect() * *joint;
+  const Eigen::Matrix3d R_body_travel = graph_.travelAxes(object);
+  const Eigen::Vector3d up = R_body_travel.col(2);
+  const Eigen::Matrix<double, 6, 15> by_travel = byTravel(R_body_travel);
   const double variance = direction.dot(covariance.block<3, 3>(6, 6) * direction);
   return JointCovariances::Object{
       .track = id,
-      .T_cam_body = covariance.topLeftCorner<6, 6>(),
-      .velocity_cam = velocityCovariance(graph_.solver().pose(record.c), velocity, covariance),
+      .T_cam_body = by_travel * covariance * by_travel.transpose(),
+      .velocity_cam = velocityCovariance(graph_.solver().pose(record.c), velocity, covariance.topLeftCorner<12, 12>()),
       .speed_sigma_mps = std::sqrt(std::max(0.0, variance)),
-      .yaw_rate_sigma_radps = std::sqrt(std::max(0.0, covariance(11, 11)))};
+      .yaw_rate_sigma_radps = std::sqrt(std::max(0.0, up.dot(covariance.block<3, 3>(9, 9) * up)))};
 }
 
 FrameEstimate JointReader::read(FrameId frame) const {
@@ -84,7 +98,7 @@ FrameEstimate JointReader::read(FrameId frame) const {
 ObjectEstimate JointReader::readObject(TrackId id, const JointObject& object, FrameId frame) const {
   constexpr double kUnknownSpeedSigma_mps = 10.0, kUnknownYawRateSigma_radps = 0.3;  // of a single observation
   const JointRecord& record = object.records.at(frame);
-  const double yaw_rate_radps = record.w.valid() ? std::get<SmallVector>(graph_.solver().estimate(record.w))[5] : 0;
+  const double yaw_rate_radps = graph_.yawRate_radps(object, frame);
   const Eigen::Matrix3d R_world_cam = graph_.solver().pose(graph_.frames().at(frame).x).rotation();
   std::optional<Eigen::Matrix3d> velocity_covariance;
   if (record.velocity_cam_covariance)

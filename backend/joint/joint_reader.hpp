@@ -18,7 +18,8 @@ class JointReader {
 
  private:
   std::optional<Matrix6d> cameraCovariance(FrameId frame) const;
-  std::optional<JointCovariances::Object> objectCovariance(TrackId id, const JointRecord& record) const;
+  std::optional<JointCovariances::Object> objectCovariance(TrackId id, const JointObject& object,
+                                                           const JointRecord& record) const;
   ObjectEstimate readObject(TrackId id, const JointObject& object, FrameId frame) const;
 
   const JointGraph& graph_;

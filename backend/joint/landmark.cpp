@@ -1,26 +1,121 @@
 #include "backend/joint/landmark.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "backend/elimination/lanes.hpp"
 #include "backend/joint/row_products.hpp"
 
 namespace motorcade {
 namespace {
 
+using lanes::broadcast, lanes::kLanes, lanes::Vec;
+
 constexpr double kLeastDisparity_px = 0.3;  // a landmark with less is at infinity
 constexpr double kLeastSharedSigma_px = 1e-3;
+constexpr int kMostSteps = 3;
+constexpr double kFittedCost = 0.1;  // what a step would take off the squared residuals when a landmark is fitted
+
+/// Four vectors.
+struct Lanes3 {
+  Vec x, y, z;
+};
+Lanes3 operator*(const Lanes3& a, const Lanes3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+
+/// Up to four views with their poses; lanes without one repeat the last.
+class ViewLanes {
+ public:
+  ViewLanes(std::span<const LandmarkView> views, const double* poses, std::size_t stride) {
+    const LandmarkView* of[kLanes];
+    for (std::size_t i = 0; i < kLanes; ++i) of[i] = &views[std::min(i, views.size() - 1)];
+    const auto lanes = [&](const auto& value) {
+      return Vec{value(*of[0]), value(*of[1]), value(*of[2]), value(*of[3])};
+    };
+    for (int k = 0; k < 12; ++k) pose_[k] = lanes([&](const LandmarkView& v) { return poses[k * stride + v.frame]; });
+    uvd_px = {lanes([](auto& v) { return v.uvd_px[0]; }), lanes([](auto& v) { return v.uvd_px[1]; }),
+              lanes([](auto& v) { return v.uvd_px[2]; })};
+    inverse_sigma = {lanes([](auto& v) { return v.inverse_sigma[0]; }),
+                     lanes([](auto& v) { return v.inverse_sigma[1]; }),
+                     lanes([](auto& v) { return v.inverse_sigma[2]; })};
+  }
+
+  Lanes3 R(const Eigen::Vector3d& v) const {
+    return {(pose_[0] * v.x() + pose_[3] * v.y()) + pose_[6] * v.z(),
+            (pose_[1] * v.x() + pose_[4] * v.y()) + pose_[7] * v.z(),
+            (pose_[2] * v.x() + pose_[5] * v.y()) + pose_[8] * v.z()};
+  }
+  Lanes3 T(const Eigen::Vector3d& p) const {
+    const Lanes3 turned = R(p);
+    return {turned.x + pose_[9], turned.y + pose_[10], turned.z + pose_[11]};
+  }
+
+  Lanes3 uvd_px, inverse_sigma;
+
+ private:
+  Vec pose_[12];  // the rotation column by column, and the translation
+};
+
+Vec rootWeights(const LandmarkNoise& noise, const Vec& squared_norm) {
+  Vec root;
+  for (int i = 0; i < kLanes; ++i)
+    root[i] = std::sqrt(robustWeight(noise.loss, std::sqrt(squared_norm[i]), noise.loss_scale));
+  return root;
+}
+
+/// Where in a linear model four contiguous numbers are.
+auto bRow(int row) {
+  return [=](LinearView& linear) { return linear.B.data() + 4 * row; };
+}
+auto jRow(int row, int column = 0) {
+  return [=](LinearView& linear) { return linear.J.data() + 8 * row + column; };
+}
+
+/// Four numbers of each of four models.
+template <class Place>
+void store(std::array<Vec, 4> numbers, LinearView* linear, const Place& place) {
+  lanes::transpose(numbers[0], numbers[1], numbers[2], numbers[3]);
+  for (int i = 0; i < kLanes; ++i) lanes::store(place(linear[i]), numbers[i]);
+}
+
+/// V += B' B, g += B' r.
+void addNormalEquations(std::span<const LinearView> views, Matrix4d& V, Vector4d& g) {
+  Vec sum = lanes::load(g.data());
+  for (const LinearView& l : views) {
+    addOuterProducts(l.B, l.B, V);
+    for (int k = 0; k < 3; ++k) sum += lanes::load(l.B.data() + 4 * k) * broadcast(l.J(k, 7));
+  }
+  lanes::store(g.data(), sum);
+}
 
 }  // namespace
 
-/// Two steps from the newest view, or one from an estimate: what is left, the elimination takes into account.
+LandmarkFit::LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise, std::span<const SE3> T_cam_body,
+                         double offset_px)
+    : camera_(camera), noise_(noise), T_cam_body_(T_cam_body), offset_px_(offset_px), stride_(T_cam_body.size()) {
+  poses_.resize(12 * stride_);
+  for (std::size_t frame = 0; frame < stride_; ++frame)
+    for (int k = 0; k < 12; ++k)
+      poses_[k * stride_ + frame] =
+          k < 9 ? T_cam_body[frame].rotation().data()[k] : T_cam_body[frame].translation()[k - 9];
+}
+
+/// From an estimate until it moves no more; from the newest view, one step: what is left, the elimination takes into
+/// account.
 bool LandmarkFit::operator()(std::span<const LandmarkView> views, const std::optional<LandmarkEstimate>& before) {
   newest_frame_ = views.back().frame;
+  int steps = kMostSteps;
   if (!before || !beginFrom(*before)) {
     landmark_ << views.back().uvd_px + Eigen::Vector3d(0, 0, offset_px_), 0;
-    if (!linearize(views, false)) return false;
-    landmark_ -= llt_.solve(gradient_);
+    steps = 1;
   }
-  return linearize(views, true);
+  for (;; --steps) {
+    if (!linearize(views)) return false;
+    if (steps == 0) return true;
+    const Vector4d step = llt_.solve(gradient_);
+    if (step.dot(gradient_) < kFittedCost) return true;
+    landmark_ -= step;
+  }
 }
 
 bool LandmarkFit::beginFrom(const LandmarkEstimate& before) {
@@ -36,16 +131,24 @@ std::optional<LandmarkEstimate> LandmarkFit::estimate() const {
   return LandmarkEstimate{T_cam_body_[newest_frame_].inverse() * camera_.triangulate(landmark.head<3>()), landmark[3]};
 }
 
-bool LandmarkFit::linearize(std::span<const LandmarkView> views, bool with_poses) {
+std::optional<KnownLandmark> LandmarkFit::known() const {
+  const Vector4d landmark = landmark_ - llt_.solve(gradient_);
+  if (!(landmark[2] > kLeastDisparity_px)) return std::nullopt;
+  const Matrix4d root = inverseTransposed(llt_.matrixL());
+  return KnownLandmark{landmark, root * root.transpose()};
+}
+
+bool LandmarkFit::linearize(std::span<const LandmarkView> views) {
   if (!(landmark_[2] > kLeastDisparity_px)) return false;
   const SE3 T_body_cam = T_cam_body_[newest_frame_].inverse();
   const Eigen::Vector3d uvd_px = landmark_.head<3>(), p_body = T_body_cam * camera_.triangulate(uvd_px);
   const Eigen::Matrix3d G = T_body_cam.rotation() * camera_.triangulationJacobian(uvd_px);
-  linear_.clear();
+  count_ = views.size();
+  linear_.resize((count_ + kLanes - 1) / kLanes * kLanes);
   V_.setZero();
   gradient_.setZero();
-  for (const LandmarkView& view : views)
-    if (!linearizeView(view, p_body, G, with_poses)) return false;
+  for (std::size_t i = 0; i < count_; i += kLanes)
+    if (!linearize(views.subspan(i, std::min<std::size_t>(kLanes, count_ - i)), p_body, G, &linear_[i])) return false;
   const double shared = 1 / std::max(noise_.shared_disparity_sigma_px, kLeastSharedSigma_px);
   V_(3, 3) += shared * shared;
   gradient_[3] += shared * shared * landmark_[3];
@@ -53,30 +156,34 @@ bool LandmarkFit::linearize(std::span<const LandmarkView> views, bool with_poses
   return true;
 }
 
-/// `G` = d(p_body) / d(u, v, d of the newest view).
-bool LandmarkFit::linearizeView(const LandmarkView& view, const Eigen::Vector3d& p_body, const Eigen::Matrix3d& G,
-                                bool with_poses) {
-  const SE3& T = T_cam_body_[view.frame];
-  const Eigen::Vector3d p_cam = T * p_body;
-  const auto predicted = camera_.project(p_cam);
-  if (!predicted) return false;
-  Eigen::Vector3d r = view.uvd_px - *predicted;
-  r.z() += offset_px_ - landmark_[3];
-  r.array() *= view.inverse_sigma.array();
-  const double root_weight = std::sqrt(robustWeight(noise_.loss, r.norm(), noise_.loss_scale));
-  const Eigen::Vector3d whiten = root_weight * view.inverse_sigma;
-  r *= root_weight;
-  const Eigen::Matrix3d J = -(whiten.asDiagonal() * camera_.projectionJacobian(p_cam));
-  LinearView& linear = linear_.emplace_back();
-  linear.B.leftCols<3>().noalias() = J * (T.rotation() * G);
-  linear.B.col(3) << 0, 0, -whiten.z();
-  addOuterProducts(linear.B, linear.B, V_);
-  gradient_.noalias() += linear.B.transpose() * r;
-  linear.J.col(7) = r;
-  if (!with_poses) return true;
-  linear.J.leftCols<3>() = J;
-  linear.J.middleCols<3>(3).noalias() = -J * hat(p_cam);
-  linear.J.col(6) << 0, 0, whiten.z();
+/// View by view in the lanes of vectors; what lanes without a view hold is not used.
+bool LandmarkFit::linearize(std::span<const LandmarkView> views, const Eigen::Vector3d& p_body,
+                            const Eigen::Matrix3d& G, LinearView* linear) {
+  const ViewLanes view(views, poses_.data(), stride_);
+  const Lanes3 p = view.T(p_body);
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (p.z[i] < StereoCamera::kMinDepth_m) return false;
+  const Vec iz = 1 / p.z, x = p.x * iz, y = p.y * iz, fb = broadcast(camera_.fx_px * camera_.baseline_m);
+  Lanes3 r{view.uvd_px.x - (camera_.fx_px * x + camera_.cx_px), view.uvd_px.y - (camera_.fy_px * y + camera_.cy_px),
+           view.uvd_px.z - fb * iz + (offset_px_ - landmark_[3])};
+  r = r * view.inverse_sigma;
+  const Vec root_weight = rootWeights(noise_, (r.x * r.x + r.y * r.y) + r.z * r.z);
+  const Lanes3 whiten{root_weight * view.inverse_sigma.x, root_weight * view.inverse_sigma.y,
+                      root_weight * view.inverse_sigma.z};
+  // J = -whiten d(u, v, d) / d(p_cam) has the rows (ux, 0, uz), (0, vy, vz), (0, 0, dz).
+  const Vec zero{}, ux = -camera_.fx_px * (whiten.x * iz), uz = -ux * x, vy = -camera_.fy_px * (whiten.y * iz),
+                    vz = -vy * y, dz = fb * (whiten.z * iz) * iz;
+  const Lanes3 d0 = view.R(G.col(0)), d1 = view.R(G.col(1)), d2 = view.R(G.col(2));
+  store({ux * d0.x + uz * d0.z, ux * d1.x + uz * d1.z, ux * d2.x + uz * d2.z, zero}, linear, bRow(0));
+  store({vy * d0.y + vz * d0.z, vy * d1.y + vz * d1.z, vy * d2.y + vz * d2.z, zero}, linear, bRow(1));
+  store({dz * d0.z, dz * d1.z, dz * d2.z, -whiten.z}, linear, bRow(2));
+  store({ux, zero, uz, uz * p.y}, linear, jRow(0));
+  store({ux * p.z - uz * p.x, -ux * p.y, zero, root_weight * r.x}, linear, jRow(0, 4));
+  store({zero, vy, vz, vz * p.y - vy * p.z}, linear, jRow(1));
+  store({-vz * p.x, vy * p.x, zero, root_weight * r.y}, linear, jRow(1, 4));
+  store({zero, zero, dz, dz * p.y}, linear, jRow(2));
+  store({-dz * p.x, zero, whiten.z, root_weight * r.z}, linear, jRow(2, 4));
+  addNormalEquations(std::span(linear, views.size()), V_, gradient_);
   return true;
 }
 

@@ -38,6 +38,13 @@ struct LandmarkEstimate {
   double shared_error_px = 0;
 };
 
+/// A landmark as its views tell it, in the camera of the newest: its unknowns, and their covariance if the poses are as
+/// they are taken to be.
+struct KnownLandmark {
+  Vector4d unknowns;
+  Matrix4d covariance;
+};
+
 /// An observation's linear model, whitened and weighted. Rows are contiguous: what is summed up are products J' J, J'
 /// B.
 struct LinearView {
@@ -52,35 +59,41 @@ struct LinearView {
 class LandmarkFit {
  public:
   /// `T_cam_body` of each frame, in which the landmark rests in the body. The offset is added to all disparities.
-  LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise, std::span<const SE3> T_cam_body, double offset_px)
-      : camera_(camera), noise_(noise), T_cam_body_(T_cam_body), offset_px_(offset_px) {}
+  LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise, std::span<const SE3> T_cam_body,
+              double offset_px);
 
   /// Begins from an estimate, if there is one, otherwise from the newest view. False when a view would lie behind its
   /// camera or the landmark is at infinity.
   bool operator()(std::span<const LandmarkView> views, const std::optional<LandmarkEstimate>& before = std::nullopt);
 
-  std::span<const LinearView> views() const { return linear_; }
+  std::span<const LinearView> views() const { return std::span(linear_).first(count_); }
   const Eigen::LLT<Matrix4d>& information() const { return llt_; }
   /// One step on from where the landmark was linearized; empty when that is at infinity.
   std::optional<LandmarkEstimate> estimate() const;
+  /// The same with its covariance.
+  std::optional<KnownLandmark> known() const;
   double sharedError_px() const { return landmark_[3]; }
   double sharedErrorSigma_px() const { return noise_.shared_disparity_sigma_px; }
 
  private:
   bool beginFrom(const LandmarkEstimate& before);
-  bool linearize(std::span<const LandmarkView> views, bool with_poses);
-  bool linearizeView(const LandmarkView& view, const Eigen::Vector3d& p_body, const Eigen::Matrix3d& G,
-                     bool with_poses);
+  bool linearize(std::span<const LandmarkView> views);
+  /// Up to four views. `G` = d(p_body) / d(u, v, d of the newest view).
+  bool linearize(std::span<const LandmarkView> views, const Eigen::Vector3d& p_body, const Eigen::Matrix3d& G,
+                 LinearView* linear);
 
   const StereoCamera& camera_;
   LandmarkNoise noise_;
   std::span<const SE3> T_cam_body_;
   double offset_px_;
+  std::vector<double> poses_;  // T_cam_body of all frames, number by number, so that four are loaded at a time
+  std::size_t stride_ = 0;
   int newest_frame_ = 0;
   Vector4d landmark_, gradient_;
   Matrix4d V_;
-  Eigen::LLT<Matrix4d> llt_;  // of V
-  std::vector<LinearView> linear_;
+  Eigen::LLT<Matrix4d> llt_;        // of V
+  std::size_t count_ = 0;           // of views
+  std::vector<LinearView> linear_;  // theirs, and what fills up the last four
 };
 
 }  // namespace motorcade

@@ -14,6 +14,8 @@ class NoiseLevel {
   void learn(const ResidualLevels& levels);
   double uv() const;
   double d() const;
+  /// Of (u, v, d).
+  Eigen::Vector3d sigmas() const { return {uv(), uv(), d()}; }
   /// By how much variances grow as residuals are not independent, at least 1: by their common causes in one half of the
   /// image (design effect of cluster samples: Kish, Survey Sampling, 1965), and by (1 + c) / (1 - c) with the
   /// correlation c of successive ones (autoregressive process of first order).

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace motorcade {
 namespace {
 
@@ -21,17 +23,14 @@ std::vector<VariableId> variablesOf(const ConstantTwistFactor::Variables& v) {
   return variables;
 }
 
-/// Sideways velocity of the point `lever` behind the origin, and vertical velocity.
-Eigen::Vector2d departure_mps(const Vector6d& w, double lever_m) { return {w[1] - lever_m * w[5], w[2]}; }
-
 }  // namespace
 
 ConstantTwistFactor::ConstantTwistFactor(const Variables& v, const SE3& u, double dt_s,
-                                         const Vector6d& acceleration_density)
-    : Factor(variablesOf(v), Form::kJacobian, 12),
-      u_(u),
-      dt_s_(dt_s),
-      root_(acceleration_density.cwiseSqrt().cwiseInverse()) {}
+                                         const Vector6d& acceleration_density, const Eigen::Matrix3d& R_body_travel)
+    : Factor(variablesOf(v), Form::kJacobian, 12), u_(u), dt_s_(dt_s), root_(Matrix6d::Zero()) {
+  const Vector6d root = acceleration_density.cwiseSqrt().cwiseInverse();
+  for (const int k : {0, 3}) root_.block<3, 3>(k, k) = root.segment<3>(k).asDiagonal() * R_body_travel.transpose();
+}
 
 SE3 ConstantTwistFactor::cameraMotion(std::span<const Value* const> values) const {
   if (values.size() == 4) return u_;
@@ -43,8 +42,8 @@ void ConstantTwistFactor::residual(std::span<const Value* const> values, Eigen::
   const Vector6d xi = motion.log(), w_a = twistOf(*values[1]), w_b = twistOf(*values[3]);
   const Vector6d moved = xi - dt_s_ * w_a, changed = w_b + 0.5 * ad(xi) * w_b - w_a;
   // The Cholesky factor of the inverse of (dt^3/3, dt^2/2; dt^2/2, dt).
-  r.head<6>() = root_.cwiseProduct(std::sqrt(12 / (dt_s_ * dt_s_ * dt_s_)) * moved - std::sqrt(3 / dt_s_) * changed);
-  r.tail<6>() = root_.cwiseProduct(changed) / std::sqrt(dt_s_);
+  r.head<6>() = root_ * (std::sqrt(12 / (dt_s_ * dt_s_ * dt_s_)) * moved - std::sqrt(3 / dt_s_) * changed);
+  r.tail<6>() = root_ * changed / std::sqrt(dt_s_);
 }
 
 void ConstantTwistFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
@@ -65,28 +64,47 @@ void ConstantTwistFactor::linearize(std::span<const Value* const> values, Eigen:
   moved.middleCols<6>(6) = -dt_s_ * Matrix6d::Identity();
   changed.middleCols<6>(6) = -Matrix6d::Identity();
   changed.middleCols<6>(18) = Matrix6d::Identity() + 0.5 * ad(xi);
-  term.topLeftCorner(6, n) =
-      root_.asDiagonal() * (std::sqrt(12 / (dt_s_ * dt_s_ * dt_s_)) * moved - std::sqrt(3 / dt_s_) * changed);
-  term.bottomLeftCorner(6, n) = root_.asDiagonal() * changed / std::sqrt(dt_s_);
+  term.topLeftCorner(6, n) = root_ * (std::sqrt(12 / (dt_s_ * dt_s_ * dt_s_)) * moved - std::sqrt(3 / dt_s_) * changed);
+  term.bottomLeftCorner(6, n) = root_ * changed / std::sqrt(dt_s_);
   residual(values, term.col(n));
 }
 
-RollingFactor::RollingFactor(VariableId w, VariableId lever, const RollingNoise& noise)
-    : Factor({w, lever}, Form::kJacobian, 2), noise_(noise) {}
+Eigen::Matrix3d travelAxes(const SmallVector& travel) {
+  return (Eigen::AngleAxisd(travel[1], Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(travel[2], Eigen::Vector3d::UnitY()))
+      .toRotationMatrix();
+}
+
+RollingFactor::RollingFactor(VariableId w, VariableId travel, const RollingNoise& noise)
+    : Factor({w, travel}, Form::kJacobian, 2), noise_(noise) {}
 
 void RollingFactor::residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const {
-  const Eigen::Vector2d departure = departure_mps(twistOf(*values[0]), std::get<SmallVector>(*values[1])[0]);
-  r << departure[0] / noise_.sideways_mps, departure[1] / noise_.vertical_mps;
+  const Vector6d w = twistOf(*values[0]);
+  const auto& travel = std::get<SmallVector>(*values[1]);
+  const Eigen::Matrix3d R = travelAxes(travel);
+  r << R.col(1).dot(w.head<3>()) - travel[0] * R.col(2).dot(w.tail<3>()), R.col(2).dot(w.head<3>());
+  r.array() /= Eigen::Array2d(noise_.sideways_mps, noise_.vertical_mps);
 }
 
 void RollingFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
-  const double lever_m = std::get<SmallVector>(*values[1])[0];
+  const Vector6d w = twistOf(*values[0]);
+  const auto& travel = std::get<SmallVector>(*values[1]);
+  const Eigen::Matrix3d R = travelAxes(travel);
+  const Eigen::Vector3d side = R.col(1), up = R.col(2);
+  const Eigen::Vector3d up_by_yaw = Eigen::Vector3d::UnitZ().cross(up), up_by_pitch = R.col(0);
+  const Eigen::Vector3d v = w.head<3>(), turn = w.tail<3>();
   term.setZero();
-  term(0, 1) = 1 / noise_.sideways_mps;
-  term(0, 5) = -lever_m / noise_.sideways_mps;
-  term(0, 6) = -twistOf(*values[0])[5] / noise_.sideways_mps;
-  term(1, 2) = 1 / noise_.vertical_mps;
-  residual(values, term.col(7));
+  term.block<1, 3>(0, 0) = side.transpose();
+  term.block<1, 3>(0, 3) = -travel[0] * up.transpose();
+  term(0, 6) = -up.dot(turn);
+  term(0, 7) = Eigen::Vector3d::UnitZ().cross(side).dot(v) - travel[0] * up_by_yaw.dot(turn);
+  term(0, 8) = -travel[0] * up_by_pitch.dot(turn);
+  term.block<1, 3>(1, 0) = up.transpose();
+  term(1, 7) = up_by_yaw.dot(v);
+  term(1, 8) = up_by_pitch.dot(v);
+  term.row(0) /= noise_.sideways_mps;
+  term.row(1) /= noise_.vertical_mps;
+  residual(values, term.col(9));
 }
 
 VectorPriorFactor::VectorPriorFactor(VariableId v, const SmallVector& mean, const SmallVector& sigma)

@@ -128,6 +128,60 @@ TEST(JointBackend, WithoutPointsTheCameraFollowsTheOdometry) {
   EXPECT_LT(cameraError_m(finals, drive.truth()), 1.0);
 }
 
+/// Error of the camera's published motion from frame to frame, RMS over seeds [m].
+double onlineCameraStepError_m(const JointParams& params) {
+  double sum = 0;
+  int count = 0;
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    PointDrive drive(seed, kStreet);
+    JointBackend backend(params, kPointRig);
+    const auto online = test::runDrive(backend, drive).online;
+    for (int i = 1; i < static_cast<int>(online.size()); ++i) {
+      const SE3 truth = drive.truth().camera(i - 1).inverse() * drive.truth().camera(i);
+      const SE3 step = online[i - 1].T_world_cam.inverse() * online[i].T_world_cam;
+      sum += (truth.inverse() * step).translation().squaredNorm();
+      ++count;
+    }
+  }
+  return std::sqrt(sum / count);
+}
+
+/// Landmarks at rest that are eliminated in every other frame: the camera is aligned to them in between.
+TEST(JointBackend, AlignmentToKnownLandmarksIsAsExactAsTheirElimination) {
+  JointParams in_each_frame, seldom;
+  in_each_frame.frames_per_elimination = 1;
+  seldom.frames_per_elimination = 12;
+  EXPECT_LT(errorsOf(JointParams{}).camera_m, 1.1 * errorsOf(in_each_frame).camera_m);
+  const double each_m = onlineCameraStepError_m(in_each_frame), every_other_m = onlineCameraStepError_m(JointParams{}),
+               seldom_m = onlineCameraStepError_m(seldom);
+  std::cout << "online steps " << each_m << " m, " << every_other_m << " m, " << seldom_m << " m\n";
+  EXPECT_LT(every_other_m, 1.1 * each_m);
+  EXPECT_LT(every_other_m, 0.5 * kStreet.drive.odometry_sigma_m);  // what there would be without alignment
+  EXPECT_GT(seldom_m, every_other_m);                              // new landmarks are known too late
+}
+
+/// A vehicle that was first seen askew: where it travels is learned, and its poses follow.
+TEST(JointBackend, AxesComeToLieAlongTheTravel) {
+  constexpr double kAskew_rad = 0.15;
+  PointDrive drive(5, kStreet);
+  JointBackend backend(JointParams{}, kPointRig);
+  const SE3 askew(expSO3({0, 0, kAskew_rad}), Eigen::Vector3d::Zero());
+  for (int i = 0; i < drive.options().frames; ++i) {
+    FrameMeasurements measured = *drive.measure(i);
+    for (ObjectObservation& seen : measured.objects) seen.T_cam_body = seen.T_cam_body * askew;
+    backend(std::make_shared<const FrameMeasurements>(std::move(measured)));
+  }
+  double squared = 0;
+  int count = 0;
+  for (const FrameEstimate& frame : backend.finish())
+    for (const ObjectEstimate& object : frame.objects) {
+      const SE3 truth = drive.truth().object(object.track.value - 100, static_cast<int>(frame.frame.value));
+      squared += logSO3(truth.rotation().transpose() * object.T_world_body.rotation()).squaredNorm();
+      ++count;
+    }
+  EXPECT_LT(std::sqrt(squared / count), 0.2 * kAskew_rad);
+}
+
 class JointBackendOffset : public testing::TestWithParam<double> {};
 
 TEST_P(JointBackendOffset, ComesOut) {

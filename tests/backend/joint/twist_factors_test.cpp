@@ -100,19 +100,44 @@ TEST(ConstantTwistFactor, WhitensByTheIntegratedNoise) {
   EXPECT_NEAR(residualOf(factor, values).squaredNorm(), error.dot(Q.inverse() * error) / kDensity[1], 1e-6);
 }
 
+/// Noise along the axes of travel is that along the body's of the same motion in axes that are turned.
+TEST(ConstantTwistFactor, TakesTheNoiseAlongTheAxesOfTravel) {
+  RandomPoses random(3);
+  std::vector<Value> values = arc(random);
+  values.resize(4);
+  values[2] = std::get<SE3>(values[2]) * random.pose(0.05, 0.01);
+  const SE3 turn(travelAxes(Eigen::Vector3d(0, 0.4, -0.2)), Eigen::Vector3d::Zero());
+  std::vector<Value> turned = values;
+  for (const int k : {0, 2}) turned[k] = std::get<SE3>(values[k]) * turn;
+  for (const int k : {1, 3}) turned[k] = SmallVector(turn.inverse().adjoint() * std::get<SmallVector>(values[k]));
+  const ConstantTwistFactor plain(variables(false), SE3{}, kDt_s, kDensity),
+      along_travel(variables(false), SE3{}, kDt_s, kDensity, turn.rotation());
+  EXPECT_THAT(residualOf(along_travel, values), IsNear(residualOf(plain, turned), 1e-6));
+  EXPECT_GT((residualOf(plain, values) - residualOf(plain, turned)).norm(), 1);
+  expectJacobianOfResidual(along_travel, values);
+}
+
 TEST(RollingFactor, JacobianMatchesFiniteDifferences) {
   const RollingFactor factor({0}, {1}, {});
-  expectJacobianOfResidual(factor, {SmallVector((Vector6d() << 9, 0.4, 0.1, 0, 0.1, 0.3).finished()),
-                                    SmallVector(SmallVector::Constant(1, 1.3))});
+  expectJacobianOfResidual(factor, {SmallVector((Vector6d() << 9, 0.4, 0.1, 0.05, 0.1, 0.3).finished()),
+                                    SmallVector(Eigen::Vector3d(1.3, 0.2, -0.1))});
 }
 
 TEST(RollingFactor, HasNoResidualWhereTheRearAxleDoesNotSlip) {
   const double lever_m = 1.5, turn_radps = 0.4;
-  Vector6d w = Vector6d::Zero();
-  w[0] = 8, w[5] = turn_radps, w[1] = lever_m * turn_radps;
+  Vector6d along_travel = Vector6d::Zero();
+  along_travel[0] = 8, along_travel[5] = turn_radps, along_travel[1] = lever_m * turn_radps;
   const RollingFactor factor({0}, {1}, {});
-  EXPECT_LT(residualOf(factor, {SmallVector(w), SmallVector(SmallVector::Constant(1, lever_m))}).norm(), 1e-12);
-  EXPECT_GT(residualOf(factor, {SmallVector(w), SmallVector(SmallVector::Constant(1, -lever_m))}).norm(), 1);
+  const Eigen::Vector3d travel(lever_m, 0.3, -0.05);
+  const Eigen::Matrix3d R = travelAxes(travel);
+  Vector6d w;
+  w << R * along_travel.head<3>(), R * along_travel.tail<3>();
+  EXPECT_LT(residualOf(factor, {SmallVector(w), SmallVector(travel)}).norm(), 1e-12);
+  for (int k = 0; k < 3; ++k) {
+    Eigen::Vector3d other = travel;
+    other[k] *= -1;
+    EXPECT_GT(residualOf(factor, {SmallVector(w), SmallVector(other)}).norm(), 1) << k;
+  }
 }
 
 TEST(VectorPriorFactor, CountsInStandardDeviations) {

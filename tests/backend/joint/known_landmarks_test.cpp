@@ -1,0 +1,100 @@
+#include "backend/joint/known_landmarks.hpp"
+
+#include <random>
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+#include "tests/support/matchers.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::IsNear;
+
+const StereoCamera kCamera{
+    .fx_px = 720, .fy_px = 720, .cx_px = 620, .cy_px = 188, .baseline_m = 0.54, .width_px = 1242, .height_px = 376};
+const Eigen::Vector3d kInverseSigma(4, 4, 3);
+const LandmarkNoise kNoise{.loss = RobustLoss::kNone, .shared_disparity_sigma_px = 0.5};
+constexpr double kOffset_px = 0.3;
+
+/// Points at rest that a camera on its way sees twice, without noise.
+struct Scene {
+  std::array<SE3, 2> T_cam_body;
+  std::vector<std::array<Eigen::Vector3d, 2>> uvd_px;
+
+  explicit Scene(int points = 30) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const SE3 x_first(expSO3({0.1, 0.2, 0.3}), {5, 1, 2});
+    const SE3 motion = SE3::exp((Vector6d() << 0.1, 0.02, 1.1, 0.01, 0.02, 0.005).finished());
+    T_cam_body = {x_first.inverse(), (x_first * motion).inverse()};
+    for (int j = 0; j < points; ++j) {
+      const Eigen::Vector3d p_first(6 * uniform(random), 2 * uniform(random), 16 + 8 * uniform(random));
+      uvd_px.push_back({*kCamera.project(p_first), *kCamera.project(motion.inverse() * p_first)});
+      for (Eigen::Vector3d& view : uvd_px.back()) view.z() -= kOffset_px;
+    }
+  }
+  std::vector<ViewOfKnown> views() const {
+    std::vector<ViewOfKnown> views;
+    LandmarkFit fit(kCamera, kNoise, T_cam_body, kOffset_px);
+    for (const auto& [first, last] : uvd_px) {
+      const LandmarkView view{0, first, kInverseSigma};
+      EXPECT_TRUE(fit(std::span(&view, 1)));
+      views.push_back({fit.known().value(), last, kInverseSigma});
+    }
+    return views;
+  }
+  EliminatedLandmarks align(const std::array<SE3, 2>& poses) const {
+    return alignToKnown(kCamera, kNoise, views(), poses, kOffset_px);
+  }
+};
+
+/// A landmark that one view has told, and whose second view is a measurement: that is the elimination of two views.
+TEST(KnownLandmarks, TellWhatTheEliminationOfTwoViewsDoes) {
+  const Scene scene;
+  LandmarkViews landmarks;
+  for (const auto& views : scene.uvd_px) {
+    for (int k = 0; k < 2; ++k) landmarks.views.push_back({k, views[k], kInverseSigma});
+    landmarks.first_view.push_back(static_cast<int>(landmarks.views.size()));
+  }
+  const auto eliminated =
+      eliminateLandmarks(kCamera, kNoise, landmarks, {scene.T_cam_body[0], scene.T_cam_body[1]}, kOffset_px);
+  const Matrix6d H = eliminated.system.topLeftCorner<6, 6>(),
+                 of_known = scene.align(scene.T_cam_body).system.topLeftCorner<6, 6>();
+  EXPECT_THAT(Matrix6d(of_known / H.norm()), IsNear(Matrix6d(H / H.norm()), 1e-9));
+}
+
+TEST(KnownLandmarks, GiveBackTheMotion) {
+  const Scene scene;
+  const Vector6d displacement = (Vector6d() << 0.02, -0.01, 0.05, 0.002, -0.001, 0.003).finished();
+  const auto aligned = scene.align({SE3::exp(-displacement) * scene.T_cam_body[0], scene.T_cam_body[1]});
+  const Matrix6d H = aligned.system.topLeftCorner<6, 6>();
+  const Vector6d g = aligned.system.topRightCorner<6, 1>(), step = -H.llt().solve(g);
+  EXPECT_THAT(step, IsNear(displacement, 3e-3));
+  EXPECT_LT((step - displacement).norm(), 0.1 * displacement.norm());
+  EXPECT_LT(scene.align(scene.T_cam_body).system.rightCols<1>().norm(), 1e-6);
+}
+
+TEST(KnownLandmarks, CountLessWhereTheyAreKnownLess) {
+  const Scene scene;
+  std::vector<ViewOfKnown> sure = scene.views();
+  for (ViewOfKnown& view : sure) view.landmark.covariance *= 0.1;
+  const Matrix6d H = scene.align(scene.T_cam_body).system.topLeftCorner<6, 6>();
+  const Matrix6d more = alignToKnown(kCamera, kNoise, sure, scene.T_cam_body, kOffset_px).system.topLeftCorner<6, 6>();
+  EXPECT_GT((more - H).llt().matrixL().toDenseMatrix().diagonal().minCoeff(), 0);
+  EXPECT_GT(more(2, 2), 2 * H(2, 2));
+}
+
+TEST(KnownLandmarks, BehindTheCameraAreLeftOut) {
+  const Scene scene(1);
+  std::vector<ViewOfKnown> views = scene.views();
+  const SE3 beyond = SE3(Eigen::Matrix3d::Identity(), {0, 0, -100}) * scene.T_cam_body[1];
+  const auto behind = alignToKnown(kCamera, kNoise, views, {scene.T_cam_body[0], beyond}, kOffset_px);
+  EXPECT_EQ(behind.system.norm(), 0);
+  views[0].landmark.unknowns[2] = 0;
+  EXPECT_EQ(alignToKnown(kCamera, kNoise, views, scene.T_cam_body, kOffset_px).system.norm(), 0);
+}
+
+}  // namespace
+}  // namespace motorcade
