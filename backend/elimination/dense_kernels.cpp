@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "backend/elimination/lanes.hpp"
+#include "backend/graph/lanes.hpp"
 
 namespace motorcade {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "backend/elimination/lanes.hpp"
+#include "backend/graph/lanes.hpp"
 
 namespace motorcade {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "backend/graph/symmetric_product.hpp"
 #include "backend/graph/turned_term.hpp"
 
 namespace motorcade {
@@ -193,7 +194,9 @@ void FactorGraph::shiftToCoordinates(const Factor& factor, Term term) {
     term.col(n).noalias() -= term.leftCols(n) * x;
     return;
   }
-  const Eigen::VectorXd Hx = term.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * x;
+  product_.assign(n, 0.0);
+  addSymmetricProduct(term.data(), static_cast<int>(n + 1), static_cast<int>(n), x.data(), product_.data());
+  const Column Hx(product_.data(), n);
   term(n, n) += x.dot(Hx) - 2 * x.dot(term.row(n).head(n));
   term.row(n).head(n) -= Hx.transpose();
 }
@@ -284,7 +287,10 @@ FactorGraph::Mismatch FactorGraph::informationMismatch(FactorId id) {
   residual_.resize(n);
   Column change(residual_.data(), n);
   change -= model.row(n).head(n);
-  change.noalias() -= model.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * appliedCoordinates(factor);
+  product_.assign(n, 0.0);
+  addSymmetricProduct(model.data(), static_cast<int>(n + 1), static_cast<int>(n), appliedCoordinates(factor).data(),
+                      product_.data());
+  change -= Column(product_.data(), n);
   double squared = 0;
   for (Eigen::Index i = 0; i < n; ++i)
     if (model(i, i) > 0) squared += change[i] * change[i] / model(i, i);

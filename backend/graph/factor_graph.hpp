@@ -136,7 +136,8 @@ class FactorGraph {
   std::int64_t residual_count_ = 0;
   std::vector<const Value*> values_;  // scratch
   // Aligned: how Eigen sums up depends on where the memory lies, and results must not.
-  std::vector<double, Eigen::aligned_allocator<double>> coordinates_, residual_, matrix_;  // scratch
+  std::vector<double, Eigen::aligned_allocator<double>> coordinates_, residual_, product_,
+      matrix_;  // scratch
 };
 
 }  // namespace motorcade

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "backend/elimination/dense_kernels.hpp"
+#include "backend/graph/symmetric_product.hpp"
 #include "backend/joint/row_products.hpp"
 
 namespace motorcade {
@@ -199,7 +200,8 @@ Eigen::VectorXd BundleFactor::gradientAt(const Eigen::VectorXd& e) const {
   const Eigen::Index n = e.size(), last = 6 * (frames_ - 1);
   const auto g0 = landmarks_.system.col(n);
   Eigen::VectorXd g_c(n + 1);
-  g_c.head(n).noalias() = landmarks_.system.topLeftCorner(n, n) * e;
+  g_c.setZero();
+  addSymmetricProduct(landmarks_.system.data(), static_cast<int>(n + 1), static_cast<int>(n), e.data(), g_c.data());
   g_c[n] = g0[n] + e.dot(g_c.head(n)) + 2 * e.dot(g0.head(n));
   g_c.head(n) += g0.head(n);
   g_c.segment<6>(last).setZero();  // all motions are relative to the last pose

@@ -61,12 +61,14 @@ JointGraph::JointGraph(const JointParams& params, const StereoCamera& camera)
 }
 
 /// The camera first: objects are predicted, and their motion is told from the camera's, by where it was then found.
+/// Models are corrected with the objects: theirs of the frame before are replaced in between.
 void JointGraph::add(const FrameMeasurements& measurements) {
   problems_.clear();
   ++added_frames_;
   addCamera(measurements);
   addPointsAtRest();
-  dropTroubled(solver_.update());
+  const bool alone = objects_.empty() && measurements.objects.empty();
+  dropTroubled(solver_.update(alone ? IncrementalSolver::Correction::kNow : IncrementalSolver::Correction::kLater));
   addObjects(measurements);
   if (showsPoints(measurements)) undecided_.observe(measurements.frame, measurements.undecided);
   calibrate();

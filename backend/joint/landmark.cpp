@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "backend/elimination/lanes.hpp"
+#include "backend/graph/lanes.hpp"
 #include "backend/joint/row_products.hpp"
 
 namespace motorcade {

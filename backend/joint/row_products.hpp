@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "backend/elimination/lanes.hpp"
+#include "backend/graph/lanes.hpp"
 
 /// Small products of matrices that lie in memory row by row, by vectors of four numbers: each number is added up in the
 /// same order, whatever the processor.

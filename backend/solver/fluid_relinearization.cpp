@@ -58,19 +58,21 @@ void FluidRelinearization::markStale(VariableId v, double turn_rad) {
   staleness = std::max(staleness, std::max(turn_rad, kLeastStaleness_rad));
 }
 
-FluidRelinearization::Corrections FluidRelinearization::correctModels(std::span<const FactorId> new_factors,
-                                                                      std::span<const FactorId> waiting) {
-  corrections_ = {};
-  relinearized_.clear();
-  is_relinearized_.reset(graph_.factorSlots());
+void FluidRelinearization::beginStep(std::span<const FactorId> new_factors, std::span<const FactorId> waiting) {
   new_factors_.reset(graph_.factorSlots());
-  staleness_rad_.resize(graph_.slots(), 0.0);
   for (const auto& absent : {new_factors, waiting})
     for (const FactorId f : absent) new_factors_.insert(f.value);
   // A new factor may have taken the id of one that left.
   std::erase_if(off_, [&](const OffModel& off) {
     return !graph_.contains(off.factor) || new_factors_.contains(off.factor.value);
   });
+}
+
+FluidRelinearization::Corrections FluidRelinearization::correctModels() {
+  corrections_ = {};
+  relinearized_.clear();
+  is_relinearized_.reset(graph_.factorSlots());
+  staleness_rad_.resize(graph_.slots(), 0.0);
   markDrifted();
   relinearizeStale();
   for (const FactorId f : relinearized_) graph_.linearize(f);

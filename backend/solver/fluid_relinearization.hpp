@@ -38,9 +38,10 @@ class FluidRelinearization {
 
   /// Finds the models that are off after a step that moved these variables.
   void compareModels(std::span<const VariableId> moved);
-  /// Corrects them, as far as the budget reaches, and marks the work that this is. Neither the new factors nor those
-  /// that wait are in the tree yet.
-  Corrections correctModels(std::span<const FactorId> new_factors, std::span<const FactorId> waiting);
+  /// Neither the new factors nor those that wait are in the tree yet.
+  void beginStep(std::span<const FactorId> new_factors, std::span<const FactorId> waiting);
+  /// Corrects what is off, as far as the budget reaches, and marks the work that this is.
+  Corrections correctModels();
   /// Everything has been relinearized.
   void clear();
 

@@ -95,7 +95,7 @@ void IncrementalSolver::endReport() {
   new_factors_.clear();
 }
 
-const IncrementalSolver::Report& IncrementalSolver::update() {
+const IncrementalSolver::Report& IncrementalSolver::update(Correction correction) {
   const auto begin = std::chrono::steady_clock::now();
   beginReport();
   ++counters_.updates;
@@ -104,9 +104,10 @@ const IncrementalSolver::Report& IncrementalSolver::update() {
     batchStep();
   } else {
     if (params_.policy == Policy::kFluid) waiting_.admit(new_factors_, touched_);
-    step(true);
+    step(true, correction);
     new_factors_.clear();
-    for (int i = 1; i < params_.iterations_per_update && mayIterate(); ++i) step(false);
+    const int steps = correction == Correction::kNow ? params_.iterations_per_update : 1;
+    for (int i = 1; i < steps && mayIterate(); ++i) step(false, correction);
   }
   endReport();
   if (budget_.countsTime()) {
@@ -124,14 +125,15 @@ bool IncrementalSolver::mayIterate() const {
 
 /// One Gauss-Newton step: folds in what is new, corrects the models that are off, solves for x, and lets the estimates
 /// follow.
-void IncrementalSolver::step(bool fold) {
+void IncrementalSolver::step(bool fold, Correction correction) {
   work_.begin();
   if (fold) {
     touchNewFactors();
     for (const VariableId v : touched_) work_.markRemoved(tree_.cliqueOf(v));
   }
-  if (params_.policy == Policy::kFluid) {
-    const auto corrections = relinearization_.correctModels(new_factors_, waiting_.factors());
+  if (params_.policy == Policy::kFluid) relinearization_.beginStep(new_factors_, waiting_.factors());
+  if (params_.policy == Policy::kFluid && correction == Correction::kNow) {
+    const auto corrections = relinearization_.correctModels();
     report_.relinearized_variables += corrections.relinearized_variables;
     report_.relinearized_factors += corrections.relinearized_factors;
     report_.corrected_factors += corrections.corrected_factors;
@@ -226,7 +228,7 @@ void IncrementalSolver::takeInFactorsOf(std::span<const VariableId> leaving) {
   new_factors_ = waiting_.takeWith(leaving);
   if (new_factors_.empty()) return;
   for (const FactorId f : new_factors_) graph_.linearize(f);
-  step(true);
+  step(true, Correction::kNow);
   touched_.clear();
   new_factors_.clear();
 }

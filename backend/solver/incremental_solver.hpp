@@ -68,8 +68,11 @@ class IncrementalSolver {
   /// Empty when the factor cannot be used; the next report says why.
   std::optional<FactorId> addFactor(std::unique_ptr<const Factor> factor);
   void removeFactor(FactorId id);
+  /// Whether an update corrects the models that were found to be off, or leaves that to the next one: where factors are
+  /// about to be replaced, their correction would be lost.
+  enum class Correction { kNow, kLater };
   /// The report lasts until the next change of the solver.
-  const Report& update();
+  const Report& update(Correction correction = Correction::kNow);
 
   /// Marginalizes variables: what they know stays as a factor on their neighbors, and the solution does not change.
   void retire(std::span<const VariableId> variables);
@@ -97,7 +100,7 @@ class IncrementalSolver {
   bool mayIterate() const;
   void touchNewFactors();
   void takeInFactorsOf(std::span<const VariableId> leaving);
-  void step(bool fold);
+  void step(bool fold, Correction correction);
   void batchStep();
   void rebuildTop();
   void substitute(std::int64_t most_scalars);

@@ -51,6 +51,19 @@ std::vector<Eigen::Index> rowsOf(const FactorGraph& graph, const Path& path, con
   return rows;
 }
 
+int firstRowThatIsNotZero(const RowMajorMatrixXd& y, int rows) {
+  int row = 0;
+  while (row < rows && (y.row(row).array() == 0).all()) ++row;
+  return row;
+}
+
+Panel lowerRight(const Panel& panel, int from) {
+  return {.data = panel.data + std::ptrdiff_t{from} * (panel.ld + 1),
+          .ld = panel.ld,
+          .rows = panel.rows - from,
+          .columns = panel.columns - from};
+}
+
 /// With the information H = L L^T and E the chosen columns of the identity, E^T H^-1 E = Y^T Y, Y = L^-1 E. Forward
 /// substitution meets only the cliques from the chosen variables up to the root; no back-substitution is needed.
 /// `rest` holds E, and what is left of it after the cliques so far.
@@ -65,8 +78,10 @@ std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const 
     const std::vector<Eigen::Index> rows = rowsOf(graph, path, clique);
     y.setZero(clique.size, stride);
     for (int i = 0; i < clique.size; ++i) y.row(i).head(columns) = rest.row(rows[i]);
-    forwardSubstitute(clique.panelView(), y.data(), stride);
-    subtractOuterProduct(minus_square.data(), stride, y.data(), stride, columns, clique.frontal_size);
+    const int first = firstRowThatIsNotZero(y, clique.frontal_size), solved = clique.frontal_size - first;
+    double* const from = y.data() + std::ptrdiff_t{first} * stride;
+    forwardSubstitute(lowerRight(clique.panelView(), first), from, stride);
+    subtractOuterProduct(minus_square.data(), stride, from, stride, columns, solved);
     for (int i = clique.frontal_size; i < clique.size; ++i) rest.row(rows[i]) = y.row(i).head(columns);
   }
   Eigen::MatrixXd square = -minus_square.topLeftCorner(columns, columns);
