@@ -1,12 +1,10 @@
 #include "frontend/shape/dense_disparity.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 
 #include "frontend/image/byte_lanes.hpp"
-#include "frontend/image/window_differences.hpp"
 
 namespace motorcade {
 namespace {
@@ -165,27 +163,6 @@ void DenseDisparity::choose(DisparityMap& map) {
       map.disparity_px[static_cast<std::size_t>(row) * window_.width + column] =
           static_cast<float>(range_.least_px + best) + offset;
     }
-  }
-}
-
-void refineDisparities(const Image& left, const Image& right, int scale, std::span<const int> cells,
-                       DisparityMap& map) {
-  constexpr int kReach_px = 2;
-  std::array<std::uint16_t, 2 * kReach_px + 1> costs;
-  for (const int cell : cells) {
-    float& disparity_px = map.disparity_px[cell];
-    if (disparity_px == DisparityMap::kNone) continue;
-    const int u = (map.window.u0 + cell % map.window.width) * scale + scale / 2;
-    const int v = (map.window.v0 + cell / map.window.width) * scale + scale / 2;
-    const int first = u - static_cast<int>(std::lround(disparity_px * static_cast<float>(scale))) - kReach_px;
-    const Window window{left, u, v, kHalfSizeWindow};
-    const int half = kHalfSizeWindow.columns / 2;
-    if (!window.insideImage() || first < half || first + 2 * kReach_px + half >= right.width()) continue;
-    windowDifferences(window, right, first, v, costs);
-    const auto best = static_cast<int>(std::ranges::min_element(costs) - costs.begin());
-    if (best == 0 || best == 2 * kReach_px) continue;
-    const float at = static_cast<float>(first + best) + parabolaOffset(costs[best - 1], costs[best], costs[best + 1]);
-    disparity_px = (static_cast<float>(u) - at) / static_cast<float>(scale);
   }
 }
 

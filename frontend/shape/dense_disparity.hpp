@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/image.hpp"
@@ -54,9 +53,5 @@ class DenseDisparity {
   std::vector<std::uint8_t> paths_, least_of_path_;
   std::vector<std::uint8_t> least_of_right_, best_of_right_;
 };
-
-/// Makes the disparities of some cells more exact in the same images at `scale` times their size, a power of two: each
-/// is searched anew within a pixel or two of what it is there. Where nothing fits best, it stays.
-void refineDisparities(const Image& left, const Image& right, int scale, std::span<const int> cells, DisparityMap& map);
 
 }  // namespace motorcade

@@ -8,6 +8,7 @@
 
 #include "core/elementary.hpp"
 #include "frontend/image/image_pyramid.hpp"
+#include "frontend/shape/disparity_refinement.hpp"
 #include "frontend/shape/face_measurement.hpp"
 #include "frontend/shape/outline_completion.hpp"
 
