@@ -7,8 +7,6 @@ std::vector<Parameter> parametersOf(JointParams& params) {
                           "longer tracks tell more of slow motion, at the square of the cost"),
           numberParameter("max_static_landmarks", params.max_static_landmarks, {50, 2000},
                           "more are more exact, at proportional cost"),
-          numberParameter("frames_per_elimination", params.frames_per_elimination, {1, 20},
-                          "of the landmarks at rest; the camera is aligned to them in the other frames, at less cost"),
           numberParameter("offset_sigma_px", params.offset_sigma_px, {0, 5},
                           "how far the disparities of a rig that is not calibrated may be off; 0 trusts every rig"),
           numberParameter("point_half", params.point_half, {0, 2},
