@@ -86,7 +86,7 @@ void refineDisparities(const Image& left, const Image& right, int scale, std::sp
     if (disparity_px == DisparityMap::kNone) continue;
     const int u = (map.window.u0 + cell % map.window.width) * scale + scale / 2;
     const int v = (map.window.v0 + cell / map.window.width) * scale + scale / 2;
-    const int first = u - static_cast<int>(disparity_px * static_cast<float>(scale) + 0.5F) - kReach_px;
+    const int first = u - static_cast<int>(std::floor(disparity_px * static_cast<float>(scale) + 0.5F)) - kReach_px;
     const Window window{left, u, v, kSize};
     if (!window.insideImage() || first < kHalf || first + 2 * kReach_px + kHalf >= right.width()) continue;
     const auto costs = NearDifferences(window)(right.row(v - kSize.rows / 2) + first - kHalf, right.stride());
