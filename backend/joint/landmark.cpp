@@ -40,13 +40,13 @@ class ViewLanes {
                      lanes([](auto& v) { return v.inverse_sigma[2]; })};
   }
 
-  Lanes3 R(const Eigen::Vector3d& v) const {
+  Lanes3 rotated(const Eigen::Vector3d& v) const {
     return {(pose_[0] * v.x() + pose_[3] * v.y()) + pose_[6] * v.z(),
             (pose_[1] * v.x() + pose_[4] * v.y()) + pose_[7] * v.z(),
             (pose_[2] * v.x() + pose_[5] * v.y()) + pose_[8] * v.z()};
   }
-  Lanes3 T(const Eigen::Vector3d& p) const {
-    const Lanes3 turned = R(p);
+  Lanes3 moved(const Eigen::Vector3d& p) const {
+    const Lanes3 turned = rotated(p);
     return {turned.x + pose_[9], turned.y + pose_[10], turned.z + pose_[11]};
   }
 
@@ -160,7 +160,7 @@ bool LandmarkFit::linearize(std::span<const LandmarkView> views) {
 bool LandmarkFit::linearize(std::span<const LandmarkView> views, const Eigen::Vector3d& p_body,
                             const Eigen::Matrix3d& G, LinearView* linear) {
   const ViewLanes view(views, poses_.data(), stride_);
-  const Lanes3 p = view.T(p_body);
+  const Lanes3 p = view.moved(p_body);
   for (std::size_t i = 0; i < views.size(); ++i)
     if (p.z[i] < StereoCamera::kMinDepth_m) return false;
   const Vec iz = 1 / p.z, x = p.x * iz, y = p.y * iz, fb = broadcast(camera_.fx_px * camera_.baseline_m);
@@ -173,7 +173,7 @@ bool LandmarkFit::linearize(std::span<const LandmarkView> views, const Eigen::Ve
   // J = -whiten d(u, v, d) / d(p_cam) has the rows (ux, 0, uz), (0, vy, vz), (0, 0, dz).
   const Vec zero{}, ux = -camera_.fx_px * (whiten.x * iz), uz = -ux * x, vy = -camera_.fy_px * (whiten.y * iz),
                     vz = -vy * y, dz = fb * (whiten.z * iz) * iz;
-  const Lanes3 d0 = view.R(G.col(0)), d1 = view.R(G.col(1)), d2 = view.R(G.col(2));
+  const Lanes3 d0 = view.rotated(G.col(0)), d1 = view.rotated(G.col(1)), d2 = view.rotated(G.col(2));
   store({ux * d0.x + uz * d0.z, ux * d1.x + uz * d1.z, ux * d2.x + uz * d2.z, zero}, linear, bRow(0));
   store({vy * d0.y + vz * d0.z, vy * d1.y + vz * d1.z, vy * d2.y + vz * d2.z, zero}, linear, bRow(1));
   store({dz * d0.z, dz * d1.z, dz * d2.z, -whiten.z}, linear, bRow(2));
