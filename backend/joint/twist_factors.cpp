@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 namespace motorcade {
 namespace {
 
@@ -70,9 +68,7 @@ void ConstantTwistFactor::linearize(std::span<const Value* const> values, Eigen:
 }
 
 Eigen::Matrix3d travelAxes(const SmallVector& travel) {
-  return (Eigen::AngleAxisd(travel[1], Eigen::Vector3d::UnitZ()) *
-          Eigen::AngleAxisd(travel[2], Eigen::Vector3d::UnitY()))
-      .toRotationMatrix();
+  return expSO3({0, 0, travel[1]}) * expSO3({0, travel[2], 0});
 }
 
 RollingFactor::RollingFactor(VariableId w, VariableId travel, const RollingNoise& noise)
