@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "frontend/image/byte_lanes.hpp"
+#include "frontend/shape/parabola.hpp"
 
 namespace motorcade {
 namespace {
@@ -20,12 +21,6 @@ constexpr int kMostDisparities = kFar;
 constexpr int kMaxRoundTrip_px = 1;
 constexpr int kLeastTexture = 10;  // gray levels between the brightest and the darkest of a 5x5 window: without
                                    // texture, a disparity is but its neighbors'
-
-/// Of a parabola through three neighboring values, the place of its least, in -1/2 ... 1/2.
-float parabolaOffset(int before, int least, int after) {
-  const int curvature = before + after - 2 * least;
-  return curvature > 0 ? 0.5F * static_cast<float>(before - after) / static_cast<float>(curvature) : 0.0F;
-}
 
 constexpr Bytes kEveryLane{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15,
                            16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31};

@@ -8,6 +8,7 @@
 
 #include "frontend/image/window_differences.hpp"
 #include "frontend/image/word_lanes.hpp"
+#include "frontend/shape/parabola.hpp"
 
 namespace motorcade {
 namespace {
@@ -69,12 +70,6 @@ class NearDifferences {
   Words mask_;
   Rows rows_;
 };
-
-/// Of a parabola through three neighboring values, the place of its least, in -1/2 ... 1/2.
-float parabolaOffset(int before, int least, int after) {
-  const int curvature = before + after - 2 * least;
-  return curvature > 0 ? 0.5F * static_cast<float>(before - after) / static_cast<float>(curvature) : 0.0F;
-}
 
 }  // namespace
 
