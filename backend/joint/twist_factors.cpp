@@ -67,9 +67,7 @@ void ConstantTwistFactor::linearize(std::span<const Value* const> values, Eigen:
   residual(values, term.col(n));
 }
 
-Eigen::Matrix3d travelAxes(const SmallVector& travel) {
-  return expSO3({0, 0, travel[1]}) * expSO3({0, travel[2], 0});
-}
+Eigen::Matrix3d travelAxes(const SmallVector& travel) { return expSO3({0, 0, travel[1]}) * expSO3({0, travel[2], 0}); }
 
 RollingFactor::RollingFactor(VariableId w, VariableId travel, const RollingNoise& noise)
     : Factor({w, travel}, Form::kJacobian, 2), noise_(noise) {}
