@@ -30,22 +30,23 @@ struct Moments {
 class MomentSums {
  public:
   explicit MomentSums(const PatchTemplate& patch)
-      : patch_(patch), mask_(windowMask(patch.window_px)), mean_(allWords(patch.mean)) {}
+      : patch_(patch), mask_(windowMask(patch.window_px)), mean_(allWords(patch.mean - kHalfUnit)) {}
 
   void add(int row, const Words& samples) {
-    const Words j = reduced(samples - mean_, kOtherShift), inner = j & mask_;
+    const Words j = (samples - mean_) >> static_cast<std::int16_t>(kOtherShift), inner = j & mask_;
     const auto plane = [&](const PatchTemplate::Plane& words) { return loadWords(words.data() + row * kStride); };
     appearance_ += products(plane(patch_.appearance), j);
     d0_ += products(plane(patch_.descent[0]), j);
     d1_ += products(plane(patch_.descent[1]), j);
     d2_ += products(plane(patch_.descent[2]), j);
-    sum_ += products(inner, allWords(1));
+    sum_ += inner;
     squares_ += products(inner, inner);
   }
 
   Moments moments() const {
     const auto [appearance, d0, d1, d2] = totals(appearance_, d0_, d1_, d2_);
-    const auto [sum, squares, unused0, unused1] = totals(sum_, squares_, sum_, squares_);
+    const WordSums pairs = products(sum_, allWords(1));
+    const auto [sum, squares, unused0, unused1] = totals(pairs, squares_, pairs, squares_);
     const std::int64_t pixels = patch_.window_px * patch_.window_px;
     const float total = static_cast<float>(sum) * kOtherUnit;
     Moments moments;
@@ -60,8 +61,11 @@ class MomentSums {
 
  private:
   const PatchTemplate& patch_;
-  Words mask_, mean_;
-  WordSums appearance_{}, d0_{}, d1_{}, d2_{}, sum_{}, squares_{};
+  static constexpr int kHalfUnit = 1 << (kOtherShift - 1);  // so that words are rounded
+  // Words of the other image are within 2048 of the mean, so that one holds the sum of a column.
+  static_assert(kMaxPatchWindow_px * ((UINT8_MAX * kSampleLevels >> kOtherShift) + 1) <= INT16_MAX);
+  Words mask_, mean_, sum_{};
+  WordSums appearance_{}, d0_{}, d1_{}, d2_{}, squares_{};
 };
 
 /// Moments of the patch at (u, v).
@@ -234,7 +238,8 @@ std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right
   for (int iteration = 0; iteration < kMaxDisparityIterations; ++iteration) {
     if (!inside(right, u_right, v)) return std::nullopt;
     const ColumnPosition u_grid(u_right);
-    const Moments moments = momentsAt(*patch, right, u_grid, v, slope);
+    const Moments moments =
+        slope == 0 ? momentsAt(*patch, right, u_grid, v) : momentsAt(*patch, right, u_grid, v, slope);
     if (moments.appearance <= 0) return std::nullopt;
     const float gain = moments.appearance / patch->norm;
     const Eigen::Vector3f pull(0, gain * patch->prior[1] * slope, 0);

@@ -62,22 +62,26 @@ void sampleScaledSquare(const Image& image, const ColumnPosition& u, float v_px,
 
 /// Mean of the window inside a square with a border of one, in samples.
 int meanSample(const Square& square, int window_px) {
-  const Words mask = windowMask(window_px);
+  const Words inner = windowMask(window_px + 1) - windowMask(1);  // minus one in the window's columns
   WordSums sums{};
-  for (int r = 1; r <= window_px; ++r) sums += products(afterFirst(square[r]) & mask, allWords(1));
+  for (int r = 1; r <= window_px; ++r) sums -= products(square[r], inner);
   const int pixels = window_px * window_px;
   return (totals(sums, sums, sums, sums)[0] + pixels / 2) / pixels;
 }
 
 /// Sums over the window of a template's planes and of their products.
 struct TemplateSums {
-  WordSums appearance{}, d0{}, d1{}, d2{};
+  // The shift's derivatives are below 2048, and those with respect to a row's slope below 512 times the row's distance
+  // from the middle: a word holds the sum of a column.
+  Words d0{}, d1{};
+  WordSums appearance{}, d2{};
   WordSums appearance_squares{}, appearance_d0{}, appearance_d1{}, appearance_d2{};
   WordSums d00{}, d01{}, d02{}, d11{}, d12{}, d22{};
 
   void add(const Words& a, const Words& x, const Words& y, const Words& z) {
     const Words one = allWords(1);
-    appearance += products(a, one), d0 += products(x, one), d1 += products(y, one), d2 += products(z, one);
+    d0 += x, d1 += y;
+    appearance += products(a, one), d2 += products(z, one);
     appearance_squares += products(a, a), appearance_d0 += products(a, x), appearance_d1 += products(a, y),
         appearance_d2 += products(a, z);
     d00 += products(x, x), d01 += products(x, y), d02 += products(x, z);
@@ -89,7 +93,8 @@ struct TemplateSums {
 TemplateSums fillPlanes(PatchTemplate& patch, const Square& square, PatchDeformation deformation) {
   const int window = patch.window_px, half = window / 2;
   const bool scale = deformation == PatchDeformation::kScale;
-  const Words mask = windowMask(window), mean = allWords(patch.mean);
+  const Words mask = windowMask(window);
+  const Words rounding_mean = allWords(patch.mean - (1 << (kAppearanceShift - 1)));  // half a unit below the mean
   constexpr int kMomentShift = 10;  // from differences of samples times pixels to `kMomentUnit`
   constexpr Words kColumns{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   const Words columns = (kColumns - static_cast<std::int16_t>(half)) << static_cast<std::int16_t>(kMomentShift);
@@ -100,7 +105,8 @@ TemplateSums fillPlanes(PatchTemplate& patch, const Square& square, PatchDeforma
     const Words below = afterFirst(square[r + 2]), rows = allWords((r - half) * (1 << kMomentShift));
     // Differences of samples two pixels apart.
     const Words du = (afterSecond(samples) - samples) & mask, dv = (below - above) & mask;
-    const Words a = reduced(here - mean, kAppearanceShift) & mask, d0 = reduced(du, kGradientShift);
+    const Words a = ((here - rounding_mean) >> static_cast<std::int16_t>(kAppearanceShift)) & mask;
+    const Words d0 = reduced(du, kGradientShift);
     const Words d1 = scale ? reduced(dv, kGradientShift) : scaled(du, rows);
     const Words d2 = scale ? scaled(du, columns) + scaled(dv, rows) : scaled(du, columns);
     storeWords(patch.appearance.data() + r * kStride, a);
@@ -118,7 +124,8 @@ TemplateSums fillPlanes(PatchTemplate& patch, const Square& square, PatchDeforma
 /// component along the appearance out of the derivatives, because a change of bias or gain is no motion. Returns the
 /// sums of products of the derivatives.
 Eigen::Matrix3f orthogonalize(PatchTemplate& patch, const TemplateSums& sums, PatchDeformation deformation) {
-  const auto plain = totals(sums.appearance, sums.d0, sums.d1, sums.d2);
+  const Words one = allWords(1);
+  const auto plain = totals(sums.appearance, products(sums.d0, one), products(sums.d1, one), sums.d2);
   const auto along = totals(sums.appearance_squares, sums.appearance_d0, sums.appearance_d1, sums.appearance_d2);
   const auto first = totals(sums.d00, sums.d01, sums.d02, sums.d11),
              last = totals(sums.d12, sums.d22, sums.d12, sums.d22);
