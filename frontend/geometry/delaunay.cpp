@@ -45,6 +45,8 @@ class EdgeRings {
     int origin, next, previous;
   };
 
+  /// Of a triangulation of so many points: three edges for each, some of which are removed again.
+  void reserve(std::size_t points) { edges_.reserve(8 * points); }
   int make(int from, int to) {
     const int e = size();
     edges_.push_back({from, e, e});
@@ -89,6 +91,7 @@ class EdgeRings {
 class Triangulator {
  public:
   explicit Triangulator(const std::vector<GridPoint>& points) : points_(points) {
+    edges_.reserve(points.size());
     if (points.size() >= 2) triangulate(0, static_cast<int>(points.size()));
   }
   const EdgeRings& edges() const { return edges_; }
@@ -213,7 +216,7 @@ std::array<int, 3> smallestFirst(std::array<int, 3> t) {
 
 }  // namespace
 
-DelaunayGraph delaunay(std::span<const Eigen::Vector2d> points_px) {
+DelaunayGraph delaunay(std::span<const Eigen::Vector2d> points_px, bool with_triangles) {
   DelaunayGraph graph;
   const Vertices vertices = mergeDuplicates(points_px, graph.vertex_of_point);
   const auto point = [&](int vertex) { return vertices.point[vertex]; };
@@ -223,6 +226,7 @@ DelaunayGraph delaunay(std::span<const Eigen::Vector2d> points_px) {
     if (!edges.alive(e)) continue;
     const int a = edges.origin(e), b = edges.destination(e);
     if (e % 2 == 0) graph.edges.push_back({std::min(point(a), point(b)), std::max(point(a), point(b))});
+    if (!with_triangles) continue;
     const int second = edges.leftNext(e), third = edges.leftNext(second), c = edges.destination(second);
     const bool closed = edges.leftNext(third) == e && edges.destination(third) == a;
     if (closed && a < b && a < c && triangulator.turnsLeft(a, b, c))

@@ -174,4 +174,20 @@ std::vector<double> poseChi2(const StereoCamera& camera, const PoseObservations&
   return chi2;
 }
 
+double poseScore(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref,
+                 const PoseScoring& scoring, double bound) {
+  const PoseLanes pose(T_cam_ref);
+  const Doubles most = allDoubles(scoring.max_chi2);
+  double sum = 0;
+  std::size_t next = 0;
+  for (const auto& o : observations.blocks()) {
+    const Linearized l = linearize(camera, o, pose);
+    const Doubles chi2 = l.chi2(), counted = l.view.ahead > 0 && chi2 < most ? chi2 : most;
+    const std::size_t end = std::min(next + kDoubleLanes, observations.size());
+    for (std::size_t lane = 0; next < end; ++lane, ++next) sum += scoring.weights[next] * counted[lane];
+    if (sum >= bound) break;  // it only grows
+  }
+  return sum;
+}
+
 }  // namespace motorcade

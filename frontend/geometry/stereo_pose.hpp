@@ -71,4 +71,13 @@ std::optional<PoseFit> fitPose(const StereoCamera& camera, const PoseObservation
 /// Whitened squared residuals of the observations under a pose (3 degrees of freedom); infinite behind the camera.
 std::vector<double> poseChi2(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref);
 
+/// How to score a pose: each observation counts by its weight times its squared residual, at most `max_chi2`.
+struct PoseScoring {
+  std::span<const double> weights;  // one per observation, none negative
+  double max_chi2;
+};
+/// The sum of what the observations count, the smaller the better (MSAC); from `bound` on it may be any larger one.
+double poseScore(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref,
+                 const PoseScoring& scoring, double bound);
+
 }  // namespace motorcade

@@ -54,14 +54,6 @@ Voters chooseVoters(std::span<const PoseObservation> observations, const std::ve
   return {PoseObservations(voting), std::move(weights), worst_score};
 }
 
-/// Truncated quadratic score (MSAC): the smaller the better.
-double score(const StereoCamera& camera, const Voters& voters, const SE3& T_now_previous, double inlier_chi2) {
-  const auto chi2 = poseChi2(camera, voters.observations, T_now_previous);
-  double sum = 0;
-  for (std::size_t i = 0; i < chi2.size(); ++i) sum += voters.weights[i] * std::min(inlier_chi2, chi2[i]);
-  return sum;
-}
-
 /// While no steady motion is known: whatever moves, the road does not. Where enough of it is seen, it has a share of
 /// the votes.
 void hearTheRoad(std::span<const PoseObservation> observations, const std::vector<PointLabel>& labels,
@@ -169,13 +161,16 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
   const double penalty = kSurprisePenalty * trust * voters.worst_score;
 
   SE3 best = start;
-  double best_score = score(camera_, voters, best, params_.inlier_chi2);
+  const auto score = [&](const SE3& T_now_previous, double bound) {
+    return poseScore(camera_, voters.observations, T_now_previous, {voters.weights, params_.inlier_chi2}, bound);
+  };
+  double best_score = score(best, std::numeric_limits<double>::infinity());
   for (int k = 0; k < params_.max_hypotheses; ++k) {
     if (best_score < kClearScore * voters.worst_score && k >= params_.max_hypotheses / kSearchShare) break;
     const std::array<PoseObservation, 3> three{sample(), sample(), sample()};
     const auto fit = fitPose(camera_, PoseObservations(three), start, {.max_iterations = kMinimalIterations});
     if (!fit || isBeyondBelief(fit->T_cam_ref, predicted)) continue;
-    double fit_score = score(camera_, voters, fit->T_cam_ref, params_.inlier_chi2);
+    double fit_score = score(fit->T_cam_ref, best_score);
     if (const double by = surprise(fit->T_cam_ref, predicted); by >= 1)
       fit_score += std::min(by, kMaxSurprise) * penalty;
     if (fit_score >= best_score) continue;

@@ -89,14 +89,16 @@ void PointTracks::update(const OpticalFlow& flow, const std::vector<std::optiona
 
 /// What the observations of a track up to now tell.
 void PointTracks::fit(PointTrack& track, const CameraTrail& trail, const Features& now) const {
-  const auto at_rest = scene_flow_.fitStatic(track, trail);
-  const double degrees_of_freedom = std::max(1.0, 3.0 * track.count - 3.0);
   track.p_static_cam.reset();
-  if (at_rest && track.count > 1 && at_rest->chi2 < kMaxStaticChi2 * degrees_of_freedom) {
+  track.flow.reset();
+  if (track.count < 2) return;  // nothing to fit
+  const auto [at_rest, moving] = scene_flow_.fit(track, trail);
+  const double degrees_of_freedom = 3.0 * track.count - 3.0;
+  if (at_rest && at_rest->chi2 < kMaxStaticChi2 * degrees_of_freedom) {
     track.p_static_cam = at_rest->p_cam;
     track.static_covariance = at_rest->covariance;
   }
-  track.flow = scene_flow_.fitMoving(track, trail, at_rest);
+  track.flow = moving;
   if (track.flow && track.flow->static_chi2 - track.flow->moving_chi2 > kMinMotionChi2)
     track.ambiguity = std::clamp(track.ambiguity + (isFoundAtRest(track, trail, now) ? 1 : -1), 0, kMaxAmbiguity);
 }

@@ -39,12 +39,15 @@ struct Window {
     const std::size_t lane = static_cast<std::size_t>(size) % kDoubleLanes;
     Observations& o = observations[static_cast<std::size_t>(size) / kDoubleLanes];
     set(o, lane, observation, relation, jitter_px2);
-    if (lane == 0) {
-      o.count = Doubles{};
-      for (std::size_t unused = 1; unused < kDoubleLanes; ++unused) set(o, unused, observation, relation, jitter_px2);
-    }
+    if (lane == 0) o.count = Doubles{};
     o.count[lane] = 1;
     ++size;
+  }
+  /// To be called after the last observation.
+  void fillUnusedLanes() {
+    Observations& o = observations[static_cast<std::size_t>(size) / kDoubleLanes];
+    for (std::size_t unused = static_cast<std::size_t>(size) % kDoubleLanes; unused % kDoubleLanes != 0; ++unused)
+      copyFirst(o, unused);
   }
 
  private:
@@ -59,6 +62,11 @@ struct Window {
     setLane(o.variance_px2, lane, observation.sigma_px.cast<double>().array().square() + jitter_px2);
     o.dt_s[lane] = relation.dt_s;
   }
+  static void copyFirst(Observations& o, std::size_t lane) {
+    for (Doubles3* v : {&o.R_then_now.x, &o.R_then_now.y, &o.R_then_now.z, &o.t_then_now_m, &o.uvd_px, &o.variance_px2})
+      v->x[lane] = v->x[0], v->y[lane] = v->y[0], v->z[lane] = v->z[0];
+    o.dt_s[lane] = o.dt_s[0];
+  }
 };
 
 Window collect(const PointTrack& track, const CameraTrail& trail, double pose_jitter_px, int observations) {
@@ -67,6 +75,7 @@ Window collect(const PointTrack& track, const CameraTrail& trail, double pose_ji
     const auto& s = track.observations[i];
     if (const auto* relation = trail.find(s.step)) window.add(s, *relation, pose_jitter_px * pose_jitter_px);
   }
+  window.fillUnusedLanes();
   return window;
 }
 
@@ -141,19 +150,17 @@ std::optional<MovingEquations> linearizeMoving(const StereoCamera& camera, const
   return n;
 }
 
-}  // namespace
-
-std::optional<SceneFlowEstimator::StaticFit> SceneFlowEstimator::fitStatic(const PointTrack& track,
-                                                                           const CameraTrail& trail) const {
-  const Window window = collect(track, trail, params_.pose_jitter_px, params_.max_observations);
+std::optional<SceneFlowEstimator::StaticFit> fitStatic(const StereoCamera& camera, const Window& window,
+                                                       const Eigen::Vector3d& start,
+                                                       const SceneFlowEstimator::Params& params) {
   if (window.size == 0) return std::nullopt;
-  Eigen::Vector3d p = camera_.triangulate(track.newest().uvd_px.cast<double>());
+  Eigen::Vector3d p = start;
   for (int iteration = 0;; ++iteration) {
     Linearized sum{};
     for (const auto& o : window.blocks()) {
-      const StereoViews view = viewPoints(camera_, o.R_then_now, o.t_then_now_m, allDoubles(p));
+      const StereoViews view = viewPoints(camera, o.R_then_now, o.t_then_now_m, allDoubles(p));
       if (!allAhead(view)) return std::nullopt;
-      const Linearized l = linearizeAtRest(o, view, params_.huber_sigmas);
+      const Linearized l = linearizeAtRest(o, view, params.huber_sigmas);
       sum.JtWJ += l.JtWJ, sum.JtWr += l.JtWr, sum.cost += l.cost;
     }
     const Cholesky<3> H(total(sum.JtWJ));
@@ -161,37 +168,25 @@ std::optional<SceneFlowEstimator::StaticFit> SceneFlowEstimator::fitStatic(const
     const Eigen::Vector3d b = total(sum.JtWr), step = H.solve(b);
     const double gain = b.dot(step);
     const bool converged = gain < kConverged_chi2;
-    if (converged) return StaticFit{p + step, H.inverse(), total(sum.cost) - gain};
-    if (iteration == params_.iterations) return StaticFit{p, H.inverse(), total(sum.cost)};
+    if (converged) return SceneFlowEstimator::StaticFit{p + step, H.inverse(), total(sum.cost) - gain};
+    if (iteration == params.iterations) return SceneFlowEstimator::StaticFit{p, H.inverse(), total(sum.cost)};
     p += step;
     if (!p.allFinite() || p.z() < StereoCamera::kMinDepth_m) return std::nullopt;
   }
 }
 
-std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, const CameraTrail& trail,
-                                                       const std::optional<StaticFit>& at_rest) const {
-  for (int n = std::min(params_.max_observations, track.count); n >= params_.min_observations; n = shorterWindow(n)) {
-    auto flow = fitMoving(track, trail, n);
-    if (!flow) continue;
-    flow->static_chi2 = at_rest ? at_rest->chi2 : std::numeric_limits<double>::infinity();
-    return flow;
-  }
-  return std::nullopt;
-}
-
-std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, const CameraTrail& trail,
-                                                       int observations) const {
-  const Window window = collect(track, trail, params_.pose_jitter_px, observations);
-  if (window.size < params_.min_observations) return std::nullopt;
-  MovingPoint point{camera_.triangulate(track.newest().uvd_px.cast<double>()), Eigen::Vector3d::Zero()};
+std::optional<SceneFlow> fitMoving(const StereoCamera& camera, const Window& window, const Eigen::Vector3d& start,
+                                   const SceneFlowEstimator::Params& params) {
+  if (window.size < params.min_observations) return std::nullopt;
+  MovingPoint point{start, Eigen::Vector3d::Zero()};
   for (int iteration = 0;; ++iteration) {
-    const auto normal = linearizeMoving(camera_, window, point, params_);
+    const auto normal = linearizeMoving(camera, window, point, params);
     if (!normal) return std::nullopt;
     const Cholesky<6> H(normal->H);
     if (!H.positive()) return std::nullopt;
     const Vector6d step = H.solve(normal->b);
     const double gain = normal->b.dot(step);
-    const bool converged = gain < kConverged_chi2, last = converged || iteration == params_.iterations;
+    const bool converged = gain < kConverged_chi2, last = converged || iteration == params.iterations;
     const double chi2 = normal->cost - (converged ? gain : 0);
     if (last && !(chi2 < kMaxChi2PerDof * (3.0 * window.size - 6.0))) return std::nullopt;
     if (converged || !last) point.p_cam += step.head<3>(), point.velocity_mps += step.tail<3>();
@@ -203,6 +198,22 @@ std::optional<SceneFlow> SceneFlowEstimator::fitMoving(const PointTrack& track, 
                        .observations = window.size};
     if (!step.allFinite() || point.p_cam.z() < StereoCamera::kMinDepth_m) return std::nullopt;
   }
+}
+
+}  // namespace
+
+SceneFlowEstimator::Fits SceneFlowEstimator::fit(const PointTrack& track, const CameraTrail& trail) const {
+  const Eigen::Vector3d start = camera_.triangulate(track.newest().uvd_px.cast<double>());
+  int n = std::min(params_.max_observations, track.count);
+  Window window = collect(track, trail, params_.pose_jitter_px, n);
+  Fits fits{.at_rest = fitStatic(camera_, window, start, params_), .moving = {}};
+  while (n >= params_.min_observations && !(fits.moving = fitMoving(camera_, window, start, params_))) {
+    n = shorterWindow(n);
+    if (n >= params_.min_observations) window = collect(track, trail, params_.pose_jitter_px, n);
+  }
+  if (fits.moving)
+    fits.moving->static_chi2 = fits.at_rest ? fits.at_rest->chi2 : std::numeric_limits<double>::infinity();
+  return fits;
 }
 
 std::vector<Parameter> parametersOf(SceneFlowEstimator::Params& params) {

@@ -34,17 +34,16 @@ class SceneFlowEstimator {
     Eigen::Matrix3d covariance;
     double chi2;  // 3n - 3 degrees of freedom
   };
-  std::optional<StaticFit> fitStatic(const PointTrack& track, const CameraTrail& trail) const;
-
   /// A point with constant velocity v: p_k = T_k_now (p + v dt_k + a dt_k^2 / 2), a ~ N(0, acceleration^2) as noise,
   /// over the longest window that such a motion fits: near vehicles that brake or turn leave it within half a second.
   /// Empty with too few observations or when no window fits.
-  std::optional<SceneFlow> fitMoving(const PointTrack& track, const CameraTrail& trail,
-                                     const std::optional<StaticFit>& at_rest) const;
+  struct Fits {
+    std::optional<StaticFit> at_rest;
+    std::optional<SceneFlow> moving;
+  };
+  Fits fit(const PointTrack& track, const CameraTrail& trail) const;
 
  private:
-  std::optional<SceneFlow> fitMoving(const PointTrack& track, const CameraTrail& trail, int observations) const;
-
   Params params_;
   StereoCamera camera_;
 };

@@ -34,10 +34,10 @@ std::vector<std::vector<int>> cutDelaunayComponents(std::span<const Eigen::Vecto
                                                     const std::function<bool(int, int)>& belong_together) {
   const auto n = static_cast<int>(points_px.size());
   DisjointSets sets(points_px.size());
-  const DelaunayGraph graph = delaunay(points_px);
+  const DelaunayGraph graph = delaunay(points_px, false);
   for (int i = 0; i < n; ++i) sets.join(i, graph.vertex_of_point[i]);
   for (const auto& [i, j] : graph.edges)
-    if (belong_together(i, j)) sets.join(i, j);
+    if (sets.find(i) != sets.find(j) && belong_together(i, j)) sets.join(i, j);
 
   std::vector<std::vector<int>> members(points_px.size());
   for (int i = 0; i < n; ++i) members[sets.find(i)].push_back(i);

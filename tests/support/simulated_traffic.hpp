@@ -142,7 +142,7 @@ class SimulatedTraffic {
                    .sigma_px = kObservationSigma_px,
                    .age = track.count,
                    .flow = {}};
-      if (const auto at_rest = flow.fitStatic(track, trail_)) p.flow = flow.fitMoving(track, trail_, *at_rest);
+      if (const auto fits = flow.fit(track, trail_); fits.at_rest) p.flow = fits.moving;
       scene.points.push_back(p);
     }
     const MotionSegmenter segment({}, kRig);

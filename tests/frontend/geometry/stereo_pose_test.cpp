@@ -1,5 +1,6 @@
 #include "frontend/geometry/stereo_pose.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -144,6 +145,21 @@ TEST(StereoPose, Chi2IsThatOfEachObservationAlone) {
     S.diagonal() += o.sigma_px.cwiseAbs2();
     EXPECT_NEAR(chi2[i], r.dot(S.inverse() * r), 1e-9 * (1 + chi2[i]));
   }
+}
+
+TEST(StereoPose, AScoreIsTheWeightedSumOfTruncatedChi2) {
+  Noise noise(7);
+  const auto observations = observe(13, 6, 30, noise);
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < observations.size(); ++i) weights.push_back(0.1 * static_cast<double>(i % 5));
+  const auto chi2 = poseChi2(kRig, PoseObservations(observations), SE3{});
+  double sum = 0;
+  for (std::size_t i = 0; i < chi2.size(); ++i) sum += weights[i] * std::min(12.0, chi2[i]);
+  const auto score = [&](double bound) {
+    return poseScore(kRig, PoseObservations(observations), SE3{}, {weights, 12.0}, bound);
+  };
+  EXPECT_EQ(score(2 * sum), sum);
+  EXPECT_GE(score(0.5 * sum), 0.5 * sum);
 }
 
 TEST(StereoPose, PointsBehindTheCameraHaveInfiniteChi2) {

@@ -58,9 +58,8 @@ SceneFlowEstimator exactModel() {
 }
 
 std::optional<SceneFlow> flowOf(const SceneFlowEstimator& estimator, const Drive& drive, const PointTrack& track) {
-  const auto at_rest = estimator.fitStatic(track, drive.trail);
-  if (!at_rest) return std::nullopt;
-  return estimator.fitMoving(track, drive.trail, *at_rest);
+  const auto fits = estimator.fit(track, drive.trail);
+  return fits.at_rest ? fits.moving : std::nullopt;
 }
 
 /// Mean normalized error of velocity and of (position, velocity) over seeds.
