@@ -21,10 +21,15 @@ class Differences {
 
  public:
   explicit Differences(const Window& window) {
-    for (int r = 0, i = 0; r < kRows; ++r) {
-      const std::uint8_t* row = window.image.row(window.v - kRows / 2 + r) + window.u - kColumns / 2;
-      for (int c = 0; c < kColumns; ++c) sum_ += pixels_[i++] = row[c];
+    constexpr Words kLanes{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const Words inside = kLanes < allWords(kColumns);  // minus one
+    WordSums sums{};
+    for (int r = 0; r < kRows; ++r) {
+      const Words pixels = wordPixels(window.image.row(window.v - kRows / 2 + r) + window.u - kColumns / 2);
+      storeWords(pixels_.data() + r * kWordLanes, pixels);
+      sums -= products(pixels, inside);
     }
+    sum_ = totals(sums, sums, sums, sums)[0];
   }
 
   /// Costs of sixteen neighboring windows, the first pixel of the first at `from`.
@@ -32,9 +37,10 @@ class Differences {
     const Words per_pixel = allWords((1 << 15) / kPixels);  // as `scaled` takes fractions
     const Words offset = scaled(windowSums(from, stride) - static_cast<std::int16_t>(sum_), per_pixel);
     Words cost{};
-    for (int r = 0, i = 0; r < kRows; ++r) {
+    for (int r = 0; r < kRows; ++r) {
       const std::uint8_t* row = from + r * stride;
-      for (int c = 0; c < kColumns; ++c) cost += magnitude(wordPixels(row + c) - (offset + pixels_[i++]));
+      for (int c = 0; c < kColumns; ++c)
+        cost += magnitude(wordPixels(row + c) - (offset + pixels_[r * kWordLanes + c]));
     }
     return cost;
   }
@@ -55,15 +61,17 @@ class Differences {
     return sums;
   }
 
-  std::array<std::int16_t, kPixels> pixels_;
+  std::array<std::int16_t, kRows * kWordLanes> pixels_;  // row by row, with what lies to the right
   int sum_ = 0;
 };
 
 template <WindowSize Size>
-void fillCosts(const Window& window, const std::uint8_t* from, std::ptrdiff_t stride, std::span<std::uint16_t> costs) {
+void fillCosts(const Window& window, const std::uint8_t* from, std::ptrdiff_t stride, std::span<std::uint16_t> costs,
+               std::uint32_t blocks) {
   const Differences<Size> differences(window);
   const int count = static_cast<int>(costs.size());
-  for (int first = 0; first < count; first += kWordLanes) {
+  for (int first = 0; first < count; first += kWordLanes, blocks >>= 1) {
+    if ((blocks & 1) == 0) continue;
     const Words cost = differences(from + first, stride);
     std::memcpy(costs.data() + first, &cost, std::min(kWordLanes, count - first) * sizeof(std::uint16_t));
   }
@@ -72,11 +80,11 @@ void fillCosts(const Window& window, const std::uint8_t* from, std::ptrdiff_t st
 }  // namespace
 
 void windowDifferences(const Window& window, const Image& other, int other_u, int other_v,
-                       std::span<std::uint16_t> costs) {
+                       std::span<std::uint16_t> costs, std::uint32_t blocks) {
   assert(window.size == kHalfSizeWindow || window.size == kFullSizeWindow);
   const std::uint8_t* from = other.row(other_v - window.size.rows / 2) + other_u - window.size.columns / 2;
   const auto fill = window.size == kHalfSizeWindow ? fillCosts<kHalfSizeWindow> : fillCosts<kFullSizeWindow>;
-  fill(window, from, other.stride(), costs);
+  fill(window, from, other.stride(), costs, blocks);
 }
 
 }  // namespace motorcade

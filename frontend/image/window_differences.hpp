@@ -32,8 +32,8 @@ struct Window {
 
 /// Sums of absolute differences, after the difference of the means (to a whole gray level) is taken out, between a
 /// window and those around (other_u + i, other_v) of another image, i < costs.size() <= kMaxWindowCosts. All windows
-/// lie inside their images.
+/// lie inside their images. Of the blocks of sixteen costs, those are left out whose bit in `blocks` is not set.
 void windowDifferences(const Window& window, const Image& other, int other_u, int other_v,
-                       std::span<std::uint16_t> costs);
+                       std::span<std::uint16_t> costs, std::uint32_t blocks = ~std::uint32_t{0});
 
 }  // namespace motorcade

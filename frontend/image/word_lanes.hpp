@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #ifdef __AVX2__
@@ -23,6 +24,13 @@ inline Words loadWords(const std::int16_t* p) {
 }
 inline void storeWords(std::int16_t* p, const Words& words) { std::memcpy(p, &words, sizeof words); }
 inline Words allWords(int value) { return Words{} + static_cast<std::int16_t>(value); }
+
+/// Words from 0 to 255.
+inline void storeWordsAsBytes(std::uint8_t* p, const Words& words) {
+  using Halves = std::uint8_t __attribute__((vector_size(kWordLanes)));
+  const auto bytes = __builtin_convertvector(words, Halves);
+  std::memcpy(p, &bytes, sizeof bytes);
+}
 
 #ifdef __AVX2__
 inline Words wordPixels(const std::uint8_t* p) {
@@ -49,6 +57,26 @@ inline std::array<std::int32_t, 4> totals(const WordSums& a, const WordSums& b, 
   const __m128i sums = _mm_add_epi32(_mm256_castsi256_si128(pairs), _mm256_extracti128_si256(pairs, 1));
   _mm_storeu_si128(reinterpret_cast<__m128i*>(result.data()), sums);
   return result;
+}
+/// Of words that are not negative.
+inline std::int16_t leastOf(const Words& x) {
+  const __m128i half = _mm_min_epi16(_mm256_castsi256_si128(__m256i(x)), _mm256_extracti128_si256(__m256i(x), 1));
+  return static_cast<std::int16_t>(_mm_cvtsi128_si32(_mm_minpos_epu16(half)));
+}
+/// The first lane of a value; kWordLanes when none has it.
+inline int firstOf(const Words& x, std::int16_t value) {
+  const __m256i same = _mm256_cmpeq_epi16(__m256i(x), _mm256_set1_epi16(value));
+  return std::countr_zero(static_cast<std::uint32_t>(_mm256_movemask_epi8(same))) / 2;
+}
+/// Sums of the absolute differences between the eight bytes from `eight` on and those from each of p, ..., p + 15 on.
+inline Words differencesOfEight(const std::uint8_t* p, const std::uint8_t* eight) {
+  std::int64_t bits;
+  std::memcpy(&bits, eight, sizeof bits);
+  const __m256i both = _mm256_set1_epi64x(bits);
+  const auto* from = reinterpret_cast<const __m128i*>(p);
+  const __m256i pixels =
+      _mm256_set_m128i(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p + kWordLanes / 2)), _mm_loadu_si128(from));
+  return Words(_mm256_mpsadbw_epu8(pixels, both, 0)) + Words(_mm256_mpsadbw_epu8(pixels, both, 0b101101));
 }
 #else
 inline Words wordPixels(const std::uint8_t* p) {
@@ -77,6 +105,21 @@ inline std::array<std::int32_t, 4> totals(const WordSums& a, const WordSums& b, 
   std::array<std::int32_t, 4> result{};
   for (int i = 0; i < kWordLanes / 2; ++i) result[0] += a[i], result[1] += b[i], result[2] += c[i], result[3] += d[i];
   return result;
+}
+inline std::int16_t leastOf(const Words& x) {
+  std::int16_t least = x[0];
+  for (int i = 1; i < kWordLanes; ++i) least = x[i] < least ? x[i] : least;
+  return least;
+}
+inline int firstOf(const Words& x, std::int16_t value) {
+  int lane = 0;
+  while (lane < kWordLanes && x[lane] != value) ++lane;
+  return lane;
+}
+inline Words differencesOfEight(const std::uint8_t* p, const std::uint8_t* eight) {
+  Words sums{};
+  for (int k = 0; k < 8; ++k) sums += magnitude(wordPixels(p + k) - static_cast<std::int16_t>(eight[k]));
+  return sums;
 }
 #endif
 

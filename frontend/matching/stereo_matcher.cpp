@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "frontend/features/sift_features.hpp"
+#include "frontend/image/detail_search.hpp"
 #include "frontend/image/image_pyramid.hpp"
 #include "frontend/image/patch_alignment.hpp"
 #include "frontend/image/window_differences.hpp"
@@ -25,78 +26,65 @@ constexpr int kFineReach_px = 3;       // at full size around the result at half
 // nearest descriptor's distance.
 constexpr double kSiftMaxRow_px = 1.5, kSiftMaxRatio = 0.9;
 
-std::uint16_t smallest(std::span<const std::uint16_t> costs) {
-  std::uint16_t result = UINT16_MAX;
-  for (const std::uint16_t cost : costs)
-    result = std::min(result, cost);  // compiles to vector code, unlike min_element
-  return result;
+/// The pair in which all disparities are searched: of half size, of full size where there is no other.
+struct SearchedPair {
+  int level;
+  DetailedImage left, right;
+};
+
+SearchedPair searchedPair(const Features& features, ImagePool& pool) {
+  const int level = features.left.levels.size() < 2 ? 0 : 1;
+  return {level, withDetail(features.left.levels[level], pool), withDetail(features.right.levels[level], pool)};
 }
 
-/// Index of the least cost; empty when another one, not among its neighbors, is nearly as small.
-std::optional<int> uniqueMinimum(std::span<const std::uint16_t> costs, double max_ratio) {
-  constexpr std::size_t kNeighbors_px = 2;
-  const std::uint16_t least = smallest(costs);
-  const std::size_t best = std::ranges::find(costs, least) - costs.begin();
-  const auto before = costs.first(best - std::min(best, kNeighbors_px));
-  const auto after = costs.subspan(std::min(best + kNeighbors_px + 1, costs.size()));
-  const bool alone = before.empty() && after.empty();
-  if (!alone && least > max_ratio * std::min(smallest(before), smallest(after))) return std::nullopt;
-  return static_cast<int>(best);
-}
-
-/// Column in `other`, between first_u and last_u, around which a window of the same row looks most like the one given.
-std::optional<int> searchColumns(const Window& window, const Image& other, int first_u, int last_u, double max_ratio) {
-  const int half = window.size.columns / 2;
-  first_u = std::max(first_u, half);
-  last_u = std::min(last_u, other.width() - 1 - half);
-  if (last_u < first_u) return std::nullopt;
-  std::array<std::uint16_t, kMaxWindowCosts> costs;
-  const auto searched = std::span(costs).first(last_u - first_u + 1);
-  windowDifferences(window, other, first_u, window.v, searched);
-  const auto best = uniqueMinimum(searched, max_ratio);
-  if (!best) return std::nullopt;
-  return first_u + *best;
-}
-
-/// Disparity to a whole pixel of the images given, on which the searches from left to right and back agree.
-std::optional<int> searchDisparity(const Image& left, const Image& right, int u, int v, int max_disparity_px) {
-  const Window window{left, u, v, kHalfSizeWindow};
-  if (!window.insideImage()) return std::nullopt;
-  const auto u_right = searchColumns(window, right, u - max_disparity_px, u, kMaxUniquenessRatio);
+/// Disparity to a whole pixel of the pair, on which the searches from left to right and back agree.
+std::optional<int> searchDisparity(const SearchedPair& pair, int u, int v, int max_disparity_px) {
+  if (!Window{pair.left.image, u, v, kHalfSizeWindow}.insideImage()) return std::nullopt;
+  const auto u_right = searchRow(pair.left, u, v, pair.right, {u - max_disparity_px, u}, kMaxUniquenessRatio);
   if (!u_right) return std::nullopt;
-  const Window found{right, *u_right, v, kHalfSizeWindow};
-  const auto u_back = searchColumns(found, left, *u_right, *u_right + max_disparity_px, kMaxUniquenessRatio);
+  const auto u_back =
+      searchRow(pair.right, *u_right, v, pair.left, {*u_right, *u_right + max_disparity_px}, kMaxUniquenessRatio);
   if (!u_back || std::abs(*u_back - u) > kMaxRoundTrip_px) return std::nullopt;
   return u - *u_right;
 }
 
+/// Column of the right image at full size, around the one given, whose window looks most like the left one.
+std::optional<int> searchNear(const Window& window, const Image& right, int middle_u) {
+  constexpr int kHalf_px = kFullSizeWindow.columns / 2;
+  const int first_u = std::max(middle_u - kFineReach_px, kHalf_px);
+  const int last_u = std::min({window.u, middle_u + kFineReach_px, right.width() - 1 - kHalf_px});
+  if (last_u < first_u) return std::nullopt;
+  std::array<std::uint16_t, 2 * kFineReach_px + 1> costs;
+  const auto searched = std::span(costs).first(last_u - first_u + 1);
+  windowDifferences(window, right, first_u, window.v, searched);
+  return first_u + static_cast<int>(std::ranges::min_element(searched) - searched.begin());
+}
+
 /// Disparity to a whole pixel of full size, searched in the images of half size, then among the pixels around.
-std::optional<int> searchCoarseToFine(const Features& features, const Corner& corner, int max_disparity_px) {
+std::optional<int> searchCoarseToFine(const Features& features, const SearchedPair& pair, const Corner& corner,
+                                      int max_disparity_px) {
   const int u = static_cast<int>(corner.u_px), v = static_cast<int>(corner.v_px);
-  const Image &left = features.left.levels.front(), &right = features.right.levels.front();
-  if (features.left.levels.size() < 2) return searchDisparity(left, right, u, v, max_disparity_px);
+  if (pair.level == 0) return searchDisparity(pair, u, v, max_disparity_px);
   const int half_u = static_cast<int>(std::lround(toLevel(corner.u_px, 1))),
             half_v = static_cast<int>(std::lround(toLevel(corner.v_px, 1)));
-  const auto half_size_px =
-      searchDisparity(features.left.levels[1], features.right.levels[1], half_u, half_v, max_disparity_px / 2);
-  const Window window{left, u, v, kFullSizeWindow};
+  const auto half_size_px = searchDisparity(pair, half_u, half_v, max_disparity_px / 2);
+  const Window window{features.left.levels.front(), u, v, kFullSizeWindow};
   if (!half_size_px || !window.insideImage()) return std::nullopt;
-  const int middle = u - 2 * *half_size_px;
-  constexpr double kAnyRatio = 1;  // uniqueness was checked at half size
-  const auto u_right =
-      searchColumns(window, right, middle - kFineReach_px, std::min(u, middle + kFineReach_px), kAnyRatio);
+  const auto u_right = searchNear(window, features.right.levels.front(), u - 2 * *half_size_px);
   if (!u_right) return std::nullopt;
   return u - *u_right;
 }
 
-std::vector<std::optional<StereoMatch>> matchCorners(const Features& features, const StereoMatcher::Params& params) {
+std::vector<std::optional<StereoMatch>> matchCorners(const Features& features, const StereoMatcher::Params& params,
+                                                     ImagePool& pool) {
   const Image &left = features.left.levels.front(), &right = features.right.levels.front();
   constexpr DisparityParams kOnlyRefinement{.search_radius_px = 0};
+  const SearchedPair pair = searchedPair(features, pool);
   std::vector<std::optional<StereoMatch>> matches;
   matches.reserve(features.corners.size());
   for (const Corner& corner : features.corners) {
     auto& match = matches.emplace_back();
-    const auto whole_px = searchCoarseToFine(features, corner, params.max_disparity_px);
+    const auto whole_px = searchCoarseToFine(features, pair, corner, params.max_disparity_px);
     if (whole_px) match = refineDisparity(left, right, corner.u_px, corner.v_px, *whole_px, kOnlyRefinement);
     if (match && match->disparity_px < params.min_disparity_px) match.reset();
   }
@@ -126,7 +114,7 @@ StereoMatchesPtr StereoMatcher::operator()(const FeaturesPtr& features) const {
   StereoMatches matches{.features = features, .of_corner = {}};
   if (!features->frame->rejected())
     matches.of_corner =
-        features->descriptors.empty() ? matchCorners(*features, params_) : matchDescriptors(*features, params_);
+        features->descriptors.empty() ? matchCorners(*features, params_, pool_) : matchDescriptors(*features, params_);
   dropHalfOccluded(features->corners, matches.of_corner);
   return std::make_shared<const StereoMatches>(std::move(matches));
 }

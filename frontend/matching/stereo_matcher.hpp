@@ -9,8 +9,8 @@ namespace motorcade {
 
 /// Finds the disparity of each corner of the left image. A whole-pixel search over all disparities in the images of
 /// half size is checked for uniqueness and from right to left. A search among the pixels around its result and
-/// `refineDisparity` follow. Features with descriptors (SIFT) are matched by those instead. Stateless; safe to call
-/// from several threads.
+/// `refineDisparity` follow. Features with descriptors (SIFT) are matched by those instead. Stateless but for its
+/// buffers; safe to call from several threads.
 class StereoMatcher {
  public:
   struct Params {
@@ -23,6 +23,7 @@ class StereoMatcher {
 
  private:
   Params params_;
+  mutable ImagePool pool_;  // itself safe for several threads
 };
 
 std::vector<Parameter> parametersOf(StereoMatcher::Params& params);
