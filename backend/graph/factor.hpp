@@ -31,8 +31,9 @@ class Factor {
   Form form() const { return form_; }
   int rows() const { return rows_; }
 
-  /// At `values`, one per variable in their order, under right perturbations. A robust loss weights the term
-  /// (iteratively reweighted least squares). Fills rows() x (sum of dimensions + 1).
+  /// At `values`, one per variable in their order: of Form::kJacobian under right perturbations, of Form::kInformation
+  /// by steps in the world's axes (see `displaced`). A robust loss weights the term (iteratively reweighted least
+  /// squares). Fills rows() x (sum of dimensions + 1), of information the lower triangle.
   virtual void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const = 0;
 
   /// Of Form::kJacobian only: the last column of `linearize`, the whitened and weighted residual, without the

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "backend/graph/symmetric_product.hpp"
-#include "backend/graph/turned_term.hpp"
 
 namespace motorcade {
 namespace {
@@ -24,6 +23,13 @@ IdType takeSlot(std::vector<IdType>& free, std::vector<Slot>& slots) {
   const IdType id = free.back();
   free.pop_back();
   return id;
+}
+
+/// Columns M <- M R^T.
+template <int N>
+void turnColumns(FactorGraph::Term& term, Eigen::Index column, const Eigen::Matrix<double, N, N>& R) {
+  for (Eigen::Index i = 0; i < term.rows(); ++i)
+    term.row(i).segment<N>(column) = (term.row(i).segment<N>(column) * R.transpose()).eval();
 }
 
 using Column = Eigen::Map<Eigen::VectorXd>;
@@ -136,39 +142,12 @@ Column FactorGraph::appliedCoordinates(const Factor& factor) {
 
 /// From right perturbations to steps in the world's axes: to first order rho = R^T dp, phi = R^T dphi.
 void FactorGraph::turnToWorldAxes(const Factor& factor, Term& term) const {
-  if (factor.form() == Factor::Form::kInformation) return turnBothSides(factor, term);
   Eigen::Index at = 0;
   for (const VariableId v : factor.variables()) {
     const Value& value = (*this)[v].linearization_point;
     if (const auto* pose = std::get_if<SE3>(&value))
-      for (const Eigen::Index k : {at, at + 3}) turnColumns<3>(term, k, 0, pose->rotation());
-    if (const auto* planar = std::get_if<SE2>(&value)) turnColumns<2>(term, at, 0, planar->rotation());
-    at += sizeOf(v);
-  }
-}
-
-/// The same of information, in its lower triangle.
-void FactorGraph::turnBothSides(const Factor& factor, Term& term) const {
-  Eigen::Index at = 0;
-  for (const VariableId v : factor.variables()) {
-    const Value& value = (*this)[v].applied_estimate;
-    if (const auto* pose = std::get_if<SE3>(&value))
-      for (const Eigen::Index k : {at, at + 3}) turnLowerTriangle<3>(term, k, pose->rotation());
-    if (const auto* planar = std::get_if<SE2>(&value)) turnLowerTriangle<2>(term, at, planar->rotation());
-    at += sizeOf(v);
-  }
-}
-
-/// The same of a gradient at the applied estimates.
-void FactorGraph::turnToWorldAxes(const Factor& factor, Eigen::Ref<Eigen::VectorXd> gradient) const {
-  Eigen::Index at = 0;
-  for (const VariableId v : factor.variables()) {
-    const Value& value = (*this)[v].applied_estimate;
-    if (const auto* pose = std::get_if<SE3>(&value))
-      for (const Eigen::Index k : {at, at + 3})
-        gradient.segment<3>(k) = (pose->rotation() * gradient.segment<3>(k)).eval();
-    if (const auto* planar = std::get_if<SE2>(&value))
-      gradient.segment<2>(at) = (planar->rotation() * gradient.segment<2>(at)).eval();
+      for (const Eigen::Index k : {at, at + 3}) turnColumns<3>(term, k, pose->rotation());
+    if (const auto* planar = std::get_if<SE2>(&value)) turnColumns<2>(term, at, planar->rotation());
     at += sizeOf(v);
   }
 }
@@ -179,10 +158,10 @@ bool FactorGraph::evaluate(const Factor& factor, Term term) {
   if (factor.form() == Factor::Form::kJacobian) {
     factor.linearize(valuesOf(factor, &Variable::linearization_point), term);
     factor.residual(valuesOf(factor, &Variable::applied_estimate), term.col(term.cols() - 1));
+    turnToWorldAxes(factor, term);
   } else {
     factor.linearize(valuesOf(factor, &Variable::applied_estimate), term);
   }
-  turnToWorldAxes(factor, term);
   return canBeSquared(factor, term);
 }
 
@@ -278,7 +257,6 @@ FactorGraph::Mismatch FactorGraph::informationMismatch(FactorId id) {
   residual_.assign(n + 1, 0.0);
   Column difference(residual_.data(), n + 1);
   factor.gradient(valuesOf(factor, &Variable::applied_estimate), difference);
-  turnToWorldAxes(factor, difference.head(n));
   if (!std::isfinite(difference.squaredNorm())) {
     residual_.assign(n, 0.0);
     return {.norm = 0, .r = residual_};

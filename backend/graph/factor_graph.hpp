@@ -119,8 +119,6 @@ class FactorGraph {
   std::span<const Value* const> valuesOf(const Factor& factor, Value Variable::*member);
   Eigen::Map<Eigen::VectorXd> appliedCoordinates(const Factor& factor);
   void turnToWorldAxes(const Factor& factor, Term& term) const;
-  void turnBothSides(const Factor& factor, Term& term) const;
-  void turnToWorldAxes(const Factor& factor, Eigen::Ref<Eigen::VectorXd> gradient) const;
   bool evaluate(const Factor& factor, Term term);
   void shiftToCoordinates(const Factor& factor, Term term);
   Mismatch informationMismatch(FactorId id);

@@ -17,27 +17,12 @@ Eigen::MatrixXd pseudoInverse(const Eigen::MatrixXd& matrix) {
   return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-/// Of the displacement to a pose, under a right perturbation of the pose.
-Matrix6d stepJacobian(const SE3& now, const Eigen::Vector3d& turn_rad) {
-  // log(exp(d) * exp(phi)) ~ phi + Jl^-1(phi) d, Jl^-1(phi) = Jr^-1(-phi); d = R * perturbation.
+/// Of the turn of a displacement to a pose, under a step of that pose.
+Eigen::Matrix3d turnJacobian(const Eigen::Vector3d& turn_rad) {
+  // log(exp(d) * exp(phi)) ~ phi + Jl^-1(phi) d, Jl^-1(phi) = Jr^-1(-phi).
   Vector6d minus = Vector6d::Zero();
   minus.tail<3>() = -turn_rad;
-  Matrix6d J = Matrix6d::Zero();
-  J.topLeftCorner<3, 3>() = now.rotation();
-  J.bottomRightCorner<3, 3>() = rightJacobianInverseSE3(minus).bottomRightCorner<3, 3>() * now.rotation();
-  return J;
-}
-
-Eigen::Matrix3d stepJacobian(const SE2& now) {
-  Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
-  J.topLeftCorner<2, 2>() = now.rotation();
-  return J;
-}
-
-template <int N>
-void moveBlock(Eigen::Ref<Eigen::MatrixXd> term, Eigen::Index at, const Eigen::Matrix<double, N, N>& J) {
-  term.middleCols<N>(at) = (term.middleCols<N>(at) * J).eval();
-  term.middleRows<N>(at) = (J.transpose() * term.middleRows<N>(at)).eval();
+  return rightJacobianInverseSE3(minus).bottomRightCorner<3, 3>();
 }
 
 }  // namespace
@@ -69,12 +54,12 @@ void MarginalFactor::linearize(std::span<const Value* const> values, Eigen::Ref<
   term(n, n) += e.dot(shift) + 2 * e.dot(information_.col(n).head(n));
   term.row(n).head(n) += shift.transpose();
   at = 0;
-  std::size_t k = 0;
   for (const Value& value : values_) {
-    if (const auto* pose = std::get_if<SE3>(values[k]))
-      moveBlock<6>(term, at, stepJacobian(*pose, e.segment<3>(at + 3)));
-    if (const auto* pose = std::get_if<SE2>(values[k])) moveBlock<3>(term, at, stepJacobian(*pose));
-    ++k;
+    if (std::holds_alternative<SE3>(value)) {
+      const Eigen::Matrix3d J = turnJacobian(e.segment<3>(at + 3));
+      term.middleCols<3>(at + 3) = (term.middleCols<3>(at + 3) * J).eval();
+      term.middleRows<3>(at + 3) = (J.transpose() * term.middleRows<3>(at + 3)).eval();
+    }
     at += dimension(value);
   }
 }

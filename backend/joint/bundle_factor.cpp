@@ -16,7 +16,7 @@ namespace {
 constexpr int kLandmark = 4;  // unknowns of a landmark
 constexpr int kRest = 2;      // columns of the offset and of the right-hand side
 
-constexpr double kStill = 1e-9;  // m and rad: of a displacement whose Jacobian is 1
+constexpr double kStill = 1e-9;  // m, rad and px: of a displacement whose Jacobian is 1, of poses that have not moved
 
 using Matrix8d = Eigen::Matrix<double, 6 + kRest, 6 + kRest>;
 using Matrix84d = Eigen::Matrix<double, 6 + kRest, kLandmark>;
@@ -99,6 +99,40 @@ std::vector<int> byFirstFrame(const LandmarkViews& landmarks) {
   return order;
 }
 
+/// M <- S^-1 M, with S from a step of the frame's pose to a perturbation of T_cam_body on the left.
+template <class Rows>
+void turnToSteps(FramePose pose, const SE3& T_cam_body, Rows& M) {
+  if (pose == FramePose::kCamBody) {
+    M.template topRows<3>() -= hat(T_cam_body.translation()) * M.template bottomRows<3>();
+  } else {
+    const Eigen::Matrix3d minus_R = -T_cam_body.rotation().transpose();
+    M.template topRows<3>() = (minus_R * M.template topRows<3>()).eval();
+    M.template bottomRows<3>() = (minus_R * M.template bottomRows<3>()).eval();
+  }
+}
+
+/// M <- M S.
+void turnFromSteps(FramePose pose, const SE3& T_cam_body, Matrix6d& M) {
+  if (pose == FramePose::kCamBody) {
+    M.rightCols<3>() += M.leftCols<3>() * hat(T_cam_body.translation());
+  } else {
+    const Eigen::Matrix3d minus_R = -T_cam_body.rotation();
+    M.leftCols<3>() = (M.leftCols<3>() * minus_R).eval();
+    M.rightCols<3>() = (M.rightCols<3>() * minus_R).eval();
+  }
+}
+
+/// What a step of the last frame's pose does to the motion D of a frame relative to it, is undone by this step of the
+/// frame's own pose.
+Matrix6d likeStepOfLast(FramePose pose, const SE3& T_cam_body, const SE3& D) {
+  Matrix6d J = Matrix6d::Identity();
+  if (pose == FramePose::kCamBody)
+    J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = D.rotation();
+  else
+    J.topRightCorner<3, 3>() = hat(T_cam_body.rotation().transpose() * D.translation());
+  return J;
+}
+
 void addLevels(std::span<const LinearView> linear, ResidualLevels& levels) {
   for (const LinearView& l : linear) {
     levels.uv_sum += l.r().head<2>().squaredNorm();
@@ -133,11 +167,16 @@ class CommonSums {
 }  // namespace
 
 EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
-                                       const LandmarkViews& landmarks, std::vector<SE3> T_cam_body, double offset_px) {
-  EliminatedLandmarks result{
-      .T_cam_body = std::move(T_cam_body), .offset_px = offset_px, .system = {}, .levels = {}, .estimates = {}};
+                                       const LandmarkViews& landmarks, FramePose pose, std::vector<SE3> T_cam_body,
+                                       double offset_px) {
+  EliminatedLandmarks result{.pose = pose,
+                             .T_cam_body = std::move(T_cam_body),
+                             .offset_px = offset_px,
+                             .system = {},
+                             .levels = {},
+                             .estimates = {}};
   result.estimates.resize(landmarks.count());
-  LandmarkFit fit(camera, noise, result.T_cam_body, offset_px);
+  LandmarkFit fit(camera, noise, pose, result.T_cam_body, offset_px);
   LandmarkSum sum(static_cast<int>(result.T_cam_body.size()));
   CommonSums common(0.5 * camera.width_px, result.T_cam_body.size());
   for (const int j : byFirstFrame(landmarks)) {
@@ -152,9 +191,8 @@ EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const Landmar
   return result;
 }
 
-BundleFactor::BundleFactor(Poses kind, std::vector<VariableId> poses, VariableId offset, EliminatedLandmarks landmarks)
+BundleFactor::BundleFactor(std::vector<VariableId> poses, VariableId offset, EliminatedLandmarks landmarks)
     : Factor((poses.push_back(offset), poses), Form::kInformation, static_cast<int>(landmarks.system.rows())),
-      kind_(kind),
       frames_(static_cast<int>(landmarks.T_cam_body.size())),
       landmarks_(std::move(landmarks)) {
   const SE3 last = landmarks_.T_cam_body.back().inverse();
@@ -169,29 +207,38 @@ std::vector<SE3> BundleFactor::posesFromCamera(std::span<const Value* const> val
   std::vector<SE3> T_cam_body;
   for (int k = 0; k < frames_; ++k) {
     const auto& pose = std::get<SE3>(*values[k]);
-    T_cam_body.push_back(kind_ == Poses::kWorldCam ? pose.inverse() : pose);
+    T_cam_body.push_back(landmarks_.pose == FramePose::kWorldCam ? pose.inverse() : pose);
   }
   return T_cam_body;
 }
 
-BundleFactor::Displacement BundleFactor::displacement(std::span<const Value* const> values) const {
-  const std::vector<SE3> T_cam_body = posesFromCamera(values);
+double BundleFactor::offset_px(std::span<const Value* const> values) {
+  return std::get<SmallVector>(*values.back())[0];
+}
+
+bool BundleFactor::isLinearizedAt(std::span<const SE3> T_cam_body, double offset_px) const {
+  if (std::abs(offset_px - landmarks_.offset_px) > kStill) return false;
+  return std::ranges::equal(T_cam_body, landmarks_.T_cam_body, [](const SE3& a, const SE3& b) {
+    return (a.translation() - b.translation()).squaredNorm() < kStill * kStill &&
+           (a.rotation() - b.rotation()).squaredNorm() < kStill * kStill;
+  });
+}
+
+BundleFactor::Displacement BundleFactor::displacement(std::span<const SE3> T_cam_body, double offset_px) const {
   Displacement d{.e = Eigen::VectorXd::Zero(landmarks_.system.rows() - 1), .J = {}, .J_last = {}};
-  d.e[6 * frames_] = std::get<SmallVector>(*values.back())[0] - landmarks_.offset_px;
+  d.e[6 * frames_] = offset_px - landmarks_.offset_px;
   const SE3 T_body_last = T_cam_body.back().inverse();
   for (int k = 0; k + 1 < frames_; ++k) {
     const SE3 D = T_cam_body[k] * T_body_last;
-    const Vector6d e = (D * D_inverse_[k]).log();
-    d.e.segment<6>(6 * k) = e;
+    Vector6d e = (D * D_inverse_[k]).log();
     const bool still = e.squaredNorm() < kStill * kStill;
-    const Matrix6d J_left = still ? Matrix6d::Identity() : rightJacobianInverseSE3(-e);
-    if (kind_ == Poses::kCamBody) {
-      d.J.push_back(J_left * T_cam_body[k].adjoint());
-      d.J_last.push_back(Matrix6d::Identity());
-    } else {
-      d.J.push_back(-J_left);
-      d.J_last.push_back(D.adjoint());
-    }
+    Matrix6d J = still ? Matrix6d::Identity() : rightJacobianInverseSE3(-e);
+    turnToSteps(landmarks_.pose, landmarks_.T_cam_body[k], e);
+    turnToSteps(landmarks_.pose, landmarks_.T_cam_body[k], J);
+    turnFromSteps(landmarks_.pose, T_cam_body[k], J);
+    d.e.segment<6>(6 * k) = e;
+    d.J.push_back(J);
+    d.J_last.push_back(likeStepOfLast(landmarks_.pose, T_cam_body[k], D));
   }
   return d;
 }
@@ -209,7 +256,7 @@ Eigen::VectorXd BundleFactor::gradientAt(const Eigen::VectorXd& e) const {
 }
 
 void BundleFactor::gradient(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> g_c) const {
-  const Displacement d = displacement(values);
+  const Displacement d = displacement(posesFromCamera(values), offset_px(values));
   g_c = gradientAt(d.e);
   const int last = 6 * (frames_ - 1);
   for (int k = 0; k + 1 < frames_; ++k) {
@@ -220,7 +267,13 @@ void BundleFactor::gradient(std::span<const Value* const> values, Eigen::Ref<Eig
 }
 
 void BundleFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
-  const Displacement d = displacement(values);
+  const std::vector<SE3> T_cam_body = posesFromCamera(values);
+  if (isLinearizedAt(T_cam_body, offset_px(values))) {
+    for (Eigen::Index j = 0; j < term.cols(); ++j)
+      term.col(j).tail(term.rows() - j) = landmarks_.system.col(j).tail(term.rows() - j);
+    return;
+  }
+  const Displacement d = displacement(T_cam_body, offset_px(values));
   fillPoses(d, term);
   const int last = 6 * (frames_ - 1), rest = last + 6;
   Eigen::Matrix<double, kRest, Eigen::Dynamic> offset_g(kRest, rest + 1);
@@ -240,22 +293,14 @@ void BundleFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Ei
 /// The poses' part of the lower triangle: J' H J block by block, and the last pose's rows as sums of the others'.
 void BundleFactor::fillPoses(const Displacement& d, Eigen::Ref<Eigen::MatrixXd> term) const {
   const int others = frames_ - 1;
-  const bool alike = kind_ == Poses::kCamBody;  // all J_last are 1
   std::vector<Matrix6d> sums(others, Matrix6d::Zero());
   for (int j = 0; j < others; ++j)
     for (int i = j; i < others; ++i) {
       const Matrix6d H = landmarks_.system.block<6, 6>(6 * i, 6 * j);
       const Matrix6d H_J = H * d.J[j], block = d.J[i].transpose() * H_J;
       term.block<6, 6>(6 * i, 6 * j) = block;
-      if (alike)
-        sums[j] += block;
-      else
-        sums[j].noalias() += d.J_last[i].transpose() * block;
-      if (i == j) continue;
-      if (alike)
-        sums[i] += block.transpose();
-      else
-        sums[i].noalias() += (block * d.J_last[j]).transpose();
+      sums[j].noalias() += d.J_last[i].transpose() * block;
+      if (i != j) sums[i].noalias() += (block * d.J_last[j]).transpose();
     }
   Matrix6d last = Matrix6d::Zero();
   for (int j = 0; j < others; ++j) {

@@ -31,30 +31,29 @@ struct ResidualLevels {
 /// What image measurements of one body say of the camera's motion around it, its landmarks eliminated (Schur
 /// complement): with r_jk = Sigma^-1/2 [ y_jk + offset e_d - pi(T_k l_j) ],
 ///   H = sum(A'A - A'B (B'B)^-1 B'A)
-/// around the poses T_k = T_cam_body and the disparity offset at which they were linearized.
+/// around the poses T_k = T_cam_body and the disparity offset at which they were linearized. Poses that all move as one
+/// leave it as it is, as the landmarks follow: H of such a step is zero, and so is its product with g.
 struct EliminatedLandmarks {
-  std::vector<SE3> T_cam_body;  // of each frame
+  FramePose pose = FramePose::kWorldCam;  // by whose steps
+  std::vector<SE3> T_cam_body;            // of each frame
   double offset_px = 0;
-  /// Full symmetric [H g; g' c] in (left perturbations of T_cam_body frame by frame, offset).
+  /// Full symmetric [H g; g' c] in (steps of the poses frame by frame, offset).
   Eigen::MatrixXd system;
   ResidualLevels levels;
   std::vector<std::optional<LandmarkEstimate>> estimates;  // of each landmark that could be fitted
 };
 EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
-                                       const LandmarkViews& landmarks, std::vector<SE3> T_cam_body, double offset_px);
+                                       const LandmarkViews& landmarks, FramePose pose, std::vector<SE3> T_cam_body,
+                                       double offset_px);
 
 /// Eliminated landmarks as a factor on the poses from which their body was seen. It knows nothing but motions relative
 /// to the last frame, D_k = T_cam(k)_body T_cam(last)_body^-1, and so stays what it is where everything moves as one:
-///   e_k = log(D_k D_k(linearized)^-1),  cost = [e; offset; 1]' system [e; offset; 1]
+///   e_k = log(D_k D_k(linearized)^-1),  cost = [S e; offset; 1]' system [S e; offset; 1]
+/// where S makes steps of the poses of them.
 class BundleFactor final : public Factor {
  public:
-  /// What the poses of the frames are: the camera's in the world, in which the landmarks rest, or the body's seen from
-  /// the camera.
-  enum class Poses { kWorldCam, kCamBody };
+  BundleFactor(std::vector<VariableId> poses, VariableId offset, EliminatedLandmarks landmarks);
 
-  BundleFactor(Poses kind, std::vector<VariableId> poses, VariableId offset, EliminatedLandmarks landmarks);
-
-  /// Fills the lower triangle.
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
   void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const override;
 
@@ -65,19 +64,21 @@ class BundleFactor final : public Factor {
   const EliminatedLandmarks& landmarks() const { return landmarks_; }
 
  private:
-  /// Motions relative to the last frame against those at the linearization, and how they change with right
-  /// perturbations of the poses:
+  static double offset_px(std::span<const Value* const> values);
+
+  /// Motions relative to the last frame against those at the linearization, and how they change with steps of the
+  /// poses:
   ///   d(e_k) = J_k (d_k - J_last_k d_last)
   struct Displacement {
-    Eigen::VectorXd e;  // [log(D_k D_k(linearized)^-1) of each frame but the last; 0; offset]
+    Eigen::VectorXd e;  // [S log(D_k D_k(linearized)^-1) of each frame but the last; 0; offset]
     std::vector<Matrix6d> J, J_last;
   };
-  Displacement displacement(std::span<const Value* const> values) const;
+  bool isLinearizedAt(std::span<const SE3> T_cam_body, double offset_px) const;
+  Displacement displacement(std::span<const SE3> T_cam_body, double offset_px) const;
   /// [g; c] in displacements.
   Eigen::VectorXd gradientAt(const Eigen::VectorXd& e) const;
   void fillPoses(const Displacement& d, Eigen::Ref<Eigen::MatrixXd> term) const;
 
-  Poses kind_;
   int frames_;
   EliminatedLandmarks landmarks_;
   std::vector<SE3> D_inverse_;  // of D at the linearization

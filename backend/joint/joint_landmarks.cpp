@@ -96,7 +96,7 @@ std::optional<FactorId> JointGraph::alignNewest() {
   const FrameIndex index(tracks, [&](FrameId frame) { return frames_.contains(frame); });
   std::vector<SE3> T_cam_body;
   for (const FrameId frame : index.frames()) T_cam_body.push_back(solver_.pose(frames_.at(frame).x).inverse());
-  LandmarkFit fit(camera_, params_.static_noise, T_cam_body, offset_px());
+  LandmarkFit fit(camera_, params_.static_noise, FramePose::kWorldCam, T_cam_body, offset_px());
   std::vector<LandmarkView> earlier;
   std::vector<ViewOfKnown> views;
   for (LandmarkTrack* track : tracks) {
@@ -113,9 +113,8 @@ std::optional<FactorId> JointGraph::alignNewest() {
   if (static_cast<double>(views.size()) < kKnownShare * static_cast<double>(tracks.size())) return std::nullopt;
   std::vector<VariableId> poses{before.x, frames_.rbegin()->second.x};
   const std::array T_cam_world{solver_.pose(poses[0]).inverse(), T_cam_body.back()};
-  return solver_.addFactor(
-      std::make_unique<BundleFactor>(BundleFactor::Poses::kWorldCam, std::move(poses), offset_,
-                                     alignToKnown(camera_, params_.static_noise, views, T_cam_world, offset_px())));
+  return solver_.addFactor(std::make_unique<BundleFactor>(
+      std::move(poses), offset_, alignToKnown(camera_, params_.static_noise, views, T_cam_world, offset_px())));
 }
 
 /// The factor over the tracks that go on, and over those that ended lately, is made anew.
@@ -176,12 +175,11 @@ std::optional<FactorId> JointGraph::addBundle(const std::vector<LandmarkTrack*>&
     poses.push_back(object ? object->records.at(frame).c : frames_.at(frame).x);
     T_cam_body.push_back(object ? solver_.pose(poses.back()) : solver_.pose(poses.back()).inverse());
   }
-  EliminatedLandmarks eliminated = eliminateLandmarks(camera_, object ? params_.object_noise : params_.static_noise,
-                                                      landmarks, std::move(T_cam_body), offset_px());
+  EliminatedLandmarks eliminated =
+      eliminateLandmarks(camera_, object ? params_.object_noise : params_.static_noise, landmarks,
+                         object ? FramePose::kCamBody : FramePose::kWorldCam, std::move(T_cam_body), offset_px());
   for (std::size_t i = 0; i < landmark_tracks.size(); ++i) landmark_tracks[i]->estimate = eliminated.estimates[i];
-  return solver_.addFactor(
-      std::make_unique<BundleFactor>(object ? BundleFactor::Poses::kCamBody : BundleFactor::Poses::kWorldCam,
-                                     std::move(poses), offset_, std::move(eliminated)));
+  return solver_.addFactor(std::make_unique<BundleFactor>(std::move(poses), offset_, std::move(eliminated)));
 }
 
 void JointGraph::holdOffset() { setOffsetPrior(kHeldSigma_px); }

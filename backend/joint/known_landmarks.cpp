@@ -16,9 +16,10 @@ struct Alignment {
   Eigen::Vector3d r;
 };
 
-/// Only the earlier pose is displaced, as motions count relative to the last: p_last = T_last_first exp(-e) p_first.
-std::optional<Alignment> align(const StereoCamera& camera, const ViewOfKnown& view, const SE3& T_last_first,
-                               double offset_px) {
+/// By a step of the earlier pose in the world.
+std::optional<Alignment> align(const StereoCamera& camera, const ViewOfKnown& view,
+                               const std::array<SE3, 2>& T_cam_world, double offset_px) {
+  const SE3 T_last_first = T_cam_world[1] * T_cam_world[0].inverse();
   const Eigen::Vector3d uvd_px = view.landmark.unknowns.head<3>();
   if (!(uvd_px.z() > 0)) return std::nullopt;
   const Eigen::Vector3d p_first = camera.triangulate(uvd_px), p_last = T_last_first * p_first;
@@ -33,8 +34,8 @@ std::optional<Alignment> align(const StereoCamera& camera, const ViewOfKnown& vi
   Eigen::Matrix<double, 3, 4> B;
   B.leftCols<3>().noalias() = by_point * camera.triangulationJacobian(uvd_px);
   B.col(3) << 0, 0, -view.inverse_sigma.z();
-  a.J.leftCols<3>() = -by_point;
-  a.J.rightCols<3>().noalias() = by_point * hat(p_first);
+  a.J.leftCols<3>().noalias() = by_point * T_cam_world[0].rotation();
+  a.J.rightCols<3>().noalias() = -a.J.leftCols<3>() * hat(T_cam_world[0].rotation().transpose() * p_first);
   const Eigen::Matrix3d S = Eigen::Matrix3d::Identity() + B * (view.landmark.covariance * B.transpose());
   const Eigen::LLT<Eigen::Matrix3d> llt(S);
   llt.matrixL().solveInPlace(a.J);
@@ -45,28 +46,32 @@ std::optional<Alignment> align(const StereoCamera& camera, const ViewOfKnown& vi
 }  // namespace
 
 EliminatedLandmarks alignToKnown(const StereoCamera& camera, const LandmarkNoise& noise,
-                                 std::span<const ViewOfKnown> views, const std::array<SE3, 2>& T_cam_body,
+                                 std::span<const ViewOfKnown> views, const std::array<SE3, 2>& T_cam_world,
                                  double offset_px) {
-  const SE3 T_last_first = T_cam_body[1] * T_cam_body[0].inverse();
   Matrix6d H = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
   double c = 0;
   for (const ViewOfKnown& view : views) {
-    const auto a = align(camera, view, T_last_first, offset_px);
+    const auto a = align(camera, view, T_cam_world, offset_px);
     if (!a) continue;
     const double weight = robustWeight(noise.loss, a->r.norm(), noise.loss_scale);
     H.noalias() += weight * (a->J.transpose() * a->J);
     g.noalias() += weight * (a->J.transpose() * a->r);
     c += weight * a->r.squaredNorm();
   }
-  EliminatedLandmarks result{.T_cam_body = {T_cam_body[0], T_cam_body[1]},
+  EliminatedLandmarks result{.pose = FramePose::kWorldCam,
+                             .T_cam_body = {T_cam_world[0], T_cam_world[1]},
                              .offset_px = offset_px,
                              .system = Eigen::MatrixXd::Zero(kColumns, kColumns),
                              .levels = {},
                              .estimates = {}};
-  result.system.topLeftCorner<6, 6>() = H;
-  result.system.topRightCorner<6, 1>() = g;
-  result.system.bottomLeftCorner<1, 6>() = g.transpose();
+  // What a step of the later pose does, one of the earlier undoes.
+  Eigen::Matrix<double, 6, 12> by_both;
+  by_both << Matrix6d::Identity(), -Matrix6d::Identity();
+  by_both.topRightCorner<3, 3>() = hat(T_cam_world[0].inverse().translation() - T_cam_world[1].inverse().translation());
+  result.system.topLeftCorner<12, 12>() = by_both.transpose() * H * by_both;
+  result.system.topRightCorner<12, 1>() = by_both.transpose() * g;
+  result.system.bottomLeftCorner<1, 12>() = g.transpose() * by_both;
   result.system(kColumns - 1, kColumns - 1) = c;
   return result;
 }

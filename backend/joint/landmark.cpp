@@ -22,6 +22,9 @@ struct Lanes3 {
   Vec x, y, z;
 };
 Lanes3 operator*(const Lanes3& a, const Lanes3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+Lanes3 cross(const Lanes3& a, const Lanes3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 
 /// Up to four views with their poses; lanes without one repeat the last.
 class ViewLanes {
@@ -48,6 +51,12 @@ class ViewLanes {
   Lanes3 moved(const Eigen::Vector3d& p) const {
     const Lanes3 turned = rotated(p);
     return {turned.x + pose_[9], turned.y + pose_[10], turned.z + pose_[11]};
+  }
+
+  /// From the camera's axes to the body's.
+  Lanes3 turnedBack(const Lanes3& v) const {
+    return {(pose_[0] * v.x + pose_[1] * v.y) + pose_[2] * v.z, (pose_[3] * v.x + pose_[4] * v.y) + pose_[5] * v.z,
+            (pose_[6] * v.x + pose_[7] * v.y) + pose_[8] * v.z};
   }
 
   Lanes3 uvd_px, inverse_sigma;
@@ -78,6 +87,34 @@ void store(std::array<Vec, 4> numbers, LinearView* linear, const Place& place) {
   for (int i = 0; i < kLanes; ++i) lanes::store(place(linear[i]), numbers[i]);
 }
 
+/// How a number that changes with a point seen from the camera changes with steps of the frame's pose.
+class PoseSteps {
+ public:
+  PoseSteps(const ViewLanes& view, FramePose pose, const Eigen::Vector3d& p_body, const Lanes3& p_cam)
+      : view_(view),
+        moves_camera_(pose == FramePose::kWorldCam),
+        lever_(moves_camera_ ? view.turnedBack(p_cam) : view.rotated(p_body)) {}
+
+  /// By the pose's origin, and by its turn about that.
+  std::array<Lanes3, 2> operator()(const Lanes3& by_p_cam) const {
+    if (!moves_camera_) return {by_p_cam, cross(lever_, by_p_cam)};
+    const Lanes3 m = view_.turnedBack(by_p_cam), by_origin{-m.x, -m.y, -m.z};
+    return {by_origin, cross(lever_, by_origin)};
+  }
+
+ private:
+  const ViewLanes& view_;
+  bool moves_camera_;
+  Lanes3 lever_;  // from the pose's origin to the point, in the axes of its steps
+};
+
+/// A row of J: by the steps of the pose, and what is right of that.
+void storeByPose(const std::array<Lanes3, 2>& by_steps, const std::array<Vec, 2>& rest, LinearView* linear, int row) {
+  const auto& [origin, turn] = by_steps;
+  store({origin.x, origin.y, origin.z, turn.x}, linear, jRow(row));
+  store({turn.y, turn.z, rest[0], rest[1]}, linear, jRow(row, 4));
+}
+
 /// V += B' B, g += B' r.
 void addNormalEquations(std::span<const LinearView> views, Matrix4d& V, Vector4d& g) {
   Vec sum = lanes::load(g.data());
@@ -90,9 +127,14 @@ void addNormalEquations(std::span<const LinearView> views, Matrix4d& V, Vector4d
 
 }  // namespace
 
-LandmarkFit::LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise, std::span<const SE3> T_cam_body,
-                         double offset_px)
-    : camera_(camera), noise_(noise), T_cam_body_(T_cam_body), offset_px_(offset_px), stride_(T_cam_body.size()) {
+LandmarkFit::LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise, FramePose pose,
+                         std::span<const SE3> T_cam_body, double offset_px)
+    : camera_(camera),
+      noise_(noise),
+      pose_(pose),
+      T_cam_body_(T_cam_body),
+      offset_px_(offset_px),
+      stride_(T_cam_body.size()) {
   poses_.resize(12 * stride_);
   for (std::size_t frame = 0; frame < stride_; ++frame)
     for (int k = 0; k < 12; ++k)
@@ -177,12 +219,10 @@ bool LandmarkFit::linearize(std::span<const LandmarkView> views, const Eigen::Ve
   store({ux * d0.x + uz * d0.z, ux * d1.x + uz * d1.z, ux * d2.x + uz * d2.z, zero}, linear, bRow(0));
   store({vy * d0.y + vz * d0.z, vy * d1.y + vz * d1.z, vy * d2.y + vz * d2.z, zero}, linear, bRow(1));
   store({dz * d0.z, dz * d1.z, dz * d2.z, -whiten.z}, linear, bRow(2));
-  store({ux, zero, uz, uz * p.y}, linear, jRow(0));
-  store({ux * p.z - uz * p.x, -ux * p.y, zero, root_weight * r.x}, linear, jRow(0, 4));
-  store({zero, vy, vz, vz * p.y - vy * p.z}, linear, jRow(1));
-  store({-vz * p.x, vy * p.x, zero, root_weight * r.y}, linear, jRow(1, 4));
-  store({zero, zero, dz, dz * p.y}, linear, jRow(2));
-  store({-dz * p.x, zero, whiten.z, root_weight * r.z}, linear, jRow(2, 4));
+  const PoseSteps steps(view, pose_, p_body, p);
+  storeByPose(steps({ux, zero, uz}), {zero, root_weight * r.x}, linear, 0);
+  storeByPose(steps({zero, vy, vz}), {zero, root_weight * r.y}, linear, 1);
+  storeByPose(steps({zero, zero, dz}), {whiten.z, root_weight * r.z}, linear, 2);
   addNormalEquations(std::span(linear, views.size()), V_, gradient_);
   return true;
 }

@@ -13,6 +13,10 @@
 
 namespace motorcade {
 
+/// What the pose of a frame is as a variable, by whose steps in the world's axes (see `displaced`) observations change:
+/// the camera's in the world, in which the landmarks rest, or the body's seen from the camera.
+enum class FramePose { kWorldCam, kCamBody };
+
 /// One observation of a landmark: `frame` counts the frames of the factor that holds it.
 struct LandmarkView {
   int frame = 0;
@@ -48,8 +52,7 @@ struct KnownLandmark {
 /// An observation's linear model, whitened and weighted. Rows are contiguous: what is summed up are products J' J, J'
 /// B.
 struct LinearView {
-  /// [A D r] with the Jacobians by the pose of the body seen from the camera, perturbed on the left, and by the
-  /// disparity offset, and the residual.
+  /// [A D r] with the Jacobians by a step of the frame's pose and by the disparity offset, and the residual.
   Eigen::Matrix<double, 3, 8, Eigen::RowMajor> J;
   Eigen::Matrix<double, 3, 4, Eigen::RowMajor> B;  // by the landmark
   auto r() const { return J.col(7); }
@@ -59,7 +62,7 @@ struct LinearView {
 class LandmarkFit {
  public:
   /// `T_cam_body` of each frame, in which the landmark rests in the body. The offset is added to all disparities.
-  LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise, std::span<const SE3> T_cam_body,
+  LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise, FramePose pose, std::span<const SE3> T_cam_body,
               double offset_px);
 
   /// Begins from an estimate, if there is one, otherwise from the newest view. False when a view would lie behind its
@@ -84,6 +87,7 @@ class LandmarkFit {
 
   const StereoCamera& camera_;
   LandmarkNoise noise_;
+  FramePose pose_;
   std::span<const SE3> T_cam_body_;
   double offset_px_;
   std::vector<double> poses_;  // T_cam_body of all frames, number by number, so that four are loaded at a time

@@ -45,6 +45,7 @@ class DenseSystem {
       factor.linearize(values, quadratic);
       if (factor.form() == Factor::Form::kJacobian) quadratic = (quadratic.transpose() * quadratic).eval();
       quadratic.triangularView<Eigen::StrictlyUpper>() = quadratic.transpose();
+      if (factor.form() == Factor::Form::kInformation) quadratic = turned(values, quadratic);
       H(at, at) += quadratic.topLeftCorner(n, n);
       g(at) += quadratic.col(n).head(n);
     }
@@ -79,6 +80,19 @@ class DenseSystem {
   const Value& value(VariableId v) const { return values_[v.value]; }
 
  private:
+  /// From steps in the world's axes to right perturbations.
+  static Eigen::MatrixXd turned(std::span<const Value* const> values, const Eigen::MatrixXd& quadratic) {
+    Eigen::MatrixXd by_perturbation = Eigen::MatrixXd::Identity(quadratic.rows(), quadratic.cols());
+    Eigen::Index at = 0;
+    for (const Value* value : values) {
+      if (const auto* pose = std::get_if<SE3>(value))
+        by_perturbation.block<3, 3>(at, at) = by_perturbation.block<3, 3>(at + 3, at + 3) = pose->rotation();
+      if (const auto* pose = std::get_if<SE2>(value)) by_perturbation.block<2, 2>(at, at) = pose->rotation();
+      at += dimension(*value);
+    }
+    return by_perturbation.transpose() * quadratic * by_perturbation;
+  }
+
   const FactorGraph& graph_;
   std::vector<VariableId> variables_;
   std::vector<int> offset_;

@@ -18,8 +18,10 @@ struct Scene {
   std::unique_ptr<BundleFactor> factor;
   LandmarkViews landmarks;
   LandmarkNoise noise;
+  FramePose pose;
 
-  Scene(bool moving, double noise_px, LandmarkNoise landmark_noise, unsigned seed) {
+  Scene(bool moving, double noise_px, LandmarkNoise landmark_noise, unsigned seed)
+      : pose(moving ? FramePose::kCamBody : FramePose::kWorldCam) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal(0, 1);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -53,13 +55,13 @@ struct Scene {
     }
     values.emplace_back(SmallVector(SmallVector::Constant(1, offset_px)));
     factor = std::make_unique<BundleFactor>(
-        moving ? BundleFactor::Poses::kCamBody : BundleFactor::Poses::kWorldCam, variables, VariableId{kFrames},
-        eliminateLandmarks(kCamera, landmark_noise, landmarks, T_cam_body, offset_px));
+        variables, VariableId{kFrames},
+        eliminateLandmarks(kCamera, landmark_noise, landmarks, pose, T_cam_body, offset_px));
     noise = landmark_noise;
   }
   /// Of the landmarks fitted anew at the present values.
   double freshCost() const {
-    const auto fresh = eliminateLandmarks(kCamera, noise, landmarks, factor->posesFromCamera(pointers()),
+    const auto fresh = eliminateLandmarks(kCamera, noise, landmarks, pose, factor->posesFromCamera(pointers()),
                                           std::get<SmallVector>(values.back())[0]);
     return fresh.system(fresh.system.rows() - 1, fresh.system.cols() - 1);
   }
@@ -80,7 +82,7 @@ struct Scene {
       if (coordinate < motorcade::dimension(value)) {
         SmallVector delta = SmallVector::Zero(motorcade::dimension(value));
         delta[coordinate] = step;
-        value = retract(value, delta);
+        value = displaced(value, delta);
         return;
       }
       coordinate -= motorcade::dimension(value);
@@ -119,6 +121,17 @@ TEST_P(BundleFactorOf, TheQuadraticHoldsAwayFromItsLinearization) {
   EXPECT_NEAR(scene.cost(), scene.freshCost(), 0.02 * std::abs(scene.freshCost() - before));
 }
 
+/// At its own linearization the term is copied, all poses' rows; a hair's breadth beside it, it is computed.
+TEST_P(BundleFactorOf, IsTheSystemWhereItWasLinearized) {
+  Scene scene(GetParam(), 0.2, {}, 8);
+  const Eigen::MatrixXd at = scene.linearize();
+  for (int i = 0; i < scene.dimension(); ++i) scene.move(i, i % 2 == 0 ? 2e-8 : -1e-8);
+  const Eigen::MatrixXd beside = scene.linearize();
+  for (int j = 0; j < at.cols(); ++j)
+    for (int i = j; i < at.rows(); ++i)
+      EXPECT_NEAR(at(i, j), beside(i, j), 1e-5 * (1 + std::sqrt(at(i, i) * at(j, j)))) << i << " " << j;
+}
+
 TEST_P(BundleFactorOf, TheGradientAloneIsThatOfTheSystem) {
   Scene scene(GetParam(), 0.2, {}, 5);
   for (int i = 0; i < scene.dimension(); ++i) scene.move(i, 1e-2);
@@ -141,7 +154,7 @@ TEST_P(BundleFactorOf, KnowsNothingOfWhereTheWholeIs) {
 TEST_P(BundleFactorOf, SeesResidualsThatHaveACauseInCommon) {
   Scene scene(GetParam(), 0.1, {}, 6);
   const auto commonShare = [&] {
-    const auto levels = eliminateLandmarks(kCamera, {.loss = RobustLoss::kNone}, scene.landmarks,
+    const auto levels = eliminateLandmarks(kCamera, {.loss = RobustLoss::kNone}, scene.landmarks, scene.pose,
                                            scene.factor->posesFromCamera(scene.pointers()), 0.3)
                             .levels;
     return levels.common_sum / (levels.uv_sum + levels.d_sum);
@@ -158,7 +171,7 @@ Eigen::MatrixXd eliminatedOneByOne(const LandmarkViews& landmarks, const Landmar
                                    const EliminatedLandmarks& at) {
   const auto n = static_cast<Eigen::Index>(6 * at.T_cam_body.size());
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + 2, n + 2);
-  LandmarkFit fit(kCamera, noise, at.T_cam_body, at.offset_px);
+  LandmarkFit fit(kCamera, noise, at.pose, at.T_cam_body, at.offset_px);
   for (int j = 0; j < landmarks.count(); ++j) {
     const auto views = landmarks.of(j);
     if (!fit(views)) continue;
@@ -189,7 +202,7 @@ TEST_P(BundleFactorOf, ManyLandmarksAreEliminatedAsOneByOne) {
       many.first_view.push_back(static_cast<int>(many.views.size()));
     }
   const EliminatedLandmarks& at = scene.factor->landmarks();
-  const auto eliminated = eliminateLandmarks(kCamera, {}, many, at.T_cam_body, at.offset_px);
+  const auto eliminated = eliminateLandmarks(kCamera, {}, many, at.pose, at.T_cam_body, at.offset_px);
   const Eigen::MatrixXd expected = eliminatedOneByOne(many, {}, at);
   EXPECT_LT((eliminated.system - expected).norm(), 1e-10 * expected.norm());
 }
@@ -201,7 +214,7 @@ TEST_P(BundleFactorOf, LandmarksThatWereFoundBeforeAreFoundBetter) {
   const EliminatedLandmarks& at = scene.factor->landmarks();
   std::vector<Eigen::MatrixXd> systems;
   for (int time = 0; time < 40; ++time) {
-    auto eliminated = eliminateLandmarks(kCamera, {}, landmarks, at.T_cam_body, at.offset_px);
+    auto eliminated = eliminateLandmarks(kCamera, {}, landmarks, at.pose, at.T_cam_body, at.offset_px);
     systems.push_back(std::move(eliminated.system));
     landmarks.before = std::move(eliminated.estimates);
   }

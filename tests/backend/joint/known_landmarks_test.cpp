@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
+#include "backend/graph/variable.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace motorcade {
@@ -20,7 +21,7 @@ constexpr double kOffset_px = 0.3;
 
 /// Points at rest that a camera on its way sees twice, without noise.
 struct Scene {
-  std::array<SE3, 2> T_cam_body;
+  std::array<SE3, 2> T_cam_world;
   std::vector<std::array<Eigen::Vector3d, 2>> uvd_px;
 
   explicit Scene(int points = 30) {
@@ -28,7 +29,7 @@ struct Scene {
     std::uniform_real_distribution<double> uniform(-1, 1);
     const SE3 x_first(expSO3({0.1, 0.2, 0.3}), {5, 1, 2});
     const SE3 motion = SE3::exp((Vector6d() << 0.1, 0.02, 1.1, 0.01, 0.02, 0.005).finished());
-    T_cam_body = {x_first.inverse(), (x_first * motion).inverse()};
+    T_cam_world = {x_first.inverse(), (x_first * motion).inverse()};
     for (int j = 0; j < points; ++j) {
       const Eigen::Vector3d p_first(6 * uniform(random), 2 * uniform(random), 16 + 8 * uniform(random));
       uvd_px.push_back({*kCamera.project(p_first), *kCamera.project(motion.inverse() * p_first)});
@@ -37,7 +38,7 @@ struct Scene {
   }
   std::vector<ViewOfKnown> views() const {
     std::vector<ViewOfKnown> views;
-    LandmarkFit fit(kCamera, kNoise, T_cam_body, kOffset_px);
+    LandmarkFit fit(kCamera, kNoise, FramePose::kWorldCam, T_cam_world, kOffset_px);
     for (const auto& [first, last] : uvd_px) {
       const LandmarkView view{0, first, kInverseSigma};
       EXPECT_TRUE(fit(std::span(&view, 1)));
@@ -58,30 +59,31 @@ TEST(KnownLandmarks, TellWhatTheEliminationOfTwoViewsDoes) {
     for (int k = 0; k < 2; ++k) landmarks.views.push_back({k, views[k], kInverseSigma});
     landmarks.first_view.push_back(static_cast<int>(landmarks.views.size()));
   }
-  const auto eliminated =
-      eliminateLandmarks(kCamera, kNoise, landmarks, {scene.T_cam_body[0], scene.T_cam_body[1]}, kOffset_px);
+  const auto eliminated = eliminateLandmarks(kCamera, kNoise, landmarks, FramePose::kWorldCam,
+                                             {scene.T_cam_world[0], scene.T_cam_world[1]}, kOffset_px);
   const Matrix6d H = eliminated.system.topLeftCorner<6, 6>(),
-                 of_known = scene.align(scene.T_cam_body).system.topLeftCorner<6, 6>();
+                 of_known = scene.align(scene.T_cam_world).system.topLeftCorner<6, 6>();
   EXPECT_THAT(Matrix6d(of_known / H.norm()), IsNear(Matrix6d(H / H.norm()), 1e-9));
 }
 
 TEST(KnownLandmarks, GiveBackTheMotion) {
   const Scene scene;
   const Vector6d displacement = (Vector6d() << 0.02, -0.01, 0.05, 0.002, -0.001, 0.003).finished();
-  const auto aligned = scene.align({SE3::exp(-displacement) * scene.T_cam_body[0], scene.T_cam_body[1]});
+  const Value x_first = scene.T_cam_world[0].inverse();
+  const auto aligned = scene.align({std::get<SE3>(displaced(x_first, -displacement)).inverse(), scene.T_cam_world[1]});
   const Matrix6d H = aligned.system.topLeftCorner<6, 6>();
   const Vector6d g = aligned.system.topRightCorner<6, 1>(), step = -H.llt().solve(g);
   EXPECT_THAT(step, IsNear(displacement, 3e-3));
   EXPECT_LT((step - displacement).norm(), 0.1 * displacement.norm());
-  EXPECT_LT(scene.align(scene.T_cam_body).system.rightCols<1>().norm(), 1e-6);
+  EXPECT_LT(scene.align(scene.T_cam_world).system.rightCols<1>().norm(), 1e-6);
 }
 
 TEST(KnownLandmarks, CountLessWhereTheyAreKnownLess) {
   const Scene scene;
   std::vector<ViewOfKnown> sure = scene.views();
   for (ViewOfKnown& view : sure) view.landmark.covariance *= 0.1;
-  const Matrix6d H = scene.align(scene.T_cam_body).system.topLeftCorner<6, 6>();
-  const Matrix6d more = alignToKnown(kCamera, kNoise, sure, scene.T_cam_body, kOffset_px).system.topLeftCorner<6, 6>();
+  const Matrix6d H = scene.align(scene.T_cam_world).system.topLeftCorner<6, 6>();
+  const Matrix6d more = alignToKnown(kCamera, kNoise, sure, scene.T_cam_world, kOffset_px).system.topLeftCorner<6, 6>();
   EXPECT_GT((more - H).llt().matrixL().toDenseMatrix().diagonal().minCoeff(), 0);
   EXPECT_GT(more(2, 2), 2 * H(2, 2));
 }
@@ -89,11 +91,11 @@ TEST(KnownLandmarks, CountLessWhereTheyAreKnownLess) {
 TEST(KnownLandmarks, BehindTheCameraAreLeftOut) {
   const Scene scene(1);
   std::vector<ViewOfKnown> views = scene.views();
-  const SE3 beyond = SE3(Eigen::Matrix3d::Identity(), {0, 0, -100}) * scene.T_cam_body[1];
-  const auto behind = alignToKnown(kCamera, kNoise, views, {scene.T_cam_body[0], beyond}, kOffset_px);
+  const SE3 beyond = SE3(Eigen::Matrix3d::Identity(), {0, 0, -100}) * scene.T_cam_world[1];
+  const auto behind = alignToKnown(kCamera, kNoise, views, {scene.T_cam_world[0], beyond}, kOffset_px);
   EXPECT_EQ(behind.system.norm(), 0);
   views[0].landmark.unknowns[2] = 0;
-  EXPECT_EQ(alignToKnown(kCamera, kNoise, views, scene.T_cam_body, kOffset_px).system.norm(), 0);
+  EXPECT_EQ(alignToKnown(kCamera, kNoise, views, scene.T_cam_world, kOffset_px).system.norm(), 0);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ EliminatedLandmarks landmarksAt(int k, test::Noise& noise) {
     }
     landmarks.first_view.push_back(static_cast<int>(landmarks.views.size()));
   }
-  return eliminateLandmarks(kCamera, {}, landmarks, std::move(T_cam_world), 0);
+  return eliminateLandmarks(kCamera, {}, landmarks, FramePose::kWorldCam, std::move(T_cam_world), 0);
 }
 
 /// The models of a few quadratics are off; others share nothing with them but a vector, in which they are right.
@@ -57,8 +57,8 @@ TEST(FluidRelinearization, LeavesQuadraticsAloneThatShareAVectorOnly) {
     if (k == 1)
       solver.addFactor(std::make_unique<MotionFactor>(std::array{x[0], x[1]}, MotionModel{cameraAt(1)}, sure));
     if (k >= kSeenIn - 1)
-      solver.addFactor(std::make_unique<BundleFactor>(
-          BundleFactor::Poses::kWorldCam, std::vector(x.end() - kSeenIn, x.end()), offset, landmarksAt(k, noise)));
+      solver.addFactor(
+          std::make_unique<BundleFactor>(std::vector(x.end() - kSeenIn, x.end()), offset, landmarksAt(k, noise)));
     solver.update();
   }
   const SE3 elsewhere = cameraAt(kPoses - 2).inverse() * cameraAt(kPoses - 1) * SE3(expSO3({0, 0.1, 0}), {0.6, 0, 0});
