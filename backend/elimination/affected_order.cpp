@@ -10,16 +10,20 @@ constexpr int kBands = 5;  // at distances 0, 1, 2 to 3, 4 to 7, 8 to 15; what i
 constexpr int kFarthest = (1 << (kBands - 1)) - 1;
 /// What so many factors share (an offset of all measurements) makes no two of them neighbors.
 constexpr std::size_t kShared = 100;
+/// What so many factors share couples what is eliminated after it: it comes last, too.
+constexpr std::size_t kCommon = 20;
 
 }  // namespace
 
 std::span<const VariableId> AffectedOrder::operator()(std::span<const VariableId> variables,
                                                       std::span<const FactorId> factors, std::span<const int> orphans,
-                                                      std::span<const VariableId> touched) {
+                                                      std::span<const VariableId> touched,
+                                                      std::span<const VariableId> newest) {
   variables_ = variables;
   column_of_.resize(graph_.slots(), 0);
   for (std::size_t i = 0; i < variables.size(); ++i) column_of_[variables[i].value] = static_cast<int>(i);
   bandByDistance(touched);
+  putLast(touched, newest);
   ordering_.begin(static_cast<int>(variables.size()));
   for (const FactorId f : factors) addRow(graph_.factor(f).variables());
   for (const int orphan : orphans) addRow(tree_[orphan].separator());
@@ -31,7 +35,8 @@ std::span<const VariableId> AffectedOrder::operator()(std::span<const VariableId
 /// Breadth first from the touched variables through the whole graph, but not through what very many factors share,
 /// until all variables at hand are reached.
 void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
-  const int last = static_cast<int>(variables_.size()) - 1;  // CCOLAMD wants groups below the number of columns
+  const int last = static_cast<int>(variables_.size()) - 1;
+  const int last_group = std::max(last - 1, 0);  // CCOLAMD wants groups below the number of columns; one more follows
   group_.assign(variables_.size(), 0);
   reached_.reset(graph_.slots());
   distance_.resize(graph_.slots());
@@ -43,7 +48,7 @@ void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
     queue_.push_back(v);
     const int column = column_of_[v.value];
     if (column > last || variables_[column] != v) return;
-    group_[column] = std::min(kBands - static_cast<int>(std::bit_width(static_cast<unsigned>(distance))), last);
+    group_[column] = std::min(kBands - static_cast<int>(std::bit_width(static_cast<unsigned>(distance))), last_group);
     --missing;
   };
   for (const VariableId v : touched) reach(v, 0);
@@ -54,6 +59,15 @@ void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
     for (const FactorId f : graph_[queue_[i]].factors)
       for (const VariableId neighbor : graph_.factor(f).variables()) reach(neighbor, distance + 1);
   }
+}
+
+void AffectedOrder::putLast(std::span<const VariableId> touched, std::span<const VariableId> newest) {
+  const int columns = static_cast<int>(variables_.size()), group = std::min(kBands + 1, columns - 1);
+  const auto isCommon = [&](VariableId v) { return graph_[v].factors.size() > kCommon; };
+  for (const VariableId v : newest) group_[column_of_[v.value]] = group;
+  for (const VariableId v : touched)
+    if (const int column = column_of_[v.value]; isCommon(v) && column < columns && variables_[column] == v)
+      group_[column] = group;
 }
 
 void AffectedOrder::addRow(std::span<const VariableId> variables) {

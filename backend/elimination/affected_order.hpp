@@ -16,17 +16,21 @@ namespace motorcade {
 /// The next measurements will touch variables near those that were touched now (a vehicle drives on, and observes what
 /// lies close to what it observed). What stands near the root is cheap to touch, so the order goes by bands of
 /// distance in the factor graph, each twice as wide as the one before; within a band, CCOLAMD orders for little fill.
+/// The newest variables come last of all: their covariances, which everybody asks for, then cost next to nothing. With
+/// them comes what very many factors share.
 class AffectedOrder {
  public:
   AffectedOrder(const FactorGraph& graph, const EliminationTree& tree) : graph_(graph), tree_(tree) {}
 
-  /// `factors` and the separators of `orphans` are the terms over the `variables`. The result lasts until the next
-  /// call.
+  /// `factors` and the separators of `orphans` are the terms over the `variables`; the `newest` are among the touched.
+  /// The result lasts until the next call.
   std::span<const VariableId> operator()(std::span<const VariableId> variables, std::span<const FactorId> factors,
-                                         std::span<const int> orphans, std::span<const VariableId> touched);
+                                         std::span<const int> orphans, std::span<const VariableId> touched,
+                                         std::span<const VariableId> newest = {});
 
  private:
   void bandByDistance(std::span<const VariableId> touched);
+  void putLast(std::span<const VariableId> touched, std::span<const VariableId> newest);
   void addRow(std::span<const VariableId> variables);
 
   const FactorGraph& graph_;

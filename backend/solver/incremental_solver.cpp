@@ -163,7 +163,7 @@ void IncrementalSolver::rebuildTop() {
   last_ = touched_;
   for (const FactorId f : waiting_.factors())  // so that lifted variables stay where they are
     last_.insert(last_.end(), graph_.factor(f).variables().begin(), graph_.factor(f).variables().end());
-  const auto order = reorder ? reordered_(removed_.variables, removed_.factors, removed_.orphans, last_)
+  const auto order = reorder ? reordered_(removed_.variables, removed_.factors, removed_.orphans, last_, new_variables_)
                              : std::span<const VariableId>(removed_.variables);
   created_.clear();
   tree_.eliminate({.order = order, .boundary = {}, .factors = removed_.factors, .orphans = removed_.orphans}, created_);

@@ -10,21 +10,28 @@ namespace {
 /// The cliques from some variables up to the root, children first, and where their frontal variables stand in a vector
 /// of all their frontal scalars.
 struct Path {
+  struct First {
+    VariableId variable;
+    int row;  // of the variable's first scalar
+  };
   std::vector<int> cliques;
-  std::vector<int> row;  // per variable: its first scalar, -1 for those that are not on the path
+  std::vector<First> first;  // in order of variables
   int rows = 0;
+
+  int rowOf(VariableId v) const { return std::ranges::lower_bound(first, v, {}, &First::variable)->row; }
 };
 
 Path pathFrom(const FactorGraph& graph, const EliminationTree& tree, std::span<const VariableId> variables) {
   std::vector<int> start;
   for (const VariableId v : variables) start.push_back(tree.cliqueOf(v));
-  Path path{.cliques = tree.withAncestors(std::move(start)), .row = std::vector<int>(graph.slots(), -1)};
+  Path path{.cliques = tree.withAncestors(std::move(start)), .first = {}};
   std::ranges::sort(path.cliques, {}, [&](int c) { return tree.sequence(c); });
   for (const int c : path.cliques)
     for (const VariableId v : tree[c].frontalVariables()) {
-      path.row[v.value] = path.rows;
+      path.first.push_back({v, path.rows});
       path.rows += graph.sizeOf(v);
     }
+  std::ranges::sort(path.first, {}, &Path::First::variable);
   return path;
 }
 
@@ -37,7 +44,7 @@ RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::
   RowMajorMatrixXd chosen = RowMajorMatrixXd::Zero(path.rows, columns);
   int column = 0;
   for (const VariableId v : variables) {
-    chosen.block(path.row[v.value], column, graph.sizeOf(v), graph.sizeOf(v)).setIdentity();
+    chosen.block(path.rowOf(v), column, graph.sizeOf(v), graph.sizeOf(v)).setIdentity();
     column += graph.sizeOf(v);
   }
   return chosen;
@@ -47,7 +54,7 @@ RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::
 std::vector<Eigen::Index> rowsOf(const FactorGraph& graph, const Path& path, const Clique& clique) {
   std::vector<Eigen::Index> rows;
   for (const VariableId v : clique.variables)
-    for (int i = 0; i < graph.sizeOf(v); ++i) rows.push_back(path.row[v.value] + i);
+    for (int i = 0, row = path.rowOf(v); i < graph.sizeOf(v); ++i) rows.push_back(row + i);
   return rows;
 }
 

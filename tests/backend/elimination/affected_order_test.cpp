@@ -130,6 +130,19 @@ TEST(AffectedOrder, DistancesDoNotGoThroughWhatVeryManyFactorsShare) {
     EXPECT_GE(bandOf(distance[order[i - 1].value]), bandOf(distance[order[i].value])) << "position " << i;
 }
 
+TEST(AffectedOrder, TheNewestComeLastAndWhatManyFactorsShare) {
+  Scene scene(4, 60);
+  const VariableId shared = scene.world.addVariable(scene.graph);
+  for (const VariableId v : scene.variables) scene.graph.addFactor(scene.world.between(shared, v, true));
+  scene.removed.variables.push_back(shared);
+  scene.removed.factors = scene.graph.factors();
+  const auto v = [&](std::size_t i) { return scene.variables[i]; };
+  const std::vector touched{v(20), v(21), v(40), v(59), shared}, newest{v(21), v(59)};
+  const auto order = scene.affected_order(scene.removed.variables, scene.removed.factors, {}, touched, newest);
+  EXPECT_THAT(order.last(3), testing::UnorderedElementsAre(v(21), v(59), shared));
+  EXPECT_THAT(order.last(5).first(2), testing::UnorderedElementsAre(v(20), v(40)));
+}
+
 TEST(AffectedOrder, DoesNotDependOnCallsBefore) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Scene used(seed, 40), fresh(seed, 40);

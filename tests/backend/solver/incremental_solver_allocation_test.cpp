@@ -28,7 +28,8 @@ namespace {
 
 enum class Leaving { kRetire, kDrop };
 
-/// A window of 20 frames: the oldest leave with what they knew, or without, and a prior takes its place.
+/// A window of 20 frames: the oldest leave with what they knew, or without. Then the newest have priors, so that what
+/// remains is held.
 void leaveWindow(IncrementalSolver& solver, test::MultibodyGraph& graph, Leaving leaving) {
   if (graph.camera().size() <= 20) return;
   const auto oldest = graph.takeOldest();
@@ -37,9 +38,9 @@ void leaveWindow(IncrementalSolver& solver, test::MultibodyGraph& graph, Leaving
     return;
   }
   solver.drop(oldest);
-  std::vector<VariableId> ends{graph.camera().front()};
-  for (const auto& object : graph.objects()) ends.push_back(object.poses.front());
-  for (const VariableId v : ends)
+  std::vector<VariableId> newest{graph.camera().back()};
+  for (const auto& object : graph.objects()) newest.push_back(object.poses.back());
+  for (const VariableId v : newest)
     solver.addFactor(
         std::make_unique<PriorFactor>(std::array{v}, PriorModel{solver.pose(v)}, test::isotropicNoise(0.1, 0.01)));
 }
