@@ -17,6 +17,7 @@ IncrementalSolver::Params solverParams(const JointParams& params) {
           .batch_every_updates = 50,
           .relinearization = {.mismatch_tolerance = params.mismatch_tolerance,
                               .jacobian_drift_sigmas = params.jacobian_drift_sigmas,
+                              .leisurely_rad = 0.01,  // there is no other limit
                               .urgent_flops = std::numeric_limits<double>::infinity(),
                               .polish_flops = std::numeric_limits<double>::infinity()},
           .substitution_tolerance = params.substitution_tolerance,

@@ -6,8 +6,8 @@ namespace motorcade {
 namespace {
 
 constexpr double kComparedShare = 0.25;  // of the tolerance: below it a variable's factors need no look
-constexpr double kLeisurelyShare = 0.2;  // of the turn at which relinearization is urgent
-/// Of the same turn: a Jacobian that drifted is urgent however little its variables turned.
+/// Of the turn at which relinearization is urgent: a Jacobian that drifted is urgent however little its variables
+/// turned.
 constexpr double kDriftedShare = 1.0001;
 /// Of the worst variable's turn: connected variables that turned more are relinearized with it.
 constexpr double kTurnedWithShare = 0.1;
@@ -38,8 +38,7 @@ void FluidRelinearization::compareModels(std::span<const VariableId> moved) {
   staleness_rad_.resize(graph_.slots(), 0.0);
   const double tolerance = params_.mismatch_tolerance * graph_.rmsResidual();
   for (const VariableId v : moved) {
-    if (const double turn = graph_.turnSinceLinearization(v); turn > kLeisurelyShare * params_.relinearize_rad)
-      markStale(v, turn);
+    if (const double turn = graph_.turnSinceLinearization(v); turn > params_.leisurely_rad) markStale(v, turn);
     if (graph_.mismatchBound(v) < kComparedShare * tolerance) continue;
     graph_.markCompared(v);
     for (const FactorId f : graph_[v].factors) {

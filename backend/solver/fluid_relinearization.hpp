@@ -23,10 +23,10 @@ class FluidRelinearization {
     double mismatch_tolerance = 0.05;
     /// Summed mismatch of a factor at which its variables are relinearized.
     double jacobian_drift_sigmas = 0.5;
-    /// Turn of a variable at which it is relinearized as soon as possible; from a fifth of it on, at leisure.
-    double relinearize_rad = 0.05;
+    /// Turn of a variable at which it is relinearized as soon as possible, and from which on at leisure.
+    double relinearize_rad = 0.05, leisurely_rad = 0.005;
     double urgent_flops = 4e7;  // allowance per step for relinearization as soon as possible
-    double polish_flops = 1e6;  // and at leisure
+    double polish_flops = 2e6;  // and at leisure
   };
   struct Corrections {
     int relinearized_variables = 0, relinearized_factors = 0, corrected_factors = 0;

@@ -27,6 +27,8 @@ void addSolverOptions(CLI::App& app, IncrementalSolver::Params& params) {
   add("--jacobian-drift", params.relinearization.jacobian_drift_sigmas,
       "Summed mismatch of a factor at which its variables are relinearized");
   add("--relinearize", params.relinearization.relinearize_rad, "Turn of a variable at which it is relinearized [rad]");
+  add("--leisurely", params.relinearization.leisurely_rad,
+      "Turn of a variable from which on it is relinearized at leisure [rad]");
   add("--substitution-tolerance", params.substitution_tolerance, "Steps below that do not spread");
   add("--urgent-flops", params.relinearization.urgent_flops,
       "Work per update that goes into relinearization as soon as possible");
@@ -44,6 +46,7 @@ nlohmann::ordered_json jsonOf(const IncrementalSolver::Params& params) {
           {"mismatch_tolerance", params.relinearization.mismatch_tolerance},
           {"jacobian_drift_sigmas", params.relinearization.jacobian_drift_sigmas},
           {"relinearize_rad", params.relinearization.relinearize_rad},
+          {"leisurely_rad", params.relinearization.leisurely_rad},
           {"substitution_tolerance", params.substitution_tolerance},
           {"urgent_flops", params.relinearization.urgent_flops},
           {"polish_flops", params.relinearization.polish_flops},
