@@ -1,6 +1,7 @@
 #include "frontend/shape/census.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "frontend/image/byte_lanes.hpp"
 
@@ -22,41 +23,38 @@ void copyWithBorder(const Image& image, int from, int width, int v, std::uint8_t
 
 }  // namespace
 
-void Census::compute(const Image& image, const PixelWindow& window, bool mirrored, int room) {
+void Census::compute(const Image& image, const PixelWindow& window, int room) {
   room_ = static_cast<std::size_t>(room);
   const std::size_t lanes = static_cast<std::size_t>(window.width + kByteLanes - 1) / kByteLanes * kByteLanes;
   stride_ = lanes + 2 * room_;
   for (auto& plane : planes_) plane.resize(stride_ * window.height);
   texture_.resize(stride_ * window.height);
-  around_.resize(kSide_px * (lanes + 2 * kHalf_px));
-  for (int v = 0; v < window.height; ++v) {
-    computeRow(image, window, v);
-    if (!mirrored) continue;
-    for (auto& plane : planes_) std::reverse(plane.data() + at(v), plane.data() + at(v) + window.width);
-  }
+  stride_around_ = lanes + 2 * kHalf_px;
+  around_.resize((window.height + 2 * kHalf_px) * stride_around_);
+  for (int y = 0; y < window.height + 2 * kHalf_px; ++y)
+    copyWithBorder(image, window.u0, window.width, window.v0 + y - kHalf_px, around_.data() + y * stride_around_);
+  for (int v = 0; v < window.height; ++v)
+    for (int u = 0; u < window.width; u += kByteLanes) computeLanes(u, v);
 }
 
-void Census::computeRow(const Image& image, const PixelWindow& window, int v) {
-  const std::size_t stride = around_.size() / kSide_px;
-  for (int y = 0; y < kSide_px; ++y)
-    copyWithBorder(image, window.u0, window.width, window.v0 + v + y - kHalf_px, around_.data() + y * stride);
-  for (int u = 0; u < window.width; u += kByteLanes) {
-    const std::uint8_t* corner = around_.data() + u;
-    const Bytes middle = loadBytes(corner + kHalf_px * stride + kHalf_px);
-    std::array<Bytes, kBytes> bits{};
-    Bytes least = middle, most = middle;
-    for (int y = 0, bit = 0; y < kSide_px; ++y)
-      for (int x = 0; x < kSide_px; ++x) {
-        const Bytes pixel = loadBytes(corner + y * stride + x);
-        if (x % 2 == 0 && y % 2 == 0) least = lesser(least, pixel), most = greater(most, pixel);
-        if (x == kHalf_px && y == kHalf_px) continue;
-        bits[bit / kBitsPerByte] |=
-            Bytes(pixel < middle) & allBytes(static_cast<std::uint8_t>(1 << bit % kBitsPerByte));
-        ++bit;
-      }
-    for (int byte = 0; byte < kBytes; ++byte) storeBytes(planes_[byte].data() + at(v) + u, bits[byte]);
-    storeBytes(texture_.data() + at(v) + u, most - least);
-  }
+void Census::computeLanes(int u, int v) {
+  const std::uint8_t* corner = around_.data() + v * stride_around_ + u;
+  const Bytes middle = loadBytes(corner + kHalf_px * stride_around_ + kHalf_px);
+  std::array<Bytes, kBytes> not_darker{};
+  Bytes least = middle, most = middle;
+  const auto compare = [&]<int kPixel>() {
+    constexpr int kX = kPixel % kSide_px, kY = kPixel / kSide_px, kMiddle = kSide_px * kSide_px / 2;
+    constexpr int kBit = kPixel < kMiddle ? kPixel : kPixel - 1;
+    if constexpr (kPixel == kMiddle) return;
+    const Bytes pixel = loadBytes(corner + kY * stride_around_ + kX);
+    if constexpr (kX % 2 == 0 && kY % 2 == 0) least = lesser(least, pixel), most = greater(most, pixel);
+    not_darker[kBit / kBitsPerByte] |=
+        Bytes(greater(pixel, middle) == pixel) & allBytes(static_cast<std::uint8_t>(1 << kBit % kBitsPerByte));
+  };
+  [&]<int... kPixels>(std::integer_sequence<int, kPixels...>) { (compare.template operator()<kPixels>(), ...); }
+  (std::make_integer_sequence<int, kSide_px * kSide_px>{});
+  for (int byte = 0; byte < kBytes; ++byte) storeBytes(planes_[byte].data() + at(v) + u, ~not_darker[byte]);
+  storeBytes(texture_.data() + at(v) + u, most - least);
 }
 
 }  // namespace motorcade

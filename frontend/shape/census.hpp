@@ -23,19 +23,19 @@ class Census {
  public:
   static constexpr int kBytes = 3, kMostDifferent = 24;
 
-  /// `mirrored`: each row from right to left. `room`: bytes before and after each row that may be read.
-  void compute(const Image& image, const PixelWindow& window, bool mirrored, int room);
+  /// `room`: bytes before and after each row that may be read.
+  void compute(const Image& image, const PixelWindow& window, int room);
   const std::uint8_t* row(int byte, int v) const { return planes_[byte].data() + at(v); }
   /// Brightest minus darkest of every other pixel around [gray levels].
   const std::uint8_t* texture(int v) const { return texture_.data() + at(v); }
 
  private:
   std::size_t at(int v) const { return static_cast<std::size_t>(v) * stride_ + room_; }
-  void computeRow(const Image& image, const PixelWindow& window, int v);
+  void computeLanes(int u, int v);
 
-  std::size_t stride_ = 0, room_ = 0;
+  std::size_t stride_ = 0, room_ = 0, stride_around_ = 0;
   std::array<std::vector<std::uint8_t>, kBytes> planes_;
-  std::vector<std::uint8_t> texture_, around_;
+  std::vector<std::uint8_t> texture_, around_;  // the window's, and its pixels with those around it
 };
 
 }  // namespace motorcade

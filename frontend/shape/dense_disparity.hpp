@@ -5,6 +5,7 @@
 
 #include "core/image.hpp"
 #include "frontend/shape/census.hpp"
+#include "frontend/shape/path_costs.hpp"
 
 namespace motorcade {
 
@@ -29,29 +30,25 @@ class DenseDisparity {
   DisparityMap operator()(const Image& left, const Image& right, PixelWindow window, Range range);
 
  private:
-  /// Through every pixel of the window, in one direction: `count` of them side by side, each of `steps` pixels.
-  struct Paths {
-    int count, steps;
-    std::ptrdiff_t first, between_paths, between_steps;  // pixels of the window
-  };
   void fillCosts();
-  void aggregate();
-  void sumAlong(const Paths& paths);
-  void stepAlongPath(std::uint8_t* path, std::uint8_t* least, std::size_t pixel);
-  void chooseOfRight(int row);
-  void choose(DisparityMap& map);
-  /// In the mirrored rows of the right image, where the least disparity of a column of the window is.
-  int inRight(int column) const { return right_width_ - 1 - (window_.u0 + column - range_.least_px - right_u0_); }
+  void markUnknown(std::uint8_t* costs_of_row, int disparity) const;
+  void choose(int row, DisparityMap& map);
+  void gatherRow(int row);
+  /// Of the right image, the column that a column of the window has at the least disparity, from right_u0_ on.
+  int inRight(int column) const { return window_.u0 + column - range_.least_px - right_u0_; }
+  /// Where a row's sums of a disparity are that belong to the first column of the window.
+  std::ptrdiff_t inSums(int disparity) const { return disparity * stride_of_sums_ + room_; }
 
   PixelWindow window_;
   Range range_{};
-  int right_u0_ = 0, right_width_ = 0;      // columns of the right image that are compared
-  std::size_t lanes_ = 0;                   // bytes per pixel: disparities, and those that make the vectors full
-  Census left_, right_;                     // of the window; of the same rows of the right image, mirrored
-  std::vector<std::uint8_t> costs_, sums_;  // per pixel and disparity
-  std::vector<std::uint8_t> beyond_;        // per disparity: kFar where the range has ended
-  std::vector<std::uint8_t> paths_, least_of_path_;
-  std::vector<std::uint8_t> least_of_right_, best_of_right_;
+  int right_u0_ = 0, right_width_ = 0;  // columns of the right image that are compared
+  std::ptrdiff_t room_ = 0, stride_of_sums_ = 0;
+  Census left_, right_;  // of the window; of the same rows of the right image
+  DisparityBlocks costs_, sums_;
+  PathCosts path_costs_;
+  std::vector<std::uint8_t> sums_of_row_;  // per disparity and column, with room before and after the window
+  std::vector<std::uint8_t> beyond_;       // per column: all bits set where the window has ended
+  std::vector<std::uint8_t> best_, best_of_right_;
 };
 
 }  // namespace motorcade

@@ -27,7 +27,7 @@ TEST_P(CensusOfWindow, SaysWhichPixelsAroundAreDarker) {
   const Image image = texturedImage();
   const PixelWindow window = GetParam();
   Census census;
-  census.compute(image, window, false, 0);
+  census.compute(image, window, 0);
   for (int row = 0; row < window.height; ++row)
     for (int column = 0; column < window.width; ++column) {
       const int u = window.u0 + column, v = window.v0 + row;
@@ -48,18 +48,6 @@ TEST_P(CensusOfWindow, SaysWhichPixelsAroundAreDarker) {
 INSTANTIATE_TEST_SUITE_P(Windows, CensusOfWindow,
                          testing::Values(PixelWindow{0, 0, 10, 5}, PixelWindow{30, 8, 40, 4},
                                          PixelWindow{0, 0, kWidth, kHeight}));
-
-TEST(Census, MirrorsRows) {
-  const Image image = texturedImage();
-  const PixelWindow window{20, 3, 37, 6};
-  Census plain, mirrored;
-  plain.compute(image, window, false, 0);
-  mirrored.compute(image, window, true, 50);
-  for (int byte = 0; byte < Census::kBytes; ++byte)
-    for (int row = 0; row < window.height; ++row)
-      for (int column = 0; column < window.width; ++column)
-        ASSERT_EQ(plain.row(byte, row)[column], mirrored.row(byte, row)[window.width - 1 - column]);
-}
 
 }  // namespace
 }  // namespace motorcade

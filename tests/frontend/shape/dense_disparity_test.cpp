@@ -117,7 +117,7 @@ TEST_P(DisparitiesOfRange, AreThoseOfPlainMatching) {
   EXPECT_GT(known, 0.7 * window.area());
 }
 
-INSTANTIATE_TEST_SUITE_P(Counts, DisparitiesOfRange, testing::Values(14, 32, 45));
+INSTANTIATE_TEST_SUITE_P(Counts, DisparitiesOfRange, testing::Values(1, 14, 32, 45));
 
 TEST(DenseDisparity, TellsARectangleFromTheWallBehindIt) {
   DenseDisparity dense;
