@@ -1,7 +1,13 @@
 #pragma once
 
-#include <optional>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "frontend/image/float_lanes.hpp"
 #include "frontend/shape/outline.hpp"
 
 namespace motorcade {
@@ -9,24 +15,38 @@ namespace motorcade {
 /// Compares the brightness of cells with that of the frame before, where the body's motion and rest take them from.
 class MotionEvidence {
  public:
-  /// `view.before` is known. All three outlive the evidence.
-  MotionEvidence(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera)
-      : disparities_(disparities),
-        view_(view),
-        camera_(camera),
-        T_before_moved_(view.before->T_before_body * view.T_cam_body.inverse()) {}
+  static constexpr int kPixels = 9;  // around a cell that are compared
 
-  /// By how much better a cell rested than moved with the body [gray levels]; zero where the two can hardly be told
-  /// apart. Its disparity is known.
-  float operator()(int column, int row) const;
+  /// `view.before` is known. All three outlive the evidence.
+  MotionEvidence(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera);
+
+  /// By how much better each cell rested than moved with the body [gray levels, added over kPixels]; zero where the two
+  /// can hardly be told apart. The cells are places in the map, and their disparities are known.
+  std::vector<std::int16_t> operator()(std::span<const int> cells) const;
 
  private:
-  std::optional<float> difference(int column, int row, const Eigen::Vector3d& before_uvd_px) const;
+  /// From rays at a depth to the image of the frame before [px of the level].
+  struct Motion {
+    Eigen::Matrix3f R;
+    Eigen::Vector3f t;
+  };
+  using Lanes = std::array<float, kFloatLanes>;
+  struct Places {
+    Floats u, v, depth_m;
+  };
+  Places before(const Motion& motion, const std::array<Floats, 3>& p_cam) const;
+  void compare(std::span<const int> cells, std::int16_t* evidence) const;
+  int difference(int cell, const Places& moved, const Places& rested, int lane) const;
 
-  const LevelDisparities& disparities_;
-  const ObjectView& view_;
-  const StereoCamera& camera_;
-  SE3 T_before_moved_;
+  const DisparityMap& map_;
+  const Image &now_, &before_;
+  float scale_, offset_px_, fb_;
+  Eigen::Vector2f focal_, middle_;  // of the level
+  Motion moved_, rested_;
 };
+
+/// Drops cells around which the brightness rests rather than moves with the body. `view.before` is known.
+void dropResting(Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
+                 const StereoCamera& camera);
 
 }  // namespace motorcade

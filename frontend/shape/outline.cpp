@@ -5,116 +5,17 @@
 #include <cmath>
 #include <utility>
 
+#include "frontend/shape/cuboid_volumes.hpp"
 #include "frontend/shape/motion_evidence.hpp"
-#include "frontend/shape/ray_in_box.hpp"
 
 namespace motorcade {
 namespace {
 
-constexpr double kDisparitySigma_px = 0.25;  // of a dense disparity, in pixels of its level
-constexpr double kCoarseSigma_px = 1.2;      // before it is refined
-constexpr double kGrowth_m = 0.6;  // by which an outline may pass the volume that was thought possible, along the road
-constexpr double kSlack_m = 0.2;   // beyond the volume that the cuboid may fill
 constexpr float kConnected_px = 1.0F;             // of the level: between neighbors on one surface
-constexpr double kLeastHeight_m = 0.15;           // above the road, below which a point may be the road's
 constexpr int kFringeLeft = 2, kFringeRight = 1;  // cells
 constexpr double kLeastUsual = 0.7;               // of a piece's cells, so that it is one of the object's
-constexpr std::uint8_t kOutside = 0, kPossible = 1, kUsual = 2;  // in which volume a cell's point lies
-
-constexpr float kLeastDifference = 5;  // gray levels by which rest explains the brightness better
-
-/// Does a point lie in another object's cuboid?
-bool isOthers(const ObjectView& view, const Eigen::Vector3d& p_cam) {
-  return std::ranges::any_of(view.others, [&](const ObjectView::Other& other) {
-    const Eigen::Vector3d p_body = other.T_body_cam * p_cam;
-    return (p_body.array() > other.least.array()).all() && (p_body.array() < other.most.array()).all();
-  });
-}
-
-/// Tells where the points of cells are: in the volume that the cuboid may fill, and in the one that it usually fills.
-class CuboidVolumes {
- public:
-  CuboidVolumes(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera)
-      : disparities_(disparities), view_(view), camera_(camera) {
-    const Eigen::Array3d growth_m(kGrowth_m, kGrowth_m, kSlack_m);
-    least_ = view.box.possible_least.array() - growth_m, most_ = view.box.possible_most.array() + growth_m;
-    usual_least_ = view.box.usual_least.array() - kSlack_m, usual_most_ = view.box.usual_most.array() + kSlack_m;
-    R_body_cam_ = view.T_cam_body.rotation().transpose();
-    origin_ = -R_body_cam_ * view.T_cam_body.translation();
-    boundDisparities();
-  }
-
-  /// kOutside where the disparity is unknown, or wrong by more than `sigma_px` twice over [px of the level].
-  std::uint8_t operator()(int column, int row, double sigma_px) const {
-    const auto disparity_px = disparities_.disparity_px(column, row);
-    if (!disparity_px) return kOutside;
-    const double d = *disparity_px + view_.disparity_offset_px;
-    if (d <= 0 || d < least_px_ || d > most_px_) return kOutside;
-    const double z = camera_.fx_px * camera_.baseline_m / d, slack_m = 2 * z * sigma_px * (1 << disparities_.level) / d;
-    const Eigen::Vector3d ray((disparities_.u_px(column) - camera_.cx_px) / camera_.fx_px,
-                              (disparities_.v_px(row) - camera_.cy_px) / camera_.fy_px, 1);
-    if (view_.ground.heightOf_m(z * ray) < kLeastHeight_m) return kOutside;
-    const Eigen::Vector3d direction = R_body_cam_ * ray;
-    const auto holds = [&](const Interval& within) {
-      return within.begin <= within.end && within.end >= z - slack_m && within.begin <= z + slack_m;
-    };
-    if (!holds(insideOf(least_, most_, origin_, direction)) || isOthers(view_, z * ray)) return kOutside;
-    return holds(insideOf(usual_least_, usual_most_, origin_, direction)) ? kUsual : kPossible;
-  }
-
- private:
-  /// What is nearer than the volume's nearest corner, or farther than its farthest, need not be looked at closely.
-  void boundDisparities() {
-    constexpr double kNear_m = 0.5, kSafety = 2.5;
-    double near_m = 1e9, far_m = kNear_m;
-    for (int corner = 0; corner < 8; ++corner) {
-      const double z = (view_.T_cam_body * cornerOf(least_, most_, corner)).z();
-      near_m = std::min(near_m, z), far_m = std::max(far_m, z);
-    }
-    const double fb = camera_.fx_px * camera_.baseline_m,
-                 slack_px = kSafety * 2 * kCoarseSigma_px * (1 << disparities_.level);
-    most_px_ = fb / std::max(near_m, kNear_m) + slack_px;
-    least_px_ = fb / far_m - slack_px;
-    if (least_px_ < slack_px) least_px_ = 0;  // so small that it may be anything
-  }
-
-  const LevelDisparities& disparities_;
-  const ObjectView& view_;
-  const StereoCamera& camera_;
-  double least_px_ = 0, most_px_ = 0;
-  Eigen::Vector3d least_, most_, usual_least_, usual_most_, origin_;
-  Eigen::Matrix3d R_body_cam_;
-};
-
-/// Cells around which the brightness rests rather than moves with the body. Every other cell tells, as on a chessboard.
-void dropResting(Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
-                 const StereoCamera& camera) {
-  const int width = outline.window.width, height = outline.window.height;
-  const MotionEvidence rests_rather(disparities, view, camera);
-  std::vector<float> evidence(outline.inside.size(), 0);
-  const auto tells = [&](int column, int row) { return (row + column) % 2 == 0 && outline.at(column, row); };
-  bool any = false;
-  for (int row = 0; row < height; ++row)
-    for (int column = 0; column < width; ++column)
-      if (tells(column, row)) {
-        const float rests = rests_rather(column, row);
-        evidence[static_cast<std::size_t>(row) * width + column] = rests;
-        any |= rests > 0;
-      }
-  if (!any) return;
-  constexpr int kAround = 2;
-  for (int row = 0; row < height; ++row)
-    for (int column = 0; column < width; ++column) {
-      if (!outline.at(column, row)) continue;
-      float sum = 0;
-      int cells = 0;
-      for (int y = std::max(row - kAround, 0); y <= std::min(row + kAround, height - 1); ++y)
-        for (int x = std::max(column - kAround, 0); x <= std::min(column + kAround, width - 1); ++x)
-          sum += evidence[static_cast<std::size_t>(y) * width + x], cells += tells(x, y);
-      if (sum > kLeastDifference * static_cast<float>(cells))
-        outline.inside[static_cast<std::size_t>(row) * width + column] = kOutside;
-    }
-}
+constexpr std::uint8_t kOutside = CuboidVolumes::kOutside, kPossible = CuboidVolumes::kPossible,
+                       kUsual = CuboidVolumes::kUsual;
 
 /// A cell is what most of its 3x3 neighbors and itself are.
 void smooth(Outline& outline) {
@@ -241,12 +142,12 @@ std::vector<int> Outline::samples() const {
 }
 
 std::vector<int> cellsInReach(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera) {
-  const CuboidVolumes volumes(disparities, view, camera);
-  const PixelWindow& window = disparities.map.window;
+  std::vector<std::uint8_t> inside(disparities.map.disparity_px.size(), kPossible);
+  CuboidVolumes(disparities, view, camera).tell(CuboidVolumes::kCoarseSigma_px, inside);
   std::vector<int> cells;
-  for (int row = 0; row < window.height; ++row)
-    for (int column = 0; column < window.width; ++column)
-      if (volumes(column, row, kCoarseSigma_px) != kOutside) cells.push_back(row * window.width + column);
+  cells.reserve(inside.size());
+  for (std::size_t cell = 0; cell < inside.size(); ++cell)
+    if (inside[cell] != kOutside) cells.push_back(static_cast<int>(cell));
   return cells;
 }
 
@@ -254,9 +155,8 @@ Outline findOutline(const LevelDisparities& disparities, std::span<const int> ce
                     const StereoCamera& camera) {
   Outline outline{.window = disparities.map.window, .inside = {}};
   outline.inside.resize(static_cast<std::size_t>(outline.window.area()), kOutside);
-  const CuboidVolumes volumes(disparities, view, camera);
-  for (const int cell : cells)
-    outline.inside[cell] = volumes(cell % outline.window.width, cell / outline.window.width, kDisparitySigma_px);
+  for (const int cell : cells) outline.inside[cell] = kPossible;
+  CuboidVolumes(disparities, view, camera).tell(CuboidVolumes::kDisparitySigma_px, outline.inside);
   if (view.before) dropResting(outline, disparities, view, camera);
   smooth(outline);
   dropPieces(outline, disparities.map);
@@ -267,19 +167,14 @@ Outline findOutline(const LevelDisparities& disparities, std::span<const int> ce
 
 bool movesWithBody(const Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
                    const StereoCamera& camera) {
-  constexpr double kLeastMoving_gray = 2;
+  constexpr int kLeastMoving_gray = 2;
   constexpr int kLeastTold = 30;  // cells of which it can be told
   if (!view.before) return false;
-  const MotionEvidence rests_rather(disparities, view, camera);
-  double sum = 0;
-  int told = 0;
-  for (const int cell : outline.samples()) {
-    const int column = cell % outline.window.width, row = cell / outline.window.width;
-    if (!disparities.disparity_px(column, row)) continue;
-    const float rests = rests_rather(column, row);
-    sum -= rests, told += rests != 0;
-  }
-  return told >= kLeastTold && sum > kLeastMoving_gray * told;
+  std::vector<int> known = outline.samples();
+  std::erase_if(known, [&](int cell) { return disparities.map.disparity_px[cell] == DisparityMap::kNone; });
+  int sum = 0, told = 0;
+  for (const int rests : MotionEvidence(disparities, view, camera)(known)) sum -= rests, told += rests != 0;
+  return told >= kLeastTold && sum > kLeastMoving_gray * MotionEvidence::kPixels * told;
 }
 
 Eigen::Vector3d cornerOf(const Eigen::Vector3d& least, const Eigen::Vector3d& most, int corner) {

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "frontend/image/float_lanes.hpp"
+#include "frontend/shape/outline.hpp"
+
+namespace motorcade {
+
+/// Tells where the points of cells are: in the volume that the cuboid may fill, and in the one that it usually fills.
+/// In single precision, eight cells of a row at a time. The disparities outlive it.
+class CuboidVolumes {
+ public:
+  static constexpr std::uint8_t kOutside = 0, kPossible = 1, kUsual = 2;  // in which volume a cell's point lies
+  static constexpr double kDisparitySigma_px = 0.25;  // of a dense disparity, in pixels of its level
+  static constexpr double kCoarseSigma_px = 1.2;      // before it is refined
+
+  CuboidVolumes(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera);
+
+  /// Of the cells of the window that are not outside, says where they lie. Those are outside whose disparity is
+  /// unknown, or wrong by more than `sigma_px` twice over [px of the level].
+  void tell(double sigma_px, std::span<std::uint8_t> cells) const;
+
+ private:
+  using Points = std::array<Floats, 3>;
+  struct Cuboid {
+    Eigen::Vector3f least, most;
+  };
+  struct Other {
+    Eigen::Matrix3f R_body_cam;
+    Eigen::Vector3f origin;  // of the camera, in the body frame
+    Cuboid cuboid;
+  };
+  void boundDisparities(const ObjectView& view, const StereoCamera& camera);
+  void addOthers(const ObjectView& view, const StereoCamera& camera);
+  FloatMask mayBe(const Cuboid& cuboid, const Points& inverse_directions, const Floats& nearest,
+                  const Floats& farthest) const;
+  FloatMask areOthers(const Points& p_cam) const;
+  void tellLanes(const Points& rays, float slack_per_m, const Floats& disparities_px, std::uint8_t* cells) const;
+
+  const LevelDisparities& disparities_;
+  float scale_, offset_px_, fb_, least_px_ = 0, most_px_ = 0;
+  Eigen::Vector2f first_ray_, ray_step_;  // of the first cell; from a column or row to the next
+  Eigen::Vector3f ground_normal_;
+  float ground_height_m_;
+  Cuboid possible_, usual_;
+  Eigen::Matrix3f R_body_cam_;
+  Eigen::Vector3f origin_;  // of the camera, in the body frame
+  std::vector<Other> others_;
+};
+
+}  // namespace motorcade
