@@ -53,16 +53,30 @@ double logDeterminant(const Eigen::LLT<Matrix6d>& llt) {
   return 2 * sum;
 }
 
+/// What is known of a kind before anything is seen.
+struct Prior {
+  FaceInformation faces;
+  double log_determinant;
+};
+
+const std::array<Prior, kKinds.size()> kPriors = [] {
+  std::array<Prior, kKinds.size()> priors;
+  for (std::size_t i = 0; i < kKinds.size(); ++i) {
+    priors[i].faces = priorOf(kKinds[i]);
+    priors[i].log_determinant = logDeterminant(Eigen::LLT<Matrix6d>(priors[i].faces.H));
+  }
+  return priors;
+}();
+
 struct Posterior {
   BoxEstimate estimate;
   double log_evidence = 0;
 };
 
-Posterior posteriorOf(const KindPrior& kind, const FaceInformation& evidence, double speed_mps) {
-  const FaceInformation prior = priorOf(kind);
-  FaceInformation both = prior;
+Posterior posteriorOf(const KindPrior& kind, const Prior& prior, const FaceInformation& evidence, double speed_mps) {
+  FaceInformation both = prior.faces;
   both.add(evidence);
-  const Eigen::LLT<Matrix6d> llt(both.H), prior_llt(prior.H);
+  const Eigen::LLT<Matrix6d> llt(both.H);
   Posterior posterior;
   posterior.estimate.faces = llt.solve(both.b);
   posterior.estimate.covariance = llt.solve(Matrix6d::Identity());
@@ -70,7 +84,7 @@ Posterior posteriorOf(const KindPrior& kind, const FaceInformation& evidence, do
   const double misfit = both.c - both.b.dot(posterior.estimate.faces);
   const double too_fast = std::max(0.0, speed_mps - kind.top_speed_mps) / kSpeedSlack_mps;
   posterior.log_evidence = logarithm(kind.share) - 0.5 * misfit - 0.5 * too_fast * too_fast +
-                           0.5 * (logDeterminant(prior_llt) - logDeterminant(llt));
+                           0.5 * (prior.log_determinant - logDeterminant(llt));
   return posterior;
 }
 
@@ -113,7 +127,8 @@ ObjectBox BoxEstimate::box() const {
 
 BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps) {
   std::array<Posterior, kKinds.size()> posteriors;
-  for (std::size_t i = 0; i < kKinds.size(); ++i) posteriors[i] = posteriorOf(kKinds[i], evidence, speed_mps);
+  for (std::size_t i = 0; i < kKinds.size(); ++i)
+    posteriors[i] = posteriorOf(kKinds[i], kPriors[i], evidence, speed_mps);
   const auto likeliest = std::ranges::max_element(posteriors, {}, &Posterior::log_evidence);
   double all = 0, same = 0;
   for (const Posterior& p : posteriors) {

@@ -26,20 +26,19 @@ bool isWithin(const TrackedObject& one, const SE3& T_other_one, const TrackedObj
 }
 
 bool areDuplicates(const TrackedObject& older, const TrackedObject& younger) {
-  const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
-  const Eigen::AlignedBox3d own = older.core(SE3{}), other = younger.core(T_older_younger);
   // A younger one that was observed for longer than the older one is lost is another vehicle.
   if (older.life.missed() > 0 && younger.life.observations() > 1) return false;
+  const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
+  const double difference_mps =
+      (older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps()).norm();
+  const double sigma_mps = hypotenuse(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());
+  if (difference_mps >= kMaxSpeedDifference_mps + kSigmas * sigma_mps) return false;
+  const Eigen::AlignedBox3d own = older.core(SE3{}), other = younger.core(T_older_younger);
   const double slack_m = std::min(
       kMaxSlack_m, kSigmas * hypotenuse(older.kinematics.positionSigma_m(), younger.kinematics.positionSigma_m()));
-  const bool one_vehicle = kOrdinaryVehicle.holds(own.merged(other), slack_m);
-  if (!one_vehicle && !isWithin(younger, T_older_younger, older) &&
-      !isWithin(older, T_older_younger.inverse(), younger))
-    return false;
-  const Eigen::Vector3d dv =
-      older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps();
-  const double sigma_mps = hypotenuse(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());
-  return dv.norm() < kMaxSpeedDifference_mps + (one_vehicle ? kSigmas * sigma_mps : 0);
+  if (kOrdinaryVehicle.holds(own.merged(other), slack_m)) return true;
+  return difference_mps < kMaxSpeedDifference_mps &&
+         (isWithin(younger, T_older_younger, older) || isWithin(older, T_older_younger.inverse(), younger));
 }
 
 void takePoints(TrackedObject& older, TrackedObject& younger) {

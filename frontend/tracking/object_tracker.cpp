@@ -180,8 +180,9 @@ void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measuremen
 void ObjectTracker::matchSegments(const SceneMotion& scene) {
   const std::vector<int> object_of = associateObjects(objects_, scene, T_world_cam_);
   std::vector<bool> taken(scene.points.size(), false);
-  for (std::size_t i = 0; i < scene.points.size(); ++i)
-    taken[i] = std::ranges::any_of(objects_, [&](const auto& o) { return o.find(scene.points[i].point) != nullptr; });
+  for (const TrackedObject& object : objects_)
+    for (const BodyPoint& p : object.points)
+      if (const ScenePoint* seen = findPoint(scene, p.point)) taken[seen - scene.points.data()] = true;
 
   for (std::size_t s = 0; s < scene.segments.size(); ++s) {
     if (object_of[s] < 0) continue;
@@ -223,11 +224,15 @@ void ObjectTracker::addOtherPoints(const SceneMotion& scene, FrameMeasurements& 
   for (const ObjectObservation& seen : measurements.objects)
     if (seen.frame == scene.frame)
       for (const PointMeasurement& p : seen.measured) of_objects.push_back(p.point);
+  std::vector<PointId> of_bodies;
+  for (const TrackedObject& object : objects_)
+    for (const BodyPoint& p : object.points) of_bodies.push_back(p.point);
   std::ranges::sort(of_objects);
+  std::ranges::sort(of_bodies);
   for (const ScenePoint& p : scene.points) {
     if (std::ranges::binary_search(of_objects, p.point)) continue;
-    const bool rests = p.ego_inlier && p.label != PointLabel::kMoving &&
-                       std::ranges::none_of(objects_, [&](const auto& o) { return o.find(p.point) != nullptr; });
+    const bool rests =
+        p.ego_inlier && p.label != PointLabel::kMoving && !std::ranges::binary_search(of_bodies, p.point);
     (rests ? measurements.at_rest : measurements.undecided).push_back(measurementOf(p, scene.disparity_offset_px));
   }
 }

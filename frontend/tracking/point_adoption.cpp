@@ -28,15 +28,13 @@ bool isWithinReach(const Eigen::AlignedBox3d& known, const BodyPoint& candidate,
   return (close && kLongestVehicle.holds(grown, slack_m)) || (matched && kOrdinaryVehicle.holds(grown, slack_m));
 }
 
-}  // namespace
-
-/// Its velocity is the body's at that point, and not zero.
-bool PointAdoption::movesWith(const TrackedObject& object, const ScenePoint& point, const SE3& T_world_cam) const {
-  if (!point.flow) return false;
-  return object.velocityChi2(*point.flow, T_world_cam) < kFitsChi2 &&
-         point.flow->static_chi2 - point.flow->moving_chi2 > kNotStaticChi2;
+bool mayMove(const ScenePoint& point) {
+  return point.flow && point.flow->static_chi2 - point.flow->moving_chi2 > kNotStaticChi2;
 }
 
+}  // namespace
+
+/// A point that moves, and with the body's velocity there. What is told by a glance is asked first.
 void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, const Segment* segment,
                                const SE3& T_world_cam, std::vector<bool>& taken) const {
   if (object.kinematics.speed_mps() < kMinSpeed_mps) return;
@@ -44,9 +42,10 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
   std::vector<BodyPoint> adopted;
   const auto consider = [&](int i) {
     const ScenePoint& p = scene.points[i];
-    if (taken[i] || p.ambiguous || p.label == PointLabel::kGround) return;
+    if (taken[i] || p.ambiguous || p.label == PointLabel::kGround || !mayMove(p)) return;
     const BodyPoint candidate = toBody(p, object.T_cam_body, camera_);
-    if (!isWithinReach(known, candidate, segment != nullptr) || !movesWith(object, p, T_world_cam)) return;
+    if (!isWithinReach(known, candidate, segment != nullptr)) return;
+    if (object.velocityChi2(*p.flow, T_world_cam) >= kFitsChi2) return;
     taken[i] = true;
     adopted.push_back(candidate);
   };

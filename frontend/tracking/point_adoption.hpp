@@ -16,8 +16,6 @@ class PointAdoption {
                   std::vector<bool>& taken) const;
 
  private:
-  bool movesWith(const TrackedObject& object, const ScenePoint& point, const SE3& T_world_cam) const;
-
   StereoCamera camera_;
 };
 
