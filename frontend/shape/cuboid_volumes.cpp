@@ -47,7 +47,7 @@ CuboidVolumes::CuboidVolumes(const LevelDisparities& disparities, const ObjectVi
 
 /// What is nearer than the volume's nearest corner, or farther than its farthest, need not be looked at closely.
 void CuboidVolumes::boundDisparities(const ObjectView& view, const StereoCamera& camera) {
-  constexpr double kNear_m = 0.5, kSafety = 2.5;
+  constexpr double kNear_m = 0.5, kSafety = 3;
   double near_m = 1e9, far_m = kNear_m;
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d at = cornerOf(possible_.least.cast<double>(), possible_.most.cast<double>(), corner);

@@ -18,7 +18,11 @@ class CuboidVolumes {
  public:
   static constexpr std::uint8_t kOutside = 0, kPossible = 1, kUsual = 2;  // in which volume a cell's point lies
   static constexpr double kDisparitySigma_px = 0.25;  // of a dense disparity, in pixels of its level
-  static constexpr double kCoarseSigma_px = 1.2;      // before it is refined
+  static constexpr double kCoarseSigma_px = 1;        // before it is refined
+
+  /// Before disparities of a level are refined: what no refinement may carry into a volume need not be refined. That of
+  /// the finest level is refined but once.
+  static constexpr double coarseSigma_px(int level) { return level > 1 ? kCoarseSigma_px : 0.75 * kCoarseSigma_px; }
 
   CuboidVolumes(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera);
 

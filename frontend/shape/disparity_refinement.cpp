@@ -16,59 +16,57 @@ namespace {
 constexpr WindowSize kSize = kHalfSizeWindow;
 constexpr int kPixels = kSize.columns * kSize.rows;
 constexpr int kReach_px = 2, kWindows = 2 * kReach_px + 1;
-static_assert(kSize.columns <= kWordLanes);
+static_assert(kSize.columns + kWindows - 1 <= kWordLanes);
 
-Words maskOfColumns() {
-  Words mask{};
-  for (int i = 0; i < kSize.columns; ++i) mask[i] = -1;
-  return mask;
+/// Ones at the columns of a window that lies so far to the right.
+Words columnsAt(int first) {
+  Words ones{};
+  for (int i = 0; i < kSize.columns; ++i) ones[first + i] = 1;
+  return ones;
 }
 
 /// Compares a window with a few of another image: what `windowDifferences` does for many at a time. The columns of a
 /// window are lanes here, and the lanes beyond them are read, but do not count.
 class NearDifferences {
  public:
-  explicit NearDifferences(const Window& window) : mask_(maskOfColumns()) {
-    for (int r = 0; r < kSize.rows; ++r)
+  explicit NearDifferences(const Window& window) {
+    for (int i = 0; i < kWindows; ++i) columns_[i] = columnsAt(i);
+    Words columns{};
+    for (int r = 0; r < kSize.rows; ++r) {
       rows_[r] = wordPixels(window.image.row(window.v - kSize.rows / 2 + r) + window.u - kSize.columns / 2);
+      columns += rows_[r];
+    }
+    const WordSums sum = products(columns, columns_[0]);
+    sum_ = totals(sum, sum, sum, sum)[0];
   }
 
   /// Of neighboring windows; the first pixel of the first is at `from`.
   std::array<int, kWindows> operator()(const std::uint8_t* from, std::ptrdiff_t stride) const {
-    std::array<Rows, kWindows> differences;
+    Words columns = wordPixels(from);
+    for (int r = 1; r < kSize.rows; ++r) columns += wordPixels(from + r * stride);
     std::array<WordSums, kWindows> sums;
-    for (int i = 0; i < kWindows; ++i) sums[i] = sumOf(differences[i] = rowsOf(from + i, stride));
-    const std::array<int, kWindows> means = totalsOf(sums);
-    for (int i = 0; i < kWindows; ++i) sums[i] = sumOfMagnitudes(differences[i], means[i]);
+    for (int i = 0; i < kWindows; ++i) sums[i] = products(columns, columns_[i]);
+    const std::array<int, kWindows> of_windows = totalsOf(sums);
+    for (int i = 0; i < kWindows; ++i) sums[i] = sumOfMagnitudes(from + i, stride, of_windows[i] - sum_);
     return totalsOf(sums);
   }
 
  private:
-  using Rows = std::array<Words, kSize.rows>;
-  Rows rowsOf(const std::uint8_t* from, std::ptrdiff_t stride) const {
-    Rows rows;
-    for (int r = 0; r < kSize.rows; ++r) rows[r] = wordPixels(from + r * stride) - rows_[r];
-    return rows;
-  }
   static std::array<int, kWindows> totalsOf(const std::array<WordSums, kWindows>& sums) {
     const auto [a, b, c, d] = totals(sums[0], sums[1], sums[2], sums[3]);
     return {a, b, c, d, totals(sums[4], sums[4], sums[4], sums[4])[0]};
   }
-  WordSums sumOf(const Rows& rows) const {
-    Words sum = rows[0];
-    for (int r = 1; r < kSize.rows; ++r) sum += rows[r];
-    return products(sum & mask_, allWords(1));
-  }
-  /// After their mean, of `sum`, is taken out to a whole gray level.
-  WordSums sumOfMagnitudes(const Rows& rows, int sum) const {
+  /// Of differences after their mean is taken out to a whole gray level; `sum`: of the differences.
+  WordSums sumOfMagnitudes(const std::uint8_t* from, std::ptrdiff_t stride, int sum) const {
     const Words mean = allWords((sum * ((1 << 15) / kPixels) + (1 << 14)) >> 15);
-    Words magnitudes = magnitude(rows[0] - mean);
-    for (int r = 1; r < kSize.rows; ++r) magnitudes += magnitude(rows[r] - mean);
-    return products(magnitudes & mask_, allWords(1));
+    Words magnitudes{};
+    for (int r = 0; r < kSize.rows; ++r) magnitudes += magnitude(wordPixels(from + r * stride) - (rows_[r] + mean));
+    return products(magnitudes, columns_[0]);
   }
 
-  Words mask_;
-  Rows rows_;
+  std::array<Words, kWindows> columns_;
+  std::array<Words, kSize.rows> rows_;
+  int sum_ = 0;
 };
 
 }  // namespace

@@ -143,7 +143,7 @@ std::vector<int> Outline::samples() const {
 
 std::vector<int> cellsInReach(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera) {
   std::vector<std::uint8_t> inside(disparities.map.disparity_px.size(), kPossible);
-  CuboidVolumes(disparities, view, camera).tell(CuboidVolumes::kCoarseSigma_px, inside);
+  CuboidVolumes(disparities, view, camera).tell(CuboidVolumes::coarseSigma_px(disparities.level), inside);
   std::vector<int> cells;
   cells.reserve(inside.size());
   for (std::size_t cell = 0; cell < inside.size(); ++cell)
