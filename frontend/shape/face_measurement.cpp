@@ -28,9 +28,14 @@ constexpr int kEdge = 3;  // cells from the window's edge, where the window cuts
 
 class FaceMeasurement {
  public:
-  FaceMeasurement(const LevelDisparities& disparities, const Outline& outline, const ObjectView& view,
-                  const StereoCamera& camera)
-      : disparities_(disparities), outline_(outline), view_(view), camera_(camera) {}
+  FaceMeasurement(const LevelDisparities& disparities, const Outline& outline, std::span<const SurfacePoint> surface,
+                  const ObjectView& view, const StereoCamera& camera)
+      : disparities_(disparities),
+        outline_(outline),
+        surface_(surface),
+        view_(view),
+        camera_(camera),
+        origin_(-view.T_cam_body.rotation().transpose() * view.T_cam_body.translation()) {}
 
   FaceInformation operator()() {
     addRoad();
@@ -48,7 +53,7 @@ class FaceMeasurement {
   struct Surface {
     double points = 0, weight = 0, sum = 0, sum_of_squares = 0;
   };
-  void addSurfacePoint(int column, int row, std::array<Surface, 6>& surfaces);
+  void addSurfacePoint(const SurfacePoint& point, std::array<Surface, 6>& surfaces);
   void addExtent();
   void reachOver(int axis, double least, double most, double sigma_m);
   void addBounds();
@@ -62,8 +67,10 @@ class FaceMeasurement {
 
   const LevelDisparities& disparities_;
   const Outline& outline_;
+  std::span<const SurfacePoint> surface_;
   const ObjectView& view_;
   const StereoCamera& camera_;
+  Eigen::Vector3d origin_;  // of the camera, in the body frame
   FaceInformation information_;
   std::vector<Eigen::Vector3d> sharp_;  // points of the surface that are known sharply, in the body frame
 };
@@ -92,8 +99,7 @@ void FaceMeasurement::reachOver(int axis, double least, double most, double sigm
 
 void FaceMeasurement::addSurfaces() {
   std::array<Surface, 6> surfaces{};
-  for (const int cell : outline_.samples())
-    addSurfacePoint(cell % outline_.window.width, cell / outline_.window.width, surfaces);
+  for (const SurfacePoint& point : surface_) addSurfacePoint(point, surfaces);
   for (std::size_t face = 0; face < surfaces.size(); ++face) {
     const Surface& surface = surfaces[face];
     if (surface.points <= 0) continue;
@@ -118,32 +124,26 @@ void FaceMeasurement::addExtent() {
 }
 
 /// The ray through a cell meets an upright face at the distance that the disparity says.
-void FaceMeasurement::addSurfacePoint(int column, int row, std::array<Surface, 6>& surfaces) {
-  const auto disparity_px = disparities_.disparity_px(column, row);
-  if (!disparity_px) return;
-  const double d = *disparity_px + view_.disparity_offset_px, z = camera_.fx_px * camera_.baseline_m / d;
-  const Eigen::Vector3d ray((disparities_.u_px(column) - camera_.cx_px) / camera_.fx_px,
-                            (disparities_.v_px(row) - camera_.cy_px) / camera_.fy_px, 1);
-  const double height_m = view_.ground.heightOf_m(z * ray);
+void FaceMeasurement::addSurfacePoint(const SurfacePoint& point, std::array<Surface, 6>& surfaces) {
   const BoxFaces& faces = view_.box.faces;
-  if (height_m < kLow_m || height_m > kHigh * (faces[kTop] - faces[kBottom])) return;
-  const Eigen::Matrix3d R_body_cam = view_.T_cam_body.rotation().transpose();
-  const Eigen::Vector3d origin = -R_body_cam * view_.T_cam_body.translation(), direction = R_body_cam * ray;
+  if (point.height_m > kHigh * (faces[kTop] - faces[kBottom])) return;
+  const Eigen::Vector3d& direction = point.direction_body;
+  const double z = point.depth_m, noise_m = point.noise_m;
   int face = -1;
   double entry = 0;
   for (int axis = 0; axis < 2; ++axis) {
     if (std::abs(direction[axis]) < 1e-6) continue;
     const int near = direction[axis] > 0 ? 2 * axis : 2 * axis + 1;
-    const double t = (faces[near] - origin[axis]) / direction[axis];
+    const double t = (faces[near] - origin_[axis]) / direction[axis];
     if (t > entry) entry = t, face = near;
   }
   if (face < 0) return;
-  const double along = direction[face / 2], noise_m = z * kSurfaceSigma_px * (1 << disparities_.level) / d;
-  if (noise_m < kSharp_m) sharp_.push_back(origin + z * direction);
+  const double along = direction[face / 2];
+  if (noise_m < kSharp_m) sharp_.push_back(origin_ + z * direction);
   const double sigma_z = hypotenuse(noise_m, kUneven_m / std::abs(along));
   const double chi = (z - entry) / sigma_z, weight = 1 / (1 + chi * chi / (kGrossChi * kGrossChi));
   if (chi < -kGrossChi) return;  // before the cuboid: of another face, which reaches farther than is believed
-  const double at = origin[face / 2] + z * along, information = weight / (sigma_z * sigma_z * along * along);
+  const double at = origin_[face / 2] + z * along, information = weight / (sigma_z * sigma_z * along * along);
   Surface& surface = surfaces[face];
   surface.points += weight, surface.weight += information;
   surface.sum += information * at, surface.sum_of_squares += information * at * at;
@@ -211,9 +211,31 @@ void FaceMeasurement::addBound(const Bound& bound) {
 
 }  // namespace
 
-FaceInformation measureFaces(const LevelDisparities& disparities, const Outline& outline, const ObjectView& view,
+std::vector<SurfacePoint> surfacePoints(const LevelDisparities& disparities, const Outline& outline,
+                                        const ObjectView& view, const StereoCamera& camera) {
+  const Eigen::Matrix3d R_body_cam = view.T_cam_body.rotation().transpose();
+  std::vector<SurfacePoint> points;
+  for (const int cell : outline.samples()) {
+    const int column = cell % outline.window.width, row = cell / outline.window.width;
+    const auto disparity_px = disparities.disparity_px(column, row);
+    if (!disparity_px) continue;
+    const double d = *disparity_px + view.disparity_offset_px, z = camera.fx_px * camera.baseline_m / d;
+    const Eigen::Vector3d ray((disparities.u_px(column) - camera.cx_px) / camera.fx_px,
+                              (disparities.v_px(row) - camera.cy_px) / camera.fy_px, 1);
+    const double height_m = view.ground.heightOf_m(z * ray);
+    if (height_m < kLow_m) continue;
+    points.push_back({.direction_body = R_body_cam * ray,
+                      .depth_m = z,
+                      .noise_m = z * kSurfaceSigma_px * (1 << disparities.level) / d,
+                      .height_m = height_m});
+  }
+  return points;
+}
+
+FaceInformation measureFaces(const LevelDisparities& disparities, const Outline& outline,
+                             std::span<const SurfacePoint> surface, const ObjectView& view,
                              const StereoCamera& camera) {
-  return FaceMeasurement(disparities, outline, view, camera)();
+  return FaceMeasurement(disparities, outline, surface, view, camera)();
 }
 
 }  // namespace motorcade

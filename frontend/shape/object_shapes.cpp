@@ -215,9 +215,10 @@ std::optional<ObjectShapes::Sight> ObjectShapes::sightOf(const ObjectView& view,
 /// What the outline says of the faces, and `view.box` with it; empty, and the box as it was, where that makes no sense.
 std::optional<FaceInformation> ObjectShapes::measured(const Sight& seen, ObjectView& view, const Shape& shape) const {
   const BoxEstimate before = view.box;
+  const std::vector<SurfacePoint> surface = surfacePoints(seen.disparities, seen.outline, view, camera_);
   FaceInformation look;
   for (int i = 0; i < kIterations; ++i) {
-    look = measureFaces(seen.disparities, seen.outline, view, camera_);
+    look = measureFaces(seen.disparities, seen.outline, surface, view, camera_);
     FaceInformation both = shape.evidence;
     both.add(look, kLookWeight);
     view.box = estimateBox(both, shape.speed_mps);

@@ -14,6 +14,10 @@ using test::StreetByHand;
 const Eigen::Vector3d kCar_m(4.5, 1.75, 1.45);
 constexpr PixelWindow kWindow{.u0 = 220, .v0 = 50, .width = 160, .height = 110};
 
+FaceInformation measuredFaces(const LevelDisparities& seen, const Outline& outline, const ObjectView& view) {
+  return measureFaces(seen, outline, surfacePoints(seen, outline, view, kRig), view, kRig);
+}
+
 /// The estimate after some looks from successive frames, as the stage makes them.
 BoxEstimate afterLooks(const SE3& T_cam_body, const SE3& T_cam_frame, const Eigen::Vector3d& size_m) {
   const StreetByHand street({{T_cam_body, StreetByHand::faces(size_m)}});
@@ -24,7 +28,7 @@ BoxEstimate afterLooks(const SE3& T_cam_body, const SE3& T_cam_frame, const Eige
                   .ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m},
                   .disparity_offset_px = 0};
   for (int i = 0; i < 15; ++i) {
-    evidence.add(measureFaces(seen, outlineOf(seen, view), view, kRig), 0.15);
+    evidence.add(measuredFaces(seen, outlineOf(seen, view), view), 0.15);
     view.box = estimateBox(evidence, 10);
   }
   return view.box;
@@ -60,8 +64,7 @@ TEST(FaceMeasurement, HoldsTheFollowedPoints) {
   ObjectView view{.T_cam_body = T_cam_body, .box = estimateBox({}, 10), .ground = {}, .disparity_offset_px = 0};
   const auto front = [&] {
     FaceInformation look;
-    look.add(
-        measureFaces(seen, {.window = kWindow, .inside = std::vector<std::uint8_t>(kWindow.area(), 0)}, view, kRig));
+    look.add(measuredFaces(seen, {.window = kWindow, .inside = std::vector<std::uint8_t>(kWindow.area(), 0)}, view));
     return estimateBox(look, 10).most().x();
   };
   const double without = front();
@@ -83,7 +86,7 @@ TEST(FaceMeasurement, AWrongBeliefOfTheRearGivesWayToTheSideThatIsSeenBehindIt) 
                   .disparity_offset_px = 0};
   EXPECT_GT(view.box.least().x(), -0.5 * kCar_m.x() + 1.5);
   for (int i = 0; i < 40; ++i) {
-    evidence.add(measureFaces(seen, outlineOf(seen, view), view, kRig), 0.15);
+    evidence.add(measuredFaces(seen, outlineOf(seen, view), view), 0.15);
     view.box = estimateBox(evidence, 15);
   }
   EXPECT_NEAR(view.box.least().x(), -0.5 * kCar_m.x(), 0.3);
