@@ -10,12 +10,11 @@
 #include "core/elementary.hpp"
 #include "frontend/features/sift_features.hpp"
 #include "frontend/image/image_pyramid.hpp"
-#include "frontend/matching/corner_lookup.hpp"
 #include "frontend/matching/followed_point.hpp"
 #include "frontend/matching/image_content.hpp"
-#include "frontend/matching/neighbor_shifts.hpp"
 #include "frontend/matching/occupancy.hpp"
 #include "frontend/matching/point_follower.hpp"
+#include "frontend/matching/young_point_search.hpp"
 #include "frontend/parallel_items.hpp"
 
 namespace motorcade {
@@ -25,9 +24,7 @@ using Params = OpticalFlowTracker::Params;
 
 constexpr int kBorder_px = 6;  // of the image, where a patch would repeat the image's last pixels
 
-// Pyramid levels at which an alignment starts. Young points (new ones, and those that did not keep their velocity) get
-// their guesses from corners, which are exact to a pixel, and need less reach.
-constexpr int kMovingLevel = 2, kYoungLevel = 1;
+constexpr int kMovingLevel = 2;  // of the pyramid, at which an alignment starts from a point's last shift
 
 // An image in which few points are found is of no use (dark, blurred, hidden): they wait for a better one, for a while.
 // From frame to frame two thirds of them are found on clean drives, fewer in poor images; after n intervals an n-th.
@@ -42,15 +39,6 @@ constexpr double kMaxWaiting_s = 0.5;    // beyond it points look different, and
 constexpr double kStanding_px = 0.5;     // points that moved by less since the last frame may rest
 constexpr double kUnevenInterval = 1.5;  // times the interval before: frames are missing
 
-// Bounds of the shift of a young point.
-constexpr float kNeighborFactor = 1.3F;  // times the shift of its neighbors
-constexpr float kNearMargin_px = 20;     // more than that in any direction
-constexpr float kFarMargin_px = 150;     // more than that sideways, for a second try
-
-// Greatest mean difference in gray levels from a young point to a corner.
-constexpr double kMaxNearDifference = 255;  // none: the alignment decides
-constexpr double kMaxFarDifference = 30;    // many corners are far, and most of them are wrong
-
 constexpr double kSiftMaxFlow_px = 150, kSiftMaxRatio = 0.85;  // as `matchSift` takes them
 
 /// Are frames missing in so many intervals?
@@ -61,21 +49,6 @@ Shift shiftAfter(const FollowedPoint& point, double intervals) {
   if (!isUneven(intervals)) return point.shift;
   const auto factor = static_cast<float>(intervals);
   return {factor * point.shift.du_px, factor * point.shift.dv_px};
-}
-
-/// From rest to somewhat more than the shift of the neighbors; anywhere when there are no neighbors.
-ShiftBounds boundsAround(const std::optional<Shift>& neighbors, const Params& params) {
-  const auto reach = static_cast<float>(params.max_flow_px);
-  if (!neighbors) return {-reach, reach, -reach / 2, reach / 2};
-  const float du = kNeighborFactor * neighbors->du_px, dv = kNeighborFactor * neighbors->dv_px;
-  return {std::min(du, 0.0F) - kNearMargin_px, std::max(du, 0.0F) + kNearMargin_px, std::min(dv, 0.0F) - kNearMargin_px,
-          std::max(dv, 0.0F) + kNearMargin_px};
-}
-
-/// Wider bounds for a point of a vehicle that crosses or overtakes. The road is level, so that it moves sideways.
-ShiftBounds widened(const ShiftBounds& near) {
-  constexpr float kMore_px = kFarMargin_px - kNearMargin_px;
-  return {near.min_du_px - kMore_px, near.max_du_px + kMore_px, near.min_dv_px, near.max_dv_px};
 }
 
 /// Indices of the corners, the strongest first.
@@ -108,8 +81,6 @@ struct OpticalFlowTracker::State {
   std::optional<double> shareOf(const std::vector<std::optional<AlignedPatch>>& found) const;
   bool isOfNoUse(const Features& now, const std::vector<std::optional<AlignedPatch>>& found, double intervals) const;
   void followYoung(const PointFollower& follower, const Features& now);
-  std::optional<AlignedPatch> searchYoung(const FlowObservation& point, const std::optional<Shift>& neighbors,
-                                          const CornerLookup& corners, const PointFollower& follower) const;
   void removeLost(const Image& now);
   void startPoints(const Features& now);
   FollowedPoint& startPoint(const Features& now, int corner, double sigma_px);
@@ -125,7 +96,7 @@ std::vector<std::optional<AlignedPatch>> OpticalFlowTracker::State::findMoving(c
     const FlowObservation& before = points[i].observation;
     if (before.age < 2) return;
     const Shift guess = shiftAfter(points[i], intervals);
-    found[i] = follower.follow(before, follower.patchAt(before, level), {&guess, 1}, level);
+    found[i] = follower.follow(before, guess, level);
   });
   return found;
 }
@@ -152,33 +123,14 @@ bool OpticalFlowTracker::State::isOfNoUse(const Features& now, const std::vector
 /// Follows the points that are left: new ones, and those that did not keep their velocity.
 void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const Features& now) {
   const Image& image = now.left.levels.front();
-  const NeighborShifts moved = shiftsOf(points, image);
-  const CornerLookup corners(now);
+  const YoungPointSearch search(follower, *previous, now, shiftsOf(points, image), params.max_flow_px);
   std::vector<FollowedPoint*> still;
   for (FollowedPoint& point : points)
     if (!point.moved) still.push_back(&point);
   forEachItem(still.size(), [&](std::size_t i) {
-    const FlowObservation& before = still[i]->observation;
-    const auto found = searchYoung(before, moved.medianAround({before.u_px, before.v_px}), corners, follower);
+    const auto found = search(still[i]->observation);
     if (found) moveTo(*still[i], *found, image);
   });
-}
-
-/// Follows a point by guesses from its neighbors and from corners that look like it, first near ones, then far ones.
-std::optional<AlignedPatch> OpticalFlowTracker::State::searchYoung(const FlowObservation& point,
-                                                                   const std::optional<Shift>& neighbors,
-                                                                   const CornerLookup& corners,
-                                                                   const PointFollower& follower) const {
-  const int level = std::min(kYoungLevel, follower.coarsestLevel());
-  const ShiftBounds near = boundsAround(neighbors, params);
-  Guesses near_guesses, far_guesses;
-  near_guesses.add(neighbors.value_or(Shift{}));
-  corners.addSimilar(previous->left, point, near, kMaxNearDifference, near_guesses);
-  const auto patch = follower.patchAt(point, level);
-  if (auto found = follower.follow(point, patch, near_guesses.all(), level)) return found;
-  corners.addSimilar(previous->left, point, widened(near), kMaxFarDifference, far_guesses);
-  if (far_guesses.count == 0) return std::nullopt;
-  return follower.follow(point, patch, far_guesses.all(), level);
 }
 
 /// Ends points that were not found, left the image or came close to an older point.

@@ -19,32 +19,23 @@ std::optional<PatchTemplate> PointFollower::patchAt(const FlowObservation& point
                       PatchDeformation::kScale);
 }
 
-std::optional<AlignedPatch> PointFollower::follow(const FlowObservation& point,
-                                                  const std::optional<PatchTemplate>& patch,
-                                                  std::span<const Shift> guesses, int level) const {
-  const auto start = bestGuess(point, patch, guesses, level);
-  if (!start) return std::nullopt;
-  return refine(point, *start, level - 1);
-}
-
-std::optional<Shift> PointFollower::bestGuess(const FlowObservation& point, const std::optional<PatchTemplate>& patch,
-                                              std::span<const Shift> guesses, int level) const {
-  if (!patch) return guesses.front();
+std::optional<CoarseFit> PointFollower::fit(const FlowObservation& point, const std::optional<PatchTemplate>& patch,
+                                            const Shift& guess, int level) const {
+  if (!patch) return CoarseFit{guess, 1};
   const float u = toLevel(point.u_px, level), v = toLevel(point.v_px, level), scale = static_cast<float>(1 << level);
-  std::optional<Shift> best;
-  float best_ncc = 0;
-  for (const Shift& guess : guesses) {
-    const Eigen::Vector2f guess_px(u + guess.du_px / scale, v + guess.dv_px / scale);
-    const auto aligned = alignPatch(*patch, to_.levels[level], guess_px, kCoarse);
-    if (!aligned || aligned->ncc <= best_ncc) continue;
-    best_ncc = aligned->ncc;
-    best = Shift{(aligned->u_px - u) * scale, (aligned->v_px - v) * scale};
-  }
-  return best;
+  const Eigen::Vector2f guess_px(u + guess.du_px / scale, v + guess.dv_px / scale);
+  const auto aligned = alignPatch(*patch, to_.levels[level], guess_px, kCoarse);
+  if (!aligned) return std::nullopt;
+  return CoarseFit{{(aligned->u_px - u) * scale, (aligned->v_px - v) * scale}, aligned->ncc};
 }
 
-std::optional<AlignedPatch> PointFollower::refine(const FlowObservation& point, const Shift& start, int level) const {
-  const Eigen::Vector2f point_px(point.u_px, point.v_px), shift_px(start.du_px, start.dv_px);
+std::optional<AlignedPatch> PointFollower::follow(const FlowObservation& point, const Shift& guess, int level) const {
+  const auto start = fit(point, patchAt(point, level), guess, level);
+  return start ? refine(point, start->shift, level - 1) : std::nullopt;
+}
+
+std::optional<AlignedPatch> PointFollower::refine(const FlowObservation& point, const Shift& guess, int level) const {
+  const Eigen::Vector2f point_px(point.u_px, point.v_px), shift_px(guess.du_px, guess.dv_px);
   const auto forward = alignPatch(from_, point_px, to_, point_px + shift_px, level, kFine);
   if (!forward) return std::nullopt;
   const auto back = alignPatch(to_, {forward->u_px, forward->v_px}, from_, point_px, 0, kFine);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 
 #include "frontend/image/patch_alignment.hpp"
 #include "frontend/matching/corner_lookup.hpp"
@@ -9,8 +8,14 @@
 
 namespace motorcade {
 
-/// Follows single points from one image to the next: from the best of several guesses at a coarse level of the pyramid
-/// to full size, checked backwards. It refers to both pyramids.
+/// Where a patch of a coarse level fits.
+struct CoarseFit {
+  Shift shift;
+  float ncc = 0;
+};
+
+/// Follows single points from one image to the next: from a guess at a coarse level of the pyramid to full size,
+/// checked backwards. It refers to both pyramids.
 class PointFollower {
  public:
   PointFollower(const ImagePyramid& from, const ImagePyramid& to, double max_round_trip_px)
@@ -21,17 +26,19 @@ class PointFollower {
   /// How a point looks at a level of the pyramid; empty without texture.
   std::optional<PatchTemplate> patchAt(const FlowObservation& point, int level) const;
 
-  /// Aligns the point's patch of `level` at all guesses, of which there is at least one, and follows the best of them
-  /// to full size. Without a patch the first guess counts. Empty when nothing fits, or when the way back does not lead
-  /// to the point.
-  std::optional<AlignedPatch> follow(const FlowObservation& point, const std::optional<PatchTemplate>& patch,
-                                     std::span<const Shift> guesses, int level) const;
+  /// Where the point's patch of `level` fits near a guess: at the guess itself without a patch. Empty when it does not
+  /// fit.
+  std::optional<CoarseFit> fit(const FlowObservation& point, const std::optional<PatchTemplate>& patch,
+                               const Shift& guess, int level) const;
+
+  /// Follows the point from a guess, `level` being the coarsest, to full size. Empty when it does not fit, or when the
+  /// way back does not lead to the point.
+  std::optional<AlignedPatch> refine(const FlowObservation& point, const Shift& guess, int level) const;
+
+  /// Both of them.
+  std::optional<AlignedPatch> follow(const FlowObservation& point, const Shift& guess, int level) const;
 
  private:
-  std::optional<Shift> bestGuess(const FlowObservation& point, const std::optional<PatchTemplate>& patch,
-                                 std::span<const Shift> guesses, int level) const;
-  std::optional<AlignedPatch> refine(const FlowObservation& point, const Shift& start, int level) const;
-
   const ImagePyramid& from_;
   const ImagePyramid& to_;
   double max_round_trip_px_;

@@ -1,6 +1,5 @@
 #include "frontend/matching/point_follower.hpp"
 
-#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -14,7 +13,7 @@ namespace {
 constexpr int kWidth = 320, kHeight = 200, kLevel = 1;
 constexpr float kShiftU_px = 14.3F, kShiftV_px = -5.6F;
 constexpr double kMaxRoundTrip_px = 0.5;
-constexpr std::array kGuesses{Shift{-20, 3}, Shift{kShiftU_px + 1.5F, kShiftV_px - 1}};
+constexpr Shift kGuess{kShiftU_px + 1.5F, kShiftV_px - 1};
 
 /// A textured wall before and after a shift.
 struct Wall {
@@ -36,12 +35,12 @@ std::vector<FlowObservation> innerPoints() {
   return points;
 }
 
-TEST(PointFollower, FollowsTheBestOfSeveralGuesses) {
+TEST(PointFollower, FollowsAGuessThatIsNear) {
   const Wall wall;
   int followed = 0;
   const auto points = innerPoints();
   for (const FlowObservation& point : points) {
-    const auto found = wall.follower.follow(point, wall.follower.patchAt(point, kLevel), kGuesses, kLevel);
+    const auto found = wall.follower.follow(point, kGuess, kLevel);
     if (!found) continue;
     ++followed;
     EXPECT_NEAR(found->u_px, point.u_px + kShiftU_px, 0.2);
@@ -50,21 +49,35 @@ TEST(PointFollower, FollowsTheBestOfSeveralGuesses) {
   EXPECT_GT(followed, 0.9 * static_cast<double>(points.size()));
 }
 
-TEST(PointFollower, TakesTheFirstGuessForAPointWithoutACoarsePatch) {
+TEST(PointFollower, FitsBestWhereTheGuessIsRight) {
   const Wall wall;
-  const std::array guesses{kGuesses[1], kGuesses[0]};
-  int followed = 0;
+  int fits = 0;
   const auto points = innerPoints();
-  for (const FlowObservation& point : points)
-    followed += wall.follower.follow(point, std::nullopt, guesses, kLevel).has_value();
-  EXPECT_GT(followed, 0.9 * static_cast<double>(points.size()));
+  for (const FlowObservation& point : points) {
+    const auto patch = wall.follower.patchAt(point, kLevel);
+    const auto right = wall.follower.fit(point, patch, kGuess, kLevel),
+               wrong = wall.follower.fit(point, patch, {-20, 3}, kLevel);
+    if (!right) continue;
+    ++fits;
+    EXPECT_NEAR(right->shift.du_px, kShiftU_px, 0.5);
+    EXPECT_NEAR(right->shift.dv_px, kShiftV_px, 0.5);
+    EXPECT_LT(wrong ? wrong->ncc : 0, right->ncc);
+  }
+  EXPECT_GT(fits, 0.9 * static_cast<double>(points.size()));
+}
+
+TEST(PointFollower, TakesTheGuessForAPointWithoutACoarsePatch) {
+  const Wall wall;
+  const auto fit = wall.follower.fit(innerPoints().front(), std::nullopt, kGuess, kLevel);
+  ASSERT_TRUE(fit);
+  EXPECT_EQ(fit->shift.du_px, kGuess.du_px);
+  EXPECT_EQ(fit->shift.dv_px, kGuess.dv_px);
 }
 
 TEST(PointFollower, GivesUpWhenTheWayBackLeadsElsewhere) {
   const Wall wall;
   const PointFollower strict(wall.before, wall.now, 1e-9);
-  for (const FlowObservation& point : innerPoints())
-    EXPECT_FALSE(strict.follow(point, strict.patchAt(point, kLevel), kGuesses, kLevel));
+  for (const FlowObservation& point : innerPoints()) EXPECT_FALSE(strict.follow(point, kGuess, kLevel));
 }
 
 TEST(PointFollower, FindsNothingInAnotherScene) {
@@ -74,8 +87,7 @@ TEST(PointFollower, FindsNothingInAnotherScene) {
   const PointFollower follower(wall.before, other, kMaxRoundTrip_px);
   int followed = 0;
   const auto points = innerPoints();
-  for (const FlowObservation& point : points)
-    followed += follower.follow(point, follower.patchAt(point, kLevel), kGuesses, kLevel).has_value();
+  for (const FlowObservation& point : points) followed += follower.follow(point, kGuess, kLevel).has_value();
   EXPECT_LE(followed, 0.1 * static_cast<double>(points.size()));
 }
 
