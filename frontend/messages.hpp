@@ -44,9 +44,11 @@ struct StereoMatch {
   float sigma_px = 0;
 };
 
+/// One match per corner. Without a standard deviation it is one to a whole pixel, of which `refinedMatch` tells more.
 struct StereoMatches {
   FeaturesPtr features;
-  std::vector<std::optional<StereoMatch>> of_corner;  // one per corner
+  std::vector<std::optional<StereoMatch>> of_corner;
+  double min_disparity_px = 0;  // of refined matches
 };
 using StereoMatchesPtr = std::shared_ptr<const StereoMatches>;
 

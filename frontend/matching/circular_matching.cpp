@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "frontend/image/patch_alignment.hpp"
+#include "frontend/matching/stereo_matcher.hpp"
 #include "frontend/parallel_items.hpp"
 
 namespace motorcade {
@@ -70,17 +71,23 @@ std::vector<std::optional<StereoObservation>> CircularMatching::operator()(const
 /// where to look.
 std::optional<StereoMatch> CircularMatching::firstDisparity(const StereoMatches& stereo, const PointGrid& corners,
                                                             const FlowObservation& point) const {
-  if (point.corner >= 0 && stereo.of_corner[point.corner]) return stereo.of_corner[point.corner];
+  if (point.corner >= 0)
+    if (auto match = refinedMatch(stereo, static_cast<std::size_t>(point.corner))) return match;
   const Eigen::Vector2f here(point.u_px, point.v_px), reach = Eigen::Vector2f::Constant(kNeighbor_px);
-  std::pair nearest(kNeighbor_px, -1);  // distance and number of a corner; of equal distances the first corner counts
-  corners.forEachNear(here - reach, here + reach, [&](int i) {
-    if (!stereo.of_corner[i]) return;
-    const Corner& c = stereo.features->corners[i];
-    const std::pair candidate((Eigen::Vector2f(c.u_px, c.v_px) - here).cwiseAbs().maxCoeff(), i);
-    if (candidate < nearest) nearest = candidate;
-  });
-  if (nearest.second < 0) return std::nullopt;
-  return refineAround(*stereo.features, point, stereo.of_corner[nearest.second]->disparity_px, {});
+  std::pair tried(0.0F, -1);  // distance and number of a corner; of equal distances the first corner counts
+  while (true) {
+    std::pair nearest(kNeighbor_px, -1);
+    corners.forEachNear(here - reach, here + reach, [&](int i) {
+      if (!stereo.of_corner[i] || i == point.corner) return;
+      const Corner& c = stereo.features->corners[i];
+      const std::pair candidate((Eigen::Vector2f(c.u_px, c.v_px) - here).cwiseAbs().maxCoeff(), i);
+      if (candidate > tried && candidate < nearest) nearest = candidate;
+    });
+    if (nearest.second < 0) return std::nullopt;
+    if (const auto match = refinedMatch(stereo, static_cast<std::size_t>(nearest.second)))
+      return refineAround(*stereo.features, point, match->disparity_px, {});
+    tried = nearest;
+  }
 }
 
 std::vector<Parameter> parametersOf(CircularMatching::Params& params) {

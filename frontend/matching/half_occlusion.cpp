@@ -13,6 +13,7 @@ namespace {
 
 constexpr float kReachAcross_px = 120, kReachDown_px = 40;  // to corners of the same surface
 constexpr float kNearer = 1.25F;                            // least ratio of a nearer surface's disparity
+constexpr float kWholePixel_px = 3;                         // by which a match to a whole pixel may be too small
 constexpr float kHalfWindow_px = 6;                         // of a patch, which the right image must show
 
 struct Neighbor {
@@ -42,12 +43,21 @@ bool isHalfOccluded(std::size_t i, std::span<const std::size_t> matched, const s
 
 }  // namespace
 
-void dropHalfOccluded(const std::vector<Corner>& corners, std::vector<std::optional<StereoMatch>>& of_corner) {
+float greatestDisparity_px(const std::vector<std::optional<StereoMatch>>& of_corner) {
   float greatest_px = 0;
   for (const auto& match : of_corner) greatest_px = std::max(greatest_px, match ? match->disparity_px : 0);
-  std::vector<std::size_t> matched, half_occluded;  // matched: as far to the left as it matters
+  return greatest_px + kWholePixel_px;
+}
+
+bool decidesHalfOcclusion(const Corner& corner, float greatest_disparity_px) {
+  return leavesRightImage(corner.u_px - kReachAcross_px - 1, greatest_disparity_px);
+}
+
+void dropHalfOccluded(const std::vector<Corner>& corners, std::vector<std::optional<StereoMatch>>& of_corner) {
+  const float greatest_px = greatestDisparity_px(of_corner);
+  std::vector<std::size_t> matched, half_occluded;
   for (std::size_t i = 0; i < corners.size(); ++i)
-    if (of_corner[i] && leavesRightImage(corners[i].u_px - kReachAcross_px - 1, greatest_px)) matched.push_back(i);
+    if (of_corner[i] && decidesHalfOcclusion(corners[i], greatest_px)) matched.push_back(i);
   for (const std::size_t i : matched)
     if (leavesRightImage(corners[i].u_px, greatest_px) && isHalfOccluded(i, matched, corners, of_corner))
       half_occluded.push_back(i);

@@ -7,6 +7,12 @@
 
 namespace motorcade {
 
+/// No match that is known to a whole pixel at least has a greater one.
+float greatestDisparity_px(const std::vector<std::optional<StereoMatch>>& of_corner);
+
+/// Does `dropHalfOccluded` look at this corner's disparity, or may it drop its match?
+bool decidesHalfOcclusion(const Corner& corner, float greatest_disparity_px);
+
 /// Drops wrong matches of half-occluded points. Close to the left border of the left image a near surface lies outside
 /// the right image: its points there can only find wrong partners, which seem to be farther away and move along with
 /// it. A match is dropped when most of the nearest matched corners to its right are so much nearer that a point with

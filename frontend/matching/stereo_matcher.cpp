@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <utility>
 
@@ -77,16 +78,13 @@ std::optional<int> searchCoarseToFine(const Features& features, const SearchedPa
 
 std::vector<std::optional<StereoMatch>> matchCorners(const Features& features, const StereoMatcher::Params& params,
                                                      ImagePool& pool) {
-  const Image &left = features.left.levels.front(), &right = features.right.levels.front();
-  constexpr DisparityParams kOnlyRefinement{.search_radius_px = 0};
   const SearchedPair pair = searchedPair(features, pool);
   std::vector<std::optional<StereoMatch>> matches;
   matches.reserve(features.corners.size());
   for (const Corner& corner : features.corners) {
     auto& match = matches.emplace_back();
     const auto whole_px = searchCoarseToFine(features, pair, corner, params.max_disparity_px);
-    if (whole_px) match = refineDisparity(left, right, corner.u_px, corner.v_px, *whole_px, kOnlyRefinement);
-    if (match && match->disparity_px < params.min_disparity_px) match.reset();
+    if (whole_px) match = StereoMatch{.disparity_px = static_cast<float>(*whole_px)};
   }
   return matches;
 }
@@ -106,17 +104,38 @@ std::vector<std::optional<StereoMatch>> matchDescriptors(const Features& feature
   return matches;
 }
 
+/// Those corners that decide on half-occlusion are refined at once.
+void dropHalfOccluded(StereoMatches& matches) {
+  const auto& corners = matches.features->corners;
+  const float greatest_px = greatestDisparity_px(matches.of_corner);
+  for (std::size_t i = 0; i < matches.of_corner.size(); ++i)
+    if (decidesHalfOcclusion(corners[i], greatest_px)) matches.of_corner[i] = refinedMatch(matches, i);
+  dropHalfOccluded(corners, matches.of_corner);
+}
+
 }  // namespace
 
 StereoMatcher::StereoMatcher(const Params& params) : params_(requireValid(params)) {}
 
 StereoMatchesPtr StereoMatcher::operator()(const FeaturesPtr& features) const {
-  StereoMatches matches{.features = features, .of_corner = {}};
+  StereoMatches matches{.features = features, .of_corner = {}, .min_disparity_px = params_.min_disparity_px};
   if (!features->frame->rejected())
     matches.of_corner =
         features->descriptors.empty() ? matchCorners(*features, params_, pool_) : matchDescriptors(*features, params_);
-  dropHalfOccluded(features->corners, matches.of_corner);
+  dropHalfOccluded(matches);
   return std::make_shared<const StereoMatches>(std::move(matches));
+}
+
+std::optional<StereoMatch> refinedMatch(const StereoMatches& matches, std::size_t corner) {
+  auto match = matches.of_corner[corner];
+  if (!match || match->sigma_px > 0) return match;
+  const Features& features = *matches.features;
+  const Corner& at = features.corners[corner];
+  constexpr DisparityParams kOnlyRefinement{.search_radius_px = 0};
+  match = refineDisparity(features.left.levels.front(), features.right.levels.front(), at.u_px, at.v_px,
+                          match->disparity_px, kOnlyRefinement);
+  if (match && match->disparity_px < matches.min_disparity_px) match.reset();
+  return match;
 }
 
 std::vector<Parameter> parametersOf(StereoMatcher::Params& params) {

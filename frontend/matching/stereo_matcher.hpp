@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/parameters.hpp"
@@ -7,9 +9,9 @@
 
 namespace motorcade {
 
-/// Finds the disparity of each corner of the left image. A whole-pixel search over all disparities in the images of
-/// half size is checked for uniqueness and from right to left. A search among the pixels around its result and
-/// `refineDisparity` follow. Features with descriptors (SIFT) are matched by those instead. Stateless but for its
+/// Finds the disparity of each corner of the left image, to a whole pixel: a search over all disparities in the images
+/// of half size is checked for uniqueness and from right to left. A search among the pixels around its result follows.
+/// Features with descriptors (SIFT) are matched by those instead. Stateless but for its
 /// buffers; safe to call from several threads.
 class StereoMatcher {
  public:
@@ -25,6 +27,10 @@ class StereoMatcher {
   Params params_;
   mutable ImagePool pool_;  // itself safe for several threads
 };
+
+/// The match of a corner to a fraction of a pixel. Few are asked for, so that it is found on demand. Empty where there
+/// is none.
+std::optional<StereoMatch> refinedMatch(const StereoMatches& matches, std::size_t corner);
 
 std::vector<Parameter> parametersOf(StereoMatcher::Params& params);
 

@@ -30,9 +30,12 @@ TEST(FeaturePreparation, FindsAgainInNoiseWhatItFinds) {
               right = test::render(640, 300, shifted, {.noise = kNoise_gray, .seed = 3});
   const auto rightMatches = [&](const FeaturesPtr& features) {
     const auto matches = StereoMatcher({})(features);
-    return std::ranges::count_if(matches->of_corner, [&](const auto& match) {
-      return match && std::abs(match->disparity_px - kDisparity_px) < 0.5;
-    });
+    int right_ones = 0;
+    for (std::size_t i = 0; i < features->corners.size(); ++i) {
+      const auto match = refinedMatch(*matches, i);
+      right_ones += match && std::abs(match->disparity_px - kDisparity_px) < 0.5;
+    }
+    return right_ones;
   };
   const auto frame = test::stereoFrame(0, left, right);
   const FeaturesPtr features = FeaturePreparation({})(frame);
