@@ -11,7 +11,7 @@
 namespace motorcade {
 namespace {
 
-constexpr double kConverged_chi2 = 1e-3;  // a step that gains less is the last
+constexpr double kConverged_chi2 = 1e-2;  // a step that gains less is the last
 constexpr double kMaxChi2PerDof = 6;      // of the moving fit: above it the track is no single rigid point
 constexpr int kShortWindow = 5;           // observations: longer windows that do not fit are halved, others lose one
 
