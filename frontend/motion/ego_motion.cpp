@@ -13,8 +13,9 @@
 namespace motorcade {
 namespace {
 
-constexpr int kScoredPoints = 300;         // of all observations: more tell hypotheses apart no better
-constexpr int kMinimalIterations = 5;      // of a fit to three points, which starts near
+constexpr int kScoredPoints = 300;                          // of all observations: more tell hypotheses apart no better
+constexpr int kMinimalIterations = 5;                       // of a fit to three points, which starts near
+constexpr double kMinimalStep = 1e-4, kRefinedStep = 1e-5;  // m and rad, after which fits end
 constexpr double kKnownMoverWeight = 0.1;  // vote of a point that moved in the frame before: it may have stopped
 constexpr double kRoadShare = 0.2;         // of the votes
 constexpr double kRoadDepth_m = 15;        // farther away, a vehicle's lower edge may pass for the road
@@ -168,7 +169,8 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
   for (int k = 0; k < params_.max_hypotheses; ++k) {
     if (best_score < kClearScore * voters.worst_score && k >= params_.max_hypotheses / kSearchShare) break;
     const std::array<PoseObservation, 3> three{sample(), sample(), sample()};
-    const auto fit = fitPose(camera_, PoseObservations(three), start, {.max_iterations = kMinimalIterations});
+    const auto fit = fitPose(camera_, PoseObservations(three), start,
+                             {.max_iterations = kMinimalIterations, .min_step = kMinimalStep});
     if (!fit || isBeyondBelief(fit->T_cam_ref, predicted)) continue;
     double fit_score = score(fit->T_cam_ref, best_score);
     if (const double by = surprise(fit->T_cam_ref, predicted); by >= 1)
@@ -188,7 +190,7 @@ std::optional<PoseFit> EgoMotionEstimator::refine(std::span<const PoseObservatio
   agreeing.reserve(observations.size());
   for (std::size_t i = 0; i < observations.size(); ++i)
     if (chi2[i] < kRefinementGate * params_.inlier_chi2) agreeing.push_back(observations[i]);
-  return fitPose(camera_, PoseObservations(agreeing), hypothesis, {});
+  return fitPose(camera_, PoseObservations(agreeing), hypothesis, {.min_step = kRefinedStep});
 }
 
 std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObservation> observations,
