@@ -4,11 +4,8 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <optional>
 #include <utility>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "core/elementary.hpp"
 #include "frontend/features/sift_features.hpp"
@@ -17,7 +14,6 @@
 #include "frontend/matching/image_content.hpp"
 #include "frontend/matching/occupancy.hpp"
 #include "frontend/matching/point_follower.hpp"
-#include "frontend/matching/start_record.hpp"
 #include "frontend/matching/young_point_search.hpp"
 #include "frontend/parallel_items.hpp"
 
@@ -63,14 +59,6 @@ std::vector<int> strongestFirst(const std::vector<Corner>& corners) {
   return order;
 }
 
-/// Where a point started, of one that started in the frame before.
-std::optional<Eigen::Vector2f> startOf(const FollowedPoint& point) {
-  const FlowObservation& p = point.observation;
-  if (p.age != (point.moved ? 2 : 1)) return std::nullopt;
-  if (!point.moved) return Eigen::Vector2f(p.u_px, p.v_px);
-  return Eigen::Vector2f(p.u_px - point.shift.du_px, p.v_px - point.shift.dv_px);
-}
-
 bool sameSize(const Image& a, const Image& b) { return a.width() == b.width() && a.height() == b.height(); }
 
 }  // namespace
@@ -82,7 +70,6 @@ struct OpticalFlowTracker::State {
   double interval_s = 0;              // in which the points made their last shift
   int waiting_frames = 0;             // of no use, since `previous`
   double usual_share = kUsualShare;   // of the points, found from frame to frame
-  StartRecord starts;
   std::int64_t next_id = 0;
 
   bool advance(const FeaturesPtr& features);
@@ -152,19 +139,13 @@ void OpticalFlowTracker::State::removeLost(const Image& now) {
   constexpr float kBorder = kBorder_px;
   const float last_u = static_cast<float>(now.width() - 1) - kBorder,
               last_v = static_cast<float>(now.height() - 1) - kBorder;
-  const auto stays = [&](const FollowedPoint& point) {
-    const FlowObservation& p = point.observation;
-    if (!point.moved || hypotenuse(point.shift.du_px, point.shift.dv_px) > params.max_flow_px) return false;
-    const bool inside = p.u_px >= kBorder && p.v_px >= kBorder && p.u_px <= last_u && p.v_px <= last_v;
-    if (!inside || occupancy.near(p.u_px, p.v_px)) return false;
-    occupancy.take(p.u_px, p.v_px);
-    return true;
-  };
-  starts.beginFrame(now.width(), now.height());
   std::erase_if(points, [&](const FollowedPoint& point) {
-    const bool followed = stays(point);
-    if (const auto start = startOf(point)) starts.add(start->x(), start->y(), followed);
-    return !followed;
+    const FlowObservation& p = point.observation;
+    if (!point.moved || hypotenuse(point.shift.du_px, point.shift.dv_px) > params.max_flow_px) return true;
+    const bool inside = p.u_px >= kBorder && p.v_px >= kBorder && p.u_px <= last_u && p.v_px <= last_v;
+    if (!inside || occupancy.near(p.u_px, p.v_px)) return true;
+    occupancy.take(p.u_px, p.v_px);
+    return false;
   });
 }
 
@@ -246,7 +227,7 @@ void OpticalFlowTracker::State::startPoints(const Features& now) {
       const Corner& corner = now.corners[i];
       int& count = population[cellOf(corner)];
       if (count >= limit) return false;
-      if (occupancy.near(corner.u_px, corner.v_px) || !starts.isWorthTrying(corner.u_px, corner.v_px)) return true;
+      if (occupancy.near(corner.u_px, corner.v_px)) return true;
       occupancy.take(corner.u_px, corner.v_px);
       ++count;
       startPoint(now, i, kPatchSigmaFloor_px).keyframe = {image, corner.u_px, corner.v_px, 0, 1};
