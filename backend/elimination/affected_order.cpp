@@ -39,6 +39,7 @@ void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
   const int last_group = std::max(last - 1, 0);  // CCOLAMD wants groups below the number of columns; one more follows
   group_.assign(variables_.size(), 0);
   reached_.reset(graph_.slots());
+  passed_.reset(graph_.factorSlots());
   distance_.resize(graph_.slots());
   queue_.clear();
   std::size_t missing = variables_.size();
@@ -57,7 +58,8 @@ void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
     if (distance == kFarthest) break;
     if (graph_[queue_[i]].factors.size() > kShared) continue;
     for (const FactorId f : graph_[queue_[i]].factors)
-      for (const VariableId neighbor : graph_.factor(f).variables()) reach(neighbor, distance + 1);
+      if (passed_.insert(f.value))
+        for (const VariableId neighbor : graph_.factor(f).variables()) reach(neighbor, distance + 1);
   }
 }
 

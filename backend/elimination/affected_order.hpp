@@ -43,6 +43,7 @@ class AffectedOrder {
   std::vector<VariableId> queue_;
   std::vector<int> distance_;  // per variable: in the search at hand, if it was reached
   MarkSet reached_;            // variables
+  MarkSet passed_;             // factors, which the search goes through once
 };
 
 }  // namespace motorcade
