@@ -14,7 +14,7 @@ namespace motorcade::test {
 
 /// Thresholds at zero: the solver corrects and relinearizes whatever moved.
 inline constexpr IncrementalSolver::Params kExact{
-    .relinearization = {.mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0},
+    .relinearization = {.mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0, .leisurely_rad = 0},
     .substitution_tolerance = 0,
     .budget = {}};
 

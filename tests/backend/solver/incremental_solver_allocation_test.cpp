@@ -67,7 +67,8 @@ int allocationsOfTwoHundredSteadyUpdates(const IncrementalSolver::Params& params
 }
 
 constexpr IncrementalSolver::Params kRelinearizesAll{
-    .relinearization = {.mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0}, .budget = {}};
+    .relinearization = {.mismatch_tolerance = 0, .jacobian_drift_sigmas = 0, .relinearize_rad = 0, .leisurely_rad = 0},
+    .budget = {}};
 
 TEST(IncrementalSolverAllocation, TheCounterSeesVectorsAndEigen) {
   allocations = 0;

@@ -41,6 +41,7 @@ IncrementalSolver::Params withBudget(std::int64_t scalars) {
   params.relinearization.mismatch_tolerance = 1e-10;
   params.relinearization.jacobian_drift_sigmas = 1e-7;
   params.relinearization.relinearize_rad = 1e-6;
+  params.relinearization.leisurely_rad = 2e-7;
   params.budget.scalars = scalars;
   return params;
 }
@@ -188,7 +189,8 @@ struct MeasuredPath {
   }
   static IncrementalSolver::Params linear(std::int64_t spread_scalars) {
     IncrementalSolver::Params params = kExact;
-    params.relinearization = {.mismatch_tolerance = 1e9, .jacobian_drift_sigmas = 1e9, .relinearize_rad = 1e9};
+    params.relinearization = {
+        .mismatch_tolerance = 1e9, .jacobian_drift_sigmas = 1e9, .relinearize_rad = 1e9, .leisurely_rad = 1e9};
     params.spread_scalars = spread_scalars;
     return params;
   }

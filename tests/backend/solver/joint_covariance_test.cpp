@@ -133,7 +133,8 @@ Eigen::MatrixXd turnOf(const Value& value) {
 TEST(JointCovariance, IsStatedWhereThePoseIsNotWhereItWasLinearized) {
   for (std::uint64_t seed = 0; seed < 16; ++seed) {
     IncrementalSolver::Params params = kExact;
-    params.relinearization.jacobian_drift_sigmas = params.relinearization.relinearize_rad = 1e9;
+    params.relinearization.jacobian_drift_sigmas = params.relinearization.relinearize_rad =
+        params.relinearization.leisurely_rad = 1e9;
     IncrementalSolver solver(params);
     Trajectory trajectory = swungTrajectory(solver, seed);
     const DenseSystem dense(solver.graph());

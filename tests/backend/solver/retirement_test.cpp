@@ -150,10 +150,12 @@ TEST(Retirement, WhatManyLeaveOnOneVariableStaysOneFactor) {
 /// Ids are given out again at once: nothing that was noted about the one that left may fall on the one that comes.
 TEST(Retirement, NewOnesMayTakeTheIdsOfThoseThatLeft) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    IncrementalSolver solver(
-        {.relinearization = {.mismatch_tolerance = 1e-6, .jacobian_drift_sigmas = 1e9, .relinearize_rad = 1e9},
-         .iterations_per_update = 1,
-         .budget = {}});
+    IncrementalSolver solver({.relinearization = {.mismatch_tolerance = 1e-6,
+                                                  .jacobian_drift_sigmas = 1e9,
+                                                  .relinearize_rad = 1e9,
+                                                  .leisurely_rad = 1e9},
+                              .iterations_per_update = 1,
+                              .budget = {}});
     MultibodyGraph graph(solver, seed, 2);
     for (int i = 0; i < 8; ++i) {
       graph.addFrame();
