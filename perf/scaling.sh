@@ -19,11 +19,13 @@ measure() {  # NAME SEQUENCE [OPTIONS ...]
   local name=$1 sequence=$2
   shift 2
   "$bench" sweep "$sequence" --threads 1 --in-flight 1 --images memory --repeat "${REPEAT:-3}" "$@" |
-    awk -v name="$name" '$1 == "memory" && NF == 15 { cpu = $6 }
-      $1 == "memory" && NF == 21 { printf "%-22s %8s %8s %8s %8s %8s %8s %8s\n", name, cpu, $4, $7, $10, $13, $16, $19 }'
+    awk -v name="$name" '$1 == "memory" && $5 == "|" { cpu = $6 }
+      $1 == "memory" && $5 == "/" { printf "%-22s %8s", name, cpu
+        for (i = 4; i <= NF; i += 3) printf " %8s", $i
+        print "" }'
 }
 
-printf '%-22s %8s %8s %8s %8s %8s %8s %8s\n' "CPU ms per frame" all prepare stereo flow segment. tracking optim.
+printf '%-22s %8s %8s %8s %8s %8s %8s %8s %8s\n' "CPU ms per frame" all prepare stereo flow segment. tracking optim. shapes
 for size in 621x187 878x265 1242x375; do measure "overtake $size" "$(rendered overtake $size 28)"; done
 for tracks in 250 500 1000 2000; do
   measure "$tracks tracks at most" "$data/kitti_tracking_0003" --range 0:60 --set frontend.optical_flow.max_tracks=$tracks
