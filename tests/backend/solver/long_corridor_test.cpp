@@ -18,7 +18,7 @@ class Corridors {
  public:
   Corridors(IncrementalSolver& solver, std::uint64_t seed) : solver_(solver), noise_(seed) {
     poses_.push_back(solver_.addVariable(SE2{}));
-    solver_.addFactor(std::make_unique<PriorFactorSE2>(poses_[0], SE2{}, Eigen::Matrix3d(1e6 * kInformation)));
+    solver_.addFactor(std::make_unique<PriorFactorSE2>(poses_[0], SE2{}, Eigen::Matrix3d(1e6 * information_)));
     solver_.update();
   }
 
@@ -33,17 +33,17 @@ class Corridors {
 
  private:
   static constexpr int kBetweenClosures = 10, kOldPlace = 50;  // steps
-  const Eigen::Vector3d kSigma{0.02, 0.02, 0.01};
-  const Eigen::Matrix3d kInformation{kSigma.cwiseAbs2().cwiseInverse().asDiagonal()};
+  const Eigen::Vector3d sigma_{0.02, 0.02, 0.01};
+  const Eigen::Matrix3d information_{sigma_.cwiseAbs2().cwiseInverse().asDiagonal()};
 
-  SE2 measured(const SE2& motion) { return motion * SE2::exp(noise_.gaussian(kSigma)); }
+  SE2 measured(const SE2& motion) { return motion * SE2::exp(noise_.gaussian(sigma_)); }
 
   void step(const SE2& motion) {
     truth_.push_back(truth_.back() * motion);
     const SE2 odometry = measured(motion);
     poses_.push_back(solver_.addVariable(std::get<SE2>(solver_.estimate(poses_.back())) * odometry));
     const std::size_t now = poses_.size() - 1;
-    solver_.addFactor(std::make_unique<RelativePoseFactorSE2>(poses_[now - 1], poses_[now], odometry, kInformation));
+    solver_.addFactor(std::make_unique<RelativePoseFactorSE2>(poses_[now - 1], poses_[now], odometry, information_));
     close(now);
     solver_.update();
   }
@@ -55,7 +55,7 @@ class Corridors {
     if (is_new || now - known->second < kOldPlace || now - closed_ < kBetweenClosures) return;
     const SE2 motion = measured(truth_[known->second].inverse() * truth_[now]);
     solver_.addFactor(
-        std::make_unique<RelativePoseFactorSE2>(poses_[known->second], poses_[now], motion, kInformation));
+        std::make_unique<RelativePoseFactorSE2>(poses_[known->second], poses_[now], motion, information_));
     closed_ = now;
     ++closures_;
   }
