@@ -45,9 +45,10 @@ struct Window {
   }
   /// To be called after the last observation.
   void fillUnusedLanes() {
+    const std::size_t used = static_cast<std::size_t>(size) % kDoubleLanes;
+    if (used == 0) return;
     Observations& o = observations[static_cast<std::size_t>(size) / kDoubleLanes];
-    for (std::size_t unused = static_cast<std::size_t>(size) % kDoubleLanes; unused % kDoubleLanes != 0; ++unused)
-      copyFirst(o, unused);
+    for (std::size_t unused = used; unused < kDoubleLanes; ++unused) copyFirst(o, unused);
   }
 
  private:
