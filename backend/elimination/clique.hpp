@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "backend/elimination/dense_kernels.hpp"
+#include "backend/graph/packed_triangle.hpp"
 #include "backend/graph/variable.hpp"
 
 namespace motorcade {
@@ -23,8 +24,8 @@ struct Clique {
   /// (size + 1) x frontal_size: columns are the rows of [R S d], so R^T above, S^T, and d^T last.
   double* panel = nullptr;
   std::vector<int> singular;  // frontal scalars without information
-  /// What elimination leaves on the separator and the parent's front gathers: the update matrix H, its lower triangle
-  /// packed column by column, and the contribution g to the right-hand side.
+  /// What elimination leaves on the separator and the parent's front gathers: the update matrix H, packed, and
+  /// the contribution g to the right-hand side.
   double *update_matrix = nullptr, *contribution = nullptr;
   bool alive = false;
 
@@ -39,12 +40,9 @@ struct Clique {
   Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>> factor() const {
     return {panel, size, frontal_size, Eigen::OuterStride<>(panelStride())};
   }
-  /// Such that [row] is the entry of the column, from the diagonal on.
-  const double* updateMatrixColumn(int j) const {
-    return update_matrix + std::ptrdiff_t{j} * (2 * separatorSize() - j - 1) / 2;
-  }
+  PackedTriangle updateMatrix() const { return {update_matrix, separatorSize()}; }
   std::size_t panelLength() const { return std::size_t(panelStride()) * frontal_size; }
-  std::size_t updateMatrixLength() const { return std::size_t(separatorSize()) * (separatorSize() + 1) / 2; }
+  std::size_t updateMatrixLength() const { return PackedTriangle::length(separatorSize()); }
 };
 
 }  // namespace motorcade

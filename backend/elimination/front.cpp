@@ -56,19 +56,22 @@ void Front::begin(Clique& clique) {
 
 void Front::addFactor(Clique& clique, FactorId id) {
   const Factor& factor = graph_.factor(id);
-  const auto term = graph_.term(id);
   spans_.clear();
   int from = 0;
   for (const VariableId v : factor.variables()) {
     spans_.push_back({from, offset_[v.value], graph_.sizeOf(v)});
     from += graph_.sizeOf(v);
   }
-  spans_.push_back({from, clique.size, 1});
   if (factor.form() == Factor::Form::kInformation) {
+    const auto information = graph_.information(id);
     addSymmetric(
-        clique, [&](int j) { return term.data() + j * term.rows(); }, spans_);
+        clique, [&](int j) { return information.H.column(j); }, spans_);
+    addRightHandSide(clique, information.g_c.data());
+    column(clique, clique.size)[clique.size] += information.c();
     return;
   }
+  spans_.push_back({from, clique.size, 1});
+  const auto term = graph_.term(id);
   const int columns = static_cast<int>(term.cols()), stride = padded(columns);
   product_.assign(columns * stride, 0.0);
   addJacobianProduct(term.data(), static_cast<int>(term.rows()), columns, product_.data(), stride);
@@ -90,10 +93,14 @@ void Front::addChild(Clique& clique, const Clique& child) {
   }
   splitAtFrontals(clique.frontal_size);
   addSymmetric(
-      clique, [&](int j) { return child.updateMatrixColumn(j); }, spans_);
-  // The right-hand side, which `contribution` holds when it changed alone.
+      clique, [&](int j) { return child.updateMatrix().column(j); }, spans_);
+  addRightHandSide(clique, child.contribution);  // which holds it when it changed alone
+}
+
+/// Of the scalars in `spans_`.
+void Front::addRightHandSide(Clique& clique, const double* g) {
   for (const RowSpan& span : spans_)
-    for (int i = 0; i < span.size; ++i) column(clique, span.to + i)[clique.size] += child.contribution[span.from + i];
+    for (int i = 0; i < span.size; ++i) column(clique, span.to + i)[clique.size] += g[span.from + i];
 }
 
 /// A span must not reach across the border between panel and update matrix.

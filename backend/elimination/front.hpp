@@ -44,6 +44,7 @@ class Front {
   void begin(Clique& clique);
   void addFactor(Clique& clique, FactorId id);
   void addChild(Clique& clique, const Clique& child);
+  void addRightHandSide(Clique& clique, const double* g);
   template <class ColumnOf>
   void addSymmetric(Clique& clique, const ColumnOf& source, std::span<const RowSpan> spans);
   void splitAtFrontals(int frontal_size);

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "backend/graph/packed_triangle.hpp"
 #include "backend/graph/variable.hpp"
 
 namespace motorcade {
@@ -46,6 +47,10 @@ class Factor {
     linearize(values, term);
     g_c = term.row(rows_ - 1);
   }
+
+  /// Of Form::kInformation only: where `values` are those for which the factor was made, what it holds is what
+  /// `linearize` gives; null elsewhere. It lasts as long as the factor.
+  virtual const Quadratic* heldModel(std::span<const Value* const>) const { return nullptr; }
 
  private:
   std::vector<VariableId> variables_;

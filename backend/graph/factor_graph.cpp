@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "backend/graph/symmetric_product.hpp"
 
@@ -35,10 +36,9 @@ void turnColumns(FactorGraph::Term& term, Eigen::Index column, const Eigen::Matr
 using Column = Eigen::Map<Eigen::VectorXd>;
 
 /// No entry is infinite or undefined, nor too large to square, as the elimination does.
-bool canBeSquared(const Factor& factor, const FactorGraph::Term& term) {
-  if (factor.form() == Factor::Form::kJacobian) return std::isfinite(term.squaredNorm());
+bool canBeSquared(std::span<const double> numbers) {
   double sum = 0;
-  for (Eigen::Index j = 0; j < term.cols(); ++j) sum += term.col(j).tail(term.rows() - j).squaredNorm();
+  for (const double number : numbers) sum += number * number;
   return std::isfinite(sum);
 }
 
@@ -152,60 +152,104 @@ void FactorGraph::turnToWorldAxes(const Factor& factor, Term& term) const {
   }
 }
 
-/// Fills `term` in steps from the applied estimates. False when it is not finite.
-bool FactorGraph::evaluate(const Factor& factor, Term term) {
-  apply(factor);
-  if (factor.form() == Factor::Form::kJacobian) {
-    factor.linearize(valuesOf(factor, &Variable::linearization_point), term);
-    factor.residual(valuesOf(factor, &Variable::applied_estimate), term.col(term.cols() - 1));
-    turnToWorldAxes(factor, term);
-  } else {
-    factor.linearize(valuesOf(factor, &Variable::applied_estimate), term);
-  }
-  return canBeSquared(factor, term);
+FactorGraph::Term FactorGraph::term(FactorId id) const {
+  assert(slot(id).factor->form() == Factor::Form::kJacobian);
+  return {slot(id).term, slot(id).factor->rows(), slot(id).columns};
 }
 
-/// From steps to coordinates: the model's right-hand side at x = 0.
-void FactorGraph::shiftToCoordinates(const Factor& factor, Term term) {
+FactorGraph::Information FactorGraph::information(FactorId id) const { return informationOf(slot(id)); }
+
+FactorGraph::Information FactorGraph::informationOf(const LinearizedFactor& slot) {
+  assert(slot.factor->form() == Factor::Form::kInformation);
+  return {.H = {slot.lower_H, slot.columns - 1}, .g_c = {slot.g_c, slot.columns}};
+}
+
+/// The model and the cost at the applied estimates. False, and nothing changes, when they are not finite.
+bool FactorGraph::linearize(LinearizedFactor& slot) {
+  apply(*slot.factor);
+  const bool residual = slot.factor->form() == Factor::Form::kJacobian;
+  if (!(residual ? linearizeResidual(slot) : linearizeInformation(slot))) return false;
+  slot.drift = 0;
+  return true;
+}
+
+bool FactorGraph::linearizeResidual(LinearizedFactor& slot) {
+  const Factor& factor = *slot.factor;
+  matrix_.resize(std::size_t(factor.rows()) * slot.columns);
+  Term fresh(matrix_.data(), factor.rows(), slot.columns);
+  factor.linearize(valuesOf(factor, &Variable::linearization_point), fresh);
+  factor.residual(valuesOf(factor, &Variable::applied_estimate), fresh.rightCols<1>().col(0));
+  turnToWorldAxes(factor, fresh);
+  if (!canBeSquared(matrix_)) return false;
+  setCost(slot, fresh.rightCols<1>().squaredNorm());
   const Column x = appliedCoordinates(factor);
-  const Eigen::Index n = x.size();
-  if (factor.form() == Factor::Form::kJacobian) {
-    term.col(n).noalias() -= term.leftCols(n) * x;
-    return;
+  fresh.rightCols<1>().noalias() -= fresh.leftCols(x.size()) * x;
+  if (!slot.term) slot.term = terms_.take(matrix_.size());
+  std::ranges::copy(matrix_, slot.term);
+  return true;
+}
+
+/// Where a factor still says what it was made of, its H serves as it is, whatever became of g and c.
+bool FactorGraph::linearizeInformation(LinearizedFactor& slot) {
+  const Factor& factor = *slot.factor;
+  const auto values = valuesOf(factor, &Variable::applied_estimate);
+  const Quadratic* held = factor.heldModel(values);
+  if (!held) {
+    matrix_.resize(std::size_t(factor.rows()) * factor.rows());
+    Term whole(matrix_.data(), factor.rows(), factor.rows());
+    factor.linearize(values, whole);
+    pack(whole, quadratic_);
   }
-  product_.assign(n, 0.0);
-  addSymmetricProduct(term.data(), static_cast<int>(n + 1), static_cast<int>(n), x.data(), product_.data());
-  const Column Hx(product_.data(), n);
-  term(n, n) += x.dot(Hx) - 2 * x.dot(term.row(n).head(n));
-  term.row(n).head(n) -= Hx.transpose();
+  const Quadratic& model = held ? *held : quadratic_;
+  if (!canBeSquared(model.lower_H) || !canBeSquared({model.g_c.data(), std::size_t(model.g_c.size())})) return false;
+  if (held) {
+    terms_.give(std::exchange(slot.term, nullptr));
+    slot.lower_H = held->lower_H.data();
+  } else {
+    if (!slot.term) slot.term = terms_.take(model.lower_H.size());
+    std::ranges::copy(model.lower_H, slot.term);
+    slot.lower_H = slot.term;
+  }
+  if (!slot.g_c) slot.g_c = terms_.take(slot.columns);
+  const Information information = informationOf(slot);
+  Eigen::Map<Eigen::VectorXd> g_c = information.g_c;
+  g_c = model.g_c;
+  setCost(slot, information.c());
+  // From steps to coordinates: the model at x = 0.
+  const Column x = appliedCoordinates(factor);
+  product_.assign(x.size(), 0.0);
+  addSymmetricProduct(information.H, x.data(), product_.data());
+  const Column Hx(product_.data(), x.size());
+  g_c[x.size()] += x.dot(Hx) - 2 * x.dot(g_c.head(x.size()));
+  g_c.head(x.size()) -= Hx;
+  return true;
+}
+
+void FactorGraph::giveBack(LinearizedFactor& slot) {
+  terms_.give(slot.term);
+  terms_.give(slot.g_c);
+  slot.term = slot.g_c = nullptr;
+  slot.lower_H = nullptr;
 }
 
 std::optional<FactorId> FactorGraph::addFactor(std::unique_ptr<const Factor> factor) {
-  int columns = 1;
-  for (const VariableId v : factor->variables()) columns += sizeOf(v);
-  double* data = terms_.take(factor->rows() * columns);
-  const Term term(data, factor->rows(), columns);
-  if (!evaluate(*factor, term)) {
-    terms_.give(data);
-    return std::nullopt;
-  }
+  LinearizedFactor fresh;
+  fresh.columns = 1;
+  for (const VariableId v : factor->variables()) fresh.columns += sizeOf(v);
+  fresh.factor = std::move(factor);
+  if (!linearize(fresh)) return std::nullopt;
   const FactorId id = takeSlot(free_factors_, factors_);
+  LinearizedFactor& slot = factors_[id.value];
+  slot = std::move(fresh);
+  const bool residual = slot.factor->form() == Factor::Form::kJacobian;
   int at = 0;
-  for (const VariableId v : factor->variables()) {
+  for (const VariableId v : slot.factor->variables()) {
     Variable& variable = (*this)[v];
     variable.factors.push_back(id);
     for (int i = 0; i < variable.size; ++i, ++at)
-      variable.information[i] += factor->form() == Factor::Form::kJacobian ? term.col(at).squaredNorm() : term(at, at);
+      variable.information[i] += residual ? term(id).col(at).squaredNorm() : information(id).H.column(at)[at];
   }
-  LinearizedFactor& slot = factors_[id.value];
-  slot.term = data;
-  slot.columns = columns;
-  slot.drift = 0;
-  slot.cost = 0;
-  slot.factor = std::move(factor);
-  setCost(slot, costOf(*slot.factor, term));
-  shiftToCoordinates(*slot.factor, term);
-  if (slot.factor->form() == Factor::Form::kJacobian) ++residual_count_;
+  if (residual) ++residual_count_;
   return id;
 }
 
@@ -215,28 +259,17 @@ void FactorGraph::removeFactor(FactorId id) {
   for (const VariableId v : slot.factor->variables()) std::erase((*this)[v].factors, id);
   setCost(slot, 0);
   if (slot.factor->form() == Factor::Form::kJacobian) --residual_count_;
-  terms_.give(slot.term);
+  giveBack(slot);
   slot.factor = nullptr;
-  slot.term = nullptr;
   free_factors_.push_back(id);
 }
 
-void FactorGraph::linearize(FactorId id) {
-  auto& slot = factors_[id.value];
-  const Factor& factor = *slot.factor;
-  matrix_.resize(factor.rows() * slot.columns);
-  const Term fresh(matrix_.data(), factor.rows(), slot.columns);
-  if (!evaluate(factor, fresh)) return;
-  setCost(slot, costOf(factor, fresh));
-  shiftToCoordinates(factor, fresh);
-  term(id) = fresh;
-  slot.drift = 0;
-}
+void FactorGraph::linearize(FactorId id) { linearize(factors_[id.value]); }
 
 FactorGraph::Mismatch FactorGraph::mismatch(FactorId id) {
   const Factor& factor = *slot(id).factor;
-  const Term model = term(id);
   if (factor.form() == Factor::Form::kInformation) return informationMismatch(id);
+  const Term model = term(id);
   apply(factor);
   residual_.resize(factor.rows());
   Column r(residual_.data(), factor.rows());
@@ -251,8 +284,8 @@ FactorGraph::Mismatch FactorGraph::mismatch(FactorId id) {
 /// Of the gradient, and by its entries over the square root of their information.
 FactorGraph::Mismatch FactorGraph::informationMismatch(FactorId id) {
   const Factor& factor = *slot(id).factor;
-  const Term model = term(id);
-  const Eigen::Index n = model.cols() - 1;
+  const Information model = information(id);
+  const Eigen::Index n = model.H.size;
   apply(factor);
   residual_.assign(n + 1, 0.0);
   Column difference(residual_.data(), n + 1);
@@ -264,29 +297,22 @@ FactorGraph::Mismatch FactorGraph::informationMismatch(FactorId id) {
   setCost(factors_[id.value], difference[n]);
   residual_.resize(n);
   Column change(residual_.data(), n);
-  change -= model.row(n).head(n);
+  change -= model.g();
   product_.assign(n, 0.0);
-  addSymmetricProduct(model.data(), static_cast<int>(n + 1), static_cast<int>(n), appliedCoordinates(factor).data(),
-                      product_.data());
+  addSymmetricProduct(model.H, appliedCoordinates(factor).data(), product_.data());
   change -= Column(product_.data(), n);
   double squared = 0;
-  for (Eigen::Index i = 0; i < n; ++i)
-    if (model(i, i) > 0) squared += change[i] * change[i] / model(i, i);
+  for (int i = 0; i < model.H.size; ++i)
+    if (const double own = model.H.column(i)[i]; own > 0) squared += change[i] * change[i] / own;
   return {.norm = std::sqrt(squared), .r = residual_};
 }
 
 void FactorGraph::correctResidual(FactorId id, std::span<const double> r) {
-  Term model = term(id);
   const Eigen::Map<const Eigen::VectorXd> shift(r.data(), static_cast<Eigen::Index>(r.size()));
   if (slot(id).factor->form() == Factor::Form::kInformation)
-    model.row(model.rows() - 1).head(shift.size()) += shift.transpose();
+    information(id).g_c.head(shift.size()) += shift;
   else
-    model.col(model.cols() - 1) += shift;
-}
-
-double FactorGraph::costOf(const Factor& factor, const Term& term) {
-  return factor.form() == Factor::Form::kJacobian ? term.col(term.cols() - 1).squaredNorm()
-                                                  : term(term.rows() - 1, term.cols() - 1);
+    term(id).rightCols<1>() += shift;
 }
 
 void FactorGraph::setCost(LinearizedFactor& slot, double cost) {

@@ -41,8 +41,15 @@ class FactorGraph {
     Value linearization_point;   // where the Jacobians of all its factors are taken
     std::vector<FactorId> factors;
   };
-  /// [J | r] or the lower triangle of [H g; g^T c] in the coordinates, column-major.
+  /// [J | r] in the coordinates, column-major.
   using Term = Eigen::Map<Eigen::MatrixXd>;
+  /// [H g; g^T c] in the coordinates.
+  struct Information {
+    PackedTriangle H;
+    Eigen::Map<Eigen::VectorXd> g_c;
+    auto g() const { return g_c.head(H.size); }
+    double c() const { return g_c[H.size]; }
+  };
 
   VariableId addVariable(const Value& initial);
   /// The variable must have no factors any more.
@@ -81,7 +88,9 @@ class FactorGraph {
   const Variable& operator[](VariableId id) const { return variables_[id.value]; }
   Variable& operator[](VariableId id) { return variables_[id.value]; }
   const Factor& factor(FactorId id) const { return *slot(id).factor; }
-  Term term(FactorId id) const { return {slot(id).term, slot(id).factor->rows(), slot(id).columns}; }
+  /// The linear model of a factor of Form::kJacobian, and of Form::kInformation.
+  Term term(FactorId id) const;
+  Information information(FactorId id) const;
 
   /// Sum of the mismatches since the Jacobian was taken.
   double drift(FactorId id) const { return slot(id).drift; }
@@ -109,8 +118,9 @@ class FactorGraph {
  private:
   struct LinearizedFactor {
     std::unique_ptr<const Factor> factor;
-    double* term = nullptr;
     int columns = 0;
+    double *term = nullptr, *g_c = nullptr;  // [J | r], or the lower triangle of H and [g; c]
+    const double* lower_H = nullptr;         // `term`, or of the factor itself where that has the same
     double drift = 0, cost = 0;
   };
   const LinearizedFactor& slot(FactorId id) const { return factors_[id.value]; }
@@ -119,10 +129,12 @@ class FactorGraph {
   std::span<const Value* const> valuesOf(const Factor& factor, Value Variable::*member);
   Eigen::Map<Eigen::VectorXd> appliedCoordinates(const Factor& factor);
   void turnToWorldAxes(const Factor& factor, Term& term) const;
-  bool evaluate(const Factor& factor, Term term);
-  void shiftToCoordinates(const Factor& factor, Term term);
+  static Information informationOf(const LinearizedFactor& slot);
+  bool linearize(LinearizedFactor& slot);
+  bool linearizeResidual(LinearizedFactor& slot);
+  bool linearizeInformation(LinearizedFactor& slot);
+  void giveBack(LinearizedFactor& slot);
   Mismatch informationMismatch(FactorId id);
-  static double costOf(const Factor& factor, const Term& term);
   void setCost(LinearizedFactor& slot, double cost);
 
   std::vector<Variable> variables_;
@@ -135,7 +147,8 @@ class FactorGraph {
   std::vector<const Value*> values_;  // scratch
   // Aligned: how Eigen sums up depends on where the memory lies, and results must not.
   std::vector<double, Eigen::aligned_allocator<double>> coordinates_, residual_, product_,
-      matrix_;  // scratch
+      matrix_;           // scratch
+  Quadratic quadratic_;  // scratch
 };
 
 }  // namespace motorcade

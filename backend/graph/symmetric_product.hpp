@@ -1,9 +1,10 @@
 #pragma once
 
+#include "backend/graph/packed_triangle.hpp"
+
 namespace motorcade {
 
-/// y += A x with a symmetric matrix A, of n x n and column-major. What is above its diagonal is not read, nor is what
-/// pads the columns of `lda` numbers.
-void addSymmetricProduct(const double* a, int lda, int n, const double* x, double* y);
+/// y += A x with a symmetric matrix A.
+void addSymmetricProduct(const PackedTriangle& a, const double* x, double* y);
 
 }  // namespace motorcade

@@ -60,18 +60,23 @@ class LandmarkSum {
     columns_ += kLandmark;
   }
 
-  Eigen::MatrixXd symmetric() {
+  Quadratic packed() {
     subtract();
-    Eigen::MatrixXd system = Eigen::Map<Eigen::MatrixXd>(system_.data(), stride_, size_).topRows(size_);
-    const int rest = size_ - kRest;
-    for (int at = 0; at < rest; at += 6) {
+    Quadratic system;
+    pack(Eigen::Map<Eigen::MatrixXd>(system_.data(), stride_, size_).topRows(size_), system);
+    const int n = size_ - 1, offset = n - 1;
+    for (int at = 0; at < offset; at += 6) {
       const Matrix8d& own = own_[at / 6];
-      system.block<6, 6>(at, at) += own.topLeftCorner<6, 6>();
-      system.block<kRest, 6>(rest, at) += own.bottomLeftCorner<kRest, 6>();
-      system.bottomRightCorner<kRest, kRest>() += own.bottomRightCorner<kRest, kRest>();
+      for (int j = 0; j < 6; ++j) {
+        double* const column = system.lower_H.data() + PackedTriangle::offset(n, at + j);
+        for (int i = j; i < 6; ++i) column[at + i] += own(i, j);
+        column[offset] += own(6, j);
+        system.g_c[at + j] += own(7, j);
+      }
+      system.lower_H.back() += own(6, 6);
+      system.g_c.tail<kRest>() += own.row(7).tail<kRest>();
     }
-    system(rest + 1, rest + 1) += shared_squared_;
-    system.triangularView<Eigen::StrictlyUpper>() = system.transpose();
+    system.g_c[n] += shared_squared_;
     return system;
   }
 
@@ -187,12 +192,12 @@ EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const Landmar
     common.add(landmarks.of(j), fit.views());
   }
   result.levels.common_sum = common.squares();
-  result.system = sum.symmetric();
+  result.system = sum.packed();
   return result;
 }
 
 BundleFactor::BundleFactor(std::vector<VariableId> poses, VariableId offset, EliminatedLandmarks landmarks)
-    : Factor((poses.push_back(offset), poses), Form::kInformation, static_cast<int>(landmarks.system.rows())),
+    : Factor((poses.push_back(offset), poses), Form::kInformation, static_cast<int>(landmarks.system.g_c.size())),
       frames_(static_cast<int>(landmarks.T_cam_body.size())),
       landmarks_(std::move(landmarks)) {
   const SE3 last = landmarks_.T_cam_body.back().inverse();
@@ -216,16 +221,17 @@ double BundleFactor::offset_px(std::span<const Value* const> values) {
   return std::get<SmallVector>(*values.back())[0];
 }
 
-bool BundleFactor::isLinearizedAt(std::span<const SE3> T_cam_body, double offset_px) const {
-  if (std::abs(offset_px - landmarks_.offset_px) > kStill) return false;
-  return std::ranges::equal(T_cam_body, landmarks_.T_cam_body, [](const SE3& a, const SE3& b) {
+const Quadratic* BundleFactor::heldModel(std::span<const Value* const> values) const {
+  if (std::abs(offset_px(values) - landmarks_.offset_px) > kStill) return nullptr;
+  const bool still = std::ranges::equal(posesFromCamera(values), landmarks_.T_cam_body, [](const SE3& a, const SE3& b) {
     return (a.translation() - b.translation()).squaredNorm() < kStill * kStill &&
            (a.rotation() - b.rotation()).squaredNorm() < kStill * kStill;
   });
+  return still ? &landmarks_.system : nullptr;
 }
 
 BundleFactor::Displacement BundleFactor::displacement(std::span<const SE3> T_cam_body, double offset_px) const {
-  Displacement d{.e = Eigen::VectorXd::Zero(landmarks_.system.rows() - 1), .J = {}, .J_last = {}};
+  Displacement d{.e = Eigen::VectorXd::Zero(rows() - 1), .J = {}, .J_last = {}};
   d.e[6 * frames_] = offset_px - landmarks_.offset_px;
   const SE3 T_body_last = T_cam_body.back().inverse();
   for (int k = 0; k + 1 < frames_; ++k) {
@@ -245,10 +251,10 @@ BundleFactor::Displacement BundleFactor::displacement(std::span<const SE3> T_cam
 
 Eigen::VectorXd BundleFactor::gradientAt(const Eigen::VectorXd& e) const {
   const Eigen::Index n = e.size(), last = 6 * (frames_ - 1);
-  const auto g0 = landmarks_.system.col(n);
+  const Eigen::VectorXd& g0 = landmarks_.system.g_c;
   Eigen::VectorXd g_c(n + 1);
   g_c.setZero();
-  addSymmetricProduct(landmarks_.system.data(), static_cast<int>(n + 1), static_cast<int>(n), e.data(), g_c.data());
+  addSymmetricProduct(landmarks_.system.H(), e.data(), g_c.data());
   g_c[n] = g0[n] + e.dot(g_c.head(n)) + 2 * e.dot(g0.head(n));
   g_c.head(n) += g0.head(n);
   g_c.segment<6>(last).setZero();  // all motions are relative to the last pose
@@ -267,18 +273,13 @@ void BundleFactor::gradient(std::span<const Value* const> values, Eigen::Ref<Eig
 }
 
 void BundleFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
-  const std::vector<SE3> T_cam_body = posesFromCamera(values);
-  if (isLinearizedAt(T_cam_body, offset_px(values))) {
-    for (Eigen::Index j = 0; j < term.cols(); ++j)
-      term.col(j).tail(term.rows() - j) = landmarks_.system.col(j).tail(term.rows() - j);
-    return;
-  }
-  const Displacement d = displacement(T_cam_body, offset_px(values));
+  const Displacement d = displacement(posesFromCamera(values), offset_px(values));
   fillPoses(d, term);
   const int last = 6 * (frames_ - 1), rest = last + 6;
   Eigen::Matrix<double, kRest, Eigen::Dynamic> offset_g(kRest, rest + 1);
   const Eigen::VectorXd g_c = gradientAt(d.e);
-  offset_g << landmarks_.system.row(rest).head(rest + 1), g_c.head(rest + 1).transpose();
+  const PackedTriangle H = landmarks_.system.H();
+  for (int j = 0; j <= rest; ++j) offset_g.col(j) << H.column(j)[rest], g_c[j];
   Eigen::Matrix<double, kRest, 6> of_last = Eigen::Matrix<double, kRest, 6>::Zero();
   for (int k = 0; k + 1 < frames_; ++k) {
     const Eigen::Matrix<double, kRest, 6> own = offset_g.middleCols<6>(6 * k) * d.J[k];
@@ -290,17 +291,28 @@ void BundleFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Ei
   term(rest + 1, rest + 1) = g_c[rest + 1];
 }
 
+/// Of H, in the lower triangle or on its diagonal.
+Matrix6d BundleFactor::block(int i, int j) const {
+  const PackedTriangle H = landmarks_.system.H();
+  Matrix6d block;
+  for (int c = 0; c < 6; ++c) {
+    const double* const column = H.column(6 * j + c) + 6 * i;
+    for (int r = i == j ? c : 0; r < 6; ++r) block(r, c) = column[r];
+  }
+  if (i == j) block.triangularView<Eigen::StrictlyUpper>() = block.transpose();
+  return block;
+}
+
 /// The poses' part of the lower triangle: J' H J block by block, and the last pose's rows as sums of the others'.
 void BundleFactor::fillPoses(const Displacement& d, Eigen::Ref<Eigen::MatrixXd> term) const {
   const int others = frames_ - 1;
   std::vector<Matrix6d> sums(others, Matrix6d::Zero());
   for (int j = 0; j < others; ++j)
     for (int i = j; i < others; ++i) {
-      const Matrix6d H = landmarks_.system.block<6, 6>(6 * i, 6 * j);
-      const Matrix6d H_J = H * d.J[j], block = d.J[i].transpose() * H_J;
-      term.block<6, 6>(6 * i, 6 * j) = block;
-      sums[j].noalias() += d.J_last[i].transpose() * block;
-      if (i != j) sums[i].noalias() += (block * d.J_last[j]).transpose();
+      const Matrix6d H = block(i, j), H_J = H * d.J[j], moved = d.J[i].transpose() * H_J;
+      term.block<6, 6>(6 * i, 6 * j) = moved;
+      sums[j].noalias() += d.J_last[i].transpose() * moved;
+      if (i != j) sums[i].noalias() += (moved * d.J_last[j]).transpose();
     }
   Matrix6d last = Matrix6d::Zero();
   for (int j = 0; j < others; ++j) {

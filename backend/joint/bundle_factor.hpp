@@ -37,8 +37,7 @@ struct EliminatedLandmarks {
   FramePose pose = FramePose::kWorldCam;  // by whose steps
   std::vector<SE3> T_cam_body;            // of each frame
   double offset_px = 0;
-  /// Full symmetric [H g; g' c] in (steps of the poses frame by frame, offset).
-  Eigen::MatrixXd system;
+  Quadratic system{};  // in (steps of the poses frame by frame, offset)
   ResidualLevels levels;
   std::vector<std::optional<LandmarkEstimate>> estimates;  // of each landmark that could be fitted
 };
@@ -56,7 +55,7 @@ class BundleFactor final : public Factor {
 
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
   void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const override;
-
+  const Quadratic* heldModel(std::span<const Value* const> values) const override;
   void gradient(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> g_c) const override;
 
   /// T_cam_body of the frames by the factor's variables.
@@ -73,7 +72,7 @@ class BundleFactor final : public Factor {
     Eigen::VectorXd e;  // [S log(D_k D_k(linearized)^-1) of each frame but the last; 0; offset]
     std::vector<Matrix6d> J, J_last;
   };
-  bool isLinearizedAt(std::span<const SE3> T_cam_body, double offset_px) const;
+  Matrix6d block(int i, int j) const;
   Displacement displacement(std::span<const SE3> T_cam_body, double offset_px) const;
   /// [g; c] in displacements.
   Eigen::VectorXd gradientAt(const Eigen::VectorXd& e) const;

@@ -62,17 +62,18 @@ EliminatedLandmarks alignToKnown(const StereoCamera& camera, const LandmarkNoise
   EliminatedLandmarks result{.pose = FramePose::kWorldCam,
                              .T_cam_body = {T_cam_world[0], T_cam_world[1]},
                              .offset_px = offset_px,
-                             .system = Eigen::MatrixXd::Zero(kColumns, kColumns),
+                             .system = {},
                              .levels = {},
                              .estimates = {}};
   // What a step of the later pose does, one of the earlier undoes.
   Eigen::Matrix<double, 6, 12> by_both;
   by_both << Matrix6d::Identity(), -Matrix6d::Identity();
   by_both.topRightCorner<3, 3>() = hat(T_cam_world[0].inverse().translation() - T_cam_world[1].inverse().translation());
-  result.system.topLeftCorner<12, 12>() = by_both.transpose() * H * by_both;
-  result.system.topRightCorner<12, 1>() = by_both.transpose() * g;
-  result.system.bottomLeftCorner<1, 12>() = g.transpose() * by_both;
-  result.system(kColumns - 1, kColumns - 1) = c;
+  Eigen::Matrix<double, kColumns, kColumns> system = Eigen::Matrix<double, kColumns, kColumns>::Zero();
+  system.topLeftCorner<12, 12>() = by_both.transpose() * H * by_both;
+  system.bottomLeftCorner<1, 12>() = g.transpose() * by_both;
+  system(kColumns - 1, kColumns - 1) = c;
+  pack(system, result.system);
   return result;
 }
 

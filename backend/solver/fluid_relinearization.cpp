@@ -228,13 +228,13 @@ void FluidRelinearization::correctResidual(FactorId id) {
   const int owner = tree_.ownerOf(factor);
   const std::span<double> change = work_.markShift(owner);
   if (change.empty()) return;  // the clique is eliminated anew
-  const auto J = graph_.term(id);
   const bool gradient = factor.form() == Factor::Form::kInformation;
   const Eigen::Map<const Eigen::VectorXd> r(mismatch.r.data(), static_cast<Eigen::Index>(mismatch.r.size()));
   int column = 0;
   for (const VariableId v : factor.variables()) {
     const int row = firstRowOf(v, tree_[owner], graph_);
-    for (int i = 0; i < graph_.sizeOf(v); ++i, ++column) change[row + i] += gradient ? r[column] : J.col(column).dot(r);
+    for (int i = 0; i < graph_.sizeOf(v); ++i, ++column)
+      change[row + i] += gradient ? r[column] : graph_.term(id).col(column).dot(r);
   }
 }
 

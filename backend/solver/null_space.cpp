@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "backend/graph/sort_unique.hpp"
+#include "backend/graph/symmetric_product.hpp"
 
 namespace motorcade {
 namespace {
@@ -90,19 +91,24 @@ struct CostChange {
 
 CostChange changeOf(const FactorGraph& graph, FactorId id, const std::unordered_map<VariableId, SmallVector>& steps) {
   const Factor& factor = graph.factor(id);
-  const auto term = graph.term(id);
-  const Eigen::Index n = term.cols() - 1;
+  Eigen::Index n = 0;
+  for (const VariableId v : factor.variables()) n += graph.sizeOf(v);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
   Eigen::Index at = 0;
   for (const VariableId v : factor.variables()) {
     if (const auto found = steps.find(v); found != steps.end()) x.segment(at, graph.sizeOf(v)) = found->second;
     at += graph.sizeOf(v);
   }
-  if (factor.form() == Factor::Form::kJacobian)
-    return {(term.leftCols(n) * x).squaredNorm(),
-            term.leftCols(n).colwise().squaredNorm().dot(x.cwiseAbs2().transpose())};
-  const auto H = term.topLeftCorner(n, n);
-  return {x.dot(H.selfadjointView<Eigen::Lower>() * x), H.diagonal().cwiseAbs().dot(x.cwiseAbs2())};
+  if (factor.form() == Factor::Form::kJacobian) {
+    const auto J = graph.term(id).leftCols(n);
+    return {(J * x).squaredNorm(), J.colwise().squaredNorm().dot(x.cwiseAbs2().transpose())};
+  }
+  const PackedTriangle H = graph.information(id).H;
+  Eigen::VectorXd Hx = Eigen::VectorXd::Zero(n);
+  addSymmetricProduct(H, x.data(), Hx.data());
+  CostChange change{.cost = x.dot(Hx)};
+  for (int i = 0; i < H.size; ++i) change.without_cancellation += std::abs(H.column(i)[i]) * x[i] * x[i];
+  return change;
 }
 
 Constraint constraintAlong(const FactorGraph& graph, const std::vector<Step>& moving) {

@@ -4,6 +4,7 @@
 
 #include "backend/elimination/elimination_tree.hpp"
 #include "tests/backend/dense_system.hpp"
+#include "tests/backend/unpacked.hpp"
 
 /// The linear system [H g; g^T *] in the coordinates of a graph, in a dense system's order of variables, from two
 /// sides. The last corner, which no solution depends on, is zero.
@@ -15,10 +16,10 @@ inline Eigen::MatrixXd informationOfFactors(const FactorGraph& graph, const Dens
   for (const FactorId f : graph.factors()) {
     auto at = dense.entries(graph.factor(f).variables());
     at.push_back(dense.size());
-    Eigen::MatrixXd term = graph.term(f);
-    if (graph.factor(f).form() == Factor::Form::kJacobian) term = (term.transpose() * term).eval();
-    term.triangularView<Eigen::StrictlyUpper>() = term.transpose();
-    system(at, at) += term;
+    if (graph.factor(f).form() == Factor::Form::kJacobian)
+      system(at, at) += graph.term(f).transpose() * graph.term(f);
+    else
+      system(at, at) += unpacked(graph.information(f).H, graph.information(f).g_c);
   }
   system(dense.size(), dense.size()) = 0;
   return system;

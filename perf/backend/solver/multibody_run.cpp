@@ -134,8 +134,9 @@ double costOf(const IncrementalSolver& solver) {
     std::vector<const Value*> pointers;
     for (const VariableId v : factor.variables()) values.push_back(solver.estimate(v));
     for (const Value& value : values) pointers.push_back(&value);
-    const auto term = graph.term(id);
-    Eigen::MatrixXd fresh(term.rows(), term.cols());
+    int columns = 1;
+    for (const Value& value : values) columns += dimension(value);
+    Eigen::MatrixXd fresh(factor.rows(), columns);
     factor.linearize(pointers, fresh);
     const auto last = fresh.col(fresh.cols() - 1);
     cost += factor.form() == Factor::Form::kJacobian ? last.squaredNorm() : last[last.size() - 1];

@@ -5,6 +5,7 @@
 
 #include "backend/graph/marginal_factor.hpp"
 #include "tests/backend/random_factors.hpp"
+#include "tests/backend/unpacked.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace motorcade {
@@ -188,6 +189,49 @@ TEST(FactorGraph, RestartingTheCoordinatesKeepsTheEstimates) {
   });
 }
 
+/// Holds a model at zero; elsewhere it is another one.
+class HoldingFactor final : public Factor {
+ public:
+  explicit HoldingFactor(VariableId v) : Factor({v}, Form::kInformation, 4) {
+    pack((Eigen::Matrix4d() << 2, 0, 0, 0, 1, 3, 0, 0, 0, 1, 4, 0, 1, 2, 3, 5).finished(), held_);
+  }
+  void linearize(std::span<const Value* const>, Eigen::Ref<Eigen::MatrixXd> term) const override {
+    term = 7 * Eigen::Matrix4d::Identity();
+  }
+  void residual(std::span<const Value* const>, Eigen::Ref<Eigen::VectorXd>) const override {}
+  const Quadratic* heldModel(std::span<const Value* const> values) const override {
+    return std::get<SmallVector>(*values[0]).norm() == 0 ? &held_ : nullptr;
+  }
+
+ private:
+  Quadratic held_;
+};
+
+TEST(FactorGraph, AModelThatAFactorHoldsIsNotCopied) {
+  FactorGraph graph;
+  const VariableId v = graph.addVariable(SmallVector(SmallVector::Zero(3)));
+  const FactorId f = *graph.addFactor(std::make_unique<HoldingFactor>(v));
+  const auto heldBy = [&](const Value& value) { return graph.factor(f).heldModel(std::array{&value}); };
+  const Quadratic& held = *heldBy(SmallVector(SmallVector::Zero(3)));
+  const Eigen::VectorXd g_c = held.g_c;
+  EXPECT_EQ(graph.information(f).H.data, held.lower_H.data());
+  EXPECT_EQ(graph.information(f).g_c, g_c);
+  EXPECT_EQ(graph[v].information[1], 3);
+  graph.correctResidual(f, std::array{0.5, 0.0, 0.0});
+  EXPECT_EQ(graph.information(f).g_c[0], g_c[0] + 0.5);
+  EXPECT_EQ(held.g_c, g_c);
+
+  graph[v].x[0] = 1;
+  graph.linearize(f);
+  EXPECT_NE(graph.information(f).H.data, held.lower_H.data());
+  EXPECT_EQ(graph.information(f).H.column(1)[1], 7);
+  EXPECT_EQ(graph.information(f).g_c[0], -7);  // in the coordinates
+  graph[v].x[0] = 0;
+  graph.linearize(f);
+  EXPECT_EQ(graph.information(f).H.data, held.lower_H.data());
+  EXPECT_EQ(graph.information(f).g_c, g_c);
+}
+
 TEST(FactorGraph, AMarginalPriorsModelHasTheGradientOfItsCost) {
   // The quadratic of a marginal in steps from where it was made, at estimates that have moved on.
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
@@ -217,10 +261,9 @@ TEST(FactorGraph, AMarginalPriorsModelHasTheGradientOfItsCost) {
     scene.move(0.05);
     scene.graph.linearize(f);
     const auto now = scene.estimatesOf(scene.graph.factor(f));
-    const auto term = scene.graph.term(f);
-    const Eigen::MatrixXd H = term.topLeftCorner(n, n).selfadjointView<Eigen::Lower>();
-    const Eigen::VectorXd gradient =
-        2 * (H * scene.coordinatesOf(scene.graph.factor(f)) + term.row(n).head(n).transpose());
+    const auto model = scene.graph.information(f);
+    const Eigen::MatrixXd H = test::unpacked(model.H, model.g_c).topLeftCorner(n, n);
+    const Eigen::VectorXd gradient = 2 * (H * scene.coordinatesOf(scene.graph.factor(f)) + model.g());
     Eigen::Index row = 0;
     for (std::size_t k = 0; k < now.size(); ++k) {
       for (int i = 0; i < dimension(now[k]); ++i, ++row) {

@@ -5,6 +5,8 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "tests/backend/unpacked.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -63,7 +65,7 @@ struct Scene {
   double freshCost() const {
     const auto fresh = eliminateLandmarks(kCamera, noise, landmarks, pose, factor->posesFromCamera(pointers()),
                                           std::get<SmallVector>(values.back())[0]);
-    return fresh.system(fresh.system.rows() - 1, fresh.system.cols() - 1);
+    return fresh.system.g_c[fresh.system.g_c.size() - 1];
   }
   std::vector<const Value*> pointers() const {
     std::vector<const Value*> pointers;
@@ -121,11 +123,13 @@ TEST_P(BundleFactorOf, TheQuadraticHoldsAwayFromItsLinearization) {
   EXPECT_NEAR(scene.cost(), scene.freshCost(), 0.02 * std::abs(scene.freshCost() - before));
 }
 
-/// At its own linearization the term is copied, all poses' rows; a hair's breadth beside it, it is computed.
-TEST_P(BundleFactorOf, IsTheSystemWhereItWasLinearized) {
+TEST_P(BundleFactorOf, HoldsTheSystemWhereItWasLinearized) {
   Scene scene(GetParam(), 0.2, {}, 8);
-  const Eigen::MatrixXd at = scene.linearize();
+  const Quadratic* const held = scene.factor->heldModel(scene.pointers());
+  ASSERT_TRUE(held);
+  const Eigen::MatrixXd at = test::unpacked(*held);
   for (int i = 0; i < scene.dimension(); ++i) scene.move(i, i % 2 == 0 ? 2e-8 : -1e-8);
+  EXPECT_FALSE(scene.factor->heldModel(scene.pointers()));
   const Eigen::MatrixXd beside = scene.linearize();
   for (int j = 0; j < at.cols(); ++j)
     for (int i = j; i < at.rows(); ++i)
@@ -204,7 +208,7 @@ TEST_P(BundleFactorOf, ManyLandmarksAreEliminatedAsOneByOne) {
   const EliminatedLandmarks& at = scene.factor->landmarks();
   const auto eliminated = eliminateLandmarks(kCamera, {}, many, at.pose, at.T_cam_body, at.offset_px);
   const Eigen::MatrixXd expected = eliminatedOneByOne(many, {}, at);
-  EXPECT_LT((eliminated.system - expected).norm(), 1e-10 * expected.norm());
+  EXPECT_LT((test::unpacked(eliminated.system) - expected).norm(), 1e-10 * expected.norm());
 }
 
 /// Robust weights follow slowly: fits from the estimate before come nearer.
@@ -215,7 +219,7 @@ TEST_P(BundleFactorOf, LandmarksThatWereFoundBeforeAreFoundBetter) {
   std::vector<Eigen::MatrixXd> systems;
   for (int time = 0; time < 40; ++time) {
     auto eliminated = eliminateLandmarks(kCamera, {}, landmarks, at.pose, at.T_cam_body, at.offset_px);
-    systems.push_back(std::move(eliminated.system));
+    systems.push_back(test::unpacked(eliminated.system));
     landmarks.before = std::move(eliminated.estimates);
   }
   const auto error = [&](int time) { return (systems[time] - systems.back()).norm(); };

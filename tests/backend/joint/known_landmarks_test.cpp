@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "backend/graph/variable.hpp"
+#include "tests/backend/unpacked.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace motorcade {
@@ -61,8 +62,8 @@ TEST(KnownLandmarks, TellWhatTheEliminationOfTwoViewsDoes) {
   }
   const auto eliminated = eliminateLandmarks(kCamera, kNoise, landmarks, FramePose::kWorldCam,
                                              {scene.T_cam_world[0], scene.T_cam_world[1]}, kOffset_px);
-  const Matrix6d H = eliminated.system.topLeftCorner<6, 6>(),
-                 of_known = scene.align(scene.T_cam_world).system.topLeftCorner<6, 6>();
+  const Matrix6d H = test::unpacked(eliminated.system).topLeftCorner<6, 6>(),
+                 of_known = test::unpacked(scene.align(scene.T_cam_world).system).topLeftCorner<6, 6>();
   EXPECT_THAT(Matrix6d(of_known / H.norm()), IsNear(Matrix6d(H / H.norm()), 1e-9));
 }
 
@@ -71,19 +72,20 @@ TEST(KnownLandmarks, GiveBackTheMotion) {
   const Vector6d displacement = (Vector6d() << 0.02, -0.01, 0.05, 0.002, -0.001, 0.003).finished();
   const Value x_first = scene.T_cam_world[0].inverse();
   const auto aligned = scene.align({std::get<SE3>(displaced(x_first, -displacement)).inverse(), scene.T_cam_world[1]});
-  const Matrix6d H = aligned.system.topLeftCorner<6, 6>();
-  const Vector6d g = aligned.system.topRightCorner<6, 1>(), step = -H.llt().solve(g);
+  const Matrix6d H = test::unpacked(aligned.system).topLeftCorner<6, 6>();
+  const Vector6d g = test::unpacked(aligned.system).topRightCorner<6, 1>(), step = -H.llt().solve(g);
   EXPECT_THAT(step, IsNear(displacement, 3e-3));
   EXPECT_LT((step - displacement).norm(), 0.1 * displacement.norm());
-  EXPECT_LT(scene.align(scene.T_cam_world).system.rightCols<1>().norm(), 1e-6);
+  EXPECT_LT(test::unpacked(scene.align(scene.T_cam_world).system).rightCols<1>().norm(), 1e-6);
 }
 
 TEST(KnownLandmarks, CountLessWhereTheyAreKnownLess) {
   const Scene scene;
   std::vector<ViewOfKnown> sure = scene.views();
   for (ViewOfKnown& view : sure) view.landmark.covariance *= 0.1;
-  const Matrix6d H = scene.align(scene.T_cam_world).system.topLeftCorner<6, 6>();
-  const Matrix6d more = alignToKnown(kCamera, kNoise, sure, scene.T_cam_world, kOffset_px).system.topLeftCorner<6, 6>();
+  const Matrix6d H = test::unpacked(scene.align(scene.T_cam_world).system).topLeftCorner<6, 6>();
+  const Matrix6d more =
+      test::unpacked(alignToKnown(kCamera, kNoise, sure, scene.T_cam_world, kOffset_px).system).topLeftCorner<6, 6>();
   EXPECT_GT((more - H).llt().matrixL().toDenseMatrix().diagonal().minCoeff(), 0);
   EXPECT_GT(more(2, 2), 2 * H(2, 2));
 }
@@ -93,9 +95,9 @@ TEST(KnownLandmarks, BehindTheCameraAreLeftOut) {
   std::vector<ViewOfKnown> views = scene.views();
   const SE3 beyond = SE3(Eigen::Matrix3d::Identity(), {0, 0, -100}) * scene.T_cam_world[1];
   const auto behind = alignToKnown(kCamera, kNoise, views, {scene.T_cam_world[0], beyond}, kOffset_px);
-  EXPECT_EQ(behind.system.norm(), 0);
+  EXPECT_EQ(test::unpacked(behind.system).norm(), 0);
   views[0].landmark.unknowns[2] = 0;
-  EXPECT_EQ(alignToKnown(kCamera, kNoise, views, scene.T_cam_world, kOffset_px).system.norm(), 0);
+  EXPECT_EQ(test::unpacked(alignToKnown(kCamera, kNoise, views, scene.T_cam_world, kOffset_px).system).norm(), 0);
 }
 
 }  // namespace
