@@ -25,8 +25,9 @@ class PoseObservations {
  public:
   explicit PoseObservations(std::span<const PoseObservation> observations);
 
-  /// Four observations. Copies of the first one fill a block that has fewer.
-  struct Block {
+  /// Four observations. Copies of the first one fill a block that has fewer. Sources compiled for any processor would
+  /// align `Doubles` less than the kernels do.
+  struct alignas(sizeof(Doubles)) Block {
     Doubles3 p_ref;
     SymmetricDoubles3x3 covariance_ref;
     Doubles3 uvd_px, variance_px2;

@@ -18,8 +18,8 @@ constexpr int kMidGray = 128;
 constexpr int kNeighbors_px = 2;  // of the least sum, which do not speak against it
 static_assert(kMeanColumns * kMeanRows * UINT8_MAX <= INT16_MAX && kMaxWindowCosts == 32 * kWordLanes);
 
-/// Sums over the rows around row y, with a margin on both sides that repeats the last columns. Its memory has room for
-/// whole vectors beyond it.
+/// Sums over the rows around row y, with a margin on both sides that repeats the last columns, the right one for whole
+/// vectors beyond the image.
 void sumRows(const Image& image, int y, std::int16_t* sums) {
   std::array<const std::uint8_t*, kMeanRows> rows;
   for (int r = 0; r < kMeanRows; ++r) rows[r] = image.row(std::clamp(y + r - kMeanRows / 2, 0, image.height() - 1));
@@ -29,7 +29,7 @@ void sumRows(const Image& image, int y, std::int16_t* sums) {
     storeWords(sums + kMargin + x, sum);
   }
   std::fill_n(sums, kMargin, sums[kMargin]);
-  std::fill_n(sums + kMargin + image.width(), kMargin, sums[kMargin + image.width() - 1]);
+  std::fill_n(sums + kMargin + image.width(), kMargin + kWordLanes, sums[kMargin + image.width() - 1]);
 }
 
 /// `sums` are those of the rows, as `sumRows` leaves them.
