@@ -26,14 +26,24 @@ class PointGrid {
     for (const auto& item : items) points_[next[cellOf(position_px(item))]++] = number++;
   }
 
-  /// Calls f(index) for all points in a rectangle, and for some around it, each once.
+  /// Indices of all points, cell by cell, so that points near each other follow each other.
+  const std::vector<int>& byPlace() const { return points_; }
+
+  /// Calls f(first, end) for ranges of `byPlace` that hold all points in a rectangle, and some around it, each once.
   template <class Function>
-  void forEachNear(const Eigen::Vector2f& min_px, const Eigen::Vector2f& max_px, const Function& f) const {
+  void forEachRangeNear(const Eigen::Vector2f& min_px, const Eigen::Vector2f& max_px, const Function& f) const {
     const int first = column(min_px.x()), last = column(max_px.x());
     for (int y = row(min_px.y()); y <= row(max_px.y()); ++y) {
       const int line = y * columns_;
-      for (int i = ends_[line + first]; i < ends_[line + last + 1]; ++i) f(points_[i]);
+      f(ends_[line + first], ends_[line + last + 1]);
     }
+  }
+  /// Calls f(index) for all points in a rectangle, and for some around it, each once.
+  template <class Function>
+  void forEachNear(const Eigen::Vector2f& min_px, const Eigen::Vector2f& max_px, const Function& f) const {
+    forEachRangeNear(min_px, max_px, [&](int first, int end) {
+      for (int i = first; i < end; ++i) f(points_[i]);
+    });
   }
   /// Half the side of a square around any point of the image that holds all points.
   float extent_px() const { return kCell_px * static_cast<float>(std::max(columns_, rows_)); }

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "core/elementary.hpp"
 #include "frontend/features/sift_features.hpp"
+#include "frontend/geometry/point_grid.hpp"
 #include "frontend/image/image_pyramid.hpp"
 #include "frontend/matching/followed_point.hpp"
 #include "frontend/matching/image_content.hpp"
@@ -59,6 +61,14 @@ std::vector<int> strongestFirst(const std::vector<Corner>& corners) {
   return order;
 }
 
+/// Indices of the points in an order in which much of what one reads of the images is in the cache from those before.
+std::vector<int> byPlace(const std::vector<FollowedPoint>& points, const Image& image) {
+  const auto position_px = [](const FollowedPoint& point) {
+    return Eigen::Vector2f(point.observation.u_px, point.observation.v_px);
+  };
+  return PointGrid(points, image.width(), image.height(), position_px).byPlace();
+}
+
 bool sameSize(const Image& a, const Image& b) { return a.width() == b.width() && a.height() == b.height(); }
 
 }  // namespace
@@ -76,11 +86,12 @@ struct OpticalFlowTracker::State {
   double intervalsSince(const Features& now) const;
   bool mayWait(Timestamp now) const;
   bool follow(const Features& now);
-  std::vector<std::optional<AlignedPatch>> findMoving(const PointFollower& follower, double intervals) const;
+  std::vector<std::optional<AlignedPatch>> findMoving(const PointFollower& follower, double intervals,
+                                                      std::span<const int> order) const;
   bool isFrozen(const Features& now) const;
   std::optional<double> shareOf(const std::vector<std::optional<AlignedPatch>>& found) const;
   bool isOfNoUse(const Features& now, const std::vector<std::optional<AlignedPatch>>& found, double intervals) const;
-  void followYoung(const PointFollower& follower, const Features& now);
+  void followYoung(const PointFollower& follower, const Features& now, std::span<const int> order);
   void removeLost(const Image& now);
   void startPoints(const Features& now);
   FollowedPoint& startPoint(const Features& now, int corner, double sigma_px);
@@ -89,10 +100,12 @@ struct OpticalFlowTracker::State {
 
 /// Where points are that moved before. Their last shift is the guess.
 std::vector<std::optional<AlignedPatch>> OpticalFlowTracker::State::findMoving(const PointFollower& follower,
-                                                                               double intervals) const {
+                                                                               double intervals,
+                                                                               std::span<const int> order) const {
   const int level = std::min(kMovingLevel, follower.coarsestLevel());
   std::vector<std::optional<AlignedPatch>> found(points.size());
-  forEachItem(points.size(), [&](std::size_t i) {
+  forEachItem(order.size(), [&](std::size_t k) {
+    const int i = order[k];
     const FlowObservation& before = points[i].observation;
     if (before.age < 2) return;
     const Shift guess = shiftAfter(points[i], intervals);
@@ -121,12 +134,13 @@ bool OpticalFlowTracker::State::isOfNoUse(const Features& now, const std::vector
 }
 
 /// Follows the points that are left: new ones, and those that did not keep their velocity.
-void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const Features& now) {
+void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const Features& now,
+                                            std::span<const int> order) {
   const Image& image = now.left.levels.front();
   const YoungPointSearch search(follower, *previous, now, shiftsOf(points, image), params.max_flow_px);
   std::vector<FollowedPoint*> still;
-  for (FollowedPoint& point : points)
-    if (!point.moved) still.push_back(&point);
+  for (const int i : order)
+    if (!points[i].moved) still.push_back(&points[i]);
   forEachItem(still.size(), [&](std::size_t i) {
     const auto found = search(still[i]->observation);
     if (found) moveTo(*still[i], *found, image);
@@ -162,16 +176,18 @@ bool OpticalFlowTracker::State::follow(const Features& now) {
   const PointFollower follower(previous->left, now.left, params.max_round_trip_px);
   const Image& image = now.left.levels.front();
   const double intervals = intervalsSince(now);
-  const auto found = findMoving(follower, intervals);
+  const std::vector<int> order = byPlace(points, image);
+  const auto found = findMoving(follower, intervals, order);
   if (isOfNoUse(now, found, intervals)) return false;
   if (const auto share = isUneven(intervals) ? std::nullopt : shareOf(found))
     usual_share = kUsualMemory * usual_share + (1 - kUsualMemory) * *share;
   interval_s = secondsBetween(previous->frame->stamp, now.frame->stamp);
-  forEachItem(points.size(), [&](std::size_t i) {
+  forEachItem(order.size(), [&](std::size_t k) {
+    const int i = order[k];
     points[i].moved = false;
     if (found[i]) moveTo(points[i], *found[i], image);
   });
-  followYoung(follower, now);
+  followYoung(follower, now, order);
   removeLost(image);
   return true;
 }
