@@ -36,6 +36,12 @@ inline void storeWordsAsBytes(std::uint8_t* p, const Words& words) {
 inline Words wordPixels(const std::uint8_t* p) {
   return Words(_mm256_cvtepu8_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
 }
+/// Eight pixels from each of two places.
+inline Words wordPixels(const std::uint8_t* p, const std::uint8_t* q) {
+  const __m128i first = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)),
+                second = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(q));
+  return Words(_mm256_cvtepu8_epi16(_mm_unpacklo_epi64(first, second)));
+}
 inline Words magnitude(const Words& x) { return Words(_mm256_abs_epi16(__m256i(x))); }
 /// Products of the words, added in pairs.
 inline WordSums products(const Words& a, const Words& b) { return WordSums(_mm256_madd_epi16(__m256i(a), __m256i(b))); }
@@ -82,6 +88,11 @@ inline Words differencesOfEight(const std::uint8_t* p, const std::uint8_t* eight
 inline Words wordPixels(const std::uint8_t* p) {
   Words words;
   for (int i = 0; i < kWordLanes; ++i) words[i] = p[i];
+  return words;
+}
+inline Words wordPixels(const std::uint8_t* p, const std::uint8_t* q) {
+  Words words;
+  for (int i = 0; i < kWordLanes; ++i) words[i] = i < kWordLanes / 2 ? p[i] : q[i - kWordLanes / 2];
   return words;
 }
 inline Words magnitude(const Words& x) { return x < 0 ? -x : x; }

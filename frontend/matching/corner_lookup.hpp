@@ -34,7 +34,7 @@ struct Guesses {
 };
 
 /// How a point looks, for a quick comparison: 8x8 pixels of each of the two finest levels, their means moved to 128.
-class Signature {
+class alignas(64) Signature {
  public:
   static constexpr int kSide = 8, kPixels = 2 * kSide * kSide;
   Signature(const ImagePyramid& pyramid, float u_px, float v_px);
@@ -46,18 +46,23 @@ class Signature {
   std::array<std::uint8_t, kPixels> values_;
 };
 
-/// The corners of an image, to look up where a point of the previous image may have gone.
+/// The corners of an image, to look up where a point of the previous image may have gone. It refers to the features.
 class CornerLookup {
  public:
   explicit CornerLookup(const Features& features);
-  /// Adds the shifts from a point of the pyramid `from` to the two corners within the bounds that look most like it and
+  /// Adds the shifts from a point of the previous image to the two corners within the bounds that look most like it and
   /// differ from it by less than `max_difference` gray levels per pixel.
-  void addSimilar(const ImagePyramid& from, const FlowObservation& point, const ShiftBounds& bounds,
+  void addSimilar(const Signature& look, const Eigen::Vector2f& point_px, const ShiftBounds& bounds,
                   double max_difference, Guesses& guesses) const;
 
  private:
+  class TwoMostSimilar;
+  void addWithin(const Eigen::Vector2f& point_px, const ShiftBounds& bounds, TwoMostSimilar& best) const;
+
+  const std::vector<Corner>& corners_;
   PointGrid grid_;
-  std::vector<Eigen::Vector2f> positions_;  // of each corner
+  // Of each corner, as the grid has them, with a vector of others behind.
+  std::vector<float> us_px_, vs_px_;
   std::vector<Signature> signatures_;
 };
 

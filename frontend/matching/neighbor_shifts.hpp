@@ -1,8 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -29,11 +29,21 @@ class NeighborShifts {
   std::optional<Shift> medianAround(const Eigen::Vector2f& from_px) const;
 
  private:
-  using Neighbor = std::pair<float, int>;  // squared distance and index
+  /// A point as a number, by which points are compared: the bits of its squared distance, then its index.
+  struct Neighbor {
+    std::int64_t key;
+    float squared_px() const;
+    int index() const;
+  };
+  struct Place {
+    float u_px, v_px;
+    int index;
+  };
   std::array<Neighbor, 3> nearestThree(const Eigen::Vector2f& from_px, float reach_px) const;
 
   std::vector<MovedPoint> moved_;
   PointGrid grid_;
+  std::vector<Place> places_;  // where the points moved from, as the grid has them
 };
 
 }  // namespace motorcade

@@ -84,14 +84,16 @@ std::optional<AlignedPatch> YoungPointSearch::operator()(const FlowObservation& 
   const auto neighbors = neighbors_.medianAround({point.u_px, point.v_px});
   const ShiftBounds near = boundsAround(neighbors, max_flow_px_);
   CoarseTrials trials(follower_, point, level);
+  const Signature look(before_, point.u_px, point.v_px);
+  const Eigen::Vector2f point_px(point.u_px, point.v_px);
   Guesses near_guesses, far_guesses;
   near_guesses.add(neighbors.value_or(Shift{}));
-  corners_.addSimilar(before_, point, near, kMaxNearDifference, near_guesses);
+  corners_.addSimilar(look, point_px, near, kMaxNearDifference, near_guesses);
   const auto best = trials.bestAt(near_guesses);
   if (best)
     if (auto found = follower_.refine(point, best->shift, level - 1)) return found;
 
-  corners_.addSimilar(before_, point, widened(near), kMaxFarDifference, far_guesses);
+  corners_.addSimilar(look, point_px, widened(near), kMaxFarDifference, far_guesses);
   const auto other = trials.bestAt(far_guesses);
   if (!other || (best && same(other->shift, best->shift))) return std::nullopt;
   return follower_.refine(point, other->shift, level - 1);

@@ -31,7 +31,11 @@ struct TwoImages {
                             {.gain = 0.9, .bias = 12, .noise = 2, .seed = 2});
 };
 
-FlowObservation at(const Corner& corner) { return {.point = {0}, .u_px = corner.u_px, .v_px = corner.v_px}; }
+Eigen::Vector2f positionOf(const Corner& corner) { return {corner.u_px, corner.v_px}; }
+
+Signature lookOf(const Corner& corner, const FeaturesPtr& features) {
+  return {features->left, corner.u_px, corner.v_px};
+}
 
 /// The pixels that a signature holds, one by one.
 std::vector<int> signaturePixels(const ImagePyramid& pyramid, float u_px, float v_px) {
@@ -54,7 +58,7 @@ int difference(const std::vector<int>& a, const std::vector<int>& b) {
 }
 
 /// The shifts that `addSimilar` must add, found by comparison with every corner.
-std::vector<Shift> similarByBruteForce(const FlowObservation& point, const TwoImages& images, const ShiftBounds& bounds,
+std::vector<Shift> similarByBruteForce(const Corner& point, const TwoImages& images, const ShiftBounds& bounds,
                                        double max_difference) {
   const auto looks = signaturePixels(images.before->left, point.u_px, point.v_px);
   std::vector<std::pair<int, int>> candidates;
@@ -81,13 +85,12 @@ TEST(CornerLookup, FindsTheTwoMostSimilarCornersOfAll) {
   std::uniform_real_distribution<float> center(-30, 30), reach(1, 40);
   int two = 0, one = 0, none = 0;
   for (const Corner& corner : images.before->corners) {
-    const FlowObservation point = at(corner);
     const float du = center(random), dv = center(random), reach_u = reach(random), reach_v = reach(random);
     const ShiftBounds bounds{du - reach_u, du + reach_u, dv - reach_v, dv + reach_v};
     for (const double max_difference : {255.0, 12.0}) {
-      const auto expected = similarByBruteForce(point, images, bounds, max_difference);
+      const auto expected = similarByBruteForce(corner, images, bounds, max_difference);
       Guesses guesses;
-      lookup.addSimilar(images.before->left, point, bounds, max_difference, guesses);
+      lookup.addSimilar(lookOf(corner, images.before), positionOf(corner), bounds, max_difference, guesses);
       ASSERT_EQ(guesses.count, expected.size());
       for (std::size_t k = 0; k < expected.size(); ++k) {
         EXPECT_EQ(guesses.shifts[k].du_px, expected[k].du_px);
@@ -107,7 +110,7 @@ TEST(CornerLookup, GuessesTheShiftOfMostCorners) {
   int right = 0;
   for (const Corner& corner : images.before->corners) {
     Guesses guesses;
-    lookup.addSimilar(images.before->left, at(corner), {-60, 60, -60, 60}, 255, guesses);
+    lookup.addSimilar(lookOf(corner, images.before), positionOf(corner), {-60, 60, -60, 60}, 255, guesses);
     right += std::ranges::any_of(guesses.all(), [](const Shift& shift) {
       return std::hypot(shift.du_px - kShiftU_px, shift.dv_px - kShiftV_px) < 1.5;
     });
@@ -120,7 +123,8 @@ TEST(CornerLookup, PrefersTheFirstOfCornersThatLookTheSame) {
   Features features = *flat;
   features.corners = {{250, 150, 1}, {200, 100, 1}, {30, 20, 1}, {100, 50, 1}};
   Guesses guesses;
-  CornerLookup(features).addSimilar(flat->left, at({150, 80, 1}), {-160, 160, -160, 160}, 255, guesses);
+  const Corner point{150, 80, 1};
+  CornerLookup(features).addSimilar(lookOf(point, flat), positionOf(point), {-160, 160, -160, 160}, 255, guesses);
   ASSERT_EQ(guesses.count, 2U);
   EXPECT_EQ(guesses.shifts[0].du_px, 100);
   EXPECT_EQ(guesses.shifts[1].du_px, 50);
@@ -130,8 +134,9 @@ TEST(CornerLookup, AddsToGuessesThatAreThere) {
   const TwoImages images;
   Guesses guesses;
   guesses.add({1, 2});
+  const Corner& point = images.before->corners.front();
   CornerLookup(*images.now)
-      .addSimilar(images.before->left, at(images.before->corners.front()), {-60, 60, -60, 60}, 255, guesses);
+      .addSimilar(lookOf(point, images.before), positionOf(point), {-60, 60, -60, 60}, 255, guesses);
   ASSERT_GT(guesses.count, 1U);
   EXPECT_EQ(guesses.shifts[0].du_px, 1);
   EXPECT_EQ(guesses.shifts[0].dv_px, 2);
