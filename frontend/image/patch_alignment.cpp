@@ -21,42 +21,43 @@ static_assert(kMaxPatchWindow_px + 2 * kMaxShearShift_px + 2 + 24 <= kBlockStrid
 
 /// The sums over the other image's patch J that alignment needs.
 struct Moments {
-  float appearance = 0;     // sum(a J)
-  Eigen::Vector3f descent;  // sum(D J)
-  float variation = 0;      // sum((J - mean)^2)
+  FourFloats sums;              // sum(a J), sum(D J)
+  std::int32_t total, squares;  // sum(J), sum(J J), in words
+
+  float appearance() const { return sums[0]; }
+  /// sum((J - mean)^2)
+  float variation(int window_px) const {
+    const std::int64_t pixels = window_px * window_px;
+    return static_cast<float>(pixels * squares - std::int64_t{total} * total) *
+           (kOtherUnit * kOtherUnit / static_cast<float>(pixels));
+  }
 };
 
 /// Gathers the moments row by row; the other image's samples are taken relative to the template's mean.
 class MomentSums {
  public:
   explicit MomentSums(const PatchTemplate& patch)
-      : patch_(patch), mask_(windowMask(patch.window_px)), mean_(allWords(patch.mean - kHalfUnit)) {}
+      : patch_(patch), mean_(allWords(patch.mean - kHalfUnit) & windowMask(patch.window_px)) {}
 
+  /// The samples are zero to the right of the window.
   void add(int row, const Words& samples) {
-    const Words j = (samples - mean_) >> static_cast<std::int16_t>(kOtherShift), inner = j & mask_;
+    const Words j = (samples - mean_) >> static_cast<std::int16_t>(kOtherShift);
     const auto plane = [&](const PatchTemplate::Plane& words) { return loadWords(words.data() + row * kStride); };
     appearance_ += products(plane(patch_.appearance), j);
     d0_ += products(plane(patch_.descent[0]), j);
     d1_ += products(plane(patch_.descent[1]), j);
     d2_ += products(plane(patch_.descent[2]), j);
-    sum_ += inner;
-    squares_ += products(inner, inner);
+    sum_ += j;
+    squares_ += products(j, j);
   }
 
   Moments moments() const {
-    const auto [appearance, d0, d1, d2] = totals(appearance_, d0_, d1_, d2_);
     const WordSums pairs = products(sum_, allWords(1));
-    const auto [sum, squares, unused0, unused1] = totals(pairs, squares_, pairs, squares_);
-    const std::int64_t pixels = patch_.window_px * patch_.window_px;
-    const float total = static_cast<float>(sum) * kOtherUnit;
-    Moments moments;
-    moments.appearance = patch_.appearance_unit * static_cast<float>(appearance) - patch_.appearance_mean * total;
-    moments.descent = patch_.descent_units.cwiseProduct(
-                          Eigen::Vector3f(static_cast<float>(d0), static_cast<float>(d1), static_cast<float>(d2))) -
-                      patch_.descent_mean * total - patch_.descent_along * moments.appearance;
-    moments.variation = static_cast<float>(pixels * squares - std::int64_t{sum} * sum) *
-                        (kOtherUnit * kOtherUnit / static_cast<float>(pixels));
-    return moments;
+    const FourSums others = totals(pairs, squares_, pairs, squares_);
+    const FourFloats sums = __builtin_convertvector(totals(appearance_, d0_, d1_, d2_), FourFloats);
+    const FourFloats total = allFour(static_cast<float>(others[0]) * kOtherUnit);
+    const FourFloats corrected = patch_.units * sums - patch_.means * total;
+    return {corrected - patch_.along * allFour(corrected[0]), others[0], others[1]};
   }
 
  private:
@@ -64,7 +65,7 @@ class MomentSums {
   static constexpr int kHalfUnit = 1 << (kOtherShift - 1);  // so that words are rounded
   // Words of the other image are within 2048 of the mean, so that one holds the sum of a column.
   static_assert(kMaxPatchWindow_px * ((UINT8_MAX * kSampleLevels >> kOtherShift) + 1) <= INT16_MAX);
-  Words mask_, mean_, sum_{};
+  Words mean_, sum_{};
   WordSums appearance_{}, d0_{}, d1_{}, d2_{}, squares_{};
 };
 
@@ -74,7 +75,7 @@ class MomentSums {
   const int window = patch.window_px, half = window / 2;
   const RowPosition top(v_px - static_cast<float>(half));
   const Block block(image, u.pixel - half, top.pixel, window + 1, window + 1);
-  const SampleColumns columns(u.fraction);
+  const SampleColumns columns(u.fraction, windowMask(window));
   const Words fraction = allWords(top.fraction);
   MomentSums sums(patch);
   Words upper = columns(block.row(0));
@@ -94,11 +95,11 @@ Moments momentsAt(const PatchTemplate& patch, const Image& image, const ColumnPo
   const int x = static_cast<int>(std::floor(left - reach)),
             end = static_cast<int>(std::floor(left + reach)) + window + 2;
   const Block block(image, x, top.pixel, end - x, window + 1);
-  const Words fraction = allWords(top.fraction);
+  const Words fraction = allWords(top.fraction), mask = windowMask(window);
   MomentSums sums(patch);
   for (int r = 0; r < window; ++r) {
     const ColumnPosition row_left(left + shear * static_cast<float>(r - half) - static_cast<float>(x));
-    const SampleColumns columns(row_left.fraction);
+    const SampleColumns columns(row_left.fraction, mask);
     const Words upper = columns(block.row(r) + row_left.pixel), lower = columns(block.row(r + 1) + row_left.pixel);
     sums.add(r, betweenRows(upper, lower, fraction));
   }
@@ -122,23 +123,51 @@ bool isLost(int iteration, float step_px2) {
   return step_px2 > lost_px * lost_px;
 }
 
-/// Share of the patch's variation that template and deformation explain, as a correlation.
-float explainedCorrelation(const PatchTemplate& patch, const Moments& moments) {
-  if (moments.appearance <= 0 || moments.variation <= 0) return 0;
-  const float deformation = moments.descent.dot(patch.inverse_hessian * moments.descent);
-  return std::sqrt(std::min(1.0F, (moments.appearance * moments.appearance + deformation) / moments.variation));
+/// The Gauss-Newton step, times the gain.
+FourFloats solve(const PatchTemplate& patch, const FourFloats& descent) {
+  const auto& [u, v, deformation] = patch.inverse_hessian;
+  return u * allFour(descent[1]) + (v * allFour(descent[2]) + deformation * allFour(descent[3]));
 }
 
-/// Standard deviation of the shift along a parameter, from a residual taken to be white. The factor accounts for noise
-/// in the gradients of H and for deformations beyond the model. It was fitted to the median error on rendered street
-/// scenes.
-constexpr float kSigmaFactor = 1.35F;
-constexpr int kPatchParameters = 5;  // that the residual is free of: three of the deformation, gain and bias
-float shiftSigma(const PatchTemplate& patch, const Moments& moments, float ncc, int parameter) {
-  const float gain = moments.appearance / patch.norm;
-  const int freedom = patch.window_px * patch.window_px - kPatchParameters;
-  const float noise_variance = std::max(0.0F, moments.variation * (1 - ncc * ncc)) / static_cast<float>(freedom);
-  return kSigmaFactor * std::sqrt(noise_variance * patch.inverse_hessian(parameter, parameter)) / gain;
+/// Share of the patch's variation that template and deformation explain, as a correlation.
+float explainedCorrelation(const PatchTemplate& patch, const Moments& moments, float variation) {
+  if (moments.appearance() <= 0 || variation <= 0) return 0;
+  const FourFloats explained = moments.sums * solve(patch, moments.sums);
+  const float deformation = explained[1] + (explained[2] + explained[3]);
+  return std::sqrt(std::min(1.0F, (moments.appearance() * moments.appearance() + deformation) / variation));
+}
+
+/// How well an alignment fits.
+class Fit {
+ public:
+  Fit(const PatchTemplate& patch, const Moments& moments)
+      : patch_(patch),
+        variation_(moments.variation(patch.window_px)),
+        gain_(moments.appearance() / patch.norm),
+        ncc_(explainedCorrelation(patch, moments, variation_)) {}
+
+  float ncc() const { return ncc_; }
+
+  /// Standard deviation of the shift along a parameter, from a residual taken to be white. The factor accounts for
+  /// noise in the gradients of H and for deformations beyond the model. It was fitted to the median error on rendered
+  /// street scenes.
+  float shiftSigma(int parameter) const {
+    constexpr float kSigmaFactor = 1.35F;
+    constexpr int kPatchParameters = 5;  // that the residual is free of: three of the deformation, gain and bias
+    const int freedom = patch_.window_px * patch_.window_px - kPatchParameters;
+    const float noise_variance = std::max(0.0F, variation_ * (1 - ncc_ * ncc_)) / static_cast<float>(freedom);
+    return kSigmaFactor * std::sqrt(noise_variance * patch_.inverse_hessian[parameter][parameter + 1]) / gain_;
+  }
+
+ private:
+  const PatchTemplate& patch_;
+  float variation_, gain_, ncc_;
+};
+
+/// Squared length of a step's shift.
+float squaredShift(const FourFloats& step) {
+  const FourFloats squares = step * step;
+  return squares[1] + squares[2];
 }
 
 }  // namespace
@@ -152,19 +181,22 @@ std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& 
     if (!inside(image, u, v)) return std::nullopt;
     const ColumnPosition u_grid(u);
     const Moments moments = momentsAt(patch, image, u_grid, v);
-    if (moments.appearance <= 0) return std::nullopt;
-    Eigen::Vector3f step = patch.inverse_hessian * moments.descent * (patch.norm / moments.appearance);
-    step *= std::min(1.0F, kMaxStep_px / step.head<2>().norm());
-    u = u_grid.px() - step.x();
-    v -= step.y();
+    if (moments.appearance() <= 0) return std::nullopt;
+    FourFloats step = solve(patch, moments.sums) * allFour(patch.norm / moments.appearance());
+    float step_px2 = squaredShift(step);
+    if (step_px2 > kMaxStep_px * kMaxStep_px) {
+      step *= allFour(kMaxStep_px / std::sqrt(step_px2));
+      step_px2 = squaredShift(step);
+    }
+    u = u_grid.px() - step[1];
+    v -= step[2];
     if ((u - u_guess_px) * (u - u_guess_px) + (v - v_guess_px) * (v - v_guess_px) > max_shift_px2) return std::nullopt;
-    const float step_px2 = step.head<2>().squaredNorm();
     if (isLost(iteration, step_px2)) return std::nullopt;
     if (step_px2 > params.max_step_px * params.max_step_px) continue;
-    const float ncc = explainedCorrelation(patch, moments);
-    if (ncc < params.min_ncc) return std::nullopt;
-    const float sigma = std::max(shiftSigma(patch, moments, ncc, 0), shiftSigma(patch, moments, ncc, 1));
-    return AlignedPatch{u + patch.off_grid_px, v, ncc, -step[2],
+    const Fit fit(patch, moments);
+    if (fit.ncc() < params.min_ncc) return std::nullopt;
+    const float sigma = std::max(fit.shiftSigma(0), fit.shiftSigma(1));
+    return AlignedPatch{u + patch.off_grid_px, v, fit.ncc(), -step[3],
                         hypotenuse(sigma, static_cast<float>(kPatchSigmaFloor_px))};
   }
   return std::nullopt;
@@ -213,9 +245,9 @@ double searchAround(const Image& left, const Image& right, double u_px, double v
 std::optional<StereoMatch> acceptedMatch(float disparity_px, const PatchTemplate& patch, const Moments& moments) {
   constexpr double kMinNcc = 0.65;
   constexpr float kMaxSigma_px = 1;
-  const float ncc = explainedCorrelation(patch, moments);
-  const float sigma = hypotenuse(shiftSigma(patch, moments, ncc, 0), static_cast<float>(kPatchSigmaFloor_px));
-  if (ncc < kMinNcc || sigma > kMaxSigma_px || disparity_px <= 0) return std::nullopt;
+  const Fit fit(patch, moments);
+  const float sigma = hypotenuse(fit.shiftSigma(0), static_cast<float>(kPatchSigmaFloor_px));
+  if (fit.ncc() < kMinNcc || sigma > kMaxSigma_px || disparity_px <= 0) return std::nullopt;
   return StereoMatch{disparity_px, sigma};
 }
 
@@ -240,15 +272,15 @@ std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right
     const ColumnPosition u_grid(u_right);
     const Moments moments =
         slope == 0 ? momentsAt(*patch, right, u_grid, v) : momentsAt(*patch, right, u_grid, v, slope);
-    if (moments.appearance <= 0) return std::nullopt;
-    const float gain = moments.appearance / patch->norm;
-    const Eigen::Vector3f pull(0, gain * patch->prior[1] * slope, 0);
-    Eigen::Vector3f step = patch->inverse_hessian * (moments.descent + pull) / gain;
-    step[0] = std::clamp(step[0], -kMaxStep_px, kMaxStep_px);
-    u_right = u_grid.px() - step[0];
-    slope = std::clamp(slope - step[1], -kMaxSlope, kMaxSlope);
+    if (moments.appearance() <= 0) return std::nullopt;
+    const float gain = moments.appearance() / patch->norm;
+    const FourFloats pull{0, 0, gain * patch->prior[1] * slope, 0};
+    const FourFloats step = solve(*patch, moments.sums + pull) / allFour(gain);
+    const float shift_px = std::clamp(step[1], -kMaxStep_px, kMaxStep_px);
+    u_right = u_grid.px() - shift_px;
+    slope = std::clamp(slope - step[2], -kMaxSlope, kMaxSlope);
     if (std::abs(u_right - first_guess) > kMaxShift_px) return std::nullopt;
-    if (std::abs(step[0]) > kConverged_px && iteration + 1 < kMaxDisparityIterations) continue;
+    if (std::abs(shift_px) > kConverged_px && iteration + 1 < kMaxDisparityIterations) continue;
 
     return acceptedMatch(u - patch->off_grid_px - u_right, *patch, moments);
   }

@@ -92,11 +92,12 @@ class Block {
 /// group of eight columns, and their weights.
 class SampleColumns {
  public:
-  /// Columns one pixel apart, the first `fraction` / 64 px to the right of the row's first pixel.
-  explicit SampleColumns(int fraction)
+  /// Columns one pixel apart, the first `fraction` / 64 px to the right of the row's first pixel. Samples are zero
+  /// where the mask is.
+  explicit SampleColumns(int fraction, const Words& mask = allWords(-1))
       : second_group_(kWordLanes / 2),
         pixels_(kNextTo),
-        weights_(Bytes(allWords(fraction << 8 | (kSampleLevels - fraction)))) {}
+        weights_(Bytes(allWords(fraction << 8 | (kSampleLevels - fraction)) & mask)) {}
 
   /// Columns at any positions from left to right. Those of a group of eight lie within 15 px, all between 0 and
   /// `last_px`, which is inside the image.

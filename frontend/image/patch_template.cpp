@@ -120,6 +120,10 @@ TemplateSums fillPlanes(PatchTemplate& patch, const Square& square, PatchDeforma
   return sums;
 }
 
+FourFloats behind(float first, const Eigen::Vector3f& others) {
+  return FourFloats{first, others[0], others[1], others[2]};
+}
+
 /// Completes a template from the sums over its planes. Takes the mean out of the appearance, and the mean and the
 /// component along the appearance out of the derivatives, because a change of bias or gain is no motion. Returns the
 /// sums of products of the derivatives.
@@ -144,12 +148,11 @@ Eigen::Matrix3f orthogonalize(PatchTemplate& patch, const TemplateSums& sums, Pa
   const float mean = kAppearanceUnit * asFloat(plain[0]) / pixels;
   patch.norm = std::sqrt(std::max(0.0F, kAppearanceUnit * kAppearanceUnit * asFloat(along[0]) - mean * mean * pixels));
   const float scale = patch.norm > 0 ? 1 / patch.norm : 0;
-  patch.appearance_unit = scale * kAppearanceUnit * kOtherUnit;
-  patch.appearance_mean = scale * mean;
-  patch.descent_units = units * kOtherUnit;
-  patch.descent_mean = sum_d / pixels;
-  patch.descent_along = scale * (sum_ad - mean * sum_d);
-  return sum_dd - sum_d * patch.descent_mean.transpose() - patch.descent_along * patch.descent_along.transpose();
+  const Eigen::Vector3f mean_d = sum_d / pixels, along_d = scale * (sum_ad - mean * sum_d);
+  patch.units = behind(scale * kAppearanceUnit * kOtherUnit, units * kOtherUnit);
+  patch.means = behind(scale * mean, mean_d);
+  patch.along = behind(0, along_d);
+  return sum_dd - sum_d * mean_d.transpose() - along_d * along_d.transpose();
 }
 
 /// Information of a deformation whose standard deviation is `sigma`, in units of the noise of 8-bit images (at least 3
@@ -192,7 +195,8 @@ std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float 
     textured = hessian(0, 0) > kMinInformation;
   }
   hessian.diagonal() += patch->prior;
-  patch->inverse_hessian = hessian.inverse();
+  const Eigen::Matrix3f inverse = hessian.inverse();
+  for (int i = 0; i < 3; ++i) patch->inverse_hessian[i] = behind(0, inverse.col(i));
   if (!textured) patch.reset();
   return patch;
 }

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "core/image.hpp"
+#include "frontend/image/float_lanes.hpp"
 
 namespace motorcade {
 
@@ -33,11 +34,11 @@ struct PatchTemplate {
   int mean = 0;           // of the samples in the window, 1/64 gray level
   float norm = 0;         // of I - mean
   float off_grid_px = 0;  // from the column at which the patch was sampled, in 1/64 px, to the point
-  // sum(a J) = unit * sum(appearance J) - mean * sum(J). The same holds for sum(D J), less its component along a.
-  float appearance_unit = 0, appearance_mean = 0;
-  Eigen::Vector3f descent_units, descent_mean, descent_along;
-  Eigen::Vector3f prior;  // information of the deformations' prior around zero
-  Eigen::Matrix3f inverse_hessian;
+  // Of a and the three of D: sum(a J) = unit * sum(appearance J) - mean * sum(J), the same for sum(D J), less its
+  // component along a.
+  FourFloats units, means, along;
+  Eigen::Vector3f prior;                      // information of the deformations' prior around zero
+  std::array<FourFloats, 3> inverse_hessian;  // its columns, each behind a zero
 };
 
 inline constexpr float kMinTemplateScale = 0.6F;  // eight samples then span less than 15 px (`SampleColumns`)

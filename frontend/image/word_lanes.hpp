@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -16,6 +15,8 @@ namespace motorcade {
 inline constexpr int kWordLanes = 16;
 using Words = std::int16_t __attribute__((vector_size(2 * kWordLanes)));
 using WordSums = std::int32_t __attribute__((vector_size(2 * kWordLanes)));  // one for two words
+
+using FourSums = std::int32_t __attribute__((vector_size(16)));
 
 inline Words loadWords(const std::int16_t* p) {
   Words words;
@@ -56,13 +57,10 @@ inline Words afterSecond(const Words& x) {
   const __m256i upper = _mm256_permute2x128_si256(__m256i(x), __m256i(x), 0x81);
   return Words(_mm256_alignr_epi8(upper, __m256i(x), 4));
 }
-inline std::array<std::int32_t, 4> totals(const WordSums& a, const WordSums& b, const WordSums& c, const WordSums& d) {
+inline FourSums totals(const WordSums& a, const WordSums& b, const WordSums& c, const WordSums& d) {
   const __m256i pairs =
       _mm256_hadd_epi32(_mm256_hadd_epi32(__m256i(a), __m256i(b)), _mm256_hadd_epi32(__m256i(c), __m256i(d)));
-  std::array<std::int32_t, 4> result;
-  const __m128i sums = _mm_add_epi32(_mm256_castsi256_si128(pairs), _mm256_extracti128_si256(pairs, 1));
-  _mm_storeu_si128(reinterpret_cast<__m128i*>(result.data()), sums);
-  return result;
+  return FourSums(_mm_add_epi32(_mm256_castsi256_si128(pairs), _mm256_extracti128_si256(pairs, 1)));
 }
 /// Of words that are not negative.
 inline std::int16_t leastOf(const Words& x) {
@@ -112,8 +110,8 @@ inline Words afterFirst(const Words& x) {
   return words;
 }
 inline Words afterSecond(const Words& x) { return afterFirst(afterFirst(x)); }
-inline std::array<std::int32_t, 4> totals(const WordSums& a, const WordSums& b, const WordSums& c, const WordSums& d) {
-  std::array<std::int32_t, 4> result{};
+inline FourSums totals(const WordSums& a, const WordSums& b, const WordSums& c, const WordSums& d) {
+  FourSums result{};
   for (int i = 0; i < kWordLanes / 2; ++i) result[0] += a[i], result[1] += b[i], result[2] += c[i], result[3] += d[i];
   return result;
 }

@@ -53,8 +53,8 @@ class NearDifferences {
 
  private:
   static std::array<int, kWindows> totalsOf(const std::array<WordSums, kWindows>& sums) {
-    const auto [a, b, c, d] = totals(sums[0], sums[1], sums[2], sums[3]);
-    return {a, b, c, d, totals(sums[4], sums[4], sums[4], sums[4])[0]};
+    const FourSums four = totals(sums[0], sums[1], sums[2], sums[3]);
+    return {four[0], four[1], four[2], four[3], totals(sums[4], sums[4], sums[4], sums[4])[0]};
   }
   /// Of differences after their mean is taken out to a whole gray level; `sum`: of the differences.
   WordSums sumOfMagnitudes(const std::uint8_t* from, std::ptrdiff_t stride, int sum) const {
