@@ -23,6 +23,18 @@ inline bool inside(const Image& image, float u_px, float v_px) {
          v_px <= static_cast<float>(image.height() - 1);
 }
 
+/// Asks for the pixels of a patch around (u, v) to be brought into the cache.
+inline void prefetchPatch(const Image& image, float u_px, float v_px, int window_px) {
+  const int half = window_px / 2 + 1, u = static_cast<int>(u_px), v = static_cast<int>(v_px);
+  const int left = std::clamp(u - half, 0, image.width() - 1), right = std::clamp(u + half, 0, image.width() - 1);
+  const int bottom = std::min(v + half + 1, image.height() - 1);
+  for (int y = std::max(v - half, 0); y <= bottom; ++y) {
+    __builtin_prefetch(image.row(y) + left);
+    __builtin_prefetch(image.row(y) + right);
+    asm volatile("");  // or GCC takes the loop to be without effect
+  }
+}
+
 /// Ones inside the window, zeros to its right.
 inline Words windowMask(int window_px) {
   constexpr Words kColumns{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};

@@ -4,8 +4,6 @@
 #include <cassert>
 #include <cmath>
 
-#include <Eigen/LU>
-
 #include "frontend/image/patch_sampling.hpp"
 
 namespace motorcade {
@@ -21,9 +19,10 @@ constexpr int kAppearanceShift = 2;  // from samples
 constexpr int kGradientShift = 3;    // from differences of samples two pixels apart
 constexpr float kAppearanceUnit = 1.0F / 16, kGradientUnit = 1.0F / 16, kMomentUnit = 1.0F / 4;
 
-/// Gray levels that a word of each derivative counts.
-Eigen::Vector3f descentUnits(PatchDeformation deformation) {
-  return {kGradientUnit, deformation == PatchDeformation::kScale ? kGradientUnit : kMomentUnit, kMomentUnit};
+/// Gray levels that a word of the appearance and of each derivative counts.
+FourFloats unitsOf(PatchDeformation deformation) {
+  return FourFloats{kAppearanceUnit, kGradientUnit,
+                    deformation == PatchDeformation::kScale ? kGradientUnit : kMomentUnit, kMomentUnit};
 }
 
 using Square = std::array<Words, kMaxPatchWindow_px + 2>;
@@ -120,39 +119,65 @@ TemplateSums fillPlanes(PatchTemplate& patch, const Square& square, PatchDeforma
   return sums;
 }
 
-FourFloats behind(float first, const Eigen::Vector3f& others) {
-  return FourFloats{first, others[0], others[1], others[2]};
+/// A symmetric matrix, but for rounding: its rows, each behind a zero.
+using Rows = std::array<FourFloats, 3>;
+
+FourFloats asFloats(const FourSums& sums) { return __builtin_convertvector(sums, FourFloats); }
+FourFloats withFirst(float first, FourFloats four) {
+  four[0] = first;
+  return four;
+}
+
+/// The sums of products of the derivatives.
+Rows productSums(const TemplateSums& sums, const FourFloats& units) {
+  const FourSums none{};
+  const FourSums first = totals(sums.d00, sums.d01, sums.d02, sums.d11),
+                 last = totals(sums.d12, sums.d22, sums.d12, sums.d22);
+  const FourSums last_none = __builtin_shufflevector(last, none, 4, 0, 1, 4);  // zero, d12, d22, zero
+  const FourFloats row0 = asFloats(__builtin_shufflevector(first, none, 4, 0, 1, 2)),
+                   row1 = asFloats(__builtin_shufflevector(first, last_none, 4, 1, 3, 5)),
+                   row2 = asFloats(__builtin_shufflevector(first, last_none, 4, 2, 5, 6));
+  return {units[1] * row0 * units, units[2] * row1 * units, units[3] * row2 * units};
 }
 
 /// Completes a template from the sums over its planes. Takes the mean out of the appearance, and the mean and the
 /// component along the appearance out of the derivatives, because a change of bias or gain is no motion. Returns the
 /// sums of products of the derivatives.
-Eigen::Matrix3f orthogonalize(PatchTemplate& patch, const TemplateSums& sums, PatchDeformation deformation) {
+Rows orthogonalize(PatchTemplate& patch, const TemplateSums& sums, PatchDeformation deformation) {
   const Words one = allWords(1);
-  const auto plain = totals(sums.appearance, products(sums.d0, one), products(sums.d1, one), sums.d2);
-  const auto along = totals(sums.appearance_squares, sums.appearance_d0, sums.appearance_d1, sums.appearance_d2);
-  const auto first = totals(sums.d00, sums.d01, sums.d02, sums.d11),
-             last = totals(sums.d12, sums.d22, sums.d12, sums.d22);
-  const auto asFloat = [](std::int32_t x) { return static_cast<float>(x); };
-  const float pixels = asFloat(patch.window_px * patch.window_px);
-  const Eigen::Vector3f units = descentUnits(deformation);
-  const Eigen::Vector3f sum_d =
-      units.cwiseProduct(Eigen::Vector3f(asFloat(plain[1]), asFloat(plain[2]), asFloat(plain[3])));
-  const Eigen::Vector3f sum_ad =
-      kAppearanceUnit * units.cwiseProduct(Eigen::Vector3f(asFloat(along[1]), asFloat(along[2]), asFloat(along[3])));
-  Eigen::Matrix3f sum_dd;
-  sum_dd << asFloat(first[0]), asFloat(first[1]), asFloat(first[2]), asFloat(first[1]), asFloat(first[3]),
-      asFloat(last[0]), asFloat(first[2]), asFloat(last[0]), asFloat(last[1]);
-  sum_dd = units.asDiagonal() * sum_dd * units.asDiagonal();
-
-  const float mean = kAppearanceUnit * asFloat(plain[0]) / pixels;
-  patch.norm = std::sqrt(std::max(0.0F, kAppearanceUnit * kAppearanceUnit * asFloat(along[0]) - mean * mean * pixels));
+  const FourFloats units = unitsOf(deformation),
+                   all_pixels = allFour(static_cast<float>(patch.window_px * patch.window_px));
+  const FourFloats plain =
+      units * asFloats(totals(sums.appearance, products(sums.d0, one), products(sums.d1, one), sums.d2));
+  const FourFloats along =
+      kAppearanceUnit * units *
+      asFloats(totals(sums.appearance_squares, sums.appearance_d0, sums.appearance_d1, sums.appearance_d2));
+  const FourFloats means = plain / all_pixels;
+  const float mean = means[0];
+  patch.norm = std::sqrt(std::max(0.0F, along[0] - mean * mean * all_pixels[0]));
   const float scale = patch.norm > 0 ? 1 / patch.norm : 0;
-  const Eigen::Vector3f mean_d = sum_d / pixels, along_d = scale * (sum_ad - mean * sum_d);
-  patch.units = behind(scale * kAppearanceUnit * kOtherUnit, units * kOtherUnit);
-  patch.means = behind(scale * mean, mean_d);
-  patch.along = behind(0, along_d);
-  return sum_dd - sum_d * mean_d.transpose() - along_d * along_d.transpose();
+  patch.units = withFirst(scale * kAppearanceUnit, units) * kOtherUnit;
+  patch.means = withFirst(scale * mean, means);
+  patch.along = withFirst(0, scale * (along - mean * plain));
+  Rows rows = productSums(sums, units);
+  const FourFloats mean_d = withFirst(0, means);
+  for (int i = 0; i < 3; ++i) rows[i] = rows[i] - plain[i + 1] * mean_d - patch.along[i + 1] * patch.along;
+  return rows;
+}
+
+FourFloats cross(const FourFloats& a, const FourFloats& b) {
+  const auto next = [](const FourFloats& x) { return __builtin_shufflevector(x, x, 0, 2, 3, 1); };
+  const auto last = [](const FourFloats& x) { return __builtin_shufflevector(x, x, 0, 3, 1, 2); };
+  return next(a) * last(b) - last(a) * next(b);
+}
+
+/// Columns of the inverse, each behind a zero.
+Rows inverseOf(const Rows& rows) {
+  const Rows cofactors{cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])};
+  const float determinant =
+      cofactors[0][1] * rows[0][1] + (cofactors[1][1] * rows[1][1] + cofactors[2][1] * rows[2][1]);
+  const float scale = 1 / determinant;
+  return {cofactors[0] * scale, cofactors[1] * scale, cofactors[2] * scale};
 }
 
 /// Information of a deformation whose standard deviation is `sigma`, in units of the noise of 8-bit images (at least 3
@@ -184,19 +209,19 @@ std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float 
   patch->window_px = window_px;
   patch->off_grid_px = u_px - u.px();
   patch->mean = meanSample(square, window_px);
-  Eigen::Matrix3f hessian = orthogonalize(*patch, fillPlanes(*patch, square, deformation), deformation);
+  Rows hessian = orthogonalize(*patch, fillPlanes(*patch, square, deformation), deformation);
   bool textured = false;
   if (deformation == PatchDeformation::kScale) {
     patch->prior = {0, 0, priorInformation(kScaleSigma)};
-    const Eigen::Matrix2f shift = hessian.topLeftCorner<2, 2>();
-    textured = shift.determinant() > kMinInformation * shift.trace();
+    const float uu = hessian[0][1], uv = hessian[0][2], vu = hessian[1][1], vv = hessian[1][2];
+    textured = uu * vv - vu * uv > kMinInformation * (uu + vv);
   } else {
     patch->prior = {0, priorInformation(kRowSlopeSigma), priorInformation(kColumnSlopeSigma)};
-    textured = hessian(0, 0) > kMinInformation;
+    textured = hessian[0][1] > kMinInformation;
   }
-  hessian.diagonal() += patch->prior;
-  const Eigen::Matrix3f inverse = hessian.inverse();
-  for (int i = 0; i < 3; ++i) patch->inverse_hessian[i] = behind(0, inverse.col(i));
+  hessian[1] += FourFloats{0, 0, patch->prior[1], 0};
+  hessian[2] += FourFloats{0, 0, 0, patch->prior[2]};
+  patch->inverse_hessian = inverseOf(hessian);
   if (!textured) patch.reset();
   return patch;
 }

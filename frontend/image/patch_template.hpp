@@ -37,7 +37,7 @@ struct PatchTemplate {
   // Of a and the three of D: sum(a J) = unit * sum(appearance J) - mean * sum(J), the same for sum(D J), less its
   // component along a.
   FourFloats units, means, along;
-  Eigen::Vector3f prior;                      // information of the deformations' prior around zero
+  Eigen::Vector3f prior;                      // information of the deformations' prior around zero; none for u
   std::array<FourFloats, 3> inverse_hessian;  // its columns, each behind a zero
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/elementary.hpp"
+#include "frontend/image/patch_sampling.hpp"
 
 namespace motorcade {
 namespace {
@@ -45,6 +46,11 @@ void moveTo(FollowedPoint& point, const AlignedPatch& found, const Image& now) {
   seen = {seen.point, position.u_px, position.v_px, position.sigma_px, seen.age + 1, -1};
   point.moved = true;
   if (!anchored || keyframe.frames >= kKeyframeFrames) keyframe = {now, position.u_px, position.v_px, 0, 1};
+}
+
+void prefetchKeyframe(const FollowedPoint& point) {
+  const Keyframe& keyframe = point.keyframe;
+  if (keyframe.frames > 0) prefetchPatch(keyframe.image, keyframe.u_px, keyframe.v_px, kPatchWindow_px);
 }
 
 NeighborShifts shiftsOf(const std::vector<FollowedPoint>& points, const Image& image) {

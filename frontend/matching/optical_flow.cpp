@@ -184,6 +184,8 @@ bool OpticalFlowTracker::State::follow(const Features& now) {
   interval_s = secondsBetween(previous->frame->stamp, now.frame->stamp);
   forEachItem(order.size(), [&](std::size_t k) {
     const int i = order[k];
+    const std::size_t next = std::min(k + 1, order.size() - 1);
+    if (found[order[next]]) prefetchKeyframe(points[order[next]]);
     points[i].moved = false;
     if (found[i]) moveTo(points[i], *found[i], image);
   });
