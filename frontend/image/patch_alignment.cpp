@@ -36,10 +36,10 @@ struct Moments {
 /// Gathers the moments row by row; the other image's samples are taken relative to the template's mean.
 class MomentSums {
  public:
-  explicit MomentSums(const PatchTemplate& patch)
-      : patch_(patch), mean_(allWords(patch.mean - kHalfUnit) & windowMask(patch.window_px)) {}
+  /// `mask` is that of the window, outside of which the samples are zero.
+  MomentSums(const PatchTemplate& patch, const Words& mask)
+      : patch_(patch), mean_(allWords(patch.mean - kHalfUnit) & mask) {}
 
-  /// The samples are zero to the right of the window.
   void add(int row, const Words& samples) {
     const Words j = (samples - mean_) >> static_cast<std::int16_t>(kOtherShift);
     const auto plane = [&](const PatchTemplate::Plane& words) { return loadWords(words.data() + row * kStride); };
@@ -70,14 +70,14 @@ class MomentSums {
 };
 
 /// Moments of the patch at (u, v).
-[[gnu::always_inline]] inline Moments momentsAt(const PatchTemplate& patch, const Image& image, const ColumnPosition& u,
-                                                float v_px) {
+[[gnu::always_inline]] inline Moments momentsAt(const PatchTemplate& patch, const Words& mask, const Image& image,
+                                                const ColumnPosition& u, float v_px) {
   const int window = patch.window_px, half = window / 2;
   const RowPosition top(v_px - static_cast<float>(half));
   const Block block(image, u.pixel - half, top.pixel, window + 1, window + 1);
-  const SampleColumns columns(u.fraction, windowMask(window));
+  const SampleColumns columns(u.fraction, mask);
   const Words fraction = allWords(top.fraction);
-  MomentSums sums(patch);
+  MomentSums sums(patch, mask);
   Words upper = columns(block.row(0));
   for (int r = 0; r < window; ++r) {
     const Words lower = columns(block.row(r + 1));
@@ -88,15 +88,16 @@ class MomentSums {
 }
 
 /// Moments of a patch whose rows are shifted by `shear` px per row.
-Moments momentsAt(const PatchTemplate& patch, const Image& image, const ColumnPosition& u, float v_px, float shear) {
+Moments momentsAt(const PatchTemplate& patch, const Words& mask, const Image& image, const ColumnPosition& u,
+                  float v_px, float shear) {
   const int window = patch.window_px, half = window / 2;
   const float left = u.px() - static_cast<float>(half), reach = std::abs(shear) * static_cast<float>(half);
   const RowPosition top(v_px - static_cast<float>(half));
   const int x = static_cast<int>(std::floor(left - reach)),
             end = static_cast<int>(std::floor(left + reach)) + window + 2;
   const Block block(image, x, top.pixel, end - x, window + 1);
-  const Words fraction = allWords(top.fraction), mask = windowMask(window);
-  MomentSums sums(patch);
+  const Words fraction = allWords(top.fraction);
+  MomentSums sums(patch, mask);
   for (int r = 0; r < window; ++r) {
     const ColumnPosition row_left(left + shear * static_cast<float>(r - half) - static_cast<float>(x));
     const SampleColumns columns(row_left.fraction, mask);
@@ -175,12 +176,14 @@ float squaredShift(const FourFloats& step) {
 std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& image, const Eigen::Vector2f& guess_px,
                                        const PatchParams& params) {
   const auto max_shift_px2 = static_cast<float>(params.max_shift_px * params.max_shift_px);
+  const double max_step_px2 = params.max_step_px * params.max_step_px;
+  const Words mask = windowMask(patch.window_px);
   const float u_guess_px = guess_px.x(), v_guess_px = guess_px.y();
   float u = u_guess_px, v = v_guess_px;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     if (!inside(image, u, v)) return std::nullopt;
     const ColumnPosition u_grid(u);
-    const Moments moments = momentsAt(patch, image, u_grid, v);
+    const Moments moments = momentsAt(patch, mask, image, u_grid, v);
     if (moments.appearance() <= 0) return std::nullopt;
     FourFloats step = solve(patch, moments.sums) * allFour(patch.norm / moments.appearance());
     float step_px2 = squaredShift(step);
@@ -192,7 +195,7 @@ std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& 
     v -= step[2];
     if ((u - u_guess_px) * (u - u_guess_px) + (v - v_guess_px) * (v - v_guess_px) > max_shift_px2) return std::nullopt;
     if (isLost(iteration, step_px2)) return std::nullopt;
-    if (step_px2 > params.max_step_px * params.max_step_px) continue;
+    if (step_px2 > max_step_px2) continue;
     const Fit fit(patch, moments);
     if (fit.ncc() < params.min_ncc) return std::nullopt;
     const float sigma = std::max(fit.shiftSigma(0), fit.shiftSigma(1));
@@ -265,13 +268,14 @@ std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right
   constexpr float kConverged_px = 0.02F, kMaxShift_px = 2;
   constexpr int kHalf_px = kPatchWindow_px / 2;
   constexpr float kMaxSlope = static_cast<float>(kMaxShearShift_px) / static_cast<float>(kHalf_px);
+  const Words mask = windowMask(kPatchWindow_px);
   float u_right = u - static_cast<float>(start_px), slope = 0;
   const float first_guess = u_right;
   for (int iteration = 0; iteration < kMaxDisparityIterations; ++iteration) {
     if (!inside(right, u_right, v)) return std::nullopt;
     const ColumnPosition u_grid(u_right);
     const Moments moments =
-        slope == 0 ? momentsAt(*patch, right, u_grid, v) : momentsAt(*patch, right, u_grid, v, slope);
+        slope == 0 ? momentsAt(*patch, mask, right, u_grid, v) : momentsAt(*patch, mask, right, u_grid, v, slope);
     if (moments.appearance() <= 0) return std::nullopt;
     const float gain = moments.appearance() / patch->norm;
     const FourFloats pull{0, 0, gain * patch->prior[1] * slope, 0};

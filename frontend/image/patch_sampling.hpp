@@ -44,12 +44,16 @@ inline Words windowMask(int window_px) {
 /// A column's position in 1/64 px: sampling between columns knows only these.
 struct ColumnPosition {
   explicit ColumnPosition(float px) {
-    const int position = static_cast<int>(std::floor(px * kSampleLevels + 0.5F));
-    pixel = position >> kSampleBits;
-    fraction = position & (kSampleLevels - 1);
+    const float position = std::floor(px * kSampleLevels + 0.5F);
+    pixel = static_cast<int>(position) >> kSampleBits;
+    fraction = static_cast<int>(position) & (kSampleLevels - 1);
+    px_ = position / kSampleLevels;
   }
-  float px() const { return static_cast<float>(pixel) + static_cast<float>(fraction) / kSampleLevels; }
+  float px() const { return px_; }
   int pixel, fraction;
+
+ private:
+  float px_;
 };
 
 /// A row's position in 2^-15 px.
