@@ -75,7 +75,7 @@ class MomentSums {
   const int window = patch.window_px, half = window / 2;
   const RowPosition top(v_px - static_cast<float>(half));
   const Block block(image, u.pixel - half, top.pixel, window + 1, window + 1);
-  const SampleColumns columns(u.fraction, mask);
+  const SampleColumns columns(allWords(SampleColumns::weightsOf(u.fraction)) & mask);
   const Words fraction = allWords(top.fraction);
   MomentSums sums(patch, mask);
   Words upper = columns(block.row(0));
@@ -87,6 +87,19 @@ class MomentSums {
   return sums.moments();
 }
 
+/// Where the rows of a sheared patch begin in their block: pixels, and the weights of the columns.
+struct RowStarts {
+  RowStarts(float left_px, float shear, int half_px, int block_px) {
+    for (int r = 0; r < kWordLanes; ++r) {
+      const ColumnPosition start(left_px + shear * static_cast<float>(r - half_px) - static_cast<float>(block_px));
+      pixels[r] = start.pixel;
+      weights[r] = SampleColumns::weightsOf(start.fraction);
+    }
+  }
+  std::array<int, kWordLanes> pixels;
+  std::array<std::int16_t, kWordLanes> weights;
+};
+
 /// Moments of a patch whose rows are shifted by `shear` px per row.
 Moments momentsAt(const PatchTemplate& patch, const Words& mask, const Image& image, const ColumnPosition& u,
                   float v_px, float shear) {
@@ -96,12 +109,12 @@ Moments momentsAt(const PatchTemplate& patch, const Words& mask, const Image& im
   const int x = static_cast<int>(std::floor(left - reach)),
             end = static_cast<int>(std::floor(left + reach)) + window + 2;
   const Block block(image, x, top.pixel, end - x, window + 1);
+  const RowStarts starts(left, shear, half, x);
   const Words fraction = allWords(top.fraction);
   MomentSums sums(patch, mask);
   for (int r = 0; r < window; ++r) {
-    const ColumnPosition row_left(left + shear * static_cast<float>(r - half) - static_cast<float>(x));
-    const SampleColumns columns(row_left.fraction, mask);
-    const Words upper = columns(block.row(r) + row_left.pixel), lower = columns(block.row(r + 1) + row_left.pixel);
+    const SampleColumns columns(allWords(starts.weights[r]) & mask);
+    const Words upper = columns(block.row(r) + starts.pixels[r]), lower = columns(block.row(r + 1) + starts.pixels[r]);
     sums.add(r, betweenRows(upper, lower, fraction));
   }
   return sums.moments();

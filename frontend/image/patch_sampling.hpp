@@ -108,12 +108,13 @@ class Block {
 /// group of eight columns, and their weights.
 class SampleColumns {
  public:
-  /// Columns one pixel apart, the first `fraction` / 64 px to the right of the row's first pixel. Samples are zero
-  /// where the mask is.
-  explicit SampleColumns(int fraction, const Words& mask = allWords(-1))
-      : second_group_(kWordLanes / 2),
-        pixels_(kNextTo),
-        weights_(Bytes(allWords(fraction << 8 | (kSampleLevels - fraction)) & mask)) {}
+  /// Weights of the pixels to the left and right of a column that lies `fraction` / 64 px between them, in one word.
+  static std::int16_t weightsOf(int fraction) {
+    return static_cast<std::int16_t>(fraction << 8 | (kSampleLevels - fraction));
+  }
+  /// Columns one pixel apart, the first of them to the right of the row's first pixel. Samples without weight are zero.
+  explicit SampleColumns(const Words& weights)
+      : second_group_(kWordLanes / 2), pixels_(kNextTo), weights_(Bytes(weights)) {}
 
   /// Columns at any positions from left to right. Those of a group of eight lie within 15 px, all between 0 and
   /// `last_px`, which is inside the image.

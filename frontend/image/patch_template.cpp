@@ -32,7 +32,7 @@ void sampleSquare(const Image& image, const ColumnPosition& u, float v_px, int s
   const int half = side_px / 2;
   const RowPosition top(v_px - static_cast<float>(half));
   const Block block(image, u.pixel - half, top.pixel, side_px + 1, side_px + 1);
-  const SampleColumns columns(u.fraction);
+  const SampleColumns columns(allWords(SampleColumns::weightsOf(u.fraction)));
   const Words fraction = allWords(top.fraction);
   Words upper = columns(block.row(0));
   for (int r = 0; r < side_px; ++r) {

@@ -51,7 +51,10 @@ std::vector<std::optional<StereoObservation>> CircularMatching::operator()(const
              sigma_disparity_floor_px = static_cast<float>(params_.sigma_disparity_px),
              offset_px = static_cast<float>(expected.offset_px);
   std::vector<std::optional<StereoObservation>> observed(flow.observations.size());
-  forEachItem(observed.size(), [&](std::size_t i) {
+  const PointGrid points(flow.observations, camera_.width_px, camera_.height_px,
+                         [](const FlowObservation& p) { return Eigen::Vector2f(p.u_px, p.v_px); });
+  forEachItem(observed.size(), [&](std::size_t k) {
+    const int i = points.byPlace()[k];
     const FlowObservation& point = flow.observations[i];
     const auto& before = expected.of_point[i];
     const auto match =
