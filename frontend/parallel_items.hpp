@@ -20,4 +20,7 @@ void forEachItem(std::size_t count, const Work& work, std::size_t grain = 16) {
   });
 }
 
+/// How many threads may work on items at the same time.
+inline int threadsForItems() { return tbb::this_task_arena::max_concurrency(); }
+
 }  // namespace motorcade

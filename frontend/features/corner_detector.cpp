@@ -206,17 +206,19 @@ std::vector<Candidate> findCandidates(const Image& image, int first_center, int 
   return candidates;
 }
 
-/// Local maxima of the whole image, in reading order. Bands of rows are searched in parallel.
+/// Local maxima of the whole image, in reading order. Bands of rows are searched in parallel, one for each thread, as
+/// each takes some rows of those beside it too.
 std::vector<Candidate> findCandidates(const Image& image, double min_score) {
-  constexpr int kBands = 4;
+  constexpr int kMaxBands = 4;
+  const int count = std::clamp(threadsForItems(), 1, kMaxBands);
   const int rows = image.height() - 2 * kBorder_px;
   if (rows <= 0 || image.width() <= 2 * kBorder_px) return {};
-  const auto startOf = [&](std::size_t band) { return kBorder_px + rows * static_cast<int>(band) / kBands; };
-  std::array<std::vector<Candidate>, kBands> bands;
+  const auto startOf = [&](std::size_t band) { return kBorder_px + rows * static_cast<int>(band) / count; };
+  std::vector<std::vector<Candidate>> bands(count);
   forEachItem(
-      kBands, [&](std::size_t i) { bands[i] = findCandidates(image, startOf(i), startOf(i + 1), min_score); }, 1);
+      bands.size(), [&](std::size_t i) { bands[i] = findCandidates(image, startOf(i), startOf(i + 1), min_score); }, 1);
   std::vector<Candidate> candidates = std::move(bands.front());
-  for (std::size_t i = 1; i < kBands; ++i) candidates.insert(candidates.end(), bands[i].begin(), bands[i].end());
+  for (std::size_t i = 1; i < bands.size(); ++i) candidates.insert(candidates.end(), bands[i].begin(), bands[i].end());
   return candidates;
 }
 

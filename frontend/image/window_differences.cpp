@@ -73,7 +73,10 @@ void fillCosts(const Window& window, const std::uint8_t* from, std::ptrdiff_t st
   for (int first = 0; first < count; first += kWordLanes, blocks >>= 1) {
     if ((blocks & 1) == 0) continue;
     const Words cost = differences(from + first, stride);
-    std::memcpy(costs.data() + first, &cost, std::min(kWordLanes, count - first) * sizeof(std::uint16_t));
+    if (first + kWordLanes <= count)
+      std::memcpy(costs.data() + first, &cost, sizeof cost);
+    else
+      std::memcpy(costs.data() + first, &cost, (count - first) * sizeof(std::uint16_t));
   }
 }
 

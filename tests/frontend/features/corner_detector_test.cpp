@@ -3,6 +3,7 @@
 #include <set>
 
 #include <gtest/gtest.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include "tests/frontend/texture.hpp"
 
@@ -66,6 +67,23 @@ TEST(CornerDetector, KeepsCornersApartAndOffTheBorder) {
           std::max(std::abs(corners[i].u_px - corners[j].u_px), std::abs(corners[i].v_px - corners[j].v_px));
       EXPECT_GT(apart_px, CornerDetector::kMinDistance_px);
     }
+  }
+}
+
+TEST(CornerDetector, FindsTheSameWithAnyNumberOfThreads) {
+  const Image image = test::render(320, 200, test::Texture(5), {.noise = 2});
+  const auto found = [&](int threads) {
+    tbb::task_arena arena(threads, static_cast<unsigned>(threads));
+    return arena.execute([&] { return CornerDetector(kParams)(image); });
+  };
+  const auto expected = found(1);
+  ASSERT_GT(expected.size(), 50U);
+  for (const int threads : {2, 3, 4, 7}) {
+    const auto corners = found(threads);
+    ASSERT_EQ(corners.size(), expected.size()) << threads;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      EXPECT_TRUE(corners[i].u_px == expected[i].u_px && corners[i].v_px == expected[i].v_px &&
+                  corners[i].score == expected[i].score);
   }
 }
 
