@@ -92,6 +92,10 @@ class Block {
     for (int r = 0; r < rows; ++r) {
       const std::uint8_t* row = image.row(std::clamp(y + r, 0, image.height() - 1));
       std::uint8_t* out = copy_.data() + r * kBlockStride;
+      if (right - left == kBlockStride) {  // most blocks lie across the upper or lower border alone
+        std::memcpy(out, row + x, kBlockStride);
+        continue;
+      }
       std::memset(out, row[0], left);
       std::memcpy(out + left, row + x + left, right - left);
       std::memset(out + right, row[image.width() - 1], kBlockStride - right);

@@ -68,7 +68,34 @@ int meanSample(const Square& square, int window_px) {
   return (totals(sums, sums, sums, sums)[0] + pixels / 2) / pixels;
 }
 
-/// Sums over the window of a template's planes and of their products.
+/// Fills the planes from the samples.
+void fillPlanes(PatchTemplate& patch, const Square& square, PatchDeformation deformation) {
+  const int window = patch.window_px, half = window / 2;
+  const bool scale = deformation == PatchDeformation::kScale;
+  const Words mask = windowMask(window);
+  const Words rounding_mean = allWords(patch.mean - (1 << (kAppearanceShift - 1)));  // half a unit below the mean
+  constexpr int kMomentShift = 10;  // from differences of samples times pixels to `kMomentUnit`
+  constexpr Words kColumns{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const Words columns = (kColumns - static_cast<std::int16_t>(half)) << static_cast<std::int16_t>(kMomentShift);
+  Words above = afterFirst(square[0]), here = afterFirst(square[1]);
+  for (int r = 0; r < window; ++r) {
+    const Words& samples = square[r + 1];
+    const Words below = afterFirst(square[r + 2]), rows = allWords((r - half) * (1 << kMomentShift));
+    // Differences of samples two pixels apart.
+    const Words du = (afterSecond(samples) - samples) & mask, dv = (below - above) & mask;
+    const Words a = ((here - rounding_mean) >> static_cast<std::int16_t>(kAppearanceShift)) & mask;
+    storeWords(patch.appearance.data() + r * kStride, a);
+    storeWords(patch.descent[0].data() + r * kStride, reduced(du, kGradientShift));
+    storeWords(patch.descent[1].data() + r * kStride, scale ? reduced(dv, kGradientShift) : scaled(du, rows));
+    storeWords(patch.descent[2].data() + r * kStride,
+               scale ? scaled(du, columns) + scaled(dv, rows) : scaled(du, columns));
+    above = here;
+    here = below;
+  }
+}
+
+/// Sums over the window of a template's planes and of their products. They are gathered in two passes, as the sums of
+/// each fit the registers.
 struct TemplateSums {
   // The shift's derivatives are below 2048, and those with respect to a row's slope below 512 times the row's distance
   // from the middle: a word holds the sum of a column.
@@ -77,47 +104,24 @@ struct TemplateSums {
   WordSums appearance_squares{}, appearance_d0{}, appearance_d1{}, appearance_d2{};
   WordSums d00{}, d01{}, d02{}, d11{}, d12{}, d22{};
 
-  void add(const Words& a, const Words& x, const Words& y, const Words& z) {
+  explicit TemplateSums(const PatchTemplate& patch) {
+    const auto row = [](const PatchTemplate::Plane& plane, int r) { return loadWords(plane.data() + r * kStride); };
+    const auto& [plane0, plane1, plane2] = patch.descent;
     const Words one = allWords(1);
-    d0 += x, d1 += y;
-    appearance += products(a, one), d2 += products(z, one);
-    appearance_squares += products(a, a), appearance_d0 += products(a, x), appearance_d1 += products(a, y),
-        appearance_d2 += products(a, z);
-    d00 += products(x, x), d01 += products(x, y), d02 += products(x, z);
-    d11 += products(y, y), d12 += products(y, z), d22 += products(z, z);
+    for (int r = 0; r < patch.window_px; ++r) {
+      const Words a = row(patch.appearance, r), x = row(plane0, r), y = row(plane1, r), z = row(plane2, r);
+      d0 += x, d1 += y;
+      appearance += products(a, one), d2 += products(z, one);
+      appearance_squares += products(a, a), appearance_d0 += products(a, x), appearance_d1 += products(a, y),
+          appearance_d2 += products(a, z);
+    }
+    for (int r = 0; r < patch.window_px; ++r) {
+      const Words x = row(plane0, r), y = row(plane1, r), z = row(plane2, r);
+      d00 += products(x, x), d01 += products(x, y), d02 += products(x, z);
+      d11 += products(y, y), d12 += products(y, z), d22 += products(z, z);
+    }
   }
 };
-
-/// Fills the planes from the samples.
-TemplateSums fillPlanes(PatchTemplate& patch, const Square& square, PatchDeformation deformation) {
-  const int window = patch.window_px, half = window / 2;
-  const bool scale = deformation == PatchDeformation::kScale;
-  const Words mask = windowMask(window);
-  const Words rounding_mean = allWords(patch.mean - (1 << (kAppearanceShift - 1)));  // half a unit below the mean
-  constexpr int kMomentShift = 10;  // from differences of samples times pixels to `kMomentUnit`
-  constexpr Words kColumns{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  const Words columns = (kColumns - static_cast<std::int16_t>(half)) << static_cast<std::int16_t>(kMomentShift);
-  TemplateSums sums;
-  Words above = afterFirst(square[0]), here = afterFirst(square[1]);
-  for (int r = 0; r < window; ++r) {
-    const Words& samples = square[r + 1];
-    const Words below = afterFirst(square[r + 2]), rows = allWords((r - half) * (1 << kMomentShift));
-    // Differences of samples two pixels apart.
-    const Words du = (afterSecond(samples) - samples) & mask, dv = (below - above) & mask;
-    const Words a = ((here - rounding_mean) >> static_cast<std::int16_t>(kAppearanceShift)) & mask;
-    const Words d0 = reduced(du, kGradientShift);
-    const Words d1 = scale ? reduced(dv, kGradientShift) : scaled(du, rows);
-    const Words d2 = scale ? scaled(du, columns) + scaled(dv, rows) : scaled(du, columns);
-    storeWords(patch.appearance.data() + r * kStride, a);
-    storeWords(patch.descent[0].data() + r * kStride, d0);
-    storeWords(patch.descent[1].data() + r * kStride, d1);
-    storeWords(patch.descent[2].data() + r * kStride, d2);
-    sums.add(a, d0, d1, d2);
-    above = here;
-    here = below;
-  }
-  return sums;
-}
 
 /// A symmetric matrix, but for rounding: its rows, each behind a zero.
 using Rows = std::array<FourFloats, 3>;
@@ -209,7 +213,8 @@ std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float 
   patch->window_px = window_px;
   patch->off_grid_px = u_px - u.px();
   patch->mean = meanSample(square, window_px);
-  Rows hessian = orthogonalize(*patch, fillPlanes(*patch, square, deformation), deformation);
+  fillPlanes(*patch, square, deformation);
+  Rows hessian = orthogonalize(*patch, TemplateSums(*patch), deformation);
   bool textured = false;
   if (deformation == PatchDeformation::kScale) {
     patch->prior = {0, 0, priorInformation(kScaleSigma)};
