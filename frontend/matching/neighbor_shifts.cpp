@@ -45,7 +45,7 @@ std::optional<Shift> NeighborShifts::medianAround(const Eigen::Vector2f& from_px
 /// Without branches, as which point is nearer than others is unforeseeable.
 std::array<NeighborShifts::Neighbor, 3> NeighborShifts::nearestThree(const Eigen::Vector2f& from_px,
                                                                      float reach_px) const {
-  constexpr auto bits = [](float x) { return std::int64_t{std::bit_cast<std::int32_t>(x)} << kIndexBits; };
+  const auto bits = [](float x) { return std::int64_t{std::bit_cast<std::int32_t>(x)} << kIndexBits; };
   const std::int64_t none = bits(std::numeric_limits<float>::max());
   std::int64_t first = none, second = none, third = none;
   const Eigen::Vector2f reach(reach_px, reach_px);
