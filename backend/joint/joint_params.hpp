@@ -50,7 +50,8 @@ struct JointParams {
   /// Each frame tells a little more of how an object's axes lie along its travel, and with them its whole path turns.
   int spread_scalars = 300;
   int iterations_per_update = 1;
-  int final_iterations = 1;  // when the drive has ended: the updates leave little to do, a second one nothing that shows
+  int final_iterations =
+      1;  // when the drive has ended: the updates leave little to do, a second one nothing that shows
 };
 
 std::vector<Parameter> parametersOf(JointParams& params);
