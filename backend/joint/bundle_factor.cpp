@@ -50,9 +50,10 @@ class LandmarkSum {
       const Eigen::Matrix<double, 3, kLandmark, Eigen::RowMajor> B = rowProduct(linear[i].B, right);
       Matrix84d W = Matrix84d::Zero();
       addOuterProducts(linear[i].J, B, W);
-      Y.middleRows(row, 6 * views[i].frame - row).setZero();
-      Y.middleRows<6>(6 * views[i].frame) = W.topRows<6>();
-      row = 6 * views[i].frame + 6;
+      const int own = 6 * views[i].frame;
+      if (row < own) Y.middleRows(row, own - row).setZero();
+      Y.middleRows<6>(own) = W.topRows<6>();
+      row = own + 6;
       rest += W.bottomRows<kRest>();
     }
     Y.middleRows(row, size_ - kRest - row).setZero();

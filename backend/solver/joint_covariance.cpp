@@ -83,7 +83,8 @@ std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const 
     const Clique& clique = tree[c];
     if (!clique.singular.empty()) return std::nullopt;
     const std::vector<Eigen::Index> rows = rowsOf(graph, path, clique);
-    y.setZero(clique.size, stride);
+    y.resize(clique.size, stride);
+    y.rightCols(stride - columns).setZero();
     for (int i = 0; i < clique.size; ++i) y.row(i).head(columns) = rest.row(rows[i]);
     const int first = firstRowThatIsNotZero(y, clique.frontal_size), solved = clique.frontal_size - first;
     double* const from = y.data() + std::ptrdiff_t{first} * stride;
