@@ -30,4 +30,4 @@ for size in 621x187 878x265 1242x375; do measure "overtake $size" "$(rendered ov
 for tracks in 250 500 1000 2000; do
   measure "$tracks tracks at most" "$data/kitti_tracking_0003" --range 0:60 --set frontend.optical_flow.max_tracks=$tracks
 done
-for scene in static lead convoy; do measure "$scene" "$(rendered $scene 1242x375 28)"; done
+for scene in static lead convoy crowd; do measure "$scene" "$(rendered $scene 1242x375 28)"; done
