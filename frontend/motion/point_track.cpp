@@ -32,4 +32,14 @@ void PointTrack::add(const PointObservation& observation) {
   observations[count++] = observation;
 }
 
+void PointTrack::extend(const PointTrack& before, const PointObservation& observation) {
+  restart(before.point);
+  label = before.label;
+  ambiguity = before.ambiguity;
+  const int forgotten = before.count == kCapacity ? 1 : 0;
+  std::copy(before.observations.begin() + forgotten, before.observations.begin() + before.count, observations.begin());
+  count = before.count - forgotten;
+  observations[count++] = observation;
+}
+
 }  // namespace motorcade

@@ -48,6 +48,8 @@ struct PointTrack {
   void restart(PointId new_point);
   /// Appends an observation and forgets the oldest one beyond the capacity.
   void add(const PointObservation& observation);
+  /// Becomes `before` with another observation. What was found out about its motion holds no longer.
+  void extend(const PointTrack& before, const PointObservation& observation);
 };
 
 }  // namespace motorcade

@@ -1,6 +1,7 @@
 #include "frontend/motion/point_tracks.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
 #include <utility>
 
@@ -65,32 +66,45 @@ std::optional<KnownPoint> PointTracks::knownPoint(const PointTrack& track, const
   return known;
 }
 
+/// Flow observations whose points have a track now: those that were observed, in this frame or not long ago.
+std::vector<std::size_t> PointTracks::keptPoints(std::span<const int> tracks,
+                                                 const std::vector<std::optional<StereoObservation>>& observed) const {
+  const std::int64_t oldest_kept = step_ - params_.max_missed_frames;
+  std::vector<std::size_t> kept;
+  kept.reserve(tracks.size());
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    if (observed[i] || (tracks[i] >= 0 && tracks_[tracks[i]].newest().step >= oldest_kept)) kept.push_back(i);
+  return kept;
+}
+
 void PointTracks::update(const OpticalFlow& flow, const std::vector<std::optional<StereoObservation>>& observed,
                          const CameraTrail& trail) {
   const auto tracks = tracksOf(flow);
   step_ = trail.newest().step;
-  updated_.resize(tracks.size());
-  forEachItem(tracks.size(), [&](std::size_t i) {
-    PointTrack& track = updated_[i];
-    if (tracks[i] >= 0) {
+  const auto kept = keptPoints(tracks, observed);
+  updated_.resize(kept.size());
+  forEachItem(kept.size(), [&](std::size_t k) {
+    const std::size_t i = kept[k];
+    PointTrack& track = updated_[k];
+    if (!observed[i]) {
       track = tracks_[tracks[i]];
+      return;
+    }
+    const PointObservation observation{step_, observed[i]->uvd_px, observed[i]->sigma_px};
+    if (tracks[i] >= 0) {
+      track.extend(tracks_[tracks[i]], observation);
     } else {
       track.restart(flow.observations[i].point);
+      track.add(observation);
     }
-    if (!observed[i]) return;
-    track.add({step_, observed[i]->uvd_px, observed[i]->sigma_px});
     fit(track, trail, *flow.features);
   });
-  const std::int64_t oldest_kept = step_ - params_.max_missed_frames;
-  std::erase_if(updated_, [&](const PointTrack& t) { return t.count == 0 || t.newest().step < oldest_kept; });
   std::swap(tracks_, updated_);
   features_ = flow.features;
 }
 
-/// What the observations of a track up to now tell.
+/// What the observations of a track up to now tell; nothing is known of its motion yet.
 void PointTracks::fit(PointTrack& track, const CameraTrail& trail, const Features& now) const {
-  track.p_static_cam.reset();
-  track.flow.reset();
   if (track.count < 2) return;  // nothing to fit
   const auto [at_rest, moving] = scene_flow_.fit(track, trail);
   const double degrees_of_freedom = 3.0 * track.count - 3.0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -66,6 +67,8 @@ class PointTracks {
   bool isObservedNow(const PointTrack& track) const { return track.newest().step == step_; }
 
   std::vector<int> tracksOf(const OpticalFlow& flow) const;
+  std::vector<std::size_t> keptPoints(std::span<const int> tracks,
+                                      const std::vector<std::optional<StereoObservation>>& observed) const;
   std::optional<KnownPoint> knownPoint(const PointTrack& track, const CameraTrail& trail) const;
   void fit(PointTrack& track, const CameraTrail& trail, const Features& now) const;
   bool isFoundAtRest(const PointTrack& track, const CameraTrail& trail, const Features& now) const;

@@ -30,6 +30,26 @@ TEST(PointTrack, FindsNothingInFramesThatItMissed) {
   EXPECT_EQ(c.uvd_now_px, Eigen::Vector3d(3, 1, 2));
 }
 
+TEST(PointTrack, AnExtendedTrackIsTheOneBeforeWithAnotherObservation) {
+  PointTrack before, track;
+  before.point = {3};
+  before.label = PointLabel::kGround;
+  before.ambiguity = 2;
+  track.flow.emplace();
+  track.p_static_cam = Eigen::Vector3d(1, 2, 3);
+  for (int step = 0; step < PointTrack::kCapacity + 3; ++step) {
+    track.extend(before, observation(step));
+    before.add(observation(step));
+    ASSERT_EQ(track.count, before.count);
+    for (int i = 0; i < track.count; ++i) EXPECT_EQ(track.observations[i].step, before.observations[i].step);
+  }
+  EXPECT_EQ(track.point, PointId{3});
+  EXPECT_EQ(track.label, PointLabel::kGround);
+  EXPECT_EQ(track.ambiguity, 2);
+  EXPECT_FALSE(track.flow);
+  EXPECT_FALSE(track.p_static_cam);
+}
+
 TEST(PointTrack, ANewPointInTheMemoryOfAnOldOneKnowsNothingOfIt) {
   PointTrack track;
   track.point = {3};
