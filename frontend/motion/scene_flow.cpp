@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "frontend/geometry/cholesky.hpp"
 #include "frontend/geometry/stereo_view.hpp"
@@ -191,12 +192,9 @@ std::optional<SceneFlow> fitMoving(const StereoCamera& camera, const Window& win
     const double chi2 = normal->cost - (converged ? gain : 0);
     if (last && !(chi2 < kMaxChi2PerDof * (3.0 * window.size - 6.0))) return std::nullopt;
     if (converged || !last) point.p_cam += step.head<3>(), point.velocity_mps += step.tail<3>();
-    if (last)
-      return SceneFlow{.p_cam = point.p_cam,
-                       .velocity_mps = point.velocity_mps,
-                       .covariance = H.inverse(),
-                       .moving_chi2 = chi2,
-                       .observations = window.size};
+    if (last)  // made in its place: it is large
+      return std::optional<SceneFlow>(std::in_place, point.p_cam, point.velocity_mps, H.inverse(), 0.0, chi2,
+                                      window.size);
     if (!step.allFinite() || point.p_cam.z() < StereoCamera::kMinDepth_m) return std::nullopt;
   }
 }
@@ -207,10 +205,11 @@ SceneFlowEstimator::Fits SceneFlowEstimator::fit(const PointTrack& track, const 
   const Eigen::Vector3d start = camera_.triangulate(track.newest().uvd_px.cast<double>());
   int n = std::min(params_.max_observations, track.count);
   Window window = collect(track, trail, params_.pose_jitter_px, n);
-  Fits fits{.at_rest = fitStatic(camera_, window, start, params_), .moving = {}};
-  while (n >= params_.min_observations && !(fits.moving = fitMoving(camera_, window, start, params_))) {
-    n = shorterWindow(n);
-    if (n >= params_.min_observations) window = collect(track, trail, params_.pose_jitter_px, n);
+  Fits fits{.at_rest = fitStatic(camera_, window, start, params_),
+            .moving = fitMoving(camera_, window, start, params_)};
+  while (!fits.moving && (n = shorterWindow(n)) >= params_.min_observations) {
+    window = collect(track, trail, params_.pose_jitter_px, n);
+    fits.moving = fitMoving(camera_, window, start, params_);
   }
   if (fits.moving)
     fits.moving->static_chi2 = fits.at_rest ? fits.at_rest->chi2 : std::numeric_limits<double>::infinity();

@@ -168,13 +168,14 @@ void SceneFlowSegmentation::addPoints(const std::vector<std::optional<StereoObse
   for (const PointTrack& track : tracks_.observedNow()) {
     while (!observed[next]) ++next;
     const std::size_t i = next++;
-    points.push_back({.point = track.point,
-                      .uvd_px = track.newest().uvd_px.cast<double>(),
-                      .sigma_px = track.newest().sigma_px.cast<double>(),
-                      .age = track.count,
-                      .ambiguous = track.ambiguity > 0,
-                      .ego_inlier = inliers[i],
-                      .flow = track.flow});
+    ScenePoint& point = points.emplace_back();  // filled in its place: it is large
+    point.point = track.point;
+    point.uvd_px = track.newest().uvd_px.cast<double>();
+    point.sigma_px = track.newest().sigma_px.cast<double>();
+    point.age = track.count;
+    point.ambiguous = track.ambiguity > 0;
+    point.ego_inlier = inliers[i];
+    point.flow = track.flow;
   }
 }
 
