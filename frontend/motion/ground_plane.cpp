@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <random>
 
@@ -9,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "core/elementary.hpp"
+#include "frontend/geometry/double_lanes.hpp"
 
 namespace motorcade {
 namespace {
@@ -36,15 +38,37 @@ std::optional<GroundPlane> planeThrough(const Eigen::Vector3d& a, const Eigen::V
   return GroundPlane{normal, normal.dot(a)};
 }
 
+/// Four planes.
+struct PlaneLanes {
+  Doubles3 normal_cam;
+  Doubles height_m;
+};
+
 /// Truncated quadratic score: the larger the better.
-double support(const std::vector<LowPoint>& points, const GroundPlane& plane) {
-  double sum = 0;
+Doubles support(const std::vector<LowPoint>& points, const PlaneLanes& planes) {
+  Doubles sum{};
   for (const auto& c : points) {
-    const double x = plane.heightOf_m(c.p_cam) / c.tolerance_m;
-    if (std::abs(x) < kSupport) sum += 1 - x * x / (kSupport * kSupport);
-    if (x < -kBelow) sum -= kBelowPenalty;
+    const Doubles x = (planes.height_m - dot(planes.normal_cam, allDoubles(c.p_cam))) / allDoubles(c.tolerance_m);
+    const Doubles against = x < -kBelow ? allDoubles(-kBelowPenalty) : Doubles{};
+    sum += x > -kSupport && x < kSupport ? 1 - x * x / (kSupport * kSupport) : against;
   }
   return sum;
+}
+
+/// The first of those with most support.
+GroundPlane bestOf(const std::vector<GroundPlane>& planes, const std::vector<LowPoint>& points) {
+  std::vector<double> supports;
+  for (std::size_t first = 0; first < planes.size(); first += kDoubleLanes) {
+    PlaneLanes four{};
+    const std::size_t count = std::min(kDoubleLanes, planes.size() - first);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      setLane(four.normal_cam, lane, planes[first + lane].normal_cam);
+      four.height_m[lane] = planes[first + lane].height_m;
+    }
+    const Doubles sums = support(points, four);
+    for (std::size_t lane = 0; lane < count; ++lane) supports.push_back(sums[lane]);
+  }
+  return planes[static_cast<std::size_t>(std::ranges::max_element(supports) - supports.begin())];
 }
 
 /// Weighted least squares of y = (height - n_x x - n_z z) / n_y over the points near a plane.
@@ -95,20 +119,14 @@ GroundPlane GroundPlaneEstimator::operator()(std::span<const GroundCandidate> po
 
 /// Of random planes and the last one, the one with most support.
 GroundPlane GroundPlaneEstimator::bestHypothesis(const std::vector<LowPoint>& points, std::uint64_t seed) const {
-  GroundPlane best = plane_;
-  double best_support = support(points, best);
+  std::vector<GroundPlane> planes{plane_};
   std::mt19937_64 random(seed);
   std::uniform_int_distribution<std::size_t> pick(0, points.size() - 1);
   for (int k = 0; k < kHypotheses; ++k) {
     const auto plane = planeThrough(points[pick(random)].p_cam, points[pick(random)].p_cam, points[pick(random)].p_cam);
-    if (!plane || !plausible(*plane)) continue;
-    const double s = support(points, *plane);
-    if (s > best_support) {
-      best_support = s;
-      best = *plane;
-    }
+    if (plane && plausible(*plane)) planes.push_back(*plane);
   }
-  return best;
+  return bestOf(planes, points);
 }
 
 bool GroundPlaneEstimator::isOnGround(const GroundCandidate& point) const {
