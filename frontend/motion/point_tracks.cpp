@@ -19,6 +19,21 @@ constexpr double kMaxStaticChi2 = 3.0;
 constexpr double kMinMotionChi2 = 16;
 constexpr int kMaxAmbiguity = 3;  // frames after which an ambiguous point is trusted again when it no longer is
 
+/// Tracks of a frame exceed the second cache: what is needed of one is asked for while those before it are at work.
+constexpr std::size_t kPrefetchAhead = 3;
+
+void prefetchObservations(const PointTrack& track) {
+  constexpr int kPerCacheLine = 64 / sizeof(PointObservation);
+  for (int i = 0; i < track.count; i += kPerCacheLine) __builtin_prefetch(&track.observations[i]);
+  __builtin_prefetch(&track.newest());
+}
+
+void prefetchPosition(const PointTrack& track) {
+  __builtin_prefetch(&track.newest());
+  __builtin_prefetch(&track.p_static_cam);
+  __builtin_prefetch(&track.static_covariance(1, 1));
+}
+
 }  // namespace
 
 PointTracks::PointTracks(const Params& params, const StereoCamera& camera)
@@ -41,6 +56,8 @@ std::vector<std::optional<KnownPoint>> PointTracks::known(const OpticalFlow& flo
   const auto tracks = tracksOf(flow);
   std::vector<std::optional<KnownPoint>> known(tracks.size());
   forEachItem(tracks.size(), [&](std::size_t i) {
+    const std::size_t ahead = i + kPrefetchAhead;
+    if (ahead < tracks.size() && tracks[ahead] >= 0) prefetchPosition(tracks_[tracks[ahead]]);
     if (tracks[i] >= 0) known[i] = knownPoint(tracks_[tracks[i]], trail);
   });
   return known;
@@ -84,6 +101,8 @@ void PointTracks::update(const OpticalFlow& flow, const std::vector<std::optiona
   const auto kept = keptPoints(tracks, observed);
   updated_.resize(kept.size());
   forEachItem(kept.size(), [&](std::size_t k) {
+    if (k + kPrefetchAhead < kept.size())
+      if (const int ahead = tracks[kept[k + kPrefetchAhead]]; ahead >= 0) prefetchObservations(tracks_[ahead]);
     const std::size_t i = kept[k];
     PointTrack& track = updated_[k];
     if (!observed[i]) {
