@@ -69,6 +69,15 @@ class NearDifferences {
   int sum_ = 0;
 };
 
+/// Without branches: which window is best is unforeseeable.
+int firstLeast(const std::array<int, kWindows>& costs) {
+  constexpr int kNumbers = 8;
+  static_assert(kWindows <= kNumbers);
+  int least = costs[0] * kNumbers;
+  for (int i = 1; i < kWindows; ++i) least = std::min(least, costs[i] * kNumbers + i);
+  return least % kNumbers;
+}
+
 }  // namespace
 
 void refineDisparities(const Image& left, const Image& right, int scale, std::span<const int> cells,
@@ -83,7 +92,7 @@ void refineDisparities(const Image& left, const Image& right, int scale, std::sp
     const Window window{left, u, v, kSize};
     if (!window.insideImage() || first < kHalf || first + 2 * kReach_px + kHalf >= right.width()) continue;
     const auto costs = NearDifferences(window)(right.row(v - kSize.rows / 2) + first - kHalf, right.stride());
-    const auto best = static_cast<int>(std::ranges::min_element(costs) - costs.begin());
+    const int best = firstLeast(costs);
     if (best == 0 || best == 2 * kReach_px) continue;
     const float at = static_cast<float>(first + best) + parabolaOffset(costs[best - 1], costs[best], costs[best + 1]);
     disparity_px = (static_cast<float>(u) - at) / static_cast<float>(scale);
