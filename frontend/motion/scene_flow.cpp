@@ -4,7 +4,6 @@
 #include <array>
 #include <limits>
 #include <span>
-#include <utility>
 
 #include "frontend/geometry/cholesky.hpp"
 #include "frontend/geometry/stereo_view.hpp"
@@ -192,9 +191,12 @@ std::optional<SceneFlow> fitMoving(const StereoCamera& camera, const Window& win
     const double chi2 = normal->cost - (converged ? gain : 0);
     if (last && !(chi2 < kMaxChi2PerDof * (3.0 * window.size - 6.0))) return std::nullopt;
     if (converged || !last) point.p_cam += step.head<3>(), point.velocity_mps += step.tail<3>();
-    if (last)  // made in its place: it is large
-      return std::optional<SceneFlow>(std::in_place, point.p_cam, point.velocity_mps, H.inverse(), 0.0, chi2,
-                                      window.size);
+    if (last)
+      return SceneFlow{.p_cam = point.p_cam,
+                       .velocity_mps = point.velocity_mps,
+                       .covariance = H.inverse(),
+                       .moving_chi2 = chi2,
+                       .observations = window.size};
     if (!step.allFinite() || point.p_cam.z() < StereoCamera::kMinDepth_m) return std::nullopt;
   }
 }
