@@ -21,6 +21,7 @@ constexpr int kMaxAmbiguity = 3;  // frames after which an ambiguous point is tr
 
 /// Tracks of a frame exceed the second cache: what is needed of one is asked for while those before it are at work.
 constexpr std::size_t kPrefetchAhead = 3;
+constexpr std::ptrdiff_t kPointsAhead = 8;  // where it is but the number of its point
 
 void prefetchObservations(const PointTrack& track) {
   constexpr int kPerCacheLine = 64 / sizeof(PointObservation);
@@ -45,7 +46,10 @@ std::vector<int> PointTracks::tracksOf(const OpticalFlow& flow) const {
   tracks.reserve(flow.observations.size());
   auto track = tracks_.begin();
   for (const auto& observation : flow.observations) {
-    while (track != tracks_.end() && track->point < observation.point) ++track;
+    while (track != tracks_.end() && track->point < observation.point) {
+      ++track;
+      if (tracks_.end() - track > kPointsAhead) __builtin_prefetch(&track[kPointsAhead].point);
+    }
     const bool found = track != tracks_.end() && track->point == observation.point;
     tracks.push_back(found ? static_cast<int>(track - tracks_.begin()) : -1);
   }
