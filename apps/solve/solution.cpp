@@ -94,11 +94,11 @@ void feedAll(PoseGraphFeed& feed, const SolveProgress& progress, Solution& solut
     solution.update_eliminated_scalars.push_back(update.report.eliminated_scalars);
     solution.total_ms += update.cpu_ms;
     solution.waiting_edges = update.report.waiting_factors;
+    solution.waiting_chi2 = update.report.waiting_chi2;
     solution.waiting_scalars = update.report.waiting_scalars;
     addSolverProblems(update.report, feed, solution.problems);
     solution.complete = progress(solution.update_ms.size(), feed.updateCount());
   }
-  solution.waiting_chi2 = feed.solver().waitingChi2();
 }
 
 /// True when nothing moves any more, or when it was stopped.

@@ -23,8 +23,7 @@ struct Solution {
   double chi2 = 0, total_ms = 0;
   std::vector<double> update_ms;  // CPU time of each update
   std::vector<std::int64_t> update_eliminated_scalars;
-  /// After the last update: edges and scalars to substitute that the budget put off, and what of chi2 they may take
-  /// off.
+  /// After the last update: edges that the budget put off, their chi2, and scalars to substitute.
   int waiting_edges = 0;
   double waiting_chi2 = 0;
   std::int64_t waiting_scalars = 0;

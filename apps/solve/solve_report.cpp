@@ -37,9 +37,8 @@ std::string textOf(const Solution& solution) {
                 times.median_ms, times.p99_ms, times.max_ms);
   std::string text = head;
   if (solution.waiting_edges > 0 || solution.waiting_scalars > 0)
-    text +=
-        fmt::format("put off by the budget: {} edges and {} scalars to substitute, which may take {:.6g} off chi2\n",
-                    solution.waiting_edges, solution.waiting_scalars, solution.waiting_chi2);
+    text += fmt::format("put off by the budget: {} edges, whose chi2 is {:.6g}, and {} scalars to substitute\n",
+                        solution.waiting_edges, solution.waiting_chi2, solution.waiting_scalars);
   if (!solution.problems.empty()) text += std::to_string(solution.problems.size()) + " problems\n";
   for (const auto& problem : solution.problems) text += "  " + problem.name + ": " + problem.detail + "\n";
   return text;

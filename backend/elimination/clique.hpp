@@ -1,8 +1,6 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -43,12 +41,6 @@ struct Clique {
     return {panel, size, frontal_size, Eigen::OuterStride<>(panelStride())};
   }
   PackedTriangle updateMatrix() const { return {update_matrix, separatorSize()}; }
-  /// What it costs to eliminate it, in units of half a microsecond: a scalar in a small front costs one. Fitted to
-  /// fronts of 10 to 550 scalars on the public pose graphs; more goes into their assembly than into their arithmetic.
-  std::int64_t eliminationWork() const {
-    const std::int64_t n = frontal_size, m = size;
-    return std::max(n, (400 + m * m + m * m * n / 40) / 500);
-  }
   std::size_t panelLength() const { return std::size_t(panelStride()) * frontal_size; }
   std::size_t updateMatrixLength() const { return PackedTriangle::length(separatorSize()); }
 };

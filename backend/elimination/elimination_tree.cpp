@@ -143,7 +143,8 @@ void EliminationTree::eliminate(const Elimination& problem, std::vector<int>& cr
   clique_of_.resize(graph_.slots(), -1);
   sequence_.resize(graph_.slots(), -1);
   position_.resize(graph_.slots(), -1);
-  number(problem);
+  if (problem.renumber)
+    for (const VariableId v : problem.order) sequence_[v.value] = next_sequence_ += kSequenceStep;
   findPattern(problem);
 
   group_clique_.clear();
@@ -166,36 +167,39 @@ void EliminationTree::eliminate(const Elimination& problem, std::vector<int>& cr
   created.insert(created.end(), group_clique_.begin(), group_clique_.end());
 }
 
-void EliminationTree::number(const Elimination& problem) {
-  using Numbering = Elimination::Numbering;
-  if (problem.numbering == Numbering::kLast)
-    for (const VariableId v : problem.order) sequence_[v.value] = next_sequence_ += kSequenceStep;
-  if (problem.numbering != Numbering::kBetween || numberBetween(problem)) return;
-  spaceOut();
-  numberBetween(problem);
-}
-
-/// False when the order has no room left there.
-bool EliminationTree::numberBetween(const Elimination& problem) {
-  const auto count = static_cast<std::int64_t>(problem.order.size());
+/// Between the clique's variables in the elimination order and all those above it.
+std::int64_t EliminationTree::sequenceAbove(int clique) const {
   std::int64_t above = next_sequence_ + kSequenceStep;
-  for (const VariableId v : problem.boundary) above = std::min(above, sequence_[v.value]);
-  std::int64_t below = above - (count + 1) * kSequenceStep;
-  for (const int orphan : problem.orphans) below = std::max(below, sequence(orphan));
-  const std::int64_t step = (above - below) / (count + 1);
-  if (step == 0) return false;
-  for (std::int64_t i = 0; i < count; ++i) sequence_[problem.order[i].value] = below + (i + 1) * step;
-  return true;
+  for (const VariableId v : (*this)[clique].separator()) above = std::min(above, sequence_[v.value]);
+  return std::midpoint(sequence(clique), above);
 }
 
-/// Gives the variables in the tree new positions, in the same order, with room between them.
-void EliminationTree::spaceOut() {
-  std::vector<VariableId> variables;
-  for (const int c : cliques())
-    for (const VariableId v : (*this)[c].frontalVariables()) variables.push_back(v);
-  std::ranges::sort(variables, {}, [&](VariableId v) { return sequence_[v.value]; });
-  next_sequence_ = 0;
-  for (const VariableId v : variables) sequence_[v.value] = next_sequence_ += kSequenceStep;
+bool EliminationTree::lift(VariableId v, std::span<const int> cliques) {
+  const int top = cliques.back(), parent = (*this)[top].parent;
+  const std::int64_t last = sequence(top), lifted = sequenceAbove(top);
+  if (lifted <= last) return false;
+  const auto separator = (*this)[top].separator();
+  const std::vector<VariableId> boundary(separator.begin(), separator.end());
+  Removed removed;
+  remove(cliques, removed);
+  std::erase(removed.variables, v);
+  removed.variables.push_back(v);
+  sequence_[v.value] = lifted;
+  std::vector<int> created;
+  std::erase_if(removed.orphans, [&](int orphan) {
+    const bool outside = std::ranges::none_of(
+        (*this)[orphan].separator(), [&](VariableId u) { return std::ranges::count(removed.variables, u) > 0; });
+    if (outside) attach(orphan, parent);
+    return outside;
+  });
+  eliminate({.order = removed.variables,
+             .boundary = boundary,
+             .factors = removed.factors,
+             .orphans = removed.orphans,
+             .parent = parent,
+             .renumber = false},
+            created);
+  return true;
 }
 
 /// The terms are the factors, then the separators of the orphans.
@@ -265,7 +269,6 @@ Eigen::MatrixXd EliminationTree::marginal(std::span<const VariableId> eliminated
 void EliminationTree::refresh(int id) {
   front_.eliminate(cliques_[id], cliques_);
   eliminated_scalars_ += (*this)[id].frontal_size;
-  elimination_work_ += (*this)[id].eliminationWork();
 }
 
 void EliminationTree::shiftRightHandSide(int id, std::span<double> change, std::span<double> parent_change) {

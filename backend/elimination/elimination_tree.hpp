@@ -20,13 +20,7 @@ struct Elimination {
   std::span<const FactorId> factors;  // each with a variable in `order`, all in `order` and `boundary`
   std::span<const int> orphans;  // cliques whose separators lie in `order` and `boundary`, with a variable in `order`
   int parent = -1;
-  /// Positions of the variables in the order of the whole.
-  enum class Numbering : char {
-    kLast,     // after all others
-    kKept,     // as they were
-    kBetween,  // after the orphans and before the boundary
-  };
-  Numbering numbering = Numbering::kLast;
+  bool renumber = true;  // false: the variables keep their positions in the order of the whole
 };
 
 /// R as a tree of cliques (the Bayes tree of Kaess et al. 2012): new information touches only the cliques from where it
@@ -63,6 +57,10 @@ class EliminationTree {
 
   /// Adds the cliques of an elimination; they are appended to `created`, parents before children.
   void eliminate(const Elimination& problem, std::vector<int>& created);
+  /// Moves a variable up the tree: of the variables of these cliques, its own and the next ones above it, it becomes
+  /// the last one. What R says stays, and nothing above the cliques changes. False, and nothing is done, when the order
+  /// has no room left there.
+  bool lift(VariableId v, std::span<const int> cliques);
   /// Eliminates a clique anew, after its children: the linear models of its factors or what its children pass on
   /// changed.
   void refresh(int clique);
@@ -87,16 +85,12 @@ class EliminationTree {
   const WeakPivot& weakestPivot() const { return front_.weakestPivot(); }
   void clearFindings() { front_.clearFindings(); }
 
-  // Ever.
-  std::int64_t eliminatedScalars() const { return eliminated_scalars_; }
-  std::int64_t eliminationWork() const { return elimination_work_; }
+  std::int64_t eliminatedScalars() const { return eliminated_scalars_; }  // ever
   std::size_t heldBytes() const { return pool_.heldBytes(); }
   std::size_t usedBytes() const { return pool_.usedBytes(); }
 
  private:
-  void number(const Elimination& problem);
-  bool numberBetween(const Elimination& problem);
-  void spaceOut();
+  std::int64_t sequenceAbove(int clique) const;
   void findPattern(const Elimination& problem);
   int addClique(const Elimination& problem, const EliminationPattern::Group& group);
   int takeSlot();
@@ -109,7 +103,7 @@ class EliminationTree {
   std::vector<int> free_, roots_;
   std::vector<int> clique_of_;          // per variable
   std::vector<std::int64_t> sequence_;  // per variable
-  std::int64_t next_sequence_ = 0, eliminated_scalars_ = 0, elimination_work_ = 0;
+  std::int64_t next_sequence_ = 0, eliminated_scalars_ = 0;
   BlockPool pool_;
   EliminationPattern pattern_;
   Front front_{graph_};

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "backend/elimination/dense_substitution.hpp"
-#include "backend/graph/sort_unique.hpp"
 
 namespace motorcade {
 
@@ -27,7 +26,6 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
     waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(first_waiting_));
     first_waiting_ = 0;
   }
-  result_.spread_scalars = result_.scalars - with_work;
   result_.moved = moved_;
   return result_;
 }
@@ -48,19 +46,14 @@ void BackSubstitution::solveWork(double threshold_sigmas) {
   }
 }
 
-void BackSubstitution::substitute(const Clique& clique, std::vector<double>& x_separator,
-                                  std::vector<double>& x_frontal) const {
-  x_separator.clear();
+void BackSubstitution::solve(const Clique& clique, Call since, double threshold_sigmas) {
+  x_separator_.clear();
   for (const VariableId v : clique.separator()) {
     const auto& x = graph_[v].x;
-    x_separator.insert(x_separator.end(), x.begin(), x.begin() + graph_.sizeOf(v));
+    x_separator_.insert(x_separator_.end(), x.begin(), x.begin() + graph_.sizeOf(v));
   }
-  x_frontal.resize(clique.frontal_size);
-  backSubstitute(clique.panelView(), x_separator.data(), x_frontal.data());
-}
-
-void BackSubstitution::solve(const Clique& clique, Call since, double threshold_sigmas) {
-  substitute(clique, x_separator_, x_frontal_);
+  x_frontal_.resize(clique.frontal_size);
+  backSubstitute(clique.panelView(), x_separator_.data(), x_frontal_.data());
   result_.scalars += clique.frontal_size;
   moveVariables(clique, threshold_sigmas);
   for (int child = clique.first_child; child >= 0; child = tree_[child].next_sibling) {
@@ -84,29 +77,6 @@ std::int64_t BackSubstitution::waitingScalars() const {
   for (const VariableId v : std::span(waiting_).subspan(first_waiting_))
     if (waiting_since_[v.value] > 0 && tree_.cliqueOf(v) >= 0) scalars += graph_.sizeOf(v);
   return scalars;
-}
-
-/// Of |R x + S x_separator + d|^2 of the cliques, which vanishes at their solutions.
-double BackSubstitution::waitingChi2() const {
-  std::vector<int> cliques;
-  for (const VariableId v : std::span(waiting_).subspan(first_waiting_))
-    if (waiting_since_[v.value] > 0 && tree_.cliqueOf(v) >= 0) cliques.push_back(tree_.cliqueOf(v));
-  sortUnique(cliques);
-  double sum = 0;
-  std::vector<double> x_separator, step;
-  for (const int c : cliques) {
-    substitute(tree_[c], x_separator, step);
-    std::size_t at = 0;
-    for (const VariableId v : tree_[c].frontalVariables())
-      for (int i = 0; i < graph_.sizeOf(v); ++i, ++at) step[at] -= graph_[v].x[i];
-    const auto R_transposed = tree_[c].factor();
-    for (int row = 0; row < tree_[c].frontal_size; ++row) {
-      double residual = 0;
-      for (int i = row; i < tree_[c].frontal_size; ++i) residual += R_transposed(i, row) * step[i];
-      sum += residual * residual;
-    }
-  }
-  return sum;
 }
 
 /// Takes over the new x.

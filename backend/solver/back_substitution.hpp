@@ -17,7 +17,6 @@ class BackSubstitution {
   struct Result {
     std::span<const VariableId> moved;  // lasts until the next call
     std::int64_t scalars = 0;           // substituted
-    std::int64_t spread_scalars = 0;    // of them below the cliques with work
     double largest_change = 0;          // of any x, m or rad
   };
 
@@ -30,16 +29,11 @@ class BackSubstitution {
   Result operator()(double threshold_sigmas, std::int64_t most_scalars);
   /// Scalars of the cliques that wait for a later call.
   std::int64_t waitingScalars() const;
-  /// How far that leaves the squared residuals of the linear models above their minimum: between cliques that moved and
-  /// those that wait, estimates disagree.
-  double waitingChi2() const;
 
  private:
   using Call = std::uint32_t;  // number of a call
 
   void solveWork(double threshold_sigmas);
-  /// For the present x of the separator.
-  void substitute(const Clique& clique, std::vector<double>& x_separator, std::vector<double>& x_frontal) const;
   /// Its separator may have moved since that call.
   void solve(const Clique& clique, Call since, double threshold_sigmas);
   void moveVariables(const Clique& clique, double threshold_sigmas);

@@ -1,7 +1,6 @@
 #include "backend/solver/fluid_relinearization.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace motorcade {
 namespace {
@@ -34,8 +33,7 @@ bool entersLinearly(VariableId v, const Factor& factor, const FactorGraph& graph
 
 }  // namespace
 
-int FluidRelinearization::compareModels(std::span<const VariableId> moved) {
-  int compared = 0;
+void FluidRelinearization::compareModels(std::span<const VariableId> moved) {
   compared_.reset(graph_.factorSlots());
   staleness_rad_.resize(graph_.slots(), 0.0);
   const double tolerance = params_.mismatch_tolerance * graph_.rmsResidual();
@@ -46,12 +44,10 @@ int FluidRelinearization::compareModels(std::span<const VariableId> moved) {
     for (const FactorId f : graph_[v].factors) {
       if (entersLinearly(v, graph_.factor(f), graph_)) continue;
       if (!compared_.insert(f.value)) continue;
-      ++compared;
       const double norm = graph_.mismatch(f).norm;
       if (norm > tolerance) off_.push_back({f, norm});
     }
   }
-  return compared;
 }
 
 /// The variable's factors want new Jacobians; `turn_rad` says how urgently.
@@ -71,78 +67,46 @@ void FluidRelinearization::beginStep(std::span<const FactorId> new_factors, std:
   });
 }
 
-FluidRelinearization::Corrections FluidRelinearization::correctModels(Extent extent) {
+FluidRelinearization::Corrections FluidRelinearization::correctModels() {
   corrections_ = {};
   relinearized_.clear();
   is_relinearized_.reset(graph_.factorSlots());
   staleness_rad_.resize(graph_.slots(), 0.0);
-  const bool all_known = extent == Extent::kBudget && unpark();
-  if (all_known) markDrifted();
+  markDrifted();
   relinearizeStale();
   for (const FactorId f : relinearized_) graph_.linearize(f);
   corrections_.relinearized_factors = static_cast<int>(relinearized_.size());
-  correctResiduals(all_known ? Extent::kBudget : Extent::kFree);
-  if (extent == Extent::kFree) park();
+  correctResiduals();
   return corrections_;
 }
 
-/// Compares models again, as estimates have moved on since, as far as the budget reaches. False while some are left.
-bool FluidRelinearization::unpark() {
-  if (parked_.empty()) return true;
-  compared_.reset(graph_.factorSlots());
-  for (const OffModel& off : off_) compared_.insert(off.factor.value);
-  const double tolerance = params_.mismatch_tolerance * graph_.rmsResidual();
-  const std::int64_t most = std::max<std::int64_t>(budget_.leftForSubstitution() / UpdateBudget::kComparedLater, 1);
-  std::int64_t compared = 0;
-  for (; !parked_.empty() && compared < most; parked_.pop_back()) {
-    const FactorId f = parked_.back();
-    is_parked_[f.value] = 0;
-    if (!graph_.contains(f) || new_factors_.contains(f.value) || !compared_.insert(f.value)) continue;
-    ++compared;
-    if (const double norm = graph_.mismatch(f).norm; norm > tolerance) off_.push_back({f, norm});
-  }
-  budget_.spend(compared * UpdateBudget::kComparedLater);
-  return parked_.empty();
-}
-
 /// What the budget does not reach stays in the list.
-void FluidRelinearization::correctResiduals(Extent extent) {
+void FluidRelinearization::correctResiduals() {
   corrected_.reset(graph_.factorSlots());
   std::erase_if(off_, [&](const OffModel& off) {
     if (is_relinearized_.contains(off.factor.value) || corrected_.contains(off.factor.value)) return true;
-    if (!reachesResidual(off.factor, extent)) return false;
+    if (!reachesResidual(off.factor)) return false;
     corrected_.insert(off.factor.value);
     correctResidual(off.factor);
     return true;
   });
-  if (!off_.empty()) budget_.saveForNext();
-}
-
-void FluidRelinearization::park() {
-  is_parked_.resize(graph_.factorSlots(), 0);
-  for (const OffModel& off : off_)
-    if (std::exchange(is_parked_[off.factor.value], 1) == 0) parked_.push_back(off.factor);
-  off_.clear();
+  budget_.saveSubstitutions(!off_.empty());
 }
 
 /// Spends what it takes to carry a new right-hand side from the model's clique to the root.
-bool FluidRelinearization::reachesResidual(FactorId id, Extent extent) {
+bool FluidRelinearization::reachesResidual(FactorId id) {
   if (!budget_.limited()) return true;
-  const std::int64_t most_scalars =
-      extent == Extent::kFree ? 0 : UpdateBudget::kCorrectedPerUnit * budget_.leftForSubstitution();
-  std::int64_t scalars = 0, cliques = 0;
-  int c = tree_.ownerOf(graph_.factor(id));
-  for (; c >= 0 && !work_.has(c) && scalars <= most_scalars; c = tree_[c].parent, ++cliques)
+  std::int64_t scalars = 0;
+  for (int c = tree_.ownerOf(graph_.factor(id)); c >= 0 && !work_.has(c); c = tree_[c].parent) {
     scalars += tree_[c].frontal_size;
-  const bool reaches = scalars <= most_scalars;
-  budget_.spend(reaches ? scalars / UpdateBudget::kCorrectedPerUnit : cliques / UpdateBudget::kPassedPerUnit);
-  return reaches;
+    if (scalars > budget_.substitutionsLeft()) return false;
+  }
+  budget_.spendSubstitutions(scalars);
+  return true;
 }
 
 void FluidRelinearization::clear() {
   off_.clear();
-  parked_.clear();
-  is_parked_.clear();
   for (const VariableId v : stale_) staleness_rad_[v.value] = 0;
   stale_.clear();
 }
@@ -167,14 +131,14 @@ void FluidRelinearization::relinearizeStale() {
   });
   const Reach reach = relinearizeWorst();
   std::erase_if(stale_, [&](VariableId v) { return !isStale(v); });
-  if (reach == Reach::kBeyondBudget) budget_.saveForNext();
+  budget_.save(reach == Reach::kBeyondBudget);
 }
 
 /// Stale variables whose cliques are eliminated anew in any case.
 void FluidRelinearization::relinearizeWhatIsFree() {
   for (const int c : work_.removed())
     for (const VariableId v : tree_[c].frontalVariables())
-      if (isStale(v) && costOfRelinearizing(v).work == 0) relinearize(v);
+      if (isStale(v) && costOfRelinearizing(v).scalars == 0) relinearize(v);
 }
 
 /// The worst first, as far as the allowances reach: one for those so far off that the solution suffers, one for the
@@ -219,9 +183,9 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeRegion(VariableId w
 
 FluidRelinearization::Reach FluidRelinearization::relinearizeWithin(VariableId v, double& flops_left) {
   const EliminationCost cost = costOfRelinearizing(v);
-  if (cost.work > budget_.left()) return Reach::kBeyondBudget;
+  if (cost.scalars > budget_.left()) return Reach::kBeyondBudget;
   if (cost.flops > flops_left) return Reach::kBeyondAllowance;
-  budget_.spend(cost.work);
+  budget_.spend(cost.scalars);
   flops_left -= cost.flops;
   relinearize(v);
   return Reach::kWithin;
@@ -235,7 +199,7 @@ FluidRelinearization::EliminationCost FluidRelinearization::costOfRelinearizing(
     if (new_factors_.contains(f.value)) continue;
     for (int c = tree_.ownerOf(graph_.factor(f)); c >= 0 && !work_.isEliminated(c) && counted_.insert(c);
          c = tree_[c].parent) {
-      cost.work += tree_[c].eliminationWork();
+      cost.scalars += tree_[c].frontal_size;
       cost.flops += static_cast<double>(tree_[c].frontal_size) * tree_[c].size * tree_[c].size;
     }
   }

@@ -6,7 +6,7 @@
 #include "backend/elimination/elimination_tree.hpp"
 #include "backend/graph/mark_set.hpp"
 #include "backend/solver/clique_work.hpp"
-#include "backend/solver/update_budget.hpp"
+#include "backend/solver/elimination_budget.hpp"
 
 namespace motorcade {
 
@@ -33,24 +33,19 @@ class FluidRelinearization {
   };
 
   FluidRelinearization(const Params& params, FactorGraph& graph, const EliminationTree& tree, CliqueWork& work,
-                       UpdateBudget& budget)
+                       EliminationBudget& budget)
       : params_(params), graph_(graph), tree_(tree), work_(work), budget_(budget) {}
 
-  /// Finds the models that are off after a step that moved these variables. The number of models compared.
-  int compareModels(std::span<const VariableId> moved);
+  /// Finds the models that are off after a step that moved these variables.
+  void compareModels(std::span<const VariableId> moved);
   /// Neither the new factors nor those that wait are in the tree yet.
   void beginStep(std::span<const FactorId> new_factors, std::span<const FactorId> waiting);
-  /// How far corrections may go.
-  enum class Extent : char {
-    kFree,    // where cliques have work in any case
-    kBudget,  // as far as the budget reaches
-  };
-  /// Corrects what is off, and marks the work that this is.
-  Corrections correctModels(Extent extent);
+  /// Corrects what is off, as far as the budget reaches, and marks the work that this is.
+  Corrections correctModels();
   /// Everything has been relinearized.
   void clear();
 
-  bool anyModelOff() const { return !off_.empty() || !parked_.empty(); }
+  bool anyModelOff() const { return !off_.empty(); }
   /// Variables whose relinearization was put off.
   std::size_t deferred() const { return stale_.size(); }
 
@@ -62,11 +57,10 @@ class FluidRelinearization {
   /// How far the budget and the allowances reach.
   enum class Reach : char { kWithin, kBeyondAllowance, kBeyondBudget };
   struct EliminationCost {
-    std::int64_t work = 0;
+    std::int64_t scalars = 0;
     double flops = 0;
   };
 
-  bool unpark();
   void markStale(VariableId v, double turn_rad);
   bool isStale(VariableId v) const { return staleness_rad_[v.value] > 0; }
   void markDrifted();
@@ -77,19 +71,16 @@ class FluidRelinearization {
   Reach relinearizeWithin(VariableId v, double& flops_left);
   EliminationCost costOfRelinearizing(VariableId v);
   void relinearize(VariableId v);
-  void correctResiduals(Extent extent);
-  void park();
-  bool reachesResidual(FactorId id, Extent extent);
+  void correctResiduals();
+  bool reachesResidual(FactorId id);
   void correctResidual(FactorId id);
 
   Params params_;
   FactorGraph& graph_;
   const EliminationTree& tree_;
   CliqueWork& work_;
-  UpdateBudget& budget_;
+  EliminationBudget& budget_;
   std::vector<OffModel> off_;          // models to correct in the next step
-  std::vector<FactorId> parked_;       // models to look at again once more than what is free may be corrected
-  std::vector<char> is_parked_;        // per factor
   std::vector<VariableId> stale_;      // whose linearization points are off
   std::vector<double> staleness_rad_;  // per variable: its turn when it became stale, 0 when it is not
   Corrections corrections_;            // of the step at hand

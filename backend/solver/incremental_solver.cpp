@@ -15,12 +15,6 @@ namespace {
 /// neighbors of one that is eliminated before them, at the cost of a dense system.
 constexpr std::size_t kMostAppended = 200;
 
-constexpr std::int64_t kLeastSpread = 60;  // scalars, with a budget that is spent already: estimates follow
-
-/// While closures that waited take effect, corrections and the next closures wait until the estimates have followed,
-/// but no longer than it takes to substitute everything so many times.
-constexpr std::int64_t kSettlingRounds = 4;
-
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 
 /// A factor over these variables was left out.
@@ -84,23 +78,15 @@ void IncrementalSolver::beginReport() {
       report_.deferred_variables = 0;
   report_.largest_change = 0;
   tree_.clearFindings();
-  budget_.beginUpdate(backlog());
-}
-
-/// Work of substitution that was put off and may be done now.
-std::int64_t IncrementalSolver::backlog() const {
-  if (!budget_.limited()) return 0;
-  const std::int64_t spread = params_.spread_scalars > 0 ? params_.spread_scalars : kNoLimit;
-  return std::min(substitution_.waitingScalars(), spread) / UpdateBudget::kSubstitutedPerUnit;
+  budget_.beginUpdate();
 }
 
 void IncrementalSolver::endReport() {
   report_.eliminated_scalars += tree_.eliminatedScalars();
   report_.deferred_variables = static_cast<int>(relinearization_.deferred());
   report_.waiting_factors = static_cast<int>(waiting_.factors().size());
+  report_.waiting_chi2 = waiting_.chi2();
   report_.waiting_scalars = substitution_.waitingScalars();
-  const bool settled = report_.waiting_scalars == 0 && !relinearization_.anyModelOff();
-  settling_ = settled ? 0 : std::max<std::int64_t>(settling_ - report_.substituted_scalars, 0);
   if (report_.relinearized_factors > 0) ++counters_.relinearizations;
   sortUnique(report_.moved);
   problems_.append(graph_, tree_, report_.problems);
@@ -111,17 +97,13 @@ void IncrementalSolver::endReport() {
 
 const IncrementalSolver::Report& IncrementalSolver::update(Correction correction) {
   const auto begin = std::chrono::steady_clock::now();
-  const std::int64_t work_before = tree_.eliminationWork();
   beginReport();
   ++counters_.updates;
   const bool batch_due = counters_.updates % params_.batch_every_updates == 0 || new_variables_.size() > kMostAppended;
   if (params_.policy == Policy::kEveryN && batch_due) {
     batchStep();
   } else {
-    const bool settles = settling_ > 0 && substitution_.waitingScalars() > 0;
-    closes_ = params_.policy == Policy::kFluid && waiting_.admit(new_factors_, touched_, settles) > 0;
-    if (closes_)
-      settling_ = kSettlingRounds * FactorGraph::kMaxDimension * static_cast<std::int64_t>(graph_.variableCount());
+    if (params_.policy == Policy::kFluid) waiting_.admit(new_factors_, touched_);
     step(true, correction);
     new_factors_.clear();
     const int steps = correction == Correction::kNow ? params_.iterations_per_update : 1;
@@ -130,16 +112,14 @@ const IncrementalSolver::Report& IncrementalSolver::update(Correction correction
   endReport();
   if (budget_.countsTime()) {
     const std::chrono::duration<double, std::milli> update = std::chrono::steady_clock::now() - begin;
-    budget_.notePace(
-        tree_.eliminationWork() - work_before + report_.substituted_scalars / UpdateBudget::kSubstitutedPerUnit,
-        update.count());
+    budget_.notePace(report_.eliminated_scalars, update.count());
   }
   return report_;
 }
 
 /// Models are off, and the update has not cost too much yet for another step.
 bool IncrementalSolver::mayIterate() const {
-  return relinearization_.anyModelOff() && (!budget_.limited() || budget_.leftForSubstitution() > 0) &&
+  return relinearization_.anyModelOff() &&
          (params_.iterated_scalars == 0 || report_.substituted_scalars <= params_.iterated_scalars);
 }
 
@@ -153,9 +133,7 @@ void IncrementalSolver::step(bool fold, Correction correction) {
   }
   if (params_.policy == Policy::kFluid) relinearization_.beginStep(new_factors_, waiting_.factors());
   if (params_.policy == Policy::kFluid && correction == Correction::kNow) {
-    using Extent = FluidRelinearization::Extent;
-    const bool settles = settling_ > 0 && substitution_.waitingScalars() > 0;
-    const auto corrections = relinearization_.correctModels(settles ? Extent::kFree : Extent::kBudget);
+    const auto corrections = relinearization_.correctModels();
     report_.relinearized_variables += corrections.relinearized_variables;
     report_.relinearized_factors += corrections.relinearized_factors;
     report_.corrected_factors += corrections.corrected_factors;
@@ -176,9 +154,6 @@ void IncrementalSolver::touchNewFactors() {
 
 /// Eliminates the marked cliques' variables and the new ones, in a new order.
 void IncrementalSolver::rebuildTop() {
-  const std::int64_t before = tree_.eliminationWork();
-  std::int64_t asked = 0;
-  for (const int c : work_.removed()) asked += tree_[c].eliminationWork();
   removed_.clear();
   tree_.remove(work_.releaseRemoved(), removed_);
   removed_.variables.insert(removed_.variables.end(), new_variables_.begin(), new_variables_.end());
@@ -193,24 +168,16 @@ void IncrementalSolver::rebuildTop() {
   created_.clear();
   tree_.eliminate({.order = order, .boundary = {}, .factors = removed_.factors, .orphans = removed_.orphans}, created_);
   work_.markNew(created_);
-  if (closes_) budget_.spend(std::max<std::int64_t>(tree_.eliminationWork() - before - asked, 0));
 }
 
 /// Solves for x where anything changed, and finds the models that are off there.
 void IncrementalSolver::substitute(std::int64_t most_scalars) {
-  if (budget_.limited()) {
-    const std::int64_t affordable = UpdateBudget::kSubstitutedPerUnit * budget_.leftForSubstitution();
-    most_scalars = std::min(most_scalars, std::max(affordable, kLeastSpread));
-  }
-  const auto solved = substitution_(spread_sigmas_, most_scalars);
-  budget_.spend(solved.spread_scalars / UpdateBudget::kSubstitutedPerUnit);
+  const auto solved = substitution_(spread_sigmas_, std::min(most_scalars, budget_.substitutionsLeft()));
+  budget_.spendSubstitutions(solved.scalars);
   report_.moved.insert(report_.moved.end(), solved.moved.begin(), solved.moved.end());
   report_.substituted_scalars += solved.scalars;
   report_.largest_change = std::max(report_.largest_change, solved.largest_change);
-  if (params_.policy != Policy::kFluid) return;
-  const std::int64_t compared = relinearization_.compareModels(solved.moved);
-  if (solved.scalars > 0)
-    budget_.spend(compared * solved.spread_scalars / solved.scalars / UpdateBudget::kComparedPerUnit);
+  if (params_.policy == Policy::kFluid) relinearization_.compareModels(solved.moved);
 }
 
 /// Relinearizes and reorders everything.

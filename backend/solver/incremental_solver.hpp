@@ -10,11 +10,11 @@
 #include "backend/graph/factor_graph.hpp"
 #include "backend/solver/back_substitution.hpp"
 #include "backend/solver/clique_work.hpp"
+#include "backend/solver/elimination_budget.hpp"
 #include "backend/solver/fluid_relinearization.hpp"
 #include "backend/solver/problem_reporter.hpp"
 #include "backend/solver/retirement.hpp"
 #include "backend/solver/solver_problem.hpp"
-#include "backend/solver/update_budget.hpp"
 #include "backend/solver/waiting_factors.hpp"
 #include "core/messages.hpp"
 
@@ -45,7 +45,7 @@ class IncrementalSolver {
     int iterations_per_update = 2;  // Gauss-Newton steps at most, while models are off
     /// Scalars substituted in an update up to which it may take a further step; 0: no limit.
     std::int64_t iterated_scalars = 3000;
-    UpdateBudget::Params budget;
+    EliminationBudget::Params budget;
   };
   struct Report {
     std::vector<SolverProblem> problems;
@@ -54,9 +54,10 @@ class IncrementalSolver {
     int relinearized_variables = 0, relinearized_factors = 0, corrected_factors = 0;
     int deferred_variables = 0;  // whose relinearization the budget put off
     double largest_change = 0;   // of any x, m or rad
-    /// Factors that the budget put off, and scalars whose substitution was put off.
+    /// Factors that the budget put off, and a bound of what they can take off chi2: their own.
     int waiting_factors = 0;
-    std::int64_t waiting_scalars = 0;
+    double waiting_chi2 = 0;
+    std::int64_t waiting_scalars = 0;  // whose substitution was put off
   };
 
   explicit IncrementalSolver(const Params& params) : params_(params) {}
@@ -82,11 +83,6 @@ class IncrementalSolver {
 
   Value estimate(VariableId v) const { return graph_.estimate(v); }
   SE3 pose(VariableId v) const { return std::get<SE3>(estimate(v)); }
-  /// A bound, as far as the linear models are right, of what factors and substitutions that wait leave chi2 above its
-  /// minimum: the squared residuals of the factors, and what those of the rest have more than with the substitutions.
-  /// Costs as much as the substitutions.
-  double waitingChi2() const { return waiting_.chi2() + substitution_.waitingChi2(); }
-
   /// See motorcade::jointCovariance.
   std::optional<Eigen::MatrixXd> jointCovariance(std::span<const VariableId> variables) const;
 
@@ -98,7 +94,6 @@ class IncrementalSolver {
   std::size_t heldBytes() const { return graph_.termBytes() + tree_.heldBytes(); }
 
  private:
-  std::int64_t backlog() const;
   void beginReport();
   void endReport();
   bool usable(const Factor& factor);
@@ -115,7 +110,7 @@ class IncrementalSolver {
   EliminationTree tree_{graph_};
   AffectedOrder reordered_{graph_, tree_};
   CliqueWork work_{tree_};
-  UpdateBudget budget_{params_.budget};
+  EliminationBudget budget_{params_.budget};
   FluidRelinearization relinearization_{params_.relinearization, graph_, tree_, work_, budget_};
   WaitingFactors waiting_{graph_, tree_, budget_};
   BackSubstitution substitution_{graph_, tree_, work_};
@@ -123,9 +118,7 @@ class IncrementalSolver {
   ProblemReporter problems_;
   Report report_;
   SolverCounters counters_;
-  bool closes_ = false;        // the update at hand takes in factors that waited
-  std::int64_t settling_ = 0;  // scalars that may be substituted until closures that waited have taken effect
-  double spread_sigmas_ = 0;   // of the newest step: smaller ones of a variable did not spread
+  double spread_sigmas_ = 0;  // of the newest step: smaller ones of a variable did not spread
 
   // Since the last update.
   std::vector<VariableId> touched_, new_variables_;

@@ -119,7 +119,7 @@ void Retirement::eliminateAgain(const Part& part, const std::vector<VariableId>&
                    .factors = factors,
                    .orphans = orphans,
                    .parent = part.parent,
-                   .numbering = Elimination::Numbering::kKept},
+                   .renumber = false},
                   created_);
 }
 
@@ -143,12 +143,9 @@ std::span<const int> Retirement::drop(std::span<const VariableId> variables) {
   for (const VariableId v : variables) std::erase(removed_.variables, v);
   forget(variables);
   created_.clear();
-  tree_.eliminate({.order = removed_.variables,
-                   .boundary = {},
-                   .factors = kept,
-                   .orphans = removed_.orphans,
-                   .numbering = Elimination::Numbering::kKept},
-                  created_);
+  tree_.eliminate(
+      {.order = removed_.variables, .boundary = {}, .factors = kept, .orphans = removed_.orphans, .renumber = false},
+      created_);
   return created_;
 }
 

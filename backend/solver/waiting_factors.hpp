@@ -4,26 +4,23 @@
 #include <vector>
 
 #include "backend/elimination/elimination_tree.hpp"
-#include "backend/elimination/lifted_order.hpp"
 #include "backend/graph/mark_set.hpp"
-#include "backend/solver/update_budget.hpp"
+#include "backend/solver/elimination_budget.hpp"
 
 namespace motorcade {
 
 /// Spreads loop closures over updates. A factor on a variable of long ago asks for the elimination of all cliques from
 /// there up to the root. Where that is more than the budget, the factor waits in the graph, outside of the tree, while
 /// its variables are lifted through the tree a few cliques per update: R stays that of the same problem, and in the end
-/// the factor asks for little. What is near them comes along, as far as it costs nothing: the next closures find it
-/// there.
+/// the factor asks for little.
 class WaitingFactors {
  public:
-  WaitingFactors(FactorGraph& graph, EliminationTree& tree, UpdateBudget& budget)
+  WaitingFactors(FactorGraph& graph, EliminationTree& tree, EliminationBudget& budget)
       : graph_(graph), tree_(tree), budget_(budget) {}
 
   /// Leaves those of the new factors in `fresh` that the next elimination takes in, and adds the ones that waited long
-  /// enough, unless their variables `settle` from others. The cliques of the `touched` variables are eliminated anew in
-  /// any case. The number of those that waited.
-  int admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched, bool settle);
+  /// enough. The cliques of the `touched` variables are eliminated anew in any case.
+  void admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched);
   /// Those with one of the variables, which are to leave.
   std::vector<FactorId> takeWith(std::span<const VariableId> variables);
   /// False when the factor does not wait.
@@ -39,30 +36,21 @@ class WaitingFactors {
  private:
   bool isNew(VariableId v) const { return tree_.cliqueOf(v) < 0; }
   std::int64_t costOf(FactorId id);
-  std::int64_t costUpTo(FactorId id, std::int64_t most);
   std::int64_t costAbove(VariableId v);
   bool canWait(FactorId id) const;
   void admitFresh(std::vector<FactorId>& fresh);
-  int admitWaiting(std::vector<FactorId>& fresh);
+  void admitWaiting(std::vector<FactorId>& fresh);
   void accept(FactorId id, std::int64_t cost);
-  bool findPath(FactorId id);
-  void liftFirst();
-  void liftThroughPath();
-  void collectLifted();
+  bool liftVariableOf(FactorId id);
 
   FactorGraph& graph_;
   EliminationTree& tree_;
-  UpdateBudget& budget_;
-  LiftedOrder lifted_order_{graph_, tree_};
+  EliminationBudget& budget_;
   std::vector<FactorId> waiting_;  // in the order they came
-  std::int64_t allowance_ = 0;     // work of the update at hand
+  std::int64_t allowance_ = 0;     // scalars, of the update at hand
   MarkSet marked_, counted_;       // cliques that are eliminated anew; scratch
   MarkSet held_;                   // new variables that a factor holds in all dimensions
   MarkSet puts_off_;               // factors
-  // Of a lift.
-  std::vector<int> cliques_, created_;         // its path, from below
-  std::vector<VariableId> lifted_, boundary_;  // the first of the lifted ones goes to the top
-  EliminationTree::Removed part_;
 };
 
 }  // namespace motorcade

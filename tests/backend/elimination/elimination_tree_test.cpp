@@ -167,22 +167,16 @@ TEST(EliminationTree, RemovedVariablesComeInTheirEliminationOrder) {
     ASSERT_EQ(removed.variables.size(), expected.size());
     EXPECT_EQ(scene.tree.usedBytes(), 0U);
     for (const VariableId v : scene.variables) EXPECT_EQ(scene.tree.cliqueOf(v), -1);
-    scene.tree.eliminate({.order = removed.variables,
-                          .boundary = {},
-                          .factors = removed.factors,
-                          .orphans = {},
-                          .numbering = Elimination::Numbering::kKept},
-                         scene.created);
+    scene.tree.eliminate(
+        {.order = removed.variables, .boundary = {}, .factors = removed.factors, .orphans = {}, .renumber = false},
+        scene.created);
     // Numbered as before: the same order results again.
     EliminationTree::Removed again;
     scene.tree.remove(scene.cliques(), again);
     EXPECT_EQ(again.variables, removed.variables);
-    scene.tree.eliminate({.order = again.variables,
-                          .boundary = {},
-                          .factors = again.factors,
-                          .orphans = {},
-                          .numbering = Elimination::Numbering::kKept},
-                         scene.created);
+    scene.tree.eliminate(
+        {.order = again.variables, .boundary = {}, .factors = again.factors, .orphans = {}, .renumber = false},
+        scene.created);
   });
 }
 
@@ -210,7 +204,7 @@ TEST(EliminationTree, APartInTheMiddleCanBeTakenOutAndHungBack) {
                           .factors = removed.factors,
                           .orphans = orphans,
                           .parent = parent,
-                          .numbering = Elimination::Numbering::kKept},
+                          .renumber = false},
                          scene.created);
   });
 }
