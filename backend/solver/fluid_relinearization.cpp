@@ -1,6 +1,7 @@
 #include "backend/solver/fluid_relinearization.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace motorcade {
 namespace {
@@ -14,6 +15,7 @@ constexpr double kTurnedWithShare = 0.1;
 constexpr double kLeastStaleness_rad = 1e-12;  // tells a stale variable that has not turned from one that is not stale
 /// Stale variables are sorted a few at a time, as the budget seldom reaches farther; and a region has to end somewhere.
 constexpr std::size_t kWorstAtOnce = 16, kLargestRegion = 1000;
+constexpr int kLookedAtAtRest = 16;
 
 /// Of a variable among the rows of a clique's front.
 int firstRowOf(VariableId v, const Clique& clique, const FactorGraph& graph) {
@@ -130,6 +132,7 @@ void FluidRelinearization::relinearizeStale() {
     return !isStale(v);
   });
   const Reach reach = relinearizeWorst();
+  if (std::isfinite(params_.polish_flops)) relinearizeAtRest();
   std::erase_if(stale_, [&](VariableId v) { return !isStale(v); });
   budget_.save(reach == Reach::kBeyondBudget);
 }
@@ -157,16 +160,31 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeWorst() {
       const VariableId v = stale_[done];
       if (!isStale(v)) continue;  // twice in the list, or of the region of one before it
       double& flops_left = staleness_rad_[v.value] > params_.relinearize_rad ? urgent_flops : polish_flops;
-      reach = std::max(reach, relinearizeRegion(v, flops_left));
+      reach = std::max(reach, relinearizeRegion(v, staleness_rad_[v.value], flops_left));
     }
   }
   return reach;
 }
 
+/// Looks at a few variables per step, in turn: a closure may leave thousands of them turned by so little that each
+/// harms next to nothing, but not all together. They share the way to the root, so that they are dear one by one only.
+void FluidRelinearization::relinearizeAtRest() {
+  rest_flops_left_ = std::min(rest_flops_left_ + params_.rest_flops, params_.polish_flops);
+  const int slots = static_cast<int>(graph_.slots());
+  for (int i = 0; i < std::min(kLookedAtAtRest, slots); ++i) {
+    next_at_rest_ = next_at_rest_ + 1 < slots ? next_at_rest_ + 1 : 0;
+    const VariableId v{next_at_rest_};
+    if (!graph_.contains(v) || tree_.cliqueOf(v) < 0) continue;
+    if (const double turn = graph_.turnSinceLinearization(v); turn > params_.rest_share * params_.leisurely_rad)
+      relinearizeRegion(v, turn, rest_flops_left_);
+  }
+}
+
 /// The variable and, as new Jacobians of a part of a stiff region bias the rest of it, the connected ones that turned
 /// with it.
-FluidRelinearization::Reach FluidRelinearization::relinearizeRegion(VariableId worst, double& flops_left) {
-  const double turn_rad = kTurnedWithShare * staleness_rad_[worst.value];
+FluidRelinearization::Reach FluidRelinearization::relinearizeRegion(VariableId worst, double worst_turn_rad,
+                                                                    double& flops_left) {
+  const double turn_rad = kTurnedWithShare * worst_turn_rad;
   if (const Reach reach = relinearizeWithin(worst, flops_left); reach != Reach::kWithin) return reach;
   region_.assign(1, worst);
   in_region_.reset(graph_.slots());

@@ -27,6 +27,9 @@ class FluidRelinearization {
     double relinearize_rad = 0.05, leisurely_rad = 0.005;
     double urgent_flops = 4e7;  // allowance per step for relinearization as soon as possible
     double polish_flops = 2e6;  // and at leisure
+    /// Where that is limited: share of the turn at leisure at which a variable at rest is relinearized, too, and what a
+    /// step adds to the allowance for that.
+    double rest_share = 0.2, rest_flops = 4e3;
   };
   struct Corrections {
     int relinearized_variables = 0, relinearized_factors = 0, corrected_factors = 0;
@@ -67,7 +70,8 @@ class FluidRelinearization {
   void relinearizeStale();
   void relinearizeWhatIsFree();
   Reach relinearizeWorst();
-  Reach relinearizeRegion(VariableId worst, double& flops_left);
+  void relinearizeAtRest();
+  Reach relinearizeRegion(VariableId worst, double worst_turn_rad, double& flops_left);
   Reach relinearizeWithin(VariableId v, double& flops_left);
   EliminationCost costOfRelinearizing(VariableId v);
   void relinearize(VariableId v);
@@ -83,6 +87,8 @@ class FluidRelinearization {
   std::vector<OffModel> off_;          // models to correct in the next step
   std::vector<VariableId> stale_;      // whose linearization points are off
   std::vector<double> staleness_rad_;  // per variable: its turn when it became stale, 0 when it is not
+  int next_at_rest_ = 0;               // variable to look at
+  double rest_flops_left_ = 0;         // saved up by the steps so far
   Corrections corrections_;            // of the step at hand
   std::vector<FactorId> relinearized_;
   MarkSet compared_, new_factors_, is_relinearized_, corrected_;  // factors
