@@ -23,7 +23,7 @@ struct Quadratic {
   std::vector<double> lower_H;  // packed
   Eigen::VectorXd g_c;          // [g; c]
 
-  PackedTriangle H() const { return {lower_H.data(), static_cast<int>(g_c.size()) - 1}; }
+  PackedTriangle matrix() const { return {lower_H.data(), static_cast<int>(g_c.size()) - 1}; }
 };
 
 /// Of the symmetric [H g; g' c], from its lower triangle.

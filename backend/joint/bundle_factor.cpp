@@ -255,7 +255,7 @@ Eigen::VectorXd BundleFactor::gradientAt(const Eigen::VectorXd& e) const {
   const Eigen::VectorXd& g0 = landmarks_.system.g_c;
   Eigen::VectorXd g_c(n + 1);
   g_c.setZero();
-  addSymmetricProduct(landmarks_.system.H(), e.data(), g_c.data());
+  addSymmetricProduct(landmarks_.system.matrix(), e.data(), g_c.data());
   g_c[n] = g0[n] + e.dot(g_c.head(n)) + 2 * e.dot(g0.head(n));
   g_c.head(n) += g0.head(n);
   g_c.segment<6>(last).setZero();  // all motions are relative to the last pose
@@ -279,7 +279,7 @@ void BundleFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Ei
   const int last = 6 * (frames_ - 1), rest = last + 6;
   Eigen::Matrix<double, kRest, Eigen::Dynamic> offset_g(kRest, rest + 1);
   const Eigen::VectorXd g_c = gradientAt(d.e);
-  const PackedTriangle H = landmarks_.system.H();
+  const PackedTriangle H = landmarks_.system.matrix();
   for (int j = 0; j <= rest; ++j) offset_g.col(j) << H.column(j)[rest], g_c[j];
   Eigen::Matrix<double, kRest, 6> of_last = Eigen::Matrix<double, kRest, 6>::Zero();
   for (int k = 0; k + 1 < frames_; ++k) {
@@ -294,7 +294,7 @@ void BundleFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Ei
 
 /// Of H, in the lower triangle or on its diagonal.
 Matrix6d BundleFactor::block(int i, int j) const {
-  const PackedTriangle H = landmarks_.system.H();
+  const PackedTriangle H = landmarks_.system.matrix();
   Matrix6d block;
   for (int c = 0; c < 6; ++c) {
     const double* const column = H.column(6 * j + c) + 6 * i;

@@ -18,6 +18,6 @@ inline Eigen::MatrixXd unpacked(const PackedTriangle& H, const Eigen::Ref<const 
   return system;
 }
 
-inline Eigen::MatrixXd unpacked(const Quadratic& quadratic) { return unpacked(quadratic.H(), quadratic.g_c); }
+inline Eigen::MatrixXd unpacked(const Quadratic& quadratic) { return unpacked(quadratic.matrix(), quadratic.g_c); }
 
 }  // namespace motorcade::test
