@@ -16,6 +16,8 @@ constexpr double kLeastStaleness_rad = 1e-12;  // tells a stale variable that ha
 /// Stale variables are sorted a few at a time, as the budget seldom reaches farther; and a region has to end somewhere.
 constexpr std::size_t kWorstAtOnce = 16, kLargestRegion = 1000;
 constexpr int kLookedAtAtRest = 16;
+/// Drifts at which Jacobians are taken anew: up to so many of them residuals are still corrected.
+constexpr double kTrustedDrifts = 4;
 
 /// Of a variable among the rows of a clique's front.
 int firstRowOf(VariableId v, const Clique& clique, const FactorGraph& graph) {
@@ -87,12 +89,20 @@ void FluidRelinearization::correctResiduals() {
   corrected_.reset(graph_.factorSlots());
   std::erase_if(off_, [&](const OffModel& off) {
     if (is_relinearized_.contains(off.factor.value) || corrected_.contains(off.factor.value)) return true;
+    if (waitsForJacobians(off)) return true;
     if (!reachesResidual(off.factor)) return false;
     corrected_.insert(off.factor.value);
     correctResidual(off.factor);
     return true;
   });
   budget_.saveSubstitutions(!off_.empty());
+}
+
+/// Where the budget puts Jacobians off, steps by those that are off too far may overshoot, and corrections of what they
+/// did then grow without bound. The model stays as it was, and with it the problem has a solution.
+bool FluidRelinearization::waitsForJacobians(const OffModel& off) const {
+  return budget_.limited() &&
+         graph_.drift(off.factor) + off.mismatch > kTrustedDrifts * params_.jacobian_drift_sigmas;
 }
 
 /// Spends what it takes to carry a new right-hand side from the model's clique to the root.

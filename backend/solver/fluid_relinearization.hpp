@@ -76,6 +76,7 @@ class FluidRelinearization {
   EliminationCost costOfRelinearizing(VariableId v);
   void relinearize(VariableId v);
   void correctResiduals();
+  bool waitsForJacobians(const OffModel& off) const;
   bool reachesResidual(FactorId id);
   void correctResidual(FactorId id);
 

@@ -170,6 +170,62 @@ TEST(IncrementalSolverBudget, ANewMeasurementIsNeverPutOff) {
   }
 }
 
+/// A path that starts out straight, and whose end is measured.
+struct BentPath {
+  static constexpr int kPoses = 60;
+
+  explicit BentPath(std::int64_t budget_scalars) : solver(defaultsWithBudget(budget_scalars)) {
+    const SE3 step(Eigen::Matrix3d::Identity(), {1, 0, 0});
+    for (int k = 0; k < kPoses; ++k) {
+      x.push_back(solver.addVariable(k == 0 ? SE3{} : solver.pose(x.back()) * step));
+      if (k == 0)
+        measure(x[0], SE3{}, test::isotropicNoise(0.01, 0.01));
+      else
+        solver.addFactor(std::make_unique<MotionFactor>(std::array{x[k - 1], x[k]}, MotionModel{step},
+                                                        test::isotropicNoise(0.05, 0.01)));
+      solver.update();
+    }
+  }
+  static IncrementalSolver::Params defaultsWithBudget(std::int64_t scalars) {
+    IncrementalSolver::Params params;
+    params.budget.scalars = scalars;
+    return params;
+  }
+  /// Where the end is when the path has turned as a whole.
+  static SE3 endAt(double angle_rad) {
+    const Eigen::Matrix3d R = expSO3({0, 0, angle_rad});
+    return {R, (kPoses - 1) * R.col(0)};
+  }
+  std::optional<FactorId> measure(VariableId v, const SE3& mean, const PoseNoise& noise) {
+    return solver.addFactor(std::make_unique<PriorFactor>(std::array{v}, PriorModel{mean}, noise));
+  }
+  double distanceTo(const SE3& end) const { return (solver.pose(x.back()).translation() - end.translation()).norm(); }
+
+  IncrementalSolver solver;
+  std::vector<VariableId> x;
+};
+
+/// In the end all poses have turned by far more than what their Jacobians are good for.
+TEST(IncrementalSolverBudget, JacobiansThatArePutOffLetNothingDiverge) {
+  BentPath path(1), unlimited(0);
+  std::optional<FactorId> measured;
+  SE3 end;
+  for (int i = 1; i <= 60; ++i) {
+    end = BentPath::endAt(0.02 * i);
+    if (measured) path.solver.removeFactor(*measured);
+    measured = path.measure(path.x.back(), end, test::isotropicNoise(0.1, 0.1));
+    EXPECT_GT(path.solver.update().deferred_variables, 0);
+    ASSERT_LT(path.distanceTo(end), 1.0) << "update " << i;
+  }
+  for (int i = 0; i < 60; ++i) {
+    path.solver.update();
+    ASSERT_LT(path.distanceTo(end), 1.0) << "quiet update " << i;
+  }
+  unlimited.measure(unlimited.x.back(), end, test::isotropicNoise(0.1, 0.1));
+  for (BentPath* p : {&path, &unlimited}) p->solver.converge(50, 1e-9);
+  EXPECT_NEAR(path.solver.counters().chi2, unlimited.solver.counters().chi2, 1e-6);
+}
+
 /// A path whose newest pose is measured in each update, which moves all of it; the linear models stay what they are.
 struct MeasuredPath {
   explicit MeasuredPath(std::int64_t spread_scalars) : solver(linear(spread_scalars)) {
