@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/idle_slots.hpp"
+#include "core/pages.hpp"
 
 namespace motorcade {
 namespace {
@@ -36,7 +37,9 @@ class ImagePool::Shelf {
     Row* row = rowOf(bytes);
     if (std::byte* buffer = row ? row->idle.take() : nullptr) return buffer;
     made_.fetch_add(1, std::memory_order_relaxed);
-    return static_cast<std::byte*>(::operator new(bytes, kAlignment));
+    auto* buffer = static_cast<std::byte*>(::operator new(bytes, kAlignment));
+    populatePages(buffer, bytes);
+    return buffer;
   }
 
   void putBack(std::size_t bytes, std::byte* buffer) {

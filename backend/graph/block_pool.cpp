@@ -4,6 +4,8 @@
 #include <bit>
 #include <new>
 
+#include "core/pages.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -103,6 +105,7 @@ BlockPool::Idle* BlockPool::addChunk(std::uint32_t lines) {
   const std::size_t bytes = (lines + std::size_t{1}) * kLine_bytes;  // the first line is for the first block's tag
   chunks_.emplace_back(static_cast<std::byte*>(::operator new(bytes, kAlignment)));
   held_bytes_ += bytes;
+  populatePages(chunks_.back().get(), bytes);
   auto* block = reinterpret_cast<Idle*>(chunks_.back().get() + kLine_bytes);
   block->setTag(lines, 0, false);
   block->above()->setTag(0, lines, false);
