@@ -18,6 +18,7 @@ constexpr std::size_t kWorstAtOnce = 16, kLargestRegion = 1000;
 constexpr int kLookedAtAtRest = 16;
 /// Drifts at which Jacobians are taken anew: up to so many of them residuals are still corrected.
 constexpr double kTrustedDrifts = 4;
+constexpr std::size_t kMostPutOff = 32;
 
 /// Of a variable among the rows of a clique's front.
 int firstRowOf(VariableId v, const Clique& clique, const FactorGraph& graph) {
@@ -46,7 +47,7 @@ void FluidRelinearization::compareModels(std::span<const VariableId> moved) {
     if (graph_.mismatchBound(v) < kComparedShare * tolerance) continue;
     graph_.markCompared(v);
     for (const FactorId f : graph_[v].factors) {
-      if (entersLinearly(v, graph_.factor(f), graph_)) continue;
+      if (graph_.isProvisional(f) || entersLinearly(v, graph_.factor(f), graph_)) continue;
       if (!compared_.insert(f.value)) continue;
       const double norm = graph_.mismatch(f).norm;
       if (norm > tolerance) off_.push_back({f, norm});
@@ -84,25 +85,32 @@ FluidRelinearization::Corrections FluidRelinearization::correctModels() {
   return corrections_;
 }
 
-/// What the budget does not reach stays in the list.
+/// What the budget does not reach goes to the end of the list. To find that out takes time, too: after some, the rest
+/// is left for the next step.
 void FluidRelinearization::correctResiduals() {
   corrected_.reset(graph_.factorSlots());
-  std::erase_if(off_, [&](const OffModel& off) {
-    if (is_relinearized_.contains(off.factor.value) || corrected_.contains(off.factor.value)) return true;
-    if (waitsForJacobians(off)) return true;
-    if (!reachesResidual(off.factor)) return false;
+  std::vector<OffModel> put_off;
+  std::size_t seen = 0;
+  for (; seen < off_.size() && put_off.size() < kMostPutOff; ++seen) {
+    const OffModel& off = off_[seen];
+    if (is_relinearized_.contains(off.factor.value) || corrected_.contains(off.factor.value)) continue;
+    if (waitsForJacobians(off)) continue;
+    if (!reachesResidual(off.factor)) {
+      put_off.push_back(off);
+      continue;
+    }
     corrected_.insert(off.factor.value);
     correctResidual(off.factor);
-    return true;
-  });
+  }
+  off_.erase(off_.begin(), off_.begin() + static_cast<std::ptrdiff_t>(seen));
+  off_.insert(off_.end(), put_off.begin(), put_off.end());
   budget_.saveSubstitutions(!off_.empty());
 }
 
 /// Where the budget puts Jacobians off, steps by those that are off too far may overshoot, and corrections of what they
 /// did then grow without bound. The model stays as it was, and with it the problem has a solution.
 bool FluidRelinearization::waitsForJacobians(const OffModel& off) const {
-  return budget_.limited() &&
-         graph_.drift(off.factor) + off.mismatch > kTrustedDrifts * params_.jacobian_drift_sigmas;
+  return budget_.limited() && graph_.drift(off.factor) + off.mismatch > kTrustedDrifts * params_.jacobian_drift_sigmas;
 }
 
 /// Spends what it takes to carry a new right-hand side from the model's clique to the root.
