@@ -92,6 +92,10 @@ class FactorGraph {
   Term term(FactorId id) const;
   Information information(FactorId id) const;
 
+  /// About to be replaced: nobody asks how far its linear model is off.
+  bool isProvisional(FactorId id) const { return slot(id).provisional; }
+  void markProvisional(FactorId id) { factors_[id.value].provisional = true; }
+
   /// Sum of the mismatches since the Jacobian was taken.
   double drift(FactorId id) const { return slot(id).drift; }
   void addDrift(FactorId id, double mismatch) { factors_[id.value].drift += mismatch; }
@@ -122,6 +126,7 @@ class FactorGraph {
     double *term = nullptr, *g_c = nullptr;  // [J | r], or the lower triangle of H and [g; c]
     const double* lower_H = nullptr;         // `term`, or of the factor itself where that has the same
     double drift = 0, cost = 0;
+    bool provisional = false;
   };
   const LinearizedFactor& slot(FactorId id) const { return factors_[id.value]; }
   void apply(const Factor& factor);

@@ -12,19 +12,24 @@ namespace {
 constexpr double kFreeMotion = 1e6;  // times the accelerations' variance: nothing is known of how objects move
 constexpr int kEarlierViews = 3;     // of a point whose body is found: one that took longer may be of two
 
+std::int64_t budgetScalars(const JointParams& params) {
+  return params.budget_scalars > 0 ? std::min(params.budget_scalars, params.relinearized_scalars)
+                                   : params.relinearized_scalars;
+}
+
 IncrementalSolver::Params solverParams(const JointParams& params) {
   return {.policy = IncrementalSolver::Policy::kFluid,
           .batch_every_updates = 50,
           .relinearization = {.mismatch_tolerance = params.mismatch_tolerance,
                               .jacobian_drift_sigmas = params.jacobian_drift_sigmas,
-                              .leisurely_rad = 0.01,  // there is no other limit
+                              .leisurely_rad = 0.01,  // the budget is the limit
                               .urgent_flops = std::numeric_limits<double>::infinity(),
                               .polish_flops = std::numeric_limits<double>::infinity()},
           .substitution_tolerance = params.substitution_tolerance,
           .spread_scalars = params.spread_scalars,
           .iterations_per_update = params.iterations_per_update,
           .iterated_scalars = 0,
-          .budget = {.scalars = params.budget_scalars, .ms = params.budget_ms}};
+          .budget = {.scalars = budgetScalars(params), .ms = params.budget_ms}};
 }
 
 Vector6d sigmas(double sigma_m, double tilt_rad, double yaw_rad) {

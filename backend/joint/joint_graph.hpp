@@ -128,7 +128,8 @@ class JointGraph {
   bool closesNow(const JointObject* object) const;
   void closeEnded(JointPoints& body, const JointObject* object);
   std::optional<FactorId> addBundle(const std::vector<LandmarkTrack*>& tracks, const NoiseLevel& noise,
-                                    const JointObject* object);
+                                    const JointObject* object,
+                                    IncrementalSolver::Lifetime lifetime = IncrementalSolver::Lifetime::kLasting);
   void holdOffset();
   void setOffsetPrior(double sigma_px);
   std::optional<double> observedOffset_px() const;

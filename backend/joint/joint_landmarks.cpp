@@ -126,7 +126,8 @@ void JointGraph::addPoints(JointPoints& body, const JointObject* object) {
   if (closesNow(object)) closeEnded(body, object);
   std::vector<LandmarkTrack*> tracks = body.points.current();
   std::ranges::copy(pointersTo(body.ended), std::back_inserter(tracks));
-  body.current = addBundle(tracks, body.noise, object);
+  using Lifetime = IncrementalSolver::Lifetime;
+  body.current = addBundle(tracks, body.noise, object, object ? Lifetime::kProvisional : Lifetime::kLasting);
 }
 
 /// At rest, in a frame in which landmarks are eliminated in any case.
@@ -148,7 +149,7 @@ void JointGraph::closeEnded(JointPoints& body, const JointObject* object) {
 }
 
 std::optional<FactorId> JointGraph::addBundle(const std::vector<LandmarkTrack*>& tracks, const NoiseLevel& noise,
-                                              const JointObject* object) {
+                                              const JointObject* object, IncrementalSolver::Lifetime lifetime) {
   if (tracks.empty()) return std::nullopt;
   const FrameIndex index(tracks, [&](FrameId frame) {
     if (!frames_.contains(frame)) return false;
@@ -179,7 +180,7 @@ std::optional<FactorId> JointGraph::addBundle(const std::vector<LandmarkTrack*>&
       eliminateLandmarks(camera_, object ? params_.object_noise : params_.static_noise, landmarks,
                          object ? FramePose::kCamBody : FramePose::kWorldCam, std::move(T_cam_body), offset_px());
   for (std::size_t i = 0; i < landmark_tracks.size(); ++i) landmark_tracks[i]->estimate = eliminated.estimates[i];
-  return solver_.addFactor(std::make_unique<BundleFactor>(std::move(poses), offset_, std::move(eliminated)));
+  return solver_.addFactor(std::make_unique<BundleFactor>(std::move(poses), offset_, std::move(eliminated)), lifetime);
 }
 
 void JointGraph::holdOffset() { setOffsetPrior(kHeldSigma_px); }

@@ -47,7 +47,7 @@ bool IncrementalSolver::usable(const Factor& factor) {
   return true;
 }
 
-std::optional<FactorId> IncrementalSolver::addFactor(std::unique_ptr<const Factor> factor) {
+std::optional<FactorId> IncrementalSolver::addFactor(std::unique_ptr<const Factor> factor, Lifetime lifetime) {
   if (!usable(*factor)) return std::nullopt;
   last_.assign(factor->variables().begin(), factor->variables().end());
   const auto id = graph_.addFactor(std::move(factor));
@@ -55,6 +55,7 @@ std::optional<FactorId> IncrementalSolver::addFactor(std::unique_ptr<const Facto
     refused_.push_back(refusal(SolverProblem::Kind::kNotFinite, last_.front(), last_));
     return std::nullopt;
   }
+  if (lifetime == Lifetime::kProvisional) graph_.markProvisional(*id);
   new_factors_.push_back(*id);
   return id;
 }

@@ -65,8 +65,11 @@ class IncrementalSolver {
   IncrementalSolver& operator=(const IncrementalSolver&) = delete;
 
   VariableId addVariable(const Value& initial);
+  /// A provisional factor is removed before the models of the next update are corrected: whether its own is off does
+  /// not matter.
+  enum class Lifetime : char { kLasting, kProvisional };
   /// Empty when the factor cannot be used; the next report says why.
-  std::optional<FactorId> addFactor(std::unique_ptr<const Factor> factor);
+  std::optional<FactorId> addFactor(std::unique_ptr<const Factor> factor, Lifetime lifetime = Lifetime::kLasting);
   void removeFactor(FactorId id);
   /// Whether an update corrects the models that were found to be off, or leaves that to the next one: where factors are
   /// about to be replaced, their correction would be lost.

@@ -1,6 +1,7 @@
 #include "backend/solver/fluid_relinearization.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -69,6 +70,28 @@ TEST(FluidRelinearization, LeavesQuadraticsAloneThatShareAVectorOnly) {
   for (int i = 0; i < 5; ++i) relinearized = std::max(relinearized, solver.update().relinearized_factors);
   EXPECT_GT(relinearized, 0);
   EXPECT_LT(relinearized, kPoses / 2);
+}
+
+/// A pose is turned, ten meters away from another that follows.
+int modelsCorrectedAfterATurn(IncrementalSolver::Lifetime lifetime) {
+  IncrementalSolver::Params params;
+  params.relinearization.relinearize_rad = params.relinearization.leisurely_rad = 1;  // residuals alone
+  params.relinearization.jacobian_drift_sigmas = 1e3;
+  params.iterations_per_update = 1;
+  IncrementalSolver solver(params);
+  const SE3 ahead(Eigen::Matrix3d::Identity(), {10, 0, 0});
+  const std::array x{solver.addVariable(SE3{}), solver.addVariable(ahead)};
+  const PoseNoise sure{.sqrt_information = 1e3 * Matrix6d::Identity()};
+  solver.addFactor(
+      std::make_unique<PriorFactor>(std::array{x[0]}, PriorModel{SE3(expSO3({0, 0, 0.03}), {0, 0, 0})}, sure));
+  solver.addFactor(std::make_unique<MotionFactor>(x, MotionModel{ahead}, sure), lifetime);
+  solver.update();
+  return solver.update().corrected_factors;
+}
+
+TEST(FluidRelinearization, NobodyLooksAtTheModelOfAProvisionalFactor) {
+  EXPECT_EQ(modelsCorrectedAfterATurn(IncrementalSolver::Lifetime::kLasting), 1);
+  EXPECT_EQ(modelsCorrectedAfterATurn(IncrementalSolver::Lifetime::kProvisional), 0);
 }
 
 }  // namespace
