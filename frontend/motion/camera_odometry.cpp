@@ -55,6 +55,7 @@ PredictedMotion CameraOdometry::predict(Timestamp stamp) const {
   if (!last_motion_ || last_dt_s_ <= 0) return predicted;
   const double predicted_s = secondsBetween(measured_at_, stamp);  // of which dt_s are the last
   const double steps = std::clamp(kMaxPrediction_s - (predicted_s - dt_s), 0.0, dt_s) / last_dt_s_;
+  if (steps == 0) predicted.steady_frames = 0;  // the motion that was steady is over: it may stand or go on
   predicted.T_previous_now = scaledMotion(steps < kSteadySteps ? *last_motion_ : levelMotion(*last_motion_), steps);
   return predicted;
 }

@@ -147,6 +147,16 @@ TEST(CameraOdometry, NoMotionIsTakenToGoOnForLong) {
   EXPECT_NEAR(odometry.predict({3600'000'000'000}).T_previous_now.translation().norm(), second_m, 1e-9);
 }
 
+/// Else one that stands would be expected, and traffic that keeps its pace taken for what rests.
+TEST(CameraOdometry, AMotionThatIsOverIsNoLongerSteady) {
+  CameraOdometry odometry({}, kRig);
+  see(odometry, frameAt(0, 0), kNothingKnown);
+  for (int i = 1; i <= 12; ++i) see(odometry, frameAt(i, 100 * i), Views(200, kStep, 10 + i));
+  EXPECT_GE(odometry.predict({1'300'000'000}).steady_frames, 10);
+  see(odometry, frameAt(13, 2900), kNothingKnown);
+  EXPECT_EQ(odometry.predict({3'000'000'000}).steady_frames, 0);
+}
+
 TEST(CameraOdometry, ACarsCameraIsOneThatHasDrivenAhead) {
   CameraOdometry odometry({}, kRig);
   int frame = 0;
