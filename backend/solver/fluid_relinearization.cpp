@@ -104,6 +104,7 @@ void FluidRelinearization::correctResiduals() {
   }
   off_.erase(off_.begin(), off_.begin() + static_cast<std::ptrdiff_t>(seen));
   off_.insert(off_.end(), put_off.begin(), put_off.end());
+  std::erase_if(off_, [&](const OffModel& off) { return !corrected_.insert(off.factor.value); });  // once each
   budget_.saveSubstitutions(!off_.empty());
 }
 
