@@ -12,11 +12,6 @@ namespace {
 constexpr double kFreeMotion = 1e6;  // times the accelerations' variance: nothing is known of how objects move
 constexpr int kEarlierViews = 3;     // of a point whose body is found: one that took longer may be of two
 
-std::int64_t budgetScalars(const JointParams& params) {
-  return params.budget_scalars > 0 ? std::min(params.budget_scalars, params.relinearized_scalars)
-                                   : params.relinearized_scalars;
-}
-
 IncrementalSolver::Params solverParams(const JointParams& params) {
   return {.policy = IncrementalSolver::Policy::kFluid,
           .batch_every_updates = 50,
@@ -29,7 +24,8 @@ IncrementalSolver::Params solverParams(const JointParams& params) {
           .spread_scalars = params.spread_scalars,
           .iterations_per_update = params.iterations_per_update,
           .iterated_scalars = 0,
-          .budget = {.scalars = budgetScalars(params), .ms = params.budget_ms}};
+          .budget = {.scalars = params.budget_scalars > 0 ? params.budget_scalars : params.relinearized_scalars,
+                     .ms = params.budget_ms}};
 }
 
 Vector6d sigmas(double sigma_m, double tilt_rad, double yaw_rad) {

@@ -15,8 +15,9 @@ std::vector<Parameter> parametersOf(SmootherParams& params) {
       numberParameter("relinearize_every_updates", params.relinearize_every_updates, {1, 10000},
                       "of \"every\": fewer updates are more exact, more are faster"),
       numberParameter("budget_scalars", params.budget_scalars, {0, 1e6},
-                      "bounds the work of an update, which then costs exactness for some updates; 0 sets no bound"),
-      numberParameter("budget_ms", params.budget_ms, {0, 1000}, "the same in time, only with --live; 0 sets no bound"),
+                      "bounds the work of an update, which then costs exactness for some updates; 0: 300 for joint, no "
+                      "bound for others"),
+      numberParameter("budget_ms", params.budget_ms, {0, 1000}, "the same in time, only with --live; 0 sets none"),
       switchParameter("compute_covariances", params.compute_covariances, "off saves time where nobody reads them"),
       numberParameter("online_correction_s", params.online_correction_s, {0, 10},
                       "longer is smoother online, shorter follows corrections sooner; 0 publishes poses as estimated"),

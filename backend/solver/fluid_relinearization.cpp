@@ -18,7 +18,7 @@ constexpr std::size_t kWorstAtOnce = 16, kLargestRegion = 1000;
 constexpr int kLookedAtAtRest = 16;
 /// Drifts at which Jacobians are taken anew: up to so many of them residuals are still corrected.
 constexpr double kTrustedDrifts = 4;
-constexpr std::size_t kMostPutOff = 32;
+constexpr std::size_t kMostPutOff = 32;  // residuals that a step follows towards the root in vain
 
 /// Of a variable among the rows of a clique's front.
 int firstRowOf(VariableId v, const Clique& clique, const FactorGraph& graph) {
