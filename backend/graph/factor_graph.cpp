@@ -8,6 +8,9 @@
 namespace motorcade {
 namespace {
 
+constexpr double kVectorTurn_rad =
+    0.25;  // a step of a vector puts its factors off as that of a pose which turns so far
+
 /// Of the residuals: without noise the tolerances that are relative to it do not vanish.
 constexpr double kLeastMeanSquare = 1e-8;
 
@@ -96,13 +99,13 @@ double FactorGraph::turnSinceLinearization(VariableId id) const {
 
 double FactorGraph::mismatchBound(VariableId id) const {
   const Variable& variable = (*this)[id];
-  if (std::holds_alternative<SmallVector>(variable.applied_estimate)) return std::numeric_limits<double>::infinity();
   double sigmas_squared = 0;
   for (int i = 0; i < variable.size; ++i) {
     const double step = variable.x[i] - variable.x_compared[i];
     sigmas_squared += step * step * variable.information[i];
   }
-  return turnBetween(variable, variable.x_compared, variable.x) * std::sqrt(sigmas_squared);
+  const double turn = isVector(id) ? kVectorTurn_rad : turnBetween(variable, variable.x_compared, variable.x);
+  return turn * std::sqrt(sigmas_squared);
 }
 
 std::span<const Value* const> FactorGraph::valuesOf(const Factor& factor, Value Variable::*member) {

@@ -1,6 +1,10 @@
 #include "backend/joint/body_points.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
 #include <utility>
 
 namespace motorcade {
@@ -16,33 +20,42 @@ void TrackLife::add(FrameId frame) {
   oldest_ = frames_.front();
 }
 
+/// Candidates and points come in the same order.
 void BodyPoints::observe(FrameId frame, std::span<const PointMeasurement> points, const EarlierViews& earlier) {
   newest_ = frame;
   life_.add(frame);
+  merged_.clear();
+  auto known = candidates_.begin();
+  const auto keepUpTo = [&](PointId point) {
+    for (; known != candidates_.end() && known->track.point < point; ++known) {
+      if (!life_.isLost(known->track.views.back()))
+        merged_.push_back(std::move(*known));
+      else if (known->chosen)
+        end(*known);
+    }
+  };
   for (const PointMeasurement& p : points) {
     if (params_.half > 0 && p.point.value % 2 != params_.half % 2) continue;
-    const auto [at, is_new] = candidates_.try_emplace(p.point);
-    Candidate& candidate = at->second;
-    LandmarkTrack& track = candidate.track;
-    if (is_new) track.point = p.point;
-    if (is_new && earlier) track.views = earlier(p.point);
-    track.views.push_back({frame, p.uvd_px, p.sigma_px});
-    if (static_cast<int>(track.views.size()) <= params_.max_views) continue;
-    if (candidate.chosen) {
-      const LandmarkTrack::View newest = track.views.back();
-      track.views.pop_back();
-      end(candidate);
-      track.views = {newest};
-    } else {
-      track.views.erase(track.views.begin());
-    }
+    keepUpTo(p.point);
+    const bool is_known = known != candidates_.end() && known->track.point == p.point;
+    Candidate& candidate = merged_.emplace_back(is_known ? std::move(*known++) : Candidate{.track = {p.point, {}}});
+    if (!is_known && earlier) candidate.track.views = earlier(p.point);
+    extend(candidate, {frame, p.uvd_px, p.sigma_px});
   }
-  for (auto it = candidates_.begin(); it != candidates_.end();) {
-    const bool lost = life_.isLost(it->second.track.views.back());
-    if (lost && it->second.chosen) end(it->second);
-    it = lost ? candidates_.erase(it) : std::next(it);
-  }
+  keepUpTo({std::numeric_limits<std::int64_t>::max()});
+  std::swap(candidates_, merged_);
   choose();
+}
+
+void BodyPoints::extend(Candidate& candidate, const LandmarkTrack::View& view) {
+  auto& views = candidate.track.views;
+  if (static_cast<int>(views.size()) == params_.max_views) {
+    if (candidate.chosen)
+      end(candidate);
+    else
+      views.erase(views.begin());
+  }
+  views.push_back(view);
 }
 
 void BodyPoints::end(Candidate& candidate) {
@@ -51,7 +64,12 @@ void BodyPoints::end(Candidate& candidate) {
 }
 
 void BodyPoints::forget(std::span<const PointMeasurement> points) {
-  for (const PointMeasurement& p : points) candidates_.erase(p.point);
+  if (points.empty()) return;
+  auto point = points.begin();
+  std::erase_if(candidates_, [&](const Candidate& candidate) {
+    while (point != points.end() && point->point < candidate.track.point) ++point;
+    return point != points.end() && point->point == candidate.track.point;
+  });
 }
 
 int BodyPoints::cellOf(const Candidate& candidate) const {
@@ -63,46 +81,40 @@ int BodyPoints::cellOf(const Candidate& candidate) const {
 
 /// Fills up the landmarks: the longest tracks first, cell by cell of the image in turn.
 void BodyPoints::choose() {
-  if (candidates_.empty()) return;
-  std::vector<std::vector<Candidate*>> cells(kColumns * kRows);
-  std::vector<int> held(kColumns * kRows, 0);
+  struct Waiting {
+    Candidate* candidate;
+    int cell, turn = 0;  // of its cell, which takes one in each turn from the number of those it holds on
+  };
+  std::vector<Waiting> waiting;
+  std::array<int, kColumns * kRows> held{};
   int left = params_.max_landmarks;
-  for (auto& [point, candidate] : candidates_) {
+  for (Candidate& candidate : candidates_) {
     if (candidate.track.views.back().frame != newest_) continue;
-    const int cell = cellOf(candidate);
     if (candidate.chosen)
-      ++held[cell], --left;
+      ++held[cellOf(candidate)], --left;
     else if (candidate.track.views.size() >= 2)
-      cells[cell].push_back(&candidate);
+      waiting.push_back({&candidate, cellOf(candidate)});
   }
-  for (auto& cell : cells)
-    std::ranges::stable_sort(cell, std::greater{}, [](const Candidate* c) { return c->track.views.size(); });
-  for (int level = 1; left > 0; ++level) {
-    bool any = false;
-    for (std::size_t c = 0; c < cells.size() && left > 0; ++c) {
-      if (cells[c].empty()) continue;
-      any = true;
-      if (held[c] >= level) continue;
-      cells[c].front()->chosen = true;
-      cells[c].erase(cells[c].begin());
-      ++held[c], --left;
-    }
-    if (!any) break;
-  }
+  if (left <= 0) return;
+  std::ranges::stable_sort(waiting, std::greater{}, [](const Waiting& w) { return w.candidate->track.views.size(); });
+  for (Waiting& w : waiting) w.turn = held[w.cell]++;
+  std::ranges::sort(waiting, {}, [](const Waiting& w) { return std::pair(w.turn, w.cell); });
+  for (const Waiting& w : std::span(waiting).first(std::min<std::size_t>(waiting.size(), left)))
+    w.candidate->chosen = true;
 }
 
 std::vector<LandmarkTrack> BodyPoints::takeEnded() { return std::exchange(ended_, {}); }
 
 std::vector<LandmarkTrack*> BodyPoints::current() {
   std::vector<LandmarkTrack*> tracks;
-  for (auto& [point, candidate] : candidates_)
+  for (Candidate& candidate : candidates_)
     if (candidate.chosen && candidate.track.views.size() >= 2) tracks.push_back(&candidate.track);
   return tracks;
 }
 
 std::vector<LandmarkTrack*> BodyPoints::seenNow() {
   std::vector<LandmarkTrack*> tracks;
-  for (auto& [point, candidate] : candidates_)
+  for (Candidate& candidate : candidates_)
     if (candidate.chosen && candidate.track.views.back().frame == newest_) tracks.push_back(&candidate.track);
   return tracks;
 }

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <deque>
 #include <functional>
-#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -70,6 +69,7 @@ class BodyPoints {
     LandmarkTrack track;
     bool chosen = false;
   };
+  void extend(Candidate& candidate, const LandmarkTrack::View& view);
   void end(Candidate& candidate);
   void choose();
   int cellOf(const Candidate& candidate) const;
@@ -77,7 +77,8 @@ class BodyPoints {
   Params params_;
   FrameId newest_;
   TrackLife life_;
-  std::map<PointId, Candidate> candidates_;
+  std::vector<Candidate> candidates_;  // ordered by point
+  std::vector<Candidate> merged_;      // memory for the next frame
   std::vector<LandmarkTrack> ended_;
 };
 

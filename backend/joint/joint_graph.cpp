@@ -9,13 +9,15 @@
 namespace motorcade {
 namespace {
 
-constexpr double kFreeMotion = 1e6;  // times the accelerations' variance: nothing is known of how objects move
-constexpr int kEarlierViews = 3;     // of a point whose body is found: one that took longer may be of two
+constexpr double kFreeMotion = 1e6;     // times the accelerations' variance: nothing is known of how objects move
+constexpr double kComparedShare = 0.5;  // objects turn little: a factor is seldom off by the turns of several poses
+constexpr int kEarlierViews = 3;        // of a point whose body is found: one that took longer may be of two
 
 IncrementalSolver::Params solverParams(const JointParams& params) {
   return {.policy = IncrementalSolver::Policy::kFluid,
           .batch_every_updates = 50,
           .relinearization = {.mismatch_tolerance = params.mismatch_tolerance,
+                              .compared_share = kComparedShare,
                               .jacobian_drift_sigmas = params.jacobian_drift_sigmas,
                               .leisurely_rad = 0.01,  // the budget is the limit
                               .urgent_flops = std::numeric_limits<double>::infinity(),

@@ -6,7 +6,6 @@
 namespace motorcade {
 namespace {
 
-constexpr double kComparedShare = 0.25;  // of the tolerance: below it a variable's factors need no look
 /// Of the turn at which relinearization is urgent: a Jacobian that drifted is urgent however little its variables
 /// turned.
 constexpr double kDriftedShare = 1.0001;
@@ -44,7 +43,7 @@ void FluidRelinearization::compareModels(std::span<const VariableId> moved) {
   const double tolerance = params_.mismatch_tolerance * graph_.rmsResidual();
   for (const VariableId v : moved) {
     if (const double turn = graph_.turnSinceLinearization(v); turn > params_.leisurely_rad) markStale(v, turn);
-    if (graph_.mismatchBound(v) < kComparedShare * tolerance) continue;
+    if (graph_.mismatchBound(v) < params_.compared_share * tolerance) continue;
     graph_.markCompared(v);
     for (const FactorId f : graph_[v].factors) {
       if (graph_.isProvisional(f) || entersLinearly(v, graph_.factor(f), graph_)) continue;

@@ -21,6 +21,7 @@ class FluidRelinearization {
   struct Params {
     /// Of a linear model, over the root mean square of the residuals.
     double mismatch_tolerance = 0.05;
+    double compared_share = 0.25;  // of it, as a bound for one variable: below, its factors need no look
     /// Summed mismatch of a factor at which its variables are relinearized.
     double jacobian_drift_sigmas = 0.5;
     /// Turn of a variable at which it is relinearized as soon as possible, and from which on at leisure.

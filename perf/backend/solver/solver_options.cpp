@@ -38,6 +38,7 @@ void addSolverOptions(CLI::App& app, IncrementalSolver::Params& params) {
   add("--iterated-scalars", params.iterated_scalars,
       "Substituted in an update, up to which it may take a further step; 0: no limit");
   add("--budget", params.budget.scalars, "Scalars eliminated per update beyond what new factors ask for; 0: no limit");
+  add("--budget-ms", params.budget.ms, "The same as time, at the pace of the updates before; 0: no limit");
 }
 
 nlohmann::ordered_json jsonOf(const IncrementalSolver::Params& params) {
@@ -52,7 +53,8 @@ nlohmann::ordered_json jsonOf(const IncrementalSolver::Params& params) {
           {"polish_flops", params.relinearization.polish_flops},
           {"iterations_per_update", params.iterations_per_update},
           {"iterated_scalars", params.iterated_scalars},
-          {"budget_scalars", params.budget.scalars}};
+          {"budget_scalars", params.budget.scalars},
+          {"budget_ms", params.budget.ms}};
 }
 
 }  // namespace motorcade::perf
