@@ -14,9 +14,15 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
   ++call_;
   moved_in_.resize(graph_.slots(), 0);
   waiting_since_.resize(graph_.slots(), 0);
+  solved_by_.resize(graph_.slots(), 0);
+  moved_by_.resize(graph_.slots(), 0);
   solveWork(threshold_sigmas);
   const std::int64_t with_work = result_.scalars;
-  while (first_waiting_ < waiting_.size() && result_.scalars - with_work < most_scalars) {
+  const auto mayGoOn = [&] {
+    const std::int64_t done = result_.scalars - with_work;
+    return done < most_scalars && (done < EliminationBudget::kLeast || !budget_.timeIsOver());
+  };
+  while (first_waiting_ < waiting_.size() && mayGoOn()) {
     const VariableId v = waiting_[first_waiting_++];
     const Call since = std::exchange(waiting_since_[v.value], 0);
     if (since == 0 || tree_.cliqueOf(v) < 0) continue;  // it was solved since, or left the tree
@@ -47,6 +53,7 @@ void BackSubstitution::solveWork(double threshold_sigmas) {
 }
 
 void BackSubstitution::solve(const Clique& clique, Call since, double threshold_sigmas) {
+  ++solutions_;
   x_separator_.clear();
   for (const VariableId v : clique.separator()) {
     const auto& x = graph_[v].x;
@@ -72,6 +79,12 @@ void BackSubstitution::putOff(const Clique& clique, Call since) {
   }
 }
 
+bool BackSubstitution::hasFollowed(const Factor& factor) const {
+  const VariableId last = tree_[tree_.ownerOf(factor)].frontalVariables().front();
+  return std::ranges::all_of(factor.variables(),
+                             [&](VariableId v) { return moved_by_[v.value] <= solved_by_[last.value]; });
+}
+
 std::int64_t BackSubstitution::waitingScalars() const {
   std::int64_t scalars = 0;
   for (const VariableId v : std::span(waiting_).subspan(first_waiting_))
@@ -85,6 +98,7 @@ void BackSubstitution::moveVariables(const Clique& clique, double threshold_sigm
   for (const VariableId v : clique.frontalVariables()) {
     auto& variable = graph_[v];
     waiting_since_[v.value] = 0;
+    solved_by_[v.value] = solutions_;
     double change = 0, sigmas_squared = 0;
     for (int i = 0; i < variable.size; ++i, ++at) {
       change = std::max(change, std::abs(x_frontal_[at] - variable.x[i]));
@@ -96,6 +110,7 @@ void BackSubstitution::moveVariables(const Clique& clique, double threshold_sigm
     if (sigmas_squared <= threshold_sigmas * threshold_sigmas) continue;
     variable.x_spread = variable.x;
     moved_in_[v.value] = call_;
+    moved_by_[v.value] = solutions_;
     moved_.push_back(v);
   }
 }

@@ -6,6 +6,7 @@
 
 #include "backend/elimination/elimination_tree.hpp"
 #include "backend/solver/clique_work.hpp"
+#include "backend/solver/elimination_budget.hpp"
 
 namespace motorcade {
 
@@ -20,13 +21,16 @@ class BackSubstitution {
     double largest_change = 0;          // of any x, m or rad
   };
 
-  BackSubstitution(FactorGraph& graph, const EliminationTree& tree, CliqueWork& work)
-      : graph_(graph), tree_(tree), work_(work) {}
+  BackSubstitution(FactorGraph& graph, const EliminationTree& tree, CliqueWork& work, const EliminationBudget& budget)
+      : graph_(graph), tree_(tree), work_(work), budget_(budget) {}
 
   /// A variable has moved when a component of its step since it moved last exceeds `threshold_sigmas` conditional
   /// standard deviations; smaller steps do not spread. Solves all cliques with work, and up to about `most_scalars`
-  /// below them.
+  /// below them, as long as there is time.
   Result operator()(double threshold_sigmas, std::int64_t most_scalars);
+  /// Have all variables of the factor followed the steps of those above them? Otherwise some of them are where they are
+  /// now, and others where they were some updates ago.
+  bool hasFollowed(const Factor& factor) const;
   /// Scalars of the cliques that wait for a later call.
   std::int64_t waitingScalars() const;
 
@@ -42,14 +46,17 @@ class BackSubstitution {
   FactorGraph& graph_;
   const EliminationTree& tree_;
   CliqueWork& work_;
+  const EliminationBudget& budget_;
   Result result_;
   Call call_ = 0;
   std::vector<VariableId> moved_;
   std::vector<int> open_;  // cliques with work to solve
   /// Frontal variables of cliques that wait, those that wait longest first: cliques may be gone by the time.
   std::vector<VariableId> waiting_;
-  std::size_t first_waiting_ = 0;               // those before it are done
-  std::vector<Call> moved_in_, waiting_since_;  // per variable; 0: never, and not waiting
+  std::size_t first_waiting_ = 0;                   // those before it are done
+  std::vector<Call> moved_in_, waiting_since_;      // per variable; 0: never, and not waiting
+  std::int64_t solutions_ = 0;                      // of cliques, ever
+  std::vector<std::int64_t> solved_by_, moved_by_;  // per variable: the last solution, and the last by which it moved
   std::vector<double> x_separator_, x_frontal_;
 };
 

@@ -10,15 +10,17 @@ namespace {
 constexpr std::int64_t kSubstitutionsPerElimination = 8;
 /// Budgets, or an update would in the end cost a multiple of it.
 constexpr std::int64_t kMostSaved = 1;
-constexpr double kPaceShare = 0.1;  // of the newest update in the mean pace: it follows within some ten updates
+constexpr double kPaceShare = 0.1;  // of a faster elimination in the mean pace; a slower one is the pace from then on
+constexpr double kEliminationShare = 0.5;  // of the time
 
 }  // namespace
 
 void EliminationBudget::beginUpdate() {
   constexpr auto kUnlimited = std::numeric_limits<std::int64_t>::max();
   left_ = params_.scalars > 0 ? params_.scalars : kUnlimited;
+  if (params_.ms > 0) began_ = std::chrono::steady_clock::now();
   if (params_.ms > 0 && scalars_per_ms_ > 0)
-    left_ = std::min(left_, static_cast<std::int64_t>(params_.ms * scalars_per_ms_));
+    left_ = std::min(left_, static_cast<std::int64_t>(kEliminationShare * params_.ms * scalars_per_ms_));
   limited_ = left_ != kUnlimited;
   substitutions_left_ = kUnlimited;
   if (!limited_) return;
@@ -31,10 +33,19 @@ void EliminationBudget::lift() {
   limited_ = false;
 }
 
-void EliminationBudget::notePace(std::int64_t eliminated_scalars, double update_ms) {
-  if (eliminated_scalars == 0 || update_ms <= 0) return;
-  const double now = static_cast<double>(eliminated_scalars) / update_ms;
-  scalars_per_ms_ = scalars_per_ms_ > 0 ? scalars_per_ms_ + kPaceShare * (now - scalars_per_ms_) : now;
+bool EliminationBudget::spentMoreThan(double share) const {
+  if (params_.ms <= 0 || !limited_) return false;
+  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - began_;
+  return spent.count() > share * params_.ms;
+}
+
+bool EliminationBudget::timeForEliminationsIsOver() const { return spentMoreThan(kEliminationShare); }
+
+void EliminationBudget::notePace(std::int64_t scalars, double ms) {
+  if (params_.ms <= 0 || scalars == 0 || ms <= 0) return;
+  const double now = static_cast<double>(scalars) / ms;
+  const bool slower = now < scalars_per_ms_ && scalars > kLeast;
+  scalars_per_ms_ = scalars_per_ms_ > 0 && !slower ? scalars_per_ms_ + kPaceShare * (now - scalars_per_ms_) : now;
 }
 
 }  // namespace motorcade

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 
 namespace motorcade {
@@ -10,7 +11,8 @@ class EliminationBudget {
  public:
   struct Params {
     std::int64_t scalars = 0;  // per update; 0: no limit
-    /// The same as time, at the pace of the updates before, so that results depend on the machine; 0: no limit.
+    /// Time of an update, so that results depend on the machine; 0: no limit. Half of it is for eliminations, at the
+    /// pace of those before; then substitution and comparisons of models go on until it is over.
     double ms = 0;
   };
 
@@ -31,15 +33,20 @@ class EliminationBudget {
   /// Sets aside for the next update what is left, or nothing.
   void save(bool variable_waits) { saved_ = variable_waits ? left_ : 0; }
 
-  /// Only with a limit of time the pace matters.
-  bool countsTime() const { return params_.ms > 0; }
-  void notePace(std::int64_t eliminated_scalars, double update_ms);
+  /// What is left to do can wait for the next update. False without a limit of time.
+  bool timeIsOver() const { return spentMoreThan(1); }
+  bool timeForEliminationsIsOver() const;
+  /// Of eliminations; it matters with a limit of time only.
+  void notePace(std::int64_t scalars, double ms);
 
  private:
+  bool spentMoreThan(double share) const;
+
   Params params_;
   std::int64_t left_ = 0, saved_ = 0, substitutions_left_ = 0, saved_substitutions_ = 0;
   bool limited_ = false;
-  double scalars_per_ms_ = 0;  // mean over the updates so far; 0 before the first
+  std::chrono::steady_clock::time_point began_;
+  double scalars_per_ms_ = 0;  // of the eliminations so far; 0 before the first
 };
 
 }  // namespace motorcade

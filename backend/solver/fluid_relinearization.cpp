@@ -17,7 +17,8 @@ constexpr std::size_t kWorstAtOnce = 16, kLargestRegion = 1000;
 constexpr int kLookedAtAtRest = 16;
 /// Drifts at which Jacobians are taken anew: up to so many of them residuals are still corrected.
 constexpr double kTrustedDrifts = 4;
-constexpr std::size_t kMostPutOff = 32;  // residuals that a step follows towards the root in vain
+constexpr std::size_t kLeastLookedAt = 128;  // variables that moved, in a step
+constexpr std::size_t kMostPutOff = 32;      // residuals that a step follows towards the root in vain
 
 /// Of a variable among the rows of a clique's front.
 int firstRowOf(VariableId v, const Clique& clique, const FactorGraph& graph) {
@@ -40,18 +41,50 @@ bool entersLinearly(VariableId v, const Factor& factor, const FactorGraph& graph
 void FluidRelinearization::compareModels(std::span<const VariableId> moved) {
   compared_.reset(graph_.factorSlots());
   staleness_rad_.resize(graph_.slots(), 0.0);
-  const double tolerance = params_.mismatch_tolerance * graph_.rmsResidual();
-  for (const VariableId v : moved) {
-    if (const double turn = graph_.turnSinceLinearization(v); turn > params_.leisurely_rad) markStale(v, turn);
-    if (graph_.mismatchBound(v) < params_.compared_share * tolerance) continue;
-    graph_.markCompared(v);
-    for (const FactorId f : graph_[v].factors) {
-      if (graph_.isProvisional(f) || entersLinearly(v, graph_.factor(f), graph_)) continue;
-      if (!compared_.insert(f.value)) continue;
-      const double norm = graph_.mismatch(f).norm;
-      if (norm > tolerance) off_.push_back({f, norm});
+  tolerance_ = params_.mismatch_tolerance * graph_.rmsResidual();
+  compareThoseThatFollowed();
+  to_look_at_.insert(to_look_at_.end(), moved.begin(), moved.end());
+  std::size_t seen = 0;
+  for (; seen < to_look_at_.size() && (seen < kLeastLookedAt || !budget_.timeIsOver()); ++seen)
+    if (graph_.contains(to_look_at_[seen])) lookAt(to_look_at_[seen]);
+  to_look_at_.erase(to_look_at_.begin(), to_look_at_.begin() + static_cast<std::ptrdiff_t>(seen));
+}
+
+/// Estimates that followed a step halfway are bent where the step ends. Models that were corrected or linearized there
+/// would be so for an estimate that nobody asked for: they wait until all of their variables have followed.
+void FluidRelinearization::compareThoseThatFollowed() {
+  std::erase_if(half_followed_, [&](FactorId f) {
+    if (!graph_.contains(f) || !compared_.insert(f.value)) return true;
+    const Factor& factor = graph_.factor(f);
+    if (!substitution_.hasFollowed(factor)) return false;
+    for (const VariableId v : factor.variables())
+      if (const double turn = graph_.turnSinceLinearization(v); turn > params_.leisurely_rad) markStale(v, turn);
+    compare(f);
+    return true;
+  });
+}
+
+void FluidRelinearization::lookAt(VariableId v) {
+  const double turn = graph_.turnSinceLinearization(v);
+  const bool stale = turn > params_.leisurely_rad, far = graph_.mismatchBound(v) >= params_.compared_share * tolerance_;
+  if (!stale && !far) return;
+  if (far) graph_.markCompared(v);
+  bool followed = true;
+  for (const FactorId f : graph_[v].factors) {
+    if (graph_.isProvisional(f) || entersLinearly(v, graph_.factor(f), graph_)) continue;
+    if (absent_.contains(f.value)) continue;
+    if (!substitution_.hasFollowed(graph_.factor(f))) {
+      followed = false;
+      if (compared_.insert(f.value)) half_followed_.push_back(f);
+    } else if (far && compared_.insert(f.value)) {
+      compare(f);
     }
   }
+  if (stale && followed) markStale(v, turn);
+}
+
+void FluidRelinearization::compare(FactorId f) {
+  if (const double norm = graph_.mismatch(f).norm; norm > tolerance_) off_.push_back({f, norm});
 }
 
 /// The variable's factors want new Jacobians; `turn_rad` says how urgently.
@@ -65,6 +98,8 @@ void FluidRelinearization::beginStep(std::span<const FactorId> new_factors, std:
   new_factors_.reset(graph_.factorSlots());
   for (const auto& absent : {new_factors, waiting})
     for (const FactorId f : absent) new_factors_.insert(f.value);
+  absent_.reset(graph_.factorSlots());
+  for (const FactorId f : waiting) absent_.insert(f.value);
   // A new factor may have taken the id of one that left.
   std::erase_if(off_, [&](const OffModel& off) {
     return !graph_.contains(off.factor) || new_factors_.contains(off.factor.value);
@@ -93,6 +128,10 @@ void FluidRelinearization::correctResiduals() {
   for (; seen < off_.size() && put_off.size() < kMostPutOff; ++seen) {
     const OffModel& off = off_[seen];
     if (is_relinearized_.contains(off.factor.value) || corrected_.contains(off.factor.value)) continue;
+    if (!substitution_.hasFollowed(graph_.factor(off.factor))) {
+      half_followed_.push_back(off.factor);
+      continue;
+    }
     if (waitsForJacobians(off)) continue;
     if (!reachesResidual(off.factor)) {
       put_off.push_back(off);
@@ -127,6 +166,8 @@ bool FluidRelinearization::reachesResidual(FactorId id) {
 
 void FluidRelinearization::clear() {
   off_.clear();
+  half_followed_.clear();
+  to_look_at_.clear();
   for (const VariableId v : stale_) staleness_rad_[v.value] = 0;
   stale_.clear();
 }

@@ -5,6 +5,7 @@
 
 #include "backend/elimination/elimination_tree.hpp"
 #include "backend/graph/mark_set.hpp"
+#include "backend/solver/back_substitution.hpp"
 #include "backend/solver/clique_work.hpp"
 #include "backend/solver/elimination_budget.hpp"
 
@@ -36,9 +37,9 @@ class FluidRelinearization {
     int relinearized_variables = 0, relinearized_factors = 0, corrected_factors = 0;
   };
 
-  FluidRelinearization(const Params& params, FactorGraph& graph, const EliminationTree& tree, CliqueWork& work,
-                       EliminationBudget& budget)
-      : params_(params), graph_(graph), tree_(tree), work_(work), budget_(budget) {}
+  FluidRelinearization(const Params& params, FactorGraph& graph, const EliminationTree& tree,
+                       const BackSubstitution& substitution, CliqueWork& work, EliminationBudget& budget)
+      : params_(params), graph_(graph), tree_(tree), substitution_(substitution), work_(work), budget_(budget) {}
 
   /// Finds the models that are off after a step that moved these variables.
   void compareModels(std::span<const VariableId> moved);
@@ -65,6 +66,9 @@ class FluidRelinearization {
     double flops = 0;
   };
 
+  void lookAt(VariableId moved);
+  void compare(FactorId f);
+  void compareThoseThatFollowed();
   void markStale(VariableId v, double turn_rad);
   bool isStale(VariableId v) const { return staleness_rad_[v.value] > 0; }
   void markDrifted();
@@ -84,16 +88,20 @@ class FluidRelinearization {
   Params params_;
   FactorGraph& graph_;
   const EliminationTree& tree_;
+  const BackSubstitution& substitution_;
   CliqueWork& work_;
   EliminationBudget& budget_;
-  std::vector<OffModel> off_;          // models to correct in the next step
-  std::vector<VariableId> stale_;      // whose linearization points are off
-  std::vector<double> staleness_rad_;  // per variable: its turn when it became stale, 0 when it is not
-  int next_at_rest_ = 0;               // variable to look at
-  double rest_flops_left_ = 0;         // saved up by the steps so far
-  Corrections corrections_;            // of the step at hand
+  double tolerance_ = 0;                 // of a mismatch, in the comparison at hand
+  std::vector<VariableId> to_look_at_;   // that moved
+  std::vector<FactorId> half_followed_;  // to be compared when all their variables have followed
+  std::vector<OffModel> off_;            // models to correct in the next step
+  std::vector<VariableId> stale_;        // whose linearization points are off
+  std::vector<double> staleness_rad_;    // per variable: its turn when it became stale, 0 when it is not
+  int next_at_rest_ = 0;                 // variable to look at
+  double rest_flops_left_ = 0;           // saved up by the steps so far
+  Corrections corrections_;              // of the step at hand
   std::vector<FactorId> relinearized_;
-  MarkSet compared_, new_factors_, is_relinearized_, corrected_;  // factors
+  MarkSet compared_, new_factors_, absent_, is_relinearized_, corrected_;  // factors
   std::vector<VariableId> region_;
   MarkSet in_region_;  // variables
   MarkSet counted_;    // cliques

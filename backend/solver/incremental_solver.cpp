@@ -97,24 +97,19 @@ void IncrementalSolver::endReport() {
 }
 
 const IncrementalSolver::Report& IncrementalSolver::update(Correction correction) {
-  const auto begin = std::chrono::steady_clock::now();
   beginReport();
   ++counters_.updates;
   const bool batch_due = counters_.updates % params_.batch_every_updates == 0 || new_variables_.size() > kMostAppended;
   if (params_.policy == Policy::kEveryN && batch_due) {
     batchStep();
   } else {
-    if (params_.policy == Policy::kFluid) waiting_.admit(new_factors_, touched_);
+    if (params_.policy == Policy::kFluid) notingPace([&] { waiting_.admit(new_factors_, touched_); });
     step(true, correction);
     new_factors_.clear();
     const int steps = correction == Correction::kNow ? params_.iterations_per_update : 1;
     for (int i = 1; i < steps && mayIterate(); ++i) step(false, correction);
   }
   endReport();
-  if (budget_.countsTime()) {
-    const std::chrono::duration<double, std::milli> update = std::chrono::steady_clock::now() - begin;
-    budget_.notePace(report_.eliminated_scalars, update.count());
-  }
   return report_;
 }
 
@@ -139,10 +134,21 @@ void IncrementalSolver::step(bool fold, Correction correction) {
     report_.relinearized_factors += corrections.relinearized_factors;
     report_.corrected_factors += corrections.corrected_factors;
   }
-  work_.apply();
-  if (fold) rebuildTop();
+  notingPace([&] {
+    work_.apply();
+    if (fold) rebuildTop();
+  });
   spread_sigmas_ = params_.substitution_tolerance * graph_.rmsResidual();
   substitute(params_.spread_scalars > 0 ? params_.spread_scalars : kNoLimit);
+}
+
+template <class Elimination>
+void IncrementalSolver::notingPace(const Elimination& eliminate) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::int64_t before = tree_.eliminatedScalars();
+  eliminate();
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+  budget_.notePace(tree_.eliminatedScalars() - before, took.count());
 }
 
 void IncrementalSolver::touchNewFactors() {

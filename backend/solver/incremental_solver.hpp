@@ -105,6 +105,8 @@ class IncrementalSolver {
   void takeInFactorsOf(std::span<const VariableId> leaving);
   void step(bool fold, Correction correction);
   void batchStep();
+  template <class Elimination>
+  void notingPace(const Elimination& eliminate);
   void rebuildTop();
   void substitute(std::int64_t most_scalars);
 
@@ -114,9 +116,9 @@ class IncrementalSolver {
   AffectedOrder reordered_{graph_, tree_};
   CliqueWork work_{tree_};
   EliminationBudget budget_{params_.budget};
-  FluidRelinearization relinearization_{params_.relinearization, graph_, tree_, work_, budget_};
+  FluidRelinearization relinearization_{params_.relinearization, graph_, tree_, substitution_, work_, budget_};
   WaitingFactors waiting_{graph_, tree_, budget_};
-  BackSubstitution substitution_{graph_, tree_, work_};
+  BackSubstitution substitution_{graph_, tree_, work_, budget_};
   Retirement retirement_{graph_, tree_};
   ProblemReporter problems_;
   Report report_;

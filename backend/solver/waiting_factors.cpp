@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace motorcade {
+namespace {
+
+/// Scalars: through more a variable is lifted in several steps, between which one can see whether there is time left.
+constexpr std::int64_t kLiftedAtOnce = 2000;
+
+}  // namespace
 
 void WaitingFactors::admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched) {
   allowance_ = std::max(budget_.left(), EliminationBudget::kLeast);
@@ -45,10 +51,16 @@ void WaitingFactors::admitWaiting(std::vector<FactorId>& fresh) {
     fresh.push_back(f);
     return true;
   });
-  if (waiting_.empty() || liftVariableOf(waiting_.front())) return;
-  fresh.push_back(waiting_.front());  // there is nothing above to lift through
-  graph_.linearize(waiting_.front());
-  waiting_.erase(waiting_.begin());
+  if (waiting_.empty()) return;
+  if (!liftVariableOf(waiting_.front())) {  // there is nothing above to lift through
+    fresh.push_back(waiting_.front());
+    graph_.linearize(waiting_.front());
+    waiting_.erase(waiting_.begin());
+    return;
+  }
+  while (allowance_ > EliminationBudget::kLeast && !budget_.timeForEliminationsIsOver() &&
+         liftVariableOf(waiting_.front())) {
+  }
 }
 
 std::vector<FactorId> WaitingFactors::takeWith(std::span<const VariableId> variables) {
@@ -119,12 +131,13 @@ bool WaitingFactors::liftVariableOf(FactorId id) {
   std::vector<int> cliques;
   std::int64_t scalars = 0;
   for (int c = tree_.cliqueOf(v); c >= 0 && !marked_.contains(c); c = tree_[c].parent) {
-    if (cliques.size() >= 2 && scalars + tree_[c].frontal_size > allowance_) break;
+    if (cliques.size() >= 2 && scalars + tree_[c].frontal_size > std::min(allowance_, kLiftedAtOnce)) break;
     cliques.push_back(c);
     scalars += tree_[c].frontal_size;
   }
   if (cliques.size() < 2 || !tree_.lift(v, cliques)) return false;
   budget_.spend(scalars);
+  allowance_ -= scalars;
   return true;
 }
 

@@ -11,7 +11,7 @@ TEST(EliminationBudget, HasNoLimitByDefault) {
   EliminationBudget budget({});
   budget.beginUpdate();
   EXPECT_EQ(budget.left(), std::numeric_limits<std::int64_t>::max());
-  EXPECT_FALSE(budget.countsTime());
+  EXPECT_FALSE(budget.timeIsOver());
 }
 
 TEST(EliminationBudget, WhatIsLeftIsSavedOnlyWhileAVariableWaits) {
@@ -27,9 +27,8 @@ TEST(EliminationBudget, WhatIsLeftIsSavedOnlyWhileAVariableWaits) {
   EXPECT_EQ(budget.left(), 100);
 }
 
-TEST(EliminationBudget, ALimitOfTimeFollowsThePace) {
-  EliminationBudget budget({.scalars = 1000, .ms = 2});
-  EXPECT_TRUE(budget.countsTime());
+TEST(EliminationBudget, HalfOfALimitOfTimeIsForEliminationsAtTheirPace) {
+  EliminationBudget budget({.scalars = 1000, .ms = 4});
   budget.beginUpdate();
   EXPECT_EQ(budget.left(), 1000) << "the pace is not known yet";
   budget.notePace(0, 5);  // nothing eliminated: no pace
@@ -39,9 +38,34 @@ TEST(EliminationBudget, ALimitOfTimeFollowsThePace) {
   for (int i = 0; i < 200; ++i) budget.notePace(2000, 1);
   budget.beginUpdate();
   EXPECT_EQ(budget.left(), 1000) << "the smaller limit counts";
-  for (int i = 0; i < 200; ++i) budget.notePace(50, 1);
+}
+
+TEST(EliminationBudget, ASlowEliminationCountsAtOnceAndAFastOneLittleByLittle) {
+  EliminationBudget budget({.ms = 4});
+  budget.notePace(2000, 1);
+  budget.notePace(1000, 10);
   budget.beginUpdate();
-  EXPECT_NEAR(static_cast<double>(budget.left()), 100, 1);
+  EXPECT_EQ(budget.left(), 200);
+  budget.notePace(10, 10);  // so few scalars tell little
+  budget.beginUpdate();
+  EXPECT_NEAR(static_cast<double>(budget.left()), 180, 1);
+  budget.notePace(1000, 1);
+  budget.beginUpdate();
+  EXPECT_NEAR(static_cast<double>(budget.left()), 362, 2);
+}
+
+TEST(EliminationBudget, TimeIsOverOnlyWhereItIsLimited) {
+  EliminationBudget limited({.ms = 1e-6}), long_enough({.ms = 1e9}), scalars({.scalars = 1});
+  for (EliminationBudget* budget : {&limited, &long_enough, &scalars}) {
+    budget->notePace(1000, 1);
+    budget->beginUpdate();
+  }
+  EXPECT_TRUE(limited.timeIsOver());
+  EXPECT_TRUE(limited.timeForEliminationsIsOver());
+  EXPECT_FALSE(long_enough.timeIsOver());
+  EXPECT_FALSE(scalars.timeIsOver());
+  limited.lift();
+  EXPECT_FALSE(limited.timeIsOver());
 }
 
 }  // namespace
