@@ -48,7 +48,7 @@ struct JointParams {
   /// See IncrementalSolver::Params.
   double mismatch_tolerance = 0.05, jacobian_drift_sigmas = 0.5, substitution_tolerance = 0.05;
   /// Each frame tells a little more of how an object's axes lie along its travel, and with them its whole path turns.
-  int spread_scalars = 300;
+  int spread_scalars = 50;
   int relinearized_scalars = 300;  // the budget where none is set: with more of it, nothing becomes more exact
   int iterations_per_update = 1;
   int final_iterations =

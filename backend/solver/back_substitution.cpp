@@ -11,6 +11,7 @@ namespace motorcade {
 BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, std::int64_t most_scalars) {
   result_ = {};
   moved_.clear();
+  solved_.clear();
   ++call_;
   moved_in_.resize(graph_.slots(), 0);
   waiting_since_.resize(graph_.slots(), 0);
@@ -33,6 +34,7 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
     first_waiting_ = 0;
   }
   result_.moved = moved_;
+  result_.solved = solved_;
   return result_;
 }
 
@@ -54,6 +56,7 @@ void BackSubstitution::solveWork(double threshold_sigmas) {
 
 void BackSubstitution::solve(const Clique& clique, Call since, double threshold_sigmas) {
   ++solutions_;
+  solved_.push_back(tree_.cliqueOf(clique.frontalVariables().front()));
   x_separator_.clear();
   for (const VariableId v : clique.separator()) {
     const auto& x = graph_[v].x;

@@ -17,6 +17,7 @@ class BackSubstitution {
  public:
   struct Result {
     std::span<const VariableId> moved;  // lasts until the next call
+    std::span<const int> solved;        // cliques; likewise
     std::int64_t scalars = 0;           // substituted
     double largest_change = 0;          // of any x, m or rad
   };
@@ -50,6 +51,7 @@ class BackSubstitution {
   Result result_;
   Call call_ = 0;
   std::vector<VariableId> moved_;
+  std::vector<int> solved_;
   std::vector<int> open_;  // cliques with work to solve
   /// Frontal variables of cliques that wait, those that wait longest first: cliques may be gone by the time.
   std::vector<VariableId> waiting_;

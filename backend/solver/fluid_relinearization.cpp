@@ -38,12 +38,13 @@ bool entersLinearly(VariableId v, const Factor& factor, const FactorGraph& graph
 
 }  // namespace
 
-void FluidRelinearization::compareModels(std::span<const VariableId> moved) {
+void FluidRelinearization::compareModels(const BackSubstitution::Result& step) {
   compared_.reset(graph_.factorSlots());
+  half_followed_.resize(graph_.factorSlots(), 0);
   staleness_rad_.resize(graph_.slots(), 0.0);
   tolerance_ = params_.mismatch_tolerance * graph_.rmsResidual();
-  compareThoseThatFollowed();
-  to_look_at_.insert(to_look_at_.end(), moved.begin(), moved.end());
+  compareThoseThatFollowed(step.solved);
+  to_look_at_.insert(to_look_at_.end(), step.moved.begin(), step.moved.end());
   std::size_t seen = 0;
   for (; seen < to_look_at_.size() && (seen < kLeastLookedAt || !budget_.timeIsOver()); ++seen)
     if (graph_.contains(to_look_at_[seen])) lookAt(to_look_at_[seen]);
@@ -51,17 +52,18 @@ void FluidRelinearization::compareModels(std::span<const VariableId> moved) {
 }
 
 /// Estimates that followed a step halfway are bent where the step ends. Models that were corrected or linearized there
-/// would be so for an estimate that nobody asked for: they wait until all of their variables have followed.
-void FluidRelinearization::compareThoseThatFollowed() {
-  std::erase_if(half_followed_, [&](FactorId f) {
-    if (!graph_.contains(f) || !compared_.insert(f.value)) return true;
-    const Factor& factor = graph_.factor(f);
-    if (!substitution_.hasFollowed(factor)) return false;
-    for (const VariableId v : factor.variables())
-      if (const double turn = graph_.turnSinceLinearization(v); turn > params_.leisurely_rad) markStale(v, turn);
-    compare(f);
-    return true;
-  });
+/// would be so for an estimate that nobody asked for: they wait until all of their variables have followed. The last of
+/// them is in the clique that a factor belongs to.
+void FluidRelinearization::compareThoseThatFollowed(std::span<const int> solved) {
+  for (const int clique : solved)
+    for (const FactorId f : tree_[clique].factors) {
+      const Factor& factor = graph_.factor(f);
+      if (!half_followed_[f.value] || !substitution_.hasFollowed(factor)) continue;
+      half_followed_[f.value] = 0;
+      for (const VariableId v : factor.variables())
+        if (const double turn = graph_.turnSinceLinearization(v); turn > params_.leisurely_rad) markStale(v, turn);
+      if (compared_.insert(f.value)) compare(f);
+    }
 }
 
 void FluidRelinearization::lookAt(VariableId v) {
@@ -75,7 +77,7 @@ void FluidRelinearization::lookAt(VariableId v) {
     if (absent_.contains(f.value)) continue;
     if (!substitution_.hasFollowed(graph_.factor(f))) {
       followed = false;
-      if (compared_.insert(f.value)) half_followed_.push_back(f);
+      half_followed_[f.value] = 1;
     } else if (far && compared_.insert(f.value)) {
       compare(f);
     }
@@ -96,6 +98,8 @@ void FluidRelinearization::markStale(VariableId v, double turn_rad) {
 
 void FluidRelinearization::beginStep(std::span<const FactorId> new_factors, std::span<const FactorId> waiting) {
   new_factors_.reset(graph_.factorSlots());
+  half_followed_.resize(graph_.factorSlots(), 0);
+  for (const FactorId f : new_factors) half_followed_[f.value] = 0;  // it may have the id of one that left
   for (const auto& absent : {new_factors, waiting})
     for (const FactorId f : absent) new_factors_.insert(f.value);
   absent_.reset(graph_.factorSlots());
@@ -129,7 +133,7 @@ void FluidRelinearization::correctResiduals() {
     const OffModel& off = off_[seen];
     if (is_relinearized_.contains(off.factor.value) || corrected_.contains(off.factor.value)) continue;
     if (!substitution_.hasFollowed(graph_.factor(off.factor))) {
-      half_followed_.push_back(off.factor);
+      half_followed_[off.factor.value] = 1;
       continue;
     }
     if (waitsForJacobians(off)) continue;
@@ -166,7 +170,7 @@ bool FluidRelinearization::reachesResidual(FactorId id) {
 
 void FluidRelinearization::clear() {
   off_.clear();
-  half_followed_.clear();
+  std::ranges::fill(half_followed_, 0);
   to_look_at_.clear();
   for (const VariableId v : stale_) staleness_rad_[v.value] = 0;
   stale_.clear();

@@ -41,8 +41,8 @@ class FluidRelinearization {
                        const BackSubstitution& substitution, CliqueWork& work, EliminationBudget& budget)
       : params_(params), graph_(graph), tree_(tree), substitution_(substitution), work_(work), budget_(budget) {}
 
-  /// Finds the models that are off after a step that moved these variables.
-  void compareModels(std::span<const VariableId> moved);
+  /// Finds the models that are off after a step.
+  void compareModels(const BackSubstitution::Result& step);
   /// Neither the new factors nor those that wait are in the tree yet.
   void beginStep(std::span<const FactorId> new_factors, std::span<const FactorId> waiting);
   /// Corrects what is off, as far as the budget reaches, and marks the work that this is.
@@ -68,7 +68,7 @@ class FluidRelinearization {
 
   void lookAt(VariableId moved);
   void compare(FactorId f);
-  void compareThoseThatFollowed();
+  void compareThoseThatFollowed(std::span<const int> solved);
   void markStale(VariableId v, double turn_rad);
   bool isStale(VariableId v) const { return staleness_rad_[v.value] > 0; }
   void markDrifted();
@@ -91,15 +91,15 @@ class FluidRelinearization {
   const BackSubstitution& substitution_;
   CliqueWork& work_;
   EliminationBudget& budget_;
-  double tolerance_ = 0;                 // of a mismatch, in the comparison at hand
-  std::vector<VariableId> to_look_at_;   // that moved
-  std::vector<FactorId> half_followed_;  // to be compared when all their variables have followed
-  std::vector<OffModel> off_;            // models to correct in the next step
-  std::vector<VariableId> stale_;        // whose linearization points are off
-  std::vector<double> staleness_rad_;    // per variable: its turn when it became stale, 0 when it is not
-  int next_at_rest_ = 0;                 // variable to look at
-  double rest_flops_left_ = 0;           // saved up by the steps so far
-  Corrections corrections_;              // of the step at hand
+  double tolerance_ = 0;                // of a mismatch, in the comparison at hand
+  std::vector<VariableId> to_look_at_;  // that moved
+  std::vector<char> half_followed_;     // per factor: to be compared when all of its variables have followed
+  std::vector<OffModel> off_;           // models to correct in the next step
+  std::vector<VariableId> stale_;       // whose linearization points are off
+  std::vector<double> staleness_rad_;   // per variable: its turn when it became stale, 0 when it is not
+  int next_at_rest_ = 0;                // variable to look at
+  double rest_flops_left_ = 0;          // saved up by the steps so far
+  Corrections corrections_;             // of the step at hand
   std::vector<FactorId> relinearized_;
   MarkSet compared_, new_factors_, absent_, is_relinearized_, corrected_;  // factors
   std::vector<VariableId> region_;

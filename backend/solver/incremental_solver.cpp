@@ -184,7 +184,7 @@ void IncrementalSolver::substitute(std::int64_t most_scalars) {
   report_.moved.insert(report_.moved.end(), solved.moved.begin(), solved.moved.end());
   report_.substituted_scalars += solved.scalars;
   report_.largest_change = std::max(report_.largest_change, solved.largest_change);
-  if (params_.policy == Policy::kFluid) relinearization_.compareModels(solved.moved);
+  if (params_.policy == Policy::kFluid) relinearization_.compareModels(solved);
 }
 
 /// Relinearizes and reorders everything.

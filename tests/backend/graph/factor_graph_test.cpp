@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "backend/graph/marginal_factor.hpp"
-#include "backend/joint/twist_factors.hpp"
 #include "tests/backend/random_factors.hpp"
 #include "tests/backend/unpacked.hpp"
 #include "tests/support/matchers.hpp"
@@ -305,27 +304,6 @@ TEST(FactorGraph, TheTurnSinceLinearizationIsTheAngle) {
     scene->graph.moveLinearizationPoint(v);
     EXPECT_NEAR(scene->graph.turnSinceLinearization(v), 0, 1e-7);
   }
-}
-
-TEST(FactorGraph, TheBoundOfAMismatchGrowsWithTheTurnOfAPoseAndWithTheStepOfAVector) {
-  RandomWorld world(5, RandomWorld::Kind::kSpace);
-  FactorGraph graph;
-  const VariableId pose = world.addVariable(graph), vector = graph.addVariable(SmallVector(SmallVector::Zero(3)));
-  graph.addFactor(world.prior(pose));
-  graph.addFactor(std::make_unique<VectorPriorFactor>(vector, SmallVector::Zero(3), SmallVector::Constant(3, 0.1)));
-  EXPECT_EQ(graph.mismatchBound(pose), 0);
-  graph[pose].x[0] += 1;  // a step without a turn leaves all models right
-  EXPECT_EQ(graph.mismatchBound(pose), 0);
-  graph[pose].x[3] += 0.01;
-  const double turned = graph.mismatchBound(pose);
-  EXPECT_GT(turned, 0);
-  graph[pose].x[3] += 0.01;
-  EXPECT_GT(graph.mismatchBound(pose), 1.9 * turned);
-  EXPECT_EQ(graph.mismatchBound(vector), 0);
-  graph[vector].x[1] += 0.02;
-  EXPECT_NEAR(graph.mismatchBound(vector), 0.25 * 0.2, 1e-12);  // of its step in standard deviations
-  graph.markCompared(vector);
-  EXPECT_EQ(graph.mismatchBound(vector), 0);
 }
 
 TEST(FactorGraph, KeepsBooksOfWhatComesAndGoes) {
