@@ -8,8 +8,8 @@
 namespace motorcade {
 namespace {
 
-constexpr double kVectorTurn_rad =
-    0.25;  // a step of a vector puts its factors off as that of a pose which turns so far
+/// A vector's step is taken to put its factors off like that of a pose which turns so far.
+constexpr double kVectorTurn_rad = 0.25;
 
 /// Of the residuals: without noise the tolerances that are relative to it do not vanish.
 constexpr double kLeastMeanSquare = 1e-8;

@@ -38,7 +38,7 @@ void addSolverOptions(CLI::App& app, IncrementalSolver::Params& params) {
   add("--iterated-scalars", params.iterated_scalars,
       "Substituted in an update, up to which it may take a further step; 0: no limit");
   add("--budget", params.budget.scalars, "Scalars eliminated per update beyond what new factors ask for; 0: no limit");
-  add("--budget-ms", params.budget.ms, "The same as time, at the pace of the updates before; 0: no limit");
+  add("--budget-ms", params.budget.ms, "Time of an update beyond that, half of it for eliminations; 0: no limit");
 }
 
 nlohmann::ordered_json jsonOf(const IncrementalSolver::Params& params) {
