@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <functional>
-#include <limits>
 #include <utility>
+
+#include "backend/joint/merge_by_point.hpp"
 
 namespace motorcade {
 namespace {
@@ -20,29 +20,24 @@ void TrackLife::add(FrameId frame) {
   oldest_ = frames_.front();
 }
 
-/// Candidates and points come in the same order.
 void BodyPoints::observe(FrameId frame, std::span<const PointMeasurement> points, const EarlierViews& earlier) {
   newest_ = frame;
   life_.add(frame);
   merged_.clear();
-  auto known = candidates_.begin();
-  const auto keepUpTo = [&](PointId point) {
-    for (; known != candidates_.end() && known->track.point < point; ++known) {
-      if (!life_.isLost(known->track.views.back()))
-        merged_.push_back(std::move(*known));
-      else if (known->chosen)
-        end(*known);
-    }
+  const auto keep = [&](Candidate& known) {
+    if (!life_.isLost(known.track.views.back()))
+      merged_.push_back(std::move(known));
+    else if (known.chosen)
+      end(known);
   };
-  for (const PointMeasurement& p : points) {
-    if (params_.half > 0 && p.point.value % 2 != params_.half % 2) continue;
-    keepUpTo(p.point);
-    const bool is_known = known != candidates_.end() && known->track.point == p.point;
-    Candidate& candidate = merged_.emplace_back(is_known ? std::move(*known++) : Candidate{.track = {p.point, {}}});
-    if (!is_known && earlier) candidate.track.views = earlier(p.point);
+  const auto add = [&](const PointMeasurement& p, Candidate* known) {
+    if (params_.half > 0 && p.point.value % 2 != params_.half % 2) return;
+    Candidate& candidate = merged_.emplace_back(known ? std::move(*known) : Candidate{.track = {p.point, {}}});
+    if (!known && earlier) candidate.track.views = earlier(p.point);
     extend(candidate, {frame, p.uvd_px, p.sigma_px});
-  }
-  keepUpTo({std::numeric_limits<std::int64_t>::max()});
+  };
+  mergeByPoint(
+      candidates_, points, [](const Candidate& c) { return c.track.point; }, add, keep);
   std::swap(candidates_, merged_);
   choose();
 }
@@ -64,7 +59,6 @@ void BodyPoints::end(Candidate& candidate) {
 }
 
 void BodyPoints::forget(std::span<const PointMeasurement> points) {
-  if (points.empty()) return;
   auto point = points.begin();
   std::erase_if(candidates_, [&](const Candidate& candidate) {
     while (point != points.end() && point->point < candidate.track.point) ++point;

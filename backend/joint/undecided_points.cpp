@@ -1,28 +1,25 @@
 #include "backend/joint/undecided_points.hpp"
 
 #include <algorithm>
-#include <cstdint>
-#include <limits>
 #include <utility>
+
+#include "backend/joint/merge_by_point.hpp"
 
 namespace motorcade {
 
 void UndecidedPoints::observe(FrameId frame, std::span<const PointMeasurement> points) {
   merged_.clear();
   life_.add(frame);
-  auto known = known_.begin();
-  const auto keepUpTo = [&](PointId point) {
-    for (; known != known_.end() && known->point < point; ++known)
-      if (!known->views.empty() && !life_.isLost(known->views.back())) merged_.push_back(std::move(*known));
+  const auto keep = [&](LandmarkTrack& known) {
+    if (!known.views.empty() && !life_.isLost(known.views.back())) merged_.push_back(std::move(known));
   };
-  for (const PointMeasurement& p : points) {
-    keepUpTo(p.point);
-    const bool is_known = known != known_.end() && known->point == p.point;
-    LandmarkTrack& track = merged_.emplace_back(is_known ? std::move(*known++) : LandmarkTrack{p.point, {}});
+  const auto add = [&](const PointMeasurement& p, LandmarkTrack* known) {
+    LandmarkTrack& track = merged_.emplace_back(known ? std::move(*known) : LandmarkTrack{p.point, {}});
     if (static_cast<int>(track.views.size()) == most_views_) track.views.erase(track.views.begin());
     track.views.push_back({frame, p.uvd_px, p.sigma_px});
-  }
-  keepUpTo({std::numeric_limits<std::int64_t>::max()});
+  };
+  mergeByPoint(
+      known_, points, [](const LandmarkTrack& track) { return track.point; }, add, keep);
   std::swap(known_, merged_);
 }
 

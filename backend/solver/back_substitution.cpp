@@ -12,8 +12,7 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
   result_ = {};
   moved_.clear();
   solved_.clear();
-  ++call_;
-  moved_in_.resize(graph_.slots(), 0);
+  first_of_call_ = newest_ + 1;
   waiting_since_.resize(graph_.slots(), 0);
   solved_by_.resize(graph_.slots(), 0);
   moved_by_.resize(graph_.slots(), 0);
@@ -25,7 +24,7 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
   };
   while (first_waiting_ < waiting_.size() && mayGoOn()) {
     const VariableId v = waiting_[first_waiting_++];
-    const Call since = std::exchange(waiting_since_[v.value], 0);
+    const Solution since = std::exchange(waiting_since_[v.value], 0);
     if (since == 0 || tree_.cliqueOf(v) < 0) continue;  // it was solved since, or left the tree
     solve(tree_[tree_.cliqueOf(v)], since, threshold_sigmas);
   }
@@ -47,15 +46,15 @@ void BackSubstitution::solveWork(double threshold_sigmas) {
     const Clique& clique = tree_[open_.back()];
     work_.finish(open_.back());
     open_.pop_back();
-    Call since = call_;
+    Solution since = first_of_call_;
     for (const VariableId v : clique.frontalVariables())
       if (waiting_since_[v.value] > 0) since = std::min(since, waiting_since_[v.value]);
     solve(clique, since, threshold_sigmas);
   }
 }
 
-void BackSubstitution::solve(const Clique& clique, Call since, double threshold_sigmas) {
-  ++solutions_;
+void BackSubstitution::solve(const Clique& clique, Solution since, double threshold_sigmas) {
+  ++newest_;
   solved_.push_back(tree_.cliqueOf(clique.frontalVariables().front()));
   x_separator_.clear();
   for (const VariableId v : clique.separator()) {
@@ -68,15 +67,15 @@ void BackSubstitution::solve(const Clique& clique, Call since, double threshold_
   moveVariables(clique, threshold_sigmas);
   for (int child = clique.first_child; child >= 0; child = tree_[child].next_sibling) {
     const bool moved =
-        std::ranges::any_of(tree_[child].separator(), [&](VariableId v) { return moved_in_[v.value] >= since; });
+        std::ranges::any_of(tree_[child].separator(), [&](VariableId v) { return moved_by_[v.value] >= since; });
     if (moved) putOff(tree_[child], since);
     if (work_.has(child)) open_.push_back(child);
   }
 }
 
-void BackSubstitution::putOff(const Clique& clique, Call since) {
+void BackSubstitution::putOff(const Clique& clique, Solution since) {
   for (const VariableId v : clique.frontalVariables()) {
-    Call& waiting_since = waiting_since_[v.value];
+    Solution& waiting_since = waiting_since_[v.value];
     if (waiting_since == 0) waiting_.push_back(v);
     waiting_since = waiting_since == 0 ? since : std::min(waiting_since, since);
   }
@@ -101,7 +100,7 @@ void BackSubstitution::moveVariables(const Clique& clique, double threshold_sigm
   for (const VariableId v : clique.frontalVariables()) {
     auto& variable = graph_[v];
     waiting_since_[v.value] = 0;
-    solved_by_[v.value] = solutions_;
+    solved_by_[v.value] = newest_;
     double change = 0, sigmas_squared = 0;
     for (int i = 0; i < variable.size; ++i, ++at) {
       change = std::max(change, std::abs(x_frontal_[at] - variable.x[i]));
@@ -112,8 +111,7 @@ void BackSubstitution::moveVariables(const Clique& clique, double threshold_sigm
     result_.largest_change = std::max(result_.largest_change, change);
     if (sigmas_squared <= threshold_sigmas * threshold_sigmas) continue;
     variable.x_spread = variable.x;
-    moved_in_[v.value] = call_;
-    moved_by_[v.value] = solutions_;
+    moved_by_[v.value] = newest_;
     moved_.push_back(v);
   }
 }

@@ -36,29 +36,28 @@ class BackSubstitution {
   std::int64_t waitingScalars() const;
 
  private:
-  using Call = std::uint32_t;  // number of a call
+  using Solution = std::int64_t;  // number of a solved clique, counted over all calls
 
   void solveWork(double threshold_sigmas);
-  /// Its separator may have moved since that call.
-  void solve(const Clique& clique, Call since, double threshold_sigmas);
+  /// Its separator may have moved by that solution or a later one.
+  void solve(const Clique& clique, Solution since, double threshold_sigmas);
   void moveVariables(const Clique& clique, double threshold_sigmas);
-  void putOff(const Clique& clique, Call since);
+  void putOff(const Clique& clique, Solution since);
 
   FactorGraph& graph_;
   const EliminationTree& tree_;
   CliqueWork& work_;
   const EliminationBudget& budget_;
   Result result_;
-  Call call_ = 0;
+  Solution newest_ = 0, first_of_call_ = 1;
   std::vector<VariableId> moved_;
   std::vector<int> solved_;
   std::vector<int> open_;  // cliques with work to solve
   /// Frontal variables of cliques that wait, those that wait longest first: cliques may be gone by the time.
   std::vector<VariableId> waiting_;
-  std::size_t first_waiting_ = 0;                   // those before it are done
-  std::vector<Call> moved_in_, waiting_since_;      // per variable; 0: never, and not waiting
-  std::int64_t solutions_ = 0;                      // of cliques, ever
-  std::vector<std::int64_t> solved_by_, moved_by_;  // per variable: the last solution, and the last by which it moved
+  std::size_t first_waiting_ = 0;  // those before it are done
+  /// Per variable: its last solution, the last by which it moved, and since which one it waits; 0: none.
+  std::vector<Solution> solved_by_, moved_by_, waiting_since_;
   std::vector<double> x_separator_, x_frontal_;
 };
 

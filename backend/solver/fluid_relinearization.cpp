@@ -66,6 +66,7 @@ void FluidRelinearization::compareThoseThatFollowed(std::span<const int> solved)
     }
 }
 
+/// Compares the models of a variable that moved, or leaves them until they have followed.
 void FluidRelinearization::lookAt(VariableId v) {
   const double turn = graph_.turnSinceLinearization(v);
   const bool stale = turn > params_.leisurely_rad, far = graph_.mismatchBound(v) >= params_.compared_share * tolerance_;
@@ -74,7 +75,7 @@ void FluidRelinearization::lookAt(VariableId v) {
   bool followed = true;
   for (const FactorId f : graph_[v].factors) {
     if (graph_.isProvisional(f) || entersLinearly(v, graph_.factor(f), graph_)) continue;
-    if (absent_.contains(f.value)) continue;
+    if (outside_tree_.contains(f.value)) continue;
     if (!substitution_.hasFollowed(graph_.factor(f))) {
       followed = false;
       half_followed_[f.value] = 1;
@@ -102,8 +103,8 @@ void FluidRelinearization::beginStep(std::span<const FactorId> new_factors, std:
   for (const FactorId f : new_factors) half_followed_[f.value] = 0;  // it may have the id of one that left
   for (const auto& absent : {new_factors, waiting})
     for (const FactorId f : absent) new_factors_.insert(f.value);
-  absent_.reset(graph_.factorSlots());
-  for (const FactorId f : waiting) absent_.insert(f.value);
+  outside_tree_.reset(graph_.factorSlots());
+  for (const FactorId f : waiting) outside_tree_.insert(f.value);
   // A new factor may have taken the id of one that left.
   std::erase_if(off_, [&](const OffModel& off) {
     return !graph_.contains(off.factor) || new_factors_.contains(off.factor.value);

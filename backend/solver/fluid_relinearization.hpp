@@ -66,7 +66,7 @@ class FluidRelinearization {
     double flops = 0;
   };
 
-  void lookAt(VariableId moved);
+  void lookAt(VariableId v);
   void compare(FactorId f);
   void compareThoseThatFollowed(std::span<const int> solved);
   void markStale(VariableId v, double turn_rad);
@@ -101,7 +101,7 @@ class FluidRelinearization {
   double rest_flops_left_ = 0;          // saved up by the steps so far
   Corrections corrections_;             // of the step at hand
   std::vector<FactorId> relinearized_;
-  MarkSet compared_, new_factors_, absent_, is_relinearized_, corrected_;  // factors
+  MarkSet compared_, new_factors_, outside_tree_, is_relinearized_, corrected_;  // factors
   std::vector<VariableId> region_;
   MarkSet in_region_;  // variables
   MarkSet counted_;    // cliques
