@@ -62,8 +62,8 @@ class FactorGraph {
   /// Lets the estimate follow x.
   void apply(VariableId id);
   /// A bound, in standard deviations, of how far the linear models of the variable's factors went off by its steps
-  /// since they were last compared: mismatch comes from turning and grows with turn times step. For vectors, whose factors
-  /// are bilinear at most, a guess: a fixed share of the step.
+  /// since they were last compared: mismatch comes from turning and grows with turn times step. For vectors, whose
+  /// factors are bilinear at most, a guess: a fixed share of the step.
   double mismatchBound(VariableId id) const;
   bool isVector(VariableId id) const { return std::holds_alternative<SmallVector>((*this)[id].applied_estimate); }
   void markCompared(VariableId id) { (*this)[id].x_compared = (*this)[id].x; }
