@@ -33,7 +33,7 @@ std::span<const VariableId> AffectedOrder::operator()(std::span<const VariableId
 }
 
 /// Breadth first from the touched variables through the whole graph, but not through what very many factors share,
-/// until all variables at hand are reached.
+/// until all variables at hand are reached, or none was for as many steps as before: the others lie far away.
 void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
   const int last = static_cast<int>(variables_.size()) - 1;
   const int last_group = std::max(last - 1, 0);  // CCOLAMD wants groups below the number of columns; one more follows
@@ -43,6 +43,7 @@ void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
   distance_.resize(graph_.slots());
   queue_.clear();
   std::size_t missing = variables_.size();
+  int farthest = 0;  // of those at hand
   const auto reach = [&](VariableId v, int distance) {
     if (!reached_.insert(v.value)) return;
     distance_[v.value] = distance;
@@ -51,11 +52,12 @@ void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
     if (column > last || variables_[column] != v) return;
     group_[column] = std::min(kBands - static_cast<int>(std::bit_width(static_cast<unsigned>(distance))), last_group);
     --missing;
+    farthest = distance;
   };
   for (const VariableId v : touched) reach(v, 0);
   for (std::size_t i = 0; i < queue_.size() && missing > 0; ++i) {
     const int distance = distance_[queue_[i].value];
-    if (distance == kFarthest) break;
+    if (distance == kFarthest || distance > 2 * farthest + 1) break;
     if (graph_[queue_[i]].factors.size() > kShared) continue;
     for (const FactorId f : graph_[queue_[i]].factors)
       if (passed_.insert(f.value))
