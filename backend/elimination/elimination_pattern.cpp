@@ -6,9 +6,9 @@
 namespace motorcade {
 namespace {
 
-/// A column joins its parent's clique although that adds zeros to it when both are small or the zeros are few: small
-/// fronts cost more in overhead than in arithmetic.
-constexpr int kSmallClique = 16;    // scalars
+/// A column joins its parent's clique although that adds zeros to it when the clique still has few frontals or the
+/// zeros are few: each front passes a matrix on, which costs as much as the elimination of a pose or two.
+constexpr int kFewFrontals = 18;    // scalars: three poses
 constexpr double kZeroShare = 0.1;  // of the clique's scalars
 
 }  // namespace
@@ -73,6 +73,7 @@ void EliminationPattern::mergeColumns() {
 void EliminationPattern::formGroups(std::span<const int> scalars) {
   groups_.clear();
   group_scalars_.clear();
+  frontal_scalars_.clear();
   last_in_group_.clear();
   group_of_.assign(count_, -1);
   group_next_.assign(count_, -1);  // from a frontal to the one eliminated after it
@@ -83,11 +84,12 @@ void EliminationPattern::formGroups(std::span<const int> scalars) {
     const int above = parent_[j] < 0 ? -1 : group_of_[parent_[j]];
     if (above >= 0) {
       const int all = group_scalars_[above], zeros = all - size;
-      if (zeros == 0 || all + own <= kSmallClique || zeros <= kZeroShare * all) {
+      if (zeros <= kZeroShare * all || frontal_scalars_[above] + own <= kFewFrontals) {
         group_of_[j] = above;
         group_next_[j] = last_in_group_[above];
         last_in_group_[above] = j;
         group_scalars_[above] += own;
+        frontal_scalars_[above] += own;
         ++groups_[above].frontals;
         continue;
       }
@@ -95,6 +97,7 @@ void EliminationPattern::formGroups(std::span<const int> scalars) {
     group_of_[j] = static_cast<int>(groups_.size());
     last_in_group_.push_back(j);
     group_scalars_.push_back(own + size);
+    frontal_scalars_.push_back(own);
     // `begin` holds the column that states the separator until the positions are written.
     groups_.push_back({.begin = j, .size = 0, .frontals = 1, .parent = above});
   }

@@ -41,7 +41,7 @@ class EliminationPattern {
   std::vector<int> children_head_, children_next_;  // per column: columns whose parent it is
   std::vector<int> column_begin_, column_entries_, parent_, stamp_;
   std::vector<Group> groups_;
-  std::vector<int> group_of_, group_scalars_, group_next_, last_in_group_, positions_;
+  std::vector<int> group_of_, group_scalars_, frontal_scalars_, group_next_, last_in_group_, positions_;
 };
 
 }  // namespace motorcade
