@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -25,8 +26,10 @@ struct Clique {
   double* panel = nullptr;
   std::vector<int> singular;  // frontal scalars without information
   /// What elimination leaves on the separator and the parent's front gathers: the update matrix H, packed, and
-  /// the contribution g to the right-hand side.
+  /// the contribution g to the right-hand side. H is null where it was given back.
   double *update_matrix = nullptr, *contribution = nullptr;
+  bool made_again = false;    // H, for the parent's front to gather it
+  std::int64_t attached = 0;  // when the clique was hung below its parent, by the number of the tree's elimination
   bool alive = false;
 
   std::span<const VariableId> frontalVariables() const {

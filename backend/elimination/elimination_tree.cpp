@@ -105,7 +105,7 @@ void EliminationTree::cutOff(const Clique& clique) {
 
 void EliminationTree::release(Clique& clique) {
   pool_.give(clique.panel);
-  pool_.give(clique.update_matrix);
+  update_matrices_.give(clique.update_matrix);
   pool_.give(clique.contribution);
   clique.variables.clear();
   clique.row_in_parent.clear();
@@ -119,6 +119,7 @@ void EliminationTree::release(Clique& clique) {
 void EliminationTree::attach(int orphan, int parent) {
   Clique &child = cliques_[orphan], &above = cliques_[parent];
   child.parent = parent;
+  noteAttached(orphan);
   child.previous_sibling = -1;
   child.next_sibling = above.first_child;
   if (above.first_child >= 0) cliques_[above.first_child].previous_sibling = orphan;
@@ -140,6 +141,7 @@ void EliminationTree::forget(VariableId v) {
 void EliminationTree::removeFactor(int owner, FactorId factor) { std::erase(cliques_[owner].factors, factor); }
 
 void EliminationTree::eliminate(const Elimination& problem, std::vector<int>& created) {
+  ++eliminations_;
   clique_of_.resize(graph_.slots(), -1);
   sequence_.resize(graph_.slots(), -1);
   position_.resize(graph_.slots(), -1);
@@ -165,6 +167,7 @@ void EliminationTree::eliminate(const Elimination& problem, std::vector<int>& cr
     attach(problem.orphans[o], cliqueOfTerm(problem.factors.size() + o));
   for (std::size_t g = group_clique_.size(); g-- > 0;) refresh(group_clique_[g]);
   created.insert(created.end(), group_clique_.begin(), group_clique_.end());
+  giveBackOldUpdateMatrices();
 }
 
 /// Between the clique's variables in the elimination order and all those above it.
@@ -249,7 +252,7 @@ void EliminationTree::layOut(Clique& clique) {
   for (const VariableId v : clique.frontalVariables()) clique.frontal_size += graph_.sizeOf(v);
   for (const VariableId v : clique.variables) clique.size += graph_.sizeOf(v);
   clique.panel = pool_.take(clique.panelLength());
-  clique.update_matrix = pool_.take(clique.updateMatrixLength());
+  clique.update_matrix = update_matrices_.take(clique.updateMatrixLength());
   clique.contribution = pool_.take(clique.separatorSize());
 }
 
@@ -267,7 +270,11 @@ Eigen::MatrixXd EliminationTree::marginal(std::span<const VariableId> eliminated
 }
 
 void EliminationTree::refresh(int id) {
-  front_.eliminate(cliques_[id], cliques_);
+  Clique& clique = cliques_[id];
+  makeUpdateMatricesBelow(clique);
+  takeUpdateMatrix(clique);
+  front_.eliminate(clique, cliques_);
+  giveBackThoseMadeAgainBelow(clique);
   eliminated_scalars_ += (*this)[id].frontal_size;
 }
 

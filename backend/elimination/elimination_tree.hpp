@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -27,7 +28,10 @@ struct Elimination {
 /// enters up to the root. Works on the factors' linear models in `graph`.
 class EliminationTree {
  public:
-  explicit EliminationTree(const FactorGraph& graph) : graph_(graph) {}
+  /// Update matrices of cliques that hung where they are for so many eliminations are given back, and made again for a
+  /// front that gathers them; with 0 all are kept.
+  explicit EliminationTree(const FactorGraph& graph, int kept_eliminations = 0)
+      : graph_(graph), kept_eliminations_(kept_eliminations) {}
 
   const Clique& operator[](int clique) const { return cliques_[clique]; }
   /// The clique that has the variable among its frontals, -1 if none.
@@ -86,8 +90,8 @@ class EliminationTree {
   void clearFindings() { front_.clearFindings(); }
 
   std::int64_t eliminatedScalars() const { return eliminated_scalars_; }  // ever
-  std::size_t heldBytes() const { return pool_.heldBytes(); }
-  std::size_t usedBytes() const { return pool_.usedBytes(); }
+  std::size_t heldBytes() const { return pool_.heldBytes() + update_matrices_.heldBytes(); }
+  std::size_t usedBytes() const { return pool_.usedBytes() + update_matrices_.usedBytes(); }
 
  private:
   std::int64_t sequenceAbove(int clique) const;
@@ -97,14 +101,29 @@ class EliminationTree {
   void layOut(Clique& clique);
   void release(Clique& clique);
   void cutOff(const Clique& clique);
+  void noteAttached(int clique);
+  void giveBackOldUpdateMatrices();
+  bool mayGiveBack(int clique) const;
+  int depthWithout(int clique) const;
+  void takeUpdateMatrix(Clique& clique);
+  void giveBackUpdateMatrix(Clique& clique);
+  void makeUpdateMatricesBelow(const Clique& clique);
+  void giveBackThoseMadeAgainBelow(const Clique& clique);
+
+  struct Attached {
+    std::int64_t when;
+    int clique;
+  };
 
   const FactorGraph& graph_;
+  int kept_eliminations_;
   std::vector<Clique> cliques_;
   std::vector<int> free_, roots_;
   std::vector<int> clique_of_;          // per variable
   std::vector<std::int64_t> sequence_;  // per variable
-  std::int64_t next_sequence_ = 0, eliminated_scalars_ = 0;
-  BlockPool pool_;
+  std::int64_t next_sequence_ = 0, eliminations_ = 0, eliminated_scalars_ = 0;
+  std::deque<Attached> attached_;     // cliques with update matrices, in that order; some have left
+  BlockPool pool_, update_matrices_;  // apart: panels stay for as long as their variables, most update matrices do not
   EliminationPattern pattern_;
   Front front_{graph_};
   // Scratch.

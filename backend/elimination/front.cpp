@@ -24,27 +24,44 @@ inline void addTo(double* to, const double* from, int count) {
 }  // namespace
 
 void Front::eliminate(Clique& clique, std::span<const Clique> cliques) {
-  begin(clique);
-  for (const FactorId f : clique.factors) addFactor(clique, f);
-  for (int child = clique.first_child; child >= 0; child = cliques[child].next_sibling)
-    addChild(clique, cliques[child]);
-
-  const int n = clique.frontal_size;
+  gather(clique, cliques, clique.panel);
   clique.singular.clear();
   const double ratio = factorizePanel(clique.panelView(), clique.singular);
-  subtractOuterProduct(update_matrix_.data(), update_stride_, clique.panel + n, clique.panelStride(), update_size_, n);
+  subtractEliminated(clique);
   packUpdateMatrix(clique);
+  packContribution(clique);
   if (ratio < weakest_.ratio) weakest_ = {.variable = clique.variables.front(), .ratio = ratio};
   for (const int column : clique.singular) holdSingular(clique, column);
 }
 
+void Front::makeUpdateMatrix(Clique& clique, std::span<const Clique> cliques) {
+  unneeded_panel_.resize(std::max(unneeded_panel_.size(), clique.panelLength()));
+  gather(clique, cliques, unneeded_panel_.data());
+  subtractEliminated(clique);
+  packUpdateMatrix(clique);
+}
+
+void Front::gather(const Clique& clique, std::span<const Clique> cliques, double* panel) {
+  panel_ = panel;
+  begin(clique);
+  for (const FactorId f : clique.factors) addFactor(clique, f);
+  for (int child = clique.first_child; child >= 0; child = cliques[child].next_sibling)
+    addChild(clique, cliques[child]);
+}
+
+/// What the eliminated frontals take off the separator.
+void Front::subtractEliminated(const Clique& clique) {
+  const int n = clique.frontal_size;
+  subtractOuterProduct(update_matrix_.data(), update_stride_, clique.panel + n, clique.panelStride(), update_size_, n);
+}
+
 /// An empty front of the clique's size.
-void Front::begin(Clique& clique) {
+void Front::begin(const Clique& clique) {
   update_size_ = clique.separatorSize() + 1;
   update_stride_ = padded(update_size_);
   const std::size_t length = std::size_t(update_stride_) * update_size_;
   if (update_matrix_.size() < length) update_matrix_.resize(length);
-  clearLowerTriangle(clique.panel, clique.panelStride(), clique.frontal_size);
+  clearLowerTriangle(panel_, clique.panelStride(), clique.frontal_size);
   clearLowerTriangle(update_matrix_.data(), update_stride_, update_size_);
   offset_.resize(graph_.slots());
   int at = 0;
@@ -54,7 +71,7 @@ void Front::begin(Clique& clique) {
   }
 }
 
-void Front::addFactor(Clique& clique, FactorId id) {
+void Front::addFactor(const Clique& clique, FactorId id) {
   const Factor& factor = graph_.factor(id);
   spans_.clear();
   int from = 0;
@@ -79,7 +96,7 @@ void Front::addFactor(Clique& clique, FactorId id) {
       clique, [&](int j) { return product_.data() + j * stride; }, spans_);
 }
 
-void Front::addChild(Clique& clique, const Clique& child) {
+void Front::addChild(const Clique& clique, const Clique& child) {
   spans_.clear();
   int from = 0;
   const auto separator = child.separator();
@@ -98,7 +115,7 @@ void Front::addChild(Clique& clique, const Clique& child) {
 }
 
 /// Of the scalars in `spans_`.
-void Front::addRightHandSide(Clique& clique, const double* g) {
+void Front::addRightHandSide(const Clique& clique, const double* g) {
   for (const RowSpan& span : spans_)
     for (int i = 0; i < span.size; ++i) column(clique, span.to + i)[clique.size] += g[span.from + i];
 }
@@ -118,7 +135,7 @@ void Front::splitAtFrontals(int frontal_size) {
 
 /// Adds the lower triangle of a small symmetric matrix whose rows are given in spans; `source` gives its columns.
 template <class ColumnOf>
-void Front::addSymmetric(Clique& clique, const ColumnOf& source, std::span<const RowSpan> spans) {
+void Front::addSymmetric(const Clique& clique, const ColumnOf& source, std::span<const RowSpan> spans) {
   for (std::size_t b = 0; b < spans.size(); ++b) {
     const RowSpan columns = spans[b];
     const std::span<const RowSpan> below = spans.subspan(b + 1);
@@ -136,9 +153,9 @@ void Front::addSymmetric(Clique& clique, const ColumnOf& source, std::span<const
 }
 
 /// A column of the front's lower triangle, such that [row] is the entry.
-double* Front::column(Clique& clique, int column) {
+double* Front::column(const Clique& clique, int column) {
   const int n = clique.frontal_size;
-  if (column < n) return clique.panel + column * clique.panelStride();
+  if (column < n) return panel_ + column * clique.panelStride();
   return update_matrix_.data() + (column - n) * update_stride_ - n;
 }
 
@@ -146,10 +163,12 @@ void Front::packUpdateMatrix(Clique& clique) const {
   const int rest = clique.separatorSize();
   const double* from = update_matrix_.data();
   double* to = clique.update_matrix;
-  for (int j = 0; j < rest; ++j, from += update_stride_) {
-    to = std::copy(from + j, from + rest, to);
-    clique.contribution[j] = from[rest];
-  }
+  for (int j = 0; j < rest; ++j, from += update_stride_) to = std::copy(from + j, from + rest, to);
+}
+
+void Front::packContribution(Clique& clique) const {
+  const int rest = clique.separatorSize();
+  for (int j = 0; j < rest; ++j) clique.contribution[j] = update_matrix_[rest + std::size_t(j) * update_stride_];
 }
 
 /// Keeps the x of a scalar without information where the estimate stands.

@@ -26,8 +26,10 @@ class Front {
  public:
   explicit Front(const FactorGraph& graph) : graph_(graph) {}
 
-  /// `cliques` holds the children, which have been eliminated.
+  /// `cliques` holds the children, which have been eliminated, with their update matrices.
   void eliminate(Clique& clique, std::span<const Clique> cliques);
+  /// Fills the update matrix of a clique as its elimination did; all else of the clique stays.
+  void makeUpdateMatrix(Clique& clique, std::span<const Clique> cliques);
   /// [H g; g^T c], lower triangle, that the newest clique leaves on its separator.
   Eigen::MatrixXd schurComplement() const;
 
@@ -41,15 +43,18 @@ class Front {
     int from, to, size;  // scalars from `from` of a small matrix go to `to` of the front
   };
 
-  void begin(Clique& clique);
-  void addFactor(Clique& clique, FactorId id);
-  void addChild(Clique& clique, const Clique& child);
-  void addRightHandSide(Clique& clique, const double* g);
+  void gather(const Clique& clique, std::span<const Clique> cliques, double* panel);
+  void begin(const Clique& clique);
+  void addFactor(const Clique& clique, FactorId id);
+  void addChild(const Clique& clique, const Clique& child);
+  void addRightHandSide(const Clique& clique, const double* g);
   template <class ColumnOf>
-  void addSymmetric(Clique& clique, const ColumnOf& source, std::span<const RowSpan> spans);
+  void addSymmetric(const Clique& clique, const ColumnOf& source, std::span<const RowSpan> spans);
   void splitAtFrontals(int frontal_size);
-  double* column(Clique& clique, int column);
+  double* column(const Clique& clique, int column);
+  void subtractEliminated(const Clique& clique);
   void packUpdateMatrix(Clique& clique) const;
+  void packContribution(Clique& clique) const;
   void holdSingular(Clique& clique, int column);
 
   const FactorGraph& graph_;
@@ -58,6 +63,8 @@ class Front {
   std::vector<int> offset_;  // per variable: its first scalar in the front at hand
   std::vector<RowSpan> spans_;
   std::vector<double> product_;
+  double* panel_ = nullptr;  // of the front at hand: the clique's, or one that is not needed
+  std::vector<double, Eigen::aligned_allocator<double>> unneeded_panel_;
   /// [H g; g^T c] on the separator, until it is packed.
   std::vector<double, Eigen::aligned_allocator<double>> update_matrix_;
   int update_size_ = 0, update_stride_ = 0;

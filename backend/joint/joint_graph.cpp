@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kFreeMotion = 1e6;     // times the accelerations' variance: nothing is known of how objects move
 constexpr double kComparedShare = 0.5;  // objects turn little: a factor is seldom off by the turns of several poses
+constexpr int kKeptEliminations = 10;   // old poses are hardly ever eliminated anew: their cliques may be small
 constexpr int kEarlierViews = 3;        // of a point whose body is found: one that took longer may be of two
 
 IncrementalSolver::Params solverParams(const JointParams& params) {
@@ -27,7 +28,8 @@ IncrementalSolver::Params solverParams(const JointParams& params) {
           .iterations_per_update = params.iterations_per_update,
           .iterated_scalars = 0,
           .budget = {.scalars = params.budget_scalars > 0 ? params.budget_scalars : params.relinearized_scalars,
-                     .ms = params.budget_ms}};
+                     .ms = params.budget_ms},
+          .kept_eliminations = kKeptEliminations};
 }
 
 Vector6d sigmas(double sigma_m, double tilt_rad, double yaw_rad) {

@@ -46,6 +46,7 @@ class IncrementalSolver {
     /// Scalars substituted in an update up to which it may take a further step; 0: no limit.
     std::int64_t iterated_scalars = 3000;
     EliminationBudget::Params budget;
+    int kept_eliminations = 0;  // see EliminationTree
   };
   struct Report {
     std::vector<SolverProblem> problems;
@@ -112,7 +113,7 @@ class IncrementalSolver {
 
   Params params_;
   FactorGraph graph_;
-  EliminationTree tree_{graph_};
+  EliminationTree tree_{graph_, params_.kept_eliminations};
   AffectedOrder reordered_{graph_, tree_};
   CliqueWork work_{tree_};
   EliminationBudget budget_{params_.budget};

@@ -51,14 +51,13 @@ RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::
 }
 
 /// The rows of the path that a clique's scalars have, in the order of its factor.
-std::vector<Eigen::Index> rowsOf(const FactorGraph& graph, const Path& path, const Clique& clique) {
-  std::vector<Eigen::Index> rows;
+void findRows(const FactorGraph& graph, const Path& path, const Clique& clique, std::vector<int>& rows) {
+  rows.clear();
   for (const VariableId v : clique.variables)
     for (int i = 0, row = path.rowOf(v); i < graph.sizeOf(v); ++i) rows.push_back(row + i);
-  return rows;
 }
 
-int firstRowThatIsNotZero(const RowMajorMatrixXd& y, int rows) {
+int firstRowThatIsNotZero(const Eigen::Ref<const RowMajorMatrixXd>& y, int rows) {
   int row = 0;
   while (row < rows && (y.row(row).array() == 0).all()) ++row;
   return row;
@@ -78,12 +77,15 @@ std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const 
                                                 RowMajorMatrixXd rest) {
   const int columns = static_cast<int>(rest.cols()), stride = padded(columns);
   Eigen::MatrixXd minus_square = Eigen::MatrixXd::Zero(stride, stride);
-  RowMajorMatrixXd y;
+  std::vector<int> rows;
+  int largest = 0;
+  for (const int c : path.cliques) largest = std::max(largest, tree[c].size);
+  RowMajorMatrixXd memory(largest, stride);
   for (const int c : path.cliques) {
     const Clique& clique = tree[c];
     if (!clique.singular.empty()) return std::nullopt;
-    const std::vector<Eigen::Index> rows = rowsOf(graph, path, clique);
-    y.resize(clique.size, stride);
+    findRows(graph, path, clique, rows);
+    auto y = memory.topRows(clique.size);
     y.rightCols(stride - columns).setZero();
     for (int i = 0; i < clique.size; ++i) y.row(i).head(columns) = rest.row(rows[i]);
     const int first = firstRowThatIsNotZero(y, clique.frontal_size), solved = clique.frontal_size - first;
