@@ -113,7 +113,7 @@ void EliminationTree::release(Clique& clique) {
   clique.singular.clear();
   clique.panel = clique.update_matrix = clique.contribution = nullptr;
   clique.parent = clique.first_child = clique.next_sibling = clique.previous_sibling = -1;
-  clique.alive = false;
+  clique.alive = clique.made_again = false;
 }
 
 void EliminationTree::attach(int orphan, int parent) {
