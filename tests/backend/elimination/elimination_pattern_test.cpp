@@ -128,12 +128,22 @@ TEST(EliminationPattern, ATermBelongsToTheGroupOfItsFirstPosition) {
   }
 }
 
+Problem chainOfPoses(int count) {
+  Problem chain{.count = count, .boundary = 0, .terms = {}, .scalars = std::vector<int>(count, 6)};
+  for (int i = 1; i < count; ++i) chain.terms.push_back({i - 1, i});
+  return chain;
+}
+
 /// Joining cliques must not turn a sparse problem into a dense one.
 TEST(EliminationPattern, AChainOfPosesStaysAChain) {
-  Problem chain{.count = 200, .boundary = 0, .terms = {}, .scalars = std::vector<int>(200, 6)};
-  for (int i = 1; i < chain.count; ++i) chain.terms.push_back({i - 1, i});
-  const auto pattern = analyzed(chain);
+  const auto pattern = analyzed(chainOfPoses(200));
   for (const Group& group : pattern.groups()) EXPECT_LE(group.size, 4);
+}
+
+TEST(EliminationPattern, PosesJoinByThreesWhateverZerosThatAdds) {
+  const auto pattern = analyzed(chainOfPoses(200));
+  EXPECT_EQ(std::ranges::count(pattern.groups(), 3, &Group::frontals), 66);
+  EXPECT_EQ(pattern.groups().size(), 67U) << "and two are left over";
 }
 
 TEST(EliminationPattern, ColumnsOfOneCliqueShareAGroup) {
