@@ -112,6 +112,7 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
   JointRecord& record = object.records[seen.frame];
   record.seen = seen;
   record.seen.measured.clear();
+  record.seen.measured.shrink_to_fit();  // records are kept for as long as the window
   record.stamp = frames_.at(seen.frame).stamp;
   if (before)
     continueObject(object, *before, record);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "backend/joint/joint_graph.hpp"
 #include "backend/joint/known_landmarks.hpp"
@@ -179,7 +180,8 @@ std::optional<FactorId> JointGraph::addBundle(const std::vector<LandmarkTrack*>&
   EliminatedLandmarks eliminated =
       eliminateLandmarks(camera_, object ? params_.object_noise : params_.static_noise, landmarks,
                          object ? FramePose::kCamBody : FramePose::kWorldCam, std::move(T_cam_body), offset_px());
-  for (std::size_t i = 0; i < landmark_tracks.size(); ++i) landmark_tracks[i]->estimate = eliminated.estimates[i];
+  const auto estimates = std::exchange(eliminated.estimates, {});  // which the factor does not need
+  for (std::size_t i = 0; i < landmark_tracks.size(); ++i) landmark_tracks[i]->estimate = estimates[i];
   return solver_.addFactor(std::make_unique<BundleFactor>(std::move(poses), offset_, std::move(eliminated)), lifetime);
 }
 
