@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFreeMotion = 1e6;     // times the accelerations' variance: nothing is known of how objects move
 constexpr double kComparedShare = 0.5;  // objects turn little: a factor is seldom off by the turns of several poses
-constexpr int kKeptEliminations = 10;   // old poses are hardly ever eliminated anew: their cliques may be small
+constexpr int kKeptEliminations = 10;   // of update matrices: those of older poses are hardly ever asked for
 constexpr int kEarlierViews = 3;        // of a point whose body is found: one that took longer may be of two
 
 IncrementalSolver::Params solverParams(const JointParams& params) {

@@ -65,7 +65,7 @@ TEST(UpdateMatrices, MadeAgainTheyAreWhatTheyWere) {
   EXPECT_EQ(few.relinearized, all.relinearized);
 }
 
-TEST(UpdateMatrices, TheyAreMostOfTheMemory) {
+TEST(UpdateMatrices, ThoseGivenBackTakeNoMemory) {
   Drive all(0), few(2);
   for (int frame = 0; frame < 100; ++frame) all.addFrame(), few.addFrame();
   EXPECT_LT(static_cast<double>(few.solver.tree().usedBytes()),
