@@ -10,19 +10,30 @@ void LineFile::writeLine(std::string_view line) {
   file_.write(buffer_);
 }
 
+void LineFile::writeLines(const std::vector<std::string>& lines) {
+  buffer_.clear();
+  for (const std::string& line : lines) buffer_.append(line) += '\n';
+  file_.write(buffer_);
+}
+
 void replace(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::error_code error;
   std::filesystem::rename(from, to, error);
   if (error) throw OutputError(to.string() + ": cannot be written: " + error.message());
 }
 
-void writeAtOnce(const std::filesystem::path& file, std::string_view content) {
+void writeAtOnce(const std::filesystem::path& file, std::string_view text) {
+  std::string lines(text);
+  if (!text.ends_with('\n')) lines += '\n';
+  writeBytesAtOnce(file, lines);
+}
+
+void writeBytesAtOnce(const std::filesystem::path& file, std::string_view bytes) {
   std::filesystem::path unfinished = file;
   unfinished += ".part";
   try {
-    LineFile out(unfinished);
-    if (content.ends_with('\n')) content.remove_suffix(1);
-    out.writeLine(content);
+    OutputFile out(unfinished);
+    out.write(bytes);
     out.close();
   } catch (const OutputError&) {
     std::error_code ignored;

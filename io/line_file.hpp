@@ -3,12 +3,13 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/output_file.hpp"
 
 namespace motorcade {
 
-/// A text file that grows by one whole line per write, so that a program that is killed leaves whole lines behind.
+/// A text file that grows by whole lines per write, so that a program that is killed leaves whole lines behind.
 /// Every failure is an OutputError naming the file.
 class LineFile {
  public:
@@ -17,6 +18,8 @@ class LineFile {
 
   /// Writes the line and its end.
   void writeLine(std::string_view line);
+  /// Writes lines and their ends, all in one go.
+  void writeLines(const std::vector<std::string>& lines);
   /// Reports errors that the system held back until now. The destructor closes without reporting.
   void close() { file_.close(); }
 
@@ -28,7 +31,9 @@ class LineFile {
 /// Gives a file another name, also one that another file has. Throws OutputError.
 void replace(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Writes a whole file under another name and renames it: readers see all of it or nothing.
-void writeAtOnce(const std::filesystem::path& file, std::string_view content);
+/// Writes a whole file under another name and renames it: readers see all of it or nothing. A text's last line gets its
+/// end.
+void writeAtOnce(const std::filesystem::path& file, std::string_view text);
+void writeBytesAtOnce(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace motorcade

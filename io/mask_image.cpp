@@ -6,7 +6,20 @@
 #include <limits>
 #include <string>
 
+#include "io/mask_runs.hpp"
+
 namespace motorcade {
+
+namespace {
+
+void paint(const ObjectMask& mask, std::uint16_t value, Gray16Image& image) {
+  forEachRun(mask, image.width, image.height, [&](const MaskRun& run) {
+    for (int v = run.v_begin; v < run.v_end; ++v)
+      std::fill_n(image.pixels.begin() + std::ptrdiff_t{v} * image.width + run.u_begin, run.u_end - run.u_begin, value);
+  });
+}
+
+}  // namespace
 
 Gray16Image maskImage(const FrameEstimate& frame, const std::vector<ObjectMask>& masks, int width_px, int height_px) {
   Gray16Image image;
@@ -22,15 +35,7 @@ Gray16Image maskImage(const FrameEstimate& frame, const std::vector<ObjectMask>&
   std::vector<const ObjectMask*> farthest_first;
   for (const ObjectMask& mask : masks) farthest_first.push_back(&mask);
   std::ranges::stable_sort(farthest_first, std::ranges::greater{}, distance_m);
-  for (const ObjectMask* mask : farthest_first) {
-    const std::uint16_t value = maskValue(mask->track);
-    const int v_end = std::min(mask->top_px + mask->height * mask->cell_px, height_px),
-              u_end = std::min(mask->left_px + mask->width * mask->cell_px, width_px);
-    for (int v = std::max(mask->top_px, 0); v < v_end; ++v)
-      for (int u = std::max(mask->left_px, 0); u < u_end; ++u)
-        if (mask->at((u - mask->left_px) / mask->cell_px, (v - mask->top_px) / mask->cell_px))
-          image.pixels[static_cast<std::size_t>(v) * width_px + u] = value;
-  }
+  for (const ObjectMask* mask : farthest_first) paint(*mask, maskValue(mask->track), image);
   return image;
 }
 

@@ -5,6 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "io/mask_runs.hpp"
 #include "io/number_text.hpp"
 
 namespace motorcade {
@@ -21,10 +22,10 @@ Pixels pixelsOf(const ObjectMask& mask, int width_px, int height_px) {
             right = std::min(mask.left_px + mask.width * mask.cell_px, width_px),
             bottom = std::min(mask.top_px + mask.height * mask.cell_px, height_px);
   cv::Mat inside = cv::Mat::zeros(std::max(bottom - top, 0), std::max(right - left, 0), CV_8U);
-  for (int v = top; v < bottom; ++v)
-    for (int u = left; u < right; ++u)
-      inside.at<std::uint8_t>(v - top, u - left) =
-          mask.at((u - mask.left_px) / mask.cell_px, (v - mask.top_px) / mask.cell_px) ? 1 : 0;
+  forEachRun(mask, width_px, height_px, [&](const MaskRun& run) {
+    for (int v = run.v_begin; v < run.v_end; ++v)
+      std::fill_n(inside.ptr(v - top) + (run.u_begin - left), run.u_end - run.u_begin, std::uint8_t{1});
+  });
   return {inside, left, top};
 }
 

@@ -31,6 +31,7 @@ void ObjectViewWriter::removeEarlier(const fs::path& run_folder) {
 ObjectViewWriter::ObjectViewWriter(const fs::path& run_folder, const StereoCamera& camera)
     : masks_(preparedMasks(run_folder / kMasksFolder)),
       camera_(camera),
+      pack_(camera.width_px, camera.height_px),
       outlines_(run_folder / kOutlinesFile),
       points_(run_folder / kObjectPointsFile) {
   points_.writeLine(kObjectPointsHeader);
@@ -38,17 +39,24 @@ ObjectViewWriter::ObjectViewWriter(const fs::path& run_folder, const StereoCamer
 
 void ObjectViewWriter::frameLeft(const PipelineResult& result) {
   const FrameEstimate& frame = result.online;
-  writePng16(maskFile(masks_, frame.frame), maskImage(frame, result.masks, camera_.width_px, camera_.height_px));
+  const int width_px = camera_.width_px, height_px = camera_.height_px;
+  writeBytesAtOnce(maskFile(masks_, frame.frame), pack_(maskImage(frame, result.masks, width_px, height_px)));
+  std::vector<std::string> lines;
   for (const ObjectMask& mask : result.masks)
-    outlines_.writeLine(
-        outlineLine(frame.frame, mask.track, outlinePolygons(mask, camera_.width_px, camera_.height_px)));
-  if (!result.measurements) return;
-  for (const ObjectObservation& seen : result.measurements->objects) {
-    if (seen.frame != frame.frame) continue;  // from before it was confirmed
+    lines.push_back(outlineLine(frame.frame, mask.track, outlinePolygons(mask, width_px, height_px)));
+  outlines_.writeLines(lines);
+  if (result.measurements) writePoints(*result.measurements);
+}
+
+void ObjectViewWriter::writePoints(const FrameMeasurements& measurements) {
+  std::vector<std::string> lines;
+  for (const ObjectObservation& seen : measurements.objects) {
+    if (seen.frame != measurements.frame) continue;  // from before it was confirmed
     for (const PointMeasurement& point : seen.measured)
-      points_.writeLine(objectPointLine(
-          {.frame = frame.frame, .track = seen.track, .point = point.point, .uvd_px = point.uvd_px.cast<double>()}));
+      lines.push_back(objectPointLine(
+          {.frame = seen.frame, .track = seen.track, .point = point.point, .uvd_px = point.uvd_px.cast<double>()}));
   }
+  points_.writeLines(lines);
 }
 
 void ObjectViewWriter::close() {

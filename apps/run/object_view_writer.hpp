@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "apps/run/mask_packer.hpp"
 #include "apps/run/run_listener.hpp"
 #include "core/stereo_camera.hpp"
 #include "io/line_file.hpp"
@@ -21,8 +22,11 @@ class ObjectViewWriter : public RunListener {
   static void removeEarlier(const std::filesystem::path& run_folder);
 
  private:
+  void writePoints(const FrameMeasurements& measurements);
+
   std::filesystem::path masks_;
   StereoCamera camera_;
+  MaskPacker pack_;
   LineFile outlines_, points_;
 };
 

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/image_file.hpp"
+
+namespace motorcade {
+
+class PartPacker;
+
+/// Packs masks of one size as PNG files. Most of a mask's rows equal the row above, as cells are up to four pixels high
+/// and no object reaches over the whole image: what zlib makes of such rows is kept and repeated. That takes a tenth of
+/// the time in which libpng packs the same image.
+class MaskPacker {
+ public:
+  MaskPacker(int width_px, int height_px);
+  ~MaskPacker();
+  MaskPacker(const MaskPacker&) = delete;
+  MaskPacker& operator=(const MaskPacker&) = delete;
+
+  /// The bytes of a 16-bit gray PNG; of the size that was given first.
+  std::string operator()(const Gray16Image& mask);
+
+ private:
+  /// A part of the stream that stands for itself, wherever it is put.
+  struct Part {
+    std::string packed;
+    std::size_t unpacked_bytes;
+    std::uint32_t checksum;
+  };
+  static Part packed(PartPacker& packer, const std::vector<std::uint8_t>& bytes);
+  Part changedRows(const Gray16Image& mask, int first, int end);
+
+  int width_px_, height_px_;
+  std::size_t row_bytes_;
+  std::unique_ptr<PartPacker> packer_;
+  std::vector<Part> repeated_;  // 1, 2, 4, ... rows that equal the row above
+};
+
+}  // namespace motorcade
