@@ -60,7 +60,7 @@ count() {  # DRIVE PROCESSOR
   folder=$(folder_of "$drive") frames=$(frames_of "$drive")
   callgrind() { profile callgrind --callgrind-out-file="$work/$drive.$1" "${@:2}" >"$work/$drive.log" 2>&1 || { cat "$work/$drive.log" >&2; return 1; }; }
   attribute() { awk -f perf/instructions/attribute.awk -v drive="$drive" -v frames="$frames" -v parts="$1" "$work/$drive.$1"; }
-  callgrind stages "$motorcade" -q run "$folder" --frames "0:$frames" --threads 1 --out "$work/run_$drive" && attribute stages &&
+  callgrind stages "$motorcade" -q run "$folder" --frames "0:$frames" --threads 1 --masks --out "$work/run_$drive" && attribute stages &&
     callgrind libpng "$libpng_pairs" "$folder" "$frames" && attribute libpng
 }
 

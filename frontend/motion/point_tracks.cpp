@@ -18,6 +18,9 @@ constexpr double kMaxStaticChi2 = 3.0;
 /// a single residual, below it the motion is not significant anyway.
 constexpr double kMinMotionChi2 = 16;
 constexpr int kMaxAmbiguity = 3;  // frames after which an ambiguous point is trusted again when it no longer is
+/// A track of so many observations that is not ambiguous is checked in one of a few frames, each in another one.
+constexpr int kTrusted_observations = 5;
+constexpr std::int64_t kTrustedPeriod_frames = 4;
 
 /// Tracks of a frame exceed the second cache: what is needed of one is asked for while those before it are at work.
 constexpr std::size_t kPrefetchAhead = 3;
@@ -136,6 +139,8 @@ void PointTracks::fit(PointTrack& track, const CameraTrail& trail, const Feature
     track.static_covariance = at_rest->covariance;
   }
   track.flow = moving;
+  const bool trusted = track.ambiguity == 0 && track.count >= kTrusted_observations;
+  if (trusted && (track.point.value + step_) % kTrustedPeriod_frames != 0) return;
   if (track.flow && track.flow->static_chi2 - track.flow->moving_chi2 > kMinMotionChi2)
     track.ambiguity = std::clamp(track.ambiguity + (isFoundAtRest(track, trail, now) ? 1 : -1), 0, kMaxAmbiguity);
 }
