@@ -61,8 +61,8 @@ class PartPacker {
  public:
   /// `level` as zlib counts them: 1 is fast, 9 packs best.
   explicit PartPacker(int level) {
-    constexpr int kNoHeader = -MAX_WBITS, kUsualMemory = 8;
-    if (deflateInit2(&stream_, level, Z_DEFLATED, kNoHeader, kUsualMemory, Z_DEFAULT_STRATEGY) != Z_OK)
+    constexpr int kNoHeader = -MAX_WBITS, kLittleMemory = 5;  // which is cleared after each part
+    if (deflateInit2(&stream_, level, Z_DEFLATED, kNoHeader, kLittleMemory, Z_DEFAULT_STRATEGY) != Z_OK)
       throw std::bad_alloc();
   }
   ~PartPacker() { deflateEnd(&stream_); }
