@@ -13,6 +13,8 @@ constexpr std::size_t kShared = 100;
 /// What so many factors share couples what is eliminated after it: it comes last, too.
 constexpr std::size_t kCommon = 20;
 
+constexpr std::size_t kAhead = 4;  // variables of a search that are asked for before they are looked at
+
 }  // namespace
 
 std::span<const VariableId> AffectedOrder::operator()(std::span<const VariableId> variables,
@@ -25,7 +27,7 @@ std::span<const VariableId> AffectedOrder::operator()(std::span<const VariableId
   bandByDistance(touched);
   putLast(touched, newest);
   ordering_.begin(static_cast<int>(variables.size()));
-  for (const FactorId f : factors) addRow(graph_.factor(f).variables());
+  for (const FactorId f : factors) addRow(graph_.variablesOf(f));
   for (const int orphan : orphans) addRow(tree_[orphan].separator());
   order_.clear();
   for (const int column : ordering_.order(group_)) order_.push_back(variables[column]);
@@ -58,10 +60,11 @@ void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
   for (std::size_t i = 0; i < queue_.size() && missing > 0; ++i) {
     const int distance = distance_[queue_[i].value];
     if (distance == kFarthest || distance > 2 * farthest + 1) break;
+    if (i + kAhead < queue_.size()) __builtin_prefetch(&graph_[queue_[i + kAhead]].factors);
     if (graph_[queue_[i]].factors.size() > kShared) continue;
     for (const FactorId f : graph_[queue_[i]].factors)
       if (passed_.insert(f.value))
-        for (const VariableId neighbor : graph_.factor(f).variables()) reach(neighbor, distance + 1);
+        for (const VariableId neighbor : graph_.variablesOf(f)) reach(neighbor, distance + 1);
   }
 }
 

@@ -219,7 +219,7 @@ void EliminationTree::findPattern(const Elimination& problem) {
     for (const VariableId v : variables) term_positions_.push_back(position_[v.value]);
     pattern_.addTerm(term_positions_);
   };
-  for (const FactorId f : problem.factors) addTerm(graph_.factor(f).variables());
+  for (const FactorId f : problem.factors) addTerm(graph_.variablesOf(f));
   for (const int orphan : problem.orphans) addTerm((*this)[orphan].separator());
   pattern_.analyze(scalars_);
 }

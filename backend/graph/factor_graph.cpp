@@ -130,6 +130,8 @@ std::optional<FactorId> FactorGraph::addFactor(std::unique_ptr<const Factor> fac
   const FactorId id = takeSlot(free_factors_, factors_);
   LinearizedFactor& slot = factors_[id.value];
   slot = std::move(fresh);
+  variables_of_.resize(factors_.size());
+  variables_of_[id.value] = slot.factor->variables();
   const bool residual = slot.factor->form() == Factor::Form::kJacobian;
   int at = 0;
   for (const VariableId v : slot.factor->variables()) {
@@ -150,6 +152,7 @@ void FactorGraph::removeFactor(FactorId id) {
   if (slot.factor->form() == Factor::Form::kJacobian) --residual_count_;
   giveBack(slot);
   slot.factor = nullptr;
+  variables_of_[id.value] = {};
   free_factors_.push_back(id);
 }
 

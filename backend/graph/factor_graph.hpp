@@ -88,6 +88,7 @@ class FactorGraph {
   const Variable& operator[](VariableId id) const { return variables_[id.value]; }
   Variable& operator[](VariableId id) { return variables_[id.value]; }
   const Factor& factor(FactorId id) const { return *slot(id).factor; }
+  std::span<const VariableId> variablesOf(FactorId id) const { return variables_of_[id.value]; }
   /// The linear model of a factor of Form::kJacobian, and of Form::kInformation.
   Term term(FactorId id) const;
   Information information(FactorId id) const;
@@ -144,6 +145,8 @@ class FactorGraph {
 
   std::vector<Variable> variables_;
   std::vector<LinearizedFactor> factors_;
+  std::vector<std::span<const VariableId>>
+      variables_of_;  // per factor; close to each other: searches pass many factors
   std::vector<VariableId> free_variables_;
   std::vector<FactorId> free_factors_;
   BlockPool terms_;

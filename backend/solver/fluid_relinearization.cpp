@@ -255,7 +255,7 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeRegion(VariableId w
   in_region_.insert(worst.value);
   for (std::size_t i = 0; i < region_.size() && i < kLargestRegion; ++i)
     for (const FactorId f : graph_[region_[i]].factors)
-      for (const VariableId v : graph_.factor(f).variables()) {
+      for (const VariableId v : graph_.variablesOf(f)) {
         if (in_region_.contains(v.value) || graph_.turnSinceLinearization(v) <= turn_rad) continue;
         in_region_.insert(v.value);
         if (relinearizeWithin(v, flops_left) == Reach::kWithin) region_.push_back(v);

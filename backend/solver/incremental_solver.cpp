@@ -61,7 +61,7 @@ std::optional<FactorId> IncrementalSolver::addFactor(std::unique_ptr<const Facto
 }
 
 void IncrementalSolver::removeFactor(FactorId id) {
-  const auto variables = graph_.factor(id).variables();
+  const auto variables = graph_.variablesOf(id);
   if (std::erase(new_factors_, id) == 0 && !waiting_.remove(id)) {
     touched_.insert(touched_.end(), variables.begin(), variables.end());
     tree_.removeFactor(tree_.ownerOf(graph_.factor(id)), id);
@@ -153,7 +153,7 @@ void IncrementalSolver::notingPace(const Elimination& eliminate) {
 
 void IncrementalSolver::touchNewFactors() {
   for (const FactorId f : new_factors_) {
-    const auto variables = graph_.factor(f).variables();
+    const auto variables = graph_.variablesOf(f);
     touched_.insert(touched_.end(), variables.begin(), variables.end());
   }
   sortUnique(touched_);
@@ -169,7 +169,7 @@ void IncrementalSolver::rebuildTop() {
   const bool reorder = params_.policy == Policy::kFluid;
   last_ = touched_;
   for (const FactorId f : waiting_.factors())  // so that lifted variables stay where they are
-    last_.insert(last_.end(), graph_.factor(f).variables().begin(), graph_.factor(f).variables().end());
+    last_.insert(last_.end(), graph_.variablesOf(f).begin(), graph_.variablesOf(f).end());
   const auto order = reorder ? reordered_(removed_.variables, removed_.factors, removed_.orphans, last_, new_variables_)
                              : std::span<const VariableId>(removed_.variables);
   created_.clear();

@@ -17,7 +17,7 @@ std::vector<VariableId> neighborsOf(const FactorGraph& graph, std::span<const Fa
                                     std::span<const VariableId> leaving) {
   std::vector<VariableId> neighbors;
   for (const FactorId f : factors)
-    std::ranges::copy_if(graph.factor(f).variables(), std::back_inserter(neighbors),
+    std::ranges::copy_if(graph.variablesOf(f), std::back_inserter(neighbors),
                          [&](VariableId v) { return !contains(leaving, v); });
   sortUnique(neighbors);
   return neighbors;
@@ -128,7 +128,7 @@ std::span<const int> Retirement::drop(std::span<const VariableId> variables) {
   std::vector<int> cliques;
   for (const VariableId v : variables) tree_.appendCliquesWith(v, cliques);
   for (const FactorId f : factors)
-    for (const VariableId v : graph_.factor(f).variables()) cliques.push_back(tree_.cliqueOf(v));
+    for (const VariableId v : graph_.variablesOf(f)) cliques.push_back(tree_.cliqueOf(v));
   removed_.clear();
   tree_.remove(tree_.withAncestors(std::move(cliques)), removed_);
 

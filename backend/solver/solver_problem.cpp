@@ -72,7 +72,7 @@ std::string touching(const SolverProblem& problem, const FactorGraph& graph, con
   std::vector<VariableId> others;
   for (const FactorId f : problem.factors) {
     if (!graph.contains(f)) continue;
-    for (const VariableId v : graph.factor(f).variables())
+    for (const VariableId v : graph.variablesOf(f))
       if (v != problem.variable && std::ranges::find(others, v) == others.end()) others.push_back(v);
   }
   const std::string factors = "its " + counted(static_cast<std::int64_t>(problem.factors.size()), "factor");

@@ -66,8 +66,8 @@ void WaitingFactors::admitWaiting(std::vector<FactorId>& fresh) {
 std::vector<FactorId> WaitingFactors::takeWith(std::span<const VariableId> variables) {
   std::vector<FactorId> taken;
   std::erase_if(waiting_, [&](FactorId f) {
-    const bool takes = std::ranges::any_of(graph_.factor(f).variables(),
-                                           [&](VariableId v) { return std::ranges::count(variables, v) > 0; });
+    const bool takes =
+        std::ranges::any_of(graph_.variablesOf(f), [&](VariableId v) { return std::ranges::count(variables, v) > 0; });
     if (takes) taken.push_back(f);
     return takes;
   });
@@ -94,7 +94,7 @@ double WaitingFactors::chi2() const {
 std::int64_t WaitingFactors::costOf(FactorId id) {
   counted_.reset(tree_.slots());
   std::int64_t scalars = 0;
-  for (const VariableId v : graph_.factor(id).variables())
+  for (const VariableId v : graph_.variablesOf(id))
     for (int c = tree_.cliqueOf(v); c >= 0 && !marked_.contains(c) && counted_.insert(c); c = tree_[c].parent)
       scalars += tree_[c].frontal_size;
   return scalars;
@@ -126,7 +126,7 @@ void WaitingFactors::accept(FactorId id, std::int64_t cost) {
 
 /// The one from which it is farthest to the root. At least to the next clique, however large: that is progress.
 bool WaitingFactors::liftVariableOf(FactorId id) {
-  const auto variables = graph_.factor(id).variables();
+  const auto variables = graph_.variablesOf(id);
   const VariableId v = *std::ranges::max_element(variables, {}, [&](VariableId u) { return costAbove(u); });
   std::vector<int> cliques;
   std::int64_t scalars = 0;

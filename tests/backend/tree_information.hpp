@@ -14,7 +14,7 @@ namespace motorcade::test {
 inline Eigen::MatrixXd informationOfFactors(const FactorGraph& graph, const DenseSystem& dense) {
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(dense.size() + 1, dense.size() + 1);
   for (const FactorId f : graph.factors()) {
-    auto at = dense.entries(graph.factor(f).variables());
+    auto at = dense.entries(graph.variablesOf(f));
     at.push_back(dense.size());
     if (graph.factor(f).form() == Factor::Form::kJacobian)
       system(at, at) += graph.term(f).transpose() * graph.term(f);

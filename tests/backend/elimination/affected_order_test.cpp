@@ -72,8 +72,8 @@ std::vector<int> distances(const Scene& scene, std::span<const VariableId> touch
   };
   while (std::exchange(changed, false)) {
     for (const FactorId f : scene.graph.factors())
-      for (const VariableId u : scene.graph.factor(f).variables())
-        for (const VariableId v : scene.graph.factor(f).variables()) shorten(u, v);
+      for (const VariableId u : scene.graph.variablesOf(f))
+        for (const VariableId v : scene.graph.variablesOf(f)) shorten(u, v);
   }
   return distance;
 }
@@ -158,7 +158,7 @@ TEST(AffectedOrder, DoesNotDependOnCallsBefore) {
 class TermGraph {
  public:
   explicit TermGraph(const Scene& scene) : neighbors_(scene.graph.slots()) {
-    for (const FactorId f : scene.removed.factors) join(scene.graph.factor(f).variables());
+    for (const FactorId f : scene.removed.factors) join(scene.graph.variablesOf(f));
     for (const int orphan : scene.removed.orphans) join(scene.tree[orphan].separator());
   }
   std::size_t degree(VariableId v) const { return neighbors_[v.value].size(); }

@@ -90,7 +90,7 @@ void Scene::expectSound() const {
     for (const FactorId f : clique.factors) {
       factors.push_back(f);
       EXPECT_EQ(ownerOf(f), c);
-      for (const VariableId v : graph.factor(f).variables()) EXPECT_THAT(clique.variables, testing::Contains(v));
+      for (const VariableId v : graph.variablesOf(f)) EXPECT_THAT(clique.variables, testing::Contains(v));
     }
     if (clique.parent < 0) {
       EXPECT_EQ(clique.separatorSize(), 0);
@@ -241,7 +241,7 @@ void addGradient(const Scene& scene, FactorId f, const Eigen::VectorXd& r, const
   const auto term = scene.graph.term(f);
   const Eigen::VectorXd gradient = term.leftCols(term.cols() - 1).transpose() * r;
   Eigen::Index at = 0;
-  for (const VariableId v : scene.graph.factor(f).variables()) {
+  for (const VariableId v : scene.graph.variablesOf(f)) {
     std::size_t row = 0;
     for (auto u = clique.variables.begin(); *u != v; ++u) row += static_cast<std::size_t>(scene.graph.sizeOf(*u));
     for (int i = 0; i < scene.graph.sizeOf(v); ++i) change[row++] += gradient[at++];
@@ -291,14 +291,14 @@ TEST(EliminationTree, AMarginalIsTheSchurComplementOfItsFactors) {
     const VariableId gone = scene.variables[scene.world.below(scene.variables.size())];
     std::vector<VariableId> neighbors;
     for (const FactorId f : scene.graph[gone].factors)
-      for (const VariableId v : scene.graph.factor(f).variables())
+      for (const VariableId v : scene.graph.variablesOf(f))
         if (v != gone && !contains<VariableId>(neighbors, v)) neighbors.push_back(v);
     const Eigen::MatrixXd marginal = scene.tree.marginal(std::array{gone}, neighbors, scene.graph[gone].factors);
 
     const DenseSystem dense(scene.graph);
     Eigen::MatrixXd system = Eigen::MatrixXd::Zero(dense.size() + 1, dense.size() + 1);
     for (const FactorId f : scene.graph[gone].factors) {
-      auto at = dense.entries(scene.graph.factor(f).variables());
+      auto at = dense.entries(scene.graph.variablesOf(f));
       at.push_back(dense.size());
       system(at, at) += scene.graph.term(f).transpose() * scene.graph.term(f);
     }

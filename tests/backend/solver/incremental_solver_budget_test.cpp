@@ -24,7 +24,7 @@ std::int64_t scalarsThatNewFactorsAskFor(const IncrementalSolver& solver, const 
   std::set<VariableId> fresh;
   for (const FactorId f : solver.graph().factors()) {
     if (std::ranges::binary_search(before, f)) continue;
-    for (const VariableId v : solver.graph().factor(f).variables()) {
+    for (const VariableId v : solver.graph().variablesOf(f)) {
       if (solver.tree().cliqueOf(v) < 0) fresh.insert(v);
       for (int c = solver.tree().cliqueOf(v); c >= 0; c = solver.tree()[c].parent) cliques.insert(c);
     }
@@ -310,13 +310,13 @@ TEST(IncrementalSolverEveryN, KeepsItsLinearModelsBetweenBatchSteps) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(dense.size()), scale = gradient;
   for (const FactorId f : solver.graph().factors()) {
     std::vector<double> x;
-    for (const VariableId v : solver.graph().factor(f).variables()) {
+    for (const VariableId v : solver.graph().variablesOf(f)) {
       const auto& coordinates = solver.graph()[v].x;
       x.insert(x.end(), coordinates.begin(), coordinates.begin() + solver.graph().sizeOf(v));
     }
     const auto term = solver.graph().term(f);
     const auto n = static_cast<Eigen::Index>(x.size());
-    const auto at = dense.entries(solver.graph().factor(f).variables());
+    const auto at = dense.entries(solver.graph().variablesOf(f));
     const Eigen::VectorXd r = term.leftCols(n) * Eigen::Map<Eigen::VectorXd>(x.data(), n) + term.col(n);
     gradient(at) += term.leftCols(n).transpose() * r;
     scale(at) += term.leftCols(n).cwiseAbs().transpose() * r.cwiseAbs();

@@ -112,7 +112,7 @@ class RandomEdits {
     for (Node& node : nodes_)
       if (node.parent == gone.variable) node.parent = gone.parent;
     std::erase_if(extras_, [&](FactorId f) {
-      const auto variables = solver_.graph().factor(f).variables();
+      const auto variables = solver_.graph().variablesOf(f);
       return std::ranges::find(variables, gone.variable) != variables.end();
     });
     return gone.variable;

@@ -96,7 +96,7 @@ double chi2(const IncrementalSolver& solver) {
   double sum = 0;
   for (const FactorId f : graph.factors()) {
     std::vector<Value> values;
-    for (const VariableId v : graph.factor(f).variables()) values.push_back(solver.estimate(v));
+    for (const VariableId v : graph.variablesOf(f)) values.push_back(solver.estimate(v));
     std::vector<const Value*> pointers;
     for (const Value& value : values) pointers.push_back(&value);
     Eigen::VectorXd r(graph.factor(f).rows());

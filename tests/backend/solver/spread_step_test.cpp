@@ -59,7 +59,7 @@ TEST(SpreadStep, ModelsAreComparedWhenAllTheirVariablesHaveFollowedAStep) {
   const auto hasMoved = [&](VariableId v) { return path.solver.graph()[v].x[1] > 1e-6; };
   std::vector<FactorId> half_followed;
   for (const FactorId f : path.solver.graph().factors()) {
-    const auto variables = path.solver.graph().factor(f).variables();
+    const auto variables = path.solver.graph().variablesOf(f);
     if (hasMoved(variables.back()) && !hasMoved(variables.front())) half_followed.push_back(f);
   }
   ASSERT_EQ(half_followed.size(), 1U);
