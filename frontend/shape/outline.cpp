@@ -20,61 +20,114 @@ constexpr std::uint8_t kOutside = CuboidVolumes::kOutside, kPossible = CuboidVol
 /// A cell is what most of its 3x3 neighbors and itself are.
 void smooth(Outline& outline) {
   const int width = outline.window.width, height = outline.window.height;
-  std::vector<std::uint8_t> across(outline.inside.size());  // how many of three in a row
+  std::vector<std::uint8_t> across(static_cast<std::size_t>(width) * (height + 2), 0);  // how many of three in a row
   for (int row = 0; row < height; ++row) {
     const std::uint8_t* inside = outline.inside.data() + static_cast<std::size_t>(row) * width;
-    std::uint8_t* sums = across.data() + static_cast<std::size_t>(row) * width;
+    std::uint8_t* sums = across.data() + static_cast<std::size_t>(row + 1) * width;
     for (int column = 0; column < width; ++column) sums[column] = inside[column] != kOutside;
     for (int column = 1; column < width; ++column) sums[column] += inside[column - 1] != kOutside;
     for (int column = 0; column + 1 < width; ++column) sums[column] += inside[column + 1] != kOutside;
   }
   for (int row = 0; row < height; ++row) {
-    const int first = std::max(row - 1, 0), last = std::min(row + 1, height - 1);
-    for (int column = 0; column < width; ++column) {
-      int sum = 0;
-      for (int y = first; y <= last; ++y) sum += across[static_cast<std::size_t>(y) * width + column];
-      const int cells = (last - first + 1) * (1 + (column > 0 ? 1 : 0) + (column + 1 < width ? 1 : 0));
-      std::uint8_t& cell = outline.inside[static_cast<std::size_t>(row) * width + column];
-      cell = 2 * sum <= cells ? kOutside : cell == kOutside ? kPossible : cell;
-    }
+    std::uint8_t* cells = outline.inside.data() + static_cast<std::size_t>(row) * width;
+    const std::uint8_t *above = across.data() + static_cast<std::size_t>(row) * width, *here = above + width,
+                       *below = here + width;
+    const int rows = 1 + (row > 0 ? 1 : 0) + (row + 1 < height ? 1 : 0);
+    const auto decide = [&](int column, int columns) {
+      const int sum = above[column] + here[column] + below[column];
+      cells[column] = 2 * sum <= rows * columns ? kOutside : std::max(cells[column], kPossible);
+    };
+    decide(0, std::min(width, 2));
+    for (int column = 1; column + 1 < width; ++column) decide(column, 3);
+    if (width > 1) decide(width - 1, 2);
   }
 }
 
-/// Keeps the connected piece that has most in the usual volume, and those that lie there for the most part.
-void dropPieces(Outline& outline, const DisparityMap& map) {
-  const int width = outline.window.width, height = outline.window.height;
-  std::vector<int> piece(outline.inside.size(), -1), sizes, usual;
-  std::vector<int> open;
-  for (std::size_t seed = 0; seed < outline.inside.size(); ++seed) {
-    if (!outline.inside[seed] || piece[seed] >= 0) continue;
-    const int id = static_cast<int>(sizes.size());
-    sizes.push_back(0), usual.push_back(0);
-    open.assign(1, static_cast<int>(seed));
-    piece[seed] = id;
-    while (!open.empty()) {
-      const int at = open.back(), column = at % width, row = at / width;
-      open.pop_back();
-      ++sizes[id];
-      usual[id] += outline.inside[at] == kUsual;
-      const auto reach = [&](int x, int y) {
-        if (x < 0 || y < 0 || x >= width || y >= height) return;
-        const int next = y * width + x;
-        if (!outline.inside[next] || piece[next] >= 0) return;
-        const float here_px = map.disparity_px[at], there_px = map.disparity_px[next];
-        const bool known = here_px != DisparityMap::kNone && there_px != DisparityMap::kNone;
-        if (known && std::abs(here_px - there_px) > kConnected_px) return;
-        piece[next] = id;
-        open.push_back(next);
-      };
-      reach(column - 1, row), reach(column + 1, row), reach(column, row - 1), reach(column, row + 1);
+/// The connected pieces of an outline: of each cell the number of its piece.
+class Pieces {
+ public:
+  Pieces(const Outline& outline, const DisparityMap& map)
+      : width_(outline.window.width),
+        stride_(width_ + 2),
+        piece_of_(static_cast<std::size_t>(stride_) * (outline.window.height + 2), kNone),
+        disparity_px_(piece_of_.size(), DisparityMap::kNone) {
+    for (int row = 0; row < outline.window.height; ++row) {
+      const std::size_t from = static_cast<std::size_t>(row) * width_;
+      std::copy_n(map.disparity_px.begin() + static_cast<std::ptrdiff_t>(from), width_, &disparity_px_[placeOf(row)]);
+      for (int column = 0; column < width_; ++column)
+        if (outline.inside[from + column] != kOutside) piece_of_[placeOf(row) + column] = kOpen;
     }
   }
+
+  /// Fills the piece of a cell that is in none yet, and visits each of its cells; false where there is no such cell.
+  template <class Visit>
+  bool fill(int row, int column, int id, const Visit& visit) {
+    const int seed = placeOf(row) + column;
+    if (piece_of_[seed] != kOpen) return false;
+    open_.assign(1, seed);
+    piece_of_[seed] = id;
+    while (!open_.empty()) {
+      const int at = open_.back();
+      open_.pop_back();
+      visit((at / stride_ - 1) * width_ + at % stride_ - 1);
+      for (const int next : {at - 1, at + 1, at - stride_, at + stride_}) {
+        if (piece_of_[next] != kOpen || !areConnected(disparity_px_[at], disparity_px_[next])) continue;
+        piece_of_[next] = id;
+        open_.push_back(next);
+      }
+    }
+    return true;
+  }
+  /// Negative outside.
+  int at(int row, int column) const { return piece_of_[placeOf(row) + column]; }
+
+ private:
+  static constexpr int kNone = -2, kOpen = -1;  // outside, and around the window; in no piece yet
+
+  static bool areConnected(float a_px, float b_px) {
+    const bool known = a_px != DisparityMap::kNone && b_px != DisparityMap::kNone;
+    return !known || std::abs(a_px - b_px) <= kConnected_px;
+  }
+  int placeOf(int row) const { return (row + 1) * stride_ + 1; }
+
+  int width_, stride_;
+  std::vector<int> piece_of_;
+  std::vector<float> disparity_px_;
+  std::vector<int> open_;
+};
+
+/// Keeps the connected piece that has most in the usual volume, and those that lie there for the most part.
+void dropPieces(Outline& outline, const DisparityMap& map) {
+  Pieces pieces(outline, map);
+  std::vector<int> sizes, usual;
+  for (int row = 0; row < outline.window.height; ++row)
+    for (int column = 0; column < outline.window.width; ++column) {
+      int size = 0, usual_cells = 0;
+      const bool found = pieces.fill(row, column, static_cast<int>(sizes.size()), [&](int cell) {
+        ++size;
+        usual_cells += outline.inside[cell] == kUsual;
+      });
+      if (found) sizes.push_back(size), usual.push_back(usual_cells);
+    }
   if (sizes.empty()) return;
   const auto main = static_cast<int>(std::ranges::max_element(usual) - usual.begin());
-  for (std::size_t i = 0; i < piece.size(); ++i) {
-    const int id = piece[i];
-    outline.inside[i] = id >= 0 && (id == main || usual[id] > kLeastUsual * sizes[id]) ? 1 : 0;
-  }
+  std::vector<std::uint8_t> keeps(sizes.size());
+  for (std::size_t id = 0; id < sizes.size(); ++id)
+    keeps[id] = static_cast<int>(id) == main || usual[id] > kLeastUsual * sizes[id];
+  for (int row = 0; row < outline.window.height; ++row)
+    for (int column = 0; column < outline.window.width; ++column) {
+      const int id = pieces.at(row, column);
+      outline.inside[static_cast<std::size_t>(row) * outline.window.width + column] = id >= 0 ? keeps[id] : 0;
+    }
+}
+
+/// The first and the last of so many cells that are inside; first beyond last where there is none.
+template <class IsInside>
+std::pair<int, int> spanOf(int cells, const IsInside& is_inside) {
+  int first = 0, last = cells - 1;
+  while (first < cells && !is_inside(first)) ++first;
+  while (last > first && !is_inside(last)) --last;
+  return first < cells ? std::pair(first, last) : std::pair(cells, -1);
 }
 
 /// Windows and smooth paint give no disparity, or a wrong one: what has cells of the object on all four sides is its.
@@ -104,28 +157,29 @@ void takeOffFringe(Outline& outline) {
 
 PixelWindow Outline::bounds() const {
   int left = window.width, right = -1, top = window.height, bottom = -1;
-  for (int row = 0; row < window.height; ++row)
-    for (int column = 0; column < window.width; ++column)
-      if (at(column, row)) {
-        left = std::min(left, column), right = std::max(right, column);
-        top = std::min(top, row), bottom = std::max(bottom, row);
-      }
+  const Spans rows = spansOfRows();
+  for (int row = 0; row < window.height; ++row) {
+    const auto [first, last] = rows[row];
+    if (last < 0) continue;
+    left = std::min(left, first), right = std::max(right, last);
+    top = std::min(top, row), bottom = row;
+  }
   return {left, top, right - left + 1, bottom - top + 1};
 }
 
 Outline::Spans Outline::spansOfRows() const {
-  Spans spans(window.height, {window.width, -1});
+  Spans spans;
+  spans.reserve(window.height);
   for (int row = 0; row < window.height; ++row)
-    for (int column = 0; column < window.width; ++column)
-      if (at(column, row)) spans[row] = {std::min(spans[row].first, column), column};
+    spans.push_back(spanOf(window.width, [&](int column) { return at(column, row); }));
   return spans;
 }
 
 Outline::Spans Outline::spansOfColumns() const {
-  Spans spans(window.width, {window.height, -1});
-  for (int row = 0; row < window.height; ++row)
-    for (int column = 0; column < window.width; ++column)
-      if (at(column, row)) spans[column] = {std::min(spans[column].first, row), row};
+  Spans spans;
+  spans.reserve(window.width);
+  for (int column = 0; column < window.width; ++column)
+    spans.push_back(spanOf(window.height, [&](int row) { return at(column, row); }));
   return spans;
 }
 
