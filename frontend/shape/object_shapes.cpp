@@ -32,6 +32,16 @@ constexpr int kIterations = 2;  // of the faces, as what is seen of them depends
 
 double fading(std::int64_t frames) { return power(kFading, static_cast<double>(std::abs(frames))); }
 
+/// That of each look which counts, by its distance in frames.
+const std::array<double, kMemory_frames + 1>& fadingByFrames() {
+  static const auto fadings = [] {
+    std::array<double, kMemory_frames + 1> by_frames;
+    for (std::int64_t frames = 0; frames <= kMemory_frames; ++frames) by_frames[frames] = fading(frames);
+    return by_frames;
+  }();
+  return fadings;
+}
+
 /// Around the points of an object, in its body frame, without the outermost tenth at each side.
 std::optional<Eigen::AlignedBox3d> extentOf(const std::vector<PointMeasurement>& points, const StereoCamera& camera,
                                             const SE3& T_body_cam, double disparity_offset_px) {
@@ -317,9 +327,10 @@ void ObjectShapes::moveLooks(const FrameEstimate& final) {
 
 FaceInformation ObjectShapes::evidenceAround(const Shape& shape, FrameId frame) const {
   FaceInformation evidence = shape.first;
+  const auto& fadings = fadingByFrames();
   const auto end = shape.looks.upper_bound(FrameId{frame.value + kMemory_frames});
   for (auto it = shape.looks.lower_bound(FrameId{frame.value - kMemory_frames}); it != end; ++it)
-    evidence.add(it->second.faces, kLookWeight * fading(it->first.value - frame.value));
+    evidence.add(it->second.faces, kLookWeight * fadings[std::abs(it->first.value - frame.value)]);
   return evidence;
 }
 
