@@ -13,6 +13,7 @@ constexpr double kFreeMotion = 1e6;     // times the accelerations' variance: no
 constexpr double kComparedShare = 0.5;  // objects turn little: a factor is seldom off by the turns of several poses
 constexpr int kKeptEliminations = 10;   // of update matrices: those of older poses are hardly ever asked for
 constexpr int kEarlierViews = 3;        // of a point whose body is found: one that took longer may be of two
+static_assert(kEarlierViews < UndecidedPoints::kMostViews);
 
 IncrementalSolver::Params solverParams(const JointParams& params) {
   return {.policy = IncrementalSolver::Policy::kFluid,
@@ -59,8 +60,7 @@ JointGraph::JointGraph(const JointParams& params, const StereoCamera& camera)
       camera_(camera),
       solver_(solverParams(params)),
       world_{.points = BodyPoints(pointParams(params, camera, params.track_frames, params.max_static_landmarks)),
-             .noise = {}},
-      undecided_(kEarlierViews + 1) {
+             .noise = {}} {
   const SmallVector zero = SmallVector::Zero(1);
   offset_ = solver_.addVariable(zero);
   holdOffset();

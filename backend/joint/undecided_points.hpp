@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -11,8 +12,7 @@ namespace motorcade {
 /// first view, and a vehicle's points are known by how they move: their first views would be lost.
 class UndecidedPoints {
  public:
-  /// Keeps `most_views` of each point.
-  explicit UndecidedPoints(int most_views) : most_views_(most_views) {}
+  static constexpr int kMostViews = 4;  // that are kept of a point
 
   /// The points that are undecided in one frame, in frame order, ordered by point.
   void observe(FrameId frame, std::span<const PointMeasurement> points);
@@ -21,10 +21,19 @@ class UndecidedPoints {
   std::vector<LandmarkTrack::View> take(PointId point, FrameId frame, int most);
 
  private:
-  int most_views_;
+  /// There are many, and most of them live for a few frames: none has memory of its own.
+  struct Known {
+    PointId point;
+    int count = 0;                                      // of views; none when they were taken
+    std::array<LandmarkTrack::View, kMostViews> views;  // oldest first
+
+    std::span<const LandmarkTrack::View> all() const { return std::span(views).first(static_cast<std::size_t>(count)); }
+    void add(const LandmarkTrack::View& view);
+  };
+
   TrackLife life_;
-  std::vector<LandmarkTrack> known_;   // ordered by point; without views when they were taken
-  std::vector<LandmarkTrack> merged_;  // memory for the next frame
+  std::vector<Known> known_;   // ordered by point
+  std::vector<Known> merged_;  // memory for the next frame
 };
 
 }  // namespace motorcade

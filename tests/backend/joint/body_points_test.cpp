@@ -56,7 +56,7 @@ TEST(BodyPoints, EndsATrackWhosePointIsLost) {
 
 TEST(BodyPoints, BringsAlongWhatWasSeenOfNewPointsBefore) {
   BodyPoints points(kParams);
-  UndecidedPoints undecided(4);
+  UndecidedPoints undecided;
   for (int frame = 2; frame < 5; ++frame) undecided.observe({frame}, std::vector{point(7), point(8)});
   points.observe({5}, std::vector{point(7)}, [&](PointId p) { return undecided.take(p, {5}, 3); });
   ASSERT_EQ(points.current().size(), 1U);
@@ -66,7 +66,7 @@ TEST(BodyPoints, BringsAlongWhatWasSeenOfNewPointsBefore) {
 }
 
 TEST(UndecidedPoints, ForgetsPointsThatWereLostOrLongUndecided) {
-  UndecidedPoints undecided(4);
+  UndecidedPoints undecided;
   undecided.observe({0}, std::vector{point(7)});
   for (int frame = 1; frame < 6; ++frame) undecided.observe({frame}, std::vector{point(8)});
   EXPECT_TRUE(undecided.take({7}, {6}, 3).empty());
