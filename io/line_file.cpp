@@ -30,7 +30,7 @@ void writeAtOnce(const std::filesystem::path& file, std::string_view text) {
 
 void writeBytesAtOnce(const std::filesystem::path& file, std::string_view bytes) {
   std::filesystem::path unfinished = file;
-  unfinished += ".part";
+  unfinished += kUnfinishedSuffix;
   try {
     OutputFile out(unfinished);
     out.write(bytes);

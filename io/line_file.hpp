@@ -31,6 +31,9 @@ class LineFile {
 /// Gives a file another name, also one that another file has. Throws OutputError.
 void replace(const std::filesystem::path& from, const std::filesystem::path& to);
 
+/// Of a file's name while `writeAtOnce` writes it, added at its end.
+inline constexpr const char* kUnfinishedSuffix = ".part";
+
 /// Writes a whole file under another name and renames it: readers see all of it or nothing. A text's last line gets its
 /// end.
 void writeAtOnce(const std::filesystem::path& file, std::string_view text);

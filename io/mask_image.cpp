@@ -9,7 +9,6 @@
 #include "io/mask_runs.hpp"
 
 namespace motorcade {
-
 namespace {
 
 void paint(const ObjectMask& mask, std::uint16_t value, Gray16Image& image) {

@@ -12,6 +12,11 @@ namespace fs = std::filesystem;
 
 constexpr const char* kOutlinesFile = "outlines.jsonl";
 
+/// A mask, or one that a killed run left unfinished.
+bool isOfMasks(const fs::path& file) {
+  return isMaskFile(file.extension() == kUnfinishedSuffix ? file.parent_path() / file.stem() : file);
+}
+
 fs::path preparedMasks(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -25,7 +30,7 @@ void ObjectViewWriter::removeEarlier(const fs::path& run_folder) {
   std::error_code ignored;
   for (const char* file : {kOutlinesFile, kObjectPointsFile}) fs::remove(run_folder / file, ignored);
   for (const auto& entry : fs::directory_iterator(run_folder / kMasksFolder, ignored))
-    if (isMaskFile(entry.path())) fs::remove(entry.path(), ignored);
+    if (isOfMasks(entry.path())) fs::remove(entry.path(), ignored);
 }
 
 ObjectViewWriter::ObjectViewWriter(const fs::path& run_folder, const StereoCamera& camera)

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <string>
 #include <utility>
@@ -102,7 +103,10 @@ TEST_F(Run, WritesOutlinesAndPointsWithTheMasksAndRemovesThemNextTime) {
   EXPECT_NEAR(rows.back().object.age_s, 0.1 * static_cast<double>(rows.back().frame.value - rows.front().frame.value),
               2e-3);
 
+  const fs::path unfinished = out("out") / "masks/000003.png.part";  // of a killed run
+  std::ofstream(unfinished) << "x";
   ASSERT_EQ(run("out", "--force"), 0) << contentOf(errors());
+  EXPECT_FALSE(fs::exists(unfinished));
   EXPECT_FALSE(fs::exists(out("out") / kObjectPointsFile));
   EXPECT_FALSE(fs::exists(out("out") / "outlines.jsonl"));
   EXPECT_FALSE(fs::exists(maskFile(out("out") / "masks", {0})));
