@@ -12,8 +12,8 @@ namespace motorcade {
 class PartPacker;
 
 /// Packs masks of one size as PNG files. Most of a mask's rows equal the row above, as cells are up to four pixels high
-/// and no object reaches over the whole image: what zlib makes of such rows is kept and repeated. That takes a tenth of
-/// the time in which libpng packs the same image.
+/// and no object reaches over the whole image: what zlib makes of such rows is kept and repeated. That takes a quarter
+/// of the time in which libpng packs the same image.
 class MaskPacker {
  public:
   MaskPacker(int width_px, int height_px);

@@ -34,7 +34,16 @@ class Drive {
     trail.add({frame * 100'000'000}, frame ? SE3(Eigen::Matrix3d::Identity(), {0, 0, 1}) : SE3{});
     ++frame;
   }
-  /// Point A is at rest, B drives aside; `missing` was not found in the right image.
+  /// From now on the camera sees checks, whose patches are found everywhere.
+  void showChecks() {
+    features_ = imageOf([](double u, double v) { return 128 + 60 * std::sin(u) * std::sin(v); });
+  }
+  int ambiguousPoints() const {
+    int count = 0;
+    for (const PointTrack& track : tracks.observedNow()) count += track.ambiguity > 0;
+    return count;
+  }
+  /// Point A is at rest, B and those after it drive aside; `missing` was not found in the right image.
   void observe(const std::vector<PointId>& points, std::optional<PointId> missing = {}) {
     addFrame();
     std::vector<std::optional<StereoObservation>> observed;
@@ -47,7 +56,7 @@ class Drive {
   }
   Eigen::Vector3d p_cam(PointId point) const {
     const double travelled_m = frame - 1;
-    return kPoint + Eigen::Vector3d(point == kB ? -0.5 * travelled_m : 0, 0, -travelled_m);
+    return kPoint + Eigen::Vector3d(point < kB ? 0 : -0.5 * travelled_m, 0, -travelled_m);
   }
   std::vector<PointId> observedNow() const {
     std::vector<PointId> points;
@@ -61,12 +70,13 @@ class Drive {
   int frame = 0;
 
  private:
-  static FeaturesPtr gray() {
+  template <class Gray>
+  static FeaturesPtr imageOf(const Gray& gray) {
     auto features = std::make_shared<Features>();
-    features->left.levels.push_back(test::render(kRig.width_px, kRig.height_px, [](double, double) { return 128.0; }));
+    features->left.levels.push_back(test::render(kRig.width_px, kRig.height_px, gray));
     return features;
   }
-  FeaturesPtr features_ = gray();
+  FeaturesPtr features_ = imageOf([](double, double) { return 128.0; });
 };
 
 TEST(PointTracks, APointAtRestIsKnownMoreExactlyWithEveryFrame) {
@@ -150,6 +160,23 @@ TEST(PointTracks, AllDisparitiesFollowTheOffset) {
   EXPECT_NEAR(drive.known(kA)->disparity_px, before_px + 0.5, 1e-5);
   const PointTrack& track = drive.tracks.observedNow().front();
   EXPECT_NEAR(track.oldest().uvd_px.z(), kRig.project(kPoint)->z() + 0.5, 1e-4);
+}
+
+TEST(PointTracks, TrustedPointsAreCheckedForAmbiguousTextureInTurn) {
+  const std::vector<PointId> points{kB, {10}, {11}, {12}};
+  Drive drive, young;
+  for (int k = 0; k < 6; ++k) drive.observe(points);
+  EXPECT_EQ(drive.ambiguousPoints(), 0);
+  drive.showChecks();
+  drive.observe(points);  // of the pair of images, the first one has no texture
+  EXPECT_EQ(drive.ambiguousPoints(), 0);
+  for (int checked = 1; checked <= 4; ++checked) {
+    drive.observe(points);
+    EXPECT_EQ(drive.ambiguousPoints(), checked);
+  }
+  young.showChecks();
+  for (int k = 0; k < 4; ++k) young.observe(points);
+  EXPECT_EQ(young.ambiguousPoints(), 4);  // before they are trusted: all at once
 }
 
 }  // namespace
