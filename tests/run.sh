@@ -3,7 +3,7 @@
 #   tests/run.sh --asan ...   under AddressSanitizer and UndefinedBehaviorSanitizer
 #   tests/run.sh --asan-quick ...   the same for the tests of core and io alone, without what else takes long to build
 #   tests/run.sh --tsan ...   the lock-free parts and the flow graph's wiring under ThreadSanitizer (arguments go to the tests)
-# A whole run ends with the pages in a browser (tests/browser.sh).
+# A test that has not ended after ten minutes has failed. A whole run ends with the pages in a browser (tests/browser.sh).
 # Tests on real drives read the folder MOTORCADE_DATA (default: ../shared/data) and are skipped where a drive is not there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -23,7 +23,7 @@ fi
 if [[ $quick ]]; then  # in a folder of its own: precompiled headers would have io wait for the back-end
   cmake --preset $preset -B build/asan_quick -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DMOTORCADE_BUILD_APPS=OFF --log-level=WARNING
   cmake --build build/asan_quick --target core_tests io_tests
-  exec ctest --test-dir build/asan_quick --output-on-failure -R '^(core|io)\.' "$@"
+  exec ctest --test-dir build/asan_quick --output-on-failure --timeout 600 -R '^(core|io)\.' "$@"
 fi
 cmake --preset $preset "${options[@]}" --log-level=WARNING
 cmake --build --preset $preset

@@ -63,10 +63,11 @@ void WorkerTeam::finish() {
   }
 }
 
-/// The leader sees how the graph ends from then on, as the frames that it waits for may never be finished.
+/// The leader sees how the graph ends from then on, as the frames that it waits for may never be finished. One that
+/// does not lead yet need not be let go of: it sees that the team is closed.
 void WorkerTeam::close() {
   closed_ = true;
-  letGo(*seats_[leader_]);
+  if (Seat* const seat = leader_) letGo(*seat);
   call();
 }
 
@@ -85,7 +86,7 @@ void WorkerTeam::work() {
 }
 
 void WorkerTeam::lead(flow::graph& graph) {
-  leader_ = thisSeat();
+  leader_ = seats_[thisSeat()].get();
   for (;;) {
     const auto seen = events_.load(std::memory_order_acquire);
     if (closed_) break;

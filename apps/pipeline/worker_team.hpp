@@ -34,7 +34,7 @@ class WorkerTeam {
   /// In a thread of the team: what is left of a frame is one thread's work; all of a frame is done.
   void reachTail();
   void finish();
-  /// No further call comes; from any thread, once the leader is at work.
+  /// No further call comes; from any thread, also before the leader is at work.
   void close();
   /// Leader, in the arena: works on the graph until it is closed and all is done. Throws what a node threw.
   void lead(oneapi::tbb::flow::graph& graph);
@@ -71,8 +71,8 @@ class WorkerTeam {
   std::atomic<bool> closed_{false};
   std::atomic<int> frames_{0};  // expected and not finished
   std::vector<std::unique_ptr<Seat>> seats_;
-  std::atomic<std::size_t> last_{0};  // who stays where one is enough
-  std::atomic<std::size_t> leader_{0};
+  std::atomic<std::size_t> last_{0};    // who stays where one is enough
+  std::atomic<Seat*> leader_{nullptr};  // null until it leads
   std::vector<std::jthread> helpers_;
 };
 

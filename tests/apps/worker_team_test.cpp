@@ -20,7 +20,7 @@ class WorkingTeam : public testing::Test {
   void work(int workers, int tasks, const std::function<void(int)>& body) {
     oneapi::tbb::task_arena arena(workers, static_cast<unsigned>(workers));
     WorkerTeam team(arena, workers, {});
-    std::latch wired(1);
+    std::latch wired(1), closed(1);
     std::counting_semaphore<> finished(0);
     flow::receiver<int>* first = nullptr;
     std::jthread leader([&] {
@@ -40,6 +40,7 @@ class WorkingTeam : public testing::Test {
         flow::make_edge(node, tail);
         first = &node;
         wired.count_down();
+        if (late_) closed.wait();
         team.lead(graph);
       });
     });
@@ -51,9 +52,11 @@ class WorkingTeam : public testing::Test {
       if (one_by_one_) finished.acquire();
     }
     team.close();
+    closed.count_down();
     leader.join();
   }
   bool one_by_one_ = false;  // the next task comes when the one before is done
+  bool late_ = false;        // the leader begins when the team is closed already
 };
 
 TEST_F(WorkingTeam, DoesAllThatItIsCalledFor) {
@@ -67,6 +70,15 @@ TEST_F(WorkingTeam, DoesAllThatItIsCalledFor) {
 TEST_F(WorkingTeam, IsAwakeAsAWhole) {
   std::latch all(2);  // each task waits for the other: one worker alone would never end
   work(2, 2, [&](int) { all.arrive_and_wait(); });
+  SUCCEED();
+}
+
+TEST_F(WorkingTeam, IsAwakeAsAWholeAlsoWhenItIsClosedBeforeItsLeaderBegins) {
+  late_ = true;
+  for (int run = 0; run < 20; ++run) {  // whichever seat the leader has
+    std::latch all(2);
+    work(2, 2, [&](int) { all.arrive_and_wait(); });
+  }
   SUCCEED();
 }
 
