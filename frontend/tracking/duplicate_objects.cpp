@@ -41,13 +41,14 @@ bool areDuplicates(const TrackedObject& older, const TrackedObject& younger) {
          (isWithin(younger, T_older_younger, older) || isWithin(older, T_older_younger.inverse(), younger));
 }
 
-void takePoints(TrackedObject& older, TrackedObject& younger) {
-  const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
-  for (BodyPoint& p : younger.points) {
-    p.moveTo(T_older_younger);
+void merge(TrackedObject& stays, TrackedObject& ends) {
+  const SE3 T_stays_ends = stays.T_cam_body.inverse() * ends.T_cam_body;
+  for (BodyPoint& p : ends.points) {
+    p.moveTo(T_stays_ends);
     p.misfits = 0;
   }
-  older.adopt(younger.points);
+  stays.adopt(ends.points);
+  ends.life.end();
 }
 
 }  // namespace
@@ -58,8 +59,10 @@ void mergeDuplicates(std::vector<TrackedObject>& objects) {
     for (std::size_t j = i + 1; j < objects.size(); ++j) {
       TrackedObject &older = objects[i], &younger = objects[j];
       if (ended(older) || ended(younger) || !areDuplicates(older, younger)) continue;
-      takePoints(older, younger);
-      younger.life.end();
+      if (younger.life.reported() && !older.life.reported())
+        merge(younger, older);
+      else
+        merge(older, younger);
     }
   }
 }
