@@ -36,7 +36,8 @@ bool areDuplicates(const TrackedObject& older, const TrackedObject& younger) {
   const Eigen::AlignedBox3d own = older.core(SE3{}), other = younger.core(T_older_younger);
   const double slack_m = std::min(
       kMaxSlack_m, kSigmas * hypotenuse(older.kinematics.positionSigma_m(), younger.kinematics.positionSigma_m()));
-  if (kOrdinaryVehicle.holds(own.merged(other), slack_m)) return true;
+  const VehicleSize& size = isTall(own) ? kTallVehicle : kOrdinaryVehicle;
+  if (size.holds(own.merged(other), slack_m)) return true;
   return difference_mps < kMaxSpeedDifference_mps &&
          (isWithin(younger, T_older_younger, older) || isWithin(older, T_older_younger.inverse(), younger));
 }

@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 
+#include "frontend/tracking/vehicle_size.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -65,20 +67,26 @@ std::optional<ObjectObservation> LookBack::observe(const PastScene& earlier, Tra
   return observation;
 }
 
-/// Was a vehicle reported there, so that one would be reported twice?
+/// Was a vehicle reported there, so that one would be reported twice? A tall one reaches far from its body's origin.
 bool LookBack::isTaken(const PastScene& scene, const SE3& T_cam_body) {
   constexpr double kAlong_m = 2.5, kAside_m = 1.2;  // between the origins of two bodies on one vehicle
-  return std::ranges::any_of(scene.T_cam_reported, [&](const SE3& T_cam_other) {
-    const Eigen::Vector3d apart = (T_cam_body.inverse() * T_cam_other).translation().cwiseAbs();
-    return apart.x() < kAlong_m && apart.y() < kAside_m;
+  return std::ranges::any_of(scene.reported, [&](const Body& other) {
+    const Eigen::Vector3d apart = (T_cam_body.inverse() * other.T_cam_body).translation().cwiseAbs();
+    if (apart.x() < kAlong_m && apart.y() < kAside_m) return true;
+    Eigen::AlignedBox3d both = other.core;
+    both.extend((other.T_cam_body.inverse() * T_cam_body).translation());
+    return isTall(other.core) && kTallVehicle.holds(both, 0);
   });
 }
 
 void LookBack::remember(const SceneMotionPtr& scene, const SE3& T_world_cam,
-                        const std::vector<ObjectObservation>& reported) {
+                        const std::vector<ObjectObservation>& reported, const std::vector<TrackedObject>& objects) {
   past_.push_back({scene, T_world_cam, {}});
-  for (const ObjectObservation& o : reported)
-    if (o.frame == scene->frame) past_.back().T_cam_reported.push_back(o.T_cam_body);
+  for (const ObjectObservation& o : reported) {
+    const auto object = std::ranges::find(objects, o.track, &TrackedObject::track);
+    if (o.frame == scene->frame && object != objects.end())
+      past_.back().reported.push_back({o.T_cam_body, object->core(SE3{})});
+  }
   if (static_cast<int>(past_.size()) > kept_) past_.pop_front();
 }
 

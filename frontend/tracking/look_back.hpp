@@ -25,14 +25,19 @@ class LookBack {
 
   /// No motion links the frames that come to those before.
   void forget() { past_.clear(); }
-  /// Call at the end of each frame, with the observations that it reported.
-  void remember(const SceneMotionPtr& scene, const SE3& T_world_cam, const std::vector<ObjectObservation>& reported);
+  /// Call at the end of each frame, with the observations that it reported, and their objects.
+  void remember(const SceneMotionPtr& scene, const SE3& T_world_cam, const std::vector<ObjectObservation>& reported,
+                const std::vector<TrackedObject>& objects);
 
  private:
+  struct Body {
+    SE3 T_cam_body;
+    Eigen::AlignedBox3d core;  // around its points, in its frame
+  };
   struct PastScene {
     SceneMotionPtr scene;
     SE3 T_world_cam;
-    std::vector<SE3> T_cam_reported;  // bodies
+    std::vector<Body> reported;
   };
   std::optional<ObjectObservation> observe(const PastScene& earlier, TrackedObject& object, ObjectKinematics& then,
                                            MeasuredPoints& later) const;

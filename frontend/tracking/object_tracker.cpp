@@ -48,12 +48,12 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   matchSegments(*scene);
   mergeDuplicates(objects_);
   confirmSure(*measurements);
+  look_back_.remember(scene, T_world_cam_, measurements->objects, objects_);
   removeEnded(*measurements);
   measurements->disparity_offset_px = scene->disparity_offset_px;
   addOtherPoints(*scene, *measurements);
   std::ranges::stable_sort(measurements->objects, {}, &ObjectObservation::track);
   previous_scene_ = scene;
-  look_back_.remember(scene, T_world_cam_, measurements->objects);
   return measurements;
 }
 

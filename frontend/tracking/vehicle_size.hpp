@@ -16,6 +16,16 @@ struct VehicleSize {
 /// A car or a van with some margin: what may be one body without further evidence.
 constexpr VehicleSize kOrdinaryVehicle{.length_m = 6.0, .width_m = 2.8, .height_m = 3.2};
 
+/// What is higher than a car is a van, a lorry or a bus: what may be one body with it without further evidence.
+constexpr VehicleSize kTallVehicle{
+    .length_m = 9.0, .width_m = kOrdinaryVehicle.width_m, .height_m = kOrdinaryVehicle.height_m};
+
+/// By the box around a body's points, without outliers.
+inline bool isTall(const Eigen::AlignedBox3d& core) {
+  constexpr double kHigherThanACar_m = 2.0;
+  return core.sizes().z() > kHigherThanACar_m;
+}
+
 /// A lorry or a bus. Its length is found point by point; it is no wider or higher than others.
 constexpr VehicleSize kLongestVehicle{
     .length_m = 14.0, .width_m = kOrdinaryVehicle.width_m, .height_m = kOrdinaryVehicle.height_m};

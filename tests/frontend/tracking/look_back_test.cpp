@@ -27,15 +27,20 @@ struct Drive {
   LookBack look_back{12, 3, {}, kRig};
 
   /// Another object was reported `other_ahead_m` ahead of the board's place in the frames before `other_until`.
-  explicit Drive(int first_seen, int other_until = 0, double other_ahead_m = 0) {
+  explicit Drive(int first_seen, int other_until = 0, double other_ahead_m = 0, double other_height_m = 1.5) {
+    TrackedObject other;
+    other.track = {9};
+    for (const double z_m : {0.0, other_height_m})
+      other.points.push_back({{}, {0, 0, z_m}, Eigen::Matrix3d::Identity()});
     for (int frame = 0; frame < kFrames; ++frame) {
       std::vector<ObjectObservation> reported;
       if (frame < other_until) {
         reported.emplace_back();
+        reported.back().track = other.track;
         reported.back().frame = {frame};
         reported.back().T_cam_body = boardIn(frame) * SE3(Eigen::Matrix3d::Identity(), {other_ahead_m, 0, 0});
       }
-      look_back.remember(scene(frame, frame >= first_seen), SE3{}, reported);
+      look_back.remember(scene(frame, frame >= first_seen), SE3{}, reported, {other});
     }
     const SE3 T_cam_body = boardIn(kConfirmed);
     for (const ScenePoint& p : TexturedBoard::points(T_cam_body, 6, 100))
@@ -91,6 +96,14 @@ TEST(LookBack, EndsWhereAnotherObjectWasReportedInItsPlace) {
   EXPECT_EQ(taken.object.backlog.front().frame.value, 2);
   behind_another.lookBack();
   EXPECT_EQ(behind_another.object.backlog.front().frame.value, 0);
+}
+
+TEST(LookBack, EndsOnTheFlankOfATallVehicleThatWasReported) {
+  Drive on_a_lorry(0, 2, 6, 2.5), behind_a_lorry(0, 2, 10, 2.5);
+  on_a_lorry.lookBack();
+  EXPECT_EQ(on_a_lorry.object.backlog.front().frame.value, 2);
+  behind_a_lorry.lookBack();
+  EXPECT_EQ(behind_a_lorry.object.backlog.front().frame.value, 0);
 }
 
 }  // namespace

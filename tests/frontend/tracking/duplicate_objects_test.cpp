@@ -1,0 +1,78 @@
+#include "frontend/tracking/duplicate_objects.hpp"
+
+#include <cstdint>
+
+#include <gtest/gtest.h>
+
+namespace motorcade {
+namespace {
+
+/// A vehicle on which a box of points is followed, from `begin_m` to `end_m` ahead of the world's origin.
+struct Seen {
+  std::int64_t track;
+  double begin_m, end_m;
+  double height_m = 1.5, speed_mps = 8, left_m = 0;
+};
+
+TrackedObject objectOn(const Seen& seen) {
+  TrackedObject object;
+  object.track = {seen.track};
+  object.T_cam_body = SE3(Eigen::Matrix3d::Identity(), {0.5 * (seen.begin_m + seen.end_m), seen.left_m, 0});
+  const Eigen::Vector3d half(0.5 * (seen.end_m - seen.begin_m), 0.9, 0.5 * seen.height_m);
+  std::int64_t id = 100 * seen.track;
+  for (const double x : {-1, 1})
+    for (const double y : {-1, 1})
+      for (const double z : {-1, 1})
+        object.points.push_back({{id++}, half.cwiseProduct(Eigen::Vector3d(x, y, z)), Eigen::Matrix3d::Identity()});
+  Vector6d twist = Vector6d::Zero();
+  twist[0] = seen.speed_mps;
+  object.kinematics = ObjectKinematics(object.T_cam_body, twist, 1e-4 * Matrix12d::Identity());
+  return object;
+}
+
+/// Whether the younger of two objects, one behind the other, is taken for a part of the older.
+bool areOne(const Seen& older, const Seen& younger) {
+  std::vector<TrackedObject> objects{objectOn(older), objectOn(younger)};
+  mergeDuplicates(objects);
+  EXPECT_NE(objects[0].life.phase(), Phase::kEnded);
+  return objects[1].life.phase() == Phase::kEnded;
+}
+
+TEST(DuplicateObjects, TwoOnOneVehicleBecomeOneWithThePointsOfBoth) {
+  std::vector<TrackedObject> objects{objectOn({1, 10, 12}), objectOn({2, 13, 15})};
+  const Eigen::Vector3d p_world = objects[1].T_cam_body * objects[1].points.front().p_body;
+  mergeDuplicates(objects);
+  EXPECT_EQ(objects[0].life.phase(), Phase::kTentative);
+  EXPECT_EQ(objects[1].life.phase(), Phase::kEnded);
+  ASSERT_EQ(objects[0].points.size(), 16U);
+  const BodyPoint* taken = objects[0].find({200});
+  ASSERT_NE(taken, nullptr);
+  EXPECT_LT((objects[0].T_cam_body * taken->p_body - p_world).norm(), 1e-9);
+}
+
+TEST(DuplicateObjects, TheOneThatWasReportedStays) {
+  std::vector<TrackedObject> objects{objectOn({1, 10, 12}), objectOn({2, 13, 15})};
+  objects[1].life.confirm();
+  mergeDuplicates(objects);
+  EXPECT_EQ(objects[0].life.phase(), Phase::kEnded);
+  EXPECT_EQ(objects[1].life.phase(), Phase::kConfirmed);
+  EXPECT_EQ(objects[1].points.size(), 16U);
+  for (TrackedObject& object : objects = {objectOn({1, 10, 12}), objectOn({2, 13, 15})}) object.life.confirm();
+  mergeDuplicates(objects);
+  EXPECT_EQ(objects[0].life.phase(), Phase::kConfirmed);
+  EXPECT_EQ(objects[1].life.phase(), Phase::kEnded);
+}
+
+TEST(DuplicateObjects, WhatIsHigherThanACarMayBeLonger) {
+  EXPECT_FALSE(areOne({1, 10, 12}, {2, 17, 18}));
+  EXPECT_TRUE(areOne({.track = 1, .begin_m = 10, .end_m = 12, .height_m = 2.5}, {2, 17, 18}));
+  EXPECT_FALSE(areOne({.track = 1, .begin_m = 10, .end_m = 12, .height_m = 2.5}, {2, 18.5, 20}));
+}
+
+TEST(DuplicateObjects, VehiclesSideBySideOrOfAnotherSpeedAreTwo) {
+  EXPECT_FALSE(areOne({1, 10, 12}, {.track = 2, .begin_m = 10, .end_m = 12, .left_m = 3}));
+  EXPECT_FALSE(areOne({1, 10, 12}, {.track = 2, .begin_m = 13, .end_m = 15, .speed_mps = 11}));
+}
+
+}  // namespace
+}  // namespace motorcade
