@@ -6,8 +6,8 @@
 
 namespace motorcade {
 
-/// Of two objects on one vehicle the older stays and takes the points of the younger, which ends. `objects` are ordered
-/// by track.
+/// Of two objects on one vehicle the one that was reported stays, the older if both were or neither was, and takes the
+/// points of the other, which ends. `objects` are ordered by track.
 void mergeDuplicates(std::vector<TrackedObject>& objects);
 
 }  // namespace motorcade
