@@ -7,6 +7,7 @@
 
 #include "apps/tasks/found_drives.hpp"
 #include "io/errors.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {
 namespace {
@@ -17,14 +18,6 @@ using testing::HasSubstr;
 
 class ManifestFile : public testing::Test {
  protected:
-  ManifestFile()
-      : folder_(fs::path(testing::TempDir()) /
-                ("manifest_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~ManifestFile() override { fs::remove_all(folder_); }
-
   Manifest read(const std::string& text, const std::string& name = "m.toml") {
     std::ofstream(folder_ / name) << text;
     return readManifest(folder_ / name);
@@ -38,7 +31,7 @@ class ManifestFile : public testing::Test {
     return "none";
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 TEST_F(ManifestFile, DefaultsStandBehindWhatADriveSays) {
@@ -128,22 +121,22 @@ TEST_F(ManifestFile, AGlobBecomesADriveForEachFolderNamedFromItsWildcardOn) {
   std::ofstream(folder_ / "fleet/file") << "no folder\n";
   std::ofstream(folder_ / "fleet/list.txt") << "left right\n";
   std::vector<std::string> names;
-  for (const FoundDrive& drive : findDrives({.path = "fleet/*/mav0"}, folder_)) names.push_back(drive.name);
+  for (const FoundDrive& drive : findDrives({.path = "fleet/*/mav0"}, folder_.path())) names.push_back(drive.name);
   EXPECT_THAT(names, ElementsAre("a_mav0", "b_c_mav0"));
   names.clear();
-  for (const FoundDrive& drive : findDrives({.path = "fleet/*"}, folder_)) names.push_back(drive.name);
+  for (const FoundDrive& drive : findDrives({.path = "fleet/*"}, folder_.path())) names.push_back(drive.name);
   EXPECT_THAT(names, ElementsAre("a", "b_c", "empty"));
-  const auto lists = findDrives({.path = "fleet/*.txt"}, folder_);
+  const auto lists = findDrives({.path = "fleet/*.txt"}, folder_.path());
   ASSERT_EQ(lists.size(), 1U);
   EXPECT_EQ(lists[0].name, "list");
 }
 
 TEST_F(ManifestFile, WhatIsNotThereIsADriveWithAProblem) {
-  const auto missing = findDrives({.path = "nowhere/"}, folder_);
+  const auto missing = findDrives({.path = "nowhere/"}, folder_.path());
   ASSERT_EQ(missing.size(), 1U);
   EXPECT_EQ(missing[0].name, "nowhere");
   EXPECT_THAT(missing[0].problem, HasSubstr("there is no such drive"));
-  const auto none = findDrives({.path = "no*where"}, folder_);
+  const auto none = findDrives({.path = "no*where"}, folder_.path());
   ASSERT_EQ(none.size(), 1U);
   EXPECT_EQ(none[0].name, "no_where");
   EXPECT_THAT(none[0].problem, HasSubstr("no folder matches"));

@@ -11,6 +11,7 @@
 #include "apps/tasks/batch_folder.hpp"
 #include "apps/tasks/task_record.hpp"
 #include "io/errors.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {
 namespace {
@@ -37,14 +38,6 @@ TEST(RelativeChange, IsTheSameInBothDirectionsAndKnowsZero) {
 /// A batch whose results are written by hand.
 class MergeBatch : public testing::Test {
  protected:
-  MergeBatch()
-      : root_(fs::path(testing::TempDir()) /
-              ("merge_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    fs::remove_all(root_);
-    fs::create_directories(root_);
-  }
-  ~MergeBatch() override { fs::remove_all(root_); }
-
   struct Result {
     std::string drive, set = "default";
     double ate_m = 0;
@@ -105,7 +98,7 @@ class MergeBatch : public testing::Test {
   }
   std::string merged(const std::string& file) { return merged(file, {.batch = root_ / "a"}); }
 
-  fs::path root_;
+  const test::TemporaryFolder root_;
 };
 
 TEST_F(MergeBatch, EachTaskIsARowOfTheTableWithAllMeasures) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "io/errors.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {
 namespace {
@@ -18,14 +19,7 @@ const fs::path kDrive = MOTORCADE_TINY_SEQUENCE;
 
 class PlanOf : public testing::Test {
  protected:
-  PlanOf()
-      : folder_(fs::path(testing::TempDir()) /
-                ("planner_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-    std::ofstream(folder_ / "program") << "one version\n";
-  }
-  ~PlanOf() override { fs::remove_all(folder_); }
+  PlanOf() { std::ofstream(folder_ / "program") << "one version\n"; }
 
   Plan plan(const std::string& manifest) {
     std::ofstream(folder_ / "m.toml") << manifest;
@@ -34,7 +28,7 @@ class PlanOf : public testing::Test {
   }
   std::string drive() const { return "path = \"" + kDrive.string() + "\"\n"; }
 
-  fs::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 std::vector<std::string> namesOf(const Plan& plan) {

@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
+#include "tests/io/temporary_folder.hpp"
+
 /// `motorcade run` from outside, on a short rendered drive that the build's test fixture makes.
 namespace motorcade::test {
 
@@ -38,14 +40,6 @@ inline std::string waitForLines(const fs::path& file, std::size_t lines) {
 /// Runs the program, each test in a folder of its own.
 class Run : public testing::Test {
  protected:
-  Run()
-      : folder_(fs::path(testing::TempDir()) /
-                ("motorcade_run_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Run() override { fs::remove_all(folder_); }
-
   /// Runs the program and gives its exit code.
   int motorcade(const std::string& arguments, const std::string& prefix = "") {
     const std::string command =
@@ -86,7 +80,7 @@ class Run : public testing::Test {
   }
 
  private:
-  fs::path folder_;
+  const TemporaryFolder folder_;
 };
 
 }  // namespace motorcade::test

@@ -15,6 +15,7 @@
 #include "apps/synth/sequence_writer.hpp"
 #include "io/image_file.hpp"
 #include "tests/apps/rendered_scene.hpp"
+#include "tests/io/temporary_folder.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace motorcade::synth {
@@ -172,7 +173,7 @@ TEST(SynthGroundTruth, LabelsAgreeWithPosesAndMasks) {
 }
 
 TEST(SynthSequence, IsTheSameForASeedAndAnyThreadCountAndStartsAtTheIdentity) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "synth_sequence";
+  const test::TemporaryFolder folder;
   const Scene scene = makeScene("overtake", 5);
   WriteOptions options;
   options.frames = 2;
@@ -192,7 +193,7 @@ TEST(SynthSequence, IsTheSameForASeedAndAnyThreadCountAndStartsAtTheIdentity) {
 }
 
 TEST(SynthSequence, ARigErrorMovesTheRightImageAloneAndByWhatWasAsked) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "synth_rig_error";
+  const test::TemporaryFolder folder;
   const Scene scene = makeScene("overtake", 5);
   WriteOptions options;
   options.frames = 1;

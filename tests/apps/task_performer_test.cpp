@@ -10,6 +10,7 @@
 
 #include "apps/tasks/child_process.hpp"
 #include "apps/tasks/fingerprint.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {
 namespace {
@@ -21,12 +22,7 @@ using testing::HasSubstr;
 /// Performs tasks with a program that is a script of the test.
 class Performer : public testing::Test {
  protected:
-  Performer()
-      : root_(fs::path(testing::TempDir()) /
-              ("performer_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))),
-        folder_(root_ / "batch") {
-    fs::remove_all(root_);
-    fs::create_directories(root_);
+  Performer() : folder_(root_ / "batch") {
     task_ = {.name = "drive.set",
              .drive = "drive",
              .set = "set",
@@ -35,7 +31,6 @@ class Performer : public testing::Test {
              .has_truth = true,
              .fingerprint = "f"};
   }
-  ~Performer() override { fs::remove_all(root_); }
 
   Workplace workplace(const std::string& script, const std::string& attempt = "me") {
     const fs::path program = root_ / "program";
@@ -49,7 +44,7 @@ class Performer : public testing::Test {
     return content.str();
   }
 
-  fs::path root_;
+  const test::TemporaryFolder root_;
   BatchFolder folder_;
   Task task_;
 };
@@ -188,7 +183,7 @@ TEST_F(Performer, AChildIsKeptToItsProcessors) {
 }
 
 TEST_F(Performer, AProgramThatIsNotThereEndsWith127) {
-  ChildProcess child({.words = {(root_ / "nothing").string()}, .folder = root_, .log = root_ / "log"});
+  ChildProcess child({.words = {(root_ / "nothing").string()}, .folder = root_.path(), .log = root_ / "log"});
   const auto end = child.wait(10s);
   ASSERT_TRUE(end);
   EXPECT_EQ(end->exit_code, 127);
@@ -199,7 +194,7 @@ TEST_F(Performer, ADestroyedChildIsKilled) {
   int process = 0;
   {
     const ChildProcess child(
-        {.words = {"/bin/sh", "-c", "echo $$ > pid; exec sleep 60"}, .folder = root_, .log = root_ / "log"});
+        {.words = {"/bin/sh", "-c", "echo $$ > pid; exec sleep 60"}, .folder = root_.path(), .log = root_ / "log"});
     while (process == 0) std::ifstream(root_ / "pid") >> process;
   }
   EXPECT_NE(::kill(process, 0), 0);
