@@ -36,6 +36,7 @@ bool areDuplicates(const TrackedObject& older, const TrackedObject& younger) {
   const Eigen::AlignedBox3d own = older.core(SE3{}), other = younger.core(T_older_younger);
   const double slack_m = std::min(
       kMaxSlack_m, kSigmas * hypotenuse(older.kinematics.positionSigma_m(), younger.kinematics.positionSigma_m()));
+  // Not where the younger is tall: a car before a lorry would end in it.
   const VehicleSize& size = isTall(own) ? kTallVehicle : kOrdinaryVehicle;
   if (size.holds(own.merged(other), slack_m)) return true;
   return difference_mps < kMaxSpeedDifference_mps &&
