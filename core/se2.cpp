@@ -9,7 +9,7 @@ namespace motorcade {
 namespace {
 
 /// Below these angles a Taylor series is exact to double precision; the inverse loses more digits to cancellation.
-constexpr double kSmallAngle_rad = 1e-4, kSmallAngleOfInverse_rad = 1e-3;
+constexpr double kSmallTurn_rad = 1e-4, kSmallTurnOfInverse_rad = 1e-3;
 
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2 * std::numbers::pi); }
 
@@ -17,8 +17,8 @@ double wrapped(double angle_rad) { return std::remainder(angle_rad, 2 * std::num
 struct LeftJacobian {
   double a, b;
   explicit LeftJacobian(double phi)
-      : a(std::abs(phi) < kSmallAngle_rad ? 1 - phi * phi / 6 : sine(phi) / phi),
-        b(std::abs(phi) < kSmallAngle_rad ? phi / 2 - phi * phi * phi / 24 : 2 * sine(phi / 2) * sine(phi / 2) / phi) {}
+      : a(std::abs(phi) < kSmallTurn_rad ? 1 - phi * phi / 6 : sine(phi) / phi),
+        b(std::abs(phi) < kSmallTurn_rad ? phi / 2 - phi * phi * phi / 24 : 2 * sine(phi / 2) * sine(phi / 2) / phi) {}
 };
 
 }  // namespace
@@ -58,8 +58,8 @@ Eigen::Matrix3d SE2::adjoint() const {
 Eigen::Matrix3d rightJacobianInverseSE2(const Eigen::Vector3d& xi) {
   // A power series in ad, with ad^3 = -phi^2 ad: Jr^-1 = I + ad / 2 + (1 - h) / phi^2 ad^2, h = (phi / 2) cot(phi / 2).
   const double phi = xi[2], half = phi / 2;
-  const double s = std::abs(phi) < kSmallAngleOfInverse_rad ? 1.0 / 12 + phi * phi / 720
-                                                            : (1 - half * cosine(half) / sine(half)) / (phi * phi);
+  const double s = std::abs(phi) < kSmallTurnOfInverse_rad ? 1.0 / 12 + phi * phi / 720
+                                                           : (1 - half * cosine(half) / sine(half)) / (phi * phi);
   Eigen::Matrix3d ad;
   ad << 0, -phi, xi[1], phi, 0, -xi[0], 0, 0, 0;
   return Eigen::Matrix3d::Identity() + 0.5 * ad + s * ad * ad;

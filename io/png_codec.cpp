@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 bool isPng(std::string_view bytes) { return bytes.starts_with(kPngSignature); }
 
 /// BT.601 in 8-bit integers.
-std::uint8_t grayOf(const std::uint8_t* rgb) { return motorcade::grayOf(rgb[0], rgb[1], rgb[2]); }
+std::uint8_t grayOfPixel(const std::uint8_t* rgb) { return grayOf(rgb[0], rgb[1], rgb[2]); }
 
 ImageSize pngSize(std::string_view bytes, const fs::path& file) {
   if (bytes.size() < 26 || bytes.substr(12, 4) != "IHDR") failDamaged(file, "its PNG header is cut");
@@ -102,7 +102,7 @@ Image decodeAnyPng(std::string_view bytes, const fs::path& file, ImagePool& pool
   if (!reader.readRows(rows.data())) failDamaged(file, reader.context.message.data());
   for (int y = 0; !gray && y < size.height; ++y) {
     const std::uint8_t* rgb = rows[y];
-    for (int x = 0; x < size.width; ++x) image.mutableRow(y)[x] = grayOf(rgb + 3 * x);
+    for (int x = 0; x < size.width; ++x) image.mutableRow(y)[x] = grayOfPixel(rgb + 3 * x);
   }
   return image;
 }

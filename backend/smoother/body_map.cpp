@@ -5,7 +5,7 @@
 namespace motorcade {
 namespace {
 
-constexpr int kKeptFrames = 5;  // without a view
+constexpr int kFramesWithoutView = 5;  // without a view
 
 using Matrix3x6d = Eigen::Matrix<double, 3, 6>;
 
@@ -58,7 +58,8 @@ void BodyMap::update(const StereoCamera& camera, const BodyView& view, const Mat
       points_[now.point] = {*point, view.frame};
     }
   }
-  std::erase_if(points_, [&](const auto& p) { return view.frame.value - p.second.last_seen.value > kKeptFrames; });
+  std::erase_if(points_,
+                [&](const auto& p) { return view.frame.value - p.second.last_seen.value > kFramesWithoutView; });
 }
 
 }  // namespace motorcade

@@ -34,7 +34,7 @@ struct PoseLanes {
 };
 
 /// Residuals of four observations, their Jacobians with respect to the point, and the weights S^-1.
-struct Linearized {
+struct LinearizedBlock {
   StereoViews view;
   Doubles3 residual_px, weighted_residual;
   SymmetricDoubles3x3 information;
@@ -45,8 +45,8 @@ struct Linearized {
   }
 };
 
-Linearized linearize(const StereoCamera& camera, const PoseObservations::Block& o, const PoseLanes& T_cam_ref) {
-  Linearized l;
+LinearizedBlock linearize(const StereoCamera& camera, const PoseObservations::Block& o, const PoseLanes& T_cam_ref) {
+  LinearizedBlock l;
   l.view = viewPoints(camera, T_cam_ref.R, T_cam_ref.t_m, o.p_ref);
   const Doubles3x3& J = l.view.J;
   SymmetricDoubles3x3 S =
@@ -72,7 +72,7 @@ struct LaneEquations {
   Doubles3 b_t{}, b_r{};
   Doubles chi2{}, inliers{};
 
-  void add(const PoseObservations::Block& o, const Linearized& l, double gate, double huber_sigmas) {
+  void add(const PoseObservations::Block& o, const LinearizedBlock& l, double gate, double huber_sigmas) {
     const Doubles known_px = l.chi2();
     const auto is_in = known_px < allDoubles(gate);
     const Doubles counts = is_in ? o.count * l.view.ahead : Doubles{}, chi2_px = is_in ? known_px : Doubles{};
@@ -165,7 +165,7 @@ std::vector<double> poseChi2(const StereoCamera& camera, const PoseObservations&
   std::vector<double> chi2;
   chi2.reserve(observations.blocks().size() * kDoubleLanes);
   for (const auto& o : observations.blocks()) {
-    const Linearized l = linearize(camera, o, pose);
+    const LinearizedBlock l = linearize(camera, o, pose);
     const Doubles all = l.chi2();
     for (std::size_t lane = 0; lane < kDoubleLanes; ++lane)
       chi2.push_back(l.view.ahead[lane] > 0 ? all[lane] : kInfinity);
@@ -181,7 +181,7 @@ double poseScore(const StereoCamera& camera, const PoseObservations& observation
   double sum = 0;
   std::size_t next = 0;
   for (const auto& o : observations.blocks()) {
-    const Linearized l = linearize(camera, o, pose);
+    const LinearizedBlock l = linearize(camera, o, pose);
     const Doubles chi2 = l.chi2(), counted = l.view.ahead > 0 && chi2 < most ? chi2 : most;
     const std::size_t end = std::min(next + kDoubleLanes, observations.size());
     for (std::size_t lane = 0; next < end; ++lane, ++next) sum += scoring.weights[next] * counted[lane];

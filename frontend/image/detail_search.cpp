@@ -45,7 +45,7 @@ void subtractMeans(const std::uint8_t* row, const std::int16_t* sums, int width,
 }
 
 constexpr int kMaxBlocks = kMaxWindowCosts / kWordLanes;
-constexpr Words kLanes{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+constexpr Words kLaneNumbers{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 int blocksOf(int count) { return (count + kWordLanes - 1) / kWordLanes; }
 
@@ -61,7 +61,7 @@ std::uint32_t promisingBlocks(const std::uint8_t* window, std::ptrdiff_t window_
     Words sum{};
     for (int r = 0; r < kHalfSizeWindow.rows; ++r)
       sum += differencesOfEight(from + b * kWordLanes + r * stride, window + r * window_stride);
-    least[b] = leastOf(kLanes < allWords(count - b * kWordLanes) ? sum : allWords(INT16_MAX));
+    least[b] = leastOf(kLaneNumbers < allWords(count - b * kWordLanes) ? sum : allWords(INT16_MAX));
   }
   const float worth = kWorthComparing * *std::min_element(least.begin(), least.begin() + blocks);
   std::uint32_t promising = 0;
@@ -92,7 +92,7 @@ class Costs {
   std::int16_t leastBesides(int i) {
     for (const int b : {std::max(0, i - kNeighbors_px) / kWordLanes, (i + kNeighbors_px) / kWordLanes}) {
       if (b >= blocks_) continue;
-      const Words place = kLanes + allWords(b * kWordLanes - i);
+      const Words place = kLaneNumbers + allWords(b * kWordLanes - i);
       least_[b] = leastOf(magnitude(place) > allWords(kNeighbors_px) ? block(b) : allWords(INT16_MAX));
     }
     return least();
@@ -102,7 +102,7 @@ class Costs {
   std::int16_t* at(int b) { return reinterpret_cast<std::int16_t*>(costs_.data()) + b * kWordLanes; }
   Words block(int b) const {
     const Words words = loadWords(reinterpret_cast<const std::int16_t*>(costs_.data()) + b * kWordLanes);
-    return kLanes < allWords(count_ - b * kWordLanes) ? words : allWords(INT16_MAX);
+    return kLaneNumbers < allWords(count_ - b * kWordLanes) ? words : allWords(INT16_MAX);
   }
 
   int blocks_, count_;

@@ -23,6 +23,8 @@ inline Floats loadFloats(const float* p) {
   return floats;
 }
 inline Floats allFloats(float value) { return Floats{} + value; }
+inline Floats lesser(const Floats& a, const Floats& b) { return a < b ? a : b; }
+inline Floats greater(const Floats& a, const Floats& b) { return a > b ? a : b; }
 
 #ifdef __AVX2__
 inline bool anyOf(const FloatMask& mask) { return _mm256_testz_si256(__m256i(mask), __m256i(mask)) == 0; }

@@ -8,8 +8,8 @@
 namespace motorcade {
 namespace {
 
-constexpr int kHalfWindow_px = 3;
-constexpr int kWindowPixels = (2 * kHalfWindow_px + 1) * (2 * kHalfWindow_px + 1);
+constexpr int kGrainHalfWindow_px = 3;
+constexpr int kGrainWindowPixels = (2 * kGrainHalfWindow_px + 1) * (2 * kGrainHalfWindow_px + 1);
 constexpr int kGrid_px = 40;
 constexpr std::size_t kMinNeighborhoods = 12;
 
@@ -55,22 +55,22 @@ Image smoothed(const Image& image, int sixteenths, ImagePool& pool) {
 
 float grainAround(const Image& image, int x, int y) {
   int squares = 0;
-  for (int r = y - kHalfWindow_px; r <= y + kHalfWindow_px; ++r) {
+  for (int r = y - kGrainHalfWindow_px; r <= y + kGrainHalfWindow_px; ++r) {
     const std::uint8_t *above = image.row(r - 1), *row = image.row(r), *below = image.row(r + 1);
-    for (int c = x - kHalfWindow_px; c <= x + kHalfWindow_px; ++c) {
+    for (int c = x - kGrainHalfWindow_px; c <= x + kGrainHalfWindow_px; ++c) {
       const int rough = above[c - 1] + above[c + 1] + below[c - 1] + below[c + 1] -
                         2 * (above[c] + row[c - 1] + row[c + 1] + below[c]) + 4 * row[c];
       squares += rough * rough;
     }
   }
-  return std::sqrt(static_cast<float>(squares) / (36.0F * kWindowPixels));
+  return std::sqrt(static_cast<float>(squares) / (36.0F * kGrainWindowPixels));
 }
 
 std::optional<float> grainOf(const Image& image) {
   constexpr std::uint8_t kWhite = 255;
   std::vector<float> grains;
-  for (int y = kGrid_px / 2; y < image.height() - kHalfWindow_px - 1; y += kGrid_px) {
-    for (int x = kGrid_px / 2; x < image.width() - kHalfWindow_px - 1; x += kGrid_px) {
+  for (int y = kGrid_px / 2; y < image.height() - kGrainHalfWindow_px - 1; y += kGrid_px) {
+    for (int x = kGrid_px / 2; x < image.width() - kGrainHalfWindow_px - 1; x += kGrid_px) {
       const std::uint8_t gray = image.at(x, y);
       if (gray != 0 && gray != kWhite) grains.push_back(grainAround(image, x, y));
     }

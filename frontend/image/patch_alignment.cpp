@@ -13,8 +13,6 @@
 namespace motorcade {
 namespace {
 
-constexpr int kStride = PatchTemplate::kStride;
-constexpr float kOtherUnit = PatchTemplate::kOtherUnit;
 constexpr int kOtherShift = 3;        // from samples to words of the other image
 constexpr int kMaxShearShift_px = 4;  // of a patch's first and last row against its middle
 static_assert(kMaxPatchWindow_px + 2 * kMaxShearShift_px + 2 + 24 <= kBlockStride);
@@ -29,7 +27,7 @@ struct Moments {
   float variation(int window_px) const {
     const std::int64_t pixels = window_px * window_px;
     return static_cast<float>(pixels * squares - std::int64_t{total} * total) *
-           (kOtherUnit * kOtherUnit / static_cast<float>(pixels));
+           (PatchTemplate::kOtherUnit * PatchTemplate::kOtherUnit / static_cast<float>(pixels));
   }
 };
 
@@ -42,7 +40,9 @@ class MomentSums {
 
   void add(int row, const Words& samples) {
     const Words j = (samples - mean_) >> static_cast<std::int16_t>(kOtherShift);
-    const auto plane = [&](const PatchTemplate::Plane& words) { return loadWords(words.data() + row * kStride); };
+    const auto plane = [&](const PatchTemplate::Plane& words) {
+      return loadWords(words.data() + row * PatchTemplate::kStride);
+    };
     appearance_ += products(plane(patch_.appearance), j);
     d0_ += products(plane(patch_.descent[0]), j);
     d1_ += products(plane(patch_.descent[1]), j);
@@ -55,7 +55,7 @@ class MomentSums {
     const WordSums pairs = products(sum_, allWords(1));
     const FourSums others = totals(pairs, squares_, pairs, squares_);
     const FourFloats sums = __builtin_convertvector(totals(appearance_, d0_, d1_, d2_), FourFloats);
-    const FourFloats total = allFour(static_cast<float>(others[0]) * kOtherUnit);
+    const FourFloats total = allFour(static_cast<float>(others[0]) * PatchTemplate::kOtherUnit);
     const FourFloats corrected = patch_.units * sums - patch_.means * total;
     return {corrected - patch_.along * allFour(corrected[0]), others[0], others[1]};
   }

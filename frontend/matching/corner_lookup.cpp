@@ -9,14 +9,12 @@
 #include "frontend/image/float_lanes.hpp"
 #include "frontend/image/image_pyramid.hpp"
 #include "frontend/image/word_lanes.hpp"
+#include "frontend/matching/lesser.hpp"
 
 namespace motorcade {
 namespace {
 
 using WordBytes = std::uint8_t __attribute__((vector_size(kWordLanes)));
-
-std::int64_t lesser(std::int64_t a, std::int64_t b) { return a < b ? a : b; }
-std::int64_t greater(std::int64_t a, std::int64_t b) { return a < b ? b : a; }
 
 }  // namespace
 

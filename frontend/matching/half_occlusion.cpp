@@ -12,7 +12,7 @@ namespace {
 constexpr float kReachAcross_px = 120, kReachDown_px = 40;  // to corners of the same surface
 constexpr float kNearer = 1.25F;                            // least ratio of a nearer surface's disparity
 constexpr float kWholePixel_px = 3;                         // by which a match to a whole pixel may be too small
-constexpr float kHalfWindow_px = 6;                         // of a patch, which the right image must show
+constexpr float kHalfPatch_px = 6;                          // of a patch, which the right image must show
 
 struct MatchedCorner {
   std::size_t corner;
@@ -24,7 +24,7 @@ struct Neighbor {
   bool hides = false;
 };
 
-bool leavesRightImage(float u_px, float disparity_px) { return u_px - disparity_px < kHalfWindow_px; }
+bool leavesRightImage(float u_px, float disparity_px) { return u_px - disparity_px < kHalfPatch_px; }
 
 /// True when at least two of the three nearest matched corners to the right show that it must be hidden. `matched`
 /// holds all matched corners within reach, and this one.

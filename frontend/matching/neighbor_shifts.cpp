@@ -4,16 +4,14 @@
 #include <bit>
 #include <limits>
 
+#include "frontend/matching/lesser.hpp"
+
 namespace motorcade {
 namespace {
 
 float median(float a, float b, float c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
 
 constexpr int kIndexBits = 32;
-
-// Of values, not of references as the standard library's: those become branches.
-std::int64_t lesser(std::int64_t a, std::int64_t b) { return a < b ? a : b; }
-std::int64_t greater(std::int64_t a, std::int64_t b) { return a < b ? b : a; }
 
 }  // namespace
 

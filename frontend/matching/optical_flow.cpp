@@ -41,7 +41,7 @@ constexpr double kMaxWaiting_s = 0.5;    // beyond it points look different, and
 constexpr double kStanding_px = 0.5;     // points that moved by less since the last frame may rest
 constexpr double kUnevenInterval = 1.5;  // times the interval before: frames are missing
 
-constexpr double kSiftMaxFlow_px = 150, kSiftMaxRatio = 0.85;  // as `matchSift` takes them
+constexpr double kSiftMaxFlow_px = 150, kSiftMaxFlowRatio = 0.85;  // as `matchSift` takes them
 
 /// Are frames missing in so many intervals?
 bool isUneven(double intervals) { return intervals > kUnevenInterval || intervals < 1 / kUnevenInterval; }
@@ -260,7 +260,7 @@ void OpticalFlowTracker::State::followDescriptors(const Features& now) {
   if (previous && !points.empty()) {
     const SiftSearchRegion region{-kSiftMaxFlow_px, kSiftMaxFlow_px, kSiftMaxFlow_px};
     const auto match_of =
-        matchSift(previous->corners, previous->descriptors, now.corners, now.descriptors, region, kSiftMaxRatio);
+        matchSift(previous->corners, previous->descriptors, now.corners, now.descriptors, region, kSiftMaxFlowRatio);
     std::erase_if(points, [&](const FollowedPoint& point) { return match_of[point.descriptor] < 0; });
     for (FollowedPoint& point : points) {
       point.descriptor = match_of[point.descriptor];

@@ -25,7 +25,7 @@ constexpr int kFineReach_px = 3;       // at full size around the result at half
 
 // Greatest distance between the rows of two matching SIFT points, and greatest ratio of the nearest to the second
 // nearest descriptor's distance.
-constexpr double kSiftMaxRow_px = 1.5, kSiftMaxRatio = 0.9;
+constexpr double kSiftMaxRow_px = 1.5, kSiftMaxStereoRatio = 0.9;
 
 /// The pair in which all disparities are searched: of half size, of full size where there is no other.
 struct SearchedPair {
@@ -94,7 +94,7 @@ std::vector<std::optional<StereoMatch>> matchDescriptors(const Features& feature
   const SiftSearchRegion region{-static_cast<double>(params.max_disparity_px), -params.min_disparity_px,
                                 kSiftMaxRow_px};
   const auto match_of = matchSift(features.corners, features.descriptors, features.right_corners,
-                                  features.right_descriptors, region, kSiftMaxRatio);
+                                  features.right_descriptors, region, kSiftMaxStereoRatio);
   std::vector<std::optional<StereoMatch>> matches(features.corners.size());
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (match_of[i] < 0) continue;

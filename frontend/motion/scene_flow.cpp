@@ -27,7 +27,7 @@ struct Observations {
   Doubles count;  // 1 or 0
 };
 
-struct Window {
+struct TrackWindow {
   static constexpr std::size_t kBlocks = (PointTrack::kCapacity + kDoubleLanes - 1) / kDoubleLanes;
   std::array<Observations, kBlocks> observations;  // only as many as `size` needs are filled
   int size = 0;
@@ -70,8 +70,8 @@ struct Window {
   }
 };
 
-Window collect(const PointTrack& track, const CameraTrail& trail, double pose_jitter_px, int observations) {
-  Window window;
+TrackWindow collect(const PointTrack& track, const CameraTrail& trail, double pose_jitter_px, int observations) {
+  TrackWindow window;
   for (int i = std::max(0, track.count - observations); i < track.count; ++i) {
     const auto& s = track.observations[i];
     if (const auto* relation = trail.find(s.step)) window.add(s, *relation, pose_jitter_px * pose_jitter_px);
@@ -81,29 +81,29 @@ Window collect(const PointTrack& track, const CameraTrail& trail, double pose_ji
 }
 
 /// Four observations linearized at positions in the frame of now.
-struct Linearized {
+struct LinearizedPoint {
   SymmetricDoubles3x3 JtWJ;
   Doubles3 JtWr;
   Doubles cost;  // robust, as a chi-square value: residuals in the linear part of the loss count by it
 };
 
 /// `W_J` and `W_r` are the Jacobian and the residual times the weights.
-Linearized weigh(const Observations& o, const Doubles3x3& J, const Doubles3x3& W_J, const Doubles3& r,
-                 const Doubles3& W_r, double huber_sigmas) {
+LinearizedPoint weigh(const Observations& o, const Doubles3x3& J, const Doubles3x3& W_J, const Doubles3& r,
+                      const Doubles3& W_r, double huber_sigmas) {
   const HuberLoss loss = huberLoss(dot(r, W_r), huber_sigmas);
   const Doubles weight = o.count * loss.weight;
   return {weight * symmetricTransposeTimes(J, W_J), weight * transposeTimes(J, W_r), o.count * loss.chi2};
 }
 
-Linearized linearizeAtRest(const Observations& o, const StereoViews& view, double huber_sigmas) {
+LinearizedPoint linearizeAtRest(const Observations& o, const StereoViews& view, double huber_sigmas) {
   const Doubles one = allDoubles(1.0);
   const Doubles3 W{one / o.variance_px2.x, one / o.variance_px2.y, one / o.variance_px2.z}, r = o.uvd_px - view.uvd_px;
   return weigh(o, view.J, scaledRows(W, view.J), r, scaledRows(W, r), huber_sigmas);
 }
 
 /// `wander_m` is the standard deviation by which the points may be off the model's positions at their times.
-Linearized linearizeMoving(const Observations& o, const StereoViews& view, const Doubles& wander_m,
-                           double huber_sigmas) {
+LinearizedPoint linearizeMoving(const Observations& o, const StereoViews& view, const Doubles& wander_m,
+                                double huber_sigmas) {
   SymmetricDoubles3x3 S = (wander_m * wander_m) * symmetricTimesTranspose(view.J, view.J);
   S.xx += o.variance_px2.x, S.yy += o.variance_px2.y, S.zz += o.variance_px2.z;
   const SymmetricDoubles3x3 W = inverse(S);
@@ -126,7 +126,7 @@ struct MovingEquations {
 };
 
 /// Empty where the point lies behind a camera.
-std::optional<MovingEquations> linearizeMoving(const StereoCamera& camera, const Window& window,
+std::optional<MovingEquations> linearizeMoving(const StereoCamera& camera, const TrackWindow& window,
                                                const MovingPoint& point, const SceneFlowEstimator::Params& params) {
   SymmetricDoubles3x3 H_pp{}, H_pv{}, H_vv{};
   Doubles3 b_p{}, b_v{};
@@ -135,7 +135,7 @@ std::optional<MovingEquations> linearizeMoving(const StereoCamera& camera, const
     const StereoViews view = viewPoints(camera, o.R_then_now, o.t_then_now_m,
                                         allDoubles(point.p_cam) + o.dt_s * allDoubles(point.velocity_mps));
     if (!allAhead(view)) return std::nullopt;
-    const Linearized l =
+    const LinearizedPoint l =
         linearizeMoving(o, view, (0.5 * params.acceleration_mps2) * o.dt_s * o.dt_s, params.huber_sigmas);
     H_pp += l.JtWJ, H_pv += o.dt_s * l.JtWJ, H_vv += (o.dt_s * o.dt_s) * l.JtWJ;
     b_p += l.JtWr, b_v += o.dt_s * l.JtWr;
@@ -151,17 +151,17 @@ std::optional<MovingEquations> linearizeMoving(const StereoCamera& camera, const
   return n;
 }
 
-std::optional<SceneFlowEstimator::StaticFit> fitStatic(const StereoCamera& camera, const Window& window,
+std::optional<SceneFlowEstimator::StaticFit> fitStatic(const StereoCamera& camera, const TrackWindow& window,
                                                        const Eigen::Vector3d& start,
                                                        const SceneFlowEstimator::Params& params) {
   if (window.size == 0) return std::nullopt;
   Eigen::Vector3d p = start;
   for (int iteration = 0;; ++iteration) {
-    Linearized sum{};
+    LinearizedPoint sum{};
     for (const auto& o : window.blocks()) {
       const StereoViews view = viewPoints(camera, o.R_then_now, o.t_then_now_m, allDoubles(p));
       if (!allAhead(view)) return std::nullopt;
-      const Linearized l = linearizeAtRest(o, view, params.huber_sigmas);
+      const LinearizedPoint l = linearizeAtRest(o, view, params.huber_sigmas);
       sum.JtWJ += l.JtWJ, sum.JtWr += l.JtWr, sum.cost += l.cost;
     }
     const Cholesky<3> H(total(sum.JtWJ));
@@ -176,7 +176,7 @@ std::optional<SceneFlowEstimator::StaticFit> fitStatic(const StereoCamera& camer
   }
 }
 
-std::optional<SceneFlow> fitMoving(const StereoCamera& camera, const Window& window, const Eigen::Vector3d& start,
+std::optional<SceneFlow> fitMoving(const StereoCamera& camera, const TrackWindow& window, const Eigen::Vector3d& start,
                                    const SceneFlowEstimator::Params& params) {
   if (window.size < params.min_observations) return std::nullopt;
   MovingPoint point{start, Eigen::Vector3d::Zero()};
@@ -206,7 +206,7 @@ std::optional<SceneFlow> fitMoving(const StereoCamera& camera, const Window& win
 SceneFlowEstimator::Fits SceneFlowEstimator::fit(const PointTrack& track, const CameraTrail& trail) const {
   const Eigen::Vector3d start = camera_.triangulate(track.newest().uvd_px.cast<double>());
   int n = std::min(params_.max_observations, track.count);
-  Window window = collect(track, trail, params_.pose_jitter_px, n);
+  TrackWindow window = collect(track, trail, params_.pose_jitter_px, n);
   Fits fits{.at_rest = fitStatic(camera_, window, start, params_),
             .moving = fitMoving(camera_, window, start, params_)};
   while (!fits.moving && (n = shorterWindow(n)) >= params_.min_observations) {

@@ -14,9 +14,6 @@ using EightBytes = std::uint8_t __attribute__((vector_size(kFloatLanes)));
 
 const Floats kEveryFloatLane{0, 1, 2, 3, 4, 5, 6, 7};
 
-Floats lesser(const Floats& a, const Floats& b) { return a < b ? a : b; }
-Floats greater(const Floats& a, const Floats& b) { return a > b ? a : b; }
-
 std::array<Floats, 3> turned(const Eigen::Matrix3f& R, const std::array<Floats, 3>& p) {
   std::array<Floats, 3> result;
   for (int i = 0; i < 3; ++i) result[i] = R(i, 0) * p[0] + R(i, 1) * p[1] + R(i, 2) * p[2];

@@ -19,7 +19,7 @@ constexpr double kLow_m = 0.2, kHigh = 0.6;  // above the road, and of the heigh
 constexpr double kBoundSigma_px = 1.5, kRounded_m = 0.08;  // of a bound of the outline, in pixels of its level
 constexpr double kRoadSigma_m = 0.05, kRoadSlope = 0.004;  // of the road's height, per meter away
 constexpr double kPointSigma_m = 0.3;                      // of the outermost points of an object
-constexpr double kNear_m = 1.5;                            // nearer corners are seen too much from the side
+constexpr double kNearCorner_m = 1.5;                      // nearer corners are seen too much from the side
 constexpr double kSharp_m = 0.35;    // noise in depth of surface points that tell how far the object reaches
 constexpr double kOutermost = 0.05;  // share of them, at each side, that may be of something else
 constexpr double kExtentSigma_m = 0.1;
@@ -194,7 +194,7 @@ void FaceMeasurement::addBound(const Bound& bound) {
     const std::array<int, 3> at{kRear + (corner & 1), kRight + (corner >> 1 & 1), kBottom + (corner >> 2 & 1)};
     const Eigen::Vector3d p_cam = view_.T_cam_body * Eigen::Vector3d(faces[at[0]], faces[at[1]], faces[at[2]]);
     const auto uvd_px = camera_.project(p_cam);
-    if (!uvd_px || p_cam.z() < kNear_m) return;
+    if (!uvd_px || p_cam.z() < kNearCorner_m) return;
     const double seen_px = horizontal ? uvd_px->x() : uvd_px->y();
     if (least ? seen_px >= extreme : seen_px <= extreme) continue;
     extreme = seen_px;

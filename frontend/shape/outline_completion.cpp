@@ -12,10 +12,11 @@ namespace {
 
 /// A vehicle's body, down to where one sees the road below it, and its wheels, away from its ends.
 std::vector<Eigen::AlignedBox3d> bodyAndWheels(const BoxEstimate& box) {
-  constexpr double kClearance_m = 0.25, kFromEnd_m = 0.45, kDiameter_m = 0.65, kThickness_m = 0.25, kRounded_m = 0.15;
+  constexpr double kClearance_m = 0.25, kFromEnd_m = 0.45, kDiameter_m = 0.65, kThickness_m = 0.25,
+                   kRoundedCorner_m = 0.15;
   constexpr double kLeastLength_m = 2.5;  // shorter ones stand on the road as a whole
   const Eigen::Vector3d least = box.least(), most = box.most();
-  const Eigen::Vector3d rounded(kRounded_m, kRounded_m, 0);
+  const Eigen::Vector3d rounded(kRoundedCorner_m, kRoundedCorner_m, 0);
   if (most.x() - least.x() < kLeastLength_m) return {Eigen::AlignedBox3d(least, most)};
   std::vector<Eigen::AlignedBox3d> parts;
   for (int i = 0; i < 4; ++i) {
