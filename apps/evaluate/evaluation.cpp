@@ -26,13 +26,14 @@ struct CameraPaths {
   std::vector<SE3> estimate, truth;
 };
 
-std::optional<TrajectoryErrors> cameraErrors(const std::vector<ComparedFrame>& frames) {
-  const CameraPaths paths(frames);
-  return trajectoryErrors(paths.estimate, paths.truth);
-}
-
 /// Rendered drives come with the objects' exact poses; the truth of real ones is another instrument's.
 bool mayBeMountedWrongly(const Sequence& sequence) { return sequence.truth.object_poses.empty(); }
+
+void measureMounted(KindEvaluation& kind, const CameraPaths& paths, const SE3& T_true_cam) {
+  const auto truth = withMounting(paths.truth, T_true_cam);
+  kind.camera_mounted = trajectoryErrors(paths.estimate, truth);
+  kind.camera_mounted_segments = segmentErrors(paths.estimate, truth);
+}
 
 void removeMounting(Evaluation& evaluation, const std::vector<ComparedFrame>& final,
                     const std::vector<ComparedFrame>& online) {
@@ -40,8 +41,8 @@ void removeMounting(Evaluation& evaluation, const std::vector<ComparedFrame>& fi
   const CameraPaths& fitted = final.empty() ? of_online : of_final;
   const SE3 T_true_cam = fitMounting(fitted.estimate, fitted.truth);
   evaluation.mounting = T_true_cam;
-  evaluation.final.camera_mounted = trajectoryErrors(of_final.estimate, withMounting(of_final.truth, T_true_cam));
-  evaluation.online.camera_mounted = trajectoryErrors(of_online.estimate, withMounting(of_online.truth, T_true_cam));
+  measureMounted(evaluation.final, of_final, T_true_cam);
+  measureMounted(evaluation.online, of_online, T_true_cam);
 }
 
 void evaluateCovariances(Evaluation& evaluation, const std::vector<ComparedFrame>& online, const CovarianceRows& rows) {
@@ -57,12 +58,16 @@ void evaluateCovariances(Evaluation& evaluation, const std::vector<ComparedFrame
 }
 
 KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
+  const CameraPaths paths(frames);
   KindEvaluation kind{.frames = frames.size(),
-                      .camera = cameraErrors(frames),
+                      .camera = trajectoryErrors(paths.estimate, paths.truth),
                       .camera_mounted = {},
+                      .camera_segments = segmentErrors(paths.estimate, paths.truth),
+                      .camera_mounted_segments = {},
                       .objects = objectErrors(frames),
                       .mean_positions = {},
                       .motion = motionErrors(frames),
+                      .motion_rms = {},
                       .detection = detectionErrors(frames),
                       .boxes_within_30m = boxErrors(frames, 0, kNear_m),
                       .boxes_from_30_to_50m = boxErrors(frames, kNear_m, kFar_m),
@@ -77,6 +82,7 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
   for (const auto& object : kind.objects)
     if (object.positions) positions.push_back(*object.positions);
   kind.mean_positions = meanOf(positions);
+  kind.motion_rms = objectRms(kind.objects);
   return kind;
 }
 

@@ -11,6 +11,7 @@
 #include "apps/evaluate/mask_measures.hpp"
 #include "apps/evaluate/object_measures.hpp"
 #include "apps/evaluate/run_comparison.hpp"
+#include "apps/evaluate/segment_errors.hpp"
 #include "apps/evaluate/tracking_measures.hpp"
 #include "apps/evaluate/trajectory_error.hpp"
 #include "apps/evaluate/worst_frames.hpp"
@@ -36,9 +37,11 @@ struct KindEvaluation {
   std::size_t frames = 0;
   std::optional<TrajectoryErrors> camera;
   std::optional<TrajectoryErrors> camera_mounted;  // without the truth's mounting error, where it may have one
+  std::optional<SegmentErrors> camera_segments, camera_mounted_segments;
   std::vector<ObjectErrors> objects;
   MeanPositionErrors mean_positions;
   MotionErrors motion;
+  ObjectRms motion_rms;
   DetectionErrors detection;
   BoxErrors boxes_within_30m, boxes_from_30_to_50m;
   Hota image_within_30m, image_within_50m, footprint_within_30m, footprint_within_50m;

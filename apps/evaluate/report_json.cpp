@@ -9,7 +9,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json jsonOf(const Statistics& s) {
-  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"max", s.max}, {"count", s.count}};
+  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"p95", s.p95}, {"max", s.max}, {"count", s.count}};
 }
 
 Json jsonOf(const std::optional<TrajectoryErrors>& errors) {
@@ -20,9 +20,45 @@ Json jsonOf(const std::optional<TrajectoryErrors>& errors) {
           {"path_length_m", errors->length_m}};
 }
 
+Json jsonOf(const SegmentMeans& means) {
+  return {{"segments", means.segments},
+          {"translation_percent", means.translation_percent},
+          {"rotation_deg_per_m", means.rotation_deg_per_m}};
+}
+
+Json jsonOf(const std::optional<SegmentErrors>& errors) {
+  if (!errors) return nullptr;
+  Json json = jsonOf(errors->all), by_length = Json::array();
+  json["short_segments"] = errors->short_segments;
+  for (const auto& of_length : errors->by_length) {
+    if (of_length.segments == 0) continue;
+    by_length.push_back({{"length_m", of_length.length_m}});
+    by_length.back().update(jsonOf(static_cast<const SegmentMeans&>(of_length)));
+  }
+  json["by_length"] = std::move(by_length);
+  return json;
+}
+
+Json cameraJson(const std::optional<TrajectoryErrors>& errors, const std::optional<SegmentErrors>& segments) {
+  Json json = jsonOf(errors);
+  if (errors) json["kitti"] = jsonOf(segments);
+  return json;
+}
+
+Json jsonOf(const LargestStep& step, const char* name) {
+  if (step.label < 0) return nullptr;
+  return {{name, step.error}, {"frame", step.frame.value}, {"label", step.label}, {"track_id", step.track.value}};
+}
+
+Json jsonOf(const ObjectRms& mean) {
+  return {{"objects", mean.objects}, {"me_t_m", mean.me_m}, {"me_r_deg", mean.me_deg}};
+}
+
 Json jsonOf(const MotionErrors& errors) {
   return {{"me_t_m", jsonOf(errors.me_m)},
           {"me_r_deg", jsonOf(errors.me_deg)},
+          {"largest_step", jsonOf(errors.largest_m, "me_t_m")},
+          {"largest_turn", jsonOf(errors.largest_deg, "me_r_deg")},
           {"speed_error_mps", jsonOf(errors.speed_mps)},
           {"speed_bias_mps", errors.speed_bias_mps},
           {"speed_coverage_95", errors.speed_coverage}};
@@ -161,13 +197,15 @@ Json jsonOf(const BoxErrors& boxes) {
 }
 
 Json jsonOf(const KindEvaluation& kind, bool with_objects) {
-  Json json = {
-      {"frames", kind.frames}, {"camera", jsonOf(kind.camera)}, {"camera_mounted", jsonOf(kind.camera_mounted)}};
+  Json json = {{"frames", kind.frames},
+               {"camera", cameraJson(kind.camera, kind.camera_segments)},
+               {"camera_mounted", cameraJson(kind.camera_mounted, kind.camera_mounted_segments)}};
   if (!with_objects) return json;
   json["objects"] = Json::array();
   for (const auto& object : kind.objects) json["objects"].push_back(jsonOf(object));
   json["objects_mean"] = jsonOf(kind.mean_positions);
   json["motion"] = jsonOf(kind.motion);
+  json["motion"]["object_rms"] = jsonOf(kind.motion_rms);
   json["detection"] = jsonOf(kind.detection);
   json["boxes_within_30m"] = jsonOf(kind.boxes_within_30m);
   json["boxes_from_30_to_50m"] = jsonOf(kind.boxes_from_30_to_50m);
