@@ -86,8 +86,11 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
   return kind;
 }
 
-CameraTruth neededTruth(const Sequence& sequence, bool uninterpolated) {
-  auto truth = readCameraTruth(sequence, uninterpolated ? OxtsTimes::kUninterpolated : OxtsTimes::kInterpolated);
+CameraTruth neededTruth(const Sequence& sequence, OxtsTimes times) {
+  auto truth = readCameraTruth(sequence, times);
+  if (!truth && times == OxtsTimes::kVelocities)
+    throw InputError(sequence.folder.string() +
+                     ": has no velocities; --truth velocity needs oxts, and Tr_imu_velo in the calibration");
   if (!truth)
     throw InputError(sequence.folder.string() +
                      ": has no ground truth; poses.txt or oxts with their calibration are needed");
@@ -159,14 +162,14 @@ double Evaluation::latencyQuantile_ms(double part) const {
 }
 
 KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequence, OxtsTimes times) {
-  const CameraTruth camera = neededTruth(sequence, times == OxtsTimes::kUninterpolated);
+  const CameraTruth camera = neededTruth(sequence, times);
   return evaluateFrames(compareFrames({poses, {}}, 0, camera, nullptr, sequence.stamps));
 }
 
 Evaluation evaluateRun(const EvaluateOptions& options) {
   RunFolder run = readRunFolder(options.run);
   const Sequence sequence = openSequenceOf(run, {options.sequence, options.fps_hz});
-  const CameraTruth camera = neededTruth(sequence, options.uninterpolated);
+  const CameraTruth camera = neededTruth(sequence, options.truth);
   requireTruthFrom(run.first_frame, camera);
   const auto truths = readObjectTruths(sequence, camera);
   const auto compare = [&](const RunFolder::Trajectories& trajectories, std::int64_t first_frame) {
@@ -176,6 +179,7 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   evaluation.run = options.run;
   evaluation.sequence = sequence.folder;
   evaluation.camera_source = camera.source;
+  if (options.truth != OxtsTimes::kVelocities) evaluation.truth_check = checkTruth(sequence, camera);
   evaluation.finals_recovered = recoverFinals(run);
   if (truths) evaluation.object_source = truths->source;
   countFrames(evaluation, run);

@@ -14,6 +14,7 @@
 #include "apps/evaluate/segment_errors.hpp"
 #include "apps/evaluate/tracking_measures.hpp"
 #include "apps/evaluate/trajectory_error.hpp"
+#include "apps/evaluate/truth_check.hpp"
 #include "apps/evaluate/worst_frames.hpp"
 #include "io/run_folder.hpp"
 #include "io/sequence.hpp"
@@ -23,13 +24,13 @@ namespace motorcade {
 struct EvaluateOptions {
   std::filesystem::path run, sequence;  // the sequence that the run names when empty
   std::optional<double> fps_hz;         // of a sequence without times; the run's when empty
-  bool uninterpolated = false;          // oxts packet k for image k
-  std::filesystem::path baseline;       // camera poses to compare with; empty for none
-  std::filesystem::path baseline_run;   // run folder to compare objects with; empty for none
-  std::filesystem::path half_run;       // run folder of the same drive from other points; empty for none
-  std::filesystem::path export_truth;   // folder for the true trajectories; empty for none
-  std::filesystem::path export_kitti;   // folder for the run's objects as KITTI results; empty for none
-  std::filesystem::path json;           // empty for none
+  OxtsTimes truth = OxtsTimes::kInterpolated;
+  std::filesystem::path baseline;      // camera poses to compare with; empty for none
+  std::filesystem::path baseline_run;  // run folder to compare objects with; empty for none
+  std::filesystem::path half_run;      // run folder of the same drive from other points; empty for none
+  std::filesystem::path export_truth;  // folder for the true trajectories; empty for none
+  std::filesystem::path export_kitti;  // folder for the run's objects as KITTI results; empty for none
+  std::filesystem::path json;          // empty for none
 };
 
 /// All measures of one kind of estimate, final or online.
@@ -63,6 +64,7 @@ struct Evaluation {
   std::size_t finals_recovered = 0;  // of the last frames of a run that did not end in order, from online
   int lost = 0, rejected = 0, dropped = 0;
   std::string camera_source, object_source;  // the latter empty without labels
+  std::optional<TruthCheck> truth_check;     // where the truth is not from velocities, and these are known
   KindEvaluation final, online;
   WorstFrames worst;            // of the final estimates
   std::optional<SE3> mounting;  // T_true_cam, fitted to the final path; empty where the truth is exact

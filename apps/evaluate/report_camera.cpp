@@ -1,3 +1,4 @@
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -42,6 +43,19 @@ void printSegments(std::string& text, const Evaluation& e) {
   }
 }
 
+/// Of a truth that cannot be right.
+void printDoubt(std::string& text, const TruthCheck& check) {
+  print(text, "doubt     positions and velocities of the truth contradict each other:\n");
+  if (check.waysDiffer())
+    print(text, "          the way is %.1f m by positions and %.1f m by velocities, %.1f %% apart\n", check.way_m,
+          check.velocity_way_m, std::abs(check.differencePercent()));
+  if (check.jumps())
+    print(text, "          from frame %lld to %lld they are %.1f m apart\n",
+          static_cast<long long>(check.step_from.value), static_cast<long long>(check.step_to.value),
+          check.largest_step_m);
+  print(text, "          errors of that size say nothing of the run; --truth velocity measures by velocities\n");
+}
+
 }  // namespace
 
 void printHead(std::string& text, const Evaluation& e) {
@@ -54,6 +68,7 @@ void printHead(std::string& text, const Evaluation& e) {
           e.finals_recovered);
   print(text, "truth     camera from %s%s%s\n", e.camera_source.c_str(),
         e.object_source.empty() ? "" : ", objects from ", e.object_source.c_str());
+  if (e.truth_check && e.truth_check->doubtful()) printDoubt(text, *e.truth_check);
 }
 
 void printCamera(std::string& text, const Evaluation& e) {

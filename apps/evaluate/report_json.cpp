@@ -246,6 +246,15 @@ Json jsonOf(const CovarianceErrors& errors) {
   return json;
 }
 
+Json jsonOf(const TruthCheck& check) {
+  return {{"way_m", check.way_m},
+          {"velocity_way_m", check.velocity_way_m},
+          {"difference_percent", check.differencePercent()},
+          {"largest_step_m", check.largest_step_m},
+          {"largest_step_frames", {check.step_from.value, check.step_to.value}},
+          {"doubtful", check.doubtful()}};
+}
+
 Json covarianceJson(const Evaluation& e) {
   const auto orNull = [](const auto& errors) { return errors ? jsonOf(*errors) : Json(); };
   Json nees = Json::object();
@@ -274,7 +283,10 @@ std::string jsonOf(const Evaluation& e) {
                {"lost", e.lost},
                {"rejected", e.rejected},
                {"dropped", e.dropped},
-               {"truth", {{"camera", e.camera_source}, {"objects", e.object_source}}},
+               {"truth",
+                {{"camera", e.camera_source},
+                 {"objects", e.object_source},
+                 {"velocity_check", e.truth_check ? jsonOf(*e.truth_check) : Json()}}},
                {"mounting", e.mounting ? jsonOf(*e.mounting) : Json()},
                {"final", jsonOf(e.final, with_objects)},
                {"online", jsonOf(e.online, with_objects)},

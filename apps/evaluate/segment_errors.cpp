@@ -40,7 +40,8 @@ std::optional<SegmentErrors> segmentErrors(const std::vector<SE3>& estimate, con
   assert(estimate.size() == truth.size());
   if (truth.empty()) return std::nullopt;
   const std::vector<double> ways_m = waysAlong(truth);
-  SegmentErrors errors{.short_segments = ways_m.back() < kLeastForLongSegments_m};
+  SegmentErrors errors;
+  errors.short_segments = ways_m.back() < kLeastForLongSegments_m;
   for (std::size_t k = 0; k < SegmentErrors::kLengths; ++k) {
     SegmentErrors::OfLength& of_length = errors.by_length[k];
     of_length.length_m = (errors.short_segments ? 10.0 : 100.0) * static_cast<double>(k + 1);

@@ -27,6 +27,7 @@ constexpr std::array kMeasures{
     Measure{"online_camera_kitti_r_deg_per_m", "/online/camera/kitti/rotation_deg_per_m", "", kLower},
     Measure{"camera_kitti_segments", "/final/camera/kitti/segments", "", kNeither},
     Measure{"camera_kitti_shortest_m", "/final/camera/kitti/by_length/0/length_m", "", kNeither},
+    Measure{"truth_way_difference_percent", "/truth/velocity_check/difference_percent", "", kNeither},
     Measure{"camera_path_m", "/final/camera/path_length_m", "", kNeither},
     Measure{"camera_mounted_ate_m", "/final/camera_mounted/ate_m/rmse", "", kLower},
     Measure{"camera_mounted_end_error_percent", "/final/camera_mounted/end_error_percent", "", kLower},
