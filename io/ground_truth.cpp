@@ -104,24 +104,9 @@ std::optional<CameraTruth> truthFromOxts(const Sequence& sequence, OxtsTimes tim
   return truth;
 }
 
-CameraTruth truthFromPoses(const Sequence& sequence) {
-  CameraTruth truth{.T_world_cam = readKittiPoses(sequence.truth.poses),
-                    .source = sequence.truth.poses.filename().string()};
-  if (truth.T_world_cam.size() < sequence.frames.size()) {
-    throw InputError(sequence.truth.poses.string() + ": has " + std::to_string(truth.T_world_cam.size()) +
-                     " poses for " + std::to_string(sequence.frames.size()) + " images");
-  }
-  const SE3 T_left_cam0 = sequence.calibration.T_left_cam0(sequence.pair);
-  for (auto& pose : truth.T_world_cam) pose = T_left_cam0 * pose * T_left_cam0.inverse();
-  return truth;
-}
-
-/// Of poses that are stamped otherwise than the images, for the frames between the first and the last of them.
-std::optional<CameraTruth> truthFromStampedPoses(const Sequence& sequence) {
-  const bool numbered = sequence.truth.stamped_poses.empty();
-  const fs::path& file = numbered ? sequence.truth.numbered_poses : sequence.truth.stamped_poses;
-  if (file.empty()) return std::nullopt;
-  const StampedPoses known = numbered ? readNumberedPoses(file, sequence) : readStampedPoses(file);
+/// The known poses' truth of the frames between the first and the last of them, in the world of the first such frame.
+CameraTruth truthAtFrames(const Sequence& sequence, const StampedPoses& known, const fs::path& file,
+                          const SE3& T_posed_cam) {
   CameraTruth truth{.T_world_cam = {}, .source = file.filename().string()};
   const auto& stamps = sequence.stamps;
   if (known.stamps.size() < 2 || known.stamps.front() > stamps.back() || known.stamps.back() < stamps.front())
@@ -129,13 +114,35 @@ std::optional<CameraTruth> truthFromStampedPoses(const Sequence& sequence) {
   const auto first = std::ranges::lower_bound(stamps, known.stamps.front()) - stamps.begin();
   const auto end = std::ranges::upper_bound(stamps, known.stamps.back()) - stamps.begin();
   truth.first_frame = first;
-  const SE3& T_posed_cam = sequence.truth.T_posed_cam;
   const auto poseOf = [&](std::ptrdiff_t frame) {
     return poseAt(stamps[std::max(frame, first)], known.poses, known.stamps) * T_posed_cam;
   };
   const SE3 T_world_reference = poseOf(first).inverse();
   for (std::ptrdiff_t frame = 0; frame < end; ++frame) truth.T_world_cam.push_back(T_world_reference * poseOf(frame));
   return truth;
+}
+
+CameraTruth truthFromPoses(const Sequence& sequence) {
+  const SE3 T_left_cam0 = sequence.calibration.T_left_cam0(sequence.pair);
+  if (const auto known = readTimedPoses(sequence.truth.poses, sequence))
+    return truthAtFrames(sequence, *known, sequence.truth.poses, T_left_cam0.inverse());
+  CameraTruth truth{.T_world_cam = readKittiPoses(sequence.truth.poses),
+                    .source = sequence.truth.poses.filename().string()};
+  if (truth.T_world_cam.size() < sequence.frames.size()) {
+    throw InputError(sequence.truth.poses.string() + ": has " + std::to_string(truth.T_world_cam.size()) +
+                     " poses for " + std::to_string(sequence.frames.size()) + " images");
+  }
+  for (auto& pose : truth.T_world_cam) pose = T_left_cam0 * pose * T_left_cam0.inverse();
+  return truth;
+}
+
+/// Of poses that are stamped otherwise than the images.
+std::optional<CameraTruth> truthFromStampedPoses(const Sequence& sequence) {
+  const bool numbered = sequence.truth.stamped_poses.empty();
+  const fs::path& file = numbered ? sequence.truth.numbered_poses : sequence.truth.stamped_poses;
+  if (file.empty()) return std::nullopt;
+  const StampedPoses known = numbered ? readNumberedPoses(file, sequence) : readStampedPoses(file);
+  return truthAtFrames(sequence, known, file, sequence.truth.T_posed_cam);
 }
 
 SE3 boxPose(const Label& label) {
