@@ -67,7 +67,7 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
                       .objects = objectErrors(frames),
                       .mean_positions = {},
                       .motion = motionErrors(frames),
-                      .motion_rms = {},
+                      .followed_motion = followedMotion(frames),
                       .detection = detectionErrors(frames),
                       .boxes_within_30m = boxErrors(frames, 0, kNear_m),
                       .boxes_from_30_to_50m = boxErrors(frames, kNear_m, kFar_m),
@@ -82,7 +82,6 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
   for (const auto& object : kind.objects)
     if (object.positions) positions.push_back(*object.positions);
   kind.mean_positions = meanOf(positions);
-  kind.motion_rms = objectRms(kind.objects);
   return kind;
 }
 

@@ -101,6 +101,15 @@ std::vector<AskedPair> askedPairs(const std::vector<ComparedFrame>& frames, doub
   return pairs;
 }
 
+std::vector<AskedPair> movingPairs(const std::vector<ComparedFrame>& frames) {
+  std::vector<AskedPair> pairs;
+  for (const auto& frame : frames)
+    for (const auto& row : frame.rows)
+      if (row.object >= 0 && frame.objects[row.object].moving)
+        pairs.push_back({&frame, &frame.objects[row.object], &row});
+  return pairs;
+}
+
 std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths,
                                                            const std::vector<Timestamp>& stamps) {
   std::map<FrameId, std::vector<TrueObject>> frames;

@@ -40,10 +40,6 @@ std::optional<TrajectoryErrors> bodyTrajectoryErrors(const FollowedLabel& follow
   return errors;
 }
 
-void keepLarger(LargestStep& largest, double error, const ObjectStepError& step) {
-  if (largest.label < 0 || error > largest.error) largest = {error, step.frame, step.label, step.track};
-}
-
 void count(DetectionCounts& counts, bool found) {
   ++counts.labels;
   counts.found += found;
@@ -100,8 +96,6 @@ MotionErrors motionErrors(const std::vector<ComparedFrame>& frames, std::optiona
   for (const auto& step : objectStepErrors(pairs)) {
     me_m.push_back(step.error.translation().norm());
     me_deg.push_back(angleOf_deg(step.error.rotation()));
-    keepLarger(errors.largest_m, me_m.back(), step);
-    keepLarger(errors.largest_deg, me_deg.back(), step);
   }
   for (const auto& pair : pairs) {
     const ObjectEstimate& estimate = pair.row->row.object;
@@ -146,19 +140,6 @@ std::vector<ObjectErrors> objectErrors(const std::vector<ComparedFrame>& frames)
     result.push_back(std::move(errors));
   }
   return result;
-}
-
-ObjectRms objectRms(const std::vector<ObjectErrors>& objects) {
-  ObjectRms mean;
-  for (const ObjectErrors& object : objects) {
-    if (object.motion.me_m.count == 0) continue;
-    ++mean.objects;
-    mean.me_m += object.motion.me_m.rmse;
-    mean.me_deg += object.motion.me_deg.rmse;
-  }
-  mean.me_m /= std::max(1, mean.objects);
-  mean.me_deg /= std::max(1, mean.objects);
-  return mean;
 }
 
 DetectionErrors detectionErrors(const std::vector<ComparedFrame>& frames) {

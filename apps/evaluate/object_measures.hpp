@@ -22,19 +22,10 @@ struct ObjectStepError {
 /// Of each track on its label, where both frames have a pair; `pairs` in the order of the frames.
 std::vector<ObjectStepError> objectStepErrors(const std::vector<AskedPair>& pairs);
 
-/// The largest error of one kind, and where it is.
-struct LargestStep {
-  double error = 0;  // m or deg
-  FrameId frame;
-  std::int64_t label = -1;  // none without steps
-  TrackId track;
-};
-
 /// Motion of objects from frame to frame, and speed.
 struct MotionErrors {
   Statistics me_m, me_deg;  // of the step errors
-  LargestStep largest_m, largest_deg;
-  Statistics speed_mps;  // |estimated| - |true|
+  Statistics speed_mps;     // |estimated| - |true|
   double speed_bias_mps = 0;
   double speed_coverage = 0;  // share of speeds within 1.96 of their sigma
 };
@@ -52,14 +43,6 @@ struct ObjectErrors {
   std::optional<PositionErrors> positions;
   MotionErrors motion;
 };
-
-/// Root mean squares of the motion errors over each object's frames, averaged over the objects: the form of published
-/// figures (VDO-SLAM, DynoSAM).
-struct ObjectRms {
-  int objects = 0;  // with at least one step
-  double me_m = 0, me_deg = 0;
-};
-ObjectRms objectRms(const std::vector<ObjectErrors>& objects);
 
 struct DetectionCounts {
   int labels = 0, found = 0;

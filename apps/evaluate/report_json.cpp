@@ -50,15 +50,26 @@ Json jsonOf(const LargestStep& step, const char* name) {
   return {{name, step.error}, {"frame", step.frame.value}, {"label", step.label}, {"track_id", step.track.value}};
 }
 
-Json jsonOf(const ObjectRms& mean) {
-  return {{"objects", mean.objects}, {"me_t_m", mean.me_m}, {"me_r_deg", mean.me_deg}};
+Json jsonOf(const FollowedMotion& motion) {
+  Json each = Json::array();
+  for (const LabelMotion& object : motion.objects)
+    each.push_back({{"label", object.label},
+                    {"type", object.type},
+                    {"me_t_m", jsonOf(object.me_m)},
+                    {"me_r_deg", jsonOf(object.me_deg)}});
+  return {{"objects", motion.objects.size()},
+          {"me_t_object_rms_m", motion.rms_m},
+          {"me_r_object_rms_deg", motion.rms_deg},
+          {"me_t_m", jsonOf(motion.me_m)},
+          {"me_r_deg", jsonOf(motion.me_deg)},
+          {"largest_step", jsonOf(motion.largest_m, "me_t_m")},
+          {"largest_turn", jsonOf(motion.largest_deg, "me_r_deg")},
+          {"each", std::move(each)}};
 }
 
 Json jsonOf(const MotionErrors& errors) {
   return {{"me_t_m", jsonOf(errors.me_m)},
           {"me_r_deg", jsonOf(errors.me_deg)},
-          {"largest_step", jsonOf(errors.largest_m, "me_t_m")},
-          {"largest_turn", jsonOf(errors.largest_deg, "me_r_deg")},
           {"speed_error_mps", jsonOf(errors.speed_mps)},
           {"speed_bias_mps", errors.speed_bias_mps},
           {"speed_coverage_95", errors.speed_coverage}};
@@ -205,7 +216,7 @@ Json jsonOf(const KindEvaluation& kind, bool with_objects) {
   for (const auto& object : kind.objects) json["objects"].push_back(jsonOf(object));
   json["objects_mean"] = jsonOf(kind.mean_positions);
   json["motion"] = jsonOf(kind.motion);
-  json["motion"]["object_rms"] = jsonOf(kind.motion_rms);
+  json["followed_motion"] = jsonOf(kind.followed_motion);
   json["detection"] = jsonOf(kind.detection);
   json["boxes_within_30m"] = jsonOf(kind.boxes_within_30m);
   json["boxes_from_30_to_50m"] = jsonOf(kind.boxes_from_30_to_50m);

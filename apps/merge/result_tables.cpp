@@ -110,16 +110,16 @@ std::vector<Column> objectColumns() {
 std::vector<Column> motionColumns() {
   return {
       pairColumn("ME_t m RMS of each object, mean, final / online", "me_t_object_rms_m", "online_me_t_object_rms_m", 3),
-      pairColumn("mean of all steps", "me_t_m", "online_me_t_m", 4),
-      pairColumn("median", "me_t_median_m", "online_me_t_median_m", 4),
-      pairColumn("95 %", "me_t_p95_m", "online_me_t_p95_m", 3),
-      pairColumn("largest", "me_t_max_m", "online_me_t_max_m", 2),
+      pairColumn("mean of all steps", "me_t_followed_mean_m", "online_me_t_followed_mean_m", 4),
+      pairColumn("median", "me_t_followed_median_m", "online_me_t_followed_median_m", 4),
+      pairColumn("95 %", "me_t_followed_p95_m", "online_me_t_followed_p95_m", 3),
+      pairColumn("largest", "me_t_followed_max_m", "online_me_t_followed_max_m", 2),
       pairColumn("ME_r deg RMS of each object, mean, final / online", "me_r_object_rms_deg",
                  "online_me_r_object_rms_deg", 3),
-      pairColumn("mean of all steps", "me_r_deg", "online_me_r_deg", 3),
-      pairColumn("median", "me_r_median_deg", "online_me_r_median_deg", 3),
-      pairColumn("95 %", "me_r_p95_deg", "online_me_r_p95_deg", 2),
-      pairColumn("largest", "me_r_max_deg", "online_me_r_max_deg", 1)};
+      pairColumn("mean of all steps", "me_r_followed_mean_deg", "online_me_r_followed_mean_deg", 3),
+      pairColumn("median", "me_r_followed_median_deg", "online_me_r_followed_median_deg", 3),
+      pairColumn("95 %", "me_r_followed_p95_deg", "online_me_r_followed_p95_deg", 2),
+      pairColumn("largest", "me_r_followed_max_deg", "online_me_r_followed_max_deg", 1)};
 }
 
 std::vector<Column> positionColumns() {
@@ -226,7 +226,7 @@ ResultTable overviewTable(const std::vector<ResultGroup>& groups) {
       meanColumn("of the baseline", "baseline_ate_m", 3),
       segmentColumn("KITTI translation %", "camera_kitti_t_percent", "", 2),
       meanColumn("objects m", "objects_as_seen_m", 3),
-      meanColumn("motion of objects per frame m, mean of all", "me_t_m", 4),
+      meanColumn("motion of objects per frame m, mean", "me_t_m", 4),
       meanColumn("RMS of each, mean", "me_t_object_rms_m", 3),
       recallColumn("recall to 30 m", "found_30m", "labels_30m"),
       {"false rows", [](const ResultGroup& group) { return group.hasLabels() ? falseRowsColumn().cell(group) : "-"; }}};
@@ -234,15 +234,16 @@ ResultTable overviewTable(const std::vector<ResultGroup>& groups) {
 }
 
 std::vector<ResultTable> measureTables(const std::vector<ResultGroup>& groups) {
-  std::vector<ResultTable> tables{tableOf("Camera", groups, cameraColumns(), Labels::kNotNeeded),
-                                  tableOf("Objects", groups, objectColumns(), Labels::kNeeded),
-                                  tableOf("Motion of objects per frame", groups, motionColumns(), Labels::kNeeded),
-                                  tableOf("Positions of objects", groups, positionColumns(), Labels::kNeeded),
-                                  tableOf("Boxes of objects within 30 m", groups, boxColumns(), Labels::kNeeded),
-                                  tableOf("Tracking within 30 m", groups, trackingColumns(), Labels::kNeeded),
-                                  tableOf("Covariances", groups, covarianceColumns(), Labels::kNotNeeded),
-                                  tableOf("Latency and cost", groups, latencyColumns(), Labels::kNotNeeded),
-                                  tableOf("Worst frame of each drive", groups, worstColumns(), Labels::kNotNeeded)};
+  std::vector<ResultTable> tables{
+      tableOf("Camera", groups, cameraColumns(), Labels::kNotNeeded),
+      tableOf("Objects", groups, objectColumns(), Labels::kNeeded),
+      tableOf("Motion of all followed objects per frame", groups, motionColumns(), Labels::kNeeded),
+      tableOf("Positions of objects", groups, positionColumns(), Labels::kNeeded),
+      tableOf("Boxes of objects within 30 m", groups, boxColumns(), Labels::kNeeded),
+      tableOf("Tracking within 30 m", groups, trackingColumns(), Labels::kNeeded),
+      tableOf("Covariances", groups, covarianceColumns(), Labels::kNotNeeded),
+      tableOf("Latency and cost", groups, latencyColumns(), Labels::kNotNeeded),
+      tableOf("Worst frame of each drive", groups, worstColumns(), Labels::kNotNeeded)};
   std::erase_if(tables, [](const ResultTable& table) { return table.rows.empty(); });
   return tables;
 }

@@ -102,9 +102,10 @@ TEST_F(EvaluateDrive, SegmentsAndPublishedFormsAreInTableAndJson) {
     EXPECT_NEAR(kitti.at("translation_percent"), (2 * 2.2 + 2.1) / 3, kDigitsOfTheFiles);
     EXPECT_NEAR(kitti.at("by_length").at(1).at("translation_percent"), 2.1, kDigitsOfTheFiles) << "21 m of 20";
     EXPECT_EQ(kitti.at("by_length").size(), 2U);
-    const auto& motion = json.at(kind).at("motion");
-    EXPECT_EQ(motion.at("object_rms").at("objects"), 1);
-    EXPECT_NEAR(motion.at("object_rms").at("me_t_m"), 0.3 / std::sqrt(29), 1e-3);
+    const auto& motion = json.at(kind).at("followed_motion");
+    EXPECT_EQ(motion.at("objects"), 1);
+    EXPECT_NEAR(motion.at("me_t_object_rms_m"), 0.3 / std::sqrt(29), 1e-3);
+    EXPECT_EQ(motion.at("each").at(0).at("label"), 7);
     EXPECT_EQ(motion.at("largest_step").at("frame"), 12);
     EXPECT_EQ(motion.at("largest_step").at("track_id"), 3);
     EXPECT_LT(motion.at("me_t_m").at("p95"), 0.1);
