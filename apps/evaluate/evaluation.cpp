@@ -32,7 +32,7 @@ std::optional<TrajectoryErrors> cameraErrors(const std::vector<ComparedFrame>& f
 }
 
 /// Rendered drives come with the objects' exact poses; the truth of real ones is another instrument's.
-bool mayBeMountedWrongly(const Sequence& sequence) { return sequence.truth.object_poses.empty(); }
+bool mayBeMountedWrongly(const Sequence& sequence) { return !sequence.truth.exact(); }
 
 void removeMounting(Evaluation& evaluation, const std::vector<ComparedFrame>& final,
                     const std::vector<ComparedFrame>& online) {
