@@ -13,12 +13,26 @@
 #include "io/text_file.hpp"
 #include "io/timestamps.hpp"
 #include "io/trajectory.hpp"
+#include "io/velocity_path.hpp"
 #include "io/virtual_kitti.hpp"
 
 namespace motorcade {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// The fields after the attitude: the velocity to the north and to the east, then ahead, to the left and up.
+std::optional<Eigen::Vector3d> readVelocity(FieldReader& fields) {
+  FieldReader ahead = fields;
+  for (int i = 0; i < 5; ++i) {
+    if (ahead.atEnd()) return std::nullopt;
+    ahead.word("velocity");
+  }
+  for (int i = 0; i < 2; ++i) fields.number("velocity");
+  Eigen::Vector3d velocity_mps;
+  for (double& along : velocity_mps) along = fields.number("velocity");
+  return velocity_mps;
+}
 
 OxtsPacket packetOf(const fs::path& file, const TextLine& line) {
   FieldReader fields(file, line);
@@ -29,6 +43,7 @@ OxtsPacket packetOf(const fs::path& file, const TextLine& line) {
   packet.roll_rad = fields.number("roll");
   packet.pitch_rad = fields.number("pitch");
   packet.yaw_rad = fields.number("yaw");
+  packet.velocity_mps = readVelocity(fields);
   constexpr double kMaxMercator_deg = 89;
   if (std::abs(packet.latitude_deg) > kMaxMercator_deg) fields.fail("the latitude is out of range");
   return packet;
@@ -44,11 +59,7 @@ std::vector<SE3> mercatorPoses(const std::vector<OxtsPacket>& packets) {
     const Eigen::Vector3d position_m{scale_m * p.longitude_deg * kRadPerDeg,
                                      scale_m * std::log(std::tan((90 + p.latitude_deg) * kRadPerDeg / 2)),
                                      p.altitude_m};
-    using Eigen::AngleAxisd, Eigen::Vector3d;
-    const Eigen::Quaterniond attitude = AngleAxisd(p.yaw_rad, Vector3d::UnitZ()) *
-                                        AngleAxisd(p.pitch_rad, Vector3d::UnitY()) *
-                                        AngleAxisd(p.roll_rad, Vector3d::UnitX());
-    poses.emplace_back(attitude.toRotationMatrix(), position_m);
+    poses.emplace_back(p.attitude(), position_m);
   }
   return poses;
 }
@@ -71,17 +82,21 @@ std::vector<SE3> interpolated(const std::vector<SE3>& poses, const Sequence::Tru
 std::optional<CameraTruth> truthFromOxts(const Sequence& sequence, OxtsTimes times) {
   const auto T_cam0_imu = sequence.calibration.T_cam0_imu();
   if (sequence.truth.oxts.empty() || !T_cam0_imu) return std::nullopt;
-  std::vector<SE3> poses = mercatorPoses(readOxts(sequence.truth.oxts));
+  const auto packets = readOxts(sequence.truth.oxts);
+  const bool by_velocity = times == OxtsTimes::kVelocities;
+  std::vector<SE3> poses = by_velocity
+                               ? velocityPoses(packets, packetStamps(sequence, packets.size()), sequence.truth.oxts)
+                               : mercatorPoses(packets);
   const bool both_times = !sequence.truth.oxts_timestamps.empty() && !sequence.truth.image_timestamps.empty();
-  const bool interpolate = times == OxtsTimes::kInterpolated && both_times && poses.size() >= 2;
+  const bool interpolate = times != OxtsTimes::kUninterpolated && both_times && poses.size() >= 2;
   if (interpolate) poses = interpolated(poses, sequence.truth);
   if (poses.size() < sequence.frames.size()) {
     throw InputError(sequence.truth.oxts.string() + ": tells of " + std::to_string(poses.size()) +
                      " frames, there are " + std::to_string(sequence.frames.size()) + " images");
   }
-  CameraTruth truth{
-      .T_world_cam = {},
-      .source = sequence.truth.oxts.filename().string() + (interpolate ? " (interpolated)" : " (uninterpolated)")};
+  CameraTruth truth{.T_world_cam = {},
+                    .source = sequence.truth.oxts.filename().string() + (by_velocity ? ", velocities" : "") +
+                              (interpolate ? " (interpolated)" : " (uninterpolated)")};
   const SE3 T_cam_imu = sequence.calibration.T_left_cam0(sequence.pair) * *T_cam0_imu;
   const SE3 T_world_mercator = T_cam_imu * poses.front().inverse();
   const SE3 T_imu_cam = T_cam_imu.inverse();
@@ -90,24 +105,9 @@ std::optional<CameraTruth> truthFromOxts(const Sequence& sequence, OxtsTimes tim
   return truth;
 }
 
-CameraTruth truthFromPoses(const Sequence& sequence) {
-  CameraTruth truth{.T_world_cam = readKittiPoses(sequence.truth.poses),
-                    .source = sequence.truth.poses.filename().string()};
-  if (truth.T_world_cam.size() < sequence.frames.size()) {
-    throw InputError(sequence.truth.poses.string() + ": has " + std::to_string(truth.T_world_cam.size()) +
-                     " poses for " + std::to_string(sequence.frames.size()) + " images");
-  }
-  const SE3 T_left_cam0 = sequence.calibration.T_left_cam0(sequence.pair);
-  for (auto& pose : truth.T_world_cam) pose = T_left_cam0 * pose * T_left_cam0.inverse();
-  return truth;
-}
-
-/// Of poses that are stamped otherwise than the images, for the frames between the first and the last of them.
-std::optional<CameraTruth> truthFromStampedPoses(const Sequence& sequence) {
-  const bool numbered = sequence.truth.stamped_poses.empty();
-  const fs::path& file = numbered ? sequence.truth.numbered_poses : sequence.truth.stamped_poses;
-  if (file.empty()) return std::nullopt;
-  const StampedPoses known = numbered ? readNumberedPoses(file, sequence) : readStampedPoses(file);
+/// The known poses' truth of the frames between the first and the last of them, in the world of the first such frame.
+CameraTruth truthAtFrames(const Sequence& sequence, const StampedPoses& known, const fs::path& file,
+                          const SE3& T_posed_cam) {
   CameraTruth truth{.T_world_cam = {}, .source = file.filename().string()};
   const auto& stamps = sequence.stamps;
   if (known.stamps.size() < 2 || known.stamps.front() > stamps.back() || known.stamps.back() < stamps.front())
@@ -115,13 +115,35 @@ std::optional<CameraTruth> truthFromStampedPoses(const Sequence& sequence) {
   const auto first = std::ranges::lower_bound(stamps, known.stamps.front()) - stamps.begin();
   const auto end = std::ranges::upper_bound(stamps, known.stamps.back()) - stamps.begin();
   truth.first_frame = first;
-  const SE3& T_posed_cam = sequence.truth.T_posed_cam;
   const auto poseOf = [&](std::ptrdiff_t frame) {
     return poseAt(stamps[std::max(frame, first)], known.poses, known.stamps) * T_posed_cam;
   };
   const SE3 T_world_reference = poseOf(first).inverse();
   for (std::ptrdiff_t frame = 0; frame < end; ++frame) truth.T_world_cam.push_back(T_world_reference * poseOf(frame));
   return truth;
+}
+
+CameraTruth truthFromPoses(const Sequence& sequence) {
+  const SE3 T_left_cam0 = sequence.calibration.T_left_cam0(sequence.pair);
+  if (const auto known = readTimedPoses(sequence.truth.poses, sequence))
+    return truthAtFrames(sequence, *known, sequence.truth.poses, T_left_cam0.inverse());
+  CameraTruth truth{.T_world_cam = readKittiPoses(sequence.truth.poses),
+                    .source = sequence.truth.poses.filename().string()};
+  if (truth.T_world_cam.size() < sequence.frames.size()) {
+    throw InputError(sequence.truth.poses.string() + ": has " + std::to_string(truth.T_world_cam.size()) +
+                     " poses for " + std::to_string(sequence.frames.size()) + " images");
+  }
+  for (auto& pose : truth.T_world_cam) pose = T_left_cam0 * pose * T_left_cam0.inverse();
+  return truth;
+}
+
+/// Of poses that are stamped otherwise than the images.
+std::optional<CameraTruth> truthFromStampedPoses(const Sequence& sequence) {
+  const bool numbered = sequence.truth.stamped_poses.empty();
+  const fs::path& file = numbered ? sequence.truth.numbered_poses : sequence.truth.stamped_poses;
+  if (file.empty()) return std::nullopt;
+  const StampedPoses known = numbered ? readNumberedPoses(file, sequence) : readStampedPoses(file);
+  return truthAtFrames(sequence, known, file, sequence.truth.T_posed_cam);
 }
 
 SE3 boxPose(const Label& label) {
@@ -150,6 +172,13 @@ PoseByFrameAndId readObjectPoses(const fs::path& file) {
 
 }  // namespace
 
+Eigen::Matrix3d OxtsPacket::attitude() const {
+  using Eigen::AngleAxisd, Eigen::Vector3d;
+  const Eigen::Quaterniond turn = AngleAxisd(yaw_rad, Vector3d::UnitZ()) * AngleAxisd(pitch_rad, Vector3d::UnitY()) *
+                                  AngleAxisd(roll_rad, Vector3d::UnitX());
+  return turn.toRotationMatrix();
+}
+
 std::vector<OxtsPacket> readOxts(const fs::path& file_or_folder) {
   std::vector<OxtsPacket> packets;
   if (!fs::is_directory(file_or_folder)) {
@@ -170,6 +199,7 @@ std::vector<OxtsPacket> readOxts(const fs::path& file_or_folder) {
 }
 
 std::optional<CameraTruth> readCameraTruth(const Sequence& sequence, OxtsTimes times) {
+  if (times == OxtsTimes::kVelocities) return truthFromOxts(sequence, times);
   if (times == OxtsTimes::kUninterpolated) {
     if (auto truth = truthFromOxts(sequence, times)) return truth;
   }

@@ -15,12 +15,15 @@ namespace motorcade {
 enum class OxtsTimes {
   kInterpolated,    // packets interpolated at the images' times, where both time files are there
   kUninterpolated,  // packet k for image k, as published evaluations have it
+  kVelocities,      // as kInterpolated, with the places that the packets' velocities lead to instead of their own
 };
 
 /// An inertial packet: the pose of the unit on a Mercator plane, x east, y north, z up.
 struct OxtsPacket {
   double latitude_deg = 0, longitude_deg = 0, altitude_m = 0;
   double roll_rad = 0, pitch_rad = 0, yaw_rad = 0;
+  std::optional<Eigen::Vector3d> velocity_mps;  // ahead and to the left, both level, and up; not in shortened packets
+  Eigen::Matrix3d attitude() const;
 };
 std::vector<OxtsPacket> readOxts(const std::filesystem::path& file_or_folder);
 
@@ -30,7 +33,7 @@ struct CameraTruth {
   std::int64_t first_frame = 0;  // that is known; those before it have the same pose
 };
 /// From `poses.txt`; where that is missing, from poses with times or numbers of their own, or else from oxts, as where
-/// the uninterpolated form is asked for. Empty without any.
+/// the uninterpolated form is asked for. Velocities are those of oxts alone. Empty without any.
 std::optional<CameraTruth> readCameraTruth(const Sequence& sequence, OxtsTimes times = OxtsTimes::kInterpolated);
 
 /// A labeled object in one frame.

@@ -1,12 +1,27 @@
 #include "io/trajectory.hpp"
 
+#include <cmath>
+
 #include <Eigen/Geometry>
 
+#include "io/errors.hpp"
 #include "io/line_file.hpp"
 #include "io/number_text.hpp"
+#include "io/pose_form.hpp"
 #include "io/text_file.hpp"
 
 namespace motorcade {
+namespace {
+
+/// The fourth row of a pose, 0 0 0 1.
+void expectLastRow(FieldReader& fields) {
+  constexpr double kPrinted = 1e-6;
+  for (const double expected : {0.0, 0.0, 0.0, 1.0})
+    if (std::abs(fields.number("the last row of a pose") - expected) > kPrinted)
+      fields.fail("the last row of the pose is not 0 0 0 1; are the matrices written column by column?");
+}
+
+}  // namespace
 
 std::string kittiLine(const SE3& T_world_cam) {
   std::string line;
@@ -37,10 +52,16 @@ std::string tumLine(Timestamp stamp, const SE3& T_world_cam) {
 }
 
 std::vector<SE3> readKittiPoses(const std::filesystem::path& file) {
+  const auto lines = readPoseLines(file);
   std::vector<SE3> poses;
-  for (const auto& line : readLines(file)) {
-    FieldReader fields(file, line);
+  if (lines.empty()) return poses;
+  if (poseFormOf(file, lines) != PoseForm::kRows)
+    throw InputError(file.string() + ": is a trajectory with times or numbers; poses without them are needed here, " +
+                     "12 numbers a line, one line for each frame");
+  for (const auto& line : lines) {
+    FieldReader fields(file, line, separatorOf(line));
     poses.push_back(fields.pose("a pose"));
+    if (!fields.atEnd()) expectLastRow(fields);
     fields.expectEnd();
   }
   return poses;

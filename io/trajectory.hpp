@@ -14,7 +14,8 @@ std::string kittiLine(const SE3& T_world_cam);
 /// `seconds tx ty tz qx qy qz qw`; the seconds are printed from the integer.
 std::string tumLine(Timestamp stamp, const SE3& T_world_cam);
 
-/// One KITTI pose per line; throws InputError naming the line.
+/// One KITTI pose per line, as its upper three rows or all four; `#` begins a comment. Throws InputError naming the
+/// line.
 std::vector<SE3> readKittiPoses(const std::filesystem::path& file);
 void writeKittiPoses(const std::filesystem::path& file, const std::vector<SE3>& poses);
 

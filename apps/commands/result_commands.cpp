@@ -1,5 +1,8 @@
+#include <array>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -11,6 +14,34 @@
 #include "apps/report/report_command.hpp"
 
 namespace motorcade {
+namespace {
+
+constexpr std::array kTruths{std::pair("position", OxtsTimes::kInterpolated),
+                             std::pair("uninterpolated", OxtsTimes::kUninterpolated),
+                             std::pair("velocity", OxtsTimes::kVelocities)};
+
+void addTruth(CLI::App& command, const std::shared_ptr<EvaluateOptions>& options) {
+  std::vector<std::string> names;
+  for (const auto& [name, truth] : kTruths) names.emplace_back(name);
+  const auto choose = [options](const std::string& chosen) {
+    for (const auto& [name, truth] : kTruths)
+      if (chosen == name) options->truth = truth;
+  };
+  CLI::Option* truth = command
+                           .add_option_function<std::string>(
+                               "--truth", choose,
+                               "The true path of the camera: by `position` (poses.txt, else oxts), `uninterpolated` "
+                               "(oxts packet k for image k, as published evaluations have it) or by the `velocity` of "
+                               "oxts, added up")
+                           ->check(CLI::IsMember(names));
+  command
+      .add_flag_callback(
+          "--uninterpolated", [options] { options->truth = OxtsTimes::kUninterpolated; },
+          "The same as --truth uninterpolated")
+      ->excludes(truth);
+}
+
+}  // namespace
 
 void addEvaluate(CLI::App& app, Action& action) {
   const auto options = std::make_shared<EvaluateOptions>();
@@ -32,8 +63,7 @@ void addEvaluate(CLI::App& app, Action& action) {
   command->add_option("--export-kitti", options->export_kitti,
                       "Folder for the run's objects as KITTI tracking results; needs no ground truth");
   command->add_option("--json", options->json, "File for all measures as JSON");
-  command->add_flag("--uninterpolated", options->uninterpolated,
-                    "Take oxts packet k for image k, as published evaluations do");
+  addTruth(*command, options);
   command->footer("Example: motorcade evaluate RUN --json MEASURES.json");
   command->callback([options, &action] { action = [options] { return runEvaluate(*options); }; });
 }

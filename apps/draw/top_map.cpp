@@ -5,8 +5,6 @@
 #include <set>
 #include <vector>
 
-#include "apps/draw/truth.hpp"
-
 namespace motorcade {
 namespace {
 
@@ -25,7 +23,7 @@ struct Extent {
   }
 };
 
-Extent extentAt(const RecordedDrive& drive, std::size_t frame, const std::set<std::int64_t>& movers) {
+Extent extentAt(const RecordedDrive& drive, std::size_t frame) {
   constexpr double kObject_m = 3, kArrow_m = 1, kNearTruth_m = 60, kBesideTruth_m = 20;
   Extent extent;
   const SE3 T_cam_world = drive.T_world_cam[frame].inverse();
@@ -39,7 +37,7 @@ Extent extentAt(const RecordedDrive& drive, std::size_t frame, const std::set<st
   const SE3 T_cam_world_true = drive.T_world_cam_true[frame].inverse();
   for (const ObjectTruth& truth : truths->second) {
     const Vector3d p_cam = T_cam_world_true * truth.T_world_object.translation();
-    if (!movers.contains(truth.id) || p_cam.z() < 0 || p_cam.z() > kNearTruth_m) continue;
+    if (!drive.true_movers.contains(truth.id) || p_cam.z() < 0 || p_cam.z() > kNearTruth_m) continue;
     if (std::abs(p_cam.x()) < kBesideTruth_m) extent.include(p_cam, kObject_m);
   }
   return extent;
@@ -48,12 +46,11 @@ Extent extentAt(const RecordedDrive& drive, std::size_t frame, const std::set<st
 /// The mean, over the frames beside this one, of what holds all extents beside each of them: it holds this frame's own.
 Extent smoothExtent(const RecordedDrive& drive, std::size_t frame) {
   constexpr std::ptrdiff_t kBeside = 6;
-  const auto movers = trueMovers(drive);
   const auto last = static_cast<std::ptrdiff_t>(drive.T_world_cam.size()) - 1,
              middle = static_cast<std::ptrdiff_t>(frame);
   std::vector<Extent> extents;
   for (std::ptrdiff_t at = middle - 2 * kBeside; at <= middle + 2 * kBeside; ++at)
-    extents.push_back(extentAt(drive, static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, last)), movers));
+    extents.push_back(extentAt(drive, static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, last))));
   Extent mean{Array2d::Zero(), Array2d::Zero()};
   for (std::size_t from = 0; from <= 2 * kBeside; ++from) {
     Extent whole = extents[from];

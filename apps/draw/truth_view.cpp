@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "apps/draw/palette.hpp"
-#include "apps/draw/truth.hpp"
 
 namespace motorcade {
 namespace {
@@ -41,9 +40,8 @@ void paintTruth(Sheet& sheet, const RecordedDrive& drive, std::size_t frame, con
   drawWay(sheet, path);
   const auto here = drive.true_objects.find(static_cast<std::int64_t>(frame));
   if (here == drive.true_objects.end()) return;
-  const auto movers = trueMovers(drive);
   for (const ObjectTruth& truth : here->second) {
-    const bool moves = movers.contains(truth.id);
+    const bool moves = drive.true_movers.contains(truth.id);
     drawLabel(sheet, truth, moves, T_cam_world * truth.T_world_object, map);
     if (!moves) continue;
     std::vector<Vector2d> way;

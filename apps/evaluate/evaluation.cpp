@@ -26,13 +26,14 @@ struct CameraPaths {
   std::vector<SE3> estimate, truth;
 };
 
-std::optional<TrajectoryErrors> cameraErrors(const std::vector<ComparedFrame>& frames) {
-  const CameraPaths paths(frames);
-  return trajectoryErrors(paths.estimate, paths.truth);
-}
-
 /// Rendered drives come with the objects' exact poses; the truth of real ones is another instrument's.
 bool mayBeMountedWrongly(const Sequence& sequence) { return !sequence.truth.exact(); }
+
+void measureMounted(KindEvaluation& kind, const CameraPaths& paths, const SE3& T_true_cam) {
+  const auto truth = withMounting(paths.truth, T_true_cam);
+  kind.camera_mounted = trajectoryErrors(paths.estimate, truth);
+  kind.camera_mounted_segments = segmentErrors(paths.estimate, truth);
+}
 
 void removeMounting(Evaluation& evaluation, const std::vector<ComparedFrame>& final,
                     const std::vector<ComparedFrame>& online) {
@@ -40,8 +41,8 @@ void removeMounting(Evaluation& evaluation, const std::vector<ComparedFrame>& fi
   const CameraPaths& fitted = final.empty() ? of_online : of_final;
   const SE3 T_true_cam = fitMounting(fitted.estimate, fitted.truth);
   evaluation.mounting = T_true_cam;
-  evaluation.final.camera_mounted = trajectoryErrors(of_final.estimate, withMounting(of_final.truth, T_true_cam));
-  evaluation.online.camera_mounted = trajectoryErrors(of_online.estimate, withMounting(of_online.truth, T_true_cam));
+  measureMounted(evaluation.final, of_final, T_true_cam);
+  measureMounted(evaluation.online, of_online, T_true_cam);
 }
 
 void evaluateCovariances(Evaluation& evaluation, const std::vector<ComparedFrame>& online, const CovarianceRows& rows) {
@@ -57,12 +58,16 @@ void evaluateCovariances(Evaluation& evaluation, const std::vector<ComparedFrame
 }
 
 KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
+  const CameraPaths paths(frames);
   KindEvaluation kind{.frames = frames.size(),
-                      .camera = cameraErrors(frames),
+                      .camera = trajectoryErrors(paths.estimate, paths.truth),
                       .camera_mounted = {},
+                      .camera_segments = segmentErrors(paths.estimate, paths.truth),
+                      .camera_mounted_segments = {},
                       .objects = objectErrors(frames),
                       .mean_positions = {},
                       .motion = motionErrors(frames),
+                      .followed_motion = followedMotion(frames),
                       .detection = detectionErrors(frames),
                       .boxes_within_30m = boxErrors(frames, 0, kNear_m),
                       .boxes_from_30_to_50m = boxErrors(frames, kNear_m, kFar_m),
@@ -80,8 +85,11 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
   return kind;
 }
 
-CameraTruth neededTruth(const Sequence& sequence, bool uninterpolated) {
-  auto truth = readCameraTruth(sequence, uninterpolated ? OxtsTimes::kUninterpolated : OxtsTimes::kInterpolated);
+CameraTruth neededTruth(const Sequence& sequence, OxtsTimes times) {
+  auto truth = readCameraTruth(sequence, times);
+  if (!truth && times == OxtsTimes::kVelocities)
+    throw InputError(sequence.folder.string() +
+                     ": has no velocities; --truth velocity needs oxts, and Tr_imu_velo in the calibration");
   if (!truth)
     throw InputError(sequence.folder.string() +
                      ": has no ground truth; poses.txt or oxts with their calibration are needed");
@@ -153,14 +161,14 @@ double Evaluation::latencyQuantile_ms(double part) const {
 }
 
 KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequence, OxtsTimes times) {
-  const CameraTruth camera = neededTruth(sequence, times == OxtsTimes::kUninterpolated);
+  const CameraTruth camera = neededTruth(sequence, times);
   return evaluateFrames(compareFrames({poses, {}}, 0, camera, nullptr, sequence.stamps));
 }
 
 Evaluation evaluateRun(const EvaluateOptions& options) {
   RunFolder run = readRunFolder(options.run);
   const Sequence sequence = openSequenceOf(run, {options.sequence, options.fps_hz});
-  const CameraTruth camera = neededTruth(sequence, options.uninterpolated);
+  const CameraTruth camera = neededTruth(sequence, options.truth);
   requireTruthFrom(run.first_frame, camera);
   const auto truths = readObjectTruths(sequence, camera);
   const auto compare = [&](const RunFolder::Trajectories& trajectories, std::int64_t first_frame) {
@@ -170,6 +178,7 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   evaluation.run = options.run;
   evaluation.sequence = sequence.folder;
   evaluation.camera_source = camera.source;
+  if (options.truth != OxtsTimes::kVelocities) evaluation.truth_check = checkTruth(sequence, camera);
   evaluation.finals_recovered = recoverFinals(run);
   if (truths) evaluation.object_source = truths->source;
   countFrames(evaluation, run);

@@ -7,12 +7,15 @@
 
 #include "apps/evaluate/box_measures.hpp"
 #include "apps/evaluate/covariance_measures.hpp"
+#include "apps/evaluate/followed_motion.hpp"
 #include "apps/evaluate/kind_measures.hpp"
 #include "apps/evaluate/mask_measures.hpp"
 #include "apps/evaluate/object_measures.hpp"
 #include "apps/evaluate/run_comparison.hpp"
+#include "apps/evaluate/segment_errors.hpp"
 #include "apps/evaluate/tracking_measures.hpp"
 #include "apps/evaluate/trajectory_error.hpp"
+#include "apps/evaluate/truth_check.hpp"
 #include "apps/evaluate/worst_frames.hpp"
 #include "io/run_folder.hpp"
 #include "io/sequence.hpp"
@@ -22,13 +25,13 @@ namespace motorcade {
 struct EvaluateOptions {
   std::filesystem::path run, sequence;  // the sequence that the run names when empty
   std::optional<double> fps_hz;         // of a sequence without times; the run's when empty
-  bool uninterpolated = false;          // oxts packet k for image k
-  std::filesystem::path baseline;       // camera poses to compare with; empty for none
-  std::filesystem::path baseline_run;   // run folder to compare objects with; empty for none
-  std::filesystem::path half_run;       // run folder of the same drive from other points; empty for none
-  std::filesystem::path export_truth;   // folder for the true trajectories; empty for none
-  std::filesystem::path export_kitti;   // folder for the run's objects as KITTI results; empty for none
-  std::filesystem::path json;           // empty for none
+  OxtsTimes truth = OxtsTimes::kInterpolated;
+  std::filesystem::path baseline;      // camera poses to compare with; empty for none
+  std::filesystem::path baseline_run;  // run folder to compare objects with; empty for none
+  std::filesystem::path half_run;      // run folder of the same drive from other points; empty for none
+  std::filesystem::path export_truth;  // folder for the true trajectories; empty for none
+  std::filesystem::path export_kitti;  // folder for the run's objects as KITTI results; empty for none
+  std::filesystem::path json;          // empty for none
 };
 
 /// All measures of one kind of estimate, final or online.
@@ -36,9 +39,11 @@ struct KindEvaluation {
   std::size_t frames = 0;
   std::optional<TrajectoryErrors> camera;
   std::optional<TrajectoryErrors> camera_mounted;  // without the truth's mounting error, where it may have one
+  std::optional<SegmentErrors> camera_segments, camera_mounted_segments;
   std::vector<ObjectErrors> objects;
   MeanPositionErrors mean_positions;
   MotionErrors motion;
+  FollowedMotion followed_motion;
   DetectionErrors detection;
   BoxErrors boxes_within_30m, boxes_from_30_to_50m;
   Hota image_within_30m, image_within_50m, footprint_within_30m, footprint_within_50m;
@@ -60,6 +65,7 @@ struct Evaluation {
   std::size_t finals_recovered = 0;  // of the last frames of a run that did not end in order, from online
   int lost = 0, rejected = 0, dropped = 0;
   std::string camera_source, object_source;  // the latter empty without labels
+  std::optional<TruthCheck> truth_check;     // where the truth is not from velocities, and these are known
   KindEvaluation final, online;
   WorstFrames worst;            // of the final estimates
   std::optional<SE3> mounting;  // T_true_cam, fitted to the final path; empty where the truth is exact

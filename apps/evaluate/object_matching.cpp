@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "apps/evaluate/overlap.hpp"
+#include "apps/recorded/label_motion.hpp"
 #include "core/assignment.hpp"
 
 namespace motorcade {
@@ -11,9 +13,7 @@ namespace {
 
 /// Labels that are harder to see are not asked for: KITTI's moderate level, with the truncation of its hard one.
 constexpr double kMaxTruncated = 0.5, kMinHeight_px = 25;
-constexpr int kMaxOccluded = 1;  // partly
-/// A label moves when it travels this far at this speed: labels at rest jitter.
-constexpr double kMovingSpeed_mps = 1, kMovingDistance_m = 1.5;
+constexpr int kMaxOccluded = 1;           // partly
 constexpr std::int64_t kSpeedFrames = 3;  // before and after the frame, over which a label's speed is taken
 
 bool isCounted(const ObjectTruth& truth) {
@@ -22,12 +22,9 @@ bool isCounted(const ObjectTruth& truth) {
 }
 
 /// Fills in the motion of one label's track, its frames in order.
-void describeTrack(const std::vector<TrueObject*>& track, const std::vector<Timestamp>& stamps) {
+void describeTrack(const std::vector<TrueObject*>& track, const std::vector<Timestamp>& stamps, bool traveling) {
   const auto position_m = [&](std::size_t i) { return track[i]->truth.T_world_object.translation(); };
   const auto stamp = [&](std::size_t i) { return stamps[track[i]->truth.frame.value]; };
-  const double distance_m = (position_m(track.size() - 1) - position_m(0)).norm(),
-               time_s = secondsBetween(stamp(0), stamp(track.size() - 1));
-  const bool travels = distance_m > kMovingDistance_m && distance_m > kMovingSpeed_mps * time_s;
   int visible = 0;
   bool ever_moves = false;
   for (std::size_t i = 0; i < track.size(); ++i) {
@@ -38,7 +35,7 @@ void describeTrack(const std::vector<TrueObject*>& track, const std::vector<Time
     TrueObject& object = *track[i];
     const double span_s = secondsBetween(stamp(from), stamp(to));
     object.speed_mps = span_s > 0 ? (position_m(to) - position_m(from)).norm() / span_s : 0;
-    object.moving = travels && object.speed_mps > kMovingSpeed_mps;
+    object.moving = traveling && object.speed_mps > kMovingSpeed_mps;
     object.counted = isCounted(object.truth);
     object.visible_before = visible;
     if (object.counted) ++visible;
@@ -104,10 +101,20 @@ std::vector<AskedPair> askedPairs(const std::vector<ComparedFrame>& frames, doub
   return pairs;
 }
 
+std::vector<AskedPair> movingPairs(const std::vector<ComparedFrame>& frames) {
+  std::vector<AskedPair> pairs;
+  for (const auto& frame : frames)
+    for (const auto& row : frame.rows)
+      if (row.object >= 0 && frame.objects[row.object].moving)
+        pairs.push_back({&frame, &frame.objects[row.object], &row});
+  return pairs;
+}
+
 std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths,
                                                            const std::vector<Timestamp>& stamps) {
   std::map<FrameId, std::vector<TrueObject>> frames;
   for (const auto& truth : truths.objects) {
+    if (!std::cmp_less(truth.frame.value, stamps.size())) continue;
     TrueObject object;
     object.truth = truth;
     frames[truth.frame].push_back(std::move(object));
@@ -115,7 +122,8 @@ std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& t
   std::map<std::int64_t, std::vector<TrueObject*>> tracks;
   for (auto& [frame, objects] : frames)
     for (auto& object : objects) tracks[object.truth.id].push_back(&object);
-  for (const auto& [id, track] : tracks) describeTrack(track, stamps);
+  const auto traveling = travelingLabels(truths.objects, stamps);
+  for (const auto& [id, track] : tracks) describeTrack(track, stamps, traveling.contains(id));
   return frames;
 }
 

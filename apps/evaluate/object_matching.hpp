@@ -50,15 +50,19 @@ struct ComparedFrame {
   bool entered = true;  // the pipeline: others have no part in covariances
 };
 
-/// A match of a reported row with a label that is asked for.
+/// A match of a row with a label.
 struct AskedPair {
   const ComparedFrame* frame;
   const TrueObject* object;
   const MatchedRow* row;
 };
-/// All of them whose label is at least `from_m` away and nearer than `to_m`, in the order of the frames.
+/// Reported rows on labels that are asked for, at least `from_m` away and nearer than `to_m`, in the order of the
+/// frames.
 std::vector<AskedPair> askedPairs(const std::vector<ComparedFrame>& frames, double from_m = 0,
                                   double to_m = std::numeric_limits<double>::infinity());
+
+/// Rows of any state on labels that move, however hidden these are, in the order of the frames.
+std::vector<AskedPair> movingPairs(const std::vector<ComparedFrame>& frames);
 
 /// Labels with their motion, from all frames of the sequence. `stamps` are the frames' times.
 std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths,

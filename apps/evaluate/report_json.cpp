@@ -9,7 +9,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json jsonOf(const Statistics& s) {
-  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"max", s.max}, {"count", s.count}};
+  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"p95", s.p95}, {"max", s.max}, {"count", s.count}};
 }
 
 Json jsonOf(const std::optional<TrajectoryErrors>& errors) {
@@ -18,6 +18,53 @@ Json jsonOf(const std::optional<TrajectoryErrors>& errors) {
           {"are_deg", jsonOf(errors->are_deg)},   {"rpe_t_m", jsonOf(errors->rpe_m)},
           {"rpe_r_deg", jsonOf(errors->rpe_deg)}, {"end_error_percent", errors->end_percent},
           {"path_length_m", errors->length_m}};
+}
+
+Json jsonOf(const SegmentMeans& means) {
+  return {{"segments", means.segments},
+          {"translation_percent", means.translation_percent},
+          {"rotation_deg_per_m", means.rotation_deg_per_m}};
+}
+
+Json jsonOf(const std::optional<SegmentErrors>& errors) {
+  if (!errors) return nullptr;
+  Json json = jsonOf(errors->all), by_length = Json::array();
+  json["short_segments"] = errors->short_segments;
+  for (const auto& of_length : errors->by_length) {
+    if (of_length.segments == 0) continue;
+    by_length.push_back({{"length_m", of_length.length_m}});
+    by_length.back().update(jsonOf(static_cast<const SegmentMeans&>(of_length)));
+  }
+  json["by_length"] = std::move(by_length);
+  return json;
+}
+
+Json cameraJson(const std::optional<TrajectoryErrors>& errors, const std::optional<SegmentErrors>& segments) {
+  Json json = jsonOf(errors);
+  if (errors) json["kitti"] = jsonOf(segments);
+  return json;
+}
+
+Json jsonOf(const LargestStep& step, const char* name) {
+  if (step.label < 0) return nullptr;
+  return {{name, step.error}, {"frame", step.frame.value}, {"label", step.label}, {"track_id", step.track.value}};
+}
+
+Json jsonOf(const FollowedMotion& motion) {
+  Json each = Json::array();
+  for (const LabelMotion& object : motion.objects)
+    each.push_back({{"label", object.label},
+                    {"type", object.type},
+                    {"me_t_m", jsonOf(object.me_m)},
+                    {"me_r_deg", jsonOf(object.me_deg)}});
+  return {{"objects", motion.objects.size()},
+          {"me_t_object_rms_m", motion.rms_m},
+          {"me_r_object_rms_deg", motion.rms_deg},
+          {"me_t_m", jsonOf(motion.me_m)},
+          {"me_r_deg", jsonOf(motion.me_deg)},
+          {"largest_step", jsonOf(motion.largest_m, "me_t_m")},
+          {"largest_turn", jsonOf(motion.largest_deg, "me_r_deg")},
+          {"each", std::move(each)}};
 }
 
 Json jsonOf(const MotionErrors& errors) {
@@ -161,13 +208,15 @@ Json jsonOf(const BoxErrors& boxes) {
 }
 
 Json jsonOf(const KindEvaluation& kind, bool with_objects) {
-  Json json = {
-      {"frames", kind.frames}, {"camera", jsonOf(kind.camera)}, {"camera_mounted", jsonOf(kind.camera_mounted)}};
+  Json json = {{"frames", kind.frames},
+               {"camera", cameraJson(kind.camera, kind.camera_segments)},
+               {"camera_mounted", cameraJson(kind.camera_mounted, kind.camera_mounted_segments)}};
   if (!with_objects) return json;
   json["objects"] = Json::array();
   for (const auto& object : kind.objects) json["objects"].push_back(jsonOf(object));
   json["objects_mean"] = jsonOf(kind.mean_positions);
   json["motion"] = jsonOf(kind.motion);
+  json["followed_motion"] = jsonOf(kind.followed_motion);
   json["detection"] = jsonOf(kind.detection);
   json["boxes_within_30m"] = jsonOf(kind.boxes_within_30m);
   json["boxes_from_30_to_50m"] = jsonOf(kind.boxes_from_30_to_50m);
@@ -208,6 +257,15 @@ Json jsonOf(const CovarianceErrors& errors) {
   return json;
 }
 
+Json jsonOf(const TruthCheck& check) {
+  return {{"way_m", check.way_m},
+          {"velocity_way_m", check.velocity_way_m},
+          {"difference_percent", check.differencePercent()},
+          {"largest_step_m", check.largest_step_m},
+          {"largest_step_frames", {check.step_from.value, check.step_to.value}},
+          {"doubtful", check.doubtful()}};
+}
+
 Json covarianceJson(const Evaluation& e) {
   const auto orNull = [](const auto& errors) { return errors ? jsonOf(*errors) : Json(); };
   Json nees = Json::object();
@@ -236,7 +294,10 @@ std::string jsonOf(const Evaluation& e) {
                {"lost", e.lost},
                {"rejected", e.rejected},
                {"dropped", e.dropped},
-               {"truth", {{"camera", e.camera_source}, {"objects", e.object_source}}},
+               {"truth",
+                {{"camera", e.camera_source},
+                 {"objects", e.object_source},
+                 {"velocity_check", e.truth_check ? jsonOf(*e.truth_check) : Json()}}},
                {"mounting", e.mounting ? jsonOf(*e.mounting) : Json()},
                {"final", jsonOf(e.final, with_objects)},
                {"online", jsonOf(e.online, with_objects)},

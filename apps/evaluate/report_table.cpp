@@ -1,55 +1,9 @@
-#include <cstdarg>
-#include <cstdio>
-#include <numbers>
-
 #include "apps/evaluate/report.hpp"
+#include "apps/evaluate/table_text.hpp"
 #include "io/object_row.hpp"
 
 namespace motorcade {
 namespace {
-
-[[gnu::format(printf, 2, 3)]] void print(std::string& text, const char* format, ...) {
-  char line[256];
-  std::va_list arguments;
-  va_start(arguments, format);
-  // NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized): va_start above is not seen
-  const int length = std::vsnprintf(line, sizeof(line), format, arguments);
-  va_end(arguments);
-  text.append(line, std::min<std::size_t>(static_cast<std::size_t>(length), sizeof(line) - 1));
-}
-
-void printHead(std::string& text, const Evaluation& e) {
-  print(text, "run       %s%s\n", e.run.c_str(), e.complete ? "" : "  (did not complete)");
-  print(text, "sequence  %s\n", e.sequence.c_str());
-  print(text, "frames    %zu from frame %lld; lost %d, rejected %d, dropped %d\n", e.frames_run,
-        static_cast<long long>(e.first_frame), e.lost, e.rejected, e.dropped);
-  if (e.finals_recovered > 0)
-    print(text, "finals    of the last %zu frames are online estimates: the run did not end in order\n",
-          e.finals_recovered);
-  print(text, "truth     camera from %s%s%s\n", e.camera_source.c_str(),
-        e.object_source.empty() ? "" : ", objects from ", e.object_source.c_str());
-}
-
-void printCameraLine(std::string& text, const char* kind, const std::optional<TrajectoryErrors>& errors) {
-  if (!errors) return print(text, "  %-8s too few poses\n", kind);
-  print(text, "  %-8s %7.3f %7.3f %7.3f  %8.3f  %7.2f %%  %7.4f %7.4f  %7.4f %7.4f  %7.3f\n", kind, errors->ate_m.rmse,
-        errors->ate_m.mean, errors->ate_m.median, errors->ate_first_pose_m.rmse, errors->end_percent,
-        errors->rpe_m.rmse, errors->rpe_m.median, errors->rpe_deg.rmse, errors->rpe_deg.median, errors->are_deg.mean);
-}
-
-void printCamera(std::string& text, const Evaluation& e) {
-  text += "\ncamera       ATE m                  1st pose  end error   RPE_t m          RPE_r deg       ARE deg\n";
-  text += "              rmse    mean  median      rmse                rmse  median     rmse  median     mean\n";
-  printCameraLine(text, "final", e.final.camera);
-  printCameraLine(text, "online", e.online.camera);
-  if (!e.mounting) return;
-  const Eigen::Vector3d turn_deg = logSO3(e.mounting->rotation()) * 180 / std::numbers::pi,
-                        arm_m = e.mounting->translation();
-  print(text, "without the truth's mounting (rotation %.2f %.2f %.2f deg, lever arm %.2f %.2f %.2f m):\n", turn_deg.x(),
-        turn_deg.y(), turn_deg.z(), arm_m.x(), arm_m.y(), arm_m.z());
-  printCameraLine(text, "final", e.final.camera_mounted);
-  printCameraLine(text, "online", e.online.camera_mounted);
-}
 
 void printPosition(std::string& text, const ObjectErrors& object) {
   print(text, "  %-6lld %-14.14s %5d/%-5d %3d", static_cast<long long>(object.label), object.type.c_str(),
@@ -72,23 +26,6 @@ void printPositions(std::string& text, const KindEvaluation& kind) {
         at(PositionKind::kAligned), at(PositionKind::kWorldOffsetRemoved), at(PositionKind::kAsSeenOffsetRemoved),
         mean.are_deg);
   print(text, "  %6.3f %6.3f %6.3f\n", mean.largest_drift_m.x(), mean.largest_drift_m.y(), mean.largest_drift_m.z());
-}
-
-void printMotion(std::string& text, const std::string& whose, const MotionErrors& m) {
-  print(text, "  %-21.21s  %7.3f %7.3f  %7.2f %7.2f  %7.2f %+7.2f\n", whose.c_str(), m.me_m.mean, m.me_m.rmse,
-        m.me_deg.mean, m.me_deg.rmse, m.speed_mps.rmse, m.speed_bias_mps);
-}
-
-void printMotions(std::string& text, const Evaluation& e) {
-  text += "\nmotion of the same         ME_t m           ME_r deg         speed m/s\n";
-  text += "                            mean    rmse     mean    rmse     rmse    bias\n";
-  for (const auto& object : e.final.objects) {
-    std::string whose;
-    print(whose, "%-6lld %s", static_cast<long long>(object.label), object.type.c_str());
-    if (object.positions) printMotion(text, whose, object.motion);
-  }
-  printMotion(text, "all rows, final", e.final.motion);
-  printMotion(text, "all rows, online", e.online.motion);
 }
 
 void printRecall(std::string& text, const DetectionCounts& recall) {

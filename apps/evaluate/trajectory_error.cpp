@@ -18,6 +18,18 @@ SE3 stepError(const SE3& estimate_before, const SE3& estimate, const SE3& truth_
   return true_step.inverse() * (estimate_before.inverse() * estimate);
 }
 
+namespace {
+
+/// Of sorted values, between two of them at a constant rate.
+double quantileOf(const std::vector<double>& sorted, double part) {
+  const double at = part * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const double above = sorted[std::min(below + 1, sorted.size() - 1)];
+  return sorted[below] + (at - static_cast<double>(below)) * (above - sorted[below]);
+}
+
+}  // namespace
+
 Statistics statisticsOf(std::vector<double> errors) {
   Statistics statistics{.count = errors.size()};
   if (errors.empty()) return statistics;
@@ -32,6 +44,7 @@ Statistics statisticsOf(std::vector<double> errors) {
   statistics.rmse = std::sqrt(squares / n);
   statistics.mean = sum / n;
   statistics.median = (errors[(errors.size() - 1) / 2] + errors[errors.size() / 2]) / 2;
+  statistics.p95 = quantileOf(errors, 0.95);
   statistics.max = errors.back();
   return statistics;
 }

@@ -10,10 +10,10 @@
 namespace motorcade {
 
 struct Statistics {
-  double rmse = 0, mean = 0, median = 0, max = 0;
+  double rmse = 0, mean = 0, median = 0, p95 = 0, max = 0;
   std::size_t count = 0;
 };
-/// Of errors with or without sign: rmse, mean and max are those of the magnitudes.
+/// Statistics of the magnitudes of errors; between two errors the 95th percentile is interpolated.
 Statistics statisticsOf(std::vector<double> errors);
 
 /// The rigid motion S that brings S * estimate closest to truth: least squares over the positions

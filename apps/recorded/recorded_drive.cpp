@@ -5,6 +5,8 @@
 #include <system_error>
 #include <utility>
 
+#include "apps/recorded/label_motion.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -20,6 +22,7 @@ void addTruth(RecordedDrive& drive, const Sequence& sequence) {
   }
   const auto truths = readObjectTruths(sequence, *camera);
   if (!truths) return;
+  drive.true_movers = travelingLabels(truths->objects, sequence.stamps);
   for (ObjectTruth truth : truths->objects) {
     truth.T_world_object = T_run_world * truth.T_world_object;
     drive.true_objects[truth.frame.value - drive.first_frame].push_back(std::move(truth));

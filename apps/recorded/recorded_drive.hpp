@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct RecordedDrive {
   std::map<std::int64_t, std::vector<ObjectEstimate>> objects;
   std::map<std::int64_t, std::vector<ObjectPoint>> points;  // empty where the run did not write them
   std::map<std::int64_t, std::vector<ObjectTruth>> true_objects;
+  std::set<std::int64_t> true_movers;  // labels that travel in some frame of the sequence; the others are parked
 
   std::vector<ObjectEstimate> objectsAt(std::size_t frame) const;
   std::vector<ObjectPoint> pointsAt(std::size_t frame) const;

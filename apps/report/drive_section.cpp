@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "apps/draw/palette.hpp"
-#include "apps/draw/truth.hpp"
 #include "apps/evaluate/trajectory_error.hpp"
 #include "apps/html/svg_chart.hpp"
 #include "apps/report/report_sections.hpp"
@@ -81,10 +80,9 @@ void addObjects(std::vector<ChartLine>& lines, const RecordedDrive& drive, const
 void addTruth(std::vector<ChartLine>& lines, const RecordedDrive& drive, const Eigen::Matrix<double, 2, 3>& axes) {
   const SE3 T_run_truth = ontoPath(drive.T_world_cam_true, drive.T_world_cam);
   std::map<std::int64_t, ChartLine> truths;
-  const auto movers = trueMovers(drive);
   for (const auto& [frame, objects] : drive.true_objects) {
     for (const ObjectTruth& object : objects) {
-      if (!movers.contains(object.id) || std::cmp_greater_equal(frame, drive.T_world_cam.size())) continue;
+      if (!drive.true_movers.contains(object.id) || std::cmp_greater_equal(frame, drive.T_world_cam.size())) continue;
       ChartLine& line =
           truths.try_emplace(object.id, ChartLine{.name = "", .color = "var(--truth)", .dashed = true}).first->second;
       line.points.emplace_back(axes * (T_run_truth * object.T_world_object.translation()));

@@ -59,7 +59,7 @@ TEST_F(EvaluateDrive, TheTableFitsAHundredColumnsAndExplainsItsMeasures) {
                                     "kinds", "masks", "covariances", "against the baseline"})
     EXPECT_THAT(table, HasSubstr(std::string("\n") + section));
   const auto legend = table.substr(table.find("\nATE "));
-  for (const char* const measure : {"RPE", "ARE", "ME", "MOTA", "IoU", "HOTA", "NEES"})
+  for (const char* const measure : {"RPE", "ARE", "segments", "ME", "MOTA", "IoU", "HOTA", "NEES"})
     EXPECT_THAT(legend, HasSubstr(std::string("\n") + measure)) << "has no explanation";
 }
 
@@ -83,6 +83,37 @@ TEST_F(EvaluateDrive, TheJsonHasEveryMeasureOfTheAccuracyTables) {
   EXPECT_EQ(json.at("/online/first_report/within_50m/never"_json_pointer), 0);
   EXPECT_TRUE(json.at("masks").is_null());
   EXPECT_GT(json.at("/covariance/halves/objects/samples"_json_pointer), 0);
+}
+
+TEST_F(EvaluateDrive, SegmentsAndPublishedFormsAreInTableAndJson) {
+  writeRun("run", 0, kFrames, [](int i, FrameEstimate& estimate) {
+    estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, 0.02 * i}) * estimate.T_world_cam;  // 2 % too long
+    const double slip_m = i >= 12 ? 0.3 : 0.0;
+    estimate.objects[0].T_world_body =
+        SE3(Eigen::Matrix3d::Identity(), {slip_m, 0, 0.02 * i}) * estimate.objects[0].T_world_body;
+  });
+  const Evaluation evaluation = evaluateRun(options_);
+  const auto json = nlohmann::json::parse(jsonOf(evaluation));
+  constexpr double kDigitsOfTheFiles = 1e-5;
+  for (const std::string kind : {"final", "online"}) {
+    const auto& kitti = json.at(kind).at("camera").at("kitti");
+    EXPECT_TRUE(kitti.at("short_segments"));
+    EXPECT_EQ(kitti.at("segments"), 3);  // 10 m from frames 0 and 10, 20 m from frame 0
+    EXPECT_NEAR(kitti.at("translation_percent"), (2 * 2.2 + 2.1) / 3, kDigitsOfTheFiles);
+    EXPECT_NEAR(kitti.at("by_length").at(1).at("translation_percent"), 2.1, kDigitsOfTheFiles) << "21 m of 20";
+    EXPECT_EQ(kitti.at("by_length").size(), 2U);
+    const auto& motion = json.at(kind).at("followed_motion");
+    EXPECT_EQ(motion.at("objects"), 1);
+    EXPECT_NEAR(motion.at("me_t_object_rms_m"), 0.3 / std::sqrt(29), 1e-3);
+    EXPECT_EQ(motion.at("each").at(0).at("label"), 7);
+    EXPECT_EQ(motion.at("largest_step").at("frame"), 12);
+    EXPECT_EQ(motion.at("largest_step").at("track_id"), 3);
+    EXPECT_LT(motion.at("me_t_m").at("p95"), 0.1);
+  }
+  const std::string table = tableOf(evaluation);
+  EXPECT_THAT(table, HasSubstr("segments of 10 to 80 m"));
+  EXPECT_THAT(table, HasSubstr("objects' mean, online"));
+  EXPECT_THAT(table, HasSubstr("frame 12, label 7, track 3"));
 }
 
 TEST_F(EvaluateDrive, TheJsonNamesTheFramesWithTheLargestErrors) {

@@ -59,6 +59,38 @@ INSTANTIATE_TEST_SUITE_P(
                     Anchor{"rendered_street", 0.039, 0.069, 0.22, 0.0189, 0.0155, 0.0411, 0.0375}),
     [](const auto& instance) { return std::string(instance.param.drive); });
 
+/// Figures of VISO2-S over segments, by a program of a hundred lines that was written for this test alone, from the
+/// description of KITTI's benchmark; it takes angles from the trace.
+struct SegmentAnchor {
+  const char* drive;
+  std::size_t segments;
+  double translation_percent, rotation_deg_per_m, shortest_percent;
+};
+
+class SegmentAnchors : public testing::TestWithParam<SegmentAnchor> {};
+
+TEST_P(SegmentAnchors, AgreeWithThoseOfAnotherProgram) {
+  const SegmentAnchor& anchor = GetParam();
+  if (!std::filesystem::exists(kData / anchor.drive)) GTEST_SKIP() << kData / anchor.drive << " is not there";
+  const auto poses = readKittiPoses(kData / "viso2" / (std::string(anchor.drive) + ".txt"));
+  const auto errors = evaluatePoses(poses, openSequence(kData / anchor.drive)).camera_segments;
+  ASSERT_TRUE(errors);
+  EXPECT_TRUE(errors->short_segments);
+  EXPECT_EQ(errors->all.segments, anchor.segments);
+  constexpr double kRounding = 1e-4, kFewDigitsOfTheTrace_deg = 1e-4;
+  EXPECT_NEAR(errors->all.translation_percent, anchor.translation_percent, kRounding);
+  EXPECT_NEAR(errors->all.rotation_deg_per_m, anchor.rotation_deg_per_m, kFewDigitsOfTheTrace_deg);
+  EXPECT_NEAR(errors->by_length[0].translation_percent, anchor.shortest_percent, kRounding);
+}
+
+INSTANTIATE_TEST_SUITE_P(Viso2, SegmentAnchors,
+                         testing::Values(SegmentAnchor{"kitti_tracking_0003", 91, 1.6632, 0.007796, 1.9253},
+                                         SegmentAnchor{"kitti_tracking_0001", 15, 2.8757, 0.009226, 2.9628},
+                                         SegmentAnchor{"kitti_odometry_04", 18, 1.2055, 0.010563, 1.3563},
+                                         SegmentAnchor{"kitti_odometry_06", 15, 1.0930, 0.029510, 1.1232},
+                                         SegmentAnchor{"rendered_street", 15, 0.2501, 0.005845, 0.3137}),
+                         [](const auto& instance) { return std::string(instance.param.drive); });
+
 TEST(UninterpolatedTruth, GivesTheLargerErrorsOfPublishedEvaluations) {
   if (!std::filesystem::exists(kData / "kitti_tracking_0003"))
     GTEST_SKIP() << kData / "kitti_tracking_0003"

@@ -64,11 +64,21 @@ class MergeBatch : public testing::Test {
     nlohmann::json json;
     json["frames"] = 50;
     json["final"]["camera"] = {{"ate_m", {{"rmse", result.ate_m}}}, {"end_error_percent", 0.5}};
+    json["final"]["camera"]["kitti"] = {{"segments", 12},
+                                        {"translation_percent", 1.234},
+                                        {"rotation_deg_per_m", 0.00321},
+                                        {"by_length", {{{"length_m", result.labels ? 100 : 10}}}}};
+    json["online"]["camera"]["kitti"] = {{"translation_percent", 2.5}, {"rotation_deg_per_m", 0.004}};
     json["worst_frames"] = {{"camera", {{{"frame", 7}, {"rpe_t_m", result.ate_m}, {"rpe_r_deg", 0.1}}}},
                             {"objects", nlohmann::json::array()}};
     if (!result.labels) return json;
     json["final"]["detection"] = {{"within_30m", {{"labels", 10}, {"found", 9}}}, {"rows", 12}, {"false_rows", 1}};
     json["final"]["motion"]["me_t_m"] = {{"mean", 2 * result.ate_m}, {"count", 4}};
+    json["final"]["followed_motion"] = {{"objects", 2},
+                                        {"me_t_object_rms_m", 0.625},
+                                        {"me_r_object_rms_deg", 0.25},
+                                        {"me_t_m", {{"p95", 0.75}, {"max", 1.5}, {"count", 4}}}};
+    json["online"]["followed_motion"] = {{"objects", 2}, {"me_t_object_rms_m", 0.875}, {"me_r_object_rms_deg", 0.5}};
     return json;
   }
 
@@ -116,8 +126,29 @@ TEST_F(MergeBatch, EachTaskIsARowOfTheTableWithAllMeasures) {
 
 TEST_F(MergeBatch, TheOverviewIsTheReadmesTable) {
   write("a", {{.drive = "x", .ate_m = 0.2515}, {.drive = "y", .ate_m = 0.5, .labels = false}});
-  EXPECT_THAT(merged("results.md"), AllOf(HasSubstr("| x | 0.252 | - | - | 0.503 | 90 % (9/10) | 1 of 12 |\n"),
-                                          HasSubstr("| y | 0.5 | - | - | - | - | - |\n")));
+  EXPECT_THAT(merged("results.md"),
+              AllOf(HasSubstr("| x | 0.252 | - | 1.23 | - | 0.503 | 0.625 | 90 % (9/10) | 1 of 12 |\n"),
+                    HasSubstr("| y | 0.5 | - | 1.23 (10 to 80 m) | - | - | - | - | - |\n")));
+}
+
+TEST_F(MergeBatch, PublishedFormsOfMeasuresAreColumns) {
+  write("a", {{.drive = "x", .ate_m = 0.25}});
+  const auto json = nlohmann::json::parse(merged("results.json"));
+  const auto& measures = json["tasks"][0]["measures"];
+  EXPECT_EQ(measures["camera_kitti_t_percent"], 1.234);
+  EXPECT_EQ(measures["camera_kitti_r_deg_per_m"], 0.00321);
+  EXPECT_EQ(measures["camera_kitti_segments"], 12);
+  EXPECT_EQ(measures["camera_kitti_shortest_m"], 100);
+  EXPECT_EQ(measures["online_camera_kitti_t_percent"], 2.5);
+  EXPECT_EQ(measures["me_t_object_rms_m"], 0.625);
+  EXPECT_EQ(measures["online_me_r_object_rms_deg"], 0.5);
+  EXPECT_EQ(measures["me_t_followed_p95_m"], 0.75);
+  EXPECT_EQ(measures["me_t_followed_max_m"], 1.5);
+  EXPECT_TRUE(measures["me_r_followed_max_deg"].is_null());
+  for (const std::string_view name : {"camera_kitti_t_percent", "me_t_object_rms_m", "online_me_r_followed_max_deg"})
+    EXPECT_EQ(allMeasures()[measureIndex(name)].better, Better::kLower) << name;
+  EXPECT_THAT(merged("results.md"),
+              AllOf(HasSubstr("| 1.234 / 2.5 | 0.00321 / 0.004 |"), HasSubstr("| x | 0.625 / 0.875 | 0.5 / - |")));
 }
 
 TEST_F(MergeBatch, SeedsCountOnceHoweverOftenTheyWereRun) {
