@@ -14,6 +14,7 @@
 #include "io/timestamps.hpp"
 #include "io/trajectory.hpp"
 #include "io/velocity_path.hpp"
+#include "io/virtual_kitti.hpp"
 
 namespace motorcade {
 namespace {
@@ -202,12 +203,14 @@ std::optional<CameraTruth> readCameraTruth(const Sequence& sequence, OxtsTimes t
   if (times == OxtsTimes::kUninterpolated) {
     if (auto truth = truthFromOxts(sequence, times)) return truth;
   }
+  if (!sequence.truth.virtual_kitti.empty()) return virtualKittiCamera(sequence);
   if (!sequence.truth.poses.empty()) return truthFromPoses(sequence);
   if (auto truth = truthFromStampedPoses(sequence)) return truth;
   return truthFromOxts(sequence, times);
 }
 
 std::optional<ObjectTruths> readObjectTruths(const Sequence& sequence, const CameraTruth& camera) {
+  if (!sequence.truth.virtual_kitti.empty()) return virtualKittiObjects(sequence, camera);
   if (sequence.truth.labels.empty()) return std::nullopt;
   const auto exact = readObjectPoses(sequence.truth.object_poses);
   ObjectTruths truths;

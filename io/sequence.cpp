@@ -32,8 +32,8 @@ FrameRange parseFrameRange(std::string_view text) {
 }
 
 std::optional<Sequence> openKnownLayout(const SequenceSource& source) {
-  for (const auto open :
-       {openImageList, openEuroc, openKitti360, openKittiRaw, openArgoverse, openKittiTracking, openPlain})
+  for (const auto open : {openImageList, openEuroc, openKitti360, openVirtualKitti, openKittiRaw, openArgoverse,
+                          openKittiTracking, openPlain})
     if (auto sequence = open(source)) return sequence;
   return std::nullopt;
 }

@@ -54,11 +54,15 @@ struct Sequence {
     std::filesystem::path image_timestamps{};  // capture time of each image, on the same clock
     std::filesystem::path stamped_poses{};     // EuRoC's table of poses by time, on the images' clock
     std::filesystem::path numbered_poses{};    // KITTI-360's poses by the number in the image's name
+    std::filesystem::path virtual_kitti{};     // folder with the tables of a variation of Virtual KITTI 2
     SE3 T_posed_cam{};                         // the pair's left camera, seen from what either of these is about
+
+    /// Poses of camera and objects are those that the images were rendered with, not of another instrument.
+    bool exact() const { return !object_poses.empty() || !virtual_kitti.empty(); }
   };
 
   std::filesystem::path folder{};
-  std::string layout{};  // plain, odometry, tracking, raw, euroc, kitti360, argoverse or list
+  std::string layout{};  // plain, odometry, tracking, raw, euroc, kitti360, virtual_kitti, argoverse or list
   CameraPair pair = CameraPair::kGray;
   Calibration calibration{};
   StereoCamera camera{};  // with the size of the images
@@ -79,6 +83,7 @@ struct Sequence {
 ///   raw        DATE/DATE_drive_NNNN_sync with image_00/data; DATE/calib_cam_to_cam.txt
 ///   euroc      the folder mav0, or the one that holds it, with cam0 and cam1
 ///   kitti360   data_2d_raw/DATE_drive_NNNN_sync with image_00/data_rect; calibration/perspective.txt
+///   virtual_kitti  Scene01/clone with frames/rgb/Camera_0; intrinsic.txt, extrinsic.txt
 ///   argoverse  a log with stereo_front_left_rect and stereo_front_right_rect
 ///   list       a text file with a line LEFT RIGHT or STAMP LEFT RIGHT for each pair
 ///

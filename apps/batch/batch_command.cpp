@@ -95,6 +95,18 @@ void tellFailures(const std::vector<TaskRecord>& failed) {
   if (failed.size() > kMost) std::cout << "and " << failed.size() - kMost << " more\n";
 }
 
+/// The drives that are not on the disk, each with its name, and where the first was looked for.
+void tellLeftOut(const Plan& plan) {
+  if (plan.left_out.empty()) return;
+  std::string names;
+  std::set<std::string> drives;
+  for (const LeftOutDrive& drive : plan.left_out) names += (names.empty() ? "" : ", ") + drive.name;
+  for (const Task& task : plan.tasks) drives.insert(task.drive);
+  std::cout << plan.left_out.size() << " of " << plan.left_out.size() + drives.size()
+            << " drives are not on the disk and left out: " << names << "\n(" << plan.left_out.front().name
+            << " was looked for at " << plan.left_out.front().looked_for << ")\n";
+}
+
 int performHere(const BatchOptions& options, const Plan& plan, const BatchFolder& folder, const Remaining& remaining) {
   StopSignals signals;
   LocalRunner runner(plan, folder, slotsFor(options));
@@ -175,6 +187,7 @@ int runBatch(const BatchOptions& options) {
   std::optional<LocalLock> lock;
   if (!options.slurm) lock.emplace(folder);
   writePlan(folder.plan(), plan);
+  tellLeftOut(plan);
   removeLost(plan, folder);
   const Remaining remaining = remainingOf(plan, folder, options.retry);
   return options.slurm ? performInSlurm(options, folder, remaining) : performHere(options, plan, folder, remaining);

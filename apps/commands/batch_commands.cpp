@@ -78,7 +78,7 @@ void addBatch(CLI::App& app, Action& action) {
   const auto options = std::make_shared<BatchOptions>();
   CLI::App* command = app.add_subcommand("batch", "Run and evaluate many drives, here or on a Slurm cluster");
   command->add_option("MANIFEST", options->manifest,
-                      "The drives and how to run them, as TOML or a table (.csv), see docs/formats.md");
+                      "The drives and how to run them, as TOML, a table (.csv) or a list (.txt), see docs/formats.md");
   command->add_option("--out", options->out, "Folder for all results; what is finished there is not done again");
   command->add_option("-j,--jobs", options->jobs, "Tasks at a time; as many as there are processors for when absent")
       ->check(CLI::Range(1, kMostJobs));

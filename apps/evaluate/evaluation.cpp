@@ -27,7 +27,7 @@ struct CameraPaths {
 };
 
 /// Rendered drives come with the objects' exact poses; the truth of real ones is another instrument's.
-bool mayBeMountedWrongly(const Sequence& sequence) { return sequence.truth.object_poses.empty(); }
+bool mayBeMountedWrongly(const Sequence& sequence) { return !sequence.truth.exact(); }
 
 void measureMounted(KindEvaluation& kind, const CameraPaths& paths, const SE3& T_true_cam) {
   const auto truth = withMounting(paths.truth, T_true_cam);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "io/errors.hpp"
+#include "io/instance_image.hpp"
 #include "io/mask_image.hpp"
 
 namespace motorcade {
@@ -55,9 +56,9 @@ struct MaskPair {
 
 /// Empty for a frame whose masks were not written.
 std::optional<MaskPair> readPair(FrameId frame, const fs::path& masks, const fs::path& instances) {
-  const fs::path file = maskFile(masks, frame), truth_file = maskFile(instances, frame);
+  const fs::path file = maskFile(masks, frame), truth_file = instanceFile(instances, frame);
   if (!fs::exists(file)) return std::nullopt;
-  MaskPair pair{readPng16(file), readPng16(truth_file)};
+  MaskPair pair{readPng16(file), readInstances(truth_file)};
   if (pair.masks.width != pair.instances.width || pair.masks.height != pair.instances.height)
     throw InputError(file.string() + ": is not of the size of " + truth_file.string() +
                      "; evaluate the run with the sequence that it was made of");

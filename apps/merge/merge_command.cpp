@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "apps/merge/merged_files.hpp"
+#include "apps/merge/published_tables.hpp"
 #include "apps/tasks/batch_folder.hpp"
 #include "io/errors.hpp"
 #include "io/line_file.hpp"
@@ -40,6 +41,8 @@ int runMerge(const MergeOptions& options) {
   writeAtOnce(out / "results.md", markdownOf(merged));
   writeAtOnce(out / "report.html", pageOf(merged));
   std::cout << markdownOf(overviewTable(merged.groups));
+  const ResultTable means = publishedMeans(merged.groups, merged.batch.plan.published);
+  if (!means.rows.empty()) std::cout << markdownOf(means);
   if (merged.comparison) std::cout << markdownOf(testTable(*merged.comparison));
   std::cout << "tables and page: " << out.string() << "/results.md, .csv, .json, report.html\n";
   return 0;

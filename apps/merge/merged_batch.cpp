@@ -9,6 +9,7 @@
 
 #include "apps/evaluate/evaluation.hpp"
 #include "apps/latency/latency_report.hpp"
+#include "apps/merge/published_tables.hpp"
 #include "apps/tasks/batch_folder.hpp"
 #include "apps/tasks/task_performer.hpp"
 #include "io/errors.hpp"
@@ -193,6 +194,7 @@ MergedBatch readBatch(const fs::path& folder, const std::string& baseline_set) {
     throw InputError(folder.string() + ": is no folder of a batch; start one with motorcade batch MANIFEST --out " +
                      folder.string());
   MergedBatch batch{.folder = folder, .plan = readPlan(batch_folder.plan())};
+  batch.plan.published = comparableFigures(batch.plan.published);
   for (const Task& task : batch.plan.tasks) batch.tasks.push_back(merge(batch, task, batch_folder));
   const std::string& baseline = baseline_set.empty() ? batch.plan.baseline_set : baseline_set;
   if (!baseline.empty()) compareWithBaseline(batch, baseline);

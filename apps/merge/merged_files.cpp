@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/merge/published_tables.hpp"
 #include "apps/tasks/task_json.hpp"
 
 namespace motorcade {
@@ -94,6 +95,15 @@ std::string csvField(const std::string& text) {
   return field + '"';
 }
 
+void addValues(std::vector<std::string>& row, const MeasureValues& values) {
+  for (const double value : values) row.push_back(std::isnan(value) ? "" : fmt::format("{}", value));
+}
+
+Json jsonOf(const PublishedFigure& figure) {
+  return {{"method", figure.method}, {"measure", figure.measure}, {"drives", figure.drives},
+          {"value", figure.value},   {"source", figure.source},   {"note", figure.note}};
+}
+
 std::string joined(const std::vector<std::string>& fields) { return fmt::format("{}\n", fmt::join(fields, ",")); }
 
 }  // namespace
@@ -110,7 +120,18 @@ std::string csvOf(const Merged& merged) {
                                  std::to_string(task.task.repetition),
                                  std::string(outcomeName(task.outcome)),
                                  csvField(failureOf(task))};
-    for (const double value : task.values) row.push_back(std::isnan(value) ? "" : fmt::format("{}", value));
+    addValues(row, task.values);
+    csv += joined(row);
+  }
+  for (const PublishedRow& published : publishedRows(merged.batch.plan.published)) {
+    std::vector<std::string> row{csvField("published." + published.method),
+                                 csvField(published.drive),
+                                 csvField(published.method),
+                                 "",
+                                 "",
+                                 "published",
+                                 csvField(published.source)};
+    addValues(row, published.values);
     csv += joined(row);
   }
   return csv;
@@ -118,7 +139,10 @@ std::string csvOf(const Merged& merged) {
 
 std::string jsonOf(const Merged& merged) {
   const MergedBatch& batch = merged.batch;
-  Json tasks = Json::array(), groups = Json::array();
+  Json tasks = Json::array(), groups = Json::array(), left_out = Json::array(), published = Json::array();
+  for (const LeftOutDrive& drive : batch.plan.left_out)
+    left_out.push_back({{"drive", drive.name}, {"looked_for", drive.looked_for}});
+  for (const PublishedFigure& figure : batch.plan.published) published.push_back(jsonOf(figure));
   for (const MergedTask& task : batch.tasks) tasks.push_back(jsonOf(task));
   for (const ResultGroup& group : merged.groups) groups.push_back(jsonOf(group));
   return textOf({{"tasks", std::move(tasks)},
@@ -127,6 +151,8 @@ std::string jsonOf(const Merged& merged) {
                   {{"camera_rpe_t_m", jsonOf(batch.worst_camera_m)},
                    {"object_me_t_m", jsonOf(batch.worst_object_m)},
                    {"latency_ms", jsonOf(batch.latest_ms)}}},
+                 {"left_out", std::move(left_out)},
+                 {"published", std::move(published)},
                  {"comparison", merged.comparison ? jsonOf(*merged.comparison) : Json()}});
 }
 
@@ -139,6 +165,7 @@ std::string markdownOf(const Merged& merged) {
     if (!table.rows.empty()) text += markdownOf(table);
   };
   add(overviewTable(merged.groups));
+  for (const ResultTable& table : publishedSection(merged)) add(table);
   if (merged.comparison) {
     add(testTable(*merged.comparison));
     add(regressionTable(*merged.comparison));
@@ -146,11 +173,27 @@ std::string markdownOf(const Merged& merged) {
       text += fmt::format("Not compared: {}.\n\n", fmt::join(merged.comparison->unpaired, ", "));
   }
   add(unfinishedTable(batch));
+  add(leftOutTable(batch));
   for (const ResultTable& table : measureTables(merged.groups)) add(table);
   add(worstFrameTable("Frames with the largest error of the camera's motion", "RPE_t m", batch.worst_camera_m));
   add(worstFrameTable("Frames with the largest error of an object's motion", "ME_t m", batch.worst_object_m));
   add(worstFrameTable("Frames that came out latest", "latency ms", batch.latest_ms));
   return text;
+}
+
+std::vector<ResultTable> publishedSection(const Merged& merged) {
+  const auto& figures = merged.batch.plan.published;
+  std::vector<ResultTable> tables = publishedTables(merged.groups, figures);
+  tables.push_back(publishedMeans(merged.groups, figures));
+  tables.push_back(publishedSources(merged.groups, figures));
+  std::erase_if(tables, [](const ResultTable& table) { return table.rows.empty(); });
+  return tables;
+}
+
+ResultTable leftOutTable(const MergedBatch& batch) {
+  ResultTable table{.title = "Left out, as not on the disk", .heads = {"drive", "looked for"}, .names = 2};
+  for (const LeftOutDrive& drive : batch.plan.left_out) table.rows.push_back({drive.name, drive.looked_for});
+  return table;
 }
 
 ResultTable unfinishedTable(const MergedBatch& batch) {

@@ -27,6 +27,10 @@ std::string markdownOf(const Merged& merged);
 /// A page in one file, with the tables and charts.
 std::string pageOf(const Merged& merged);
 
+/// Tables of published figures that the batch's drives have, with means and sources.
+std::vector<ResultTable> publishedSection(const Merged& merged);
+/// Drives that are not on the disk.
+ResultTable leftOutTable(const MergedBatch& batch);
 /// Tasks without a result, and why.
 ResultTable unfinishedTable(const MergedBatch& batch);
 /// Frames to look at, of one kind of `value`.

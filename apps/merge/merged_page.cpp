@@ -145,6 +145,8 @@ std::string pageOf(const Merged& merged) {
   std::string body = "<h1>" + escaped(batch.folder.filename().string()) + "</h1>\n" + cards(batch);
   if (merged.comparison) body += comparisonSection(*merged.comparison);
   body += failureSection(batch) + section(overviewTable(merged.groups));
+  for (const ResultTable& table : publishedSection(merged)) body += section(table);
+  body += section(leftOutTable(batch));
   body += section("Distributions", distribution(merged.groups, "camera_ate_m", "camera ATE, m") +
                                        distribution(merged.groups, "camera_rpe_t_rmse_m", "camera RPE, m per frame") +
                                        distribution(merged.groups, "me_t_m", "motion error of objects, m per frame") +

@@ -99,6 +99,9 @@ std::string sequenceFingerprint(const Sequence& sequence) {
        {truth.poses, truth.labels, truth.object_poses, truth.instances, truth.oxts, truth.oxts_timestamps,
         truth.image_timestamps, truth.stamped_poses, truth.numbered_poses})
     if (!file.empty()) fingerprint.addFile(file);
+  if (!truth.virtual_kitti.empty())
+    for (const char* const name : {"intrinsic.txt", "extrinsic.txt", "pose.txt", "bbox.txt", "info.txt"})
+      fingerprint.addFile(truth.virtual_kitti / name);
   return fingerprint.text();
 }
 

@@ -5,6 +5,7 @@
 
 #include <glob.h>
 
+#include "apps/tasks/path_text.hpp"
 #include "io/errors.hpp"
 
 namespace motorcade {
@@ -55,22 +56,36 @@ std::vector<FoundDrive> matchingDrives(const ManifestEntry& entry, const fs::pat
   std::vector<FoundDrive> drives;
   for (const fs::path& match : matchesOf(pattern)) drives.push_back({nameFrom(match, first_part), match});
   if (drives.empty())
-    drives.push_back({nameFrom(pattern, first_part), pattern, pattern.string() + ": no folder matches this pattern"});
+    drives.push_back(
+        {nameFrom(pattern, first_part), pattern, pattern.string() + ": no folder matches this pattern", true});
   return drives;
+}
+
+std::vector<FoundDrive> drivesAt(const ManifestEntry& entry, const std::string& place, const fs::path& root) {
+  fs::path path = (root / expandedPath(place)).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  if (hasWildcard(place)) return matchingDrives(entry, path);
+  FoundDrive drive{
+      .name = entry.name.empty() ? nameFrom(path, std::distance(path.begin(), path.end()) - 1) : entry.name,
+      .path = path};
+  std::error_code none;
+  drive.missing = !fs::exists(path, none);
+  if (drive.missing) drive.problem = path.string() + ": there is no such drive";
+  return {drive};
 }
 
 }  // namespace
 
 std::vector<FoundDrive> findDrives(const ManifestEntry& entry, const fs::path& root) {
   if (!entry.scene.empty()) return {{.name = entry.name.empty() ? nameOf(entry.scene) : entry.name}};
-  fs::path path = (root / entry.path).lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();
-  if (hasWildcard(entry.path)) return matchingDrives(entry, path);
-  FoundDrive drive{
-      .name = entry.name.empty() ? nameFrom(path, std::distance(path.begin(), path.end()) - 1) : entry.name,
-      .path = path};
-  if (std::error_code none; !fs::exists(path, none)) drive.problem = path.string() + ": there is no such drive";
-  return {drive};
+  auto drives = drivesAt(entry, entry.path, root);
+  for (const std::string& place : entry.other_paths) {
+    if (!drives.front().missing) break;
+    auto others = drivesAt(entry, place, root);
+    if (!others.front().missing) return others;
+    drives.front().problem += ", nor at " + others.front().path.string();
+  }
+  return drives;
 }
 
 }  // namespace motorcade

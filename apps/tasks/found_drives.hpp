@@ -13,6 +13,7 @@ struct FoundDrive {
   std::string name{};
   std::filesystem::path path{};  // absolute; empty for a scene
   std::string problem{};         // why there is none; empty where there is
+  bool missing = false;          // nothing is there
 };
 
 /// Those of an entry, in the order of their paths. A drive's name is the entry's, else the last part of its path, or,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "apps/tasks/manifest_fields.hpp"
+#include "apps/tasks/path_text.hpp"
 #include "io/errors.hpp"
 #include "io/text_file.hpp"
 
@@ -32,17 +33,34 @@ void requireKnownSets(const Manifest& manifest) {
                      "]");
 }
 
+bool isTable(const std::filesystem::path& file) {
+  const std::string end = file.extension().string();
+  return end == ".csv" || end == ".tsv" || end == ".txt" || end == ".lst" || end == ".list";
+}
+
+/// The root that the manifest tells, from its own folder. It may name a variable of the environment.
+std::filesystem::path ownRoot(const Manifest& manifest) {
+  const std::string root = expandedPath(manifest.root.string());
+  if (const std::string missing = unsetVariable(root); !missing.empty())
+    throw UsageError(manifest.file.string() + ": its root is " + missing +
+                     ", which is not set; give --root FOLDER, or " + "export " + missing.substr(1) +
+                     "=FOLDER, the folder that holds " + printable(manifest.entries.front().path, 80));
+  return manifest.file.parent_path() / root;
+}
+
 }  // namespace
 
 Manifest readManifest(const std::filesystem::path& file, const std::filesystem::path& root) {
   const auto absolute = std::filesystem::absolute(file).lexically_normal();
   const std::string text = contentOf(absolute);
-  Manifest manifest = file.extension() == ".csv" ? readManifestCsv(absolute, text) : readManifestToml(absolute, text);
+  const bool table = isTable(file);
+  Manifest manifest = table ? readManifestCsv(absolute, text) : readManifestToml(absolute, text);
   if (manifest.entries.empty())
-    throw UsageError(file.string() + ": has no drives; write [[drives]] with a path or a scene for each");
+    throw UsageError(file.string() + ": has no drives; write " +
+                     (table ? "a line with the path of each" : "[[drives]] with a path or a scene for each"));
   if (manifest.sets.empty()) manifest.sets.push_back({.name = "default"});
   requireKnownSets(manifest);
-  manifest.root = root.empty() ? absolute.parent_path() / manifest.root : std::filesystem::absolute(root);
+  manifest.root = root.empty() ? ownRoot(manifest) : std::filesystem::absolute(root);
   manifest.root = manifest.root.lexically_normal();
   return manifest;
 }

@@ -16,12 +16,14 @@ struct ParameterSet {
 
 /// A line of a manifest: a drive, a glob of several, or a scene to render, with how to run it.
 struct ManifestEntry {
-  std::string path{};               // of a recorded drive, or a glob of several
-  std::string scene{};              // of a rendered one, in its place
-  std::string name{};               // of the drive; from its path or scene when empty
-  int length = 0;                   // frames to render; the scene's own when 0
-  std::string size{};               // of rendered images, WIDTHxHEIGHT
-  std::vector<std::string> sets{};  // names of parameter sets; all of them when empty
+  std::string path{};                      // of a recorded drive, or a glob of several
+  std::vector<std::string> other_paths{};  // where to look, in this order, when nothing is there
+  bool optional = false;                   // a drive that is not on the disk is left out
+  std::string scene{};                     // of a rendered one, in its place
+  std::string name{};                      // of the drive; from its path or scene when empty
+  int length = 0;                          // frames to render; the scene's own when 0
+  std::string size{};                      // of rendered images, WIDTHxHEIGHT
+  std::vector<std::string> sets{};         // names of parameter sets; all of them when empty
   std::vector<std::uint32_t> seeds{};
   int repetitions = 1;
   std::map<std::string, std::string> options{};  // of `run` by their names, and `baseline`, of `evaluate`
@@ -33,12 +35,14 @@ struct Manifest {
   std::filesystem::path file{};  // absolute
   std::filesystem::path root{};  // absolute: what paths of drives and baselines are relative to
   std::string baseline_set{};
-  std::vector<ParameterSet> sets{};  // in the order of the file; at least one
+  std::string dataset{};              // whose published figures count; empty for none
+  std::filesystem::path published{};  // absolute: the file with these figures; empty for none
+  std::vector<ParameterSet> sets{};   // in the order of the file; at least one
   std::vector<ManifestEntry> entries{};
 };
 
-/// Reads TOML or, where the name ends with .csv, a table. `root` comes before the manifest's own where it is not empty.
-/// Throws UsageError naming file, line, key and how to fix it.
+/// Reads TOML or, where the name ends with .csv, .tsv or .txt, a table or a list of paths. `root` comes before the
+/// manifest's own where it is not empty. Throws UsageError naming file, line, key and how to fix it.
 Manifest readManifest(const std::filesystem::path& file, const std::filesystem::path& root = {});
 
 }  // namespace motorcade

@@ -1,5 +1,9 @@
 #include <algorithm>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "apps/tasks/manifest_fields.hpp"
 #include "io/errors.hpp"
@@ -8,24 +12,99 @@
 namespace motorcade {
 namespace {
 
-/// The fields of a line of a table (RFC 4180): one with a comma stands between quotes, in which two quotes are one.
-std::vector<std::string> fieldsOf(const std::string& line, const std::string& where) {
+/// Characters that separate fields, as programs for tables in many countries write them.
+constexpr std::string_view kSeparators = ",;\t";
+
+/// A line of a table, and where it stands, for messages.
+struct TableLine {
+  std::string text{};
+  std::string where{};
+};
+
+/// Field by field; one with a separator stands between quotes, in which two quotes are one (RFC 4180). Single quotes
+/// around a field go, too.
+std::vector<std::string> fieldsOf(const TableLine& line, char separator) {
   std::vector<std::string> fields(1);
   bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
-      fields.back() += line[++i];
+  for (std::size_t i = 0; i < line.text.size(); ++i) {
+    const char c = line.text[i];
+    if (c == '"' && quoted && i + 1 < line.text.size() && line.text[i + 1] == '"')
+      fields.back() += line.text[++i];
     else if (c == '"')
       quoted = !quoted;
-    else if (c == ',' && !quoted)
+    else if (c == separator && !quoted)
       fields.emplace_back();
     else
       fields.back() += c;
   }
-  if (quoted) throw UsageError(where + ": a quote is not closed");
-  for (std::string& field : fields) field = trimmed(field);
+  if (quoted) throw UsageError(line.where + ": a quote is not closed");
+  for (std::string& field : fields) {
+    field = trimmed(field);
+    if (field.size() >= 2 && field.front() == '\'' && field.back() == '\'') field = field.substr(1, field.size() - 2);
+  }
   return fields;
+}
+
+/// Without a comment, which begins a line or stands behind a blank, outside of quotes.
+std::string withoutComment(const std::string& line) {
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') quoted = !quoted;
+    const bool begins = i == 0 || line[i - 1] == ' ' || line[i - 1] == '\t';
+    if (line[i] == '#' && !quoted && begins) return line.substr(0, i);
+  }
+  return line;
+}
+
+/// The lines that say something. Accepts all line ends and a byte order mark.
+std::vector<TableLine> linesOf(const std::filesystem::path& file, std::string text) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") || text.find('\0') != std::string::npos)
+    throw UsageError(file.string() +
+                     ": is not UTF-8, perhaps \"Unicode text\" of a program for tables; save it as CSV in UTF-8");
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (text.find('\n') == std::string::npos) std::ranges::replace(text, '\r', '\n');
+  std::vector<TableLine> lines;
+  std::istringstream stream(text);
+  int number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    const std::string content = trimmed(withoutComment(line));
+    if (content.find_first_not_of(",; \t") != std::string::npos)
+      lines.push_back({content, file.string() + ", line " + std::to_string(number)});
+  }
+  return lines;
+}
+
+/// What the first line tells of a table; without columns where that is a drive already.
+struct TableForm {
+  char separator = ',';
+  std::vector<std::string> columns{};  // by their keys, as they stand where they have none
+};
+
+TableForm formOf(const TableLine& first) {
+  TableForm form;
+  for (const char separator : kSeparators) {
+    std::vector<std::string> columns = fieldsOf(first, separator);
+    bool names_drives = false;
+    for (std::string& column : columns) {
+      const std::string key = columnKey(column);
+      names_drives = names_drives || key == "path" || key == "scene";
+      if (!key.empty()) column = key;
+    }
+    if (names_drives && columns.size() > form.columns.size()) form = {separator, std::move(columns)};
+  }
+  return form;
+}
+
+/// The path that is all of a line, where a list has no columns.
+std::string barePath(TableLine line) {
+  line.text.erase(line.text.find_last_not_of(",; \t") + 1);
+  for (const char separator : kSeparators)
+    if (fieldsOf(line, separator).size() > 1)
+      throw UsageError(line.where + ": '" + printable(line.text, 80) +
+                       "' has several fields, and the first line names no column 'path'; begin with one, as path,name, "
+                       "or put quotes around a path that has a comma");
+  return fieldsOf(line, ',').front();
 }
 
 std::vector<std::string> wordsOf(const std::string& field) {
@@ -41,14 +120,15 @@ struct Row {
   ParameterSet set;
 };
 
-Row rowOf(const std::vector<std::string>& columns, const std::vector<std::string>& values, const std::string& where) {
+Row rowOf(const std::vector<std::string>& columns, std::vector<std::string> values, const std::string& where) {
+  while (values.size() > columns.size() && values.back().empty()) values.pop_back();
   if (values.size() != columns.size())
     throw UsageError(where + ": has " + std::to_string(values.size()) + " fields, the first line has " +
                      std::to_string(columns.size()));
   Row row{.fields = {.where = where}, .set = {.name = "default"}};
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (values[i].empty()) continue;
     const std::string& column = columns[i];
+    if (values[i].empty() || column.empty()) continue;
     if (column == "set")
       row.set.name = values[i];
     else if (std::ranges::count(column, '.') > 0)
@@ -76,23 +156,19 @@ void addSet(Manifest& manifest, const ParameterSet& set, const std::string& wher
 
 Manifest readManifestCsv(const std::filesystem::path& file, const std::string& text) {
   Manifest manifest{.file = file};
-  std::vector<std::string> columns;
-  std::istringstream lines(text);
-  int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    const std::string where = file.string() + ", line " + std::to_string(++number);
-    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-    if (trimmed(line).empty() || line.starts_with('#')) continue;
-    const auto fields = fieldsOf(line, where);
-    if (columns.empty()) {
-      columns = fields;
-      continue;
+  const std::vector<TableLine> lines = linesOf(file, text);
+  if (lines.empty()) return manifest;
+  const TableForm form = formOf(lines.front());
+  const bool bare = form.columns.empty();
+  for (std::size_t i = bare ? 0 : 1; i < lines.size(); ++i) {
+    const TableLine& line = lines[i];
+    const Row row = bare ? rowOf({"path"}, {barePath(line)}, line.where)
+                         : rowOf(form.columns, fieldsOf(line, form.separator), line.where);
+    addSet(manifest, row.set, line.where);
+    for (ManifestEntry& entry : manifestEntries(row.fields)) {
+      entry.sets = {row.set.name};
+      manifest.entries.push_back(std::move(entry));
     }
-    Row row = rowOf(columns, fields, where);
-    addSet(manifest, row.set, where);
-    ManifestEntry entry = manifestEntry(row.fields);
-    entry.sets = {row.set.name};
-    manifest.entries.push_back(std::move(entry));
   }
   return manifest;
 }

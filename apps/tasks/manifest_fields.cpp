@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "core/edit_distance.hpp"
 #include "io/errors.hpp"
@@ -16,8 +18,12 @@ namespace {
 constexpr int kMostRepetitions = 100'000, kMostFrames = 1'000'000;
 constexpr std::size_t kMostSeeds = 100'000;
 
-constexpr std::array<const char*, 8> kEntryKeys{"path", "scene", "name",  "length",
-                                                "size", "sets",  "seeds", "repetitions"};
+constexpr std::array<const char*, 10> kEntryKeys{"path", "scene", "name",        "length", "size",
+                                                 "sets", "seeds", "repetitions", "each",   "optional"};
+/// What people call a drive's path at the head of a column.
+constexpr std::array<const char*, 13> kPathColumns{"path",      "paths",    "drive",   "drives", "sequence",
+                                                   "sequences", "folder",   "folders", "dir",    "directory",
+                                                   "file",      "filename", "location"};
 /// Of `run`; the last one of `evaluate`.
 constexpr std::array<const char*, 11> kOptionKeys{"frames",      "fps",    "rate",   "live",    "masks",   "camera",
                                                   "calibration", "config", "inject", "require", "baseline"};
@@ -72,6 +78,26 @@ class EntryReader {
   const ManifestFields& fields_;
 };
 
+std::string lowered(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::string replaced(std::string text, const std::string& value) {
+  constexpr std::string_view kPlace = "{}";
+  for (auto at = text.find(kPlace); at != std::string::npos; at = text.find(kPlace, at + value.size()))
+    text.replace(at, kPlace.size(), value);
+  return text;
+}
+
+/// An option that is true or false, or absent.
+bool flagOf(const EntryReader& reader, const char* flag) {
+  const std::string text = reader.word(flag);
+  if (!text.empty() && text != "true" && text != "false")
+    reader.fail(std::string("'") + flag + "' is " + printable(text) + "; write true or false");
+  return text == "true";
+}
+
 void requireConsistent(const ManifestEntry& entry, const EntryReader& reader) {
   if (entry.path.empty() == entry.scene.empty()) reader.fail("needs either 'path', of a drive, or 'scene', to render");
   if (entry.scene.empty() && entry.length > 0) reader.fail("'length' is for scenes; 'frames' = \"A:B\" selects");
@@ -109,10 +135,17 @@ std::vector<std::uint32_t> seedsIn(const std::vector<std::string>& words, const 
   return all;
 }
 
-ManifestEntry manifestEntry(const ManifestFields& fields) {
+namespace {
+
+ManifestEntry entryOf(const ManifestFields& fields) {
   const EntryReader reader(fields);
   reader.requireKnown();
-  ManifestEntry entry{.path = reader.word("path"),
+  auto paths = reader.words("path");
+  const std::string path = paths.empty() ? "" : paths.front();
+  if (!paths.empty()) paths.erase(paths.begin());
+  ManifestEntry entry{.path = path,
+                      .other_paths = std::move(paths),
+                      .optional = flagOf(reader, "optional"),
                       .scene = reader.word("scene"),
                       .name = reader.word("name"),
                       .length = reader.wholeNumber("length", 0, kMostFrames),
@@ -123,15 +156,35 @@ ManifestEntry manifestEntry(const ManifestFields& fields) {
                       .where = fields.where};
   for (const char* const key : kOptionKeys)
     if (const std::string value = reader.word(key); !value.empty()) entry.options[key] = value;
-  for (const char* const flag : {"live", "masks"}) {
-    const auto found = entry.options.find(flag);
-    if (found == entry.options.end()) continue;
-    if (found->second != "true" && found->second != "false")
-      reader.fail(std::string("'") + flag + "' is " + printable(found->second) + "; write true or false");
-  }
+  for (const char* const flag : {"live", "masks"}) flagOf(reader, flag);
   requireConsistent(entry, reader);
   if (!entry.name.empty()) requireName(entry.name, fields.where);
   return entry;
+}
+
+}  // namespace
+
+std::vector<ManifestEntry> manifestEntries(const ManifestFields& fields) {
+  const auto each = fields.words.find("each");
+  if (each == fields.words.end()) return {entryOf(fields)};
+  std::vector<ManifestEntry> entries;
+  for (const std::string& value : each->second) {
+    ManifestFields one = fields;
+    one.words.erase("each");
+    for (auto& [key, words] : one.words)
+      for (std::string& word : words) word = replaced(word, value);
+    entries.push_back(entryOf(one));
+  }
+  return entries;
+}
+
+std::string columnKey(const std::string& head) {
+  const std::string key = lowered(head);
+  if (std::ranges::find(kPathColumns, key) != kPathColumns.end()) return "path";
+  if (key == "set" || key.find('.') != std::string::npos) return key == "set" ? key : head;
+  const bool known = std::ranges::find(kEntryKeys, key) != kEntryKeys.end() ||
+                     std::ranges::find(kOptionKeys, key) != kOptionKeys.end();
+  return known ? key : "";
 }
 
 }  // namespace motorcade

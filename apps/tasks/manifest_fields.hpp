@@ -14,8 +14,13 @@ struct ManifestFields {
   std::string where{};  // file and line, for messages
 };
 
-/// Throws UsageError naming the place, the key and how to fix it.
-ManifestEntry manifestEntry(const ManifestFields& fields);
+/// One entry, or one for each value of `each`, which stands for {} in the other keys. Throws UsageError naming the
+/// place, the key and how to fix it.
+std::vector<ManifestEntry> manifestEntries(const ManifestFields& fields);
+
+/// The key that a column of a table means by its head, in whatever case: also drive, sequence, folder and the like for
+/// `path`. Empty where it means none.
+std::string columnKey(const std::string& head);
 
 /// Numbers and ranges of them, as 1-5, in ascending order. Throws UsageError.
 std::vector<std::uint32_t> seedsIn(const std::vector<std::string>& words, const std::string& where);

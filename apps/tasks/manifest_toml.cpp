@@ -1,13 +1,16 @@
 #include <sstream>
+#include <utility>
 
 #include "apps/pipeline/toml_document.hpp"
 #include "apps/tasks/manifest_fields.hpp"
+#include "apps/tasks/path_text.hpp"
 #include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {
 
-constexpr const char* kForm = "; a manifest has root, baseline_set, [defaults], [sets.NAME] and [[drives]]";
+constexpr const char* kForm =
+    "; a manifest has root, baseline_set, dataset, published, [defaults], [sets.NAME] and [[drives]]";
 
 std::string wordOf(const toml::node& node) {
   if (const auto text = node.value_exact<std::string>()) return *text;
@@ -78,7 +81,7 @@ void addEntries(Manifest& manifest, const toml::node& drives, const toml::table&
     ManifestFields fields{.where = position.text()};
     addFields(fields, defaults, manifest.file);
     addFields(fields, *table, manifest.file);
-    manifest.entries.push_back(manifestEntry(fields));
+    for (ManifestEntry& entry : manifestEntries(fields)) manifest.entries.push_back(std::move(entry));
   }
 }
 
@@ -96,6 +99,10 @@ Manifest readManifestToml(const std::filesystem::path& file, const std::string& 
       manifest.root = stringOf(node, name, file);
     else if (name == "baseline_set")
       manifest.baseline_set = stringOf(node, name, file);
+    else if (name == "dataset")
+      manifest.dataset = stringOf(node, name, file);
+    else if (name == "published")
+      manifest.published = file.parent_path() / expandedPath(stringOf(node, name, file));
     else if (name == "drives")
       drives = &node;
     else if (name == "defaults" && table != nullptr)

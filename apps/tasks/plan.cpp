@@ -45,6 +45,20 @@ Task taskOf(const Json& json) {
           .problem = json.at("problem")};
 }
 
+Json jsonOf(const PublishedFigure& figure) {
+  return {{"method", figure.method}, {"measure", figure.measure}, {"drives", figure.drives},
+          {"value", figure.value},   {"source", figure.source},   {"note", figure.note}};
+}
+
+PublishedFigure figureOf(const Json& json) {
+  return {.method = json.at("method"),
+          .measure = json.at("measure"),
+          .drives = json.at("drives"),
+          .value = json.at("value"),
+          .source = json.at("source"),
+          .note = json.at("note")};
+}
+
 Plan planOf(const Json& json) {
   if (json.at("format") != kFormat) throw InputError("is the plan of a batch by another version of motorcade");
   Plan plan{.manifest = json.at("manifest").get<std::string>(),
@@ -52,20 +66,28 @@ Plan planOf(const Json& json) {
             .program_stamp = json.value("program_stamp", ""),
             .baseline_set = json.at("baseline_set")};
   for (const Json& task : json.at("tasks")) plan.tasks.push_back(taskOf(task));
+  for (const Json& drive : json.value("left_out", Json::array()))
+    plan.left_out.push_back({drive.at("name"), drive.at("looked_for")});
+  for (const Json& figure : json.value("published", Json::array())) plan.published.push_back(figureOf(figure));
   return plan;
 }
 
 }  // namespace
 
 void writePlan(const std::filesystem::path& file, const Plan& plan) {
-  Json tasks = Json::array();
+  Json tasks = Json::array(), left_out = Json::array(), published = Json::array();
   for (const Task& task : plan.tasks) tasks.push_back(jsonOf(task));
+  for (const LeftOutDrive& drive : plan.left_out)
+    left_out.push_back({{"name", drive.name}, {"looked_for", drive.looked_for}});
+  for (const PublishedFigure& figure : plan.published) published.push_back(jsonOf(figure));
   const Json json = {{"format", kFormat},
                      {"manifest", plan.manifest.string()},
                      {"program", plan.program.string()},
                      {"program_stamp", plan.program_stamp},
                      {"baseline_set", plan.baseline_set},
-                     {"tasks", std::move(tasks)}};
+                     {"tasks", std::move(tasks)},
+                     {"left_out", std::move(left_out)},
+                     {"published", std::move(published)}};
   writeAtOnce(file, textOf(json));
 }
 

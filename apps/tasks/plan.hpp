@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/tasks/published_figures.hpp"
+
 namespace motorcade {
 
 /// One drive to run once, with one set of parameters: the unit of work of a batch.
@@ -25,12 +27,20 @@ struct Task {
   std::string problem{};      // why it cannot be performed; empty where it can
 };
 
+/// A drive of the manifest that may be missing, and is.
+struct LeftOutDrive {
+  std::string name{};
+  std::string looked_for{};  // path, or several
+};
+
 /// All tasks of a batch, in the order of the manifest.
 struct Plan {
   std::filesystem::path manifest{}, program{};  // absolute; the program that tasks run
   std::string program_stamp{};                  // its file as it was when this was planned
   std::string baseline_set{};                   // whose objects others are compared with when merging; empty for none
   std::vector<Task> tasks{};
+  std::vector<LeftOutDrive> left_out{};
+  std::vector<PublishedFigure> published{};  // of the manifest's data set
 };
 
 /// Throws OutputError.

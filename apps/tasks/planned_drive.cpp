@@ -4,10 +4,13 @@
 #include <atomic>
 #include <cstdlib>
 #include <exception>
+#include <optional>
+#include <string_view>
 #include <thread>
 
 #include "apps/synth/synth_command.hpp"
 #include "apps/tasks/fingerprint.hpp"
+#include "apps/tasks/path_text.hpp"
 #include "io/errors.hpp"
 #include "io/ground_truth.hpp"
 #include "io/sequence.hpp"
@@ -16,6 +19,10 @@ namespace motorcade {
 
 namespace fs = std::filesystem;
 
+namespace {
+constexpr std::string_view kFramesOfTruth = "truth";  // in place of a range
+}  // namespace
+
 std::string optionOf(const ManifestEntry& entry, const std::string& name) {
   const auto found = entry.options.find(name);
   return found == entry.options.end() ? "" : found->second;
@@ -23,16 +30,16 @@ std::string optionOf(const ManifestEntry& entry, const std::string& name) {
 
 fs::path fileOption(const ManifestEntry& entry, const std::string& name, const fs::path& root) {
   const std::string file = optionOf(entry, name);
-  return file.empty() ? fs::path() : (root / file).lexically_normal();
+  return file.empty() ? fs::path() : (root / expandedPath(file)).lexically_normal();
 }
 
 std::string calibrationOption(const ManifestEntry& entry, const fs::path& root) {
   const std::string given = optionOf(entry, "calibration");
   const auto comma = given.find(',');
   if (given.empty()) return "";
-  std::string left = (root / given.substr(0, comma)).lexically_normal().string();
+  std::string left = (root / expandedPath(given.substr(0, comma))).lexically_normal().string();
   if (comma == std::string::npos) return left;
-  return left + "," + (root / given.substr(comma + 1)).lexically_normal().string();
+  return left + "," + (root / expandedPath(given.substr(comma + 1))).lexically_normal().string();
 }
 
 namespace {
@@ -48,6 +55,15 @@ double fpsOf(const ManifestEntry& entry) {
   return fps_hz;
 }
 
+/// The frames that the entry selects: `truth` are those of which the truth tells.
+std::string frameRangeOf(const std::string& option, const Sequence& sequence, const std::optional<CameraTruth>& truth) {
+  if (option != kFramesOfTruth) return option;
+  if (!truth || truth->T_world_cam.empty()) return "";
+  const std::int64_t end = std::ssize(truth->T_world_cam);
+  if (truth->first_frame == 0 && end == std::ssize(sequence.frames)) return "";
+  return std::to_string(truth->first_frame) + ":" + std::to_string(end);
+}
+
 /// Opens a recorded drive; what is wrong with it becomes its problem.
 void open(const Manifest& manifest, PlannedDrive& drive) {
   const ManifestEntry& entry = *drive.entry;
@@ -55,8 +71,10 @@ void open(const Manifest& manifest, PlannedDrive& drive) {
   try {
     const GivenCameras given{optionOf(entry, "camera"), calibrationOption(entry, manifest.root)};
     const Sequence sequence = openSequence(drive.found.path, fpsOf(entry), given);
-    drive.frames = static_cast<std::int64_t>(selectedFrames(optionOf(entry, "frames"), sequence).size());
-    drive.has_truth = readCameraTruth(sequence).has_value();
+    const auto truth = readCameraTruth(sequence);
+    drive.frame_range = frameRangeOf(optionOf(entry, "frames"), sequence, truth);
+    drive.frames = static_cast<std::int64_t>(selectedFrames(drive.frame_range, sequence).size());
+    drive.has_truth = truth.has_value();
     drive.fingerprint = sequenceFingerprint(sequence);
   } catch (const std::exception& error) {
     drive.found.problem = error.what();
@@ -78,6 +96,7 @@ void openDrives(const Manifest& manifest, std::vector<PlannedDrive>& drives) {
 
 void describeScene(PlannedDrive& drive, std::uint32_t seed) {
   const ManifestEntry& entry = *drive.entry;
+  if (const std::string frames = optionOf(entry, "frames"); frames != kFramesOfTruth) drive.frame_range = frames;
   drive.frames = entry.length;
   drive.has_truth = true;
   const auto known = synthSceneNames();

@@ -14,6 +14,7 @@ namespace motorcade {
 struct PlannedDrive {
   const ManifestEntry* entry = nullptr;
   FoundDrive found{};
+  std::string frame_range{};  // as --frames takes it; empty for all
   std::int64_t frames = 0;
   bool has_truth = false;
   std::string fingerprint{};

@@ -20,13 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What a run of the entry's drives is asked for with a set of parameters.
-RunOptions runOptionsOf(const Manifest& manifest, const ManifestEntry& entry, const ParameterSet& set, int threads) {
+RunOptions runOptionsOf(const Manifest& manifest, const PlannedDrive& drive, const ParameterSet& set, int threads) {
+  const ManifestEntry& entry = *drive.entry;
   RunOptions run;
   run.rate = optionOf(entry, "rate");
   run.live = optionOf(entry, "live") == "true";
   run.masks = optionOf(entry, "masks") == "true";
   run.threads = threads;
-  run.frames = optionOf(entry, "frames");
+  run.frames = drive.frame_range;
   run.config = fileOption(entry, "config", manifest.file.parent_path());
   run.given = {.camera = optionOf(entry, "camera"), .calibration = calibrationOption(entry, manifest.root)};
   run.assignments = set.assignments;
@@ -69,6 +70,13 @@ void requireAmong(const std::vector<std::string>& known, const std::vector<std::
   }
 }
 
+/// Where else than at its path a drive is looked for, as a message goes on.
+std::string otherPlaces(const ManifestEntry& entry) {
+  std::string text;
+  for (const std::string& place : entry.other_paths) text += " or " + place;
+  return text;
+}
+
 /// What the entries of one manifest become, one after the other.
 class Planner {
  public:
@@ -78,12 +86,17 @@ class Planner {
              .program = options.program,
              .program_stamp = fileStamp(options.program),
              .baseline_set = manifest.baseline_set};
+    if (!manifest.published.empty()) plan_.published = readPublishedFigures(manifest.published, manifest.dataset);
   }
 
   void find(const ManifestEntry& entry) {
     for (const FoundDrive& found : findDrives(entry, manifest_.root)) {
       drives_.push_back(found.name);
       if (!selects(options_.only.drives, found.name)) continue;
+      if (found.missing && entry.optional) {
+        plan_.left_out.push_back({found.name, found.path.string() + otherPlaces(entry)});
+        continue;
+      }
       requireOneMeaning(found, entry);
       found_.push_back({.entry = &entry, .found = found});
     }
@@ -92,6 +105,7 @@ class Planner {
   /// Call it after the last `find`.
   Plan plan() {
     requireSelected();
+    requireSomething();
     openDrives(manifest_, found_);
     for (const PlannedDrive& drive : found_) add(drive);
     requireNames();
@@ -154,14 +168,15 @@ class Planner {
                 .has_truth = drive.has_truth,
                 .threads = options_.threads,
                 .problem = drive.found.problem};
-      describeRun(task, entry, set);
+      describeRun(task, drive, set);
       addRepetitions(task, entry.repetitions, drive.fingerprint);
     }
   }
 
   /// The command lines of the task, after a look at whether they can be right.
-  void describeRun(Task& task, const ManifestEntry& entry, const ParameterSet& set) const {
-    const RunOptions run = runOptionsOf(manifest_, entry, set, options_.threads);
+  void describeRun(Task& task, const PlannedDrive& drive, const ParameterSet& set) const {
+    const ManifestEntry& entry = *drive.entry;
+    const RunOptions run = runOptionsOf(manifest_, drive, set, options_.threads);
     task.run_arguments = wordsOf(run, optionOf(entry, "fps"), task.seed);
     const fs::path baseline = fileOption(entry, "baseline", manifest_.root);
     if (!baseline.empty()) task.evaluate_arguments = {"--baseline", baseline.string()};
@@ -187,6 +202,19 @@ class Planner {
       task.name = repetitions > 1 ? fmt::format("{}.{}", name, task.repetition) : name;
       plan_.tasks.push_back(task);
     }
+  }
+
+  /// A batch whose drives may be missing needs one all the same.
+  void requireSomething() const {
+    constexpr std::size_t kMostNamed = 5;
+    if (!found_.empty() || plan_.left_out.empty()) return;
+    std::string looked_for;
+    for (std::size_t i = 0; i < std::min(kMostNamed, plan_.left_out.size()); ++i)
+      looked_for += "\n  " + plan_.left_out[i].name + ": " + plan_.left_out[i].looked_for;
+    if (plan_.left_out.size() > kMostNamed)
+      looked_for += fmt::format("\n  and {} more", plan_.left_out.size() - kMostNamed);
+    throw InputError(fmt::format("{}: none of its {} drives is on the disk; give --root FOLDER. Looked for{}",
+                                 manifest_.file.string(), plan_.left_out.size(), looked_for));
   }
 
   void requireSelected() const {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "io/sequence.hpp"
 
@@ -20,12 +21,16 @@ std::optional<Sequence> openKittiRaw(const SequenceSource& source);
 std::optional<Sequence> openKittiTracking(const SequenceSource& source);
 std::optional<Sequence> openKitti360(const SequenceSource& source);
 std::optional<Sequence> openEuroc(const SequenceSource& source);
+std::optional<Sequence> openVirtualKitti(const SequenceSource& source);
 std::optional<Sequence> openArgoverse(const SequenceSource& source);
 std::optional<Sequence> openPlain(const SequenceSource& source);
 std::optional<Sequence> openImageList(const SequenceSource& source);
 
 /// What the first of them finds.
 std::optional<Sequence> openKnownLayout(const SequenceSource& source);
+
+/// The variations of Virtual KITTI 2 in a folder with scenes or in that of a scene, as paths in it. Empty in others.
+std::vector<std::string> virtualKittiVariations(const std::filesystem::path& folder);
 
 /// Throws InputError that tells what lies there, and what to write or run so that it can be used.
 [[noreturn]] void failUnknownLayout(const std::filesystem::path& path);

@@ -82,6 +82,10 @@ std::vector<std::string> sequencesIn(const fs::path& folder) {
 
 /// What to run so that what there is becomes a sequence.
 std::string advice(const fs::path& folder, const Content& content) {
+  if (const auto variations = virtualKittiVariations(folder); !variations.empty())
+    return "\nThese folders in it are drives of Virtual KITTI 2: " + listed(variations) +
+           ". Name one of them, or run all:\n  motorcade batch perf/datasets/virtual_kitti_2.toml --root ROOT --out "
+           "BATCH    (ROOT holds Scene01, ...)";
   if (const auto sequences = sequencesIn(folder); !sequences.empty())
     return "\nThese folders in it are sequences: " + listed(sequences) + ". Name one of them.";
   if (content.images == 0 && content.of_images.empty())

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/merge/groups.hpp"
+#include "apps/merge/result_tables.hpp"
+#include "apps/tasks/published_figures.hpp"
+
+/// Published figures beside those of a batch, each with a measure of the same definition alone.
+namespace motorcade {
+
+/// Without figures of measures that no result has, which are told of.
+std::vector<PublishedFigure> comparableFigures(const std::vector<PublishedFigure>& figures);
+
+/// A table for each measure, with a row for each drive and set that both have and a column for each method.
+std::vector<ResultTable> publishedTables(const std::vector<ResultGroup>& groups,
+                                         const std::vector<PublishedFigure>& figures);
+
+/// Means of each measure and method over the drives that both have.
+ResultTable publishedMeans(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures);
+
+/// Where the figures in these tables are from, and what differs in how they were measured.
+ResultTable publishedSources(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures);
+
+/// Rows of results.csv: for each method and drive one with its figures, by the place of their measures.
+struct PublishedRow {
+  std::string method{}, drive{}, source{};
+  MeasureValues values{};
+};
+std::vector<PublishedRow> publishedRows(const std::vector<PublishedFigure>& figures);
+
+}  // namespace motorcade

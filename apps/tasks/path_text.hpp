@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+namespace motorcade {
+
+/// A path as a shell would take it: ~ at its beginning is the home folder, $NAME and ${NAME} are variables of the
+/// environment. Those that are not set stay as they are.
+std::string expandedPath(const std::string& text);
+
+/// The first variable that was left in an expanded path, as $NAME; empty where there is none.
+std::string unsetVariable(const std::string& expanded);
+
+}  // namespace motorcade
