@@ -97,10 +97,25 @@ void requireSize(const Rig& rig, ImageSize size) {
                        size.text() + "; calibrate anew, or take the images of the calibrated size");
 }
 
+/// Where the calibration does not tell the size of its images, the principal points do: a larger or smaller size moves
+/// both coordinates alike.
+void requireMiddle(const Rig& rig, ImageSize size) {
+  constexpr double kLeast = 0.35, kMost = 0.65;
+  for (const LensCamera* camera : {&rig.left, &rig.right}) {
+    if (camera->size != ImageSize{}) continue;
+    const double across = camera->cx_px / size.width, down = camera->cy_px / size.height;
+    if (std::max(across, down) < kLeast || std::min(across, down) > kMost)
+      throw InputError(rig.file.string() + ": its principal point (" + std::to_string(camera->cx_px) + ", " +
+                       std::to_string(camera->cy_px) + ") is not that of images of " + size.text() +
+                       " pixels; is it that of another image size?");
+  }
+}
+
 }  // namespace
 
 Rectification rectificationOf(const Rig& rig, ImageSize size) {
   requireSize(rig, size);
+  requireMiddle(rig, size);
   if (rig.rectified) {
     Rectification none{.left = rig.left, .right = rig.right, .camera = *rig.rectified};
     none.camera.width_px = size.width;

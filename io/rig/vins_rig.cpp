@@ -28,6 +28,18 @@ LensCamera vinsLens(const YamlPart& camera) {
   return lens;
 }
 
+/// By the file that the configuration names, relative to itself.
+LensCamera vinsCamera(const YamlPart& name) {
+  constexpr std::size_t kMostTold = 300;
+  std::string problem;
+  try {
+    return vinsLens(YamlPart::ofFile(name.file().parent_path() / name.text()));
+  } catch (const InputError& error) {
+    problem = error.what();
+  }
+  name.fail("names what cannot be used: " + printable(problem, kMostTold));
+}
+
 }  // namespace
 
 std::optional<Rig> vinsRig(RigParts files) {
@@ -42,13 +54,10 @@ std::optional<Rig> vinsRig(RigParts files) {
   if (!right) throw OneCameraError(root.file().string() + ": names one camera, cam0_calib; a pair has cam1_calib, too");
   if (const auto unknown = root.find({"estimate_extrinsic"}); unknown && unknown->number() == 2)
     unknown->fail("is 2: body_T_cam0 and body_T_cam1 are not known; give a calibration that has them");
-  const auto camera = [&](const YamlPart& name) {
-    return vinsLens(YamlPart::ofFile(root.file().parent_path() / name.text()));
-  };
   return Rig{
       .file = root.file(),
-      .left = camera(*left),
-      .right = camera(*right),
+      .left = vinsCamera(*left),
+      .right = vinsCamera(*right),
       .T_right_left = betweenPlaced(transform44(root.at({"body_T_cam0"})), transform44(root.at({"body_T_cam1"}))),
       .transform = "the transform by body_T_cam0 and body_T_cam1"};
 }
