@@ -61,13 +61,13 @@ std::optional<StereoCamera> cameraIn(Sequence& sequence, const fs::path& folder,
 std::string calibrationsMeant(const fs::path& folder) {
   try {
     if (const auto files = usualRigFiles(folder, RigNames::kAny); !files.empty())
-      return "\nOne that lies there under another name is given by\n  " + calibrationOption(files);
+      return "\nOne that lies there under another name is given by\n  " + calibrationArgument(files);
   } catch (const InputError& several) {
     return std::string("\n") + several.what();
   }
   for (const char* name : {"calib_cam_to_cam.txt", "calibration.txt", "perspective.txt"})
     if (fs::exists(folder / name))
-      return "\nOne that lies there under another name is given by\n  " + calibrationOption({folder / name});
+      return "\nOne that lies there under another name is given by\n  " + calibrationArgument({folder / name});
   return "";
 }
 

@@ -63,6 +63,11 @@ Rig openCvRigOf(const YamlPart& intrinsics, const YamlPart& extrinsics) {
 std::optional<Rig> openCvRig(RigParts files) {
   if (leftMatrix(files.front())) return openCvRigOf(files.front(), files.back());
   if (leftMatrix(files.back())) return openCvRigOf(files.back(), files.front());
+  if (files.front().find({"R"}) && files.front().find({"T"}) && files.front().find({"R1", "P1", "E", "F"}))
+    throw OneCameraError(
+        files.front().file().string() +
+        ": has R and T of both cameras, but not their lenses M1 D1 M2 D2; give "
+        "intrinsics.yml,extrinsics.yml, or --camera fx,fy,cx,cy,baseline for images that are rectified");
   return std::nullopt;
 }
 

@@ -126,7 +126,7 @@ double baseline_m(const Rig& rig) {
   for (const Candidate& candidate : candidates) {
     std::array<char, 64> told{"cannot be used"};
     if (candidate.rig) std::snprintf(told.data(), told.size(), "baseline %.4f m", baseline_m(*candidate.rig));
-    list += "\n  " + calibrationOption(candidate.files) + "    (" + told.data() + ")";
+    list += "\n  " + calibrationArgument(candidate.files) + "    (" + told.data() + ")";
   }
   throw InputError(folder.string() + ": holds " + std::to_string(candidates.size()) +
                    " calibrations, which differ; say which one is the cameras' by one of" + list);
@@ -143,7 +143,7 @@ std::string joinedFiles(const std::vector<fs::path>& files) {
   return names;
 }
 
-std::string calibrationOption(const std::vector<fs::path>& files) {
+std::string calibrationArgument(const std::vector<fs::path>& files) {
   return "--calibration " + shellQuoted(joinedFiles(files));
 }
 

@@ -18,6 +18,6 @@ std::vector<std::filesystem::path> usualRigFiles(const std::filesystem::path& fo
 /// FILE or LEFT,RIGHT.
 std::string joinedFiles(const std::vector<std::filesystem::path>& files);
 /// The option --calibration for some files, as a shell takes it.
-std::string calibrationOption(const std::vector<std::filesystem::path>& files);
+std::string calibrationArgument(const std::vector<std::filesystem::path>& files);
 
 }  // namespace motorcade

@@ -371,6 +371,11 @@ TEST_F(RigForms, OpenCvsNumbersStandInXmlAndJsonToo) {
               HasSubstr("MATLAB"));
 }
 
+TEST_F(RigForms, ExtrinsicsAloneAreNotEnough) {
+  EXPECT_THAT(errorOf("R: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [-0.1, 0, 0]\nP1: [1]\n"),
+              AllOf(HasSubstr("not their lenses"), HasSubstr("intrinsics.yml,extrinsics.yml")));
+}
+
 TEST_F(RigForms, CalibrationOfAnotherSizeIsToldByItsMiddle) {
   const Rig rig = read(openCv("[0, 0, 0, 0, 0]"));
   EXPECT_NO_THROW(rectificationOf(rig, {752, 480}));

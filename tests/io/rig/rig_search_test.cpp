@@ -81,9 +81,9 @@ TEST_F(RigSearch, OtherNamesAndOtherContentsDoNotCount) {
 }
 
 TEST_F(RigSearch, OptionIsQuotedWhereItsFilesHaveBlanks) {
-  EXPECT_EQ(calibrationOption({"/a/left.yaml", "/a/right.yaml"}), "--calibration /a/left.yaml,/a/right.yaml");
-  EXPECT_EQ(calibrationOption({"/my drive/it's.yaml"}), "--calibration '/my drive/it'\\''s.yaml'");
-  EXPECT_THAT(calibrationOption({"/a/$b.yaml"}), Not(HasSubstr(" /a")));
+  EXPECT_EQ(calibrationArgument({"/a/left.yaml", "/a/right.yaml"}), "--calibration /a/left.yaml,/a/right.yaml");
+  EXPECT_EQ(calibrationArgument({"/my drive/it's.yaml"}), "--calibration '/my drive/it'\\''s.yaml'");
+  EXPECT_THAT(calibrationArgument({"/a/$b.yaml"}), Not(HasSubstr(" /a")));
 }
 
 }  // namespace
