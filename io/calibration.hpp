@@ -3,11 +3,13 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include <Eigen/Core>
 
 #include "core/se3.hpp"
 #include "core/stereo_camera.hpp"
+#include "io/image_file.hpp"
 
 namespace motorcade {
 
@@ -23,16 +25,21 @@ struct Calibration {
   std::optional<Eigen::Matrix3d> R_rect{};       // unrectified to rectified camera 0
   std::optional<SE3> T_cam_velo{};               // the unrectified camera 0
   std::optional<SE3> T_velo_imu{};
+  std::array<std::optional<ImageSize>, 4> size{};  // of the rectified images, where the file tells
+  std::string advice{};                            // what the file seems to be where it has no projection
 
   /// The pair's intrinsics and baseline (image size left open); throws InputError naming the key.
   StereoCamera stereoCamera(CameraPair pair) const;
+  /// The column of the right image's principal point; that of the left one where both are the same [px].
+  double rightMiddle_px(CameraPair pair) const;
+  std::optional<ImageSize> rectifiedSize(CameraPair pair) const;
   /// From the rectified left gray camera, in which labels and poses are given, to the pair's left camera.
   SE3 T_left_cam0(CameraPair pair) const;
   /// From the inertial unit to the rectified left gray camera; empty when a part of the chain is missing.
   std::optional<SE3> T_cam0_imu() const;
 };
 
-/// Reads `calib.txt` of the plain, tracking and odometry layouts, in both spellings of its keys.
+/// Reads `calib.txt` of the plain, tracking and odometry layouts, in both spellings of its keys, and Middlebury's.
 Calibration readCalibration(const std::filesystem::path& file);
 
 /// Reads `calib_cam_to_cam.txt` of a raw date folder and, where they are there, `calib_velo_to_cam.txt` and

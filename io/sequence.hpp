@@ -72,6 +72,8 @@ struct Sequence {
   Truth truth{};
   std::shared_ptr<const Rectification> rectification{};  // none where the images are rectified
   GivenCameras given{};                                  // with absolute paths
+  std::string calibrated_by{};       // the calibration in force: FILE or LEFT,RIGHT; empty where --camera tells
+  std::string calibration_remark{};  // which of its cameras were taken, where it has more than two
 };
 
 /// Finds out what lies in a folder:

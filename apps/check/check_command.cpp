@@ -13,6 +13,7 @@
 #include "apps/check/check_page.hpp"
 #include "apps/check/input_check.hpp"
 #include "apps/check/row_error_names.hpp"
+#include "apps/check/sequence_line.hpp"
 #include "apps/inject/fault_injector.hpp"
 #include "io/line_file.hpp"
 #include "io/sequence.hpp"
@@ -106,12 +107,14 @@ bool printFindings(const std::vector<Finding>& findings, const CheckOptions& opt
 
 int runCheck(const CheckOptions& options) {
   const Sequence sequence = openSequence(options.sequence, options.fps_hz, options.given);
+  std::puts(sequenceLine(sequence, selectedFrames(options.frames, sequence)).c_str());
   InputCheck check(sequence.camera);
   std::vector<StereoFrame> kept;
   look(check, kept, sequence, options);
   const PairGeometry geometry = check.geometry();
   std::vector<Finding> findings;
   for (const std::string& doubt : doubtsAbout(sequence.camera)) findings.push_back({"calibration", doubt, true});
+  for (const std::string& oddity : odditiesOf(sequence.camera)) findings.push_back({"camera", oddity, false});
   for (Finding& finding : check.findings()) findings.push_back(std::move(finding));
   if (check.matches().size() < InputCheck::kFewestMatches)
     findings.push_back({"points",

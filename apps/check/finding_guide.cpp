@@ -14,7 +14,7 @@ constexpr std::string_view kRectify =
     "Rectify the images anew with this rig's calibration. If they were rectified, the rig has moved since it was "
     "calibrated: calibrate it again.";
 
-constexpr std::array<std::pair<std::string_view, FindingGuide>, 15> kGuides{{
+constexpr std::array<std::pair<std::string_view, FindingGuide>, 16> kGuides{{
     {"rows",
      {"The rows of the two images do not agree", kOnRows,
       "Crop both images alike, or rectify them anew: an offset alone is often a crop or a resize that was made "
@@ -64,6 +64,9 @@ constexpr std::array<std::pair<std::string_view, FindingGuide>, 15> kGuides{{
      {"The calibration cannot be that of these images",
       "Distances come from focal length and baseline: all of them would be off by a factor.",
       "Look at the units (meters, pixels) and at the image size that the calibration was made for."}},
+    {"camera",
+     {"The calibration is unusual", "It may be right, but few cameras have such numbers.",
+      "Look at what the images were cut and squeezed to after the calibration was made."}},
 }};
 
 }  // namespace

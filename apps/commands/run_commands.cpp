@@ -24,7 +24,8 @@ void addGivenCameras(CLI::App& command, GivenCameras& given) {
   command
       .add_option("--calibration", given.calibration,
                   "Calibration of the pair, which is rectified on the way: Kalibr's camchain, OpenCV's intrinsics and "
-                  "extrinsics, ROS' camera_info of both; KITTI's (*.txt) of a rectified pair")
+                  "extrinsics, ROS' camera_info of both, EuRoC's sensor.yaml of both, and others; KITTI's (*.txt) of a "
+                  "rectified pair; or the folder that it lies in")
       ->type_name("FILE[,FILE]")
       ->excludes(camera);
 }

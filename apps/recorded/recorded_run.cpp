@@ -43,6 +43,12 @@ fs::path recordedFolder(const RunFolder& run, const Json& summary) {
   return folder;
 }
 
+/// What the user gave. A calibration that the sequence has of itself is found again.
+GivenCameras givenCamerasOf(const Json& summary) {
+  const bool found = textOf(summary, "calibration_from") == "sequence";
+  return {textOf(summary, "camera"), found ? "" : textOf(summary, "calibration")};
+}
+
 double recordedRate_hz(const Json& summary) {
   const auto found = summary.find("capture_rate_hz");
   const double rate_hz = found != summary.end() && found->is_number() ? found->get<double>() : 0;
@@ -94,7 +100,7 @@ bool holdsFinishedRun(const fs::path& folder) {
 Sequence openSequenceOf(const RunFolder& run, const NamedSequence& named) {
   const Json summary = summaryOf(run);
   const fs::path folder = named.folder.empty() ? recordedFolder(run, summary) : named.folder;
-  const GivenCameras given{textOf(summary, "camera"), textOf(summary, "calibration")};
+  const GivenCameras given = givenCamerasOf(summary);
   Sequence sequence = openSequence(folder, named.fps_hz.value_or(recordedRate_hz(summary)), given);
   requireSameDrive(run, sequence);
   return sequence;

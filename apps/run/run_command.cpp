@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 
 #include "apps/check/camera_doubts.hpp"
+#include "apps/check/sequence_line.hpp"
 #include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
 #include "apps/console/stop_signals.hpp"
@@ -79,13 +80,9 @@ void requireBelievable(const Sequence& sequence, bool force) {
 }
 
 void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) {
-  const StereoCamera& camera = sequence.camera;
-  spdlog::info(
-      "{}: {} layout, {} of {} frames, {} x {} px, {}fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px, baseline {:.4f} m",
-      sequence.folder.string(), sequence.layout, range.size(), sequence.frames.size(), camera.width_px,
-      camera.height_px, sequence.rectification ? "rectified on the way to " : "", camera.fx_px, camera.fy_px,
-      camera.cx_px, camera.cy_px, camera.baseline_m);
+  spdlog::info(sequenceLine(sequence, range));
   if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
+  for (const std::string& oddity : odditiesOf(sequence.camera)) spdlog::warn(oddity);
 }
 
 void tellOutside(double share) {

@@ -79,6 +79,7 @@ void RunSummary::setSequence(const Sequence& of) {
   sequence = of.folder.string();
   layout = of.layout;
   given = of.given;
+  calibrated_by = of.calibrated_by;
 }
 
 double RunSummary::trackedFraction() const {
@@ -97,7 +98,8 @@ std::string toJson(const RunSummary& summary) {
             {"sequence", summary.sequence},
             {"layout", summary.layout},
             {"camera", summary.given.camera},
-            {"calibration", summary.given.calibration},
+            {"calibration", summary.calibrated_by},
+            {"calibration_from", summary.given.empty() ? "sequence" : "option"},
             {"inject", summary.inject},
             {"capture_rate_hz", rounded(summary.capture_rate_hz)},
             {"rate", summary.rate_hz ? Json(*summary.rate_hz) : Json("max")},

@@ -70,9 +70,11 @@ std::optional<Sequence> openArgoverse(const SequenceSource& source) {
   setStampedFrames(sequence, imagesByNumber(left), imagesByNumber(right));
   setCamera(sequence, source.given, [&](ImageSize) {
     const fs::path of_pair = source.path / "vehicle_calibration_stereo_info.json";
-    return readCamera(fs::exists(of_pair) ? of_pair
-                                          : neededFile(source.path / "vehicle_calibration_info.json",
-                                                       "a log needs its calibration, or give --camera"));
+    const fs::path file = fs::exists(of_pair) ? of_pair
+                                              : neededFile(source.path / "vehicle_calibration_info.json",
+                                                           "a log needs its calibration, or give --camera");
+    sequence.calibrated_by = file.string();
+    return readCamera(file);
   });
   return sequence;
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "io/errors.hpp"
+#include "io/layouts/layout_cameras.hpp"
 #include "io/layouts/layout_parts.hpp"
 #include "io/rig/rig_file.hpp"
 
@@ -49,6 +50,18 @@ std::vector<fs::path> calibrationFiles(const std::string& text) {
   return {parts.begin(), parts.end()};
 }
 
+/// By what lies in a folder, under whatever name.
+StereoCamera cameraInFolder(Sequence& sequence, const fs::path& folder, ImageSize size) {
+  if (const auto camera = cameraIn(sequence, folder, {.any_pair = true, .names = RigNames::kAny}, size)) return *camera;
+  if (fs::exists(folder / "calib_cam_to_cam.txt"))
+    return cameraByKitti(sequence, readRawCalibration(folder), /*any_pair=*/true, size);
+  if (const fs::path file = folder / "perspective.txt"; fs::exists(file))
+    return cameraByKitti(sequence, readCalibration(file), /*any_pair=*/true, size);
+  throw InputError(folder.string() +
+                   ": holds no calibration of a pair that is understood (*.yaml, *.yml, *.json, *.xml, or calib.txt in "
+                   "KITTI's form); name the file, or two as LEFT,RIGHT");
+}
+
 }  // namespace
 
 GivenCameras absolute(const GivenCameras& given) {
@@ -66,11 +79,11 @@ StereoCamera givenCamera(Sequence& sequence, const GivenCameras& given, ImageSiz
     throw UsageError("--camera and --calibration: give one of them");
   if (!given.camera.empty()) return cameraOf(given.camera);
   const auto files = calibrationFiles(given.calibration);
-  if (files.size() != 1 || files.front().extension() != ".txt") return rectifiedCamera(sequence, readRig(files), size);
-  sequence.calibration = readCalibration(files.front());
-  if (sequence.pair == CameraPair::kGray && !sequence.calibration.P[0] && sequence.calibration.P[2])
-    sequence.pair = CameraPair::kColor;
-  return sequence.calibration.stereoCamera(sequence.pair);
+  if (files.size() != 1) return rectifiedCamera(sequence, readRig(files), size);
+  if (fs::is_directory(files.front())) return cameraInFolder(sequence, files.front(), size);
+  if (files.front().extension() == ".txt")
+    return cameraByKitti(sequence, readCalibration(files.front()), /*any_pair=*/true, size);
+  return rectifiedCamera(sequence, readRig(files), size);
 }
 
 }  // namespace motorcade

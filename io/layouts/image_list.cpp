@@ -2,9 +2,8 @@
 #include <string>
 
 #include "io/errors.hpp"
+#include "io/layouts/layout_cameras.hpp"
 #include "io/layouts/layout_parts.hpp"
-#include "io/rig/rectification.hpp"
-#include "io/rig/rig_file.hpp"
 #include "io/text_file.hpp"
 #include "io/timestamps.hpp"
 
@@ -48,15 +47,11 @@ List readList(const fs::path& file) {
 
 /// The camera from what lies beside the list.
 StereoCamera cameraBeside(Sequence& sequence, const fs::path& folder, ImageSize size) {
-  if (const fs::path file = folder / "calib.txt"; fs::exists(file)) {
-    sequence.calibration = readCalibration(file);
-    if (!sequence.calibration.P[0]) sequence.pair = CameraPair::kColor;
-    return sequence.calibration.stereoCamera(sequence.pair);
-  }
-  if (const auto files = usualRigFiles(folder); !files.empty()) return rectifiedCamera(sequence, readRig(files), size);
+  if (const auto camera = cameraIn(sequence, folder, {.any_pair = true}, size)) return *camera;
   throw InputError(sequence.folder.string() +
                    ": a list of images needs a calibration; give --camera fx,fy,cx,cy,baseline or --calibration FILE, "
-                   "or lay calib.txt beside it");
+                   "or lay calib.txt beside it" +
+                   calibrationsMeant(folder));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "io/errors.hpp"
+#include "io/layouts/layout_cameras.hpp"
 #include "io/layouts/layout_parts.hpp"
 #include "io/timestamps.hpp"
 
@@ -12,10 +13,8 @@ namespace fs = std::filesystem;
 /// What is common to these layouts once the folders are known; `calibration` reads the layout's own.
 template <class Calibrate>
 void finish(Sequence& sequence, const SequenceSource& source, const fs::path& times_file, Calibrate&& calibration) {
-  setCamera(sequence, source.given, [&](ImageSize) {
-    sequence.calibration = calibration();
-    return sequence.calibration.stereoCamera(sequence.pair);
-  });
+  setCamera(sequence, source.given,
+            [&](ImageSize size) { return cameraByKitti(sequence, calibration(), /*any_pair=*/false, size); });
   setStamps(sequence, times_file, source.fps_hz);
 }
 

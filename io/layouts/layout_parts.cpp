@@ -11,6 +11,7 @@
 #include "io/image_file.hpp"
 #include "io/layouts/given_cameras.hpp"
 #include "io/rig/rectification.hpp"
+#include "io/rig/rig_search.hpp"
 #include "io/timestamps.hpp"
 
 namespace motorcade {
@@ -155,8 +156,11 @@ void setStamps(Sequence& sequence, const fs::path& times_file, double fps_hz) {
 }
 
 StereoCamera rectifiedCamera(Sequence& sequence, const Rig& rig, ImageSize size) {
-  sequence.rectification = std::make_shared<const Rectification>(rectificationOf(rig, size));
-  return sequence.rectification->camera;
+  const Rectification rectification = rectificationOf(rig, size);
+  if (!rig.rectified) sequence.rectification = std::make_shared<const Rectification>(rectification);
+  sequence.calibrated_by = joinedFiles(rig.files);
+  sequence.calibration_remark = rig.remark;
+  return rectification.camera;
 }
 
 void setCamera(Sequence& sequence, const GivenCameras& given, const LayoutCamera& layouts_own) {

@@ -1,7 +1,6 @@
 #include "io/errors.hpp"
+#include "io/layouts/layout_cameras.hpp"
 #include "io/layouts/layout_parts.hpp"
-#include "io/rig/rectification.hpp"
-#include "io/rig/rig_file.hpp"
 
 namespace motorcade {
 namespace {
@@ -11,19 +10,15 @@ namespace fs = std::filesystem;
 /// From KITTI's calib.txt, or from a calibration of a pair that is not rectified.
 StereoCamera cameraOf(Sequence& sequence, bool any_pair, ImageSize size) {
   const fs::path& folder = sequence.folder;
-  if (const fs::path file = folder / "calib.txt"; fs::exists(file)) {
-    sequence.calibration = readCalibration(file);
-    if (any_pair && !sequence.calibration.P[0]) sequence.pair = CameraPair::kColor;
-    return sequence.calibration.stereoCamera(sequence.pair);
-  }
-  if (const auto files = usualRigFiles(folder); !files.empty()) return rectifiedCamera(sequence, readRig(files), size);
+  if (const auto camera = cameraIn(sequence, folder, {.any_pair = any_pair}, size)) return *camera;
   throw InputError(
       (folder / "calib.txt").string() +
       ": is missing. For images that are rectified, write two lines into it,\n"
       "  P0: fx 0 cx 0  0 fy cy 0  0 0 1 0\n"
       "  P1: fx 0 cx -fx*baseline  0 fy cy 0  0 0 1 0\n"
       "or give --camera fx,fy,cx,cy,baseline. For others, give --calibration with Kalibr's camchain.yaml, ROS' "
-      "left.yaml,right.yaml or OpenCV's intrinsics.yml,extrinsics.yml, or lay them beside the images");
+      "left.yaml,right.yaml or OpenCV's intrinsics.yml,extrinsics.yml, or lay them beside the images" +
+      calibrationsMeant(folder));
 }
 
 }  // namespace

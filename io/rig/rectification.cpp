@@ -16,6 +16,14 @@ struct Frame {
   double left, top, right, bottom;
 };
 
+[[noreturn]] void failLeftOf(const Rig& rig) {
+  const std::string transform = rig.transform.empty() ? "the transform" : rig.transform;
+  throw InputError(rig.file.string() + ": the second camera stands to the left of the first (x is " +
+                   std::to_string(rig.T_right_left.translation().x()) + " m): either " + transform +
+                   " is the inverse of what is meant, which takes points of the left camera to the right one and has a "
+                   "negative x; then invert it. Or the cameras are exchanged; then exchange images and calibration");
+}
+
 /// Both cameras' axes in the frame of the raw left one, and how far apart they are.
 struct Axes {
   Eigen::Matrix3d R_rectified_left;
@@ -29,9 +37,7 @@ Axes commonAxes(const Rig& rig) {
   if (!(baseline_m > kLeastBaseline_m))
     throw InputError(rig.file.string() + ": both cameras stand at the same place: the translation between them is 0");
   const Eigen::Vector3d x = right_center / baseline_m;
-  if (x.x() < -kMostTurn)
-    throw InputError(rig.file.string() +
-                     ": the second camera stands to the left of the first; exchange the two, images and calibration");
+  if (x.x() < -kMostTurn) failLeftOf(rig);
   if (x.x() < kMostTurn)
     throw InputError(rig.file.string() +
                      ": the second camera does not stand to the right of the first (translation in the first one's "
@@ -91,10 +97,31 @@ void requireSize(const Rig& rig, ImageSize size) {
                        size.text() + "; calibrate anew, or take the images of the calibrated size");
 }
 
+/// Where the calibration does not tell the size of its images, the principal points do: a larger or smaller size moves
+/// both coordinates alike.
+void requireMiddle(const Rig& rig, ImageSize size) {
+  constexpr double kLeast = 0.35, kMost = 0.65;
+  for (const LensCamera* camera : {&rig.left, &rig.right}) {
+    if (camera->size != ImageSize{}) continue;
+    const double across = camera->cx_px / size.width, down = camera->cy_px / size.height;
+    if (std::max(across, down) < kLeast || std::min(across, down) > kMost)
+      throw InputError(rig.file.string() + ": its principal point (" + std::to_string(camera->cx_px) + ", " +
+                       std::to_string(camera->cy_px) + ") is not that of images of " + size.text() +
+                       " pixels; is it that of another image size?");
+  }
+}
+
 }  // namespace
 
 Rectification rectificationOf(const Rig& rig, ImageSize size) {
   requireSize(rig, size);
+  requireMiddle(rig, size);
+  if (rig.rectified) {
+    Rectification none{.left = rig.left, .right = rig.right, .camera = *rig.rectified};
+    none.camera.width_px = size.width;
+    none.camera.height_px = size.height;
+    return none;
+  }
   if (rig.given) {
     Rectification given = *rig.given;
     given.camera.width_px = size.width;

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -24,7 +26,11 @@ struct Rig {
   std::filesystem::path file{};  // that tells, for messages
   LensCamera left{}, right{};
   SE3 T_right_left{};
-  std::optional<Rectification> given{};  // where the calibration also tells how to rectify
+  std::optional<Rectification> given{};        // where the calibration also tells how to rectify
+  std::optional<StereoCamera> rectified{};     // where the images are rectified already; then nothing else counts
+  std::string transform{};                     // the key that T_right_left comes from, for messages
+  std::string remark{};                        // what was taken of several cameras
+  std::vector<std::filesystem::path> files{};  // all that were read
 };
 
 /// The rectification that the calibration gives, else our own: both cameras turn until their x axes lie along the

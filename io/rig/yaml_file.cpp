@@ -8,6 +8,8 @@
 
 #include "core/module.hpp"
 #include "io/errors.hpp"
+#include "io/rig/known_forms.hpp"
+#include "io/rig/xml_file.hpp"
 #include "io/rig/yaml_module.hpp"
 #include "io/text_file.hpp"
 
@@ -23,8 +25,14 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 20, kMostNumbers = 256;
 
 std::string lineText(int line) { return line == 0 ? "" : ", line " + std::to_string(line); }
 
-/// Parsed by the module, which is loaded where it is not linked in.
+bool isXml(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return first != std::string::npos && text[first] == '<';
+}
+
+/// YAML is parsed by the module, which is loaded where it is not linked in.
 YamlAnswer parsed(const std::filesystem::path& file, const std::string& text) {
+  if (isXml(text)) return parsedXml(text);
   YamlAnswer answer;
   try {
     linkedOrLoaded(&motorcade_yaml_1, kYamlModule, kYamlFunction)(text, answer);
@@ -37,8 +45,11 @@ YamlAnswer parsed(const std::filesystem::path& file, const std::string& text) {
 /// The first part of that name; null where there is none.
 const YamlNode* partNamed(const YamlNode& node, std::string_view key) {
   if (node.kind != Kind::kMap) return nullptr;
-  const auto found = std::ranges::find(node.parts, key, &YamlNode::key);
-  return found == node.parts.end() ? nullptr : &*found;
+  if (const auto found = std::ranges::find(node.parts, key, &YamlNode::key); found != node.parts.end()) return &*found;
+  const std::size_t dot = key.find('.');
+  if (dot == std::string_view::npos) return nullptr;
+  const YamlNode* outer = partNamed(node, key.substr(0, dot));
+  return outer == nullptr ? nullptr : partNamed(*outer, key.substr(dot + 1));
 }
 
 std::optional<double> numberOf(const std::string& text) {
@@ -73,12 +84,15 @@ YamlPart YamlPart::ofFile(const std::filesystem::path& file) {
   std::string text = readWhole(file, kMostBytes);
   if (text.starts_with("%YAML")) std::fill_n(text.begin(), std::min(text.find_first_of("\r\n"), text.size()), ' ');
   YamlAnswer answer = parsed(file, text);
+  if (answer.outcome != YamlAnswer::Outcome::kRead || answer.root.kind != Kind::kMap) throwKnownForm(file, text);
   if (answer.outcome != YamlAnswer::Outcome::kRead)
-    throw InputError(file.string() + lineText(answer.line) +
-                     (answer.outcome == YamlAnswer::Outcome::kNoYaml ? ": is no YAML: " : ": is no calibration: ") +
+    throw InputError(file.string() + lineText(answer.line) + ": is no " +
+                     (answer.outcome != YamlAnswer::Outcome::kNoYaml ? "calibration: "
+                      : isXml(text)                                  ? "XML: "
+                                                                     : "YAML: ") +
                      printable(answer.problem, 80));
   if (answer.root.kind != Kind::kMap)
-    throw InputError(file.string() + ": holds no keys; a calibration in YAML is expected");
+    throw InputError(file.string() + ": holds no keys; a calibration in YAML, JSON or OpenCV's XML is expected");
   return {file, "", std::make_shared<const YamlNode>(std::move(answer.root))};
 }
 
@@ -87,6 +101,14 @@ std::optional<YamlPart> YamlPart::find(std::initializer_list<std::string_view> k
     if (const YamlNode* found = partNamed(*node_, key))
       return YamlPart(file_, (key_.empty() ? "" : key_ + ".") + std::string(key), {node_, found});
   return std::nullopt;
+}
+
+std::vector<YamlPart> YamlPart::items() const {
+  std::vector<YamlPart> items;
+  if (node_->kind != Kind::kSequence) return items;
+  for (const YamlNode& item : node_->parts)
+    items.push_back(YamlPart(file_, key_ + "[" + std::to_string(items.size()) + "]", {node_, &item}));
+  return items;
 }
 
 YamlPart YamlPart::at(std::initializer_list<std::string_view> keys) const {

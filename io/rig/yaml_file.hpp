@@ -12,14 +12,14 @@ namespace motorcade {
 
 struct YamlNode;
 
-/// A part of a YAML file, with its name for messages. Whatever is wrong in it is an InputError that names file, key and
-/// line.
+/// A part of a file in YAML, JSON or OpenCV's XML, with its name for messages. Whatever is wrong in it is an InputError
+/// that names file, key and line.
 class YamlPart {
  public:
   /// Reads a file of at most a megabyte. OpenCV's first line, `%YAML:1.0`, is accepted though YAML has none such.
   static YamlPart ofFile(const std::filesystem::path& file);
 
-  /// The first of several spellings of a key that is there.
+  /// The first of several spellings of a key that is there. `A.B` is a key of that name, or B within A.
   std::optional<YamlPart> find(std::initializer_list<std::string_view> keys) const;
   /// The same, where one of them must be there.
   YamlPart at(std::initializer_list<std::string_view> keys) const;
@@ -27,7 +27,10 @@ class YamlPart {
   /// All numbers in the order of the file: of a list, of a list of lists, or of the `data` of a matrix.
   std::vector<double> numbers() const;
   std::vector<double> numbers(std::size_t count) const;
+  double number() const { return numbers(1).front(); }
   std::string text() const;
+  /// The parts of a list; none of anything else.
+  std::vector<YamlPart> items() const;
 
   const std::filesystem::path& file() const { return file_; }
   [[noreturn]] void fail(const std::string& what) const;

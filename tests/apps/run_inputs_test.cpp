@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -148,6 +149,78 @@ TEST_F(RunInputs, GivenCameraOfAListIsRememberedByTheRun) {
   EXPECT_EQ(motorcade("draw " + out("list").string() + " --out " + out("pictures").string() + " --frames 0:1"), 0)
       << contentOf(errors());
   EXPECT_EQ(run("both", "--camera 1,1,1,1,1 --calibration x", out("list.txt")), 2);
+}
+
+TEST_F(RunInputs, CalibrationInForceIsInTheFirstLineAndInTheSummary) {
+  ASSERT_EQ(run("rendered", "--frames 0:4"), 0) << contentOf(errors());
+  const std::string file = (fs::absolute(kSequence) / "calib.txt").lexically_normal().string();
+  const std::string first_line = contentOf(errors()).substr(0, contentOf(errors()).find('\n'));
+  EXPECT_THAT(first_line, HasSubstr("calibration " + file));
+  EXPECT_EQ(summary("rendered")["calibration"], file);
+  EXPECT_EQ(summary("rendered")["calibration_from"], "sequence");
+  EXPECT_EQ(motorcade("check " + kSequence.string()), 0);
+  EXPECT_THAT(contentOf(out("stdout")).substr(0, contentOf(out("stdout")).find('\n')),
+              HasSubstr("calibration " + file));
+  ASSERT_EQ(run("given", "--frames 0:4 --calibration " + kSequence.string()), 0) << contentOf(errors());
+  EXPECT_THAT(contentOf(errors()), HasSubstr(file + " (--calibration)"));
+  EXPECT_EQ(summary("given")["calibration_from"], "option");
+  expectSame("rendered", "given");
+}
+
+TEST_F(RunInputs, MiddlesThatDifferGiveTheSameWayAsOneMiddle) {
+  const fs::path folder = out("moved");
+  const Sequence drive = openSequence(kSequence);
+  ImagePool pool;
+  constexpr int kMoved_px = 20;
+  for (const FramePaths& frame : drive.frames) {
+    const Image right = readImage(frame.right, pool);
+    Image moved = pool.acquire(right.width(), right.height());
+    for (int v = 0; v < right.height(); ++v)
+      for (int u = 0; u < right.width(); ++u)
+        moved.mutableRow(v)[u] = right.at(std::min(u + kMoved_px, right.width() - 1), v);
+    fs::create_directories(folder / "left");
+    fs::create_directories(folder / "right");
+    fs::copy(frame.left, folder / "left" / frame.left.filename());
+    writePng(folder / "right" / frame.left.filename(), moved);
+  }
+  fs::copy(kSequence / "times.txt", folder / "times.txt");
+  std::ofstream calibration(folder / "calib.txt");
+  calibration.precision(17);
+  const StereoCamera& c = drive.camera;
+  for (const bool left : {true, false})
+    calibration << (left ? "P0: " : "P1: ") << c.fx_px << " 0 " << c.cx_px - (left ? 0 : kMoved_px) << ' '
+                << (left ? 0 : -c.fx_px * c.baseline_m) << " 0 " << c.fy_px << ' ' << c.cy_px << " 0 0 0 1 0\n";
+  calibration.close();
+  ASSERT_EQ(run("moved", "--require tracked=0.9", folder), 0) << contentOf(errors());
+  ASSERT_EQ(run("rendered"), 0) << contentOf(errors());
+  const double way_m = readRunFolder(out("rendered")).final.camera.back().translation().norm();
+  const SE3 moved = readRunFolder(out("moved")).final.camera.back(),
+            same = readRunFolder(out("rendered")).final.camera.back();
+  EXPECT_LT((moved.translation() - same.translation()).norm(), 0.005 * way_m);
+}
+
+TEST_F(RunInputs, WrongCalibrationsEndTheRunBeforeItsFirstFrame) {
+  const fs::path drive = out("drive");
+  fs::create_directories(drive);
+  for (const char* side : {"left", "right"})
+    fs::create_directory_symlink(fs::absolute(kSequence) / (std::string(side) == "left" ? "image_0" : "image_1"),
+                                 drive / side);
+  const auto refused = [&](const std::string& name, const std::string& content) {
+    std::ofstream(drive / name) << content;
+    EXPECT_EQ(run("refused", "", drive), 3) << content;
+    EXPECT_FALSE(fs::exists(out("refused") / "summary.json"));
+    fs::remove(drive / name);
+    return contentOf(errors());
+  };
+  EXPECT_THAT(refused("calib.txt", "K: 721.5 0 620.5 0 721.5 187.0 0 0 1\n"), HasSubstr("has no P0 and P1"));
+  EXPECT_THAT(refused("calib.txt", "p0: 1\np1: 2\n"), HasSubstr("has no P0 and P1"));
+  const std::string lenses = "K1: [700, 0, 620, 0, 700, 187, 0, 0, 1]\nK2: [700, 0, 620, 0, 700, 187, 0, 0, 1]\n";
+  EXPECT_THAT(refused("stereo.yml", lenses + "D1: [-0.006, 0.04, -0.04, 0.007]\nD2: [-0.005, 0.04, -0.04, 0.007]\n"
+                                             "R: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [-0.5, 0, 0]\n"),
+              HasSubstr("distortion_model: equidistant"));
+  EXPECT_THAT(refused("stereo.yml", lenses + "D1: [0, 0, 0, 0, 0]\nD2: [0, 0, 0, 0, 0]\n"
+                                             "R: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [0.5, 0, 0]\n"),
+              HasSubstr("inverse of what is meant"));
 }
 
 TEST_F(RunInputs, RigHeldStillInARoomIsReportedAsStandingStill) {

@@ -12,8 +12,14 @@ using namespace motorcade;
 /// The calibration of a pair that is not rectified, its rectification, a map by it, and an image by that.
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static fuzz::MemoryFile file;
-  constexpr std::array<std::string_view, 6> kNoLine{"is missing", "holds no keys", "is no calibration of a pair",
-                                                    "camera",     "images",        "too large"};
+  constexpr std::array<std::string_view, 8> kNoLine{"is missing",
+                                                    "holds no keys",
+                                                    "is no calibration of a pair",
+                                                    "is no calibration that is read",
+                                                    "camera",
+                                                    "images",
+                                                    "too large",
+                                                    "the baseline"};
   constexpr ImageSize kSize{48, 32};
   const auto& path = file.holding(fuzz::textOf(data, size));
   for (const std::size_t files : {1U, 2U}) {

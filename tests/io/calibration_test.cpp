@@ -69,6 +69,59 @@ TEST_F(CalibrationFile, PassesOverTheTimeOfTheCalibration) {
   EXPECT_NO_THROW(read("calib_time: 09-Jan-2012 13:57:47\n" + std::string(kProjections)));
 }
 
+TEST_F(CalibrationFile, PassesOverCommentsTextsAndPunctuation) {
+  const StereoCamera camera = read(
+                                  "# rectified, 2024-05-01\n// by hand\nname: front stereo\n"
+                                  "P0: 700, 0, 320, 0,  0, 710, 100, 0,  0, 0, 1, 0  # left\n"
+                                  "P1 = [700 0 320 -350; 0 710 100 0; 0 0 1 0]\n")
+                                  .stereoCamera(CameraPair::kGray);
+  EXPECT_EQ(camera.fy_px, 710);
+  EXPECT_EQ(camera.baseline_m, 0.5);
+}
+
+TEST_F(CalibrationFile, MiddlesOfBothImagesMayDiffer) {
+  const std::string left = "P0: 721.5 0 620.5 0 0 721.5 187 0 0 0 1 0\n";
+  const Calibration moved = read(left + "P1: 721.5 0 600.5 -389.61 0 721.5 187 0 0 0 1 0\n");
+  EXPECT_EQ(moved.stereoCamera(CameraPair::kGray).cx_px, 620.5);
+  EXPECT_NEAR(moved.stereoCamera(CameraPair::kGray).baseline_m, 0.54, 1e-12);
+  EXPECT_EQ(moved.rightMiddle_px(CameraPair::kGray), 600.5);
+  const Calibration rounded = read(left + "P1: 721.5 0 620.51 -389.61 0 721.5 187 0 0 0 1 0\n");
+  EXPECT_EQ(rounded.rightMiddle_px(CameraPair::kGray), 620.5);
+}
+
+TEST_F(CalibrationFile, ReadsMiddleburysMatricesAndMillimeters) {
+  const Calibration calibration = read(
+      "cam0=[3997.684 0 1176.728; 0 3997.684 1011.728; 0 0 1]\ncam1=[3997.684 0 1307.839; 0 3997.684 1011.728; 0 0 1]\n"
+      "doffs=131.111\nbaseline=193.001\nwidth=2964\nheight=1988\nndisp=280\n");
+  EXPECT_NEAR(calibration.stereoCamera(CameraPair::kGray).baseline_m, 0.193001, 1e-12);
+  EXPECT_EQ(calibration.stereoCamera(CameraPair::kGray).cy_px, 1011.728);
+  EXPECT_EQ(calibration.rightMiddle_px(CameraPair::kGray), 1307.839);
+  EXPECT_EQ(calibration.rectifiedSize(CameraPair::kGray), (ImageSize{2964, 1988}));
+}
+
+TEST_F(CalibrationFile, WithoutProjectionsSaysWhatItIsAndWhatToDo) {
+  const std::string p0 = ": 700 0 320 0 0 710 100 0 0 0 1 0\n", p1 = ": 700 0 320 -350 0 710 100 0 0 0 1 0\n";
+  for (const auto& [content, advice] :
+       {std::pair("p0" + p0 + "p1" + p1, std::string("it has p0, p1: call the left camera's projection P0")),
+        std::pair("P_rect_101" + p0 + "P_rect_103" + p1, std::string("it has P_rect_101, P_rect_103: call")),
+        std::pair(std::string("K: 721.5 0 620.5 0 721.5 187 0 0 1\n"), std::string("its K tells no baseline")),
+        std::pair(std::string("f: 645.2\ncu: 635.9\ncv: 194.1\nbase: 0.57\n"),
+                  std::string("--camera 645.2,645.2,635.9,194.1,0.57")),
+        std::pair(std::string("cam0:\n  intrinsics: [1, 2, 3, 4]\n"), std::string("end in .yaml")),
+        std::pair(std::string("700 0 320 0 0 710 100 0 0 0 1 0\n"), std::string("write P0: fx 0 cx 0"))})
+    EXPECT_THAT(errorOf(content), AllOf(HasSubstr("calib.txt: has no P0 and P1; "), HasSubstr(advice))) << content;
+  EXPECT_THAT(errorOf("Pinhole 501.4 501.4 421.7 167.6 0 0 0 0\n800 400\ncrop\n800 400\n"),
+              AllOf(HasSubstr("DSO's"), HasSubstr("--camera")));
+  EXPECT_THAT(errorOf("P0" + p0 + "P1" + p1, CameraPair::kColor), HasSubstr("has no P2 and P3"));
+}
+
+TEST_F(CalibrationFile, RefusesTwoValuesOfOneKey) {
+  const std::string projections(kProjections);
+  EXPECT_NO_THROW(read(projections + projections));
+  EXPECT_THAT(errorOf(projections + "P1: 700 0 320 -378 0 710 100 0 0 0 1 0\n"),
+              HasSubstr("line 2: key P1 is given once more in line 5"));
+}
+
 TEST_F(CalibrationFile, NamesTheKeyThatIsMissingOrHasTheWrongLength) {
   EXPECT_THAT(errorOf("P0: 700 0 320 0 0 710 100 0 0 0 1 0\n"), AllOf(HasSubstr("calib.txt"), HasSubstr("key P1")));
   EXPECT_THAT(errorOf(std::string(kProjections.substr(0, kProjections.find("P3"))), CameraPair::kColor),
@@ -83,7 +136,9 @@ TEST_F(CalibrationFile, RefusesPairsThatCannotBeUsed) {
               HasSubstr("calib.txt, line 1: key P0: the focal lengths must be positive"));
   EXPECT_THAT(errorOf("P0: 1e20 0 320 0 0 710 100 0 0 0 1 0\nP1: 1e20 0 320 -350 0 710 100 0 0 0 1 0\n"),
               HasSubstr("line 1: key P0: a focal length is"));
-  EXPECT_THAT(errorOf(left + "P1: 700 0 330 -350 0 710 100 0 0 0 1 0\n"), HasSubstr("the pair is not rectified"));
+  EXPECT_THAT(errorOf(left + "P1: 700 0 320 -350 0 710 104 0 0 0 1 0\n"), HasSubstr("the pair is not rectified"));
+  EXPECT_THAT(errorOf(left + "P1: 720 0 320 -350 0 710 100 0 0 0 1 0\n"), HasSubstr("the pair is not rectified"));
+  EXPECT_THAT(errorOf(left + "P1: 700 0 620 -350 0 710 100 0 0 0 1 0\n"), HasSubstr("differ by 300"));
   EXPECT_THAT(errorOf("P0: 700 0 320 0 0 700 100 0 0 0 0 0\nP1: 700 0 320 -350 0 700 100 0 0 0 0 0\n"),
               HasSubstr("must be fx 0 cx, 0 fy cy, 0 0 1"));
   EXPECT_THAT(errorOf(left + "P1: 700 0 320 350 0 710 100 0 0 0 1 0\n"), HasSubstr("are left and right swapped?"));

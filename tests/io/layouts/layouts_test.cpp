@@ -251,6 +251,62 @@ TEST_F(Layouts, CalibrationBesidePlainFoldersRectifiesThem) {
   EXPECT_EQ(given.camera.fx_px, beside.camera.fx_px);
 }
 
+std::string openCv(const std::string& x_m) {
+  return "M1: [50, 0, 31, 0, 50, 24, 0, 0, 1]\nM2: [50, 0, 31, 0, 50, 24, 0, 0, 1]\nD1: [0, 0, 0, 0, 0]\n"
+         "D2: [0, 0, 0, 0, 0]\nR: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [" +
+         x_m + ", 0, 0]\n";
+}
+
+TEST_F(Layouts, CalibrationInForceIsKnownWhereverItIsFrom) {
+  for (const char* side : {"left", "right"}) writeImage(std::string(side) + "/0.png");
+  const auto stereo = folder_.write("stereo.yaml", openCv("-0.2"));
+  EXPECT_EQ(openSequence(folder_.path()).calibrated_by, stereo);
+  folder_.write("older/stereo.yaml", openCv("-0.1"));
+  const Sequence given = openSequence(folder_.path(), 10, {.calibration = (folder_ / "older").string()});
+  EXPECT_EQ(given.calibrated_by, folder_ / "older/stereo.yaml");
+  EXPECT_NEAR(given.camera.baseline_m, 0.1, 1e-12);
+  EXPECT_EQ(openSequence(folder_.path(), 10, {.camera = "50,50,32,24,0.2"}).calibrated_by, "");
+  const auto second = folder_.write("stereo-2.yaml", openCv("-0.3"));
+  EXPECT_THAT(openError(),
+              AllOf(HasSubstr("2 calibrations, which differ"), HasSubstr("--calibration " + second.string())));
+  EXPECT_NEAR(openSequence(folder_.path(), 10, {.calibration = second.string()}).camera.baseline_m, 0.3, 1e-12);
+  const auto calib = folder_.write("calib.txt", "P0: 70 0 32 0 0 70 24 0 0 0 1 0\nP1: 70 0 32 -35 0 70 24 0 0 0 1 0\n");
+  EXPECT_EQ(openSequence(folder_.path()).calibrated_by, calib);
+  EXPECT_EQ(openSequence(folder_.path(), 10, {.calibration = folder_.path().string()}).calibrated_by, calib);
+  std::filesystem::create_directories(folder_ / "empty");
+  EXPECT_THAT(openError("", {.calibration = (folder_ / "empty").string()}), HasSubstr("holds no calibration"));
+}
+
+TEST_F(Layouts, CalibrationOfAnUnusualNameIsOffered) {
+  for (const char* side : {"left", "right"}) writeImage("my drive/" + std::string(side) + "/0.png");
+  folder_.write("my drive/rig.yaml", openCv("-0.2"));
+  EXPECT_THAT(openError("my drive"), HasSubstr("--calibration '" + (folder_ / "my drive/rig.yaml").string() + "'"));
+}
+
+TEST_F(Layouts, RightImageIsMovedWhereTheMiddlesDiffer) {
+  writeImage("left/0.png");
+  Image right = pool_.acquire(64, 48);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) right.mutableRow(y)[x] = static_cast<std::uint8_t>(3 * x);
+  std::filesystem::create_directories(folder_ / "right");
+  writePng(folder_ / "right/0.png", right);
+  folder_.write("calib.txt", "P0: 70 0 36 0 0 70 24 0 0 0 1 0\nP1: 70 0 32 -35 0 70 24 0 0 0 1 0\n");
+  const Sequence sequence = openSequence(folder_.path());
+  EXPECT_EQ(sequence.camera.cx_px, 36);
+  EXPECT_EQ(sequence.camera.baseline_m, 0.5);
+  SequenceDecoder decoder(sequence, {});
+  const auto pair = decoder.next();
+  EXPECT_EQ(pair->left.at(20, 10), 77);
+  EXPECT_EQ(pair->right.at(20, 10), 3 * 16);  // what lay 4 px from the middle on does so still
+}
+
+TEST_F(Layouts, ProjectionsOfAnotherSizeAreRefused) {
+  for (const char* side : {"left", "right"}) writeImage(std::string(side) + "/0.png");
+  folder_.write("calib.txt",
+                "S_rect_00: 1242 375\nP0: 70 0 32 0 0 70 24 0 0 0 1 0\nP1: 70 0 32 -35 0 70 24 0 0 0 1 0\n");
+  EXPECT_THAT(openError(), AllOf(HasSubstr("1242x375"), HasSubstr("64x48")));
+}
+
 TEST_F(Layouts, UnknownFolderIsDescribedAndToldHowToUseIt) {
   writeImage("port/1.png");
   writeImage("port/2.png");

@@ -1,0 +1,26 @@
+#include "apps/check/sequence_line.hpp"
+
+#include <fmt/format.h>
+
+namespace motorcade {
+namespace {
+
+std::string calibrationText(const Sequence& sequence) {
+  if (!sequence.given.camera.empty()) return "by --camera";
+  const std::string remark = sequence.calibration_remark.empty() ? "" : ": " + sequence.calibration_remark;
+  const char* const option = sequence.given.calibration.empty() ? "" : " (--calibration)";
+  return "calibration " + sequence.calibrated_by + remark + option;
+}
+
+}  // namespace
+
+std::string sequenceLine(const Sequence& sequence, const FrameRange& range) {
+  const StereoCamera& camera = sequence.camera;
+  return fmt::format(
+      "{}: {} layout, {} of {} frames, {} x {} px, {}fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px, baseline {:.4f} m, {}",
+      sequence.folder.string(), sequence.layout, range.size(), sequence.frames.size(), camera.width_px,
+      camera.height_px, sequence.rectification ? "rectified on the way to " : "", camera.fx_px, camera.fy_px,
+      camera.cx_px, camera.cy_px, camera.baseline_m, calibrationText(sequence));
+}
+
+}  // namespace motorcade

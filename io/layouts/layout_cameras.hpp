@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "io/layouts/layout_parts.hpp"
+#include "io/rig/rig_search.hpp"
+
+/// Cameras from the calibrations that layouts have.
+namespace motorcade {
+
+/// The camera by the sequence's `calibration`. Where the middles of the two images differ, the right one is moved on
+/// the way. Throws InputError.
+StereoCamera projectedCamera(Sequence& sequence, ImageSize size);
+/// What names and files tell of a sequence's camera.
+struct CameraSearch {
+  bool any_pair = false;  // the images' folders do not tell which pair of KITTI's it is: gray if there is one
+  RigNames names = RigNames::kUsual;
+};
+
+/// The camera by what lies in a folder: calib.txt, or else a calibration of a pair that is not rectified.
+/// Empty where neither does.
+std::optional<StereoCamera> cameraIn(Sequence& sequence, const std::filesystem::path& folder,
+                                     const CameraSearch& search, ImageSize size);
+/// By a file in KITTI's form.
+StereoCamera cameraByKitti(Sequence& sequence, Calibration calibration, bool any_pair, ImageSize size);
+
+/// The end of a message that the calibration is missing: files in the folder that may be meant; often empty.
+std::string calibrationsMeant(const std::filesystem::path& folder);
+
+}  // namespace motorcade

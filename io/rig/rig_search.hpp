@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace motorcade {
+
+/// Which files of a folder are looked at: those whose names tell that they are a pair's calibration, or all.
+enum class RigNames { kUsual, kAny };
+
+/// The files of the calibration that lies in a folder: a name with `camchain`, `stereo` or `calib` in it, two with
+/// `left` and `right` or `intrinsics` and `extrinsics`, or cam0/sensor.yaml and cam1/sensor.yaml. Empty where there is
+/// none. Throws InputError naming all where there are several that tell of different cameras.
+std::vector<std::filesystem::path> usualRigFiles(const std::filesystem::path& folder,
+                                                 RigNames names = RigNames::kUsual);
+
+/// FILE or LEFT,RIGHT.
+std::string joinedFiles(const std::vector<std::filesystem::path>& files);
+/// The option --calibration for some files, as a shell takes it.
+std::string calibrationArgument(const std::vector<std::filesystem::path>& files);
+
+}  // namespace motorcade
