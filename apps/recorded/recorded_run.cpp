@@ -94,7 +94,7 @@ bool holdsFinishedRun(const fs::path& folder) {
 Sequence openSequenceOf(const RunFolder& run, const NamedSequence& named) {
   const Json summary = summaryOf(run);
   const fs::path folder = named.folder.empty() ? recordedFolder(run, summary) : named.folder;
-  const GivenCameras given{textOf(summary, "camera"), textOf(summary, "calibration")};
+  const GivenCameras given{textOf(summary, "camera"), textOf(summary, "calibration"), textOf(summary, "bayer")};
   Sequence sequence = openSequence(folder, named.fps_hz.value_or(recordedRate_hz(summary)), given);
   requireSameDrive(run, sequence);
   return sequence;

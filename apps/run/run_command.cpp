@@ -85,6 +85,8 @@ void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) 
       sequence.folder.string(), sequence.layout, range.size(), sequence.frames.size(), camera.width_px,
       camera.height_px, sequence.rectification ? "rectified on the way to " : "", camera.fx_px, camera.fy_px,
       camera.cx_px, camera.cy_px, camera.baseline_m);
+  if (sequence.samples) spdlog::info("16-bit images, {}", sequence.samples->why);
+  if (sequence.bayer) spdlog::info("the images are mosaics of a color sensor, {}", nameOf(*sequence.bayer));
   if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
 }
 

@@ -79,6 +79,8 @@ void RunSummary::setSequence(const Sequence& of) {
   sequence = of.folder.string();
   layout = of.layout;
   given = of.given;
+  bayer = of.bayer ? nameOf(*of.bayer) : "";
+  sample_bits = of.samples ? of.samples->bits : 8;
 }
 
 double RunSummary::trackedFraction() const {
@@ -98,6 +100,8 @@ std::string toJson(const RunSummary& summary) {
             {"layout", summary.layout},
             {"camera", summary.given.camera},
             {"calibration", summary.given.calibration},
+            {"bayer", summary.bayer},
+            {"sample_bits", summary.sample_bits},
             {"inject", summary.inject},
             {"capture_rate_hz", rounded(summary.capture_rate_hz)},
             {"rate", summary.rate_hz ? Json(*summary.rate_hz) : Json("max")},

@@ -19,8 +19,8 @@ constexpr std::size_t kMostSeeds = 100'000;
 constexpr std::array<const char*, 8> kEntryKeys{"path", "scene", "name",  "length",
                                                 "size", "sets",  "seeds", "repetitions"};
 /// Of `run`; the last one of `evaluate`.
-constexpr std::array<const char*, 11> kOptionKeys{"frames",      "fps",    "rate",   "live",    "masks",   "camera",
-                                                  "calibration", "config", "inject", "require", "baseline"};
+constexpr std::array<const char*, 12> kOptionKeys{"frames",      "fps",   "rate",   "live",   "masks",   "camera",
+                                                  "calibration", "bayer", "config", "inject", "require", "baseline"};
 
 template <class Number>
 std::optional<Number> numberIn(std::string_view text) {

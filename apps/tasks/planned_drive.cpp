@@ -53,7 +53,8 @@ void open(const Manifest& manifest, PlannedDrive& drive) {
   const ManifestEntry& entry = *drive.entry;
   if (!drive.found.problem.empty()) return;
   try {
-    const GivenCameras given{optionOf(entry, "camera"), calibrationOption(entry, manifest.root)};
+    const GivenCameras given{optionOf(entry, "camera"), calibrationOption(entry, manifest.root),
+                             optionOf(entry, "bayer")};
     const Sequence sequence = openSequence(drive.found.path, fpsOf(entry), given);
     drive.frames = static_cast<std::int64_t>(selectedFrames(optionOf(entry, "frames"), sequence).size());
     drive.has_truth = readCameraTruth(sequence).has_value();

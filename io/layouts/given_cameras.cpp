@@ -52,7 +52,7 @@ std::vector<fs::path> calibrationFiles(const std::string& text) {
 }  // namespace
 
 GivenCameras absolute(const GivenCameras& given) {
-  GivenCameras result{.camera = given.camera};
+  GivenCameras result{.camera = given.camera, .bayer = given.bayer};
   if (given.calibration.empty()) return result;
   for (const fs::path& file : calibrationFiles(given.calibration)) {
     if (!result.calibration.empty()) result.calibration += ',';
