@@ -109,6 +109,7 @@ std::optional<std::string> suspectedMosaic(const Image& image) {
   const bool greens_beside = side_apart <= main_apart;
   const double greens_apart = std::min(main_apart, side_apart), apart = std::max({main_apart, side_apart, between});
   if (apart < kLeast || greens_apart > kMostOfGreens * apart) return std::nullopt;
+  if (std::max(main_apart, side_apart) < kMostOfGreens * apart) return "RGGB, BGGR, GRBG or GBRG";
   return greens_beside ? "RGGB or BGGR" : "GRBG or GBRG";
 }
 

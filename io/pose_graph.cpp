@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "io/errors.hpp"
@@ -84,6 +85,17 @@ PoseGraph::Information informationOf(std::span<const double> upper, int size) {
   return information;
 }
 
+/// In some direction, by more than rounding.
+bool isNegative(const PoseGraph::Information& information) {
+  constexpr double kRounding = 1e-9;
+  const Eigen::VectorXd diagonal = information.diagonal();
+  if (!(diagonal.minCoeff() >= 0)) return true;
+  const Eigen::VectorXd scale = (diagonal.array() > 0).select(diagonal.cwiseSqrt().cwiseInverse(), 1.0);  // m and rad
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled, Eigen::EigenvaluesOnly);
+  return !(eigen.eigenvalues().minCoeff() >= -kRounding * std::max(1.0, eigen.eigenvalues().maxCoeff()));
+}
+
 /// Goes through a file line by line. Knows where it is, so that errors and problems can tell.
 class Reader {
  public:
@@ -144,6 +156,7 @@ PoseGraph Reader::read() {
 void Reader::readLine(std::string_view tag, std::string_view rest) {
   if (tag == "FIX") return readIds(tag, rest, graph_.fixed);
   if (tag == "FRAME") return readIds(tag, rest, graph_.frame_ends);
+  if (tag.starts_with("PARAMS_")) return;
   for (const TagFormat& format : kFormats)
     if (tag == format.tag) return readElement(format, rest);
   fail("unknown tag " + shown(tag) +
@@ -221,10 +234,13 @@ void Reader::addEdge(std::int64_t from, std::int64_t to, std::span<const double>
     return report(Kind::kNotFinite, from, to, "the measurement is not finite or too large; left out");
   if (!allUsable(information))
     return report(Kind::kNotFinite, from, to, "the information is not finite or too large; left out");
-  const PoseGraph::Edge edge{from, to, line_, poseOf(pose), informationOf(information, graph_.planar ? 3 : 6)};
+  PoseGraph::Edge edge{from, to, line_, poseOf(pose), informationOf(information, graph_.planar ? 3 : 6)};
   if (from == to) return report(Kind::kSelfEdge, from, to, "joins a pose to itself; left out");
-  if (edge.information.llt().info() != Eigen::Success) {
-    return report(Kind::kNotPositiveDefinite, from, to, "the information is not positive definite; left out");
+  edge.definite = edge.information.llt().info() == Eigen::Success;
+  if (!edge.definite && isNegative(edge.information)) {
+    return report(Kind::kNotPositiveDefinite, from, to,
+                  "the information is negative in some direction; left out: give an inverse covariance, row by row "
+                  "from the diagonal");
   }
   graph_.edges.push_back(edge);
 }

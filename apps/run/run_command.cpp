@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 
 #include "apps/check/camera_doubts.hpp"
+#include "apps/check/mosaic_doubt.hpp"
 #include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
 #include "apps/console/stop_signals.hpp"
@@ -87,6 +88,7 @@ void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) 
       camera.cx_px, camera.cy_px, camera.baseline_m);
   if (sequence.samples) spdlog::info("16-bit images, {}", sequence.samples->why);
   if (sequence.bayer) spdlog::info("the images are mosaics of a color sensor, {}", nameOf(*sequence.bayer));
+  if (const auto doubt = mosaicDoubt(sequence, range, 1)) spdlog::warn(*doubt);
   if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
 }
 

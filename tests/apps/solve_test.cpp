@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -54,6 +55,14 @@ class Solve : public testing::Test {
   /// Solves a graph that must be accepted, and gives what the program says of it.
   json solved(const std::string& content, const std::string& options = "") {
     return solvedFile(folder_.write("graph.g2o", content), options);
+  }
+  /// Solves a graph that leaves something open, and gives what the program says of it.
+  json unsolved(const std::string& content, const std::string& options = "") {
+    EXPECT_EQ(solve(folder_.write("graph.g2o", content), options), 3);
+    EXPECT_THAT(folder_.read("stderr"), HasSubstr("graph.g2o: could not be solved: "));
+    json result = json::parse(folder_.read("solve.json"));
+    EXPECT_EQ(result["solved"], false);
+    return result;
   }
   json solvedFile(const fs::path& graph, const std::string& options = "") {
     EXPECT_EQ(solve(graph, options), 0) << folder_.read("stderr");
@@ -112,7 +121,110 @@ TEST_F(Solve, NeverStartsFromTheValuesOfVertices) {
   const json without = solved(edges),
              with = solved("VERTEX_SE2 1 1e6 1e6 3\nVERTEX_SE2 2 -1e6 5 1\nVERTEX_SE2 0 9 9 9\n" + edges);
   EXPECT_EQ(without["chi2"], with["chi2"]);
-  EXPECT_THAT(planarPose(2), IsNearPose(kQuarterTurn * kQuarterTurn, kTol));
+  EXPECT_THAT(planarPose(2), IsNearPose(SE2(9, {9, 9}) * kQuarterTurn * kQuarterTurn, kTol))
+      << "but the first pose stays";
+}
+
+TEST_F(Solve, AFixedPoseStaysWhereItsVertexIs) {
+  const std::string vertices = "VERTEX_SE2 0 10 20 1.0\nVERTEX_SE2 1 11 20 1.0\n",
+                    edge = "EDGE_SE2 0 1 1 0 0 100 0 0 100 0 100\n";
+  for (const std::string& fixed : {std::string("FIX 0\n"), std::string()}) {
+    solved(vertices + fixed + edge);
+    EXPECT_THAT(planarPose(0), IsNearPose(SE2(1, {10, 20}), 0));
+    EXPECT_THAT(planarPose(1), IsNearPose(SE2(1, {10 + std::cos(1.0), 20 + std::sin(1.0)}), kTol));
+  }
+  EXPECT_EQ(readPoseGraph(folder_ / "out.g2o").fixed.size(), 0U);
+  solved(vertices + "FIX 1\n" + edge, "--batch");
+  EXPECT_THAT(planarPose(1), IsNearPose(SE2(1, {11, 20}), 0));
+  EXPECT_THAT(planarPose(0), IsNearPose(SE2(1, {11 - std::cos(1.0), 20 - std::sin(1.0)}), kTol));
+  EXPECT_EQ(readPoseGraph(folder_ / "out.g2o").fixed.size(), 1U);
+}
+
+TEST_F(Solve, AFixedPoseInSpaceStaysWhereItsVertexIs) {
+  const json result = solved("VERTEX_SE3:QUAT 2 5 6 7 0 0 0.6 0.8\nFIX 2\n" + ahead(0, 1) + ahead(1, 2) + ahead(2, 3));
+  EXPECT_NEAR(result["chi2"], 0, kTol);
+  const SE3 T_world_2(Eigen::Quaterniond(0.8, 0, 0, 0.6).toRotationMatrix(), {5, 6, 7});
+  const auto vertices = readPoseGraph(folder_ / "out.g2o").vertices;
+  EXPECT_THAT(std::get<SE3>(vertices.at(2).pose), IsNearPose(T_world_2, 1e-14));
+  EXPECT_THAT(std::get<SE3>(vertices.at(0).pose),
+              IsNearPose(T_world_2 * SE3(Eigen::Matrix3d::Identity(), {-2, 0, 0}), kTol));
+}
+
+/// Three poses on a line whose ends are held one meter too far apart: the middle one shares it, by its edges' weights.
+TEST_F(Solve, SeveralFixedPosesAllStayAndTheEdgesGiveWay) {
+  const std::string ends = "VERTEX_SE2 4 1 0 0\nVERTEX_SE2 6 4 0 0\nFIX 4 6\n",
+                    edges =
+                        "EDGE_SE2 4 5 1 0 0 300 0 0 300 0 300\nEDGE_SE2 5 6 1 0 0 100 0 0 100 0 100\n"
+                        "EDGE_SE2 4 6 2 0 0 7 0 0 7 0 7\nEDGE_SE2 3 4 1 0 0" +
+                        kUnit3 + "EDGE_SE2 6 7 1 0 0" + kUnit3;
+  for (const char* options : {"", "--batch", "--policy every"}) {
+    const json result = solved(ends + edges, options);
+    EXPECT_THAT(planarPose(4), IsNearPose(SE2(0, {1, 0}), 0));
+    EXPECT_THAT(planarPose(6), IsNearPose(SE2(0, {4, 0}), 0));
+    EXPECT_THAT(planarPose(5), IsNearPose(SE2(0, {2.25, 0}), kTol));
+    EXPECT_THAT(planarPose(3), IsNearPose(SE2(0, {0, 0}), kTol));
+    EXPECT_THAT(planarPose(7), IsNearPose(SE2(0, {5, 0}), kTol));
+    EXPECT_NEAR(result["chi2"], 300 * 0.25 * 0.25 + 100 * 0.75 * 0.75 + 7, kTol) << "the edge between them counts, too";
+    EXPECT_EQ(result["poses"], 5);
+    EXPECT_EQ(result["edges"], 5);
+  }
+}
+
+TEST_F(Solve, AnEdgeThatLeavesADirectionOpenCountsWhereTheRestTellsIt) {
+  // Only where pose 1 is, not its heading; that comes from pose 2, which comes later.
+  const std::string open = "EDGE_SE2 0 1 1 0 3 100 0 0 100 0 0\n";
+  const json result = solved(open + "EDGE_SE2 0 2 2 0 0" + kUnit3 + "EDGE_SE2 1 2 1 0 0" + kUnit3, "--batch");
+  EXPECT_THAT(result["problems"], IsEmpty());
+  EXPECT_EQ(result["edges"], 3);
+  EXPECT_THAT(planarPose(1), IsNearPose(SE2(0, {1, 0}), kTol));
+  EXPECT_NEAR(result["chi2"], 0, kTol);
+  const std::string in_space = "EDGE_SE3:QUAT 0 1 1 0 0 0 0 0 1 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 0 0 0 0 0 0\n";
+  EXPECT_THAT(solved(in_space + ahead(1, 2) + "EDGE_SE3:QUAT 0 2 2 0 0 0 0 0 1" + kUnit6)["problems"], IsEmpty());
+}
+
+TEST_F(Solve, ADirectionThatNothingTellsEndsWithItsName) {
+  const json heading = unsolved("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 1 0 0 100 0 0 100 0 0\n");
+  ASSERT_THAT(kinds(heading), ElementsAre("unconstrained"));
+  EXPECT_EQ(heading["problems"][0]["name"], "pose 1");
+  EXPECT_THAT(folder_.read("stderr"),
+              AllOf(HasSubstr("pose 1 is not constrained along rotation"), HasSubstr("pose 0")));
+  EXPECT_THAT(planarPose(1), IsNearPose(SE2(0, {1, 0}), kTol));
+  const json height =
+      unsolved(ahead(0, 1) + "EDGE_SE3:QUAT 1 2 1 0 0 0 0 0 1 1 0 0 0 0 0 1 0 0 0 0 0 0 0 0 1 0 0 1 0 1\n", "--batch");
+  EXPECT_THAT(std::string(height["problems"][0]["detail"]), HasSubstr("pose 2 is not constrained along z"));
+  EXPECT_THAT(kinds(unsolved("EDGE_SE2 0 1 1 0 0 0 0 0 0 0 0\n")), ElementsAre("unconstrained"));
+}
+
+TEST_F(Solve, AGraphOfWhichNoEdgeCountsIsNotSolved) {
+  EXPECT_THAT(kinds(unsolved("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 -1\n")),
+              ElementsAre("not_positive_definite", "disconnected_part", "no_edges"));
+  EXPECT_THAT(kinds(unsolved("VERTEX_SE2 0 0 0 0\n")), ElementsAre("no_edges"));
+}
+
+TEST_F(Solve, FixLinesThatHoldNothingAreNamed) {
+  const json result = solved("VERTEX_SE2 0 1 2 0\nFIX 0 2 99\n" + quarterTurn(0, 1) + quarterTurn(1, 2));
+  ASSERT_THAT(kinds(result), ElementsAre("fix_not_applied", "fix_not_applied"));
+  EXPECT_EQ(result["problems"][0]["name"], "pose 99");
+  EXPECT_THAT(std::string(result["problems"][1]["detail"]), HasSubstr("no VERTEX line says where the pose is"));
+  EXPECT_THAT(planarPose(0), IsNearPose(SE2(0, {1, 2}), 0));
+}
+
+/// Each part has a pose that stays: its fixed one or its first.
+TEST_F(Solve, PartsThatNothingJoinsAreSolvedByThemselves) {
+  const std::string main = quarterTurn(0, 1) + quarterTurn(1, 2),
+                    loop = quarterTurn(10, 11) + quarterTurn(11, 12) + "EDGE_SE2 12 10 1 1 3" + kUnit3;
+  const double of_loop = solved(loop, "--batch")["chi2"];
+  EXPECT_GT(of_loop, 0.1);
+  const json result = solved("VERTEX_SE2 11 7 8 0.5\nFIX 11\nVERTEX_SE2 30 4 5 0\n" + main + loop, "--batch");
+  ASSERT_THAT(kinds(result), ElementsAre("disconnected_part", "disconnected_part"));
+  EXPECT_THAT(
+      std::string(result["problems"][0]["detail"]),
+      AllOf(HasSubstr("no edge joins it to the rest, which is held by pose 0"), HasSubstr("with pose 11 held")));
+  EXPECT_NEAR(result["chi2"], of_loop, kTol);
+  EXPECT_EQ(result["edges"], 5);
+  EXPECT_THAT(planarPose(11), IsNearPose(SE2(0.5, {7, 8}), 0));
+  EXPECT_THAT(planarPose(30), IsNearPose(SE2(0, {4, 5}), 0));
+  EXPECT_THAT(planarPose(0), IsNearPose(SE2{}, kTol));
 }
 
 TEST_F(Solve, WeighsContradictionsInSpaceByTheirInformation) {
@@ -171,7 +283,7 @@ TEST_F(Solve, APartThatNothingJoinsIsNamedAndTheRestIsSolved) {
   const std::string broken = rest + quarterTurn(17, 18) + quarterTurn(18, 19) + "VERTEX_SE2 30 0 0 0\n";
   EXPECT_EQ(solved(broken, "--batch")["chi2"], solved(rest, "--batch")["chi2"]);
   const json result = solved(broken);
-  EXPECT_EQ(result["poses"], 3);
+  EXPECT_EQ(result["poses"], 6) << "the part counts, a pose without an edge does not";
   EXPECT_EQ(result["updates"], 7);
   ASSERT_THAT(kinds(result), ElementsAre("disconnected_part", "disconnected_part"));
   EXPECT_EQ(result["problems"][0]["name"], "poses 17-19");
@@ -302,7 +414,7 @@ TEST(PoseGraphFeed, KnowsVariablesPosesAndChi2AfterEachUpdate) {
   EXPECT_GT(feed.chi2(), 0.1);
   for (const std::int64_t id : graph.poses) EXPECT_EQ(feed.poseOf(feed.variableOf(id).value()), id);
   EXPECT_FALSE(feed.variableOf(4).has_value());
-  EXPECT_EQ(feed.gaugePose(), 3);
+  EXPECT_EQ(feed.index().id(feed.gauge().parts()[feed.gauge().mainPart()].held.front()), 3);
 }
 
 }  // namespace

@@ -110,8 +110,26 @@ TEST_F(PoseGraphFile, EdgesThatCannotCountAreLeftOutAndNamed) {
   }
   EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 2 1 0 0 1 0 0 nan 0 1\n"), ElementsAre(Kind::kNotFinite));
   EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 2 1 0 0 1 2 0 1 0 1\n"), ElementsAre(Kind::kNotPositiveDefinite));
-  EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 2 1 0 0 1 0 0 1 0 0\n"), ElementsAre(Kind::kNotPositiveDefinite));
+  EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 2 1 0 0 1 0 0 1 0 -1e-3\n"), ElementsAre(Kind::kNotPositiveDefinite));
+  EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 2 1 0 0 1e14 0 0 1e14 0 -1\n"), ElementsAre(Kind::kNotPositiveDefinite));
+  EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 2 1 0 0 1 0 2 1 0 0\n"), ElementsAre(Kind::kNotPositiveDefinite));
   EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 1 1 0 0" + kUnit3), ElementsAre(Kind::kSelfEdge));
+}
+
+TEST_F(PoseGraphFile, EdgesThatLeaveDirectionsOpenCount) {
+  for (const char* information : {"1 0 0 1 0 0", "0 0 0 0 0 5", "0 0 0 0 0 0", "1 2 3 4 6 9", "1e12 0 0 0 0 1e-6"}) {
+    const PoseGraph graph = read(std::string("EDGE_SE2 0 1 1 0 0 ") + information + "\nEDGE_SE2 1 2 1 0 0" + kUnit3);
+    EXPECT_THAT(graph.problems, IsEmpty()) << information;
+    ASSERT_EQ(graph.edges.size(), 2U);
+    EXPECT_FALSE(graph.edges[0].definite) << information;
+    EXPECT_TRUE(graph.edges[1].definite);
+  }
+}
+
+/// g2o writes such lines into graphs in space, for edges with landmarks.
+TEST_F(PoseGraphFile, ParametersArePassedOver) {
+  const PoseGraph graph = read("PARAMS_SE3OFFSET 0 0 0 0 0 0 0 1\nEDGE_SE3:QUAT 0 1 1 0 0 0 0 0 1" + kUnit6);
+  EXPECT_EQ(graph.edges.size(), 1U);
 }
 
 TEST_F(PoseGraphFile, NumbersTooSmallForDoubleAreZero) {
