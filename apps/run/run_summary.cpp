@@ -73,6 +73,13 @@ Json programVersions() {
   return json;
 }
 
+Json toJson(const McapSummary& mcap) {
+  return {{"file", mcap.file},
+          {"bytes", mcap.bytes},
+          {"images_left_out", mcap.images_left_out},
+          {"frames_left_out", mcap.frames_left_out}};
+}
+
 }  // namespace
 
 void RunSummary::setSequence(const Sequence& of) {
@@ -134,11 +141,7 @@ std::string toJson(const RunSummary& summary) {
             {"queues", queues},
             {"solver", toJson(pipeline.solver)},
             {"versions", programVersions()}};
-  if (summary.mcap)
-    json["mcap"] = {{"file", summary.mcap->file},
-                    {"bytes", summary.mcap->bytes},
-                    {"images_left_out", summary.mcap->images_left_out},
-                    {"frames_left_out", summary.mcap->frames_left_out}};
+  if (summary.mcap) json["mcap"] = toJson(*summary.mcap);
   if (summary.signal != 0) json["interrupted_by"] = summary.signal == SIGINT ? "SIGINT" : "SIGTERM";
   return json.dump(2) + "\n";
 }
