@@ -17,10 +17,12 @@ namespace motorcade {
 struct ImageCodec {
   ImageFormat format;
   bool (*recognizes)(std::string_view bytes);
-  /// From the header alone.
-  ImageSize (*size)(std::string_view bytes, const std::filesystem::path& file);
-  /// As 8-bit gray.
-  Image (*decode)(std::string_view bytes, const std::filesystem::path& file, ImagePool& pool);
+  /// From the header alone. Throws on a kind of image that is not read.
+  ImageHeader (*header)(std::string_view bytes, const std::filesystem::path& file);
+  /// As 8-bit gray; see `readImage` of samples with more bits.
+  Image (*decode)(std::string_view bytes, const std::filesystem::path& file, ImagePool& pool, int sample_bits);
+  /// The brightest sample of a file whose header tells of 16 bits.
+  int (*brightest)(std::string_view bytes, const std::filesystem::path& file);
 };
 const ImageCodec& pngCodec();
 const ImageCodec& jpegCodec();
@@ -29,6 +31,8 @@ const ImageCodec& pgmCodec();
 /// The size that a header tells, if it is one that an image may have.
 ImageSize checkedSize(std::uint64_t width, std::uint64_t height, const std::filesystem::path& file);
 [[noreturn]] void failDamaged(const std::filesystem::path& file, const std::string& why);
+/// Names a kind of image that is not read, "a CMYK JPEG", and a command that converts all of the file's folder.
+[[noreturn]] void failUnsupported(const std::filesystem::path& file, const std::string& kind);
 
 /// Where each row begins, for libraries that want to be told.
 std::vector<std::uint8_t*> rowPointers(std::uint8_t* first, int height, std::size_t stride);

@@ -8,6 +8,7 @@
 
 #include "io/errors.hpp"
 #include "io/file_descriptor.hpp"
+#include "io/foreign_image.hpp"
 #include "io/image_codec.hpp"
 
 namespace motorcade {
@@ -24,7 +25,7 @@ const ImageCodec* codecOf(std::string_view bytes) {
 
 const ImageCodec& requiredCodecOf(std::string_view bytes, const fs::path& file) {
   if (const ImageCodec* codec = codecOf(bytes)) return *codec;
-  throw InputError(file.string() + ": is neither PNG, JPEG nor PGM" + (bytes.empty() ? "; the file is empty" : ""));
+  failForeign(bytes, file);
 }
 
 }  // namespace
@@ -33,7 +34,8 @@ bool hasImageName(const fs::path& file) {
   std::string extension = file.extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".png" || extension == ".jpg" || extension == ".jpeg" || extension == ".pgm";
+  return extension == ".png" || extension == ".jpg" || extension == ".jpeg" || extension == ".pgm" ||
+         extension == ".ppm" || extension == ".pnm";
 }
 
 ImageFormat imageFormat(const fs::path& file) {
@@ -48,21 +50,32 @@ ImageFormat imageFormat(const fs::path& file) {
   }
 }
 
-ImageSize readImageSize(const fs::path& file) {
+ImageHeader readImageHeader(const fs::path& file) {
   const std::string bytes = readImageBytes(file);
-  return requiredCodecOf(bytes, file).size(bytes, file);
+  return requiredCodecOf(bytes, file).header(bytes, file);
+}
+
+ImageSize readImageSize(const fs::path& file) { return readImageHeader(file).size; }
+
+int readBrightestSample(const fs::path& file) {
+  const std::string bytes = readImageBytes(file);
+  const ImageCodec& codec = requiredCodecOf(bytes, file);
+  return codec.header(bytes, file).bits == kAllSampleBits ? codec.brightest(bytes, file) : 0;
 }
 
 Image readImage(const fs::path& file, ImagePool& pool, std::optional<ImageSize> expected, int max_mb) {
-  return decodeImage(readImageBytes(file, max_mb), file, pool, expected);
+  return decodeImage(readImageBytes(file, max_mb), file, pool, {.size = expected});
 }
 
-Image decodeImage(std::string_view bytes, const fs::path& name, ImagePool& pool, std::optional<ImageSize> expected) {
+Image decodeImage(std::string_view bytes, const fs::path& name, ImagePool& pool, const ExpectedImage& expected) {
   const ImageCodec& codec = requiredCodecOf(bytes, name);
-  const ImageSize size = codec.size(bytes, name);
-  if (expected && size != *expected)
-    throw InputError(name.string() + ": has " + size.text() + " pixels, the sequence has " + expected->text());
-  return codec.decode(bytes, name, pool);
+  const ImageHeader header = codec.header(bytes, name);
+  if (expected.size && header.size != *expected.size)
+    throw InputError(name.string() + ": has " + header.size.text() + " pixels, the sequence has " +
+                     expected.size->text());
+  if (expected.one_channel && header.channels != 1)
+    throw InputError(name.string() + ": has colors, so that it is no mosaic of a sensor; leave --bayer out");
+  return codec.decode(bytes, name, pool, expected.sample_bits);
 }
 
 }  // namespace motorcade

@@ -9,6 +9,7 @@
 
 #include "core/image.hpp"
 #include "io/image_limits.hpp"
+#include "io/sample_bits.hpp"
 
 /// Images in files. Formats are recognized by content, sizes are checked in the header before anything is allocated.
 /// Reading throws InputError, writing OutputError, both naming the file.
@@ -20,6 +21,16 @@ struct ImageSize {
   int width = 0, height = 0;
   bool operator==(const ImageSize&) const = default;
   std::string text() const { return std::to_string(width) + "x" + std::to_string(height); }
+};
+
+/// What a file tells of its pixels before them.
+struct ImageHeader {
+  ImageSize size;
+  int channels = 1;   // 3 where it has colors; transparency is not counted
+  int bits = 8;       // of a stored sample: 16 where it has more than 8
+  int told_bits = 0;  // that the camera had, as a file of 16 bits says (PNG's sBIT); 0 where it does not
+  int white = 0;      // the sample that is white, as a file of 16 bits says (PGM's maximum); 0 where it does not
+  bool operator==(const ImageHeader&) const = default;
 };
 
 /// Color image, three bytes per pixel, rows without gaps.
@@ -36,20 +47,32 @@ struct Gray16Image {
   std::vector<std::uint16_t> pixels;
 };
 
-/// True when the file's name says image (png, jpg, jpeg, pgm).
+/// True when the file's name says image (png, jpg, jpeg, pgm, ppm, pnm).
 bool hasImageName(const std::filesystem::path& file);
 /// Recognized by the first bytes; unknown also when the file cannot be read.
 ImageFormat imageFormat(const std::filesystem::path& file);
-/// From the header alone. Refuses sizes below 16 or above 16384 in either direction, and more than 2^26 pixels.
+/// From the header alone. Refuses sizes below 16 or above 16384 in either direction, more than 2^26 pixels, and kinds
+/// of images that are not read.
+ImageHeader readImageHeader(const std::filesystem::path& file);
 ImageSize readImageSize(const std::filesystem::path& file);
+/// The brightest sample of a file whose header tells of 16 bits; 0 of others.
+int readBrightestSample(const std::filesystem::path& file);
 
-/// Any PNG, JPEG or PGM as 8-bit gray; color is weighted as in BT.601, 16 bits lose the lower byte. Another size than
-/// the expected one is refused by the header, a file of more than `max_mb` before it is read.
+/// Any PNG, JPEG, PGM or PPM as 8-bit gray; color is weighted as in BT.601. Samples of 16 bits lose the lower byte or
+/// are scaled as the file says. Another size than the expected one is refused by the header, a file of more than
+/// `max_mb` before it is read.
 Image readImage(const std::filesystem::path& file, ImagePool& pool, std::optional<ImageSize> expected = {},
                 int max_mb = kMaxImageFile_mb);
+
+/// What is known of a file's images before it is read.
+struct ExpectedImage {
+  std::optional<ImageSize> size{};
+  int sample_bits = kAllSampleBits;  // that samples of 16 bits use, see `usedSampleBits`
+  bool one_channel = false;          // colors are refused
+};
 /// The same from the bytes of a whole file; `name` is for messages.
 Image decodeImage(std::string_view bytes, const std::filesystem::path& name, ImagePool& pool,
-                  std::optional<ImageSize> expected = {});
+                  const ExpectedImage& expected = {});
 /// The whole file, unless it is too large for an image.
 std::string readImageBytes(const std::filesystem::path& file, int max_mb = kMaxImageFile_mb);
 /// A gray PNG of 16 bits; one of 8 bits is widened without scaling.

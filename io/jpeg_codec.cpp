@@ -2,6 +2,7 @@
 #include <csetjmp>
 #include <cstdio>
 
+#include <jerror.h>
 #include <jpeglib.h>
 
 #include "io/image_codec.hpp"
@@ -76,19 +77,58 @@ struct JpegReader {
     jpeg_finish_decompress(&jpeg);
     return true;
   }
+  /// Why the header's kind of JPEG is not decoded; null where libjpeg says something else is wrong.
+  const char* unsupportedKind() const {
+    switch (errors.manager.msg_code) {
+      case JERR_BAD_PRECISION:
+        return "a JPEG of 12 bits";
+      case JERR_ARITH_NOTIMPL:
+        return "a JPEG with arithmetic coding";
+      case JERR_SOF_UNSUPPORTED:
+        return "a lossless or hierarchical JPEG";
+      case JERR_UNKNOWN_MARKER:
+        return "a JPEG-LS image or another kind of JPEG";
+      default:
+        return nullptr;
+    }
+  }
   /// Libjpeg may have warned of what is wrong with the header.
   bool damaged() const { return errors.manager.num_warnings > 0; }
 };
 
-ImageSize jpegSize(std::string_view bytes, const fs::path& file) {
-  JpegReader reader;
-  if (!reader.readHeader(bytes)) failDamaged(file, reader.errors.message.data());
-  return checkedSize(reader.jpeg.image_width, reader.jpeg.image_height, file);
+/// Null for gray and colors of light.
+const char* unsupportedSpaceOf(J_COLOR_SPACE space) {
+  switch (space) {
+    case JCS_CMYK:
+      return "a JPEG in the color space CMYK, of inks";
+    case JCS_YCCK:
+      return "a JPEG in the color space YCCK, CMYK of inks";
+    case JCS_UNKNOWN:
+      return "a JPEG in no known color space";
+    default:
+      return nullptr;
+  }
 }
 
-Image decodeJpeg(std::string_view bytes, const fs::path& file, ImagePool& pool) {
+void requireHeader(JpegReader& reader, std::string_view bytes, const fs::path& file) {
+  if (reader.readHeader(bytes)) {
+    if (const char* const space = unsupportedSpaceOf(reader.jpeg.jpeg_color_space)) failUnsupported(file, space);
+    return;
+  }
+  if (const char* const kind = reader.unsupportedKind()) failUnsupported(file, kind);
+  failDamaged(file, reader.errors.message.data());
+}
+
+ImageHeader jpegHeader(std::string_view bytes, const fs::path& file) {
   JpegReader reader;
-  if (!reader.readHeader(bytes)) failDamaged(file, reader.errors.message.data());
+  requireHeader(reader, bytes, file);
+  return {.size = checkedSize(reader.jpeg.image_width, reader.jpeg.image_height, file),
+          .channels = reader.jpeg.num_components == 1 ? 1 : 3};
+}
+
+Image decodeJpeg(std::string_view bytes, const fs::path& file, ImagePool& pool, int /*sample_bits*/) {
+  JpegReader reader;
+  requireHeader(reader, bytes, file);
   const ImageSize size = checkedSize(reader.jpeg.image_width, reader.jpeg.image_height, file);
   Image image = pool.acquire(size.width, size.height);
   auto rows = rowPointers(image.mutableRow(0), size.height, image.stride());
@@ -100,7 +140,7 @@ Image decodeJpeg(std::string_view bytes, const fs::path& file, ImagePool& pool) 
 }  // namespace
 
 const ImageCodec& jpegCodec() {
-  static constexpr ImageCodec kCodec{ImageFormat::kJpeg, isJpeg, jpegSize, decodeJpeg};
+  static constexpr ImageCodec kCodec{ImageFormat::kJpeg, isJpeg, jpegHeader, decodeJpeg, nullptr};
   return kCodec;
 }
 

@@ -1,6 +1,7 @@
 #include "io/pair_reader.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "io/image_file.hpp"
 #include "io/rig/rectification.hpp"
@@ -8,19 +9,27 @@
 namespace motorcade {
 
 PairReader::PairReader(const Sequence& sequence, int max_file_mb)
-    : size_{sequence.camera.width_px, sequence.camera.height_px}, max_file_mb_(max_file_mb) {
+    : expected_{.size = ImageSize{sequence.camera.width_px, sequence.camera.height_px},
+                .sample_bits = sequence.samples ? sequence.samples->bits : kAllSampleBits,
+                .one_channel = sequence.bayer.has_value()},
+      bayer_(sequence.bayer),
+      max_file_mb_(max_file_mb) {
   if (!sequence.rectification) return;
   const Rectification& rig = *sequence.rectification;
+  const ImageSize size = *expected_.size;
   remaps_.emplace(
-      Remaps{Remap(rig.left, rig.R_left, rig.camera, size_), Remap(rig.right, rig.R_right, rig.camera, size_)});
+      Remaps{Remap(rig.left, rig.R_left, rig.camera, size), Remap(rig.right, rig.R_right, rig.camera, size)});
 }
 
 Image PairReader::read(const FramePaths& frame, StereoSide side) {
-  return rectified(readImage(frame.of(side), pool_, size_, max_file_mb_), side);
+  const auto& file = frame.of(side);
+  return decode(readImageBytes(file, max_file_mb_), file, side);
 }
 
 Image PairReader::decode(std::string_view bytes, const std::filesystem::path& name, StereoSide side) {
-  return rectified(decodeImage(bytes, name, pool_, size_), side);
+  Image raw = decodeImage(bytes, name, pool_, expected_);
+  if (bayer_) raw = grayOfMosaic(raw, *bayer_, pool_);
+  return rectified(std::move(raw), side);
 }
 
 Image PairReader::rectified(Image raw, StereoSide side) {

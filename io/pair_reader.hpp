@@ -3,14 +3,15 @@
 #include <optional>
 
 #include "core/image.hpp"
-#include "io/image_limits.hpp"
+#include "io/image_file.hpp"
 #include "io/rig/remap.hpp"
 #include "io/sequence.hpp"
 
 namespace motorcade {
 
-/// Reads the images of a sequence as the pipeline takes them: gray, and rectified where the files are not. Whoever
-/// shows or measures in an image of a sequence reads it by this. The maps are built with it, some milliseconds each.
+/// Reads the images of a sequence as the pipeline takes them: gray of 8 bits, and rectified where the files are not.
+/// Whoever shows or measures in an image of a sequence reads it by this. The maps are built with it, some milliseconds
+/// each.
 class PairReader {
  public:
   explicit PairReader(const Sequence& sequence, int max_file_mb = kMaxImageFile_mb);
@@ -28,7 +29,8 @@ class PairReader {
   };
   Image rectified(Image raw, StereoSide side);
 
-  ImageSize size_;
+  ExpectedImage expected_;
+  std::optional<BayerPattern> bayer_;
   int max_file_mb_;
   std::optional<Remaps> remaps_;
   ImagePool pool_;

@@ -28,13 +28,9 @@ std::optional<PngChunk> takeChunk(std::string_view& bytes) {
   return PngChunk{name_and_data.substr(0, 4), name_and_data.substr(4)};
 }
 
-/// Zero unless the header is that of a common PNG.
-int channelsOf(const PngChunk& header) {
-  constexpr std::size_t kHeader_bytes = 13, kBits = 8, kColor = 9, kInterlace = 12;
-  if (header.name != "IHDR" || header.data.size() != kHeader_bytes) return 0;
-  const bool packed_as_all_are = header.data.substr(kColor + 1, 2) == std::string_view("\0\0", 2);
-  if (!packed_as_all_are || header.data[kBits] != 8 || header.data[kInterlace] != 0) return 0;
-  switch (header.data[kColor]) {
+/// Zero for a palette, and where there is none such.
+int channelsOf(char color) {
+  switch (color) {
     case 0:
       return 1;  // gray
     case 2:
@@ -46,6 +42,18 @@ int channelsOf(const PngChunk& header) {
     default:
       return 0;
   }
+}
+
+/// Without bytes per pixel unless the header is that of a common PNG.
+CommonPng commonPngOf(const PngChunk& header) {
+  constexpr std::size_t kHeader_bytes = 13, kBits = 8, kColor = 9, kInterlace = 12;
+  if (header.name != "IHDR" || header.data.size() != kHeader_bytes) return {};
+  const bool packed_as_all_are = header.data.substr(kColor + 1, 2) == std::string_view("\0\0", 2);
+  if (!packed_as_all_are || header.data[kInterlace] != 0) return {};
+  const int channels = channelsOf(header.data[kColor]);
+  if (header.data[kBits] == 8) return {.pixel_bytes = channels};
+  const bool deep_gray = header.data[kBits] == 16 && (channels == 1 || channels == 2);
+  return {.pixel_bytes = deep_gray ? 2 * channels : 0, .deep = deep_gray};
 }
 
 /// Whether a chunk can be left out as libpng leaves it out. A name that begins with a small letter says so, but a
@@ -72,8 +80,8 @@ std::optional<CommonPng> findCommonPng(std::string_view bytes) {
   if (!bytes.starts_with(kPngSignature)) return std::nullopt;
   bytes.remove_prefix(kPngSignature.size());
   const auto header = takeChunk(bytes);
-  CommonPng png{.channels = header ? channelsOf(*header) : 0};
-  if (png.channels == 0) return std::nullopt;
+  CommonPng png = header ? commonPngOf(*header) : CommonPng{};
+  if (png.pixel_bytes == 0) return std::nullopt;
   while (true) {
     const std::string_view at = bytes;
     const auto chunk = takeChunk(bytes);

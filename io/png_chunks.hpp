@@ -16,10 +16,11 @@ constexpr std::uint32_t bigEndian32(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-/// Where the pixels of a common PNG lie: 8-bit gray or color, with or without alpha, not interlaced, and without a
-/// chunk that would change pixels.
+/// Where the pixels of a common PNG lie: 8-bit gray or color or 16-bit gray, with or without alpha, not interlaced, and
+/// without a chunk that would change pixels.
 struct CommonPng {
-  int channels = 0;
+  int pixel_bytes = 0;
+  bool deep = false;                // 16-bit gray
   std::string_view image_chunks{};  // the IDATs, one behind the other, each with its length, name and checksum
   std::size_t packed_bytes = 0;     // what they hold
 };

@@ -3,6 +3,8 @@
 #include <csetjmp>
 #include <cstdint>
 #include <new>
+#include <utility>
+#include <vector>
 
 #include <png.h>
 
@@ -22,16 +24,40 @@ bool isPng(std::string_view bytes) { return bytes.starts_with(kPngSignature); }
 /// BT.601 in 8-bit integers.
 std::uint8_t grayOfPixel(const std::uint8_t* rgb) { return grayOf(rgb[0], rgb[1], rgb[2]); }
 
-ImageSize pngSize(std::string_view bytes, const fs::path& file) {
-  if (bytes.size() < 26 || bytes.substr(12, 4) != "IHDR") failDamaged(file, "its PNG header is cut");
-  return checkedSize(bigEndian32(bytes, 16), bigEndian32(bytes, 20), file);
+constexpr std::size_t kBitsAt = 24, kColorAt = 25;  // in the file: the header comes first
+
+/// What the sBIT chunk says of a color's bits; 0 where there is none before the pixels.
+int toldBits(std::string_view bytes, int channels) {
+  constexpr std::size_t kAroundData_bytes = 12;
+  bytes.remove_prefix(kPngSignature.size());
+  while (bytes.size() >= kAroundData_bytes) {
+    const std::size_t length = bigEndian32(bytes, 0);
+    const std::string_view name = bytes.substr(4, 4);
+    if (name == "IDAT" || length > bytes.size() - kAroundData_bytes) break;
+    if (name == "sBIT" && std::cmp_greater_equal(length, channels))
+      return *std::ranges::max_element(bytes.substr(8, static_cast<std::size_t>(channels)));
+    bytes.remove_prefix(kAroundData_bytes + length);
+  }
+  return 0;
+}
+
+ImageHeader pngHeader(std::string_view bytes, const fs::path& file) {
+  if (bytes.size() < kColorAt + 1 || bytes.substr(12, 4) != "IHDR") failDamaged(file, "its PNG header is cut");
+  constexpr char kGray = 0, kGrayAlpha = 4;
+  const char color = bytes[kColorAt];
+  ImageHeader header{.size = checkedSize(bigEndian32(bytes, 16), bigEndian32(bytes, 20), file),
+                     .channels = color == kGray || color == kGrayAlpha ? 1 : 3};
+  if (bytes[kBitsAt] != kAllSampleBits) return header;
+  header.bits = kAllSampleBits;
+  header.told_bits = toldBits(bytes, header.channels);
+  return header;
 }
 
 /// The size of an image whose pixels may be in the file: deflate packs at most 1032 bytes into one.
 ImageSize decodableSize(std::string_view bytes, const fs::path& file) {
   constexpr std::uint64_t kMostPerByte = 1032, kBitsPerByte = 8;
-  const ImageSize size = pngSize(bytes, file);
-  const auto bits_per_sample = static_cast<std::uint8_t>(bytes[24]);
+  const ImageSize size = pngHeader(bytes, file).size;
+  const auto bits_per_sample = static_cast<std::uint8_t>(bytes[kBitsAt]);
   if (bytes.size() * kMostPerByte * kBitsPerByte < std::uint64_t{bits_per_sample} * size.width * size.height)
     failDamaged(file, "the file ends early");
   return size;
@@ -82,14 +108,51 @@ struct PngReader {
   }
 };
 
-Image decodePng(std::string_view bytes, const fs::path& file, ImagePool& pool) {
-  if (auto image = decodeCommonPng(bytes, decodableSize(bytes, file), pool)) return *std::move(image);
-  return decodeAnyPng(bytes, file, pool);
+/// Samples of 16 bits as they are, row by row; alpha is left out.
+struct DeepSamples {
+  ImageSize size;
+  std::size_t channels = 1;
+  std::vector<std::uint16_t> values;
+};
+
+DeepSamples deepSamplesOf(std::string_view bytes, const fs::path& file) {
+  DeepSamples samples{.size = decodableSize(bytes, file), .values = {}};
+  PngReader reader(bytes);
+  if (!reader.readHeader(true)) failDamaged(file, reader.context.message.data());
+  samples.channels = png_get_channels(reader.png, reader.info);
+  const std::size_t row_values = samples.channels * samples.size.width;
+  samples.values.resize(row_values * samples.size.height);
+  auto rows = rowPointers(reinterpret_cast<std::uint8_t*>(samples.values.data()), samples.size.height, 2 * row_values);
+  if (!reader.readRows(rows.data())) failDamaged(file, reader.context.message.data());
+  return samples;
+}
+
+bool isDeep(std::string_view bytes) { return bytes.size() > kBitsAt && bytes[kBitsAt] == kAllSampleBits; }
+
+Image grayOf(const DeepSamples& samples, int sample_bits, ImagePool& pool) {
+  Image image = pool.acquire(samples.size.width, samples.size.height);
+  const std::uint16_t* at = samples.values.data();
+  const auto upper = [sample_bits](std::uint16_t sample) { return upperBits(sample, sample_bits); };
+  for (int y = 0; y < samples.size.height; ++y)
+    for (int x = 0; x < samples.size.width; ++x, at += samples.channels)
+      image.mutableRow(y)[x] =
+          samples.channels == 1 ? upper(at[0]) : motorcade::grayOf(upper(at[0]), upper(at[1]), upper(at[2]));
+  return image;
+}
+
+int brightestOfPng(std::string_view bytes, const fs::path& file) {
+  return std::ranges::max(deepSamplesOf(bytes, file).values);
+}
+
+Image decodePng(std::string_view bytes, const fs::path& file, ImagePool& pool, int sample_bits) {
+  if (auto image = decodeCommonPng(bytes, decodableSize(bytes, file), pool, sample_bits)) return *std::move(image);
+  return decodeAnyPng(bytes, file, pool, sample_bits);
 }
 
 }  // namespace
 
-Image decodeAnyPng(std::string_view bytes, const fs::path& file, ImagePool& pool) {
+Image decodeAnyPng(std::string_view bytes, const fs::path& file, ImagePool& pool, int sample_bits) {
+  if (sample_bits != kAllSampleBits && isDeep(bytes)) return grayOf(deepSamplesOf(bytes, file), sample_bits, pool);
   const ImageSize size = decodableSize(bytes, file);
   PngReader reader(bytes);
   if (!reader.readHeader(false)) failDamaged(file, reader.context.message.data());
@@ -108,27 +171,24 @@ Image decodeAnyPng(std::string_view bytes, const fs::path& file, ImagePool& pool
 }
 
 const ImageCodec& pngCodec() {
-  static constexpr ImageCodec kCodec{ImageFormat::kPng, isPng, pngSize, decodePng};
+  static constexpr ImageCodec kCodec{ImageFormat::kPng, isPng, pngHeader, decodePng, brightestOfPng};
   return kCodec;
 }
 
 Gray16Image readPng16(const fs::path& file) {
   const std::string bytes = readImageBytes(file);
   if (!isPng(bytes)) throw InputError(file.string() + ": is no PNG");
-  const ImageSize size = decodableSize(bytes, file);
-  PngReader reader(bytes);
-  if (!reader.readHeader(true)) failDamaged(file, reader.context.message.data());
-  if (png_get_channels(reader.png, reader.info) != 1)
-    throw InputError(file.string() + ": has colors, a gray image is needed");
-  Gray16Image image{size.width, size.height, {}};
-  image.pixels.resize(size.width * size.height);
-  const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
-  std::vector<std::uint8_t> narrow(wide ? 0 : image.pixels.size());
-  const std::size_t row_values = size.width;
-  auto rows = wide ? rowPointers(reinterpret_cast<std::uint8_t*>(image.pixels.data()), size.height, 2 * row_values)
-                   : rowPointers(narrow.data(), size.height, row_values);
-  if (!reader.readRows(rows.data())) failDamaged(file, reader.context.message.data());
-  if (!wide) std::ranges::copy(narrow, image.pixels.begin());
+  if (pngHeader(bytes, file).channels != 1) throw InputError(file.string() + ": has colors, a gray image is needed");
+  if (isDeep(bytes)) {
+    DeepSamples samples = deepSamplesOf(bytes, file);
+    return {samples.size.width, samples.size.height, std::move(samples.values)};
+  }
+  ImagePool pool;
+  const Image narrow = decodeAnyPng(bytes, file, pool);
+  Gray16Image image{narrow.width(), narrow.height(), {}};
+  image.pixels.reserve(static_cast<std::size_t>(narrow.width()) * narrow.height());
+  for (int y = 0; y < narrow.height(); ++y)
+    image.pixels.insert(image.pixels.end(), narrow.row(y), narrow.row(y) + narrow.width());
   return image;
 }
 

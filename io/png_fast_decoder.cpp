@@ -19,8 +19,8 @@ constexpr std::size_t kMostUnpacked_bytes = std::size_t{1} << 26;
 /// holds the same memory for each image of a drive.
 class WorkSpace {
  public:
-  WorkSpace(ImageSize size, int channels, ImagePool& pool)
-      : row_bytes_(static_cast<std::size_t>(size.width) * channels),
+  WorkSpace(ImageSize size, int pixel_bytes, ImagePool& pool)
+      : row_bytes_(static_cast<std::size_t>(size.width) * pixel_bytes),
         unpacked_bytes_((1 + row_bytes_) * size.height),
         // Noise grows by a few bytes per block of deflate; no encoder packs worse.
         most_packed_bytes_(unpacked_bytes_ + unpacked_bytes_ / 16 + 1024) {
@@ -66,23 +66,32 @@ bool unpack(const CommonPng& png, WorkSpace& space) {
 }
 
 /// Leaves alpha out, as libpng does when asked to strip it.
-void convertToGray(const std::uint8_t* row, int channels, int width, std::uint8_t* gray) {
-  if (channels == 2) {
+void convertToGray(const std::uint8_t* row, int pixel_bytes, int width, std::uint8_t* gray) {
+  if (pixel_bytes == 2) {
     for (int x = 0; x < width; ++x) gray[x] = row[2 * x];
   } else {
-    for (int x = 0; x < width; ++x, row += channels) gray[x] = grayOf(row[0], row[1], row[2]);
+    for (int x = 0; x < width; ++x, row += pixel_bytes) gray[x] = grayOf(row[0], row[1], row[2]);
   }
 }
 
+void scaleToGray(const std::uint8_t* row, int pixel_bytes, int width, int sample_bits, std::uint8_t* gray) {
+  for (int x = 0; x < width; ++x, row += pixel_bytes)
+    gray[x] = upperBits(static_cast<unsigned>(row[0]) << 8 | row[1], sample_bits);
+}
+
 /// Takes the filters off and fills the image; gray rows need no place between. False when a row names no filter.
-bool removeFilters(WorkSpace& space, int channels, Image& image) {
+bool removeFilters(WorkSpace& space, const CommonPng& png, int sample_bits, Image& image) {
   std::memset(space.zeros(), 0, space.rowBytes());
   const std::uint8_t* above = space.zeros();
   std::uint8_t* row = space.unpacked();
   for (int y = 0; y < image.height(); ++y, row += 1 + space.rowBytes()) {
-    std::uint8_t* const to = channels == 1 ? image.mutableRow(y) : row + 1;
-    if (!removeFilter(*row, channels, {row + 1, above, space.rowBytes()}, to)) return false;
-    if (channels > 1) convertToGray(to, channels, image.width(), image.mutableRow(y));
+    std::uint8_t* const to = png.pixel_bytes == 1 ? image.mutableRow(y) : row + 1;
+    if (!removeFilter(*row, png.pixel_bytes, {row + 1, above, space.rowBytes()}, to)) return false;
+    if (png.deep) {
+      scaleToGray(to, png.pixel_bytes, image.width(), sample_bits, image.mutableRow(y));
+    } else if (png.pixel_bytes > 1) {
+      convertToGray(to, png.pixel_bytes, image.width(), image.mutableRow(y));
+    }
     above = to;
   }
   return true;
@@ -90,13 +99,13 @@ bool removeFilters(WorkSpace& space, int channels, Image& image) {
 
 }  // namespace
 
-std::optional<Image> decodeCommonPng(std::string_view bytes, ImageSize size, ImagePool& pool) {
+std::optional<Image> decodeCommonPng(std::string_view bytes, ImageSize size, ImagePool& pool, int sample_bits) {
   const auto png = findCommonPng(bytes);
   if (!png) return std::nullopt;
-  WorkSpace space(size, png->channels, pool);
+  WorkSpace space(size, png->pixel_bytes, pool);
   if (!space.holds(*png) || !unpack(*png, space)) return std::nullopt;
   Image image = pool.acquire(size.width, size.height);
-  if (!removeFilters(space, png->channels, image)) return std::nullopt;
+  if (!removeFilters(space, *png, sample_bits, image)) return std::nullopt;
   return image;
 }
 

@@ -64,8 +64,8 @@ bool removeFilterOf(int filter, FilteredRow row, std::uint8_t* to) {
 
 }  // namespace
 
-bool removeFilter(int filter, int channels, FilteredRow row, std::uint8_t* to) {
-  switch (channels) {
+bool removeFilter(int filter, int pixel_bytes, FilteredRow row, std::uint8_t* to) {
+  switch (pixel_bytes) {
     case 1:
       return removeFilterOf<1>(filter, row, to);
     case 2:

@@ -12,8 +12,8 @@ struct FilteredRow {
   std::size_t count;          // bytes, whole pixels
 };
 
-/// Takes a filter off a row of 1 to 4 channels of 8 bits. `to` may be the row itself. False when there is no such
+/// Takes a filter off a row of pixels of 1 to 4 bytes. `to` may be the row itself. False when there is no such
 /// filter.
-bool removeFilter(int filter, int channels, FilteredRow row, std::uint8_t* to);
+bool removeFilter(int filter, int pixel_bytes, FilteredRow row, std::uint8_t* to);
 
 }  // namespace motorcade

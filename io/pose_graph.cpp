@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "io/errors.hpp"
@@ -69,6 +70,20 @@ bool allUsable(std::span<const double> numbers) {
   return std::ranges::all_of(numbers, [](double n) { return std::abs(n) <= kLargestNumber; });
 }
 
+/// How to mend a line of a tag that is not known; empty where only its name can be told.
+std::string adviceFor(std::string_view tag) {
+  const auto has = [&](std::string_view part) { return tag.find(part) != std::string_view::npos; };
+  if (tag.starts_with("TUTORIAL_")) return "take the prefix off all lines: sed -i 's/^TUTORIAL_//' FILE";
+  if (tag == "VERTEX_SE3" || tag == "EDGE_SE3")
+    return "write " + std::string(tag) + ":QUAT, without blanks in it, and the rotation as qx qy qz qw";
+  if (has("PRIOR")) return "a measurement of one pose alone is not used: remove the line, and hold a pose with FIX";
+  if (has("XY") || has("CAM") || has("LANDMARK") || has("PROJECT"))
+    return "landmarks and cameras are not solved: remove their VERTEX and EDGE lines";
+  if (tag == "VERTEX2" || tag == "EDGE2" || tag == "VERTEX3" || tag == "EDGE3")
+    return "this is TORO's form, which orders the information differently: convert it to g2o's";
+  return "";
+}
+
 /// As an error message shows it.
 std::string shown(std::string_view word) {
   std::string text = "'";
@@ -82,6 +97,17 @@ PoseGraph::Information informationOf(std::span<const double> upper, int size) {
   for (int row = 0; row < size; ++row)
     for (int column = row; column < size; ++column) information(row, column) = information(column, row) = upper[next++];
   return information;
+}
+
+/// In some direction, by more than rounding.
+bool isNegative(const PoseGraph::Information& information) {
+  constexpr double kRounding = 1e-9;
+  const Eigen::VectorXd diagonal = information.diagonal();
+  if (!(diagonal.minCoeff() >= 0)) return true;
+  const Eigen::VectorXd scale = (diagonal.array() > 0).select(diagonal.cwiseSqrt().cwiseInverse(), 1.0);  // m and rad
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled, Eigen::EigenvaluesOnly);
+  return !(eigen.eigenvalues().minCoeff() >= -kRounding * std::max(1.0, eigen.eigenvalues().maxCoeff()));
 }
 
 /// Goes through a file line by line. Knows where it is, so that errors and problems can tell.
@@ -144,11 +170,13 @@ PoseGraph Reader::read() {
 void Reader::readLine(std::string_view tag, std::string_view rest) {
   if (tag == "FIX") return readIds(tag, rest, graph_.fixed);
   if (tag == "FRAME") return readIds(tag, rest, graph_.frame_ends);
+  if (tag.starts_with("PARAMS_")) return;
   for (const TagFormat& format : kFormats)
     if (tag == format.tag) return readElement(format, rest);
-  fail("unknown tag " + shown(tag) +
-       ": remove the line, or write it as one of VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT, " +
-       "EDGE_SE3:QUAT, FIX, FRAME");
+  const std::string advice = adviceFor(tag);
+  fail("unknown tag " + shown(tag) + ": " +
+       (advice.empty() ? "remove the line, or write it as one of" : advice + "; known are") +
+       " VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT, EDGE_SE3:QUAT, FIX, FRAME");
 }
 
 void Reader::readIds(std::string_view tag, std::string_view rest, std::vector<std::int64_t>& ids) {
@@ -180,10 +208,15 @@ void Reader::readElement(const TagFormat& format, std::string_view rest) {
       ids[count] = idOf(word);
     } else if (count < format.ids + needed) {
       const auto number = numberOf(word);
-      if (!number) fail(shown(word) + " stands where a number belongs; write a decimal number");
+      if (!number)
+        fail(shown(word) + " stands where a number belongs; write a decimal number" +
+             (word.find(',') == std::string_view::npos ? "" : ", with a point: sed -i 's/,/./g' FILE"));
       numbers[count - format.ids] = *number;
     }
   }
+  if (count == format.ids + format.pose_numbers && format.information_numbers > 0)
+    fail(std::string(format.tag) + " has no information: append its upper triangle, row by row, for unit weights" +
+         (format.planar ? " 1 0 0 1 0 1" : " 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1"));
   if (count != format.ids + needed) {
     fail(std::string(format.tag) + " is followed by " + std::to_string(count) + " fields; give it " +
          std::to_string(format.ids + needed) + ": " + (format.ids == 1 ? "an id and " : "two ids, ") +
@@ -221,10 +254,13 @@ void Reader::addEdge(std::int64_t from, std::int64_t to, std::span<const double>
     return report(Kind::kNotFinite, from, to, "the measurement is not finite or too large; left out");
   if (!allUsable(information))
     return report(Kind::kNotFinite, from, to, "the information is not finite or too large; left out");
-  const PoseGraph::Edge edge{from, to, line_, poseOf(pose), informationOf(information, graph_.planar ? 3 : 6)};
+  PoseGraph::Edge edge{from, to, line_, poseOf(pose), informationOf(information, graph_.planar ? 3 : 6)};
   if (from == to) return report(Kind::kSelfEdge, from, to, "joins a pose to itself; left out");
-  if (edge.information.llt().info() != Eigen::Success) {
-    return report(Kind::kNotPositiveDefinite, from, to, "the information is not positive definite; left out");
+  edge.definite = edge.information.llt().info() == Eigen::Success;
+  if (!edge.definite && isNegative(edge.information)) {
+    return report(Kind::kNotPositiveDefinite, from, to,
+                  "the information is negative in some direction; left out: give an inverse covariance, row by row "
+                  "from the diagonal");
   }
   graph_.edges.push_back(edge);
 }

@@ -15,7 +15,7 @@ namespace motorcade {
 /// A pose graph as in g2o files: poses, either all in the plane or all in space, and measured motions between them.
 struct PoseGraph {
   using Pose = std::variant<SE3, SE2>;
-  /// 3x3 in the plane, 6x6 in space, translation first; positive definite. Without a heap allocation.
+  /// 3x3 in the plane, 6x6 in space, translation first; positive semidefinite. Without a heap allocation.
   using Information = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 
   struct Vertex {
@@ -27,6 +27,7 @@ struct PoseGraph {
     int line = 0;
     Pose measured;  // T_from_to
     Information information;
+    bool definite = true;  // the information leaves no direction open
   };
   /// What is wrong with the graph without making the rest of it useless.
   struct Problem {
@@ -50,8 +51,9 @@ struct PoseGraph {
 std::string_view nameOf(PoseGraph::Problem::Kind kind);
 
 /// Reads VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT, EDGE_SE3:QUAT, FIX and FRAME lines. Throws an InputError that names
-/// file, line and how to fix it for what is not written as g2o. Edges that are not finite, have no positive definite
-/// information or join a pose to itself are left out, of vertices of one id the first is kept: these become problems.
+/// file, line and how to fix it for what is not written as g2o; PARAMS lines, which other kinds of edges need, are
+/// passed over. Edges that are not finite, have negative information or join a pose to itself are left out, of vertices
+/// of one id the first is kept: these become problems.
 PoseGraph readPoseGraph(const std::filesystem::path& file);
 
 /// Numbers are written with all their digits. Throws OutputError.

@@ -2,13 +2,16 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/stereo_camera.hpp"
 #include "core/timestamp.hpp"
+#include "io/bayer.hpp"
 #include "io/calibration.hpp"
+#include "io/sample_bits.hpp"
 
 namespace motorcade {
 
@@ -33,12 +36,20 @@ struct FrameRange {
 /// Reads `A:B`, `A:` or `:B`; throws UsageError.
 FrameRange parseFrameRange(std::string_view text);
 
-/// What a user says of the cameras where the sequence's own files do not; at most one of the two.
+/// What a user says of the cameras where the sequence's own files do not; at most one of the first two.
 struct GivenCameras {
   std::string camera{};       // fx,fy,cx,cy,baseline of a rectified pair [px, m]
   std::string calibration{};  // FILE, or two as LEFT,RIGHT
+  std::string bayer{};        // the pattern of images that are a color sensor's mosaic
 
+  /// No word on where the cameras look.
   bool empty() const { return camera.empty() && calibration.empty(); }
+};
+
+/// How samples of 16 bits become gray, for all images of a drive.
+struct SampleUse {
+  int bits = kAllSampleBits;  // that they use, see `upperBits`
+  std::string why{};          // after "16-bit images, "
 };
 
 /// A recorded drive: where its images are, when they were taken, with what camera, and what is known of the truth.
@@ -71,6 +82,8 @@ struct Sequence {
   bool stamps_measured = false;     // read from a file, not made from the frame rate
   Truth truth{};
   std::shared_ptr<const Rectification> rectification{};  // none where the images are rectified
+  std::optional<SampleUse> samples{};                    // none where the images have 8 bits
+  std::optional<BayerPattern> bayer{};                   // none where they are gray or have colors
   GivenCameras given{};                                  // with absolute paths
   std::string calibrated_by{};       // the calibration in force: FILE or LEFT,RIGHT; empty where --camera tells
   std::string calibration_remark{};  // which of its cameras were taken, where it has more than two

@@ -12,6 +12,7 @@
 #include "apps/check/camera_doubts.hpp"
 #include "apps/check/check_page.hpp"
 #include "apps/check/input_check.hpp"
+#include "apps/check/mosaic_doubt.hpp"
 #include "apps/check/row_error_names.hpp"
 #include "apps/check/sequence_line.hpp"
 #include "apps/inject/fault_injector.hpp"
@@ -115,6 +116,8 @@ int runCheck(const CheckOptions& options) {
   std::vector<Finding> findings;
   for (const std::string& doubt : doubtsAbout(sequence.camera)) findings.push_back({"calibration", doubt, true});
   for (const std::string& oddity : odditiesOf(sequence.camera)) findings.push_back({"camera", oddity, false});
+  if (const auto doubt = mosaicDoubt(sequence, selectedFrames(options.frames, sequence), 3))
+    findings.push_back({"mosaic", *doubt, false});
   for (Finding& finding : check.findings()) findings.push_back(std::move(finding));
   if (check.matches().size() < InputCheck::kFewestMatches)
     findings.push_back({"points",

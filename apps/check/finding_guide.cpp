@@ -60,6 +60,11 @@ constexpr std::array<std::pair<std::string_view, FindingGuide>, 16> kGuides{{
      {"The times of the pairs jump",
       "Speeds are distances over times: a wrong time is a wrong speed, and a gap loses what was followed.",
       "Look at times.txt (seconds, one line per pair, growing), or leave it out and give the rate with --fps."}},
+    {"mosaic",
+     {"The images are a color sensor's mosaic",
+      "Each pixel sees through a filter of one color: a pattern of two by two pixels lies over the texture and stays "
+      "where it is while the scene moves.",
+      "Give the pattern with --bayer RGGB (BGGR, GRBG, GBRG), or convert the images to gray or color."}},
     {"calibration",
      {"The calibration cannot be that of these images",
       "Distances come from focal length and baseline: all of them would be off by a factor.",

@@ -28,6 +28,11 @@ void addGivenCameras(CLI::App& command, GivenCameras& given) {
                   "rectified pair; or the folder that it lies in")
       ->type_name("FILE[,FILE]")
       ->excludes(camera);
+  command
+      .add_option("--bayer", given.bayer,
+                  "The images are the mosaic of a color sensor, as raw images are: the filters of the first two pixels "
+                  "of the first two rows")
+      ->type_name("RGGB|BGGR|GRBG|GBRG");
 }
 
 /// What a run writes and serves for the eye, beside its folder of results.

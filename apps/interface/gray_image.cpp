@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "io/sample_bits.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -24,13 +26,15 @@ std::ptrdiff_t strideOf(const Pair::Image& image) {
   return image.stride_bytes != 0 ? image.stride_bytes : image.width_px * bytesPerPixel(image.format);
 }
 
-void fillFrom16(const void* row, std::uint8_t* gray, int width) {
-  const auto* bytes = static_cast<const std::uint8_t*>(row);
-  for (int x = 0; x < width; ++x) {
-    std::uint16_t value = 0;  // the caller's rows need not be aligned
-    std::memcpy(&value, bytes + std::ptrdiff_t{2} * x, sizeof value);
-    gray[x] = static_cast<std::uint8_t>(value >> 8);
-  }
+/// The caller's rows need not be aligned.
+std::uint16_t sampleAt(const void* row, int x) {
+  std::uint16_t value = 0;
+  std::memcpy(&value, static_cast<const std::uint8_t*>(row) + std::ptrdiff_t{2} * x, sizeof value);
+  return value;
+}
+
+void fillFrom16(const void* row, std::uint8_t* gray, int width, int sample_bits) {
+  for (int x = 0; x < width; ++x) gray[x] = upperBits(sampleAt(row, x), sample_bits);
 }
 
 void fillFromColors(const void* row, std::uint8_t* gray, int width, int red, int blue) {
@@ -38,13 +42,13 @@ void fillFromColors(const void* row, std::uint8_t* gray, int width, int red, int
   for (int x = 0; x < width; ++x, bytes += 3) gray[x] = grayOf(bytes[red], bytes[1], bytes[blue]);
 }
 
-void fillRow(const void* row, Pair::Format format, std::uint8_t* gray, int width) {
+void fillRow(const void* row, Pair::Format format, int sample_bits, std::uint8_t* gray, int width) {
   switch (format) {
     case Pair::Format::kGray8:
       std::memcpy(gray, row, static_cast<std::size_t>(width));
       break;
     case Pair::Format::kGray16:
-      fillFrom16(row, gray, width);
+      fillFrom16(row, gray, width, sample_bits);
       break;
     case Pair::Format::kRgb8:
       fillFromColors(row, gray, width, 0, 2);
@@ -55,7 +59,35 @@ void fillRow(const void* row, Pair::Format format, std::uint8_t* gray, int width
   }
 }
 
+/// 0 unless the samples have 16 bits.
+int brightestOf(const Pair::Image& image) {
+  if (image.format != Pair::Format::kGray16) return 0;
+  std::uint16_t brightest = 0;
+  const auto* row = static_cast<const std::uint8_t*>(image.pixels);
+  for (int y = 0; y < image.height_px; ++y, row += strideOf(image))
+    for (int x = 0; x < image.width_px; ++x) brightest = std::max(brightest, sampleAt(row, x));
+  return brightest;
+}
+
 }  // namespace
+
+/// Samples that eight bits hold may be those of a dark pair of a camera with more: a later pair will tell.
+int SampleBits::of(const Pair& pair) {
+  constexpr int kDark = 8;
+  just_decided_ = false;
+  if (pair.left.format != Pair::Format::kGray16 && pair.right.format != Pair::Format::kGray16) return kAllSampleBits;
+  if (decided_) return *decided_;
+  brightest_ = std::max(brightestOf(pair.left), brightestOf(pair.right));
+  const int bits = usedSampleBits(0, brightest_);
+  just_decided_ = bits > kDark;
+  if (just_decided_) decided_ = bits;
+  return bits;
+}
+
+std::string SampleBits::decision() const {
+  return "images of 16 bits, taken as " + std::to_string(decided_.value_or(kAllSampleBits)) +
+         ": the brightest sample of the first pair that is not dark is " + std::to_string(brightest_);
+}
 
 const char* problemOf(const Pair::Image& image, const Camera& camera) {
   if (image.pixels == nullptr) return "an image has no pixels";
@@ -70,11 +102,11 @@ const char* problemOf(const Pair::Image& image, const Camera& camera) {
   return nullptr;
 }
 
-Image grayImage(const Pair::Image& image, ImagePool& pool) {
+Image grayImage(const Pair::Image& image, int sample_bits, ImagePool& pool) {
   Image gray = pool.acquire(image.width_px, image.height_px);
   const auto* row = static_cast<const std::uint8_t*>(image.pixels);
   for (int y = 0; y < image.height_px; ++y, row += strideOf(image))
-    fillRow(row, image.format, gray.mutableRow(y), image.width_px);
+    fillRow(row, image.format, sample_bits, gray.mutableRow(y), image.width_px);
   return gray;
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "core/image.hpp"
 #include "motorcade/motorcade.hpp"
 
@@ -8,7 +11,25 @@ namespace motorcade {
 /// Why an image cannot be one of this camera; null when it can.
 const char* problemOf(const Pair::Image& image, const Camera& camera);
 
-/// The image as 8-bit gray in a buffer of the pool: the one copy between the caller and the stages.
-Image grayImage(const Pair::Image& image, ImagePool& pool);
+/// Finds out how many bits the samples of images of 16 bits use, as cameras have ten, twelve or fourteen. Call for each
+/// pair in turn: what a pair that is not dark tells holds for all that follow.
+class SampleBits {
+ public:
+  /// The bits of this pair's samples, the same for both images. The pair has no problem.
+  int of(const Pair& pair);
+  /// The last pair has told it.
+  bool justDecided() const { return just_decided_; }
+  /// What was found out, as a sentence.
+  std::string decision() const;
+
+ private:
+  std::optional<int> decided_;
+  int brightest_ = 0;
+  bool just_decided_ = false;
+};
+
+/// The image as 8-bit gray in a buffer of the pool: the one copy between the caller and the stages. Of samples of 16
+/// bits the upper eight of `sample_bits` are used.
+Image grayImage(const Pair::Image& image, int sample_bits, ImagePool& pool);
 
 }  // namespace motorcade

@@ -92,6 +92,7 @@ class Tracker::Impl {
   std::chrono::milliseconds patience_;
   LogCallback log_;
   ImagePool pool_;
+  SampleBits sample_bits_;  // the pushing thread's
   std::atomic<int> visits_{0};
   std::atomic_flag pushing_;
   std::atomic<bool> closed_{false}, failed_{false};
@@ -172,8 +173,10 @@ Tracker::Push Tracker::Impl::enter(const Pair& pair) {
   frame.frame = {pair.frame};
   frame.stamp = {pair.stamp_ns};
   frame.due = std::chrono::steady_clock::now();
-  frame.left = model_.leftOf(grayImage(pair.left, pool_), pool_);
-  frame.right = model_.rightOf(grayImage(pair.right, pool_), pool_);
+  const int sample_bits = sample_bits_.of(pair);
+  if (sample_bits_.justDecided()) tell(log_, motorcade::LogLevel::kInfo, [this] { return sample_bits_.decision(); });
+  frame.left = model_.leftOf(grayImage(pair.left, sample_bits, pool_), pool_);
+  frame.right = model_.rightOf(grayImage(pair.right, sample_bits, pool_), pool_);
   const Admission admission = pipeline_.push(std::move(frame));
   if (!isTaken(admission)) return {PushStatus::kRejected, reasonOf(admission)};
   return {admission == Admission::kReplacedOlder ? PushStatus::kReplacedOlder : PushStatus::kAccepted, ""};

@@ -46,7 +46,7 @@ fs::path recordedFolder(const RunFolder& run, const Json& summary) {
 /// What the user gave. A calibration that the sequence has of itself is found again.
 GivenCameras givenCamerasOf(const Json& summary) {
   const bool found = textOf(summary, "calibration_from") == "sequence";
-  return {textOf(summary, "camera"), found ? "" : textOf(summary, "calibration")};
+  return {textOf(summary, "camera"), found ? "" : textOf(summary, "calibration"), textOf(summary, "bayer")};
 }
 
 double recordedRate_hz(const Json& summary) {

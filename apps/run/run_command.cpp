@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 
 #include "apps/check/camera_doubts.hpp"
+#include "apps/check/mosaic_doubt.hpp"
 #include "apps/check/sequence_line.hpp"
 #include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
@@ -81,6 +82,9 @@ void requireBelievable(const Sequence& sequence, bool force) {
 
 void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) {
   spdlog::info(sequenceLine(sequence, range));
+  if (sequence.samples) spdlog::info("16-bit images, {}", sequence.samples->why);
+  if (sequence.bayer) spdlog::info("the images are mosaics of a color sensor, {}", nameOf(*sequence.bayer));
+  if (const auto doubt = mosaicDoubt(sequence, range, 1)) spdlog::warn(*doubt);
   if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
   for (const std::string& oddity : odditiesOf(sequence.camera)) spdlog::warn(oddity);
 }

@@ -73,6 +73,13 @@ Json programVersions() {
   return json;
 }
 
+Json toJson(const McapSummary& mcap) {
+  return {{"file", mcap.file},
+          {"bytes", mcap.bytes},
+          {"images_left_out", mcap.images_left_out},
+          {"frames_left_out", mcap.frames_left_out}};
+}
+
 }  // namespace
 
 void RunSummary::setSequence(const Sequence& of) {
@@ -80,6 +87,8 @@ void RunSummary::setSequence(const Sequence& of) {
   layout = of.layout;
   given = of.given;
   calibrated_by = of.calibrated_by;
+  bayer = of.bayer ? nameOf(*of.bayer) : "";
+  sample_bits = of.samples ? of.samples->bits : 8;
 }
 
 double RunSummary::trackedFraction() const {
@@ -100,6 +109,8 @@ std::string toJson(const RunSummary& summary) {
             {"camera", summary.given.camera},
             {"calibration", summary.calibrated_by},
             {"calibration_from", summary.given.empty() ? "sequence" : "option"},
+            {"bayer", summary.bayer},
+            {"sample_bits", summary.sample_bits},
             {"inject", summary.inject},
             {"capture_rate_hz", rounded(summary.capture_rate_hz)},
             {"rate", summary.rate_hz ? Json(*summary.rate_hz) : Json("max")},
@@ -132,11 +143,7 @@ std::string toJson(const RunSummary& summary) {
             {"queues", queues},
             {"solver", toJson(pipeline.solver)},
             {"versions", programVersions()}};
-  if (summary.mcap)
-    json["mcap"] = {{"file", summary.mcap->file},
-                    {"bytes", summary.mcap->bytes},
-                    {"images_left_out", summary.mcap->images_left_out},
-                    {"frames_left_out", summary.mcap->frames_left_out}};
+  if (summary.mcap) json["mcap"] = toJson(*summary.mcap);
   if (summary.signal != 0) json["interrupted_by"] = summary.signal == SIGINT ? "SIGINT" : "SIGTERM";
   return json.dump(2) + "\n";
 }

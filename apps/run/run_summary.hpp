@@ -25,6 +25,8 @@ struct RunSummary {
   std::string sequence, layout;
   GivenCameras given;             // what the user said of them
   std::string calibrated_by;      // the calibration in force, whoever named it
+  std::string bayer;              // the mosaic in force, empty for none
+  int sample_bits = 8;            // that the images' samples use
   std::string inject;             // faults on the way from the camera, as the user gave them
   std::optional<double> rate_hz;  // of the replay; empty for as fast as it went
   double capture_rate_hz = 0;

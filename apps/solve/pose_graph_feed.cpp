@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
+#include <memory>
 #include <utility>
 
+#include "backend/graph/held_end_factor.hpp"
 #include "backend/graph/relative_pose_factor.hpp"
 #include "backend/smoother/factors.hpp"
+#include "backend/solver/problem_finder.hpp"
 #include "core/thread_clock.hpp"
 
 namespace motorcade {
@@ -46,18 +49,21 @@ PoseGraph::Pose poseIn(const Value& value) {
   return std::get<SE3>(value);
 }
 
+PoseGraph::Pose movedBy(const PoseGraph::Pose& move, const Value& value) {
+  if (const auto* planar = std::get_if<SE2>(&value)) return std::get<SE2>(move) * *planar;
+  return (std::get<SE3>(move) * std::get<SE3>(value)).normalized();
+}
+
 }  // namespace
 
 PoseGraphFeed::PoseGraphFeed(const PoseGraph& graph, const IncrementalSolver::Params& params, Pace pace)
     : graph_(graph),
       index_(graph),
+      gauge_(graph, index_),
       solver_(params),
       update_ends_(updateEnds(graph, index_, pace)),
       variable_(index_.size()),
-      waits_(index_.size(), 0) {
-  while (gauge_pose_ < index_.size() && index_.neighbors(gauge_pose_).empty()) ++gauge_pose_;
-  if (gauge_pose_ == index_.size()) gauge_pose_ = 0;
-}
+      waits_(index_.size(), 0) {}
 
 PoseGraphFeed::Update PoseGraphFeed::next() {
   assert(!atEnd());
@@ -71,7 +77,11 @@ PoseGraphFeed::Update PoseGraphFeed::next() {
 }
 
 void PoseGraphFeed::feedPose(std::size_t pose, Update& update) {
-  if (pose == gauge_pose_) {
+  const PoseGraphGauge::Part& part = gauge_.parts()[gauge_.partOf(pose)];
+  if (part.size == 1) return;
+  if (gauge_.isConstant(pose)) {
+    feedConstant(pose, update);
+  } else if (pose == part.first && part.held.size() == 1) {
     add(pose, graph_.planar ? Value(SE2{}) : Value(SE3{}), update);
     solver_.addFactor(gaugeOf(variable_[pose], graph_.planar));
   } else if (const auto joint = joinedTo(pose)) {
@@ -81,15 +91,26 @@ void PoseGraphFeed::feedPose(std::size_t pose, Update& update) {
   }
 }
 
-/// By odometry where there is any, else by the first edge in the file to a pose that is there.
+/// Its edges to variables came with those, or come with them; the ones between constants count in chi2 alone.
+void PoseGraphFeed::feedConstant(std::size_t pose, Update& update) {
+  ++constants_, ++update.poses;
+  for (const Neighbor& neighbor : index_.neighbors(pose))
+    if (gauge_.isConstant(neighbor.pose) && neighbor.pose < pose) ++edge_count_, ++update.edges;
+}
+
+/// By odometry where there is any, else by the first edge in the file to a pose that is there; by one that tells of all
+/// directions, if there is one.
 std::optional<PoseGraphFeed::Neighbor> PoseGraphFeed::joinedTo(std::size_t pose) const {
-  std::optional<Neighbor> first;
+  std::optional<Neighbor> best;
+  int best_rank = 0;
   for (const Neighbor& neighbor : index_.neighbors(pose)) {
     if (!present(neighbor.pose)) continue;
-    if (index_.id(neighbor.pose) == index_.id(pose) - 1) return neighbor;
-    if (!first) first = neighbor;
+    const int rank =
+        1 + (index_.id(neighbor.pose) == index_.id(pose) - 1 ? 1 : 0) + (graph_.edges[neighbor.edge].definite ? 2 : 0);
+    if (rank > best_rank) best = neighbor;
+    best_rank = std::max(best_rank, rank);
   }
-  return first;
+  return best;
 }
 
 /// Breadth first: the initial value of a pose that waited comes over as few edges as possible.
@@ -101,7 +122,7 @@ void PoseGraphFeed::addWithWaiting(std::size_t pose, const Neighbor& joint, Upda
   std::vector<Joining> queue{{pose, joint}};
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const Joining joining = queue[i];
-    add(joining.pose, moved(solver_.estimate(variable_[joining.joint.pose]), joining.joint, joining.pose), update);
+    add(joining.pose, moved(valueOf(joining.joint.pose), joining.joint, joining.pose), update);
     for (const Neighbor& neighbor : index_.neighbors(joining.pose)) {
       if (waits_[neighbor.pose] == 0) continue;
       waits_[neighbor.pose] = 0;
@@ -122,15 +143,31 @@ void PoseGraphFeed::add(std::size_t pose, const Value& initial, Update& update) 
   ++update.poses;
   for (const Neighbor& neighbor : index_.neighbors(pose)) {
     if (!present(neighbor.pose)) continue;
-    const auto& edge = graph_.edges[neighbor.edge];
-    const bool forward = edge.to == index_.id(pose);
-    const VariableId other = variable_[neighbor.pose];
-    if (!solver_.addFactor(factorOf(edge, forward ? other : variable_[pose], forward ? variable_[pose] : other))) {
+    if (!solver_.addFactor(factorBetween(neighbor.edge))) {
       refused_edges_.push_back(neighbor.edge);
       continue;
     }
     ++edge_count_, ++update.edges;
   }
+}
+
+/// In the solver's frame of its part.
+Value PoseGraphFeed::valueOf(std::size_t pose) const {
+  if (!gauge_.isConstant(pose)) return solver_.estimate(variable_[pose]);
+  return std::visit([](const auto& value) { return Value(value); }, gauge_.valueOf(pose));
+}
+
+/// Both poses are present, and not both constants.
+std::unique_ptr<Factor> PoseGraphFeed::factorBetween(std::size_t edge) const {
+  const std::size_t from = index_.at(graph_.edges[edge].from), to = index_.at(graph_.edges[edge].to);
+  auto factor = factorOf(graph_.edges[edge], variable_[from], variable_[to]);
+  if (gauge_.isConstant(from))
+    return std::make_unique<HeldEndFactor>(std::move(factor), HeldEndFactor::Held::kFirst, valueOf(from),
+                                           variable_[to]);
+  if (gauge_.isConstant(to))
+    return std::make_unique<HeldEndFactor>(std::move(factor), HeldEndFactor::Held::kSecond, valueOf(to),
+                                           variable_[from]);
+  return factor;
 }
 
 /// From a pose at `start` over an edge to its neighbor.
@@ -159,7 +196,7 @@ double PoseGraphFeed::chi2() const {
       const auto& edge = graph_.edges[neighbor.edge];
       if (edge.from != index_.id(pose) || !present(pose) || !present(neighbor.pose)) continue;
       if (std::ranges::find(refused_edges_, neighbor.edge) != refused_edges_.end()) continue;
-      const Value from = solver_.estimate(variable_[pose]), to = solver_.estimate(variable_[neighbor.pose]);
+      const Value from = valueOf(pose), to = valueOf(neighbor.pose);
       factorOf(edge, variable_[pose], variable_[neighbor.pose])->residual(std::array{&from, &to}, r);
       sum += r.squaredNorm();
     }
@@ -167,27 +204,40 @@ double PoseGraphFeed::chi2() const {
   return sum;
 }
 
+std::vector<SolverProblem> PoseGraphFeed::problemsNow() const { return findProblems(solver_.graph(), solver_.tree()); }
+
 std::vector<std::vector<std::int64_t>> PoseGraphFeed::disconnectedParts() const {
-  std::vector<std::vector<std::int64_t>> parts;
-  std::vector<char> placed(index_.size(), 0);
-  for (std::size_t pose = 0; pose < fed_; ++pose) {
-    if (waits_[pose] == 0 || placed[pose] != 0) continue;
-    parts.emplace_back();
-    for (const auto& vertex : placedPart(pose, placed)) parts.back().push_back(vertex.id);
-    std::ranges::sort(parts.back());
-  }
+  std::vector<std::vector<std::int64_t>> parts(gauge_.parts().size());
+  for (std::size_t pose = 0; pose < fed_; ++pose)
+    if (gauge_.partOf(pose) != gauge_.mainPart()) parts[gauge_.partOf(pose)].push_back(index_.id(pose));
+  std::erase_if(parts, [](const auto& part) { return part.empty(); });
   return parts;
 }
 
+/// From the solver's frame of a part to the graph's: takes the one pose that is held to its value.
+PoseGraph::Pose PoseGraphFeed::moveOf(std::size_t part) const {
+  const auto& held = gauge_.parts()[part].held;
+  if (held.size() > 1 || !present(held.front())) return graph_.planar ? PoseGraph::Pose(SE2{}) : PoseGraph::Pose(SE3{});
+  const Value from = valueOf(held.front());
+  const PoseGraph::Pose to = gauge_.valueOf(held.front());
+  if (graph_.planar) return std::get<SE2>(to) * std::get<SE2>(from).inverse();
+  return (std::get<SE3>(to) * std::get<SE3>(from).inverse()).normalized();
+}
+
 std::vector<PoseGraph::Vertex> PoseGraphFeed::vertices() const {
+  std::vector<PoseGraph::Pose> moves;
+  for (std::size_t part = 0; part < gauge_.parts().size(); ++part) moves.push_back(moveOf(part));
   std::vector<PoseGraph::Vertex> vertices;
   std::vector<char> placed(index_.size(), 0);
   for (std::size_t pose = 0; pose < fed_; ++pose) {
-    if (present(pose)) {
-      vertices.push_back({index_.id(pose), poseIn(solver_.estimate(variable_[pose]))});
+    const auto& part = gauge_.parts()[gauge_.partOf(pose)];
+    if (part.size == 1 || (present(pose) && std::ranges::find(part.held, pose) != part.held.end())) {
+      vertices.push_back({index_.id(pose), gauge_.valueOf(pose)});
+    } else if (present(pose)) {
+      vertices.push_back({index_.id(pose), movedBy(moves[gauge_.partOf(pose)], valueOf(pose))});
     } else if (placed[pose] == 0) {
-      const auto part = placedPart(pose, placed);
-      vertices.insert(vertices.end(), part.begin(), part.end());
+      const auto waiting = placedPart(pose, placed);
+      vertices.insert(vertices.end(), waiting.begin(), waiting.end());
     }
   }
   std::ranges::sort(vertices, {}, &PoseGraph::Vertex::id);

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "apps/solve/pose_graph_gauge.hpp"
 #include "apps/solve/pose_graph_index.hpp"
 #include "backend/solver/incremental_solver.hpp"
 
@@ -11,8 +13,10 @@ namespace motorcade {
 
 /// Feeds a pose graph to the incremental solver in the order of the poses' ids, as if it were being driven: a pose
 /// comes with all edges to poses that are there already and starts where odometry puts it, whatever vertices the file
-/// lists. The first pose that has an edge is held at the identity by a tight prior. A pose that no edge joins yet
-/// waits; it enters with all that waited for it once an edge does.
+/// lists. A pose that no edge joins yet waits; it enters with all that waited for it once an edge does.
+///
+/// The first pose of each connected part is held at the origin by a tight prior, and the solution is moved to where the
+/// part's gauge wants it: chi2 does not depend on that. Where several poses are held, they are constants of the solver.
 class PoseGraphFeed {
  public:
   enum class Pace {
@@ -46,17 +50,20 @@ class PoseGraphFeed {
   std::optional<VariableId> variableOf(std::int64_t pose_id) const;
   std::int64_t poseOf(VariableId v) const { return index_.id(pose_of_variable_[v.value]); }
 
-  std::size_t poseCount() const { return pose_of_variable_.size(); }  // in the solver
-  std::size_t edgeCount() const { return edge_count_; }               // in the solver
-  std::int64_t gaugePose() const { return index_.id(gauge_pose_); }   // held at the identity
+  std::size_t poseCount() const { return pose_of_variable_.size() + constants_; }  // in the solution
+  std::size_t edgeCount() const { return edge_count_; }                            // in the solution
+  const PoseGraphIndex& index() const { return index_; }
+  const PoseGraphGauge& gauge() const { return gauge_; }
   /// Of the edges in the solver, at its estimate; without the prior.
   double chi2() const;
   /// Edges that the solver refused because they are not finite where they entered: indices into the graph's.
   const std::vector<std::size_t>& refusedEdges() const { return refused_edges_; }
   const std::vector<LateJoin>& lateJoins() const { return late_joins_; }
-  /// Of the poses fed so far that no edge joins to the rest: their ids, part by part.
+  /// What is wrong with the system as it is now.
+  std::vector<SolverProblem> problemsNow() const;
+  /// The ids of the poses fed so far, of each part but the main one.
   std::vector<std::vector<std::int64_t>> disconnectedParts() const;
-  /// Every pose fed so far: the estimate; a disconnected part along its edges, its first pose at the identity.
+  /// Every pose fed so far: the estimate; one that no edge touches stays where its vertex is.
   std::vector<PoseGraph::Vertex> vertices() const;
 
  private:
@@ -67,14 +74,19 @@ class PoseGraphFeed {
   void addWithWaiting(std::size_t pose, const Neighbor& joint, Update& update);
   void add(std::size_t pose, const Value& initial, Update& update);
   Value moved(const Value& start, const Neighbor& from, std::size_t to) const;
-  bool present(std::size_t pose) const { return variable_[pose].valid(); }
+  bool present(std::size_t pose) const { return variable_[pose].valid() || gauge_.isConstant(pose); }
+  Value valueOf(std::size_t pose) const;
+  std::unique_ptr<Factor> factorBetween(std::size_t edge) const;
+  void feedConstant(std::size_t pose, Update& update);
+  PoseGraph::Pose moveOf(std::size_t part) const;
   std::vector<PoseGraph::Vertex> placedPart(std::size_t first, std::vector<char>& placed) const;
 
   const PoseGraph& graph_;
   PoseGraphIndex index_;
+  PoseGraphGauge gauge_;
   IncrementalSolver solver_;
   std::vector<std::size_t> update_ends_;  // per update, the pose after its last
-  std::size_t updates_done_ = 0, fed_ = 0, gauge_pose_ = 0, edge_count_ = 0;
+  std::size_t updates_done_ = 0, fed_ = 0, edge_count_ = 0, constants_ = 0;
   std::vector<VariableId> variable_;  // per pose; not valid while it is not in the solver
   std::vector<std::size_t> pose_of_variable_;
   std::vector<char> waits_;  // per pose

@@ -24,18 +24,29 @@ std::string namesOf(const std::vector<std::int64_t>& ids) {
   return text;
 }
 
-/// What the solver itself found, each once.
-void addSolverProblems(const IncrementalSolver::Report& report, const PoseGraphFeed& feed,
-                       std::vector<SolveProblem>& problems) {
+/// Factors that the solver had to leave out, each once. What is wrong with the system may be mended by a later edge.
+void addRefusals(const IncrementalSolver::Report& report, const PoseGraphFeed& feed,
+                 std::vector<SolveProblem>& problems) {
+  using Kind = SolverProblem::Kind;
   const auto nameOf = [&](VariableId v) { return namesOf({feed.poseOf(v)}); };
   for (const SolverProblem& found : report.problems) {
-    if (found.kind == SolverProblem::Kind::kNotFinite) continue;  // reported with the edge and its line
-    SolveProblem problem{std::string(motorcade::nameOf(found.kind)),
-                         nameOf(found.variable),
-                         describe(found, feed.solver().graph(), nameOf),
-                         {feed.poseOf(found.variable)}};
-    const auto same = [&](const SolveProblem& p) { return p.kind == problem.kind && p.name == problem.name; };
-    if (std::ranges::none_of(problems, same)) problems.push_back(std::move(problem));
+    if (found.kind != Kind::kUnknownVariable && found.kind != Kind::kRepeatedVariable) continue;
+    problems.push_back({std::string(motorcade::nameOf(found.kind)),
+                        nameOf(found.variable),
+                        describe(found, feed.solver().graph(), nameOf),
+                        {feed.poseOf(found.variable)}});
+  }
+}
+
+/// Directions along which the edges do not say where poses are. Badly conditioned ones are solved, if badly.
+void addUndetermined(const PoseGraphFeed& feed, Solution& solution) {
+  const auto nameOf = [&](VariableId v) { return namesOf({feed.poseOf(v)}); };
+  for (const SolverProblem& found : feed.problemsNow()) {
+    solution.problems.push_back({std::string(motorcade::nameOf(found.kind)),
+                                 nameOf(found.variable),
+                                 describe(found, feed.solver().graph(), nameOf),
+                                 {feed.poseOf(found.variable)}});
+    if (found.kind != SolverProblem::Kind::kBadlyConditioned) solution.unsolved.push_back(solution.problems.back());
   }
 }
 
@@ -49,22 +60,42 @@ void addEdgeProblems(const PoseGraph& graph, const PoseGraphFeed& feed, std::vec
   }
 }
 
-void addPoseProblems(const PoseGraph& graph, const PoseGraphFeed& feed, std::vector<SolveProblem>& problems) {
-  const std::string gauge = namesOf({feed.gaugePose()});
-  for (const std::int64_t id : graph.fixed)
-    if (id != feed.gaugePose())
-      problems.push_back({"fix_not_applied", namesOf({id}), "FIX is not applied: " + gauge + " is held", {id}});
+void addGaugeProblems(const PoseGraphFeed& feed, std::vector<SolveProblem>& problems) {
+  using Why = PoseGraphGauge::Unapplied::Why;
+  for (const auto& [id, why] : feed.gauge().unapplied())
+    problems.push_back({"fix_not_applied",
+                        namesOf({id}),
+                        why == Why::kNoSuchPose ? "FIX is not applied: no other line names the pose"
+                                                : "FIX is not applied: no VERTEX line says where the pose is",
+                        {id}});
+}
+
+void addPartProblems(const PoseGraphFeed& feed, std::vector<SolveProblem>& problems) {
+  const PoseGraphGauge& gauge = feed.gauge();
+  const auto idsOf = [&](const std::vector<std::size_t>& poses) {
+    std::vector<std::int64_t> ids;
+    for (const std::size_t pose : poses) ids.push_back(feed.index().id(pose));
+    return ids;
+  };
+  const std::string main = namesOf(idsOf(gauge.parts()[gauge.mainPart()].held));
+  for (const auto& part : feed.disconnectedParts()) {
+    const auto& of_first = gauge.parts()[gauge.partOf(feed.index().at(part.front()))];
+    const std::string what =
+        part.size() == 1 ? "; left where it is" : "; solved by itself, with " + namesOf(idsOf(of_first.held)) + " held";
+    problems.push_back({"disconnected_part", namesOf(part),
+                        "disconnected part: no edge joins it to the rest, which is held by " + main + what, part});
+  }
+}
+
+void addPoseProblems(const PoseGraphFeed& feed, std::vector<SolveProblem>& problems) {
+  addGaugeProblems(feed, problems);
   for (const auto& late : feed.lateJoins()) {
     problems.push_back(
         {"joined_late", namesOf(late.waited),
          "no edge to an earlier pose: waited until pose " + std::to_string(late.joining) + " joined them to the rest",
          late.waited});
   }
-  for (const auto& part : feed.disconnectedParts()) {
-    problems.push_back({"disconnected_part", namesOf(part),
-                        "disconnected part: no edge joins it to " + gauge + "; not optimized, and not counted in chi2",
-                        part});
-  }
+  addPartProblems(feed, problems);
 }
 
 Solution solutionOf(const PoseGraph& graph, const PoseGraphFeed& feed, Solution&& solution) {
@@ -73,10 +104,16 @@ Solution solutionOf(const PoseGraph& graph, const PoseGraphFeed& feed, Solution&
   solution.chi2 = feed.chi2();
   solution.vertices = feed.vertices();
   addEdgeProblems(graph, feed, solution.problems);
-  addPoseProblems(graph, feed, solution.problems);
+  addPoseProblems(feed, solution.problems);
+  addUndetermined(feed, solution);
+  const auto fail = [&](const SolveProblem& problem) {
+    solution.problems.push_back(problem);
+    solution.unsolved.push_back(problem);
+  };
   if (!std::isfinite(solution.chi2))
-    solution.problems.push_back(
-        {"not_finite", "solution", "the estimates overflow: a measurement or its information is too large", {}});
+    fail({"not_finite", "solution", "the estimates overflow: a measurement or its information is too large", {}});
+  if (solution.edges == 0 && solution.complete)
+    fail({"no_edges", "graph", "no edge counts, nothing tells where one pose is from another", {}});
   return std::move(solution);
 }
 
@@ -96,7 +133,7 @@ void feedAll(PoseGraphFeed& feed, const SolveProgress& progress, Solution& solut
     solution.waiting_edges = update.report.waiting_factors;
     solution.waiting_chi2 = update.report.waiting_chi2;
     solution.waiting_scalars = update.report.waiting_scalars;
-    addSolverProblems(update.report, feed, solution.problems);
+    addRefusals(update.report, feed, solution.problems);
     solution.complete = progress(solution.update_ms.size(), feed.updateCount());
   }
 }
@@ -107,7 +144,7 @@ bool converge(PoseGraphFeed& feed, const SolveProgress& progress, Solution& solu
     const double start_ms = threadCpu_ms();
     const auto& report = feed.solver().converge(1, kConverged);
     solution.total_ms += threadCpu_ms() - start_ms;
-    addSolverProblems(report, feed, solution.problems);
+    addRefusals(report, feed, solution.problems);
     if (report.largest_change < kConverged) return std::isfinite(feed.chi2());
     solution.complete = progress(iteration, kMaxIterations);
   }
@@ -135,10 +172,11 @@ Solution solveAtOnce(const PoseGraph& graph, const IncrementalSolver::Params& pa
   PoseGraphFeed driven(graph, params);
   feedAll(driven, progress, second);
   if (!converge(driven, progress, second)) {
-    second.problems.push_back({"not_converged",
+    second.unsolved.push_back({"not_converged",
                                "solution",
                                "Gauss-Newton moved on after " + std::to_string(kMaxIterations) + " iterations",
                                {}});
+    second.problems.push_back(second.unsolved.back());
   }
   return solutionOf(graph, driven, std::move(second));
 }

@@ -28,6 +28,7 @@ struct Solution {
   double waiting_chi2 = 0;
   std::int64_t waiting_scalars = 0;
   std::vector<SolveProblem> problems;  // of the file, then of the solution
+  std::vector<SolveProblem> unsolved;  // those for which it is no solution
   std::vector<PoseGraph::Vertex> vertices;
 };
 

@@ -46,7 +46,11 @@ int runSolve(const SolveOptions& options) {
     graph.vertices = std::move(solution.vertices);
     writePoseGraph(options.out, graph);
   }
-  return solution.complete ? 0 : kExitSignal + signals.received();
+  if (!solution.complete) return kExitSignal + signals.received();
+  if (!solution.unsolved.empty())
+    throw InputError(options.graph.string() + ": could not be solved: " + solution.unsolved.front().name + ": " +
+                     solution.unsolved.front().detail);
+  return 0;
 }
 
 }  // namespace motorcade

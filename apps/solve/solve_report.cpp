@@ -50,6 +50,7 @@ std::string jsonOf(const Solution& solution, const SolveOptions& options) {
                                  {"poses", solution.poses},
                                  {"edges", solution.edges},
                                  {"complete", solution.complete},
+                                 {"solved", solution.complete && solution.unsolved.empty()},
                                  {"updates", solution.update_ms.size()},
                                  {"chi2", solution.chi2},
                                  {"total_s", 1e-3 * solution.total_ms},

@@ -90,6 +90,7 @@ std::string sequenceFingerprint(const Sequence& sequence) {
     for (const auto* rotation : {&sequence.rectification->R_left, &sequence.rectification->R_right})
       for (const double number : rotation->reshaped()) fingerprint.add(number);
   }
+  if (sequence.bayer) fingerprint.add(std::string(nameOf(*sequence.bayer)));
   for (const FramePaths& frame : sequence.frames) {
     fingerprint.addFile(frame.left);
     fingerprint.addFile(frame.right);

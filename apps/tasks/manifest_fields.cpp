@@ -25,8 +25,8 @@ constexpr std::array<const char*, 13> kPathColumns{"path",      "paths",    "dri
                                                    "sequences", "folder",   "folders", "dir",    "directory",
                                                    "file",      "filename", "location"};
 /// Of `run`; the last one of `evaluate`.
-constexpr std::array<const char*, 11> kOptionKeys{"frames",      "fps",    "rate",   "live",    "masks",   "camera",
-                                                  "calibration", "config", "inject", "require", "baseline"};
+constexpr std::array<const char*, 12> kOptionKeys{"frames",      "fps",   "rate",   "live",   "masks",   "camera",
+                                                  "calibration", "bayer", "config", "inject", "require", "baseline"};
 
 template <class Number>
 std::optional<Number> numberIn(std::string_view text) {

@@ -69,7 +69,8 @@ void open(const Manifest& manifest, PlannedDrive& drive) {
   const ManifestEntry& entry = *drive.entry;
   if (!drive.found.problem.empty()) return;
   try {
-    const GivenCameras given{optionOf(entry, "camera"), calibrationOption(entry, manifest.root)};
+    const GivenCameras given{optionOf(entry, "camera"), calibrationOption(entry, manifest.root),
+                             optionOf(entry, "bayer")};
     const Sequence sequence = openSequence(drive.found.path, fpsOf(entry), given);
     const auto truth = readCameraTruth(sequence);
     drive.frame_range = frameRangeOf(optionOf(entry, "frames"), sequence, truth);

@@ -29,7 +29,9 @@ RunOptions runOptionsOf(const Manifest& manifest, const PlannedDrive& drive, con
   run.threads = threads;
   run.frames = drive.frame_range;
   run.config = fileOption(entry, "config", manifest.file.parent_path());
-  run.given = {.camera = optionOf(entry, "camera"), .calibration = calibrationOption(entry, manifest.root)};
+  run.given = {.camera = optionOf(entry, "camera"),
+               .calibration = calibrationOption(entry, manifest.root),
+               .bayer = optionOf(entry, "bayer")};
   run.assignments = set.assignments;
   run.require = optionOf(entry, "require");
   run.inject = optionOf(entry, "inject");
@@ -47,6 +49,7 @@ std::vector<std::string> wordsOf(const RunOptions& run, const std::string& fps, 
   add("--config", run.config.string());
   add("--camera", run.given.camera);
   add("--calibration", run.given.calibration);
+  add("--bayer", run.given.bayer);
   for (const std::string& assignment : run.assignments) add("--set", assignment);
   add("--require", run.require);
   add("--inject", run.inject.empty() || !seed ? run.inject : fmt::format("{},seed={}", run.inject, *seed));

@@ -1,23 +1,43 @@
 #include "backend/graph/relative_pose_factor.hpp"
 
-#include <cassert>
 #include <cmath>
 #include <numbers>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 
 #include "core/elementary.hpp"
 
 namespace motorcade {
 namespace {
 
+/// The same of information that leaves directions open, in which a Cholesky decomposition breaks down.
+template <int N>
+Eigen::Matrix<double, N, N> semidefiniteUpperRoot(const Eigen::Matrix<double, N, N>& information) {
+  constexpr double kRounding = 1e-12;
+  const Eigen::Matrix<double, N, 1> diagonal = information.diagonal().cwiseMax(0),
+                                    scale = (diagonal.array() > 0).select(diagonal.cwiseSqrt(), 1.0);  // m and rad
+  const Eigen::Matrix<double, N, N> scaled =
+      scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> eigen(scaled);
+  const Eigen::Matrix<double, N, 1> values = (eigen.eigenvalues().array() > kRounding).select(eigen.eigenvalues(), 0.0);
+  const Eigen::Matrix<double, N, N> root =
+      values.cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose() * scale.asDiagonal();
+  return root.householderQr().matrixQR().template triangularView<Eigen::Upper>();
+}
+
 /// S, upper triangular, with S^T S = information.
 template <int N>
 Eigen::Matrix<double, N, N> upperRoot(const Eigen::Matrix<double, N, N>& information) {
+  constexpr double kLost = 1e-13;  // of a diagonal entry: what is left of it is rounding
   const Eigen::LLT<Eigen::Matrix<double, N, N>> cholesky(information);
-  assert(cholesky.info() == Eigen::Success);
-  return cholesky.matrixU();
+  if (cholesky.info() != Eigen::Success) return semidefiniteUpperRoot<N>(information);
+  const Eigen::Matrix<double, N, N> root = cholesky.matrixU();
+  if ((root.diagonal().array().square() < kLost * information.diagonal().array()).any())
+    return semidefiniteUpperRoot<N>(information);
+  return root;
 }
 
 /// In [-pi, pi]; inlined, unlike std::remainder.

@@ -4,7 +4,8 @@
 
 /// Measured motions between two poses, as public pose graphs state them:
 ///   e = [t(E); Log R(E)], E = Z^-1 Xi^-1 Xj, cost e^T Omega e
-/// E's translation enters as it is, not through the logarithm of the whole motion. Omega must be positive definite.
+/// E's translation enters as it is, not through the logarithm of the whole motion. Omega must be positive semidefinite:
+/// along a direction without information the factor says nothing.
 namespace motorcade {
 
 class RelativePoseFactorSE3 final : public Factor {

@@ -68,7 +68,7 @@ typedef struct {
   size_t struct_size;
   const void* pixels;
   int width_px, height_px;
-  motorcade_format format;  // gray is BT.601; of 16 bits the upper eight are used
+  motorcade_format format;  // gray is BT.601; 16 bits may use 10 to 14, see motorcade.hpp
   int64_t stride_bytes;     // from row to row; 0: rows without gaps
 } motorcade_image;
 typedef struct {

@@ -60,7 +60,9 @@ struct Camera {
 
 /// One moment's two images. The pixels are copied by `Tracker::push`.
 struct Pair {
-  enum class Format { kGray8, kGray16, kRgb8, kBgr8 };  // gray is BT.601; of 16 bits the upper eight are used
+  /// Gray is BT.601. Of kGray16 the upper eight bits are used of the 8, 10, 12, 14 or 16 that hold the brightest sample
+  /// of the first pair with one above 255; for all pairs, as the log tells.
+  enum class Format { kGray8, kGray16, kRgb8, kBgr8 };
   struct Image {
     const void* pixels = nullptr;
     int width_px = 0, height_px = 0;

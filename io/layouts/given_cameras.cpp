@@ -65,7 +65,7 @@ StereoCamera cameraInFolder(Sequence& sequence, const fs::path& folder, ImageSiz
 }  // namespace
 
 GivenCameras absolute(const GivenCameras& given) {
-  GivenCameras result{.camera = given.camera};
+  GivenCameras result{.camera = given.camera, .bayer = given.bayer};
   if (given.calibration.empty()) return result;
   for (const fs::path& file : calibrationFiles(given.calibration)) {
     if (!result.calibration.empty()) result.calibration += ',';

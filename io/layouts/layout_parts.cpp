@@ -10,6 +10,7 @@
 #include "io/errors.hpp"
 #include "io/image_file.hpp"
 #include "io/layouts/given_cameras.hpp"
+#include "io/layouts/sample_use.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/rig/rig_search.hpp"
 #include "io/timestamps.hpp"
@@ -169,6 +170,8 @@ void setCamera(Sequence& sequence, const GivenCameras& given, const LayoutCamera
   sequence.camera = given.empty() ? layouts_own(size) : givenCamera(sequence, sequence.given, size);
   sequence.camera.width_px = size.width;
   sequence.camera.height_px = size.height;
+  sequence.samples = sampleUseOf(sequence);
+  if (const auto mosaic = givenMosaic(sequence, given)) sequence.bayer = mosaic;
 }
 
 }  // namespace motorcade

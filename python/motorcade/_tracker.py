@@ -83,9 +83,10 @@ class Tracker:
         self, left: Image, right: Image, stamp_ns: int, frame: int = -1, *, format: Literal["rgb", "bgr"] = "rgb"
     ) -> Push:
         """Hands one moment's two images in. They are numpy arrays, or anything else with the buffer protocol, of
-        uint8 or uint16 (height x width; of 16 bits the upper eight are used) or of uint8 (height x width x 3; the
-        order of colors is ``format``), of the camera's size, with any distance from row to row. The library copies
-        them once, and nothing else does.
+        uint8 or uint16 (height x width) or of uint8 (height x width x 3; the order of colors is ``format``), of
+        the camera's size, with any distance from row to row. The library copies them once, and nothing else does.
+        Of uint16 the upper eight bits are used of the 8, 10, 12, 14 or 16 that hold the brightest sample of the first
+        pair with one above 255; for all pairs, as the log tells.
 
         ``stamp_ns`` is the capture time, integer nanoseconds, after that of the pair before; ``frame`` its number,
         after that of the pair before, or -1 for the next one.

@@ -385,6 +385,8 @@ class FollowingADrive(unittest.TestCase):
 
         deep = changed(lambda image: (image.astype(np.uint16) << 8) + 5)
         self.assert_same(follow(deep, self.camera), self.expected)
+        ten_bits = changed(lambda image: image.astype(np.uint16) * 4 + 3)
+        self.assert_same(follow(ten_bits, self.camera), self.expected)
         self.assert_same(follow(changed(lambda image: np.dstack([image] * 3)), self.camera), self.expected)
 
     def test_the_order_of_colors_is_as_it_is_told(self) -> None:

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdint>
+#include <mutex>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -54,6 +55,52 @@ TEST_F(Formats, OfTheSamePictureGiveTheSameResults) {
   EXPECT_EQ(resultsAs(Pair::Format::kGray16, 2 * width_px + 1), expected);  // rows at odd addresses
   EXPECT_EQ(resultsAs(Pair::Format::kRgb8, 3 * width_px), expected);
   EXPECT_EQ(resultsAs(Pair::Format::kBgr8, 3 * width_px + 64), expected);
+}
+
+/// Cameras of ten to fourteen bits hand their samples on as they are. The first pair is dark: the second one tells.
+TEST_F(Formats, OfFewerBitsInSixteenGiveTheSameResults) {
+  const auto darkFirst = [&](std::size_t index, std::uint8_t gray) {
+    return static_cast<std::uint8_t>(index == 0 ? gray / 8 : gray);
+  };
+  std::vector<std::uint8_t> left8, right8;
+  std::vector<std::uint16_t> left16, right16;
+  const auto expected = bytesOf(track(drive_, replay(), [&](std::size_t index) {
+    Pair pair = drive_.pair(index);
+    left8 = drive_.frames[index].left, right8 = drive_.frames[index].right;
+    for (std::uint8_t& gray : left8) gray = darkFirst(index, gray);
+    for (std::uint8_t& gray : right8) gray = darkFirst(index, gray);
+    pair.left.pixels = left8.data(), pair.right.pixels = right8.data();
+    return pair;
+  }));
+  for (const int more_bits : {0, 2, 4, 6}) {
+    std::vector<std::string> lines;
+    std::mutex mutex;
+    Tracker::Options options = replay();
+    options.log = [&](Tracker::LogLevel, const std::string& text) {
+      const std::scoped_lock lock(mutex);
+      if (text.starts_with("images of 16 bits")) lines.push_back(text);
+    };
+    const auto deep = [&](std::size_t index, const std::vector<std::uint8_t>& gray, std::vector<std::uint16_t>& out) {
+      out.clear();
+      // The first pair has so few levels that as eight bits they are what they are.
+      for (const std::uint8_t value : gray)
+        out.push_back(static_cast<std::uint16_t>(index == 0 ? darkFirst(index, value) : value << more_bits));
+      return out.data();
+    };
+    EXPECT_EQ(bytesOf(track(drive_, options,
+                            [&](std::size_t index) {
+                              Pair pair = drive_.pair(index);
+                              pair.left.pixels = deep(index, drive_.frames[index].left, left16);
+                              pair.right.pixels = deep(index, drive_.frames[index].right, right16);
+                              pair.left.format = pair.right.format = Pair::Format::kGray16;
+                              return pair;
+                            })),
+              expected)
+        << more_bits;
+    ASSERT_EQ(lines.size(), more_bits == 0 ? 0U : 1U) << "said once, when it is known";
+    if (more_bits > 0)
+      EXPECT_NE(lines[0].find("taken as " + std::to_string(8 + more_bits)), std::string::npos) << lines[0];
+  }
 }
 
 /// Red is bright in one order of the colors, and dark in the other: weights 77 and 29 of 256.

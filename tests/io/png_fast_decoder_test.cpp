@@ -45,12 +45,16 @@ class PngFastDecoder : public testing::Test {
  protected:
   /// Whether the fast way gives an image, and what comes out is libpng's verdict either way.
   void expectAsLibpng(std::string_view bytes, Way way) {
-    const ImageSize size = pngCodec().size(bytes, "a.png");
+    const ImageSize size = pngCodec().header(bytes, "a.png").size;
     EXPECT_EQ(decodeCommonPng(bytes, size, pool_).has_value(), way == Way::kFast);
     expectAsLibpng(bytes);
   }
   void expectAsLibpng(std::string_view bytes) {
-    const Verdict verdict = verdictOf([&] { return pngCodec().decode(bytes, "a.png", pool_); });
+    for (const int sample_bits : {8, 10, 12, 15}) {
+      EXPECT_TRUE(verdictOf([&] { return pngCodec().decode(bytes, "a.png", pool_, sample_bits); }) ==
+                  verdictOf([&] { return decodeAnyPng(bytes, "a.png", pool_, sample_bits); }));
+    }
+    const Verdict verdict = verdictOf([&] { return pngCodec().decode(bytes, "a.png", pool_, kAllSampleBits); });
     EXPECT_TRUE(verdict == verdictOf([&] { return decodeAnyPng(bytes, "a.png", pool_); }));
     if (verdict.message.empty()) {
       ++accepted_;
@@ -72,6 +76,13 @@ TEST_F(PngFastDecoder, EachFilterComesOffAsInLibpng) {
       expectAsLibpng(PngSample{.color = color, .filters = filters}.write(), Way::kFast);
     }
   }
+}
+
+TEST_F(PngFastDecoder, GrayOfSixteenBitsIsDecodedToo) {
+  for (const int color : {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA})
+    for (const int filters :
+         {PNG_FILTER_NONE, PNG_FILTER_SUB, PNG_FILTER_UP, PNG_FILTER_AVG, PNG_FILTER_PAETH, PNG_ALL_FILTERS})
+      expectAsLibpng(PngSample{.color = color, .bits = 16, .filters = filters}.write(), Way::kFast);
 }
 
 TEST_F(PngFastDecoder, EachSizeIsDecoded) {
@@ -102,9 +113,10 @@ TEST_F(PngFastDecoder, EachKindOfStreamIsDecoded) {
 
 TEST_F(PngFastDecoder, UnusualImagesAreLeftToLibpng) {
   for (const PngSample& sample :
-       {PngSample{.bits = 16}, PngSample{.bits = 4}, PngSample{.color = PNG_COLOR_TYPE_RGB, .bits = 16},
+       {PngSample{.bits = 4}, PngSample{.color = PNG_COLOR_TYPE_RGB, .bits = 16},
         PngSample{.color = PNG_COLOR_TYPE_PALETTE}, PngSample{.interlace = PNG_INTERLACE_ADAM7},
-        PngSample{.transparent = true}, PngSample{.color = PNG_COLOR_TYPE_RGB, .transparent = true}})
+        PngSample{.bits = 16, .interlace = PNG_INTERLACE_ADAM7}, PngSample{.transparent = true},
+        PngSample{.color = PNG_COLOR_TYPE_RGB, .transparent = true}})
     expectAsLibpng(sample.write(), Way::kLibpng);
   EXPECT_EQ(accepted_, 7);
 }

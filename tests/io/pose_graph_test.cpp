@@ -81,6 +81,15 @@ TEST_F(PoseGraphFile, ErrorsNameFileLineAndHowToFixIt) {
   EXPECT_THAT(errorOf("EDGE_SE2 0 -1 1 0 0" + kUnit3), AllOf(HasSubstr("-1 is negative"), HasSubstr("from 0")));
   EXPECT_THAT(errorOf("EDGE_SE2 0 99999999999999999999 1 0 0" + kUnit3), HasSubstr("whole numbers"));
   EXPECT_THAT(errorOf("EDGE_XY 0 1 1 0\n"), AllOf(HasSubstr("unknown tag 'EDGE_XY'"), HasSubstr("EDGE_SE2")));
+  EXPECT_THAT(errorOf("EDGE_SE2 0 1 1 0 0\n"), AllOf(HasSubstr("has no information"), HasSubstr(" 1 0 0 1 0 1")));
+  EXPECT_THAT(errorOf("EDGE_SE2 0 1 1,5 0 0" + kUnit3), AllOf(HasSubstr("'1,5'"), HasSubstr("s/,/./g")));
+  EXPECT_THAT(errorOf("TUTORIAL_VERTEX_SE2 0 1 2 3\n"), HasSubstr("s/^TUTORIAL_//"));
+  EXPECT_THAT(errorOf("VERTEX_SE3 : QUAT 0 1 2 3 0 0 0 1\n"), HasSubstr("write VERTEX_SE3:QUAT, without blanks"));
+  EXPECT_THAT(errorOf("EDGE_SE3_PRIOR 1 0 1 2 3 0 0 0 1\n"), HasSubstr("hold a pose with FIX"));
+  for (const char* tag : {"VERTEX_XY", "EDGE_SE2_XY", "VERTEX_TRACKXYZ", "EDGE_SE3_TRACKXYZ", "VERTEX_CAM"})
+    EXPECT_THAT(errorOf(std::string(tag) + " 0 1 2\n"), AllOf(HasSubstr("line 1"), HasSubstr("are not solved"))) << tag;
+  EXPECT_THAT(errorOf("EDGE2 0 1 1 0 0 1 0 1 1 0 0\n"), HasSubstr("TORO"));
+  EXPECT_THAT(errorOf("EDGE_SWITCHABLE 0 1\n"), HasSubstr("write it as one of VERTEX_SE2"));
   EXPECT_THAT(errorOf("EDGE_SE2 0 1 1 0 0" + kUnit3 + "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n"),
               AllOf(HasSubstr("line 2"), HasSubstr("two files")));
   EXPECT_THAT(errorOf("EDGE_SE3:QUAT 0 1 0 0 0 0 0 0 0" + kUnit6),
@@ -110,8 +119,26 @@ TEST_F(PoseGraphFile, EdgesThatCannotCountAreLeftOutAndNamed) {
   }
   EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 2 1 0 0 1 0 0 nan 0 1\n"), ElementsAre(Kind::kNotFinite));
   EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 2 1 0 0 1 2 0 1 0 1\n"), ElementsAre(Kind::kNotPositiveDefinite));
-  EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 2 1 0 0 1 0 0 1 0 0\n"), ElementsAre(Kind::kNotPositiveDefinite));
+  EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 2 1 0 0 1 0 0 1 0 -1e-3\n"), ElementsAre(Kind::kNotPositiveDefinite));
+  EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 2 1 0 0 1e14 0 0 1e14 0 -1\n"), ElementsAre(Kind::kNotPositiveDefinite));
+  EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 2 1 0 0 1 0 2 1 0 0\n"), ElementsAre(Kind::kNotPositiveDefinite));
   EXPECT_THAT(problemsOf(good + "EDGE_SE2 1 1 1 0 0" + kUnit3), ElementsAre(Kind::kSelfEdge));
+}
+
+TEST_F(PoseGraphFile, EdgesThatLeaveDirectionsOpenCount) {
+  for (const char* information : {"1 0 0 1 0 0", "0 0 0 0 0 5", "0 0 0 0 0 0", "1 2 3 4 6 9", "1e12 0 0 0 0 1e-6"}) {
+    const PoseGraph graph = read(std::string("EDGE_SE2 0 1 1 0 0 ") + information + "\nEDGE_SE2 1 2 1 0 0" + kUnit3);
+    EXPECT_THAT(graph.problems, IsEmpty()) << information;
+    ASSERT_EQ(graph.edges.size(), 2U);
+    EXPECT_FALSE(graph.edges[0].definite) << information;
+    EXPECT_TRUE(graph.edges[1].definite);
+  }
+}
+
+/// g2o writes such lines into graphs in space, for edges with landmarks.
+TEST_F(PoseGraphFile, ParametersArePassedOver) {
+  const PoseGraph graph = read("PARAMS_SE3OFFSET 0 0 0 0 0 0 0 1\nEDGE_SE3:QUAT 0 1 1 0 0 0 0 0 1" + kUnit6);
+  EXPECT_EQ(graph.edges.size(), 1U);
 }
 
 TEST_F(PoseGraphFile, NumbersTooSmallForDoubleAreZero) {

@@ -1,10 +1,12 @@
 #include "backend/graph/relative_pose_factor.hpp"
 
+#include <memory>
 #include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "backend/graph/held_end_factor.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/noise.hpp"
 
@@ -112,6 +114,48 @@ TEST(RelativePoseFactorSE2, WrapsTheAngleOfItsResidual) {
     checkInPlane(noise, 3.1, -3.1, residual_rad);
     checkInPlane(noise, -3.1, 3.1, residual_rad);
   }
+}
+
+/// Information of any rank, its parts of any units: no root of Cholesky's may be there.
+TEST(RelativePoseFactorSE3, TakesInformationThatLeavesDirectionsOpen) {
+  Noise noise(9);
+  for (int rank = 0; rank < 6; ++rank) {
+    const SE3 Xi = SE3::exp(randomTwist(noise, 1.3)), Xj = SE3::exp(randomTwist(noise, 2.9));
+    const SE3 E = SE3::exp(randomTwist(noise, 0.3));
+    Eigen::MatrixXd rows(rank, 6);
+    for (int i = 0; i < rows.size(); ++i) rows.data()[i] = noise.gaussian();
+    Vector6d units;
+    units << 1, 1, 1, 20, 20, 20;
+    const Matrix6d information = units.asDiagonal() * (rows.transpose() * rows) * units.asDiagonal();
+    Vector6d e;
+    e << E.translation(), logSO3(E.rotation());
+    checkFactor(RelativePoseFactorSE3(kI, kJ, Xi.inverse() * Xj * E.inverse(), information), {Xi, Xj}, e, information);
+  }
+}
+
+TEST(RelativePoseFactorSE2, TakesInformationThatLeavesDirectionsOpen) {
+  const SE2 Xi(0.4, {1, 2}), Xj(1.1, {3, -1}), E(0.2, {0.3, -0.5});
+  const Eigen::Vector3d e(0.3, -0.5, 0.2), row(3, -1, 200);
+  for (const Eigen::Matrix3d& information :
+       {Eigen::Matrix3d(Eigen::Vector3d(100, 100, 0).asDiagonal()),
+        Eigen::Matrix3d(Eigen::Vector3d(0, 0, 4).asDiagonal()), Eigen::Matrix3d(row * row.transpose()),
+        Eigen::Matrix3d(Eigen::Matrix3d::Zero()), Eigen::Matrix3d(Eigen::Vector3d(1e12, 0, 1e-3).asDiagonal())})
+    checkFactor(RelativePoseFactorSE2(kI, kJ, Xi.inverse() * Xj * E.inverse(), information), {Xi, Xj}, e, information);
+}
+
+TEST(HeldEndFactor, IsTheFactorOnWhatIsLeft) {
+  Noise noise(4);
+  const SE3 Xi = SE3::exp(randomTwist(noise, 1.3)), Xj = SE3::exp(randomTwist(noise, 0.9));
+  const SE3 E = SE3::exp(randomTwist(noise, 0.3)), Z = Xi.inverse() * Xj * E.inverse();
+  const Matrix6d information = test::randomCovariance<6>(noise, Vector6d::Constant(2.0));
+  Vector6d e;
+  e << E.translation(), logSO3(E.rotation());
+  const auto whole = [&] { return std::make_unique<RelativePoseFactorSE3>(kI, kJ, Z, information); };
+  checkFactor(HeldEndFactor(whole(), HeldEndFactor::Held::kFirst, Xi, kJ), {Xj}, e, information);
+  checkFactor(HeldEndFactor(whole(), HeldEndFactor::Held::kSecond, Xj, kI), {Xi}, e, information);
+  const HeldEndFactor factor(whole(), HeldEndFactor::Held::kFirst, Xi, kJ);
+  ASSERT_EQ(factor.variables().size(), 1U);
+  EXPECT_EQ(factor.variables()[0], kJ);
 }
 
 TEST(PriorFactorSE2, MatchesFiniteDifferencesAndTheCostOfItsDefinition) {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "io/sequence.hpp"
+
+namespace motorcade {
+
+/// A sentence where a sequence's gray images look like a color sensor's mosaic and nobody says that they are; looks at
+/// the files, before any rectification, of up to `pairs` of the first twenty pairs. All of them must look so.
+std::optional<std::string> mosaicDoubt(const Sequence& sequence, const FrameRange& range, std::size_t pairs);
+
+}  // namespace motorcade

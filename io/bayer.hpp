@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/image.hpp"
+
+/// Images as a color sensor gives them: a filter of one color on each pixel, in squares of two by two.
+namespace motorcade {
+
+/// The filters of the first two pixels of the first two rows, row by row.
+enum class BayerPattern { kRggb, kBggr, kGrbg, kGbrg };
+
+std::string_view nameOf(BayerPattern pattern);
+/// Empty for no such name; case does not matter, and ROS' `bayer_rggb8` is understood.
+std::optional<BayerPattern> bayerPatternOf(std::string_view name);
+
+/// The gray of a mosaic, at its full size: the luma, as `grayOf` weighs it, of colors of which each is the mean of its
+/// nearest pixels. See the source for the formula.
+Image grayOfMosaic(const Image& mosaic, BayerPattern pattern, ImagePool& pool);
+
+/// What a gray image looks like that is a mosaic in truth: the patterns with its two green pixels. Empty for others,
+/// and where it cannot be told surely, as in a scene without colors.
+std::optional<std::string> suspectedMosaic(const Image& image);
+
+}  // namespace motorcade

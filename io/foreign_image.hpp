@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+/// Files that are no image that is read: what they are, and what makes one of them.
+namespace motorcade {
+
+/// A word of a shell that names the path, whatever characters it has.
+std::string shellWord(const std::filesystem::path& path);
+
+/// A sentence with a command that writes the file's folder anew as gray images.
+std::string conversionOf(const std::filesystem::path& file);
+
+/// Throws InputError that names what lies in a file, by its first bytes.
+[[noreturn]] void failForeign(std::string_view bytes, const std::filesystem::path& file);
+
+}  // namespace motorcade
