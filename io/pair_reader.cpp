@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/errors.hpp"
 #include "io/image_file.hpp"
 #include "io/rig/rectification.hpp"
 
@@ -16,6 +17,7 @@ PairReader::PairReader(const Sequence& sequence, int max_file_mb)
 }
 
 Image PairReader::read(const FramePaths& frame, StereoSide side) {
+  if (frame.isMissing(side)) throw InputError(frame.of(side).string() + ": is missing");
   return rectified(readImage(frame.of(side), pool_, size_, max_file_mb_), side);
 }
 

@@ -112,6 +112,7 @@ int runCheck(const CheckOptions& options) {
   const PairGeometry geometry = check.geometry();
   std::vector<Finding> findings;
   for (const std::string& doubt : doubtsAbout(sequence.camera)) findings.push_back({"calibration", doubt, true});
+  for (const InputNote& note : sequence.notes) findings.push_back({note.name, note.text, note.worthless});
   for (Finding& finding : check.findings()) findings.push_back(std::move(finding));
   if (check.matches().size() < InputCheck::kFewestMatches)
     findings.push_back({"points",

@@ -14,7 +14,7 @@ constexpr std::string_view kRectify =
     "Rectify the images anew with this rig's calibration. If they were rectified, the rig has moved since it was "
     "calibrated: calibrate it again.";
 
-constexpr std::array<std::pair<std::string_view, FindingGuide>, 15> kGuides{{
+constexpr std::array<std::pair<std::string_view, FindingGuide>, 16> kGuides{{
     {"rows",
      {"The rows of the two images do not agree", kOnRows,
       "Crop both images alike, or rectify them anew: an offset alone is often a crop or a resize that was made "
@@ -60,6 +60,12 @@ constexpr std::array<std::pair<std::string_view, FindingGuide>, 15> kGuides{{
      {"The times of the pairs jump",
       "Speeds are distances over times: a wrong time is a wrong speed, and a gap loses what was followed.",
       "Look at times.txt (seconds, one line per pair, growing), or leave it out and give the rate with --fps."}},
+    {"pairs",
+     {"Images are missing, or their names do not tell which belong together",
+      "An image whose partner is another moment's gives distances of nothing. A frame without images has a predicted "
+      "pose, and what moved meanwhile is lost after some of them.",
+      "Look at what the recording left out. Give the images of a pair the same number or time in their names, or list "
+      "the pairs: LEFT RIGHT in each line of a text file."}},
     {"calibration",
      {"The calibration cannot be that of these images",
       "Distances come from focal length and baseline: all of them would be off by a factor.",
