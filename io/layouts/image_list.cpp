@@ -8,6 +8,7 @@
 #include "io/frame_lines.hpp"
 #include "io/layouts/layout_parts.hpp"
 #include "io/layouts/pairing.hpp"
+#include "io/layouts/unsupported.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/rig/rig_file.hpp"
 #include "io/text_file.hpp"
@@ -114,8 +115,7 @@ StereoCamera cameraBeside(Sequence& sequence, const fs::path& folder, ImageSize 
 std::optional<Sequence> openImageList(const SequenceSource& source) {
   const fs::path& file = source.path;
   if (!fs::is_regular_file(file)) return std::nullopt;
-  for (const char* other : {".bag", ".mcap", ".db3"})
-    if (file.extension() == other) return std::nullopt;
+  if (isRecordingFile(file) || imageFormat(file) != ImageFormat::kUnknown) return std::nullopt;
   List list = readList(file);
   Sequence sequence{.folder = file, .layout = "list", .frames = std::move(list.frames)};
   sequence.truth.poses = ifExists(file.parent_path() / "poses.txt");

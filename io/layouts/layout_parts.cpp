@@ -13,6 +13,7 @@
 #include "io/layouts/given_cameras.hpp"
 #include "io/layouts/numbering.hpp"
 #include "io/layouts/pairing.hpp"
+#include "io/layouts/unsupported.hpp"
 #include "io/natural_order.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/timestamps.hpp"
@@ -75,8 +76,10 @@ std::vector<fs::path> listImages(const fs::path& folder) {
 
 std::vector<fs::path> imagesIn(const fs::path& folder) {
   auto images = listImages(folder);
-  if (images.empty()) throw InputError(folder.string() + ": holds no PNG, JPEG or PGM image");
-  return images;
+  if (!images.empty()) return images;
+  const auto others = otherImages(folder);
+  throw InputError(folder.string() + ": holds no PNG, JPEG or PGM image" +
+                   (others.empty() ? "" : "; " + adviceOnOtherImages(others)));
 }
 
 std::optional<std::int64_t> imageNumber(const fs::path& image) {
