@@ -9,6 +9,8 @@
 #include <Eigen/Geometry>
 
 #include "io/errors.hpp"
+#include "io/frame_lines.hpp"
+#include "io/natural_order.hpp"
 #include "io/stamped_poses.hpp"
 #include "io/text_file.hpp"
 #include "io/timestamps.hpp"
@@ -90,6 +92,8 @@ std::optional<CameraTruth> truthFromOxts(const Sequence& sequence, OxtsTimes tim
   const bool both_times = !sequence.truth.oxts_timestamps.empty() && !sequence.truth.image_timestamps.empty();
   const bool interpolate = times != OxtsTimes::kUninterpolated && both_times && poses.size() >= 2;
   if (interpolate) poses = interpolated(poses, sequence.truth);
+  if (!poses.empty() && linesBelongToNumbers(sequence, poses.size()))
+    poses = posesOfFrames(sequence, poses, sequence.truth.oxts);
   if (poses.size() < sequence.frames.size()) {
     throw InputError(sequence.truth.oxts.string() + ": tells of " + std::to_string(poses.size()) +
                      " frames, there are " + std::to_string(sequence.frames.size()) + " images");
@@ -129,6 +133,8 @@ CameraTruth truthFromPoses(const Sequence& sequence) {
     return truthAtFrames(sequence, *known, sequence.truth.poses, T_left_cam0.inverse());
   CameraTruth truth{.T_world_cam = readKittiPoses(sequence.truth.poses),
                     .source = sequence.truth.poses.filename().string()};
+  if (linesBelongToNumbers(sequence, truth.T_world_cam.size()))
+    truth.T_world_cam = posesOfFrames(sequence, truth.T_world_cam, sequence.truth.poses);
   if (truth.T_world_cam.size() < sequence.frames.size()) {
     throw InputError(sequence.truth.poses.string() + ": has " + std::to_string(truth.T_world_cam.size()) +
                      " poses for " + std::to_string(sequence.frames.size()) + " images");
@@ -170,6 +176,23 @@ PoseByFrameAndId readObjectPoses(const fs::path& file) {
   return poses;
 }
 
+/// The labels with the numbers of the sequence's frames. Their own count the lines of the poses, where these are there,
+/// else the complete numbering of the images.
+std::vector<Label> labelsOfFrames(const Sequence& sequence) {
+  std::vector<Label> labels = readLabels(sequence.truth.labels);
+  if (sequence.frames.empty()) return labels;
+  std::size_t lines = static_cast<std::size_t>(placeOf(sequence, sequence.frames.size() - 1)) + 1;
+  if (!sequence.truth.poses.empty()) lines = readLines(sequence.truth.poses).size();
+  if (!linesBelongToNumbers(sequence, lines)) return labels;
+  const FramesOfLines frames = framesOfLines(sequence, lines, sequence.truth.labels, "numbers");
+  std::erase_if(labels, [&](Label& label) {
+    const auto line = static_cast<std::size_t>(label.frame.value);
+    label.frame.value = line < frames.size() ? frames[line] : -1;
+    return label.frame.value < 0;
+  });
+  return labels;
+}
+
 }  // namespace
 
 Eigen::Matrix3d OxtsPacket::attitude() const {
@@ -185,11 +208,8 @@ std::vector<OxtsPacket> readOxts(const fs::path& file_or_folder) {
     for (const auto& line : readLines(file_or_folder)) packets.push_back(packetOf(file_or_folder, line));
     return packets;
   }
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(file_or_folder)) {
-    if (entry.path().extension() == ".txt") files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
+  std::vector<fs::path> files = listFolder(file_or_folder);
+  std::erase_if(files, [](const fs::path& file) { return file.extension() != ".txt"; });
   for (const auto& file : files) {
     const auto lines = readLines(file);
     if (lines.empty()) throw InputError(file.string() + ": is empty, a packet is expected");
@@ -217,7 +237,7 @@ std::optional<ObjectTruths> readObjectTruths(const Sequence& sequence, const Cam
   truths.source = sequence.truth.labels.filename().string();
   if (!exact.empty()) truths.source.append(" with ").append(sequence.truth.object_poses.filename().string());
   const SE3 T_left_cam0 = sequence.calibration.T_left_cam0(sequence.pair);
-  for (const auto& label : readLabels(sequence.truth.labels)) {
+  for (const auto& label : labelsOfFrames(sequence)) {
     if (label.dontCare()) {
       truths.ignored.push_back({label.frame, label.box});
       continue;

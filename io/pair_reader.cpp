@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/errors.hpp"
 #include "io/image_file.hpp"
 #include "io/rig/rectification.hpp"
 
@@ -23,6 +24,7 @@ PairReader::PairReader(const Sequence& sequence, int max_file_mb)
 
 Image PairReader::read(const FramePaths& frame, StereoSide side) {
   const auto& file = frame.of(side);
+  if (frame.isMissing(side)) throw InputError(file.string() + ": is missing");
   return decode(readImageBytes(file, max_file_mb_), file, side);
 }
 

@@ -19,10 +19,27 @@ struct Rectification;
 
 enum class StereoSide { kLeft, kRight };
 
+/// The images of a frame. One that is missing is named as it should be called.
 struct FramePaths {
   std::filesystem::path left, right;
+  bool left_missing = false, right_missing = false;
 
   const std::filesystem::path& of(StereoSide side) const { return side == StereoSide::kLeft ? left : right; }
+  bool isMissing(StereoSide side) const { return side == StereoSide::kLeft ? left_missing : right_missing; }
+  bool isPair() const { return !left_missing && !right_missing; }
+};
+
+/// What the user should know of a sequence, in a sentence.
+struct InputNote {
+  std::string name;  // as of a finding in docs/formats.md: pairs, times or images
+  std::string text;
+  bool worthless = false;  // results would be
+};
+
+/// How the images are numbered by their names.
+struct Numbering {
+  std::int64_t first = 0, step = 1;    // of the numbers
+  std::vector<std::int64_t> places{};  // of each frame: (number - first) / step; empty where they are 0, 1, 2, ...
 };
 
 /// A half-open range of frames, cut to a sequence's length by `within`.
@@ -78,8 +95,11 @@ struct Sequence {
   Calibration calibration{};
   StereoCamera camera{};  // with the size of the images
   std::vector<FramePaths> frames{};
+  Numbering numbering{};
+  std::int64_t left_out = 0;       // images that belong to no frame
+  std::vector<InputNote> notes{};  // to be read before the first frame
   std::vector<Timestamp> stamps{};  // one per frame, strictly increasing
-  bool stamps_measured = false;     // read from a file, not made from the frame rate
+  bool stamps_measured = false;     // read from a file or the images' names, not made from the frame rate
   Truth truth{};
   std::shared_ptr<const Rectification> rectification{};  // none where the images are rectified
   std::optional<SampleUse> samples{};                    // none where the images have 8 bits

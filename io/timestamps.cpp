@@ -1,5 +1,6 @@
 #include "io/timestamps.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -19,18 +20,25 @@ constexpr std::int64_t kMaxTime_s = 4'500'000'000;
 
 bool isDigits(std::string_view text) { return text.find_first_not_of("0123456789") == std::string_view::npos; }
 
-/// `12` or `12.000000345`, exactly.
-std::optional<std::int64_t> plainSeconds_ns(std::string_view text) {
+/// `12` or `12.000000345` of a unit, exactly.
+std::optional<std::int64_t> plainTime_ns(std::string_view text, std::int64_t unit_ns) {
+  constexpr std::size_t kFraction = 9;
   const auto point = text.find('.');
-  const std::string_view whole = text.substr(0, point);
+  std::string_view whole = text.substr(0, point);
   std::string fraction(point == std::string_view::npos ? "" : text.substr(point + 1));
-  if (whole.empty() || whole.size() > 10 || !isDigits(whole) || !isDigits(fraction)) return std::nullopt;
-  fraction.resize(9, '0');
-  std::int64_t seconds = 0, nanoseconds = 0;
-  std::from_chars(whole.data(), whole.data() + whole.size(), seconds);
-  std::from_chars(fraction.data(), fraction.data() + fraction.size(), nanoseconds);
-  return seconds >= kMaxTime_s ? std::nullopt : std::optional(seconds * kSecond_ns + nanoseconds);
+  if (whole.empty() || !isDigits(whole) || !isDigits(fraction)) return std::nullopt;
+  whole.remove_prefix(std::min(whole.find_first_not_of('0'), whole.size()));
+  std::int64_t units = 0, billionths = 0;
+  const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), units);
+  if (!whole.empty() && error != std::errc()) return std::nullopt;
+  if (units >= kMaxTime_s * (kSecond_ns / unit_ns)) return std::nullopt;
+  fraction.resize(kFraction, '0');
+  std::from_chars(fraction.data(), fraction.data() + fraction.size(), billionths);
+  return units * unit_ns + billionths / (kSecond_ns / unit_ns);
 }
+
+/// `12` or `12.000000345`, exactly.
+std::optional<std::int64_t> plainSeconds_ns(std::string_view text) { return plainTime_ns(text, kSecond_ns); }
 
 std::optional<std::int64_t> dateTime_ns(const std::string& text) {
   int year = 0, month = 0, day = 0, hour = 0, minute = 0, used = 0;
@@ -48,12 +56,12 @@ std::optional<std::int64_t> dateTime_ns(const std::string& text) {
   return minutes_s * kSecond_ns + *seconds_ns;
 }
 
-Timestamp parseTime(const std::filesystem::path& file, const TextLine& line) {
+Timestamp parseTime(const std::filesystem::path& file, const TextLine& line, std::int64_t unit_ns) {
   FieldReader fields(file, line);
   const std::string text = trimmed(line.text);
   if (const auto date_ns = dateTime_ns(text)) return {*date_ns};
-  if (const auto plain_ns = plainSeconds_ns(text)) return {*plain_ns};
-  const double time_s = fields.number("a time in seconds");
+  if (const auto plain_ns = plainTime_ns(text, unit_ns)) return {*plain_ns};
+  const double time_s = fields.number("a time in seconds") * static_cast<double>(unit_ns) / kSecond_ns;
   fields.expectEnd();
   if (std::abs(time_s) >= static_cast<double>(kMaxTime_s))
     fields.fail("the time is out of range; seconds are expected");
@@ -67,36 +75,55 @@ void append(std::vector<Timestamp>& stamps, Timestamp stamp, const std::filesyst
   stamps.push_back(stamp);
 }
 
-/// The lines as nanoseconds, where all are whole numbers and they cannot be seconds.
-std::optional<std::vector<std::int64_t>> wholeNanoseconds(const std::vector<TextLine>& lines) {
-  constexpr std::int64_t kLongest_s = 100'000;  // between two images
-  std::vector<std::int64_t> all_ns;
+/// The numbers of the lines; empty where one is negative, or none.
+std::vector<double> numbersIn(const std::vector<TextLine>& lines) {
+  std::vector<double> numbers;
   for (const TextLine& line : lines) {
-    std::int64_t value_ns = 0;
-    const char* const end = line.text.data() + line.text.size();
-    const auto [stop, error] = std::from_chars(line.text.data(), end, value_ns);
-    if (error != std::errc() || stop != end || value_ns < 0) return std::nullopt;
-    all_ns.push_back(value_ns);
+    const std::string text = trimmed(line.text);
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    if (end == text.c_str() || *end != '\0' || !(number >= 0)) return {};
+    numbers.push_back(number);
   }
-  const bool seconds = all_ns.back() < kMaxTime_s && (all_ns.size() < 2 || all_ns[1] - all_ns[0] < kLongest_s);
-  return seconds ? std::nullopt : std::optional(all_ns);
+  return numbers;
+}
+
+/// Seconds, unless no camera takes images so far apart.
+std::int64_t unitOf_ns(const std::vector<TextLine>& lines) {
+  constexpr double kLeastPeriod_s = 4e-3, kMostPeriod_s = 2.5;  // of cameras
+  const std::vector<double> numbers = numbersIn(lines);
+  std::vector<double> periods;
+  for (std::size_t i = 1; i < numbers.size(); ++i) periods.push_back(numbers[i] - numbers[i - 1]);
+  if (periods.empty()) return kSecond_ns;
+  std::ranges::sort(periods);
+  const double least = periods.front(), usual = periods[periods.size() / 2];
+  for (const std::int64_t unit_ns : {std::int64_t{1'000'000}, std::int64_t{1'000}, std::int64_t{1}}) {
+    const double unit_s = static_cast<double>(unit_ns) / kSecond_ns;
+    if (least * unit_s >= kLeastPeriod_s && usual * unit_s <= kMostPeriod_s) return unit_ns;
+  }
+  return kSecond_ns;
 }
 
 }  // namespace
 
-std::vector<Timestamp> readTimestamps(const std::filesystem::path& file) {
-  std::vector<Timestamp> stamps;
-  for (const TextLine& line : readLines(file)) append(stamps, parseTime(file, line), file, line);
-  return stamps;
+Times parseTimes(const std::filesystem::path& file, const std::vector<TextLine>& lines) {
+  Times times{.unit_ns = unitOf_ns(lines)};
+  for (const TextLine& line : lines) append(times.stamps, parseTime(file, line, times.unit_ns), file, line);
+  return times;
 }
 
-std::vector<Timestamp> parseTimestamps(const std::filesystem::path& file, const std::vector<TextLine>& lines) {
-  std::vector<Timestamp> stamps;
-  if (lines.empty()) return stamps;
-  const auto all_ns = wholeNanoseconds(lines);
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    append(stamps, all_ns ? Timestamp{(*all_ns)[i]} : parseTime(file, lines[i]), file, lines[i]);
-  return stamps;
+Times readTimes(const std::filesystem::path& file) {
+  std::vector<TextLine> lines = readLines(file);
+  std::erase_if(lines, [](const TextLine& line) { return trimmed(line.text).starts_with('#'); });
+  return parseTimes(file, lines);
+}
+
+std::vector<Timestamp> readTimestamps(const std::filesystem::path& file) { return readTimes(file).stamps; }
+
+std::string unitName(std::int64_t unit_ns) {
+  if (unit_ns == kSecond_ns) return "seconds";
+  if (unit_ns == 1) return "nanoseconds";
+  return unit_ns == 1'000 ? "microseconds" : "milliseconds";
 }
 
 }  // namespace motorcade

@@ -1,6 +1,5 @@
 #include "apps/batch/attempts.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
@@ -10,6 +9,7 @@
 #include <unistd.h>
 
 #include "apps/tasks/host_name.hpp"
+#include "io/natural_order.hpp"
 
 namespace motorcade {
 namespace {
@@ -34,15 +34,13 @@ bool isAlive(const std::string& who) {
 
 std::vector<Attempt> attemptsIn(const fs::path& folder) {
   std::vector<Attempt> attempts;
-  std::error_code none;  // no such folder
-  for (const auto& entry : fs::directory_iterator(folder, none)) {
-    const std::string name = entry.path().filename().string();
+  for (const fs::path& entry : listFolderIfThere(folder)) {
+    const std::string name = entry.filename().string();
     const auto separator = name.find(kSeparator);
     if (separator == std::string::npos) continue;
     const std::string who = name.substr(separator + 1);
-    attempts.push_back({entry.path(), name.substr(0, separator), who, isAlive(who)});
+    attempts.push_back({entry, name.substr(0, separator), who, isAlive(who)});
   }
-  std::ranges::sort(attempts, {}, &Attempt::folder);
   return attempts;
 }
 

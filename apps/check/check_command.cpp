@@ -118,6 +118,7 @@ int runCheck(const CheckOptions& options) {
   for (const std::string& oddity : odditiesOf(sequence.camera)) findings.push_back({"camera", oddity, false});
   if (const auto doubt = mosaicDoubt(sequence, selectedFrames(options.frames, sequence), 3))
     findings.push_back({"mosaic", *doubt, false});
+  for (const InputNote& note : sequence.notes) findings.push_back({note.name, note.text, note.worthless});
   for (Finding& finding : check.findings()) findings.push_back(std::move(finding));
   if (check.matches().size() < InputCheck::kFewestMatches)
     findings.push_back({"points",

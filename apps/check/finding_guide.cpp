@@ -65,6 +65,12 @@ constexpr std::array<std::pair<std::string_view, FindingGuide>, 16> kGuides{{
       "Each pixel sees through a filter of one color: a pattern of two by two pixels lies over the texture and stays "
       "where it is while the scene moves.",
       "Give the pattern with --bayer RGGB (BGGR, GRBG, GBRG), or convert the images to gray or color."}},
+    {"pairs",
+     {"Images are missing, or their names do not tell which belong together",
+      "An image whose partner is another moment's gives distances of nothing. A frame without images has a predicted "
+      "pose, and what moved meanwhile is lost after some of them.",
+      "Look at what the recording left out. Give the images of a pair the same number or time in their names, or list "
+      "the pairs: LEFT RIGHT in each line of a text file."}},
     {"calibration",
      {"The calibration cannot be that of these images",
       "Distances come from focal length and baseline: all of them would be off by a factor.",

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
@@ -83,6 +84,7 @@ class Tracker::Impl {
   const char* problemWith(const Pair& pair) const;
   Push enter(const Pair& pair);
   const char* reasonOf(Admission admission) const;
+  void tellOfStamps(Admission admission, const Pair& pair);
   void deliver();
   void handOn();
 
@@ -95,6 +97,8 @@ class Tracker::Impl {
   SampleBits sample_bits_;  // the pushing thread's
   std::atomic<int> visits_{0};
   std::atomic_flag pushing_;
+  int untimely_ = 0;             // by how many stamps seem to have another unit; the pushing thread's
+  bool told_of_stamps_ = false;  // the pushing thread's
   std::atomic<bool> closed_{false}, failed_{false};
   std::atomic<std::int64_t> pushed_{0}, rejected_{0}, dropped_{0};
   ResultConversion convert_;  // the delivering thread's
@@ -178,14 +182,36 @@ Tracker::Push Tracker::Impl::enter(const Pair& pair) {
   frame.left = model_.leftOf(grayImage(pair.left, sample_bits, pool_), pool_);
   frame.right = model_.rightOf(grayImage(pair.right, sample_bits, pool_), pool_);
   const Admission admission = pipeline_.push(std::move(frame));
-  if (!isTaken(admission)) return {PushStatus::kRejected, reasonOf(admission)};
+  if (!isTaken(admission)) {
+    tellOfStamps(admission, pair);
+    return {PushStatus::kRejected, reasonOf(admission)};
+  }
+  untimely_ = std::max(0, untimely_ - 1);
   return {admission == Admission::kReplacedOlder ? PushStatus::kReplacedOlder : PushStatus::kAccepted, ""};
+}
+
+/// Logs, once, that stamps seem to have another unit: when several pairs in a row were too close together, or far apart.
+void Tracker::Impl::tellOfStamps(Admission admission, const Pair& pair) {
+  constexpr int kRefused = 2, kSeveral = 3 * kRefused;  // of pairs far apart every second one is accepted
+  if (admission != Admission::kTooClose && admission != Admission::kFarAhead) return;
+  untimely_ = std::min(kSeveral, untimely_ + kRefused);
+  if (untimely_ < kSeveral || std::exchange(told_of_stamps_, true)) return;
+  tell(log_, motorcade::LogLevel::kError, [&] {
+    return "pairs are rejected: the stamp " + std::to_string(pair.stamp_ns) + (admission == Admission::kTooClose
+               ? " is less than half a millisecond after that of the pair before, as the stamps before it were"
+               : " is more than ten seconds after that of the pair before, as the stamps before it were") +
+           "; stamp_ns must be in nanoseconds";
+  });
 }
 
 /// Static text.
 const char* Tracker::Impl::reasonOf(Admission admission) const {
   if (admission == Admission::kLate) return "its number is not after that of the pair before";
   if (admission == Admission::kOutOfOrder) return "its stamp does not follow that of the pair before";
+  if (admission == Admission::kTooClose)
+    return "its stamp is less than half a millisecond after that of the pair before; stamps are nanoseconds";
+  if (admission == Admission::kFarAhead)
+    return "its stamp is more than ten seconds after that of the pair before; stamps are nanoseconds";
   return failed_ ? "the tracker has failed, as its log tells" : "the tracker was closed";
 }
 

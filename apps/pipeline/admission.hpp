@@ -8,6 +8,8 @@ enum class Admission {
   kReplacedOlder,  // taken, and one that still waited is dropped
   kLate,           // ignored: its id is not after the last one's
   kOutOfOrder,     // rejected: its time does not follow the last one's
+  kTooClose,       // rejected: its time is so little after the last one's that its unit must be wrong
+  kFarAhead,       // rejected: its time is far after the last one's, by a mistake or in a wrong unit
   kClosed,         // ignored: no further frame may come
 };
 

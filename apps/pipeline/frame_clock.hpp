@@ -20,6 +20,8 @@ class FrameClock {
 
   /// The time of a frame that the camera stamped so; empty when it is out of order.
   std::optional<Timestamp> read(Timestamp stamp);
+  /// The frame that was refused last was far ahead.
+  bool refusedFarAhead() const { return refused_ahead_.has_value(); }
   /// When the frame that was refused last was likely taken: one period after the frame before it.
   Timestamp expected() const { return expected_; }
   /// How much later frames are than the camera says: how far its clock was set back, time without frames aside.

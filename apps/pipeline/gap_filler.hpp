@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -14,6 +15,7 @@ struct FrameHeader {
   Timestamp stamp;
   FrameStatus status = FrameStatus::kDropped;
   FrameCause cause = FrameCause::kTooLate;
+  std::int64_t step_ns = 0;  // of a frame out of order: from the frame before, as the camera stamped them
 };
 
 /// Gives a pose to the frames that the back-end never saw, so that every input frame has its line in the results:

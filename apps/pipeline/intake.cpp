@@ -15,6 +15,17 @@ namespace {
 /// Frames that may be lost between two others and still be named one by one; more are counted.
 constexpr std::size_t kHeaders = 4096;
 
+/// No camera takes pairs so close together; a burst of them that was stamped on arrival tells nothing of speeds either.
+constexpr std::int64_t kTooClose_ns = 500'000;
+
+std::string whyOutOfOrder(std::int64_t step_ns) {
+  const std::string step = std::to_string(1e-9 * static_cast<double>(step_ns)) + " s after that of the frame before it";
+  if (step_ns > FrameClock::kFarAhead_ns) return "its time is " + step + "; look at the unit of the times";
+  if (step_ns > 0 && step_ns < kTooClose_ns)
+    return "its time is only " + step + ", as no camera's is; look at the unit of the times";
+  return "its time does not follow that of the frame before it";
+}
+
 /// A frame for which there is no memory gives up its images.
 StereoFramePtr shared(StereoFrame frame) {
   const auto make = [&] { return std::make_shared<const StereoFrame>(std::move(frame)); };
@@ -52,18 +63,25 @@ Admission Intake::judge(StereoFrame frame) {
     return Admission::kLate;
   }
   next_id_ = {frame.frame.value + 1};
+  const std::int64_t step_ns = frame.stamp.ns - std::exchange(stamped_, frame.stamp).value_or(frame.stamp).ns;
+  if (step_ns > 0 && step_ns < kTooClose_ns) return refuse(frame, step_ns, Admission::kTooClose);
   const auto time = clock_.read(frame.stamp);
-  if (!time) {
-    announce({frame.frame, clock_.expected(), FrameStatus::kRejected, FrameCause::kOutOfOrder});
-    refused_.fetch_add(1, std::memory_order_relaxed);
-    received_.fetch_add(1, std::memory_order_relaxed);
-    return Admission::kOutOfOrder;
-  }
+  if (!time) return refuse(frame, step_ns, clock_.refusedFarAhead() ? Admission::kFarAhead : Admission::kOutOfOrder);
   frame.stamp = *time;
   clock_ahead_ns_.store(clock_.ahead_ns(), std::memory_order_relaxed);
   const Admission admission = enter(std::move(frame));
   if (isTaken(admission)) received_.fetch_add(1, std::memory_order_relaxed);
   return admission;
+}
+
+/// Such a frame's time is the one that was expected; one that is too close has its own.
+Admission Intake::refuse(const StereoFrame& frame, std::int64_t step_ns, Admission why) {
+  const Timestamp time =
+      why == Admission::kTooClose ? Timestamp{frame.stamp.ns + clock_.ahead_ns()} : clock_.expected();
+  announce({frame.frame, time, FrameStatus::kRejected, FrameCause::kOutOfOrder, step_ns});
+  refused_.fetch_add(1, std::memory_order_relaxed);
+  received_.fetch_add(1, std::memory_order_relaxed);
+  return why;
 }
 
 Admission Intake::enter(StereoFrame frame) {
@@ -141,8 +159,7 @@ void Intake::tellOfLost(const Job& job) {
   for (const FrameHeader& header : job.dropped)
     if (header.status == FrameStatus::kRejected)
       tell(log_, LogLevel::kWarning, [&] {
-        return "frame " + std::to_string(header.frame.value) +
-               " is rejected: its time does not follow that of the frame before it";
+        return "frame " + std::to_string(header.frame.value) + " is rejected: " + whyOutOfOrder(header.step_ns);
       });
   if (job.dropped_unnamed > 0)
     tell(log_, LogLevel::kWarning, [&] {

@@ -56,6 +56,7 @@ class Intake {
     std::int64_t turn = 0;
   };
   Admission enter(StereoFrame frame);
+  Admission refuse(const StereoFrame& frame, std::int64_t step_ns, Admission why);
   std::optional<Entering> take();
   void announce(FrameHeader header);
   void tellOfClock(const StereoFrame& frame);
@@ -83,6 +84,7 @@ class Intake {
   FrameId next_id_{0};                       // producer only
   std::int64_t turns_ = 0;                   // producer only
   FrameClock clock_;                         // producer only
+  std::optional<Timestamp> stamped_;         // producer only: of the frame before, as the camera has it
   std::int64_t told_ahead_ns_ = 0;           // pump only
   std::optional<FrameHeader> header_ahead_;  // pump only: taken from `headers_`, later than the newest frame
   std::size_t admitted_ = 0;                 // pump only

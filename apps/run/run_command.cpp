@@ -80,6 +80,15 @@ void requireBelievable(const Sequence& sequence, bool force) {
   }
 }
 
+/// Says what is odd about the images before the first of them is looked at. Throws InputError where results would be
+/// worthless, unless the user insists.
+void tellNotes(const Sequence& sequence, bool force) {
+  for (const InputNote& note : sequence.notes) {
+    if (note.worthless && !force) throw InputError(sequence.folder.string() + ": " + note.text + "; --force goes on");
+    spdlog::warn(note.text);
+  }
+}
+
 void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) {
   spdlog::info(sequenceLine(sequence, range));
   if (sequence.samples) spdlog::info("16-bit images, {}", sequence.samples->why);
@@ -283,6 +292,7 @@ int runSequence(const RunOptions& options) {
   const Sequence sequence = openSequence(options.sequence, options.fps_hz, options.given);
   requireWithin(config.input, sequence);
   requireBelievable(sequence, options.force);
+  tellNotes(sequence, options.force);
   const FrameRange range = selectedFrames(options.frames, sequence);
   Stages stages = makeStages(config, sequence.camera);
   if (auto other_camera = otherCamera(options, config, sequence)) replaceOdometry(stages, *std::move(other_camera));

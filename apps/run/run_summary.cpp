@@ -83,6 +83,12 @@ Json toJson(const McapSummary& mcap) {
 }  // namespace
 
 void RunSummary::setSequence(const Sequence& of) {
+  images.left_out = of.left_out;
+  for (const FramePaths& frame : of.frames) {
+    images.pairs += frame.isPair() ? 1 : 0;
+    images.left_missing += frame.left_missing ? 1 : 0;
+    images.right_missing += frame.right_missing ? 1 : 0;
+  }
   sequence = of.folder.string();
   layout = of.layout;
   given = of.given;
@@ -111,6 +117,11 @@ std::string toJson(const RunSummary& summary) {
             {"calibration_from", summary.given.empty() ? "sequence" : "option"},
             {"bayer", summary.bayer},
             {"sample_bits", summary.sample_bits},
+            {"images",
+             {{"pairs", summary.images.pairs},
+              {"left_missing", summary.images.left_missing},
+              {"right_missing", summary.images.right_missing},
+              {"left_out", summary.images.left_out}}},
             {"inject", summary.inject},
             {"capture_rate_hz", rounded(summary.capture_rate_hz)},
             {"rate", summary.rate_hz ? Json(*summary.rate_hz) : Json("max")},

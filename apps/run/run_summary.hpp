@@ -17,12 +17,19 @@ struct McapSummary {
   std::int64_t images_left_out = 0, frames_left_out = 0;
 };
 
+/// Images of the whole sequence.
+struct ImageCounts {
+  std::int64_t pairs = 0, left_missing = 0, right_missing = 0;
+  std::int64_t left_out = 0;  // that belong to no frame
+};
+
 /// All that `summary.json` tells about a run.
 struct RunSummary {
   PipelineSummary pipeline;
   PipelineParams params;
   QueueMark decoded;  // pairs waiting for the feeder
   std::string sequence, layout;
+  ImageCounts images;
   GivenCameras given;             // what the user said of them
   std::string calibrated_by;      // the calibration in force, whoever named it
   std::string bayer;              // the mosaic in force, empty for none

@@ -10,6 +10,7 @@
 #include <xxhash.h>
 
 #include "io/errors.hpp"
+#include "io/natural_order.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/text_file.hpp"
 
@@ -56,12 +57,8 @@ std::string programFingerprint(const fs::path& program) {
   Fingerprint fingerprint;
   try {
     fingerprint.add(readWhole(program));
-    std::error_code none;  // no folder of modules
-    std::vector<fs::path> modules;
-    for (const auto& module : fs::directory_iterator(program.parent_path() / "motorcade", none))
-      if (module.is_regular_file()) modules.push_back(module.path());
-    std::ranges::sort(modules);
-    for (const fs::path& module : modules) fingerprint.add(readWhole(module));
+    for (const fs::path& module : listFolderIfThere(program.parent_path() / "motorcade"))
+      if (fs::is_regular_file(module)) fingerprint.add(readWhole(module));
   } catch (const InputError& error) {
     throw UsageError("the program of the tasks: " + std::string(error.what()));
   }

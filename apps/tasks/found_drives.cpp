@@ -7,6 +7,7 @@
 
 #include "apps/tasks/path_text.hpp"
 #include "io/errors.hpp"
+#include "io/natural_order.hpp"
 
 namespace motorcade {
 namespace {
@@ -45,7 +46,7 @@ std::vector<fs::path> matchesOf(const fs::path& pattern) {
   ::globfree(&found);
   // A pattern asks for lists of images by the end of their names; else drives are folders.
   if (!pattern.has_extension()) std::erase_if(matches, [](const fs::path& match) { return !fs::is_directory(match); });
-  std::ranges::sort(matches);
+  std::ranges::sort(matches, NaturalOrder{});
   return matches;
 }
 

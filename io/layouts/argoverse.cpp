@@ -67,7 +67,7 @@ std::optional<Sequence> openArgoverse(const SequenceSource& source) {
   const fs::path left = source.path / kLeft, right = source.path / kRight;
   if (!fs::is_directory(left) || !fs::is_directory(right)) return std::nullopt;
   Sequence sequence{.folder = source.path, .layout = "argoverse", .pair = CameraPair::kColor};
-  setStampedFrames(sequence, imagesByNumber(left), imagesByNumber(right));
+  setKeyedFrames(sequence, {NameKind::kTimes, imagesByNumber(left), imagesByNumber(right)});
   setCamera(sequence, source.given, [&](ImageSize) {
     const fs::path of_pair = source.path / "vehicle_calibration_stereo_info.json";
     const fs::path file = fs::exists(of_pair) ? of_pair

@@ -50,7 +50,7 @@ std::optional<Sequence> openEuroc(const SequenceSource& source) {
     const fs::path left = mav / "cam0", right = mav / "cam1";
     if (!fs::is_directory(left / "data") || !fs::is_directory(right / "data")) continue;
     Sequence sequence{.folder = source.path, .layout = "euroc"};
-    setStampedFrames(sequence, imagesOf(left), imagesOf(right));
+    setKeyedFrames(sequence, {NameKind::kTimes, imagesOf(left), imagesOf(right)});
     setCamera(sequence, source.given, [&](ImageSize size) {
       const char* const why = "EuRoC's layout has one for each camera; or give --calibration";
       const Rig rig = readEurocRig(neededFile(left / "sensor.yaml", why), neededFile(right / "sensor.yaml", why));

@@ -1,9 +1,15 @@
 #include <algorithm>
+#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "io/errors.hpp"
+#include "io/frame_lines.hpp"
 #include "io/layouts/layout_cameras.hpp"
 #include "io/layouts/layout_parts.hpp"
+#include "io/layouts/pairing.hpp"
+#include "io/layouts/unsupported.hpp"
 #include "io/text_file.hpp"
 #include "io/timestamps.hpp"
 
@@ -28,6 +34,50 @@ std::vector<std::string> fieldsOf(const fs::path& file, const TextLine& line) {
   return fields;
 }
 
+void markMissing(std::vector<FramePaths>& frames) {
+  for (FramePaths& frame : frames) {
+    frame.left_missing = !fs::exists(frame.left);
+    frame.right_missing = !fs::exists(frame.right);
+  }
+}
+
+/// Names the images that are not there. Throws InputError where hardly any pair is.
+void tellMissing(Sequence& sequence) {
+  std::vector<fs::path> missing;
+  for (const FramePaths& frame : sequence.frames)
+    for (const StereoSide side : {StereoSide::kLeft, StereoSide::kRight})
+      if (frame.isMissing(side)) missing.push_back(frame.of(side));
+  if (missing.empty()) return;
+  const auto pairs = std::ranges::count_if(sequence.frames, &FramePaths::isPair);
+  const std::string text = sequence.folder.string() + ": names " + std::to_string(missing.size()) +
+                           " images that are not there (" + namesOf(missing) + "); " + std::to_string(pairs) + " of " +
+                           std::to_string(sequence.frames.size()) + " lines are pairs";
+  if (2 * pairs < std::ssize(sequence.frames)) throw InputError(text + "; paths are relative to the file");
+  sequence.notes.push_back({"pairs", text + ", the other frames have no images and a predicted pose"});
+}
+
+/// Tells of lines that bring together numbers which other lines do not, as a list does that was made of two folders in
+/// order while an image was missing.
+void tellUnlikePairs(Sequence& sequence) {
+  std::map<std::int64_t, std::int64_t> counts;  // of the differences of a line's numbers
+  std::vector<std::pair<FramePaths, std::int64_t>> differences;
+  for (const FramePaths& frame : sequence.frames) {
+    const auto left = imageNumber(frame.left), right = imageNumber(frame.right);
+    if (!left || !right) return;
+    differences.emplace_back(frame, *right - *left);
+    ++counts[*right - *left];
+  }
+  const auto same = counts.find(0);
+  if (same == counts.end() || counts.size() == 1 || 2 * same->second < std::ssize(sequence.frames)) return;
+  const auto unlike = std::ranges::find_if(differences, [](const auto& entry) { return entry.second != 0; });
+  sequence.notes.push_back({"pairs",
+                            sequence.folder.string() + ": " +
+                                std::to_string(std::ssize(sequence.frames) - same->second) +
+                                " lines bring together images of different numbers (" +
+                                namesOf({unlike->first.left, unlike->first.right}) + "), the others of the same one",
+                            true});
+}
+
 List readList(const fs::path& file) {
   List list;
   for (const TextLine& line : readLines(file, LastLine::kKeep, kMostBytes)) {
@@ -41,6 +91,7 @@ List readList(const fs::path& file) {
     const fs::path folder = file.parent_path();
     list.frames.push_back({folder / fields[fields.size() - 2], folder / fields.back()});
   }
+  markMissing(list.frames);
   if (list.frames.empty()) throw InputError(file.string() + ": holds no line LEFT RIGHT or STAMP LEFT RIGHT");
   return list;
 }
@@ -59,17 +110,21 @@ StereoCamera cameraBeside(Sequence& sequence, const fs::path& folder, ImageSize 
 std::optional<Sequence> openImageList(const SequenceSource& source) {
   const fs::path& file = source.path;
   if (!fs::is_regular_file(file)) return std::nullopt;
-  for (const char* other : {".bag", ".mcap", ".db3"})
-    if (file.extension() == other) return std::nullopt;
+  if (isRecordingFile(file) || imageFormat(file) != ImageFormat::kUnknown) return std::nullopt;
   List list = readList(file);
   Sequence sequence{.folder = file, .layout = "list", .frames = std::move(list.frames)};
   sequence.truth.poses = ifExists(file.parent_path() / "poses.txt");
+  tellMissing(sequence);
+  tellUnlikePairs(sequence);
   setCamera(sequence, source.given, [&](ImageSize size) { return cameraBeside(sequence, file.parent_path(), size); });
   if (list.stamps.empty()) {
     setStamps(sequence, {}, source.fps_hz);
   } else {
-    sequence.stamps = parseTimestamps(file, list.stamps);
+    Times times = parseTimes(file, list.stamps);
+    sequence.stamps = std::move(times.stamps);
     sequence.stamps_measured = true;
+    if (times.unit_ns > 1) tellUnit(sequence, times, file);  // nanoseconds may be as they are
+    tellPeriod(sequence);
   }
   return sequence;
 }

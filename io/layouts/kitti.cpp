@@ -30,7 +30,7 @@ std::optional<Sequence> openKittiRaw(const SequenceSource& source) {
     sequence.truth = {.oxts = ifExists(folder / "oxts" / "data"),
                       .oxts_timestamps = ifExists(folder / "oxts" / "timestamps.txt"),
                       .image_timestamps = times};
-    sequence.frames = pairImages(left / "data", right / "data");
+    setFrames(sequence, left / "data", right / "data");
     finish(sequence, source, times, [&] {
       const fs::path date = folder.parent_path();
       neededFile(date / "calib_cam_to_cam.txt", "a raw drive needs the calibration of its date beside it");
@@ -53,7 +53,7 @@ std::optional<Sequence> openKittiTracking(const SequenceSource& source) {
       sequence.truth = {.poses = ifExists(root / "poses" / text),
                         .labels = ifExists(root / "label_02" / text),
                         .oxts = ifExists(root / "oxts" / text)};
-      sequence.frames = pairImages(left, right);
+      setFrames(sequence, left, right);
       finish(sequence, source, ifExists(root / "times" / text), [&] {
         return readCalibration(neededFile(root / "calib" / text, "a tracking sequence needs its calibration"));
       });
@@ -71,8 +71,8 @@ std::optional<Sequence> openKitti360(const SequenceSource& source) {
   const fs::path root = folder.parent_path().parent_path();
   Sequence sequence{.folder = folder, .layout = "kitti360"};
   sequence.truth.numbered_poses = ifExists(root / "data_poses" / folder.filename() / "cam0_to_world.txt");
-  NumberedFrames pairs = pairByNumber(imagesByNumber(left), imagesByNumber(right));
-  sequence.frames = std::move(pairs.frames);
+  const std::vector<std::int64_t> numbers =
+      setKeyedFrames(sequence, {.left = imagesByNumber(left), .right = imagesByNumber(right)});
   const fs::path times = ifExists(folder / "image_00" / "timestamps.txt");
   finish(sequence, source, {}, [&] {
     return readCalibration(neededFile(root / "calibration" / "perspective.txt",
@@ -80,10 +80,10 @@ std::optional<Sequence> openKitti360(const SequenceSource& source) {
   });
   if (times.empty()) return sequence;
   const auto all = readTimestamps(times);
-  if (pairs.numbers.back() >= std::ssize(all))
+  if (numbers.back() >= std::ssize(all))
     throw InputError(times.string() + ": has " + std::to_string(all.size()) + " times; image " +
-                     std::to_string(pairs.numbers.back()) + " needs a line of its own, counted from 0");
-  std::ranges::transform(pairs.numbers, sequence.stamps.begin(), [&](std::int64_t number) { return all[number]; });
+                     std::to_string(numbers.back()) + " needs a line of its own, counted from 0");
+  std::ranges::transform(numbers, sequence.stamps.begin(), [&](std::int64_t number) { return all[number]; });
   sequence.stamps_measured = true;
   return sequence;
 }

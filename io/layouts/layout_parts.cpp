@@ -9,8 +9,13 @@
 
 #include "io/errors.hpp"
 #include "io/image_file.hpp"
+#include "io/frame_lines.hpp"
 #include "io/layouts/given_cameras.hpp"
 #include "io/layouts/sample_use.hpp"
+#include "io/layouts/numbering.hpp"
+#include "io/layouts/pairing.hpp"
+#include "io/layouts/unsupported.hpp"
+#include "io/natural_order.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/rig/rig_search.hpp"
 #include "io/timestamps.hpp"
@@ -20,23 +25,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The name of an image of `some` that has no partner of the same name among `others`.
-std::optional<fs::path> withoutPartner(const std::vector<fs::path>& some, const std::vector<fs::path>& others) {
-  for (const auto& image : some) {
-    const auto same_name = [&](const fs::path& other) { return other.stem() == image.stem(); };
-    if (std::ranges::none_of(others, same_name)) return image;
-  }
-  return std::nullopt;
-}
-
-void requireImages(const fs::path& folder, const std::vector<fs::path>& images) {
-  if (images.empty()) throw InputError(folder.string() + ": holds no PNG, JPEG or PGM image");
-}
-
 /// The size that the images agree on, from the first header that can be read in each folder.
 ImageSize imageSize(const Sequence& sequence) {
   const auto firstSize = [&](StereoSide side) -> std::optional<ImageSize> {
     for (const auto& frame : sequence.frames) {
+      if (frame.isMissing(side)) continue;
       try {
         return readImageSize(frame.of(side));
       } catch (const InputError&) {
@@ -56,6 +49,15 @@ ImageSize imageSize(const Sequence& sequence) {
   return *left;
 }
 
+/// The times of frames are those of their places.
+void setStampsByRate(Sequence& sequence, double fps_hz) {
+  if (!(fps_hz > 0) || !std::isfinite(fps_hz)) throw UsageError("--fps must be a positive number");
+  for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
+    const auto place = static_cast<double>(placeOf(sequence, i));
+    sequence.stamps.push_back({static_cast<std::int64_t>(std::llround(place * 1e9 / fps_hz))});
+  }
+}
+
 }  // namespace
 
 fs::path ifExists(const fs::path& file) { return fs::exists(file) ? file : fs::path(); }
@@ -66,36 +68,20 @@ fs::path neededFile(const fs::path& file, const std::string& why) {
 }
 
 std::vector<fs::path> listImages(const fs::path& folder) {
-  std::vector<fs::path> images;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (!entry.is_regular_file() || entry.path().filename().string().starts_with('.')) continue;
-    if (hasImageName(entry.path()) || imageFormat(entry.path()) != ImageFormat::kUnknown)
-      images.push_back(entry.path());
-  }
-  std::ranges::sort(images);
+  std::vector<fs::path> images = listFolder(folder);
+  std::erase_if(images, [](const fs::path& file) {
+    if (!fs::is_regular_file(file) || file.filename().string().starts_with('.')) return true;
+    return !hasImageName(file) && imageFormat(file) == ImageFormat::kUnknown;
+  });
   return images;
 }
 
-std::vector<FramePaths> pairImages(const fs::path& left_folder, const fs::path& right_folder) {
-  const auto left = listImages(left_folder), right = listImages(right_folder);
-  requireImages(left_folder, left);
-  requireImages(right_folder, right);
-  if (left.size() != right.size()) {
-    auto alone = left.size() > right.size() ? withoutPartner(left, right) : withoutPartner(right, left);
-    throw InputError(left_folder.string() + " holds " + std::to_string(left.size()) + " images, " +
-                     right_folder.string() + " holds " + std::to_string(right.size()) +
-                     (alone ? ": " + alone->string() + " has no partner" : "") +
-                     "; every left image needs a right one");
-  }
-  const bool by_name = left.front().stem() == right.front().stem() || left.back().stem() == right.back().stem();
-  std::vector<FramePaths> frames;
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    if (by_name && left[i].stem() != right[i].stem()) {
-      throw InputError(left[i].string() + ": has no partner of the same name in " + right_folder.string());
-    }
-    frames.push_back({left[i], right[i]});
-  }
-  return frames;
+std::vector<fs::path> imagesIn(const fs::path& folder) {
+  auto images = listImages(folder);
+  if (!images.empty()) return images;
+  const auto others = otherImages(folder);
+  throw InputError(folder.string() + ": holds no PNG, JPEG or PGM image" +
+                   (others.empty() ? "" : "; " + adviceOnOtherImages(others)));
 }
 
 std::optional<std::int64_t> imageNumber(const fs::path& image) {
@@ -108,52 +94,45 @@ std::optional<std::int64_t> imageNumber(const fs::path& image) {
 }
 
 ImagesByNumber imagesByNumber(const fs::path& folder) {
-  const auto images = listImages(folder);
-  requireImages(folder, images);
   ImagesByNumber by_number;
-  for (const fs::path& image : images)
+  for (const fs::path& image : imagesIn(folder))
     if (const auto number = imageNumber(image)) by_number.emplace(*number, image);
   return by_number;
 }
 
-NumberedFrames pairByNumber(const ImagesByNumber& left, const ImagesByNumber& right, std::int64_t most_apart) {
-  NumberedFrames pairs;
-  auto partner = right.begin();
-  for (const auto& [number, image] : left) {
-    while (partner != right.end() && partner->first < number - most_apart) ++partner;
-    if (partner == right.end()) break;
-    if (partner->first > number + most_apart) continue;
-    pairs.frames.push_back({image, partner->second});
-    pairs.numbers.push_back(number);
-    ++partner;
-  }
-  if (pairs.frames.empty())
-    throw InputError((left.empty() ? fs::path() : left.begin()->second.parent_path()).string() +
-                     ": none of the images has a partner on the other side of the same number or time");
-  return pairs;
+void setFrames(Sequence& sequence, const fs::path& left_folder, const fs::path& right_folder) {
+  setPairs(sequence, pairFolders(left_folder, right_folder));
 }
 
-void setStampedFrames(Sequence& sequence, const ImagesByNumber& left, const ImagesByNumber& right) {
-  NumberedFrames pairs = pairByNumber(left, right, kMostApart_ns);
-  sequence.frames = std::move(pairs.frames);
-  for (const std::int64_t stamp_ns : pairs.numbers) sequence.stamps.push_back({stamp_ns});
-  sequence.stamps_measured = true;
+std::vector<std::int64_t> setKeyedFrames(Sequence& sequence, const KeyedImages& images) {
+  const auto named = [](const ImagesByNumber& side) {
+    std::vector<fs::path> files;
+    for (const auto& [number, image] : side) files.push_back(image);
+    return namedImages(files);
+  };
+  PairedImages paired = pairByKeys(images, named(images.left), named(images.right));
+  leaveOutEnds(paired);
+  const std::vector<std::int64_t> numbers = paired.numbers;
+  setPairs(sequence, std::move(paired));
+  return numbers;
+}
+
+void tellUnit(Sequence& sequence, const Times& times, const fs::path& file) {
+  if (times.unit_ns == 1'000'000'000) return;
+  sequence.notes.push_back({"times", file.string() + ": its numbers are taken as " + unitName(times.unit_ns) +
+                                         ", as no camera takes images so many seconds apart"});
 }
 
 void setStamps(Sequence& sequence, const fs::path& times_file, double fps_hz) {
   if (!times_file.empty()) {
-    sequence.stamps = readTimestamps(times_file);
+    const Times times = readTimes(times_file);
+    setStampsOfLines(sequence, times.stamps, times_file);
     sequence.stamps_measured = true;
-    if (sequence.stamps.size() != sequence.frames.size()) {
-      throw InputError(times_file.string() + ": has " + std::to_string(sequence.stamps.size()) + " times for " +
-                       std::to_string(sequence.frames.size()) + " images; one line per image is needed");
-    }
-    return;
+    tellUnit(sequence, times, times_file);
+  } else if (sequence.stamps.empty()) {
+    setStampsByRate(sequence, fps_hz);
   }
-  if (!(fps_hz > 0) || !std::isfinite(fps_hz)) throw UsageError("--fps must be a positive number");
-  for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
-    sequence.stamps.push_back({static_cast<std::int64_t>(std::llround(static_cast<double>(i) * 1e9 / fps_hz))});
-  }
+  tellPeriod(sequence);
 }
 
 StereoCamera rectifiedCamera(Sequence& sequence, const Rig& rig, ImageSize size) {

@@ -41,7 +41,7 @@ std::optional<Sequence> openPlain(const SequenceSource& source) {
                       .oxts = ifExists(folder / "oxts.txt"),
                       .oxts_timestamps = ifExists(folder / "oxts_timestamps.txt"),
                       .image_timestamps = ifExists(folder / "image_timestamps.txt")};
-    sequence.frames = pairImages(left, right);
+    setFrames(sequence, left, right);
     const bool any_pair = std::string_view(names.left) == "left";  // such folders may give either pair of keys
     setCamera(sequence, source.given, [&](ImageSize size) { return cameraOf(sequence, any_pair, size); });
     setStamps(sequence, ifExists(folder / "times.txt"), source.fps_hz);

@@ -6,6 +6,8 @@
 
 #include "io/errors.hpp"
 #include "io/layouts/layout_parts.hpp"
+#include "io/layouts/unsupported.hpp"
+#include "io/natural_order.hpp"
 #include "io/text_file.hpp"
 
 namespace motorcade {
@@ -18,7 +20,8 @@ constexpr std::size_t kMostNamed = 6;
 /// What a folder holds, as a message tells it.
 struct Content {
   std::vector<fs::path> of_images;  // sub-folders with images
-  std::vector<std::string> folders, calibrations, bags;
+  std::vector<std::string> folders, calibrations;
+  std::vector<fs::path> recordings;  // bags and videos
   std::size_t images = 0;
 };
 
@@ -29,18 +32,15 @@ std::string numbered(std::size_t count, const std::string& what) {
 Content contentOf(const fs::path& folder) {
   Content content;
   content.images = listImages(folder).size();
-  std::vector<fs::path> entries;
-  for (const auto& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
-  std::ranges::sort(entries);
-  for (const fs::path& entry : entries) {
+  for (const fs::path& entry : listFolder(folder)) {
     const std::string name = printable(entry.filename().string());
     const std::string extension = entry.extension().string();
     if (fs::is_directory(entry)) {
       const std::size_t images = listImages(entry).size();
       if (images > 0) content.of_images.push_back(entry);
       content.folders.push_back(name + " (" + numbered(images, "image") + ")");
-    } else if (extension == ".bag" || extension == ".mcap" || extension == ".db3") {
-      content.bags.push_back(name);
+    } else if (isRecordingFile(entry)) {
+      content.recordings.push_back(entry);
     } else if (extension == ".yaml" || extension == ".yml" || extension == ".json" || extension == ".txt") {
       content.calibrations.push_back(name);
     }
@@ -59,7 +59,8 @@ std::string described(const Content& content) {
   std::string text = numbered(content.images, "image");
   if (!content.folders.empty()) text += "; folders " + listed(content.folders);
   if (!content.calibrations.empty()) text += "; files " + listed(content.calibrations);
-  if (!content.bags.empty()) text += "; bags " + listed(content.bags);
+  if (!content.recordings.empty())
+    text += "; recordings " + listed({printable(content.recordings.front().filename().string())});
   return text;
 }
 
@@ -68,15 +69,14 @@ std::vector<std::string> sequencesIn(const fs::path& folder) {
   constexpr std::size_t kMostTried = 50;
   std::vector<std::string> names;
   std::size_t tried = 0;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (!entry.is_directory() || ++tried > kMostTried) continue;
+  for (const fs::path& entry : listFolder(folder)) {
+    if (!fs::is_directory(entry) || ++tried > kMostTried) continue;
     try {
-      if (openKnownLayout({entry.path(), 10, {}})) names.push_back(printable(entry.path().filename().string()));
+      if (openKnownLayout({entry, 10, {}})) names.push_back(printable(entry.filename().string()));
     } catch (const std::exception&) {
       continue;  // it may be one, but not as it is
     }
   }
-  std::ranges::sort(names);
   return names;
 }
 
@@ -88,40 +88,22 @@ std::string advice(const fs::path& folder, const Content& content) {
            "BATCH    (ROOT holds Scene01, ...)";
   if (const auto sequences = sequencesIn(folder); !sequences.empty())
     return "\nThese folders in it are sequences: " + listed(sequences) + ". Name one of them.";
+  if (const auto others = otherImages(folder); !others.empty()) return "\n" + adviceOnOtherImages(others);
   if (content.images == 0 && content.of_images.empty())
     return "\nImages are PNG, JPEG or PGM files: lay those of the left camera into a folder left, those of the right "
            "one "
            "into right, and a calib.txt, camchain.yaml or left.yaml and right.yaml beside them.";
-  const bool two = content.of_images.size() >= 2;
-  const std::string left = two ? content.of_images[0].string() + "/*" : (folder / "*left*").string(),
-                    right = two ? content.of_images[1].string() + "/*" : (folder / "*right*").string();
-  return "\nTwo sets of images become a sequence by a list of their pairs, the left one first, and a calibration:\n"
-         "  paste -d' ' <(ls -d " +
-         left + ") <(ls -d " + right +
-         ") > LIST.txt\n"
-         "  motorcade run LIST.txt --camera fx,fy,cx,cy,baseline --out RUN    (rectified; else --calibration "
-         "FILE.yaml)\n"
-         "or by lying in folders named left and right, beside a calib.txt, camchain.yaml or left.yaml and right.yaml.";
-}
-
-[[noreturn]] void failBag(const fs::path& bag) {
-  const bool first_ros = bag.extension() == ".bag";
-  const std::string extract = first_ros ? "rosrun image_view extract_images _sec_per_frame:=0 "
-                                        : "ros2 run image_view extract_images --ros-args -p sec_per_frame:=0.0 ";
-  const std::string argument = first_ros ? "" : "-r ", format = first_ros ? "_filename_format" : "-p filename_format";
-  throw InputError(bag.string() + ": is a bag of messages, which is not read; write its images into two folders,\n  " +
-                   extract + argument + "image:=/LEFT/image_raw " + format +
-                   ":=DRIVE/left/%06i.png     (the same for RIGHT)\n  " + (first_ros ? "rosbag" : "ros2 bag") +
-                   " play " + bag.string() +
-                   "\nand lay the calibration beside them: DRIVE/calib.txt, camchain.yaml or left.yaml and right.yaml");
+  if (content.of_images.size() >= 2) return adviceOnTwoFolders(content.of_images[0], content.of_images[1]);
+  return adviceOnOneFolder(listImages(content.images > 0 ? folder : content.of_images.front()));
 }
 
 }  // namespace
 
 void failUnknownLayout(const fs::path& path) {
-  if (fs::is_regular_file(path)) failBag(path);
+  if (fs::is_regular_file(path)) throw InputError(path.string() + adviceOnFile(path));
   const Content content = contentOf(path);
-  if (content.bags.size() == 1 && content.folders.empty() && content.images == 0) failBag(path / content.bags.front());
+  if (content.recordings.size() == 1 && content.of_images.empty() && content.images == 0)
+    throw InputError(content.recordings.front().string() + adviceOnFile(content.recordings.front()));
   throw InputError(path.string() + ": holds no stereo sequence that is understood; it holds " + described(content) +
                    "." + advice(path, content));
 }

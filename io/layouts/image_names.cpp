@@ -1,0 +1,183 @@
+#include "io/layouts/image_names.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "io/errors.hpp"
+#include "io/layouts/name_times.hpp"
+#include "io/natural_order.hpp"
+
+namespace motorcade {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kDigits = "0123456789";
+
+std::string joined(const NameParts& parts) {
+  std::string name;
+  for (const std::string& part : parts) name += part;
+  return name;
+}
+
+/// The text of a name, with a mark for digits.
+std::string kindOf(const NameParts& parts) {
+  std::string kind;
+  for (std::size_t i = 0; i < parts.size(); ++i) kind += i % 2 == 0 ? parts[i] : "#";
+  return kind;
+}
+
+std::string withoutZeros(const std::string& digits) {
+  return digits.substr(std::min(digits.find_first_not_of('0'), digits.size()));
+}
+
+/// The kind that all names have but a few; empty where there is no such kind.
+std::optional<std::string> usualKind(const std::vector<NameParts>& names) {
+  constexpr std::size_t kFewest = 3;
+  std::map<std::string, std::size_t> counts;
+  for (const NameParts& name : names) ++counts[kindOf(name)];
+  const auto usual =
+      std::ranges::max_element(counts, {}, [](const auto& kind_and_count) { return kind_and_count.second; });
+  if (counts.size() == 1) return usual->first;
+  const std::size_t strays = names.size() - usual->second;
+  const bool few = strays == 1 || 10 * strays <= names.size();
+  return few && usual->second >= kFewest ? std::optional(usual->first) : std::nullopt;
+}
+
+std::optional<std::int64_t> numberOf(const std::string& digits) {
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  return error == std::errc() ? std::optional(number) : std::nullopt;
+}
+
+void insert(ImagesByNumber& images, std::int64_t number, const fs::path& image) {
+  const auto [place, is_new] = images.emplace(number, image);
+  if (!is_new)
+    throw InputError(image.string() + ": has the same number as " + place->second.filename().string() +
+                     "; leave one of them in the folder");
+}
+
+/// Numbers the images of both sides; false where a number is too large.
+bool insertNumbers(ImagesByNumber& images, const NamedImages& side, std::size_t part) {
+  for (std::size_t i = 0; i < side.images.size(); ++i) {
+    const auto number = numberOf(side.names[i][part]);
+    if (!number) return false;
+    insert(images, *number, side.images[i]);
+  }
+  return true;
+}
+
+/// The parts of a name that tell it from others of its side; all of it where that is not known.
+NameParts keyOf(const NameParts& name, const std::optional<std::set<std::size_t>>& varying) {
+  if (!varying) return {joined(name)};
+  NameParts key;
+  for (const std::size_t part : *varying) key.push_back(withoutZeros(name[part]));
+  return key;
+}
+
+struct InOrderOfParts {
+  bool operator()(const NameParts& a, const NameParts& b) const {
+    return std::ranges::lexicographical_compare(a, b, naturallyBefore);
+  }
+};
+
+/// By the places that the names of both sides together have in natural order.
+KeyedImages byNames(const NamedImages& left, const NamedImages& right,
+                    const std::optional<std::pair<std::set<std::size_t>, std::set<std::size_t>>>& varying) {
+  const auto of_left = varying ? std::optional(varying->first) : std::nullopt,
+             of_right = varying ? std::optional(varying->second) : std::nullopt;
+  std::map<NameParts, std::int64_t, InOrderOfParts> places;
+  for (const NameParts& name : left.names) places.emplace(keyOf(name, of_left), 0);
+  for (const NameParts& name : right.names) places.emplace(keyOf(name, of_right), 0);
+  std::int64_t next = 0;
+  for (auto& [key, place] : places) place = next++;
+  KeyedImages keyed;
+  for (std::size_t i = 0; i < left.images.size(); ++i)
+    insert(keyed.left, places.at(keyOf(left.names[i], of_left)), left.images[i]);
+  for (std::size_t i = 0; i < right.images.size(); ++i)
+    insert(keyed.right, places.at(keyOf(right.names[i], of_right)), right.images[i]);
+  return keyed;
+}
+
+std::optional<KeyedImages> byTimes(const NamedImages& left, const NamedImages& right) {
+  const auto left_times = timesOfNames(left.names), right_times = timesOfNames(right.names);
+  if (!left_times || !right_times || left_times->unit_ns != right_times->unit_ns) return std::nullopt;
+  KeyedImages keyed{.kind = NameKind::kTimes};
+  for (std::size_t i = 0; i < left.images.size(); ++i) insert(keyed.left, left_times->all_ns[i], left.images[i]);
+  for (std::size_t i = 0; i < right.images.size(); ++i) insert(keyed.right, right_times->all_ns[i], right.images[i]);
+  return keyed;
+}
+
+}  // namespace
+
+NameParts partsOfName(std::string_view name) {
+  NameParts parts;
+  while (parts.empty() || !name.empty()) {
+    const bool digits = parts.size() % 2 == 1;
+    const std::size_t end = digits ? name.find_first_not_of(kDigits) : name.find_first_of(kDigits);
+    parts.emplace_back(name.substr(0, end));
+    name.remove_prefix(std::min(end, name.size()));
+  }
+  return parts;
+}
+
+NamedImages namedImages(const std::vector<fs::path>& images) {
+  NamedImages named{.images = images};
+  for (const fs::path& image : images) named.names.push_back(partsOfName(image.stem().string()));
+  if (images.empty()) return named;
+  const auto usual = usualKind(named.names);
+  named.alike = usual.has_value();
+  if (!usual) return named;
+  const NamedImages all = std::exchange(named, {});
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const bool stray = kindOf(all.names[i]) != *usual;
+    (stray ? named.strays : named.images).push_back(images[i]);
+    if (!stray) named.names.push_back(all.names[i]);
+  }
+  return named;
+}
+
+std::set<std::size_t> varyingDigits(const std::vector<NameParts>& names) {
+  std::set<std::size_t> varying;
+  for (const NameParts& name : names)
+    for (std::size_t part = 1; part < name.size(); part += 2)
+      if (withoutZeros(name[part]) != withoutZeros(names.front()[part])) varying.insert(part);
+  return varying;
+}
+
+KeyedImages keyedImages(const NamedImages& left, const NamedImages& right) {
+  if (!left.alike || !right.alike) return byNames(left, right, std::nullopt);
+  if (auto keyed = byTimes(left, right)) return *std::move(keyed);
+  auto of_left = varyingDigits(left.names), of_right = varyingDigits(right.names);
+  if (left.names.front().size() == right.names.front().size()) {  // what one side has but once may differ on the other
+    of_left.insert(of_right.begin(), of_right.end());
+    of_right = of_left;
+  }
+  if (of_left.size() != of_right.size()) return byNames(left, right, std::nullopt);
+  KeyedImages keyed{.kind = NameKind::kNumbers};
+  if (of_left.size() == 1 && insertNumbers(keyed.left, left, *of_left.begin()) &&
+      insertNumbers(keyed.right, right, *of_right.begin()))
+    return keyed;
+  return byNames(left, right, std::pair(of_left, of_right));
+}
+
+fs::path expectedImage(const NamedImages& side, const fs::path& partner) {
+  const fs::path& example = side.images.front();
+  const NameParts digits = partsOfName(partner.stem().string());
+  NameParts name = side.names.front();
+  if (!side.alike || name.size() != digits.size())
+    return example.parent_path() / partner.filename().replace_extension(example.extension());
+  const auto varying = varyingDigits(side.names);
+  for (std::size_t part = 1; part < name.size(); part += 2) {
+    if (!varying.contains(part)) continue;
+    const std::size_t width = name[part].size();
+    const bool padded =
+        std::ranges::all_of(side.names, [&](const NameParts& other) { return other[part].size() == width; });
+    name[part] = padded ? withoutZeros(digits[part]) : digits[part];
+    if (padded && name[part].size() < width) name[part].insert(0, width - name[part].size(), '0');
+  }
+  return example.parent_path() / (joined(name) + example.extension().string());
+}
+
+}  // namespace motorcade

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace motorcade {
+
+/// The order in which people count: `img2` before `img10`. Names that differ in zeros ahead of a number alone are
+/// ordered as plain text.
+bool naturallyBefore(std::string_view a, std::string_view b);
+
+struct NaturalOrder {
+  bool operator()(const std::filesystem::path& a, const std::filesystem::path& b) const {
+    return naturallyBefore(a.native(), b.native());
+  }
+};
+
+/// All that lies in a folder, in natural order. Throws std::filesystem::filesystem_error.
+std::vector<std::filesystem::path> listFolder(const std::filesystem::path& folder);
+/// The same, empty where there is no such folder.
+std::vector<std::filesystem::path> listFolderIfThere(const std::filesystem::path& folder);
+
+}  // namespace motorcade
