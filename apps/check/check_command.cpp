@@ -11,11 +11,12 @@
 
 #include "apps/check/camera_doubts.hpp"
 #include "apps/check/check_page.hpp"
-#include "apps/check/input_check.hpp"
+#include "apps/check/finding_guide.hpp"
 #include "apps/check/mosaic_doubt.hpp"
 #include "apps/check/row_error_names.hpp"
 #include "apps/check/sequence_line.hpp"
 #include "apps/inject/fault_injector.hpp"
+#include "apps/watch/input_check.hpp"
 #include "io/line_file.hpp"
 #include "io/sequence.hpp"
 #include "io/sequence_decoder.hpp"
@@ -26,23 +27,59 @@ namespace {
 constexpr int kExitInput = 3;
 constexpr std::size_t kShownPairs = 3;
 
-bool isWhole(const StereoFrame& pair) { return !pair.rejected() && !pair.left.empty() && !pair.right.empty(); }
+/// The pairs that came, and those that cannot be used.
+struct Seen {
+  std::size_t pairs = 0, unusable = 0;
+  std::string first_problem;
+  std::vector<StereoFrame> kept;  // with their images, where a page needs them
 
-/// Shows the first pairs of the sequence, after faults, to the check, and keeps their images where a page needs them.
-void look(InputCheck& check, std::vector<StereoFrame>& kept, const Sequence& sequence, const CheckOptions& options) {
+  void count(const StereoFrame& pair) {
+    ++pairs;
+    if (isWhole(pair)) return;
+    ++unusable;
+    if (first_problem.empty()) first_problem = pair.rejected() ? pair.problem : "an image is missing";
+  }
+};
+
+/// Shows the first pairs of the sequence, after faults, to the check.
+Seen look(InputCheck& check, const Sequence& sequence, const CheckOptions& options) {
   const FrameRange range = selectedFrames(options.frames, sequence);
   FaultInjector faults(parseFaultSpec(options.inject), sequence);
+  Seen seen;
   const FaultInjector::Outlet outlet{.push =
                                          [&](const StereoFrame& pair) {
+                                           seen.count(pair);
+                                           const std::size_t before = check.pairs();
                                            check.observe(pair);
-                                           if (!options.page.empty() && isWhole(pair)) kept.push_back(pair);
+                                           if (!options.page.empty() && check.pairs() > before)
+                                             seen.kept.push_back(pair);
                                            return !check.complete();
                                          },
                                      .pass_over = [](FrameId, Timestamp) {},
                                      .wait = [](std::chrono::duration<double>) {}};
   SequenceDecoder decoder(sequence, range, {});
-  while (auto pair = decoder.next())
-    if (!faults.give(std::move(*pair), outlet)) break;
+  bool wanted = true;
+  while (auto pair = wanted ? decoder.next() : std::nullopt) wanted = faults.give(std::move(*pair), outlet);
+  if (wanted) faults.finish(outlet);
+  return seen;
+}
+
+/// All that is wrong; without any pair that can be used nothing else is known.
+std::vector<Finding> findingsOf(const InputCheck& check, const Seen& seen, const Sequence& sequence,
+                                const FrameRange& range) {
+  constexpr std::size_t kMosaicPairs = 3;
+  std::vector<Finding> findings;
+  for (const std::string& doubt : doubtsAbout(sequence.camera)) findings.push_back({"calibration", doubt, true});
+  for (const std::string& oddity : odditiesOf(sequence.camera)) findings.push_back({"camera", oddity, false});
+  if (const auto doubt = mosaicDoubt(sequence, range, kMosaicPairs)) findings.push_back({"mosaic", *doubt, false});
+  for (const InputNote& note : sequence.notes) findings.push_back({note.name, note.text, note.worthless});
+  if (seen.unusable == seen.pairs)
+    findings.push_back({"images",
+                        "none of " + std::to_string(seen.pairs) + " pairs can be used" +
+                            (seen.first_problem.empty() ? "" : ": " + seen.first_problem),
+                        true});
+  for (Finding& finding : check.findings()) findings.push_back(std::move(finding));
+  return findings;
 }
 
 /// Those whose rows agree least.
@@ -82,55 +119,42 @@ void writeJson(const std::filesystem::path& file, const PairGeometry& geometry, 
     json["row_errors"][kRowErrorNames[k].key] = {
         {"value", error.value}, {"sigma", error.sigma}, {"effect_px", error.effect_px}};
   }
+  json["run_refuses"] = isWorthless(findings);
   json["findings"] = nlohmann::ordered_json::array();
   for (const Finding& finding : findings)
     json["findings"].push_back({{"name", finding.name}, {"worthless", finding.worthless}, {"text", finding.text}});
   writeAtOnce(file, json.dump(2) + "\n");
 }
 
-/// Gives whether results would be worthless.
-bool printFindings(const std::vector<Finding>& findings, const CheckOptions& options) {
-  bool worthless = false;
-  for (const Finding& finding : findings) {
-    worthless = worthless || finding.worthless;
+void printFindings(const std::vector<Finding>& findings, const CheckOptions& options) {
+  for (const Finding& finding : findings)
     std::printf("%s (%s): %s\n", finding.worthless ? "worthless" : "warning", finding.name.c_str(),
                 finding.text.c_str());
-  }
   if (findings.empty()) std::printf("nothing is wrong\n");
+  std::printf("%s\n", verdictOnRun(findings).c_str());
   if (!options.page.empty())
     std::printf("page        %s\n", options.page.string().c_str());
   else if (!findings.empty())
     std::printf("--page FILE.html shows it in pictures, and says more on how to mend it\n");
-  return worthless;
 }
 
 }  // namespace
 
 int runCheck(const CheckOptions& options) {
   const Sequence sequence = openSequence(options.sequence, options.fps_hz, options.given);
-  std::puts(sequenceLine(sequence, selectedFrames(options.frames, sequence)).c_str());
+  const FrameRange range = selectedFrames(options.frames, sequence);
+  std::puts(sequenceLine(sequence, range).c_str());
   InputCheck check(sequence.camera);
-  std::vector<StereoFrame> kept;
-  look(check, kept, sequence, options);
+  const Seen seen = look(check, sequence, options);
   const PairGeometry geometry = check.geometry();
-  std::vector<Finding> findings;
-  for (const std::string& doubt : doubtsAbout(sequence.camera)) findings.push_back({"calibration", doubt, true});
-  for (const std::string& oddity : odditiesOf(sequence.camera)) findings.push_back({"camera", oddity, false});
-  if (const auto doubt = mosaicDoubt(sequence, selectedFrames(options.frames, sequence), 3))
-    findings.push_back({"mosaic", *doubt, false});
-  for (const InputNote& note : sequence.notes) findings.push_back({note.name, note.text, note.worthless});
-  for (Finding& finding : check.findings()) findings.push_back(std::move(finding));
-  if (check.matches().size() < InputCheck::kFewestMatches)
-    findings.push_back({"points",
-                        "only " + std::to_string(check.matches().size()) +
-                            " points are seen in both images: nothing can be told of their rows; look at the images",
-                        false});
+  const std::vector<Finding> findings = findingsOf(check, seen, sequence, range);
   if (!options.json.empty()) writeJson(options.json, geometry, findings);
   if (!options.page.empty())
-    writeAtOnce(options.page,
-                checkPage({options.sequence.string(), sequence.camera, &check, findings, worstPairs(check, kept)}));
+    writeAtOnce(options.page, checkPage({options.sequence.string(), sequence.camera, &check, findings,
+                                         worstPairs(check, seen.kept)}));
   printGeometry(geometry);
-  return printFindings(findings, options) ? kExitInput : 0;
+  printFindings(findings, options);
+  return isWorthless(findings) ? kExitInput : 0;
 }
 
 }  // namespace motorcade

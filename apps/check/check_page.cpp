@@ -7,9 +7,9 @@
 
 #include "apps/canvas/color.hpp"
 #include "apps/check/finding_guide.hpp"
-#include "apps/check/median.hpp"
 #include "apps/check/row_error_names.hpp"
 #include "apps/html/html_page.hpp"
+#include "apps/watch/median.hpp"
 
 namespace motorcade {
 namespace {
@@ -44,12 +44,12 @@ std::string row(const std::string& head, std::initializer_list<std::string> numb
 }
 
 std::string headOf(const CheckedInput& input) {
-  const bool worthless = std::ranges::any_of(input.findings, &Finding::worthless);
   std::string html = "<h1>Input check ";
-  html += worthless                ? badge("bad", "results would be worthless")
-          : input.findings.empty() ? badge("good", "nothing is wrong")
-                                   : badge("warn", "usable, with warnings");
-  html += "</h1>\n<p class=\"muted\">" + escaped(input.sequence) + "</p>\n";
+  html += isWorthless(input.findings) ? badge("bad", "results would be worthless")
+          : input.findings.empty()    ? badge("good", "nothing is wrong")
+                                      : badge("warn", "usable, with warnings");
+  html += "</h1>\n<p class=\"muted\">" + escaped(input.sequence) + "</p>\n<p>" +
+          escaped("motorcade " + verdictOnRun(input.findings)) + ".</p>\n";
   const PairGeometry geometry = input.check->geometry();
   const auto matches = input.check->matches();
   const auto ahead =
@@ -177,7 +177,8 @@ std::string checkPage(const CheckedInput& input) {
   const std::string body =
       headOf(input) + findingsOf(input) + picturesOf(input) + geometryOf(input) + restOf(input) +
       "<p class=\"muted small\">Written by <code>motorcade check --page</code>. It looks at the first " +
-      std::to_string(InputCheck::kPairs) + " pairs; what is wrong later is not seen here.</p>\n";
+      std::to_string(InputCheck::kPairs) +
+      " pairs in which something is seen; what is wrong later is told by <code>motorcade run</code>.</p>\n";
   return htmlPage("Input check: " + input.sequence, body, kStyle);
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/check/epipolar_picture.hpp"
-#include "apps/check/input_check.hpp"
+#include "apps/watch/input_check.hpp"
 
 namespace motorcade {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "apps/canvas/canvas.hpp"
-#include "apps/check/median.hpp"
+#include "apps/watch/median.hpp"
 
 namespace motorcade {
 namespace {

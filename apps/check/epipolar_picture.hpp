@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "apps/check/epipolar_matching.hpp"
-#include "apps/check/pair_geometry.hpp"
+#include "apps/watch/epipolar_matching.hpp"
+#include "apps/watch/pair_geometry.hpp"
 #include "core/image.hpp"
 #include "io/image_file.hpp"
 

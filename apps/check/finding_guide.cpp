@@ -56,6 +56,10 @@ constexpr std::array<std::pair<std::string_view, FindingGuide>, 16> kGuides{{
     {"points",
      {"Hardly any point is seen in both images", "Neither the rig can be judged nor anything be followed.",
       "Look at the images: are they dark, blurred, without texture, or not of one rig?"}},
+    {"images",
+     {"No pair can be used", "There is nothing to follow.",
+      "See what was measured: it says of the first pair why. Are these images, of the formats and the size that the "
+      "layout asks for?"}},
     {"times",
      {"The times of the pairs jump",
       "Speeds are distances over times: a wrong time is a wrong speed, and a gap loses what was followed.",
@@ -86,6 +90,21 @@ FindingGuide guideTo(std::string_view finding) {
   const auto found = std::ranges::find(kGuides, finding, [](const auto& entry) { return entry.first; });
   if (found != kGuides.end()) return found->second;
   return {finding, "Results would be less exact, or none.", "See what was measured."};
+}
+
+bool isWorthless(std::span<const Finding> findings) { return std::ranges::any_of(findings, &Finding::worthless); }
+
+std::string verdictOnRun(std::span<const Finding> findings) {
+  constexpr std::array kNothingToFollow{std::string_view("images"), std::string_view("points")};
+  if (!isWorthless(findings))
+    return "run takes this drive; it looks on for changes of the rig, and ends with exit code 3 where one makes "
+           "results "
+           "worthless";
+  const bool nothing = std::ranges::any_of(findings, [&](const Finding& finding) {
+    return finding.worthless && std::ranges::find(kNothingToFollow, finding.name) != kNothingToFollow.end();
+  });
+  return nothing ? "run ends with exit code 3: it finds nothing to follow"
+                 : "run ends with exit code 3; run --force goes on";
 }
 
 }  // namespace motorcade

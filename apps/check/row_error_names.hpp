@@ -3,7 +3,7 @@
 #include <array>
 #include <numbers>
 
-#include "apps/check/pair_geometry.hpp"
+#include "apps/watch/pair_geometry.hpp"
 
 namespace motorcade {
 

@@ -5,22 +5,19 @@
 namespace motorcade {
 
 bool InputWatch::admits(const StereoFrame& pair) {
-  check_.observe(pair);
-  if (check_.complete()) tell();
+  if (!refused_) tell(watch_.observe(pair));
   return !refused_;
 }
 
-void InputWatch::finish() { tell(); }
-
-void InputWatch::tell() {
-  if (told_) return;
-  told_ = true;
-  for (const Finding& finding : check_.findings()) {
-    if (finding.worthless && !force_) {
+void InputWatch::tell(const std::vector<RigFinding>& found) {
+  for (const RigFinding& each : found) {
+    found_.push_back(each);
+    if (each.finding.worthless && !force_) {
       refused_ = true;
-      spdlog::error("{}; --force goes on", finding.text);
+      spdlog::error("{}; {}--force goes on", each.text(),
+                    each.last_good ? "what is written of frames before is good, " : "");
     } else {
-      spdlog::warn(finding.text);
+      spdlog::warn(each.text());
     }
   }
 }

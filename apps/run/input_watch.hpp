@@ -1,30 +1,35 @@
 #pragma once
 
-#include "apps/check/input_check.hpp"
+#include <vector>
+
+#include "apps/watch/rig_watch.hpp"
 #include "core/messages.hpp"
 #include "core/stereo_camera.hpp"
 
 namespace motorcade {
 
-/// Looks at the first pairs of a run as they enter, and logs what is wrong with them, once.
+/// Looks at the pairs of a run as they enter, and logs what is wrong with them, each once.
 class InputWatch {
  public:
   /// With `force` the run goes on where its results would be worthless.
-  InputWatch(const StereoCamera& camera, bool force) : check_(camera, true), force_(force) {}
+  InputWatch(const StereoCamera& camera, bool force) : watch_(camera), force_(force) {}
 
   /// Takes the pairs in order; false from when it is known that results would be worthless.
   bool admits(const StereoFrame& pair);
-  /// After the last pair, which may come before enough were seen.
-  void finish();
+  /// After the last pair.
+  void finish() { tell(watch_.finish()); }
   /// The run was, or should have been, ended.
   bool refused() const { return refused_; }
+  /// All that was found, in the order of the frames.
+  const std::vector<RigFinding>& found() const { return found_; }
 
  private:
-  void tell();
+  void tell(const std::vector<RigFinding>& found);
 
-  InputCheck check_;
+  RigWatch watch_;
   bool force_;
-  bool told_ = false, refused_ = false;
+  bool refused_ = false;
+  std::vector<RigFinding> found_;
 };
 
 }  // namespace motorcade

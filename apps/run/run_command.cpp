@@ -23,6 +23,7 @@
 #include "apps/recorded/recorded_run.hpp"
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/feeder.hpp"
+#include "apps/run/followed_frames.hpp"
 #include "apps/run/input_watch.hpp"
 #include "apps/run/mcap_recorder.hpp"
 #include "apps/run/object_view_writer.hpp"
@@ -121,7 +122,7 @@ class Recorder {
     for (RunListener* const listener : listeners_) listener->frameLeft(result);
     for (const FrameEstimate& estimate : result.settled) folder_.writeSettled(estimate);
     recordFinals(result.finals);
-    if (result.online.status == FrameStatus::kGood) ++good_frames_;
+    followed_.observe(result);
     if (++done_ % kFramesPerTrim == 0) giveBackSpareMemory();
     progress_.show(done_, fmt::format("latency {:.1f} ms", result.timing.latency_ms()));
   }
@@ -143,15 +144,15 @@ class Recorder {
   void recordFinals(const std::vector<FrameEstimate>& finals) {
     for (const FrameEstimate& estimate : finals) folder_.writeFinal(estimate);
   }
-  std::int64_t goodFrames() const { return good_frames_; }
+  const FollowedFrames& followed() const { return followed_; }
 
  private:
   RunFolderWriter& folder_;
   RunListeners listeners_;
   Progress progress_;
   Plausibility plausibility_;
+  FollowedFrames followed_;
   std::size_t done_ = 0;
-  std::int64_t good_frames_ = 0;
 };
 
 /// What is played into the pipeline.
@@ -236,7 +237,7 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   recorder.recordFinals(end.finals);
   summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   summary.pipeline = end.summary;
-  summary.good_frames = recorder.goodFrames();
+  summary.good_frames = recorder.followed().count();
   summary.decoded = {"decode>input", static_cast<std::int64_t>(decoder.highWater()),
                      static_cast<std::int64_t>(decoder.capacity())};
   summary.signal = signals.received();
@@ -280,6 +281,22 @@ class ExtraOutputs {
   std::optional<McapRecorder> mcap_;
 };
 
+/// What the run's end says to whoever started it.
+int exitCode(const RunSummary& summary, const FollowedFrames& followed, std::optional<double> required_tracking) {
+  if (summary.refused) return kExitInput;
+  if (summary.signal != 0) return kExitSignal + summary.signal;
+  if (followed.count() == 0 && summary.pipeline.received > 0) {
+    spdlog::error(followed.whyNone(summary.pipeline));
+    return kExitInput;
+  }
+  if (required_tracking && summary.trackedFraction() < *required_tracking) {
+    spdlog::error("{:.4f} of the frames are tracked, --require asks for {:.4f}", summary.trackedFraction(),
+                  *required_tracking);
+    return kExitUntracked;
+  }
+  return 0;
+}
+
 }  // namespace
 
 int runSequence(const RunOptions& options) {
@@ -314,18 +331,12 @@ int runSequence(const RunOptions& options) {
   follow({sequence, range, options.inject.empty() ? nullptr : &faults, &watch, listeners, view.get()}, config,
          std::move(stages), recorder, summary, signals);
   extras.close(summary);
+  summary.found = watch.found();
+  summary.refused = watch.refused();
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));
   if (tellsProgress()) std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);
-
-  if (watch.refused()) return kExitInput;
-  if (summary.signal != 0) return kExitSignal + summary.signal;
-  if (required_tracking && summary.trackedFraction() < *required_tracking) {
-    spdlog::error("{:.4f} of the frames are tracked, --require asks for {:.4f}", summary.trackedFraction(),
-                  *required_tracking);
-    return kExitUntracked;
-  }
-  return 0;
+  return exitCode(summary, recorder.followed(), required_tracking);
 }
 
 }  // namespace motorcade

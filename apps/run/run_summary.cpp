@@ -66,6 +66,22 @@ Json byCause(const PipelineSummary& pipeline) {
   return counts;
 }
 
+/// Frames are null of what is found in the first pairs.
+Json toJson(const RigFinding& found) {
+  const auto frame = [&](FrameId id) { return found.last_good ? Json(id.value) : Json(nullptr); };
+  return {{"name", found.finding.name},
+          {"worthless", found.finding.worthless},
+          {"text", found.finding.text},
+          {"last_good_frame", frame(found.last_good.value_or(FrameId{}))},
+          {"first_bad_frame", frame(found.first_bad)}};
+}
+
+Json toJson(const std::vector<RigFinding>& found) {
+  Json list = Json::array();
+  for (const RigFinding& each : found) list.push_back(toJson(each));
+  return list;
+}
+
 /// What the program is made of.
 Json programVersions() {
   Json json = Json::object();
@@ -109,7 +125,7 @@ std::string toJson(const RunSummary& summary) {
   const PipelineSummary& pipeline = summary.pipeline;
   Json queues = Json::array({toJson(summary.decoded)});
   for (const QueueMark& queue : pipeline.queues) queues.push_back(toJson(queue));
-  Json json{{"complete", summary.signal == 0},
+  Json json{{"complete", summary.signal == 0 && !summary.refused},
             {"sequence", summary.sequence},
             {"layout", summary.layout},
             {"camera", summary.given.camera},
@@ -139,6 +155,7 @@ std::string toJson(const RunSummary& summary) {
               {"by_cause", byCause(pipeline)},
               {"segments", pipeline.segments},
               {"tracked_fraction", rounded(summary.trackedFraction())}}},
+            {"findings", toJson(summary.found)},
             {"latency_ms", withBuckets(pipeline.latency)},
             {"latency_with_decoding_ms", withBuckets(pipeline.latency_with_decoding)},
             {"entry_wait_ms", toJson(pipeline.entry_wait)},

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/run/process_usage.hpp"
+#include "apps/watch/rig_watch.hpp"
 #include "io/sequence.hpp"
 
 namespace motorcade {
@@ -41,7 +43,9 @@ struct RunSummary {
   double wall_s = 0;
   ProcessUsage used;
   std::optional<McapSummary> mcap{};
-  int signal = 0;  // that ended the run early
+  std::vector<RigFinding> found{};  // wrong with the pairs
+  bool refused = false;             // and so the run was ended
+  int signal = 0;                   // that ended the run early
 
   void setSequence(const Sequence& of);
   /// Share of the received frames that have a measured ego-motion.

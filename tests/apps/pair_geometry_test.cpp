@@ -1,4 +1,4 @@
-#include "apps/check/pair_geometry.hpp"
+#include "apps/watch/pair_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "frontend/features/corner_detector.hpp"
-#include "frontend/image/image_pyramid.hpp"
 #include "tests/frontend/texture.hpp"
 
 namespace motorcade {
@@ -88,8 +86,8 @@ TEST(MatchUnrectified, FindsRowsAndDisparitiesOfEitherSign) {
     ImagePool pool;
     const Image left = test::render(640, 300, texture, {.noise = 2, .seed = 4}),
                 right = test::render(640, 300, shifted, {.noise = 2, .seed = 5});
-    const auto matches =
-        matchUnrectified(buildPyramid(left, 4, pool), buildPyramid(right, 4, pool), CornerDetector({})(left));
+    const PreparedPair pair = preparePair(left, right, pool);
+    const auto matches = matchUnrectified(pair.left, pair.right, pair.corners, 200);
     EXPECT_GT(matches.size(), 100U);
     const auto good = std::ranges::count_if(matches, [&](const EpipolarMatch& match) {
       return std::abs(match.rowDifference_px() - v_px) < 0.2 && std::abs(match.disparity_px() + u_px) < 0.2;
@@ -100,8 +98,9 @@ TEST(MatchUnrectified, FindsRowsAndDisparitiesOfEitherSign) {
 
 TEST(MatchUnrectified, FindsNothingInImagesTooSmall) {
   ImagePool pool;
-  const ImagePyramid tiny = buildPyramid(test::render(30, 24, test::Texture(1)), 4, pool);
-  EXPECT_TRUE(matchUnrectified(tiny, tiny, {{15, 12, 9}}).empty());
+  const Image tiny = test::render(30, 24, test::Texture(1));
+  const PreparedPair pair = preparePair(tiny, tiny, pool);
+  EXPECT_TRUE(matchUnrectified(pair.left, pair.right, {{15, 12, 9}}, 200).empty());
 }
 
 }  // namespace

@@ -7,9 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "apps/check/pair_geometry.hpp"
+#include "apps/watch/pair_geometry.hpp"
 #include "core/messages.hpp"
-#include "frontend/features/corner_detector.hpp"
 
 namespace motorcade {
 
@@ -39,19 +38,20 @@ struct LookedAt {
   std::span<const EpipolarMatch> matches;
 };
 
-/// Looks at the first pairs of a drive for what makes a stereo camera useless without a word: rows that do not agree,
-/// images exchanged or taken at different times, distortion left in, exposure and times that jump, blur. Takes about
+/// Looks at pairs of a drive for what makes a stereo camera useless without a word: rows that do not agree, images
+/// exchanged or taken at different times, distortion left in, exposure and times that jump, blur. Takes about a third
 /// as long per pair as following it. Call in the order of the frames.
 class InputCheck {
  public:
   static constexpr std::size_t kPairs = 20;
   static constexpr std::size_t kFewestMatches = 60;  // that a rig is judged by
-  /// With `half`, two of four pairs are looked at, for half the cost.
-  explicit InputCheck(const StereoCamera& camera, bool half = false);
+  /// Judges by so many pairs.
+  explicit InputCheck(const StereoCamera& camera, std::size_t pairs = kPairs) : camera_(camera), wanted_(pairs) {}
 
-  /// Pairs that lack an image are passed over, and so are those after the first kPairs.
+  /// Pairs that lack an image, show hardly a point that both eyes see, or come after their turn are passed over, and so
+  /// are those after enough were seen.
   void observe(const StereoFrame& pair);
-  bool complete() const { return pairs_ >= kPairs; }
+  bool complete() const { return pairs_ >= wanted_; }
 
   /// Of the pairs so far.
   PairGeometry geometry() const { return estimatePairGeometry(matches_, camera_); }
@@ -63,36 +63,42 @@ class InputCheck {
   TimeMeasures times() const;
   /// Of the pairs so far; empty where all is well.
   std::vector<Finding> findings() const;
+  /// Those of them that tell of the cameras' places, order and moments.
+  std::vector<Finding> rigFindings() const;
 
  private:
-  struct Pair {
-    ImagePyramid left, right;
-    std::vector<Corner> corners;
-  };
-  /// Pairs whose rows agree badly, and how many of them agree better with the right image before, or after.
+  /// How many pairs were compared with the one before, and how many of them have rows that agree badly, among
+  /// themselves and better with the right image before, or after.
   struct Apart {
-    int bad = 0, before = 0, after = 0;
+    std::size_t compared = 0, bad = 0, before = 0, after = 0;
   };
-  void lookAt(const StereoFrame& pair);
-  void compareWithNeighbors(const Pair& now, std::size_t in_row, std::size_t matched);
+  void compareWithNeighbors(const PreparedPair& now, std::span<const EpipolarMatch> matches);
   void observeLight(const StereoFrame& pair);
   std::optional<Finding> apart() const;
+  std::optional<Finding> incoherent(const PairGeometry& geometry) const;
   std::optional<Finding> exchanged() const;
-  void addRowErrors(std::vector<Finding>& findings) const;
+  static void addRowErrors(const PairGeometry& geometry, std::vector<Finding>& findings);
   void addLight(std::vector<Finding>& findings) const;
   void addTimes(std::vector<Finding>& findings) const;
+  void addPoints(std::vector<Finding>& findings) const;
 
   StereoCamera camera_;
-  bool half_;
-  CornerDetector detect_corners_;
+  std::size_t wanted_;
   ImagePool pool_;
-  std::size_t pairs_ = 0;
-  std::optional<Pair> before_;
+  std::size_t pairs_ = 0, passed_over_ = 0;
+  FrameId last_;
+  std::optional<PreparedPair> before_;
   std::vector<EpipolarMatch> matches_;
   std::vector<std::pair<FrameId, std::size_t>> looks_;  // with the number of matches so far
   Apart apart_;
   std::vector<double> left_means_, right_means_, left_grains_, right_grains_;  // gray levels
   std::vector<Timestamp> stamps_;
 };
+
+/// True of images that are there, both.
+inline bool isWhole(const StereoFrame& pair) { return !pair.rejected() && !pair.left.empty() && !pair.right.empty(); }
+
+/// True where more of the points lie behind the cameras than before them, clearly: left is right.
+bool looksExchanged(std::span<const EpipolarMatch> matches);
 
 }  // namespace motorcade

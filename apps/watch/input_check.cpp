@@ -1,4 +1,4 @@
-#include "apps/check/input_check.hpp"
+#include "apps/watch/input_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,15 +6,15 @@
 #include <numbers>
 #include <utility>
 
-#include "apps/check/median.hpp"
+#include "apps/watch/median.hpp"
 #include "frontend/image/grain.hpp"
 #include "frontend/image/image_pyramid.hpp"
 
 namespace motorcade {
 namespace {
 
-constexpr int kLevels = 4;
-
+/// Of a pair whose rows agree: on all drives at hand it is over 0.8, and under 0.6 where images are a frame apart.
+constexpr double kInRowShare = 0.75;
 // Effects on the rows from which on an error is told, and from which on results are worthless [px].
 constexpr double kTold_px = 0.8, kWorthless_px = 1.2;
 constexpr double kSure = 5;           // standard deviations
@@ -58,28 +58,35 @@ const std::array kRowErrorTexts{
     RowErrorText{RowError::kLift, "lift", "the right camera stands higher by %.1f (+-%.1f) %% of the baseline", 100},
     RowErrorText{RowError::kAhead, "ahead", "the right camera stands ahead by %.1f (+-%.1f) %% of the baseline", 100}};
 
-}  // namespace
-
-InputCheck::InputCheck(const StereoCamera& camera, bool half) : camera_(camera), half_(half), detect_corners_({}) {}
-
-void InputCheck::observe(const StereoFrame& pair) {
-  const bool whole = !pair.rejected() && !pair.left.empty() && !pair.right.empty();
-  if (complete() || !whole) return;
-  const bool first_two_of_four = pairs_ % 4 < 2;
-  ++pairs_;
-  stamps_.push_back(pair.stamp);
-  observeLight(pair);
-  if (!half_ || first_two_of_four)
-    lookAt(pair);
-  else
-    before_.reset();
+/// Matches that lie clearly before the cameras, and clearly behind them.
+std::pair<double, double> aheadAndBehind(std::span<const EpipolarMatch> matches) {
+  constexpr double kClear_px = 1.5, kRow_px = 3;
+  std::pair<double, double> counts{0, 0};
+  for (const EpipolarMatch& match : matches) {
+    if (std::abs(match.rowDifference_px()) > kRow_px) continue;
+    counts.first += match.disparity_px() > kClear_px ? 1 : 0;
+    counts.second += match.disparity_px() < -kClear_px ? 1 : 0;
+  }
+  return counts;
 }
 
-void InputCheck::lookAt(const StereoFrame& pair) {
-  Pair now{buildPyramid(pair.left, kLevels, pool_), buildPyramid(pair.right, kLevels, pool_),
-           detect_corners_(pair.left)};
-  const auto matches = matchUnrectified(now.left, now.right, now.corners);
-  compareWithNeighbors(now, matchesInRow(matches), matches.size());
+}  // namespace
+
+void InputCheck::observe(const StereoFrame& pair) {
+  constexpr std::size_t kPoints = 150, kFewestOfPair = kFewestMatches / kPairs;
+  if (complete() || pair.frame <= last_) return;
+  last_ = pair.frame;
+  stamps_.push_back(pair.stamp);
+  if (!isWhole(pair)) return;
+  PreparedPair now = preparePair(pair.left, pair.right, pool_);
+  const auto matches = matchUnrectified(now.left, now.right, now.corners, kPoints);
+  if (matches.size() < kFewestOfPair) {
+    ++passed_over_;
+    return before_.reset();
+  }
+  ++pairs_;
+  observeLight(pair);
+  compareWithNeighbors(now, matches);
   matches_.insert(matches_.end(), matches.begin(), matches.end());
   looks_.emplace_back(pair.frame, matches_.size());
   before_ = std::move(now);
@@ -92,53 +99,74 @@ void InputCheck::observeLight(const StereoFrame& pair) {
   if (const auto grain = grainOf(pair.right)) right_grains_.push_back(*grain);
 }
 
-/// Only where the pair's own rows agree badly, as it costs as much again, twice.
-void InputCheck::compareWithNeighbors(const Pair& now, std::size_t in_row, std::size_t matched) {
-  constexpr double kGoodShare = 0.75, kBetter = 1.5;
-  constexpr std::size_t kFew = 30;
-  if (!before_ || static_cast<double>(in_row) > kGoodShare * static_cast<double>(std::max(matched, kFew))) return;
+/// Matches anew only where the pair's own rows agree badly, as it costs as much again, twice.
+void InputCheck::compareWithNeighbors(const PreparedPair& now, std::span<const EpipolarMatch> matches) {
+  constexpr double kBetter = 1.5;
+  constexpr std::size_t kFew = 15, kPoints = 150;
+  if (!before_) return;
+  ++apart_.compared;
+  const std::size_t in_row = matchesInRow(matches);
+  if (static_cast<double>(in_row) > kInRowShare * static_cast<double>(std::max(matches.size(), 2 * kFew))) return;
   ++apart_.bad;
-  const double own = kBetter * static_cast<double>(std::max(in_row, kFew / 2));
-  const auto with_before = matchesInRow(matchUnrectified(now.left, before_->right, now.corners));
-  const auto with_after = matchesInRow(matchUnrectified(before_->left, now.right, before_->corners));
+  const double own = kBetter * static_cast<double>(std::max(in_row, kFew));
+  const auto with_before = matchesInRow(matchUnrectified(now.left, before_->right, now.corners, kPoints));
+  const auto with_after = matchesInRow(matchUnrectified(before_->left, now.right, before_->corners, kPoints));
   if (static_cast<double>(with_before) > own && with_before > with_after) ++apart_.before;
   if (static_cast<double>(with_after) > own && with_after > with_before) ++apart_.after;
 }
 
 std::vector<Finding> InputCheck::findings() const {
-  std::vector<Finding> findings;
-  if (const auto found = apart())
-    findings.push_back(*found);
-  else if (const auto also_found = exchanged())
-    findings.push_back(*also_found);
-  else
-    addRowErrors(findings);
+  std::vector<Finding> findings = rigFindings();
   addLight(findings);
   addTimes(findings);
+  addPoints(findings);
   return findings;
 }
 
+std::vector<Finding> InputCheck::rigFindings() const {
+  std::vector<Finding> findings;
+  if (const auto found = apart()) return {*found};
+  if (const auto found = exchanged()) return {*found};
+  if (matches_.size() < kFewestMatches) return {};
+  const PairGeometry geometry = this->geometry();
+  if (const auto found = incoherent(geometry)) return {*found};
+  addRowErrors(geometry, findings);
+  return findings;
+}
+
+/// A few pairs alone are bridged by a run: they make results worse, not worthless.
 std::optional<Finding> InputCheck::apart() const {
-  constexpr int kMinPairs = 3;
-  const int most = std::max(apart_.before, apart_.after);
+  constexpr std::size_t kMinPairs = 3;
+  const std::size_t most = std::max(apart_.before, apart_.after);
   if (most < kMinPairs || 2 * most < apart_.bad) return std::nullopt;
   return Finding{"apart",
-                 text("the images of a pair are not taken at the same time: in %d of %d pairs, the left image fits the "
-                      "right one of the pair %s better; number the images by their times",
-                      most, apart_.bad, apart_.before > apart_.after ? "after" : "before"),
+                 text("the images of a pair are not taken at the same time: in %zu of %zu pairs, the left image fits "
+                      "the right one of the pair %s better; number the images by their times",
+                      most, apart_.compared, apart_.before > apart_.after ? "after" : "before"),
+                 4 * most >= apart_.compared};
+}
+
+/// Images taken at moments that lie a part of the frames' distance apart fit those of no other pair better.
+std::optional<Finding> InputCheck::incoherent(const PairGeometry& geometry) const {
+  constexpr double kAgreeingShare = 0.75;
+  if (geometry.agreeing_share > kAgreeingShare || 2 * apart_.bad < apart_.compared) return std::nullopt;
+  return Finding{"apart",
+                 text("the images of a pair are not taken at the same time, or not by one rig: in %zu of %zu pairs, "
+                      "rows differ as no error of the cameras' places explains; pair the images by their times",
+                      apart_.bad, apart_.compared),
                  true};
 }
 
+bool looksExchanged(std::span<const EpipolarMatch> matches) {
+  constexpr double kShare = 0.25;
+  const auto [ahead, behind] = aheadAndBehind(matches);
+  return behind >= kShare * static_cast<double>(matches.size()) && behind >= 3 * ahead;
+}
+
 std::optional<Finding> InputCheck::exchanged() const {
-  constexpr double kClear_px = 1.5, kRow_px = 3, kShare = 0.25;
-  double ahead = 0, behind = 0;
-  for (const EpipolarMatch& match : matches_) {
-    if (std::abs(match.rowDifference_px()) > kRow_px) continue;
-    ahead += match.disparity_px() > kClear_px ? 1 : 0;
-    behind += match.disparity_px() < -kClear_px ? 1 : 0;
-  }
+  if (matches_.size() < kFewestMatches || !looksExchanged(matches_)) return std::nullopt;
+  const auto [ahead, behind] = aheadAndBehind(matches_);
   const auto all = static_cast<double>(matches_.size());
-  if (matches_.size() < kFewestMatches || behind < kShare * all || behind < 3 * ahead) return std::nullopt;
   return Finding{"exchanged",
                  text("left and right image are exchanged: %.0f %% of the points would lie behind the camera, %.0f %% "
                       "before it; exchange the folders, or P0 and P1 of the calibration",
@@ -146,9 +174,7 @@ std::optional<Finding> InputCheck::exchanged() const {
                  true};
 }
 
-void InputCheck::addRowErrors(std::vector<Finding>& findings) const {
-  if (matches_.size() < kFewestMatches) return;
-  const PairGeometry geometry = this->geometry();
+void InputCheck::addRowErrors(const PairGeometry& geometry, std::vector<Finding>& findings) {
   const RowErrorEstimate& barrel = geometry[RowError::kBarrel];
   if (barrel.effect_px > kDistorted_px && std::abs(barrel.value) > kSureDistorted * barrel.sigma)
     findings.push_back(
@@ -241,6 +267,16 @@ void InputCheck::addTimes(std::vector<Finding>& findings) const {
                         text("the times jump: pairs are %.4g s apart, but once %.4g s; look at times.txt",
                              times.usual_s, late ? times.most_s : times.least_s),
                         false});
+}
+
+/// Where no pair at all shows anything, nothing can be followed either.
+void InputCheck::addPoints(std::vector<Finding>& findings) const {
+  if (matches_.size() >= kFewestMatches || passed_over_ + pairs_ == 0) return;
+  findings.push_back({"points",
+                      text("only %zu points are seen in both images of %zu pairs: nothing can be told of their rows; "
+                           "look at the images",
+                           matches_.size(), passed_over_ + pairs_),
+                      pairs_ == 0});
 }
 
 }  // namespace motorcade

@@ -1,4 +1,4 @@
-#include "apps/check/epipolar_matching.hpp"
+#include "apps/watch/epipolar_matching.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "frontend/features/corner_detector.hpp"
 #include "frontend/image/image_pyramid.hpp"
 #include "frontend/image/patch_alignment.hpp"
 #include "frontend/image/window_differences.hpp"
@@ -14,8 +15,9 @@
 namespace motorcade {
 namespace {
 
-constexpr int kLevel = 2;             // of the whole-pixel search: a quarter of full size
-constexpr std::size_t kPoints = 200;  // per pair
+constexpr int kLevels = 4;
+constexpr int kLevel = 2;        // of the whole-pixel search: a quarter of full size
+constexpr int kCornerLevel = 1;  // of the corners: half of full size
 // Of the search at a quarter of the size.
 constexpr int kRows_px = 5, kLeastDisparity_px = -24, kMostDisparity_px = 48;
 constexpr int kBeside_px = 2;  // of the best place, too near to compete with it
@@ -34,13 +36,24 @@ struct Columns {
 constexpr int kSearchedRows = 2 * kRows_px + 1;
 using RowCosts = std::array<std::array<std::uint16_t, kMaxWindowCosts>, kSearchedRows>;
 
+/// Without a branch, so that it becomes vector code.
+std::uint16_t leastOf(std::span<const std::uint16_t> costs) {
+  std::uint16_t least = UINT16_MAX;
+  for (const std::uint16_t cost : costs) least = std::min(least, cost);
+  return least;
+}
+
 /// The least cost that is not beside a place, or the greatest number.
-int leastBesides(const RowCosts& costs, int count, Place best) {
-  int least = UINT16_MAX;
-  for (int r = 0; r < kSearchedRows; ++r)
-    for (int i = 0; i < count; ++i)
-      if (std::abs(r - best.v) > kBeside_px || std::abs(i - best.u) > kBeside_px)
-        least = std::min<int>(least, costs[r][i]);
+std::uint16_t leastBesides(const RowCosts& costs, int count, Place best) {
+  const int before = std::max(0, best.u - kBeside_px), after = std::min(count, best.u + kBeside_px + 1);
+  std::uint16_t least = UINT16_MAX;
+  for (int r = 0; r < kSearchedRows; ++r) {
+    const auto row = std::span(costs[r]).first(static_cast<std::size_t>(count));
+    if (std::abs(r - best.v) > kBeside_px)
+      least = std::min(least, leastOf(row));
+    else
+      least = std::min({least, leastOf(row.first(before)), leastOf(row.subspan(after))});
+  }
   return least;
 }
 
@@ -53,7 +66,7 @@ std::optional<Place> searchArea(const Window& window, const Image& other, Column
   if (count < 1) return std::nullopt;
   RowCosts costs;
   Place best;
-  int least = UINT16_MAX;
+  std::uint16_t least = UINT16_MAX;
   for (int r = 0; r < kSearchedRows; ++r) {
     const int v = window.v + r - kRows_px;
     const auto row = std::span(costs[r]).first(static_cast<std::size_t>(count));
@@ -62,8 +75,10 @@ std::optional<Place> searchArea(const Window& window, const Image& other, Column
       continue;
     }
     windowDifferences(window, other, columns.first, v, row);
-    const auto at = std::ranges::min_element(row);
-    if (*at < least) least = *at, best = {static_cast<int>(at - row.begin()), r};
+    const std::uint16_t least_of_row = leastOf(row);
+    if (least_of_row >= least) continue;
+    least = least_of_row;
+    best = {static_cast<int>(std::ranges::find(row, least) - row.begin()), r};
   }
   if (least > kMaxUniquenessRatio * leastBesides(costs, count, best)) return std::nullopt;
   return Place{columns.first + best.u, window.v + best.v - kRows_px};
@@ -84,11 +99,20 @@ std::optional<Place> searchBothWays(const Image& left, const Image& right, Place
 
 }  // namespace
 
+PreparedPair preparePair(const Image& left, const Image& right, ImagePool& pool) {
+  PreparedPair pair{buildPyramid(left, kLevels, pool), buildPyramid(right, kLevels, pool), {}};
+  if (pair.left.levels.size() <= kCornerLevel) return pair;
+  pair.corners = CornerDetector({})(pair.left.levels[kCornerLevel]);
+  for (Corner& corner : pair.corners)
+    corner = {fromLevel(corner.u_px, kCornerLevel), fromLevel(corner.v_px, kCornerLevel), corner.score};
+  return pair;
+}
+
 std::vector<EpipolarMatch> matchUnrectified(const ImagePyramid& left, const ImagePyramid& right,
-                                            const std::vector<Corner>& corners) {
+                                            const std::vector<Corner>& corners, std::size_t points) {
   std::vector<EpipolarMatch> matches;
   if (left.levels.size() <= kLevel || right.levels.size() <= kLevel) return matches;
-  const std::size_t step = std::max<std::size_t>(1, corners.size() / kPoints);
+  const std::size_t step = std::max<std::size_t>(1, (corners.size() + points - 1) / points);
   for (std::size_t i = 0; i < corners.size(); i += step) {
     const Corner& corner = corners[i];
     const Place from{static_cast<int>(std::lround(toLevel(corner.u_px, kLevel))),

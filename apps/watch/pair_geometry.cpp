@@ -1,4 +1,4 @@
-#include "apps/check/pair_geometry.hpp"
+#include "apps/watch/pair_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "apps/check/median.hpp"
+#include "apps/watch/median.hpp"
 
 namespace motorcade {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "apps/check/epipolar_matching.hpp"
+#include "apps/watch/epipolar_matching.hpp"
 #include "core/stereo_camera.hpp"
 
 namespace motorcade {

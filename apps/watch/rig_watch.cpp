@@ -1,0 +1,84 @@
+#include "apps/watch/rig_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace motorcade {
+namespace {
+
+/// Points of a glance, and the fewest matches by which it tells anything.
+constexpr std::size_t kGlancePoints = 80, kFewestOfGlance = 15;
+/// Of the matches that lie within a pixel of the row where the rig's usual geometry puts them. It is over 0.8 on all
+/// drives at hand, and under 0.6 where images are a frame apart.
+constexpr double kAgreeing_px = 1, kAgreeingShare = 0.7;
+/// Longest pause after glances that were found to be mistaken [pairs].
+constexpr int kMostPatience = 80;
+
+}  // namespace
+
+std::string RigFinding::text() const {
+  if (!last_good) return finding.text;
+  return "between frames " + std::to_string(last_good->value) + " and " + std::to_string(first_bad.value) +
+         " the pairs changed: " + finding.text;
+}
+
+std::vector<RigFinding> RigWatch::observe(const StereoFrame& pair) {
+  if (!check_) glance(pair);
+  if (!check_) return {};
+  check_->observe(pair);
+  return check_->complete() ? judge() : std::vector<RigFinding>{};
+}
+
+std::vector<RigFinding> RigWatch::finish() {
+  const bool enough = check_ && (!started_ || check_->pairs() >= kVerifiedBy / 2);
+  return enough ? judge() : std::vector<RigFinding>{};
+}
+
+/// Begins to look at pairs one by one where this one disagrees with what the rig was.
+void RigWatch::glance(const StereoFrame& pair) {
+  if (!isWhole(pair) || --until_glance_ > 0) return;
+  until_glance_ = patience_;
+  if (agrees(pair)) {
+    last_good_ = pair.frame;
+    until_glance_ = patience_ = kGlanceEvery;
+    worthless_ = false;
+  } else if (!worthless_) {
+    first_bad_ = pair.frame;
+    check_.emplace(camera_, kVerifiedBy);
+  }
+}
+
+/// Also where there is too little to tell.
+bool RigWatch::agrees(const StereoFrame& pair) {
+  const PreparedPair now = preparePair(pair.left, pair.right, pool_);
+  const auto matches = matchUnrectified(now.left, now.right, now.corners, kGlancePoints);
+  if (matches.size() < kFewestOfGlance) return !worthless_;
+  const auto agreeing = std::ranges::count_if(matches, [&](const EpipolarMatch& match) {
+    const double predicted_px =
+        predictedRowError_px(usual_, camera_, match.u_left_px, match.v_left_px, match.disparity_px());
+    return std::abs(match.rowDifference_px() - predicted_px) < kAgreeing_px;
+  });
+  return !looksExchanged(matches) &&
+         static_cast<double>(agreeing) >= kAgreeingShare * static_cast<double>(matches.size());
+}
+
+/// The rig as it is becomes the usual one, unless it is worthless.
+std::vector<RigFinding> RigWatch::judge() {
+  const InputCheck check = *std::exchange(check_, std::nullopt);
+  std::vector<RigFinding> found;
+  for (Finding& finding : started_ ? check.rigFindings() : check.findings()) {
+    worthless_ = worthless_ || finding.worthless;
+    const bool is_new = told_.insert(finding.name).second;
+    if (is_new || finding.worthless) found.push_back({std::move(finding), last_good_, first_bad_});
+  }
+  patience_ = started_ && !worthless_ ? std::min(2 * patience_, kMostPatience) : kGlanceEvery;
+  until_glance_ = patience_;
+  started_ = true;
+  if (worthless_ || check.matches().size() < InputCheck::kFewestMatches) return found;
+  usual_ = check.geometry();
+  last_good_ = check.looks().back().frame;
+  return found;
+}
+
+}  // namespace motorcade

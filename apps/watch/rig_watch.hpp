@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "apps/watch/input_check.hpp"
+
+namespace motorcade {
+
+/// Something found wrong with a drive's pairs. It began after `last_good`, which is none in the first pairs, and at the
+/// latest with `first_bad`.
+struct RigFinding {
+  Finding finding;
+  std::optional<FrameId> last_good;
+  FrameId first_bad;
+
+  /// A sentence for the log, which names the frames.
+  std::string text() const;
+};
+
+/// Watches the pairs of a whole drive for a rig that is wrong, or becomes so. The first pairs are looked at as `check`
+/// does. After them one pair in five gets a glance; where its rows disagree, the next twelve are looked at like the
+/// first. A change that lasts is so found within twenty pairs. Call in the order of the frames.
+class RigWatch {
+ public:
+  static constexpr int kGlanceEvery = 5;          // pairs; odd, as what is wrong may be so in every second pair
+  static constexpr std::size_t kVerifiedBy = 12;  // pairs
+  explicit RigWatch(const StereoCamera& camera) : camera_(camera), check_(std::in_place, camera) {}
+
+  /// What is found with this pair and was not found before: of the first pairs all, later what the rig has become.
+  std::vector<RigFinding> observe(const StereoFrame& pair);
+  /// After the last pair, which may come before enough were seen.
+  std::vector<RigFinding> finish();
+  /// True from when results would be worthless, until the rows agree again.
+  bool worthless() const { return worthless_; }
+
+ private:
+  void glance(const StereoFrame& pair);
+  bool agrees(const StereoFrame& pair);
+  std::vector<RigFinding> judge();
+
+  StereoCamera camera_;
+  ImagePool pool_;
+  bool started_ = false;             // the first pairs are judged
+  std::optional<InputCheck> check_;  // while pairs are looked at one by one
+  PairGeometry usual_;               // as the rig was when it was good
+  std::optional<FrameId> last_good_;
+  FrameId first_bad_;                                          // of the glance that led to looking
+  int until_glance_ = kGlanceEvery, patience_ = kGlanceEvery;  // pairs
+  bool worthless_ = false;
+  std::set<std::string> told_;
+};
+
+}  // namespace motorcade
