@@ -44,7 +44,7 @@ measure() {  # KIND
   started+=("$run")
   if [[ $1 != without ]]; then
     for _ in $(seq 100); do
-      url=$(sed -n 's/^the page is at \(.*\)$/\1/p' "$out/log")
+      url=$(sed -n 's/^the page is at \([^#]*\).*$/\1/p' "$out/log")  # without the token
       [[ -z $url ]] || break
       sleep 0.02
     done

@@ -21,6 +21,6 @@ fi
 
 status=0
 for test in tests/browser/*_test.js; do
-  timeout 300 node "$test" || status=1
+  timeout 600 node "$test" || status=1
 done
 exit $status

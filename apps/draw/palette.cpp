@@ -7,17 +7,17 @@
 namespace motorcade {
 
 Color trackColor(TrackId track) {
-  constexpr std::array<Color, 10> kColors{{{255, 176, 32},
-                                           {64, 196, 255},
-                                           {124, 220, 92},
-                                           {255, 105, 140},
-                                           {186, 138, 255},
-                                           {255, 224, 82},
-                                           {64, 224, 190},
-                                           {255, 138, 80},
-                                           {140, 170, 255},
-                                           {230, 130, 230}}};
-  return kColors[std::max<std::int64_t>(track.value, 0) % kColors.size()];
+  constexpr std::array<Color, kTrackColors> kColors{{{255, 176, 32},
+                                                     {96, 216, 110},
+                                                     {255, 96, 150},
+                                                     {250, 232, 120},
+                                                     {236, 104, 40},
+                                                     {56, 204, 170},
+                                                     {196, 134, 92},
+                                                     {178, 236, 72},
+                                                     {240, 190, 184},
+                                                     {214, 70, 150}}};
+  return kColors[std::max<std::int64_t>(track.value, 0) % kTrackColors];
 }
 
 }  // namespace motorcade

@@ -113,7 +113,8 @@ std::string ChartFrame::svg() const {
   const std::string element =
       fmt::format(R"(<svg class="{}" viewBox="0 0 {} {}" role="img">{}</svg>)", is_wide_ ? "chart across" : "chart",
                   coordinate(width_), coordinate(height_ + legend_height_), body_);
-  return is_wide_ ? fmt::format(R"(<div class="wide">{}</div>)", element) : element;
+  if (!is_wide_) return element;
+  return fmt::format(R"(<div class="wide">{}</div><p class="swipe">Scroll sideways to see all of it.</p>)", element);
 }
 
 }  // namespace motorcade

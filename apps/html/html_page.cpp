@@ -28,6 +28,7 @@ constexpr std::string_view kBaseStyle = R"css(
 *, *::before, *::after { box-sizing: border-box; }
 html { -webkit-text-size-adjust: 100%; text-size-adjust: 100%; }
 body {
+  --under: var(--page); --edge: color-mix(in srgb, var(--ink) 26%, transparent);
   margin: 0; background: var(--page); color: var(--ink);
   font: 16px/1.55 system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "DejaVu Sans", sans-serif;
   -webkit-print-color-adjust: exact; print-color-adjust: exact;
@@ -54,7 +55,15 @@ th:last-child, td:last-child { padding-right: 0.2rem; }
 thead th { color: var(--muted); font-weight: 600; font-size: 0.84rem; border-bottom-width: 2px; }
 tbody th { font-weight: 500; }
 .number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-.wide { overflow-x: auto; -webkit-overflow-scrolling: touch; }
+/* A shadow at each edge beyond which there is more: its cover scrolls with the content, and lies on it at the end. */
+.wide { overflow-x: auto; -webkit-overflow-scrolling: touch; background:
+  linear-gradient(to right, var(--under) 40%, transparent) left / 3rem 100% no-repeat local,
+  linear-gradient(to left, var(--under) 40%, transparent) right / 3rem 100% no-repeat local,
+  linear-gradient(to right, var(--edge), transparent) left / 1rem 100% no-repeat scroll,
+  linear-gradient(to left, var(--edge), transparent) right / 1rem 100% no-repeat scroll; }
+.swipe { display: none; font-size: 0.84rem; color: var(--muted); margin: 0.4rem 0 0; }
+@media (max-width: 44rem) { .swipe { display: block; } }
+@media print { .wide { background: none; } .swipe { display: none; } }
 .muted { color: var(--muted); }
 figure { margin: 1.4rem 0; break-inside: avoid; }
 figure img, figure svg { display: block; max-width: 100%; height: auto; border-radius: 8px; }

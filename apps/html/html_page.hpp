@@ -24,7 +24,9 @@ std::string dataUri(std::string_view mime, std::string_view bytes);
 ///   .cards       a grid of .card, each with a .value and a .label
 ///   .badge       a short word on a plate: .good, .warn or .bad
 ///   .number      right-aligned digits of one width, of th and td
-///   .wide        around a table or picture that scrolls sideways where it does not fit
+///   .wide        around a table or picture that scrolls sideways where it does not fit, with a shadow where there is
+///                more; on a ground of another color than the page's, --under names that
+///   .swipe       a sentence below it that only narrow screens show
 ///   .muted       less important text
 ///   .finding     a boxed message with a colored edge: .good, .warn or .bad
 ///   .keep        is not cut between two printed pages (figures and cards are not either)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -58,43 +59,56 @@ ChartRange rangeOf(const ChartAxes& axes, const std::vector<ChartLine>& lines) {
   return range;
 }
 
-/// Every n-th point, and the last.
-std::vector<std::size_t> shownPoints(const ChartLine& line) {
-  std::vector<std::size_t> shown;
+/// The pieces of a line between its breaks; of each every n-th point, and the last.
+std::vector<std::vector<std::size_t>> piecesOf(const ChartLine& line) {
   const std::size_t step = std::max<std::size_t>(1, (line.points.size() + kMostPoints - 1) / kMostPoints);
-  for (std::size_t i = 0; i < line.points.size(); i += step) shown.push_back(i);
-  if (!shown.empty() && shown.back() + 1 != line.points.size()) shown.push_back(line.points.size() - 1);
-  return shown;
-}
-
-std::string pathOf(const ChartFrame& frame, const ChartLine& line) {
-  std::string path;
-  bool broken = true;
-  for (const std::size_t i : shownPoints(line)) {
-    const Eigen::Vector2d& point = line.points[i];
-    if (!isShown(point)) {
-      broken = true;
+  std::vector<std::vector<std::size_t>> pieces;
+  std::size_t begin = 0;
+  while (begin < line.points.size()) {
+    if (!isShown(line.points[begin])) {
+      ++begin;
       continue;
     }
-    const Eigen::Vector2d at = frame.at(point.x(), point.y());
-    path.append(broken ? "M" : "L").append(coordinate(at.x())).append(" ").append(coordinate(at.y()));
-    broken = false;
+    std::size_t end = begin;
+    while (end < line.points.size() && isShown(line.points[end])) ++end;
+    std::vector<std::size_t>& piece = pieces.emplace_back();
+    for (std::size_t i = begin; i < end; i += step) piece.push_back(i);
+    if (piece.back() + 1 != end) piece.push_back(end - 1);
+    begin = end;
+  }
+  return pieces;
+}
+
+/// A piece of one point is a dot.
+std::string pathOf(const ChartFrame& frame, const ChartLine& line) {
+  std::string path;
+  for (const auto& piece : piecesOf(line)) {
+    const char* command = "M";
+    for (const std::size_t i : piece) {
+      const Eigen::Vector2d at = frame.at(line.points[i].x(), line.points[i].y());
+      path.append(std::exchange(command, "L")).append(coordinate(at.x())).append(" ").append(coordinate(at.y()));
+    }
+    if (piece.size() == 1) path.append("h0");
   }
   return path;
 }
 
-/// Up along the upper edge and back along the lower one.
+/// Each piece up along the upper edge and back along the lower one.
 std::string bandOf(const ChartFrame& frame, const ChartLine& line) {
-  std::string forth, back;
-  for (const std::size_t i : shownPoints(line)) {
-    const Eigen::Vector2d& point = line.points[i];
-    if (!isShown(point) || i >= line.half_width.size() || !std::isfinite(line.half_width[i])) continue;
-    const Eigen::Vector2d upper = frame.within(point.x(), point.y() + line.half_width[i]),
-                          lower = frame.within(point.x(), point.y() - line.half_width[i]);
-    forth.append(forth.empty() ? "M" : "L").append(coordinate(upper.x())).append(" ").append(coordinate(upper.y()));
-    back.insert(0, fmt::format("L{} {}", coordinate(lower.x()), coordinate(lower.y())));
+  std::string band;
+  for (const auto& piece : piecesOf(line)) {
+    std::string forth, back;
+    for (const std::size_t i : piece) {
+      const Eigen::Vector2d& point = line.points[i];
+      if (i >= line.half_width.size() || !std::isfinite(line.half_width[i])) continue;
+      const Eigen::Vector2d upper = frame.within(point.x(), point.y() + line.half_width[i]),
+                            lower = frame.within(point.x(), point.y() - line.half_width[i]);
+      forth.append(forth.empty() ? "M" : "L").append(coordinate(upper.x())).append(" ").append(coordinate(upper.y()));
+      back.insert(0, fmt::format("L{} {}", coordinate(lower.x()), coordinate(lower.y())));
+    }
+    if (!forth.empty()) band.append(forth).append(back).append("Z");
   }
-  return forth.append(back).append("Z");
+  return band;
 }
 
 }  // namespace
@@ -102,18 +116,18 @@ std::string bandOf(const ChartFrame& frame, const ChartLine& line) {
 const std::string_view kChartStyle = R"css(
 :root {
   --line1: #0b62c4; --line2: #c2410c; --truth: #4b5563; --s1: #2f6fb7; --s2: #69a5dc; --s3: #2a9d8f; --s4: #d9a62e;
-  --s5: #b4558a; --s6: #6b5bbf; --s7: #d1663a; --wait: #c3cad2;
+  --s5: #b4558a; --s6: #6b5bbf; --s7: #d1663a; --wait: #c3cad2; --strength: 72%;
 }
 @media (prefers-color-scheme: dark) {
   :root {
     --line1: #6cb2ff; --line2: #ff9d66; --truth: #b6c0cb; --s1: #4f8fd6; --s2: #8cc3f2; --s3: #4cc0b0; --s4: #e8bf55;
-    --s5: #d982b2; --s6: #9a8cec; --s7: #f08d63; --wait: #46505c;
+    --s5: #d982b2; --s6: #9a8cec; --s7: #f08d63; --wait: #46505c; --strength: 100%;
   }
 }
 @media print {
   :root {
     --line1: #0b4ea2; --line2: #b33c0a; --truth: #444444; --s1: #2f6fb7; --s2: #69a5dc; --s3: #2a9d8f; --s4: #d9a62e;
-    --s5: #b4558a; --s6: #6b5bbf; --s7: #d1663a; --wait: #c3cad2;
+    --s5: #b4558a; --s6: #6b5bbf; --s7: #d1663a; --wait: #c3cad2; --strength: 72%;
   }
 }
 .chart { width: 100%; font-size: 11.5px; } .chart.across { min-width: 40rem; }
@@ -123,12 +137,14 @@ const std::string_view kChartStyle = R"css(
 .chart .grid { stroke: var(--rule); stroke-width: 1; } .chart .axis { stroke: var(--muted); stroke-width: 1; }
 .chart .line { fill: none; stroke-width: 1.8; stroke-linejoin: round; stroke-linecap: round; }
 .chart .dashed { stroke-dasharray: 5 5; stroke-width: 1.5; } .chart .band { opacity: 0.2; }
-figure.plate { background: var(--card); border: 1px solid var(--rule); border-radius: 10px; padding: 0.8rem; }
+figure.plate { --under: var(--card); background: var(--card); border: 1px solid var(--rule); border-radius: 10px; padding: 0.8rem; }
 )css";
 
 std::string chartFigure(const std::string& svg, const std::string& caption) {
   return "<figure class=\"plate\">" + svg + "<figcaption>" + escaped(caption) + "</figcaption></figure>\n";
 }
+
+Eigen::Vector2d lineBreak() { return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()); }
 
 std::vector<double> ticksBetween(double low, double high, int wanted) {
   const double rough = (high - low) / std::max(wanted, 1);

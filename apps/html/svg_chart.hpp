@@ -10,7 +10,8 @@
 namespace motorcade {
 
 /// What a page with charts has after its base style. Colors are var(--line1 | --line2), var(--s1) to var(--s7),
-/// var(--truth) and var(--wait), beside those of the page.
+/// var(--truth) and var(--wait), beside those of the page; var(--strength) is how much of a color for dark ground is
+/// left on the page's own.
 extern const std::string_view kChartStyle;
 
 /// A line of a chart. Where a point is not finite, the line is broken.
@@ -49,6 +50,9 @@ std::string barChart(const ChartAxes& axes, const std::vector<ChartPart>& parts,
 
 /// A chart with what it shows.
 std::string chartFigure(const std::string& svg, const std::string& caption);
+
+/// A point at which a line is broken.
+Eigen::Vector2d lineBreak();
 
 /// Round numbers from `low` to `high` that a scale may show, about `wanted` of them.
 std::vector<double> ticksBetween(double low, double high, int wanted);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -79,6 +80,18 @@ std::vector<WayPart> longestWay(const FrameRow& row) {
     follow(stage);
   way.push_back({"publishing", row.publish_wait_ms});
   return way;
+}
+
+double processing_ms(const std::array<double, kStageCount>& work_ms) {
+  const auto of = [&work_ms](Stage stage) { return work_ms[static_cast<std::size_t>(stage)]; };
+  return std::accumulate(work_ms.begin(), work_ms.end(), 0.0) -
+         std::min(of(Stage::kStereoMatching), of(Stage::kOpticalFlow));
+}
+
+double processing_ms(const FrameRow& row) {
+  std::array<double, kStageCount> work_ms{};
+  for (std::size_t stage = 0; stage < kStageCount; ++stage) work_ms[stage] = row.stages[stage].work_ms;
+  return processing_ms(work_ms);
 }
 
 LatencyReport latencyReport(const std::vector<FrameRow>& rows, std::size_t slowest) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -23,6 +24,11 @@ struct WayPart {
 /// From the moment the pair was due until its result was published: waiting and working by turns. Of stereo matching
 /// and optical flow, which run side by side, the way leads over the one that ended last.
 std::vector<WayPart> longestWay(const FrameRow& row);
+
+/// Time that the stages worked on a frame, without any waiting: the sum of all, of stereo matching and optical flow,
+/// which run side by side, the longer.
+double processing_ms(const std::array<double, kStageCount>& work_ms);
+double processing_ms(const FrameRow& row);
 
 struct StageLatency {
   std::string name;

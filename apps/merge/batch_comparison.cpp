@@ -8,13 +8,15 @@
 
 #include <fmt/format.h>
 
+#include "apps/merge/measure_names.hpp"
 #include "apps/merge/paired_test.hpp"
 
 namespace motorcade {
 namespace {
 
 constexpr double kSignificant = 0.05;
-constexpr std::size_t kMostRegressions = 40;  // of the table; the JSON file has all
+constexpr std::string_view kBetter = "better", kWorse = "worse";  // verdicts that are sure
+constexpr std::size_t kMostRegressions = 40;                      // of the table; the JSON file has all
 
 /// What is compared: few measures that say most, as each more makes the test less sharp.
 constexpr std::array<std::string_view, 16> kAccuracy{"camera_ate_m",
@@ -109,7 +111,7 @@ std::string verdictOn(const MeasureComparison& comparison) {
   if (different == 0) return "the same";
   if (different < kFewestDifferences) return fmt::format("{} pairs differ, too few to tell", different);
   if (comparison.corrected_p >= kSignificant) return "no difference that is sure";
-  return comparison.better > comparison.worse ? "better" : "worse";
+  return std::string(comparison.better > comparison.worse ? kBetter : kWorse);
 }
 
 /// Measures of which too few pairs differ cannot be significant, and so are no tests.
@@ -166,10 +168,13 @@ ResultTable testTable(const BatchComparison& comparison) {
   ResultTable table{.title = "Against " + comparison.against.string(),
                     .heads = {"measure", "verdict", "pairs", "better", "worse", "median change", "p", "p, corrected"},
                     .names = 2};
-  for (const auto& m : comparison.measures)
-    table.rows.push_back({std::string(m.measure), m.verdict, std::to_string(m.pairs), std::to_string(m.better),
+  for (const auto& m : comparison.measures) {
+    const Tone tone = m.verdict == kBetter ? Tone::kBetter : m.verdict == kWorse ? Tone::kWorse : Tone::kNone;
+    table.tones.push_back({Tone::kNone, tone, Tone::kNone, Tone::kNone, Tone::kNone, tone});
+    table.rows.push_back({readableName(m.measure), m.verdict, std::to_string(m.pairs), std::to_string(m.better),
                           std::to_string(m.worse), fmt::format("{:+.1f} %", 100 * m.median_change), numberText(m.p, 4),
                           numberText(m.corrected_p, 4)});
+  }
   return table;
 }
 
@@ -180,8 +185,9 @@ ResultTable regressionTable(const BatchComparison& comparison) {
   for (std::size_t i = 0; i < std::min(kMostRegressions, comparison.regressions.size()); ++i) {
     const Regression& regression = comparison.regressions[i];
     const double ratio = regression.before != 0 ? regression.now / regression.before : kNoValue;
-    table.rows.push_back({regression.result, std::string(regression.measure), fmt::format("{:.4g}", regression.before),
+    table.rows.push_back({regression.result, readableName(regression.measure), fmt::format("{:.4g}", regression.before),
                           fmt::format("{:.4g}", regression.now), numberText(ratio, 3)});
+    table.tones.push_back({Tone::kNone, Tone::kNone, Tone::kNone, Tone::kWorse, Tone::kWorse});
   }
   if (comparison.regressions.size() > kMostRegressions)
     table.title += fmt::format(", the first {} of {}", kMostRegressions, comparison.regressions.size());

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -12,6 +13,13 @@
 
 namespace motorcade {
 namespace {
+
+/// Better and worse differ by a sign, too, for who sees no red or no green.
+constexpr std::string_view kStyle = R"css(
+.wide th, .wide td { white-space: nowrap; }
+td.better { color: var(--good); font-weight: 600; } td.worse { color: var(--bad); font-weight: 600; }
+td.better::before { content: "\25B2\00A0"; font-size: 0.7em; } td.worse::before { content: "\25BC\00A0"; font-size: 0.7em; }
+)css";
 
 constexpr std::size_t kMostRows = 40;  // of a chart: more drives than that are told by the tables
 
@@ -52,10 +60,10 @@ std::vector<std::string> setNames(const std::vector<ResultGroup>& groups) {
 
 /// A color for each set of parameters; no name where there is one alone.
 std::vector<ChartPart> seriesOf(const std::vector<std::string>& sets) {
-  constexpr std::size_t kColors = 7;
+  constexpr std::array kColors{1, 7, 3, 5, 4, 6, 2};  // those first that differ most
   std::vector<ChartPart> series;
   for (std::size_t i = 0; i < sets.size(); ++i)
-    series.push_back({sets.size() > 1 ? sets[i] : "", fmt::format("var(--s{})", i % kColors + 1)});
+    series.push_back({sets.size() > 1 ? sets[i] : "", fmt::format("var(--s{})", kColors[i % kColors.size()])});
   return series;
 }
 
@@ -115,7 +123,7 @@ std::string comparisonSection(const BatchComparison& comparison) {
   html +=
       "<p class=\"muted\">Pairs of the same drive, set and seed; repetitions are averaged first. Changes are relative "
       "to the mean of both. p is that of Wilcoxon's signed-rank test, corrected by Holm for the number of "
-      "measures.</p>\n";
+      "measures. \u25B2 marks what is surely better, \u25BC what is worse.</p>\n";
   const ResultTable regressions = regressionTable(comparison);
   html += regressions.rows.empty() ? "<p class=\"finding good\">No accuracy became worse by more than 2 %.</p>\n"
                                    : section(regressions);
@@ -160,8 +168,7 @@ std::string pageOf(const Merged& merged) {
       section(worstFrameTable("Frames with the largest error of an object's motion", "ME_t m", batch.worst_object_m));
   body += section(worstFrameTable("Frames that came out latest", "latency ms", batch.latest_ms));
   for (const ResultTable& table : measureTables(merged.groups)) body += section(table);
-  return htmlPage("Batch " + batch.folder.filename().string(), body,
-                  std::string(kChartStyle) + ".wide th, .wide td { white-space: nowrap; }\n");
+  return htmlPage("Batch " + batch.folder.filename().string(), body, std::string(kChartStyle).append(kStyle));
 }
 
 }  // namespace motorcade

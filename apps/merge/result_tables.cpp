@@ -13,22 +13,26 @@ namespace {
 struct Column {
   std::string head;
   std::function<std::string(const ResultGroup&)> cell;
+  std::string_view measure{};  // whose mean over the seeds decides which set is better; none when empty
 };
 
 /// The mean over the seeds.
 Column meanColumn(std::string head, std::string_view measure, int digits, const std::string& behind = "") {
-  return {std::move(head), [=](const ResultGroup& group) { return numberText(group.mean(measure), digits) + behind; }};
+  return {std::move(head), [=](const ResultGroup& group) { return numberText(group.mean(measure), digits) + behind; },
+          measure};
 }
 
 Column percentColumn(std::string head, std::string_view measure, int digits) {
-  return {std::move(head), [=](const ResultGroup& group) { return percentText(group.mean(measure), digits); }};
+  return {std::move(head), [=](const ResultGroup& group) { return percentText(group.mean(measure), digits); }, measure};
 }
 
 /// Two means, as `final / online`.
 Column pairColumn(std::string head, std::string_view first, std::string_view second, int digits) {
-  return {std::move(head), [=](const ResultGroup& group) {
+  return {std::move(head),
+          [=](const ResultGroup& group) {
             return numberText(group.mean(first), digits) + " / " + numberText(group.mean(second), digits);
-          }};
+          },
+          first};
 }
 
 /// A share of counts that are summed over the seeds.
@@ -199,6 +203,29 @@ std::size_t setsIn(const std::vector<ResultGroup>& groups) {
   return sets.size();
 }
 
+/// Marks, of one drive's results in rows next to each other, the best set by each measure and the worst, where they
+/// differ by so much that it is worth telling.
+void markSets(ResultTable& table, const std::vector<const ResultGroup*>& groups, const std::vector<Column>& columns) {
+  constexpr double kWorthMarking = 0.02;  // of the mean of both
+  for (std::size_t begin = 0, end = 0; begin < groups.size(); begin = end) {
+    while (end < groups.size() && groups[end]->drive() == groups[begin]->drive()) ++end;
+    for (std::size_t column = 0; column < columns.size(); ++column) {
+      if (columns[column].measure.empty()) continue;
+      const Better better = allMeasures()[measureIndex(columns[column].measure)].better;
+      const auto value = [&](std::size_t row) { return groups[row]->mean(columns[column].measure); };
+      std::size_t low = begin, high = begin;
+      for (std::size_t row = begin; row < end; ++row) {
+        if (std::isnan(value(low)) || value(row) < value(low)) low = row;
+        if (std::isnan(value(high)) || value(row) > value(high)) high = row;
+      }
+      const double apart = value(high) - value(low);
+      if (better == Better::kNeither || !(apart > kWorthMarking * std::abs(value(high) + value(low)) / 2)) continue;
+      table.tones[low][table.names + column] = better == Better::kLower ? Tone::kBetter : Tone::kWorse;
+      table.tones[high][table.names + column] = better == Better::kLower ? Tone::kWorse : Tone::kBetter;
+    }
+  }
+}
+
 enum class Labels { kNeeded, kNotNeeded };
 
 ResultTable tableOf(std::string title, const std::vector<ResultGroup>& groups, const std::vector<Column>& columns,
@@ -208,13 +235,17 @@ ResultTable tableOf(std::string title, const std::vector<ResultGroup>& groups, c
   if (with_sets) table.heads.emplace_back("set");
   table.names = table.heads.size();
   for (const Column& column : columns) table.heads.push_back(column.head);
+  std::vector<const ResultGroup*> shown;
   for (const ResultGroup& group : groups) {
     if (labels == Labels::kNeeded && !group.hasLabels()) continue;
     std::vector<std::string> row{group.drive()};
     if (with_sets) row.push_back(group.set());
     for (const Column& column : columns) row.push_back(column.cell(group));
+    table.tones.emplace_back(row.size(), Tone::kNone);
     table.rows.push_back(std::move(row));
+    shown.push_back(&group);
   }
+  if (with_sets) markSets(table, shown, columns);
   return table;
 }
 

@@ -8,12 +8,16 @@
 
 namespace motorcade {
 
+/// Whether a cell tells of something better or worse than what it is compared with.
+enum class Tone { kNone, kBetter, kWorse };
+
 /// A table of texts; the first `names` columns are names, the others numbers.
 struct ResultTable {
   std::string title{};
   std::vector<std::string> heads{};
   std::vector<std::vector<std::string>> rows{};
   std::size_t names = 1;
+  std::vector<std::vector<Tone>> tones{};  // by row and column, for pages; none where it is empty
 };
 
 /// The one to read first: how far camera and objects are from the truth.

@@ -16,6 +16,13 @@ std::string cellText(const std::string& text) {
   return cell;
 }
 
+std::string classOf(bool is_name, Tone tone) {
+  std::string classes = is_name ? "" : "number";
+  if (tone != Tone::kNone)
+    classes.append(classes.empty() ? "" : " ").append(tone == Tone::kBetter ? "better" : "worse");
+  return classes.empty() ? "" : " class=\"" + classes + "\"";
+}
+
 }  // namespace
 
 std::string markdownOf(const ResultTable& table) {
@@ -31,14 +38,16 @@ std::string markdownOf(const ResultTable& table) {
 }
 
 std::string htmlOf(const ResultTable& table) {
-  const auto cells = [&](const std::vector<std::string>& row, const char* element) {
+  const auto cells = [&](const std::vector<std::string>& row, const char* element, const std::vector<Tone>& tones) {
     std::string html = "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i)
-      html += fmt::format("<{0}{1}>{2}</{0}>", element, i < table.names ? "" : " class=\"number\"", escaped(row[i]));
+      html += fmt::format("<{0}{1}>{2}</{0}>", element,
+                          classOf(i < table.names, i < tones.size() ? tones[i] : Tone::kNone), escaped(row[i]));
     return html + "</tr>\n";
   };
-  std::string html = "<div class=\"wide\"><table>\n<thead>" + cells(table.heads, "th") + "</thead>\n<tbody>\n";
-  for (const auto& row : table.rows) html += cells(row, "td");
+  std::string html = "<div class=\"wide\"><table>\n<thead>" + cells(table.heads, "th", {}) + "</thead>\n<tbody>\n";
+  for (std::size_t row = 0; row < table.rows.size(); ++row)
+    html += cells(table.rows[row], "td", row < table.tones.size() ? table.tones[row] : std::vector<Tone>());
   return html + "</tbody></table></div>\n";
 }
 

@@ -97,6 +97,12 @@ bool holdsFinishedRun(const fs::path& folder) {
   return !summary.is_object() || summary.value("complete", Json(true)) != Json(false);
 }
 
+bool wasPaced(const RunFolder& run) {
+  const Json summary = summaryOf(run);
+  const auto rate = summary.find("rate");
+  return rate != summary.end() && rate->is_number();
+}
+
 Sequence openSequenceOf(const RunFolder& run, const NamedSequence& named) {
   const Json summary = summaryOf(run);
   const fs::path folder = named.folder.empty() ? recordedFolder(run, summary) : named.folder;

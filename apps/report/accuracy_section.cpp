@@ -27,7 +27,7 @@ std::string errorChart(const ReportedRun& reported) {
   const RecordedDrive& drive = reported.drive;
   if (drive.T_world_cam_true.size() < 3) return "";
   std::vector<ChartLine> lines;
-  if (!reported.baseline.empty()) lines.push_back(errorsOf("baseline", "var(--line2)", reported.baseline, drive));
+  if (!reported.baseline.empty()) lines.push_back(errorsOf("baseline", "var(--ink)", reported.baseline, drive));
   lines.push_back(errorsOf("online", "var(--muted)", reported.run.online.camera, drive));
   lines.push_back(errorsOf("final", "var(--line1)", drive.T_world_cam, drive));
   return chartFigure(lineChart({.x = "s", .y = "camera position error, m", .wide = true}, lines),

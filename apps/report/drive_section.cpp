@@ -19,7 +19,31 @@ constexpr std::size_t kMostSpeedCharts = 24;
 constexpr std::int64_t kAround = 3;    // frames before and after, of a true speed, as in the measures
 constexpr std::size_t kLeastRows = 5;  // of an object with a chart of its own
 
-std::string css(Color color) { return fmt::format("rgb({},{},{})", color.red, color.green, color.blue); }
+/// As in pictures, but strong enough on the page's ground.
+std::string colorOf(std::int64_t track) {
+  const Color color = trackColor({track});
+  return fmt::format("color-mix(in srgb,rgb({},{},{}) var(--strength),black)", color.red, color.green, color.blue);
+}
+
+/// A line that is broken where frames are missing between its points.
+class LineOverFrames {
+ public:
+  explicit LineOverFrames(ChartLine& line) : line_(line) {}
+
+  void add(std::int64_t frame, const Eigen::Vector2d& point, std::optional<double> half_width = {}) {
+    if (!line_.points.empty() && frame > last_ + 1) {
+      line_.points.push_back(lineBreak());
+      if (half_width) line_.half_width.push_back(0);
+    }
+    line_.points.push_back(point);
+    if (half_width) line_.half_width.push_back(*half_width);
+    last_ = frame;
+  }
+
+ private:
+  ChartLine& line_;
+  std::int64_t last_ = 0;
+};
 
 /// From the world onto the map: its x axis along the drive, its y axis to the left of that.
 Eigen::Matrix<double, 2, 3> mapAxes(const std::vector<SE3>& path) {
@@ -61,17 +85,23 @@ std::vector<SE3> moved(const SE3& T, std::vector<SE3> path) {
   return path;
 }
 
-std::map<std::int64_t, std::vector<const ObjectEstimate*>> rowsByTrack(const RecordedDrive& drive) {
-  std::map<std::int64_t, std::vector<const ObjectEstimate*>> tracks;
+struct TrackRow {
+  std::int64_t frame = 0;
+  const ObjectEstimate* object = nullptr;
+};
+
+std::map<std::int64_t, std::vector<TrackRow>> rowsByTrack(const RecordedDrive& drive) {
+  std::map<std::int64_t, std::vector<TrackRow>> tracks;
   for (const auto& [frame, objects] : drive.objects)
-    for (const ObjectEstimate& object : objects) tracks[object.track.value].push_back(&object);
+    for (const ObjectEstimate& object : objects) tracks[object.track.value].push_back({frame, &object});
   return tracks;
 }
 
 void addObjects(std::vector<ChartLine>& lines, const RecordedDrive& drive, const Eigen::Matrix<double, 2, 3>& axes) {
   for (const auto& [track, rows] : rowsByTrack(drive)) {
-    ChartLine line{.name = "", .color = css(trackColor({track}))};
-    for (const ObjectEstimate* row : rows) line.points.emplace_back(axes * placeOf(*row).center_world);
+    ChartLine line{.name = "", .color = colorOf(track)};
+    LineOverFrames points(line);
+    for (const TrackRow& row : rows) points.add(row.frame, axes * placeOf(*row.object).center_world);
     if (rows.size() >= kLeastRows) line.mark = fmt::format("{}", track);
     lines.push_back(std::move(line));
   }
@@ -79,16 +109,15 @@ void addObjects(std::vector<ChartLine>& lines, const RecordedDrive& drive, const
 
 void addTruth(std::vector<ChartLine>& lines, const RecordedDrive& drive, const Eigen::Matrix<double, 2, 3>& axes) {
   const SE3 T_run_truth = ontoPath(drive.T_world_cam_true, drive.T_world_cam);
-  std::map<std::int64_t, ChartLine> truths;
-  for (const auto& [frame, objects] : drive.true_objects) {
-    for (const ObjectTruth& object : objects) {
-      if (!drive.true_movers.contains(object.id) || std::cmp_greater_equal(frame, drive.T_world_cam.size())) continue;
-      ChartLine& line =
-          truths.try_emplace(object.id, ChartLine{.name = "", .color = "var(--truth)", .dashed = true}).first->second;
-      line.points.emplace_back(axes * (T_run_truth * object.T_world_object.translation()));
-    }
+  for (const std::int64_t label : drive.true_movers) {
+    ChartLine line{.name = "", .color = "var(--truth)", .dashed = true};
+    LineOverFrames points(line);
+    for (const auto& [frame, objects] : drive.true_objects)
+      for (const ObjectTruth& object : objects)
+        if (object.id == label && std::cmp_less(frame, drive.T_world_cam.size()))
+          points.add(frame, axes * (T_run_truth * object.T_world_object.translation()));
+    lines.push_back(std::move(line));
   }
-  for (auto& [id, line] : truths) lines.push_back(std::move(line));
   if (!drive.T_world_cam_true.empty())
     lines.push_back({.name = "truth",
                      .color = "var(--truth)",
@@ -104,7 +133,7 @@ std::string driveMap(const ReportedRun& reported) {
   addTruth(lines, drive, axes);
   if (!reported.baseline.empty())
     lines.push_back({.name = "baseline",
-                     .color = "var(--line2)",
+                     .color = "var(--ink)",
                      .points = onMap(moved(ontoPath(reported.baseline, drive.T_world_cam), reported.baseline), axes)});
   lines.push_back({.name = "camera", .color = "var(--line1)", .points = onMap(drive.T_world_cam, axes)});
   std::string others = drive.T_world_cam_true.empty() ? "" : "the truth, dashed";
@@ -142,20 +171,20 @@ std::optional<std::int64_t> labelOf(const ReportedRun& reported, std::int64_t tr
 std::string speedChart(const ReportedRun& reported, std::int64_t track) {
   const RecordedDrive& drive = reported.drive;
   const auto time_s = [&](std::int64_t frame) { return secondsBetween(drive.stamps.front(), drive.stamps[frame]); };
-  ChartLine speed{.name = "estimate, 2 sigma", .color = css(trackColor({track}))};
+  ChartLine speed{.name = "estimate, 2 sigma", .color = colorOf(track)};
+  LineOverFrames estimates(speed);
   for (const auto& [frame, objects] : drive.objects) {
     for (const ObjectEstimate& object : objects) {
       if (object.track.value != track || std::cmp_greater_equal(frame, drive.stamps.size())) continue;
-      speed.points.emplace_back(time_s(frame), object.velocity_world_mps.norm());
-      speed.half_width.push_back(2 * object.speed_sigma_mps);
+      estimates.add(frame, {time_s(frame), object.velocity_world_mps.norm()}, 2 * object.speed_sigma_mps);
     }
   }
   std::vector<ChartLine> lines{std::move(speed)};
   std::string caption = fmt::format("Object {}", track);
   if (const auto label = labelOf(reported, track)) {
     ChartLine truth{.name = "truth", .color = "var(--truth)", .dashed = true};
-    for (const auto& [frame, speed_mps] : trueSpeeds_mps(drive, *label))
-      truth.points.emplace_back(time_s(frame), speed_mps);
+    LineOverFrames speeds(truth);
+    for (const auto& [frame, speed_mps] : trueSpeeds_mps(drive, *label)) speeds.add(frame, {time_s(frame), speed_mps});
     lines.push_back(std::move(truth));
     caption += fmt::format(", label {}", *label);
   }

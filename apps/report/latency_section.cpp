@@ -6,6 +6,7 @@
 #include "apps/html/html_page.hpp"
 #include "apps/html/svg_chart.hpp"
 #include "apps/latency/latency_table.hpp"
+#include "apps/recorded/recorded_run.hpp"
 #include "apps/report/report_sections.hpp"
 
 namespace motorcade {
@@ -19,17 +20,22 @@ std::vector<FrameRow> enteredRows(const RunFolder& run) {
   return rows;
 }
 
-std::string histogram(const std::vector<FrameRow>& rows) {
+/// `paced`: latencies count from when a pair was due; else they are mostly waiting, which the stages' work is without.
+std::string histogram(const std::vector<FrameRow>& rows, bool paced) {
+  const auto time_ms = [paced](const FrameRow& row) { return paced ? row.latency_ms : processing_ms(row); };
   double longest_ms = 0;
-  for (const FrameRow& row : rows) longest_ms = std::max(longest_ms, row.latency_ms);
+  for (const FrameRow& row : rows) longest_ms = std::max(longest_ms, time_ms(row));
   const double width_ms = std::max(longest_ms, 1e-3) / kHistogramBars;
   std::vector<ChartBar> bars;
   for (std::size_t i = 0; i < kHistogramBars; ++i)
     bars.push_back({width_ms * static_cast<double>(i), width_ms * static_cast<double>(i + 1), {0}});
   for (const FrameRow& row : rows)
-    ++bars[std::min(kHistogramBars - 1, static_cast<std::size_t>(row.latency_ms / width_ms))].parts[0];
-  return chartFigure(barChart({.x = "latency, ms", .y = "frames"}, {{"", "var(--line1)"}}, bars),
-                     "From the moment a pair was due until its result could be read.");
+    ++bars[std::min(kHistogramBars - 1, static_cast<std::size_t>(time_ms(row) / width_ms))].parts[0];
+  return chartFigure(
+      barChart({.x = paced ? "latency, ms" : "processing, ms", .y = "frames"}, {{"", "var(--line1)"}}, bars),
+      paced ? "From the moment a pair was due until its result could be read."
+            : "Work of the stages on each pair, without waiting. The pairs followed each other as fast as they could "
+              "(no --rate), so that their latency, in the table below, is mostly queueing.");
 }
 
 /// Where each stretch of a frame's way counts: waits are one part, stereo matching and optical flow, of which only the
@@ -75,7 +81,7 @@ std::string stageTimeline(const std::vector<FrameRow>& rows) {
 std::string latencySection(const ReportedRun& reported) {
   const auto rows = enteredRows(reported.run);
   if (rows.empty()) return "";
-  std::string text = "<h2>Latency</h2>\n<div class=\"grid\">\n" + histogram(rows);
+  std::string text = "<h2>Latency</h2>\n<div class=\"grid\">\n" + histogram(rows, wasPaced(reported.run));
   if (rows.front().has_waits) text += stageTimeline(rows);
   return text + "</div>\n<details><summary>Stage by stage, as motorcade latency prints it</summary><pre>" +
          escaped(latencyTable(latencyReport(reported.run.frames))) + "</pre></details>\n";

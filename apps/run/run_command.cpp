@@ -192,6 +192,7 @@ std::unique_ptr<LiveView> makeView(const RunOptions& options, const Sequence& se
                      .end_frame = static_cast<std::int64_t>(range.end),
                      .first_stamp = sequence.stamps[range.begin],
                      .rate_hz = summary.capture_rate_hz,
+                     .paced = summary.rate_hz.has_value(),
                      .camera = sequence.camera};
   auto view = std::make_unique<LiveView>(parseListenAddress(options.view, "--view"), run, sequence);
   std::fprintf(stderr, "the page is at %s\n", view->url().c_str());

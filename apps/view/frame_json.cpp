@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/draw/palette.hpp"
+#include "apps/latency/latency_report.hpp"
 #include "core/object_place.hpp"
 #include "io/object_row.hpp"
 #include "io/run_folder.hpp"
@@ -30,11 +31,6 @@ Json toJson(const SE3& T) {
   return json;
 }
 
-std::string colorOf(TrackId track) {
-  const Color color = trackColor(track);
-  return fmt::format("#{:02x}{:02x}{:02x}", color.red, color.green, color.blue);
-}
-
 /// How far the object's middle is from the camera, and how sure that is.
 void addDistance(Json& json, const ObjectPlace& place, const Eigen::Vector3d& camera_world) {
   const Eigen::Vector3d way = place.center_world - camera_world;
@@ -50,7 +46,7 @@ Json objectJson(const ObjectEstimate& object, const Eigen::Vector3d& camera_worl
   const ObjectPlace place = placeOf(object);
   const Eigen::Matrix3d& C = place.center_covariance;
   Json json{{"id", object.track.value},
-            {"color", colorOf(object.track)},
+            {"color", trackColorText(object.track)},
             {"state", stateName(object.state)},
             {"T", toJson(object.T_world_body)},
             {"velocity", toJson(object.velocity_world_mps)},
@@ -104,10 +100,46 @@ Json pointsJson(const std::vector<ShownPoint>& points) {
 Json timingJson(const ShownTiming& timing) {
   Json stages = Json::array();
   for (const double stage_ms : timing.stages_ms) stages.push_back(rounded(stage_ms));
-  return {{"latency_ms", rounded(timing.latency_ms)}, {"decode_ms", rounded(timing.decode_ms)}, {"stages_ms", stages}};
+  return {{"latency_ms", rounded(timing.latency_ms)},
+          {"processing_ms", rounded(processing_ms(timing.stages_ms))},
+          {"decode_ms", rounded(timing.decode_ms)},
+          {"stages_ms", stages}};
+}
+
+Json trueObjectJson(const ShownTrueObject& object) {
+  Json json{{"id", object.label},
+            {"type", object.type},
+            {"T", toJson(object.T_world_object)},
+            // Its axes are the label's: x along the length, y down, from the middle of the bottom.
+            {"cuboid",
+             {{"center", toJson(Eigen::Vector3d(0, -0.5 * object.size_m.x(), 0))},
+              {"size", toJson(Eigen::Vector3d(object.size_m.z(), object.size_m.x(), object.size_m.y()))}}},
+            {"moving", object.moving}};
+  if (object.track.valid()) {
+    json["track"] = object.track.value;
+    json["off_m"] = rounded(object.off_m);
+  }
+  if (object.motion_m) json["motion_m"] = rounded(*object.motion_m, 1e4);
+  return json;
+}
+
+Json truthJson(const ShownTruth& truth, FrameDetail detail) {
+  Json json{{"T", toJson(truth.T_world_cam)},
+            {"position_m", rounded(truth.position_m, 1e4)},
+            {"step_m", rounded(truth.step_m, 1e5)},
+            {"step_deg", rounded(truth.step_deg, 1e4)}};
+  if (detail == FrameDetail::kWithoutImageParts) return json;
+  json["objects"] = Json::array();
+  for (const ShownTrueObject& object : truth.objects) json["objects"].push_back(trueObjectJson(object));
+  return json;
 }
 
 }  // namespace
+
+std::string trackColorText(TrackId track) {
+  const Color color = trackColor(track);
+  return fmt::format("#{:02x}{:02x}{:02x}", color.red, color.green, color.blue);
+}
 
 std::string toJson(const ShownRun& run) {
   const StereoCamera& camera = run.camera;
@@ -120,7 +152,8 @@ std::string toJson(const ShownRun& run) {
               {"first_frame", run.first_frame},
               {"end_frame", run.end_frame},
               {"rate_hz", rounded(run.rate_hz)},
-              {"token", run.token},
+              {"paced", run.paced},
+              {"against", run.against},
               {"stages", stages},
               {"latency_bounds_ms", kLatencyBounds_ms},
               {"camera",
@@ -148,6 +181,7 @@ std::string toJson(const ShownFrame& frame, Timestamp first_stamp, FrameDetail d
     json["objects"].push_back(objectJson(object, estimate.T_world_cam.translation()));
   if (frame.road) json["road"] = {{"point", toJson(frame.road->point_world)}, {"up", toJson(frame.road->up_world)}};
   if (frame.timing) json["timing"] = timingJson(*frame.timing);
+  if (frame.truth) json["truth"] = truthJson(*frame.truth, detail);
   if (detail == FrameDetail::kAll) {
     json["outlines"] = outlinesJson(frame.outlines);
     json["points"] = pointsJson(frame.points);
@@ -167,6 +201,7 @@ std::string eventJson(const RunSnapshot& run, const std::string& frame_json) {
                   {"lost", run.lost},
                   {"viewers", run.viewers},
                   {"latency_counts", run.latency.counts},
+                  {"processing_counts", run.processing.counts},
                   {"queues", queues}};
   return R"({"run":)" + json.dump() + R"(,"frame":)" + (frame_json.empty() ? "null" : frame_json) + "}";
 }

@@ -18,12 +18,15 @@ struct ShownRun {
   std::int64_t first_frame = 0, end_frame = 0;
   Timestamp first_stamp{};
   double rate_hz = 10;  // of the capture
+  bool paced = false;   // latencies count from when a pair was due; else mostly waiting is in them
   StereoCamera camera{};
-  std::string token{};  // that control calls must carry
+  std::string against{};  // the other run's folder, where two are shown
 };
 
 enum class FrameDetail { kAll, kWithoutImageParts };
 
+/// As CSS has it, the same as in pictures.
+std::string trackColorText(TrackId track);
 std::string toJson(const ShownRun& run);
 std::string toJson(const ShownFrame& frame, Timestamp first_stamp, FrameDetail detail = FrameDetail::kAll);
 /// `{"run":...,"frame":...}`; `frame_json` may be empty.

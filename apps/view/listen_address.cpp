@@ -33,6 +33,25 @@ std::string ListenAddress::text() const {
   return (v6 ? "[" + host + "]" : host) + ":" + std::to_string(port);
 }
 
+bool ListenAddress::loopback() const { return host.starts_with("127.") || host == "::1" || host == "localhost"; }
+
+bool ListenAddress::everywhere() const { return host == "0.0.0.0" || host == "::"; }
+
+std::string ListenAddress::localText() const {
+  if (!everywhere()) return text();
+  return ListenAddress{.host = host == "::" ? "::1" : "127.0.0.1", .port = port}.text();
+}
+
+std::string exposureWarning(const ListenAddress& address) {
+  if (address.loopback()) return "";
+  const std::string port = std::to_string(address.port);
+  return "--view " + address.text() + ": whoever reaches this machine over the network sees the images and results, " +
+         "unencrypted and without a password; only who has the printed address can hold the run. To see it from "
+         "another "
+         "machine alone, leave the address out and use ssh -L " +
+         port + ":127.0.0.1:" + port + " there";
+}
+
 ListenAddress parseListenAddress(std::string_view text, std::string_view option) {
   ListenAddress address;
   std::string_view host = text, port;

@@ -12,10 +12,19 @@ struct ListenAddress {
 
   /// As it stands in URLs; an IPv6 address in brackets.
   std::string text() const;
+  /// Reachable from this machine alone.
+  bool loopback() const;
+  /// All addresses of the machine.
+  bool everywhere() const;
+  /// As `text`, but such that a browser on this machine gets there.
+  std::string localText() const;
 };
 
 /// Reads ADDR:PORT, ADDR, :PORT or PORT, with an IPv6 address in brackets; what is left out, or all, is as above.
 /// Throws UsageError, naming the option.
 ListenAddress parseListenAddress(std::string_view text, std::string_view option);
+
+/// The warning that an address other machines can reach deserves, in one line; empty for this machine's own.
+std::string exposureWarning(const ListenAddress& address);
 
 }  // namespace motorcade

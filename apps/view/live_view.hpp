@@ -31,7 +31,8 @@ class LiveView final : public RunListener, public PageSource {
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;
 
-  std::string url() const { return server_->url(); }
+  /// With the token that holds the run, where it can be held.
+  std::string url() const { return run_.can_pause ? server_->controlUrl() : server_->url(); }
   /// What holds the replay; null where the run cannot be held.
   ReplayGate* gate() { return run_.can_pause ? &gate_ : nullptr; }
   void frameEntered(const StereoFrame& frame) override;

@@ -5,10 +5,12 @@
 #include <charconv>
 #include <chrono>
 #include <cstring>
+#include <functional>
 #include <thread>
 #include <utility>
 
 #include <httplib.h>
+#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
 #include "apps/view/assets.hpp"
@@ -75,16 +77,18 @@ class PageServer::Impl {
   Impl(ListenAddress address, PageSource& source, Viewers& viewers);
   ~Impl();
   int port() const { return address_.port; }
-  std::string url() const { return "http://" + address_.text() + "/"; }
+  std::string url() const { return "http://" + address_.localText() + "/"; }
+  std::string controlUrl() const { return url() + "#token=" + guard_->token(); }
 
  private:
   void configure();
   void listen();
   void route();
+  void routeRun(const std::string& path, const std::function<const PageSource*()>& run);
   void answerEvents(Response& response);
-  void answerFrames(const Request& request, Response& response) const;
   void answerPicture(const Request& request, Response& response);
   void answerControl(const Request& request, Response& response);
+  static std::string framesJson(const Request& request, const PageSource& source);
   static void answerJson(Response& response, const std::string& json);
 
   ListenAddress address_;
@@ -100,6 +104,7 @@ PageServer::Impl::Impl(ListenAddress address, PageSource& source, Viewers& viewe
   configure();
   listen();
   guard_ = std::make_unique<RequestGuard>(address_);
+  if (const std::string warning = exposureWarning(address_); !warning.empty()) spdlog::warn(warning);
   route();
   thread_ = std::jthread([this] {
     ::setpriority(PRIO_PROCESS, 0, kNice);  // of this thread and of those that it starts
@@ -154,23 +159,38 @@ void PageServer::Impl::route() {
     server_.Get(asset.path, [asset](const Request&, Response& response) {
       response.set_content(asset.content.data(), asset.content.size(), asset.type);
     });
-  server_.Get("/run.json", [this](const Request&, Response& response) {
-    ShownRun run = source_.run();
-    run.token = guard_->token();
-    answerJson(response, toJson(run));
-  });
   server_.Get("/metrics", [this](const Request&, Response& response) {
     response.set_content(metricsText(source_.snapshot()), "text/plain; version=0.0.4; charset=utf-8");
   });
   server_.Get("/events", [this](const Request&, Response& response) { answerEvents(response); });
-  server_.Get("/frames.json", [this](const Request& request, Response& response) { answerFrames(request, response); });
-  server_.Get(R"(/frame/(\d{1,12})\.json)", [this](const Request& request, Response& response) {
-    answerJson(response, source_.frameJson(numberOf(request.matches[1], -1)));
-  });
+  routeRun("", [this] { return &source_; });
+  routeRun("/against", [this] { return source_.against(); });
   server_.Get(R"(/image/(\d{1,12})\.jpg)",
               [this](const Request& request, Response& response) { answerPicture(request, response); });
   server_.Get(R"(/control/(pause|resume|step))",
               [this](const Request& request, Response& response) { answerControl(request, response); });
+}
+
+/// What is told of a run, below a path; `run` gives null where there is none.
+void PageServer::Impl::routeRun(const std::string& path, const std::function<const PageSource*()>& run) {
+  const auto answer = [run](Response& response, const std::function<std::string(const PageSource&)>& json) {
+    const PageSource* const source = run();
+    if (!source) return refuse(response, {404, "There is no other run; view RUN --against OTHER shows two."});
+    answerJson(response, json(*source));
+  };
+  server_.Get(path + "/run.json", [answer](const Request&, Response& response) {
+    answer(response, [](const PageSource& source) { return toJson(source.run()); });
+  });
+  server_.Get(path + "/overview.json", [answer](const Request&, Response& response) {
+    answer(response, [](const PageSource& source) { return source.overviewJson(); });
+  });
+  server_.Get(path + "/frames.json", [answer](const Request& request, Response& response) {
+    answer(response, [&request](const PageSource& source) { return framesJson(request, source); });
+  });
+  server_.Get(path + R"(/frame/(\d{1,12})\.json)", [answer](const Request& request, Response& response) {
+    const std::int64_t frame = numberOf(request.matches[1], -1);
+    answer(response, [frame](const PageSource& source) { return source.frameJson(frame); });
+  });
 }
 
 /// The answer has no end while the run goes on; between events a comment tells whether the viewer is still there.
@@ -190,12 +210,12 @@ void PageServer::Impl::answerEvents(Response& response) {
   });
 }
 
-void PageServer::Impl::answerFrames(const Request& request, Response& response) const {
+std::string PageServer::Impl::framesJson(const Request& request, const PageSource& source) {
   const auto parameter = [&](const char* name, std::int64_t otherwise) {
     return request.has_param(name) ? numberOf(request.get_param_value(name), otherwise) : otherwise;
   };
   const auto count = std::clamp<std::int64_t>(parameter("count", kMostFrames), 0, kMostFrames);
-  answerJson(response, source_.framesJson(parameter("from", 0), static_cast<std::size_t>(count)));
+  return source.framesJson(parameter("from", 0), static_cast<std::size_t>(count));
 }
 
 void PageServer::Impl::answerPicture(const Request& request, Response& response) {
@@ -219,5 +239,6 @@ PageServer::PageServer(const ListenAddress& address, PageSource& source, Viewers
 PageServer::~PageServer() = default;
 int PageServer::port() const { return impl_->port(); }
 std::string PageServer::url() const { return impl_->url(); }
+std::string PageServer::controlUrl() const { return impl_->controlUrl(); }
 
 }  // namespace motorcade

@@ -13,7 +13,7 @@ namespace motorcade {
 /// it. Its threads give way to the pipeline's.
 class PageServer {
  public:
-  /// Throws OutputError, naming the address, where it cannot listen there.
+  /// Throws OutputError, naming the address, where it cannot listen there. Warns in the log where others can reach it.
   PageServer(const ListenAddress& address, PageSource& source, Viewers& viewers);
   /// Closes the viewers' places and ends all answers under way within about a second.
   ~PageServer();
@@ -21,7 +21,10 @@ class PageServer {
   PageServer& operator=(const PageServer&) = delete;
 
   int port() const;
+  /// Where the page is seen, from this machine.
   std::string url() const;
+  /// The same with the token that holds the run. The browser sends what is behind `#` to nobody.
+  std::string controlUrl() const;
 
  private:
   class Impl;

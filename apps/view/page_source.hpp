@@ -20,6 +20,10 @@ class PageSource {
   virtual std::string framesJson(std::int64_t from, std::size_t count) const = 0;
   /// With all that there is; empty where the frame is not known any more.
   virtual std::string frameJson(std::int64_t frame) const = 0;
+  /// The run as a whole (docs/view.md); empty where it is not over.
+  virtual std::string overviewJson() const { return ""; }
+  /// Another run of the same drive to compare with, in the same world; null for none.
+  virtual const PageSource* against() const { return nullptr; }
   /// The left image as JPEG; null where it cannot be had.
   virtual std::shared_ptr<const std::string> picture(std::int64_t frame) = 0;
   /// `pause`, `resume` or `step`; false where the run cannot be held.

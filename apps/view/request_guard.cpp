@@ -29,6 +29,14 @@ std::string machineName() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? lowered(name.data()) : "";
 }
 
+/// Takes the same time wherever they differ.
+bool isSame(std::string_view a, std::string_view b) {
+  unsigned char difference = a.size() == b.size() ? 0 : 1;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    difference = static_cast<unsigned char>(difference | (a[i] ^ b[i]));
+  return difference == 0;
+}
+
 /// Addresses cannot be given to another server's name, so that they are no way in for rebinding.
 bool isAddress(std::string_view host) {
   if (host.starts_with('[')) return host.ends_with(']');
@@ -38,12 +46,11 @@ bool isAddress(std::string_view host) {
 }  // namespace
 
 RequestGuard::RequestGuard(const ListenAddress& listening)
-    : any_address_(listening.host == "0.0.0.0" || listening.host == "::"),
+    : any_address_(listening.everywhere()),
       port_(std::string(":").append(std::to_string(listening.port))),
       token_(randomToken()) {
-  const bool loopback = listening.host.starts_with("127.") || listening.host == "::1" || listening.host == "localhost";
   names_ = {lowered(listening.text())};
-  if (loopback || any_address_)
+  if (listening.loopback() || any_address_)
     for (const char* name : {"localhost", "127.0.0.1", "[::1]"}) names_.push_back(name + port_);
   if (const std::string name = machineName(); any_address_ && !name.empty()) names_.push_back(name + port_);
 }
@@ -65,7 +72,8 @@ std::optional<Refusal> RequestGuard::refusalOf(const RequestFacts& request) cons
   if (!own && request.path != "/") return Refusal{403, "Pages of other sites get no answer here."};
   if (!request.path.starts_with("/control/")) return std::nullopt;
   if (request.method != "GET") return Refusal{405, "A control call is a GET."};
-  if (request.token != token_) return Refusal{403, "The token is that of another run; reload the page."};
+  if (!isSame(request.token, token_))
+    return Refusal{403, "Only a page that was opened with the address that motorcade printed may hold the run."};
   return std::nullopt;
 }
 

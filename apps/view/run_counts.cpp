@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "apps/latency/latency_report.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -72,11 +74,13 @@ DurationBuckets RunCounts::Buckets::read() const {
 void RunCounts::count(const PipelineResult& result) {
   increase(dropped_, static_cast<std::int64_t>(result.dropped.size()) + result.dropped_unnamed);
   count(result.online.status);
-  latency_.add(result.timing.latency_ms());
+  std::array<double, kStageCount> work_ms{};
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     const StageSpan& span = result.timing.stages[stage];
-    if (span.start != span.end) stages_[stage].add(span.duration_ms());
+    work_ms[stage] = span.duration_ms();
+    if (span.start != span.end) stages_[stage].add(work_ms[stage]);
   }
+  countTimes(result.timing.latency_ms(), processing_ms(work_ms));
 }
 
 void RunCounts::count(FrameStatus status) {
@@ -92,6 +96,7 @@ void RunCounts::read(RunSnapshot& snapshot) const {
   snapshot.lost = lost_.load(std::memory_order_relaxed);
   snapshot.received = std::max(snapshot.received, snapshot.processed + snapshot.dropped + snapshot.rejected);
   snapshot.latency = latency_.read();
+  snapshot.processing = processing_.read();
   for (std::size_t stage = 0; stage < kStageCount; ++stage) snapshot.stages[stage] = stages_[stage].read();
 }
 

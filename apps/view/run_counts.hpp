@@ -28,6 +28,7 @@ struct RunSnapshot {
   std::string state{};  // running, paused, ended or recorded
   std::int64_t received = 0, processed = 0, dropped = 0, rejected = 0, lost = 0;
   DurationBuckets latency{};
+  DurationBuckets processing{};  // the stages' work, without waiting
   std::array<DurationBuckets, kStageCount> stages{};
   std::vector<QueueDepth> queues{};
   std::int64_t viewers = 0;
@@ -39,7 +40,10 @@ class RunCounts {
   void count(const PipelineResult& result);
   /// A frame of a run that is over.
   void count(FrameStatus status);
-  void countLatency(double latency_ms) { latency_.add(latency_ms); }
+  void countTimes(double latency_ms, double processing_ms) {
+    latency_.add(latency_ms);
+    processing_.add(processing_ms);
+  }
   /// Fills in what this has counted; received is what else the caller knows, or the sum.
   void read(RunSnapshot& snapshot) const;
 
@@ -55,7 +59,7 @@ class RunCounts {
   };
 
   std::atomic<std::int64_t> processed_{0}, dropped_{0}, rejected_{0}, lost_{0};
-  Buckets latency_;
+  Buckets latency_, processing_;
   std::array<Buckets, kStageCount> stages_;
 };
 

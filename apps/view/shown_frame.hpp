@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/frame_timing.hpp"
@@ -34,6 +36,27 @@ struct ShownTiming {
   std::array<double, kStageCount> stages_ms{};
 };
 
+/// A labeled object, as the camera of that frame truly had it before it: placed by the estimated camera, so that its
+/// distance from the estimate is what the camera saw wrong, without the drift of the path.
+struct ShownTrueObject {
+  std::int64_t label = -1;
+  std::string type{};
+  SE3 T_world_object;                                // KITTI's box frame
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  // height, width, length
+  bool moving = false;                               // in this frame, and well enough in view to be asked for
+  TrackId track{};                                   // that was matched to it; not valid for none
+  double off_m = 0;                                  // from the track's middle, on the ground
+  std::optional<double> motion_m{};                  // error of the track's motion since the frame before
+};
+
+/// What the truth says of one frame.
+struct ShownTruth {
+  SE3 T_world_cam;
+  double position_m = 0;            // of the camera, the path moved onto the truth as a whole
+  double step_m = 0, step_deg = 0;  // of the camera's motion since the frame before
+  std::vector<ShownTrueObject> objects{};
+};
+
 /// All that the page shows of one frame, but for the image; of a run that goes on and of one that is over alike.
 struct ShownFrame {
   FrameEstimate estimate;
@@ -41,6 +64,7 @@ struct ShownFrame {
   std::vector<ShownPoint> points{};
   std::optional<RoadPlane> road{};
   std::optional<ShownTiming> timing{};
+  std::optional<ShownTruth> truth{};
 };
 
 /// The road as the objects on it tell: they stand on it upright. Empty where none has a cuboid.

@@ -16,6 +16,11 @@ int runView(const ViewOptions& options) {
   const RunFolder run = readRunFolder(options.run);
   const Sequence sequence = openSequenceOf(run, {options.sequence, options.fps_hz});
   RecordedView view(run, sequence);
+  if (!options.against.empty()) {
+    const RunFolder other = readRunFolder(options.against);
+    requireSameDrive(other, sequence);
+    view.compareWith(std::make_unique<RecordedView>(other, sequence, worldOfOther(run, other)));
+  }
   StopSignals signals;
   Viewers viewers;
   const PageServer server(address, view, viewers);

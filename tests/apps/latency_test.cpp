@@ -54,6 +54,14 @@ TEST(Percentiles, AreByNearestRank) {
   EXPECT_EQ(percentilesOf({}).max, 0);
 }
 
+TEST(Processing, IsTheWorkWithoutAnyWaiting) {
+  FrameRow row = slowFrame(0, 3, 50);
+  row.entry_wait_ms = 400;
+  EXPECT_DOUBLE_EQ(processing_ms(row), 9) << "six stages of a millisecond and a flow of four, beside it stereo matching";
+  workOf(row, Stage::kStereoMatching) = 6;
+  EXPECT_DOUBLE_EQ(processing_ms(row), 11);
+}
+
 TEST(LongestWay, LeadsOverTheBranchThatEndedLast) {
   FrameRow row = frame(0);
   waitOf(row, Stage::kStereoMatching) = 4;

@@ -1,4 +1,5 @@
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -6,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/merge/batch_comparison.hpp"
+#include "apps/merge/measure_names.hpp"
 #include "apps/merge/merge_command.hpp"
 #include "apps/merge/merged_files.hpp"
 #include "apps/tasks/batch_folder.hpp"
@@ -19,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(NumberText, HasNoDigitsThatSayNothing) {
   EXPECT_EQ(numberText(0.4004, 3), "0.4");
@@ -243,6 +246,65 @@ TEST_F(MergeBatch, AgainstAnotherBatchWhatBecameWorseIsFound) {
   }
   EXPECT_EQ(comparison["regressions"][0]["result"], "d");
   EXPECT_EQ(comparison["unpaired"][0], "new (not in the other batch)");
+}
+
+TEST(MeasureNames, AreWordsWithUnits) {
+  EXPECT_EQ(readableName("camera_ate_m"), "camera ATE [m]");
+  EXPECT_EQ(readableName("camera_rpe_t_rmse_m"), "camera RPE of translation, RMSE [m]");
+  EXPECT_EQ(readableName("camera_rpe_r_rmse_deg"), "camera RPE of rotation, RMSE [deg]");
+  EXPECT_EQ(readableName("online_me_t_m"), "motion error of objects, translation, online [m]");
+  EXPECT_EQ(readableName("recall_30_to_50m"), "recall, from 30 to 50 m");
+  EXPECT_EQ(readableName("recall_30m"), "recall, to 30 m");
+  EXPECT_EQ(readableName("latency_p99_ms"), "latency, 99th percentile [ms]");
+  EXPECT_EQ(readableName("box_iou_bird"), "box IoU from above");
+  EXPECT_EQ(readableName("camera_end_error_percent"), "camera error at the end [%]");
+  EXPECT_EQ(readableName("camera_kitti_r_deg_per_m"), "camera KITTI r [deg/m]") << "of words that are not known, too";
+}
+
+TEST(MeasureNames, NoTwoAreTheSameAndNoneIsAKey) {
+  std::set<std::string> names;
+  for (const Measure& measure : allMeasures()) {
+    const std::string name = readableName(measure.name);
+    EXPECT_EQ(name.find('_'), std::string::npos) << name;
+    EXPECT_TRUE(names.insert(name).second) << name;
+  }
+}
+
+TEST_F(MergeBatch, ThePageColorsWhatBecameBetterAndWorseAndNamesItInWords) {
+  std::vector<Result> before, worse, better;
+  for (int i = 0; i < 12; ++i) {
+    const std::string drive(1, static_cast<char>('a' + i));
+    before.push_back({.drive = drive, .ate_m = 1 + 0.01 * i});
+    worse.push_back({.drive = drive, .ate_m = 1.1 + 0.01 * i});
+    better.push_back({.drive = drive, .ate_m = 0.9 + 0.01 * i});
+  }
+  write("before", before);
+  write("worse", worse);
+  write("better", better);
+  const auto page = [&](const char* batch) {
+    return merged("report.html", {.batch = root_ / batch, .against = root_ / "before"});
+  };
+  const std::string became_worse = page("worse"), became_better = page("better");
+  EXPECT_THAT(became_worse, AllOf(HasSubstr("<td>camera ATE [m]</td><td class=\"worse\">worse</td>"),
+                                  HasSubstr("<td class=\"number worse\">+9.")));
+  EXPECT_THAT(became_better, AllOf(HasSubstr("<td>camera ATE [m]</td><td class=\"better\">better</td>"),
+                                   HasSubstr("<td class=\"number better\">-1")));
+  for (const Measure& measure : allMeasures())
+    if (measure.name.find('_') != std::string_view::npos) {
+      EXPECT_THAT(became_worse, Not(HasSubstr(std::string(measure.name)))) << "a raw key";
+    }
+}
+
+TEST_F(MergeBatch, ThePageMarksTheBetterOfTwoSetsOfADrive) {
+  write("a", {{.drive = "x", .set = "one", .ate_m = 0.5},
+              {.drive = "x", .set = "two", .ate_m = 0.25},
+              {.drive = "y", .set = "one", .ate_m = 0.5},
+              {.drive = "y", .set = "two", .ate_m = 0.505}});
+  const std::string page = merged("report.html");
+  EXPECT_THAT(page, AllOf(HasSubstr("<td>x</td><td>one</td><td class=\"number worse\">0.5</td>"),
+                          HasSubstr("<td>x</td><td>two</td><td class=\"number better\">0.25</td>"),
+                          HasSubstr("<td>y</td><td>one</td><td class=\"number\">0.5</td>")))
+      << "one percent is not worth telling";
 }
 
 TEST_F(MergeBatch, ABatchWithoutResultsIsNothingToCompareWith) {

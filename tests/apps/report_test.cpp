@@ -1,4 +1,8 @@
+#include <fstream>
 #include <map>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -39,6 +43,59 @@ TEST_F(Report, IsOneFileThatTellsOfTheWholeRun) {
   EXPECT_THAT(html,
               AllOf(HasSubstr("camera ATE"), HasSubstr("<img alt=\"frame "), HasSubstr("[backend]"),
                     HasSubstr("moving objects (final)"), HasSubstr("incremental optimization"), HasSubstr("Release")));
+}
+
+/// The path of each line of the report's map that is drawn in one color.
+std::vector<std::string> linesOf(const std::string& map, const std::string& color) {
+  std::vector<std::string> lines;
+  const std::string key = "style=\"stroke:" + color + "\" d=\"";
+  for (auto at = map.find(key); at != std::string::npos; at = map.find(key, at + 1)) {
+    const auto begin = at + key.size();
+    lines.push_back(map.substr(begin, map.find('"', begin) - begin));
+  }
+  return lines;
+}
+
+TEST_F(Report, TheTruthIsBrokenWhereACarWasOutOfView) {
+  fs::copy(kSequence, out("gap"), fs::copy_options::recursive);
+  std::istringstream labels(contentOf(out("gap") / "label_02.txt"));
+  std::ofstream fewer(out("gap") / "label_02.txt");
+  std::size_t left_out = 0;
+  for (std::string line; std::getline(labels, line);) {
+    const int frame = std::stoi(line);
+    if (frame == 6 || frame == 7)
+      ++left_out;
+    else
+      fewer << line << '\n';
+  }
+  fewer.close();
+  ASSERT_GT(left_out, 0u);
+  ASSERT_EQ(run("whole"), 0);
+  ASSERT_EQ(run("gap_run", "", out("gap")), 0);
+  const auto breaks = [&](const std::string& name) {
+    EXPECT_EQ(motorcade("report " + out(name).string()), 0);
+    const std::string html = page(name), map = html.substr(0, html.find("</svg>"));
+    std::size_t pieces = 0, lines = 0;
+    for (const std::string& line : linesOf(map, "var(--truth)")) {
+      ++lines;
+      pieces += countOf(line, "M");
+    }
+    EXPECT_GT(lines, 1u) << "the camera's and a car's";
+    return pieces - lines;
+  };
+  EXPECT_EQ(breaks("whole"), 0u);
+  EXPECT_GT(breaks("gap_run"), 0u);
+}
+
+TEST_F(Report, TellsALatencyOnlyWherePairsWereDueAtAPace) {
+  ASSERT_EQ(run("fast"), 0);
+  ASSERT_EQ(motorcade("report " + out("fast").string()), 0);
+  EXPECT_THAT(page("fast"), AllOf(HasSubstr("processing of a pair, without waiting, 99 of 100 frames"),
+                                  HasSubstr(">processing, ms</text>"), Not(HasSubstr("latency, 99 of 100 frames"))));
+  ASSERT_EQ(run("paced", "--rate 20"), 0);
+  ASSERT_EQ(motorcade("report " + out("paced").string()), 0);
+  EXPECT_THAT(page("paced"), AllOf(HasSubstr("latency, 99 of 100 frames"), HasSubstr(">latency, ms</text>"),
+                                   Not(HasSubstr("without waiting"))));
 }
 
 TEST_F(Report, ComparesWithABaseline) {

@@ -45,6 +45,35 @@ TEST(LineChart, ALineIsBrokenWhereNothingIsKnown) {
   EXPECT_EQ(countOf(svg.substr(begin, svg.find('"', begin) - begin), "M"), 2u);
 }
 
+TEST(LineChart, ABreakStaysOneWhereALongLineIsThinned) {
+  ChartLine line{.name = "", .color = "red"};
+  for (int i = 0; i < 4000; ++i) {
+    if (i == 1001 || i == 2002) line.points.push_back(lineBreak());
+    line.points.emplace_back(i, 1);
+    line.half_width.resize(line.points.size(), 0.5);
+  }
+  const std::string svg = lineChart({.x = "s", .y = "m"}, {line});
+  for (const char* part : {"line", "band"}) {
+    const auto begin = svg.find(" d=\"", svg.find("class=\"" + std::string(part) + "\"")) + 4;
+    const std::string path = svg.substr(begin, svg.find('"', begin) - begin);
+    EXPECT_EQ(countOf(path, "M"), 3u) << part;
+    EXPECT_LT(countOf(path, "L"), 2000u) << part;
+  }
+}
+
+TEST(LineChart, ASinglePointBetweenBreaksIsADot) {
+  const std::string svg = lineChart({.x = "s", .y = "m"}, {{.name = "",
+                                                            .color = "red",
+                                                            .points = {{0, 1}, lineBreak(), {2, 1}, lineBreak(), {3, 1}, {4, 1}}}});
+  EXPECT_EQ(countOf(svg, "h0"), 2u);
+}
+
+TEST(LineChart, AWideChartSaysThatItGoesOnWhereTheScreenIsNarrow) {
+  const std::string wide = lineChart({.x = "m", .y = "m", .wide = true}, {});
+  EXPECT_THAT(wide, HasSubstr("<p class=\"swipe\">Scroll sideways"));
+  EXPECT_THAT(lineChart({.x = "m", .y = "m"}, {}), Not(HasSubstr("swipe")));
+}
+
 TEST(LineChart, HigherValuesStandHigherAndBandsStayOnTheSheet) {
   const std::string svg =
       lineChart({.x = "s", .y = "m/s"},

@@ -39,7 +39,11 @@ class ToySource : public PageSource {
     actions.push_back(action);
     return true;
   }
+  std::string overviewJson() const override { return overview; }
+  const PageSource* against() const override { return other; }
   std::vector<std::string> actions;
+  std::string overview;
+  const PageSource* other = nullptr;
 };
 
 /// A client that says what the test wants, also what no browser would.
@@ -93,9 +97,10 @@ class ViewServer : public testing::Test {
     client.say(request);
     return client.hear();
   }
+  /// As it stands in the address that is printed.
   std::string token() const {
-    const std::string run = ask("/run.json"), key = R"("token":")";
-    return run.substr(run.find(key) + key.size(), 32);
+    const std::string url = server_.controlUrl(), key = "#token=";
+    return url.substr(url.find(key) + key.size());
   }
   /// A viewer whose place is taken once the first event is there.
   std::unique_ptr<Client> viewer() const {
@@ -161,6 +166,30 @@ TEST_F(ViewServer, TakesControlCallsFromItsOwnPageOnly) {
   EXPECT_TRUE(source_.actions.empty());
   EXPECT_THAT(ask("/control/pause?token=" + token()), StartsWith("HTTP/1.1 200"));
   EXPECT_THAT(source_.actions, testing::ElementsAre("pause"));
+}
+
+TEST_F(ViewServer, NoAnswerHoldsTheToken) {
+  EXPECT_EQ(token().size(), 32);
+  EXPECT_EQ(server_.controlUrl(), server_.url() + "#token=" + token()) << "behind #, which browsers send to nobody";
+  for (const char* path : {"/", "/run.json", "/page.js", "/run_data.js", "/metrics", "/frames.json", "/frame/3.json",
+                           "/overview.json", "/control/pause", "/control/pause?token=", "/nothing"})
+    EXPECT_THAT(ask(path), Not(HasSubstr(token()))) << path;
+  const PageServer other({.host = "127.0.0.1", .port = 0}, source_, viewers_);
+  EXPECT_NE(other.controlUrl().substr(other.controlUrl().find('#')), "#token=" + token()) << "each run has its own";
+}
+
+TEST_F(ViewServer, ARunBesideAnotherAnswersBelowAPathOfItsOwn) {
+  EXPECT_THAT(ask("/against/run.json"), AllOf(StartsWith("HTTP/1.1 404"), HasSubstr("--against")));
+  EXPECT_THAT(ask("/overview.json"), StartsWith("HTTP/1.1 404")) << "of a run that is over alone";
+  ToySource other;
+  other.overview = R"({"frames":9})";
+  source_.other = &other;
+  EXPECT_THAT(ask("/against/run.json"), HasSubstr(R"("name":"toy")"));
+  EXPECT_THAT(ask("/against/overview.json"), HasSubstr(R"({"frames":9})"));
+  EXPECT_THAT(ask("/against/frames.json?from=2&count=3"), HasSubstr(R"("asked":[2,3])"));
+  EXPECT_THAT(ask("/against/frame/3.json"), HasSubstr("{}"));
+  EXPECT_THAT(ask("/against/frame/4.json"), StartsWith("HTTP/1.1 404"));
+  source_.other = nullptr;
 }
 
 TEST_F(ViewServer, TellsANinthViewerThatAllPlacesAreTaken) {

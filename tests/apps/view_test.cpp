@@ -12,6 +12,7 @@
 #include "apps/view/listen_address.hpp"
 #include "apps/view/recorded_files.hpp"
 #include "apps/view/replay_gate.hpp"
+#include "apps/view/run_truth.hpp"
 #include "apps/view/viewers.hpp"
 #include "io/errors.hpp"
 #include "tests/io/temporary_folder.hpp"
@@ -21,7 +22,9 @@ namespace {
 
 using namespace std::chrono_literals;
 using nlohmann::json;
+using testing::AllOf;
 using testing::ElementsAre;
+using testing::HasSubstr;
 
 EventText text(const std::string& content) { return std::make_shared<const std::string>(content); }
 
@@ -34,6 +37,18 @@ TEST(ListenAddress, IsReadInWholeOrInPart) {
   EXPECT_EQ(parseListenAddress("[::1]:9000", "--view").text(), "[::1]:9000");
   for (const char* wrong : {"localhost:", "127.0.0.1:65536", "1:2:3", "host/x:80", "a:b", "::1:80"})
     EXPECT_THROW(parseListenAddress(wrong, "--view"), UsageError) << wrong;
+}
+
+TEST(ListenAddress, WhatOthersReachIsWarnedOf) {
+  for (const char* own : {"127.0.0.1:9000", "127.3.2.1:80", "localhost:80", "[::1]:80"})
+    EXPECT_EQ(exposureWarning(parseListenAddress(own, "--view")), "") << own;
+  for (const char* open : {"0.0.0.0:9000", "[::]:9000", "10.0.0.7:9000", "carpc:9000"})
+    EXPECT_THAT(exposureWarning(parseListenAddress(open, "--view")),
+                AllOf(HasSubstr(open), HasSubstr("sees the images"), HasSubstr("hold the run"),
+                      HasSubstr("ssh -L 9000:127.0.0.1:9000")));
+  EXPECT_EQ(parseListenAddress("0.0.0.0:9000", "--view").localText(), "127.0.0.1:9000");
+  EXPECT_EQ(parseListenAddress("[::]:9000", "--view").localText(), "[::1]:9000");
+  EXPECT_EQ(parseListenAddress("10.0.0.7:9000", "--view").localText(), "10.0.0.7:9000");
 }
 
 TEST(Viewers, TheNewestEventWins) {
@@ -117,7 +132,7 @@ TEST(FrameJson, HoldsWhatThePageShows) {
   EXPECT_EQ(frame["status"], "good");
   const json& car = frame["objects"].at(0);
   EXPECT_EQ(car["id"], 1);
-  EXPECT_EQ(car["color"], "#40c4ff") << "as in the pictures";
+  EXPECT_EQ(car["color"], "#60d86e") << "as in the pictures";
   EXPECT_EQ(car["speed"], 6);
   EXPECT_EQ(car["speed_sigma"], 0.25);
   EXPECT_NEAR(car["distance"].get<double>(), std::hypot(0.75, 12), 1e-3);
@@ -127,6 +142,48 @@ TEST(FrameJson, HoldsWhatThePageShows) {
   EXPECT_EQ(frame["points"], json::parse("[[1,10,20,1,2,3]]"));
   EXPECT_THAT(frame["road"]["point"], ElementsAre(0, 1.5, 0)) << "below the camera, where the car stands";
   EXPECT_FALSE(json::parse(toJson(frameWithACar(), {}, FrameDetail::kWithoutImageParts)).contains("points"));
+}
+
+TEST(FrameJson, ALabelHasTheCuboidOfItsBox) {
+  ShownFrame frame = frameWithACar();
+  ShownTruth truth{.position_m = 0.25, .step_m = 0.0125};
+  truth.objects.push_back({.label = 7,
+                           .type = "Car",
+                           .T_world_object = SE3(Eigen::Matrix3d::Identity(), {1, 1.5, 12}),
+                           .size_m = {1.5, 1.8, 4},
+                           .moving = true,
+                           .track = {1},
+                           .off_m = 0.75});
+  truth.objects.push_back({.label = 8, .type = "Van"});
+  frame.truth = truth;
+  const json of_frame = json::parse(toJson(frame, {}))["truth"];
+  EXPECT_EQ(of_frame["position_m"], 0.25);
+  EXPECT_EQ(of_frame["step_m"], 0.0125);
+  const json& label = of_frame["objects"].at(0);
+  EXPECT_THAT(label["cuboid"]["size"], ElementsAre(4, 1.5, 1.8)) << "along its x, y and z axes";
+  EXPECT_THAT(label["cuboid"]["center"], ElementsAre(0, -0.75, 0)) << "y is down, and the box stands on its origin";
+  EXPECT_EQ(label["track"], 1);
+  EXPECT_EQ(label["off_m"], 0.75);
+  EXPECT_FALSE(label.contains("motion_m")) << "not known without a frame before";
+  EXPECT_FALSE(of_frame["objects"].at(1).contains("track")) << "nothing followed it";
+}
+
+TEST(FrameJson, TellsTheWorkWithoutWaiting) {
+  ShownFrame frame = frameWithACar();
+  frame.timing = ShownTiming{.latency_ms = 467, .stages_ms = {1, 4, 3, 2, 1, 1, 1}};
+  EXPECT_EQ(json::parse(toJson(frame, {}))["timing"]["processing_ms"], 10)
+      << "of stereo matching and optical flow, side by side, the longer alone";
+}
+
+TEST(FrameSpans, AreOfNumbersThatFollowOneAnother) {
+  const auto spans = spansOf({3, 4, 5, 9, 11, 12});
+  ASSERT_EQ(spans.size(), 3);
+  EXPECT_EQ(spans[0].from, 3);
+  EXPECT_EQ(spans[0].to, 5);
+  EXPECT_EQ(spans[1].from, 9);
+  EXPECT_EQ(spans[1].to, 9);
+  EXPECT_EQ(spans[2].to, 12);
+  EXPECT_TRUE(spansOf({}).empty());
 }
 
 TEST(FrameJson, StaysJsonWhereANumberIsNone) {
@@ -177,6 +234,7 @@ TEST(RunCounts, CountsFramesByWhatBecameOfThem) {
   EXPECT_EQ(run.latency.counts.front(), 1);
   EXPECT_EQ(run.latency.counts.back(), 1);
   EXPECT_NEAR(run.latency.sum_ms, 5012.5, 0.01);
+  EXPECT_EQ(run.processing.count(), 3);
 }
 
 /// Reads the exposition format 0.0.4 as a scraper does; each problem is a failure. Values by name and labels.

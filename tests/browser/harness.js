@@ -46,14 +46,42 @@ export async function withPage(browser, options, use) {
   }
 }
 
+// As JPEG, or as PNG where the environment says MOTORCADE_SCREENSHOT_TYPE=png.
 export async function screenshot(page, name, options = {}) {
-  if (kScreenshots) await page.screenshot({ path: `${kScreenshots}/${name}.jpg`, type: "jpeg", quality: 82, ...options });
+  const png = process.env.MOTORCADE_SCREENSHOT_TYPE === "png";
+  const kind = png ? { path: `${kScreenshots}/${name}.png`, type: "png" } : { path: `${kScreenshots}/${name}.jpg`, type: "jpeg", quality: 82 };
+  if (kScreenshots) await page.screenshot({ ...kind, ...options });
 }
 
-// No wider than the screen.
-export async function checkWidth(page) {
+// No wider than the screen, and nothing wider than the card that holds it, but for what scrolls in a box of its own.
+export async function checkWidth(page, where = "") {
   const [content, screen] = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
-  check(content <= screen, `the page is ${content} px wide on a screen of ${screen} px`);
+  check(content <= screen, `${where} the page is ${content} px wide on a screen of ${screen} px`);
+  const outside = await page.evaluate(() => [...document.querySelectorAll(".card, figure, .finding")].flatMap((card) => {
+    const { left, right, width } = card.getBoundingClientRect();
+    if (width === 0) return [];
+    return [...card.querySelectorAll("*")].filter((part) => !part.closest(".scroll, .wide, pre, svg, .label, #cursor, .mark, .bar") &&
+      part.getBoundingClientRect().width > 0 && (part.getBoundingClientRect().right > right + 1 || part.getBoundingClientRect().left < left - 1))
+      .map((part) => `${part.localName}#${part.id}.${part.className} leaves ${card.id || card.className}`);
+  }));
+  check(outside.length === 0, `${where} ${outside.slice(0, 4).join("; ")}`);
+}
+
+// What a finished run and one that goes on print.
+export const kUrl = /http:\/\/[^\s]+/;
+export const shown = (page) => page.evaluate(() => Number(document.body.dataset.frame ?? -1));
+export const shows = (page, frame) => page.waitForFunction((wanted) => document.body.dataset.frame === String(wanted), frame);
+export const reaches = (page, frame) => page.waitForFunction((wanted) => Number(document.body.dataset.frame ?? -1) >= wanted, frame);
+
+// Moves the slider of the live page.
+export async function goTo(page, frame) {
+  await page.waitForFunction(() => document.body.dataset.frame !== undefined);
+  await page.evaluate((to) => {
+    const scrub = document.getElementById("scrub");
+    scrub.value = to;
+    scrub.dispatchEvent(new Event("input"));
+  }, frame);
+  await shows(page, frame);
 }
 
 // Starts the program and waits until it has printed what the pattern finds; `end` interrupts it and gives its exit code.

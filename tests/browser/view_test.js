@@ -2,25 +2,11 @@
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { check, checkWidth, run, screenshot, start, test, withBrowser, withPage } from "./harness.js";
+import { check, checkWidth, goTo, kUrl, reaches, run, screenshot, shown, start, test, withBrowser, withPage } from "./harness.js";
 
-const kUrl = /http:\/\/[^\s]+\//;
 const folder = mkdtempSync(join(tmpdir(), "motorcade_browser_"));
 const drive = join(folder, "drive"), long = join(folder, "long"), results = join(folder, "run");
 const kShown = Number(process.env.MOTORCADE_SHOWN_FRAME || 20);
-
-const shown = (page) => page.evaluate(() => Number(document.body.dataset.frame ?? -1));
-const reaches = (page, frame) => page.waitForFunction((wanted) => Number(document.body.dataset.frame ?? -1) >= wanted, frame);
-
-async function goTo(page, frame) {
-  await page.waitForFunction(() => document.body.dataset.frame !== undefined);
-  await page.evaluate((to) => {
-    const scrub = document.getElementById("scrub");
-    scrub.value = to;
-    scrub.dispatchEvent(new Event("input"));
-  }, frame);
-  await page.waitForFunction((wanted) => document.body.dataset.frame === String(wanted), frame);
-}
 
 // Tracks with a row in a frame of objects_final.csv.
 function tracksIn(frame) {
@@ -49,7 +35,8 @@ async function recorded(browser) {
   }));
   await test("a click on an object in the image shows its history", () => withPage(browser, { url }, async (page) => {
     await goTo(page, kShown);
-    check(await page.locator("#history").isHidden(), "a history before any object was chosen");
+    check(await page.locator("#history-title").textContent() === "History of the camera", "not the camera's history before any object was chosen");
+    check(await painted(page, "#plot-speed"), "the camera's speed is not drawn");
     const { objects } = await (await page.request.get(`${url}frame/${kShown}.json`)).json();
     const info = await (await page.request.get(`${url}run.json`)).json(), canvas = page.locator("#image");
     const scale = (await canvas.boundingBox()).width / info.camera.width, [left, top, right, bottom] = objects[0].box;
@@ -58,7 +45,7 @@ async function recorded(browser) {
     check((await page.locator("#now-speed").textContent()).startsWith(objects[0].speed.toFixed(2)), "not its speed");
     check(await painted(page, "#plot-speed"), "the plot is empty");
     await page.keyboard.press("Escape");
-    check(await page.locator("#history").isHidden(), "Escape does not let go of it");
+    check(await page.locator("#history-title").textContent() === "History of the camera", "Escape does not let go of it");
   }));
   await test("keys step, play and pause", () => withPage(browser, { url }, async (page) => {
     await goTo(page, kShown);
@@ -71,6 +58,28 @@ async function recorded(browser) {
     await reaches(page, kShown + 4);
     await page.keyboard.press("Space");
     check(await page.locator("#play").textContent() === "Play", "it still plays");
+  }));
+  await test("after the slider was touched Space plays, and arrows still move the slider", () => withPage(browser, { url }, async (page) => {
+    await goTo(page, kShown);
+    const box = await page.locator("#scrub").boundingBox();
+    await page.mouse.click(box.x + box.width / 4, box.y + box.height / 2);
+    check(await page.evaluate(() => document.activeElement.id) === "scrub", "the slider does not have the focus");
+    const from = await shown(page);
+    await page.keyboard.press("ArrowRight");
+    await reaches(page, from + 1);
+    await page.keyboard.press("Space");
+    await reaches(page, from + 4);
+    check(await page.locator("#play").textContent() === "Pause", "it does not play");
+    await page.keyboard.press("Space");
+    check(await page.locator("#play").textContent() === "Play", "it still plays");
+  }));
+  await test("percentiles of a finished run are those of all its frames, at frame 0, too", () => withPage(browser, { url }, async (page) => {
+    await goTo(page, 0);
+    const { timing } = await (await page.request.get(`${url}overview.json`)).json();
+    const facts = await page.locator("#percentiles div").evaluateAll((groups) => groups.map((group) => [group.firstChild.textContent, group.lastChild.textContent]));
+    for (const name of ["p50", "p99", "max"])
+      check(facts.find(([fact]) => fact === name)[1] === timing[name].toFixed(1), `${name} is ${facts}, all frames give ${timing[name]}`);
+    check(timing.p99 > timing.p50, "all frames took the same");
   }));
   for (const [name, options] of Object.entries({
     page_desktop_light: { height: 960 }, page_desktop_dark: { height: 960, scheme: "dark" },
@@ -111,7 +120,7 @@ async function live(browser) {
       await page.waitForFunction((wanted) => document.body.dataset.frame === String(wanted), held);
       await page.locator("#play").click();
       await reaches(page, held + 3);
-      const metrics = await (await page.request.get(`${server.found}metrics`)).text();
+      const metrics = await (await page.request.get(`${server.found.replace(/#.*/, "")}metrics`)).text();
       check(/^motorcade_viewers 1$/m.test(metrics), "the metrics do not count this viewer");
       await page.waitForFunction(() => document.getElementById("run-state").textContent.startsWith("ended"));
     });

@@ -1,4 +1,5 @@
-// Speed, yaw rate and distance of one object over time, each with the band of one standard deviation.
+// Speed, yaw rate and distance of one object over time, each with the band of one standard deviation; while none is
+// chosen, those of the camera.
 
 const kDegrees = 180 / Math.PI;
 const kQuantities = {
@@ -6,6 +7,21 @@ const kQuantities = {
   yaw: { value: (o) => o.yaw_rate * kDegrees, sigma: (o) => o.yaw_rate_sigma * kDegrees, digits: 1, unit: "deg/s" },
   distance: { value: (o) => o.distance, sigma: (o) => o.distance_sigma, digits: 2, unit: "m" },
 };
+const kAround = 2;  // frames before and after, over which the camera's speed is taken
+
+// The camera as if it were an object: its speed over the ground, how fast it turns to the left, how far it has come.
+function cameraRows(past) {
+  let driven = 0;
+  return past.flatMap((frame, i) => {
+    if (i > 0) driven += Math.hypot(...[3, 7, 11].map((k) => frame.T[k] - past[i - 1].T[k]));
+    const a = past[Math.max(0, i - kAround)], b = past[Math.min(past.length - 1, i + kAround)], dt = b.time - a.time;
+    if (!(dt > 0)) return [];
+    const turn = Math.atan2(a.T[2], a.T[10]) - Math.atan2(b.T[2], b.T[10]);
+    return [{ time: frame.time, object: { speed: Math.hypot(...[3, 7, 11].map((k) => b.T[k] - a.T[k])) / dt,
+      yaw_rate: Math.atan2(Math.sin(turn), Math.cos(turn)) / dt, distance: driven } }];
+  });
+}
+
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 export class HistoryPanel {
@@ -36,23 +52,26 @@ export class HistoryPanel {
       for (const axis of ["x", "y"]) chart.options.scales[axis].ticks.color = css("--dim");
       chart.options.scales.y.grid = { color: css("--line"), drawBorder: false };
       chart.data.datasets[1].backgroundColor = `${this.color}44`;
-      chart.data.datasets[2].borderColor = this.dark.matches ? this.color : `color-mix(in srgb, ${this.color} 74%, black)`;
+      chart.data.datasets[2].borderColor = this.dark.matches || this.of_camera ? this.color : `color-mix(in srgb, ${this.color} 74%, black)`;
       chart.update();
     }
   }
 
   show(id, past) {
-    const rows = id === null ? [] : past.flatMap((frame) => {
+    const rows = id === null ? cameraRows(past) : past.flatMap((frame) => {
       const object = frame.objects.find((o) => o.id === id);
       return object ? [{ time: frame.time, object }] : [];
     });
     const known = rows.length > 0;
     this.element("history").hidden = !known;
     this.element("history-hint").hidden = known;
-    this.element("history-hint").textContent = id === null ? "Choose an object in the image, the scene or the list." : `#${id} has not been seen yet.`;
-    this.element("history-title").textContent = known ? `History of #${id}` : "History";
+    this.element("history-hint").textContent = id === null ? "The camera has not moved yet." : `#${id} has not been seen yet.`;
+    this.element("history-title").textContent = id === null ? "History of the camera" : `History of #${id}`;
+    this.element("history-close").hidden = id === null;
+    this.element("distance-title").textContent = id === null ? "Driven" : "Distance";
     if (!known) return;
-    this.color = rows[rows.length - 1].object.color;
+    this.color = id === null ? css("--accent") : rows[rows.length - 1].object.color;
+    this.of_camera = id === null;
     for (const [name, chart] of Object.entries(this.charts())) this.fill(name, chart, rows);
     this.paint();
   }

@@ -61,7 +61,8 @@ export class ImagePanel {
     this.canvas.style.aspectRatio = `${camera.width} / ${camera.height}`;
   }
 
-  show(frame, image, chosen) {
+  show(frame, image, chosen, truth_on) {
+    this.truth_on = truth_on;
     this.frame = frame;
     this.image = image;
     this.chosen = chosen;
@@ -91,6 +92,7 @@ export class ImagePanel {
     context.lineJoin = "round";
     const objects = [...this.frame.objects].sort((a, b) => (b.distance ?? 0) - (a.distance ?? 0));
     for (const object of objects) this.drawOutline(object, px);
+    if (this.truth_on) for (const object of this.frame.truth?.objects ?? []) this.drawTruth(object, px);
     for (const object of objects) this.drawCuboid(object, px);
     this.drawPoints(px);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -116,7 +118,7 @@ export class ImagePanel {
   }
 
   drawCuboid(object, px) {
-    const { context, camera } = this;
+    const { context } = this;
     context.strokeStyle = object.color;
     const wide = (object.id === this.chosen ? 3 : 1.7) * px;
     context.setLineDash(object.state === "predicted" ? [6 * px, 4 * px] : []);
@@ -125,19 +127,35 @@ export class ImagePanel {
       context.lineWidth = wide;
       context.strokeRect(left, top, right - left, bottom - top);
     } else {
-      const corners = cuboidCorners(object).map((corner) => toCamera(this.frame.T, corner));
-      for (const [from, to, seen] of edges(object, this.frame)) {
-        const ends = line(corners[from], corners[to], camera);
-        if (!ends) continue;
-        context.globalAlpha = seen ? 1 : 0.45;
-        context.lineWidth = seen ? wide : 0.6 * wide;
-        context.beginPath();
-        context.moveTo(...ends[0]);
-        context.lineTo(...ends[1]);
-        context.stroke();
-      }
-      context.globalAlpha = 1;
+      this.strokeEdges(object, wide, 1);
     }
+    context.setLineDash([]);
+  }
+
+  strokeEdges(object, wide, opacity) {
+    const { context, camera } = this;
+    const corners = cuboidCorners(object).map((corner) => toCamera(this.frame.T, corner));
+    for (const [from, to, seen] of edges(object, this.frame)) {
+      const ends = line(corners[from], corners[to], camera);
+      if (!ends) continue;
+      context.globalAlpha = opacity * (seen ? 1 : 0.45);
+      context.lineWidth = seen ? wide : 0.6 * wide;
+      context.beginPath();
+      context.moveTo(...ends[0]);
+      context.lineTo(...ends[1]);
+      context.stroke();
+    }
+    context.globalAlpha = 1;
+  }
+
+  // A labeled object, dashed in white on black, so that it is seen on any ground; what stands, fainter.
+  drawTruth(object, px) {
+    const { context } = this, opacity = object.moving ? 1 : 0.45;
+    context.strokeStyle = "#0d1014";
+    this.strokeEdges(object, 2.6 * px, 0.6 * opacity);
+    context.strokeStyle = "#f5f5f5";
+    context.setLineDash([5 * px, 4 * px]);
+    this.strokeEdges(object, 1.3 * px, opacity);
     context.setLineDash([]);
   }
 

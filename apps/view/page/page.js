@@ -1,86 +1,123 @@
 // Joins the panels: which frame is shown, which object is chosen, what the buttons and keys do.
+import { DifferencePanel } from "/difference_panel.js";
+import { FrameLink, readLink } from "/frame_link.js";
 import { HistoryPanel } from "/history_panel.js";
 import { ImagePanel } from "/image_panel.js";
+import { MapPanel } from "/map_panel.js";
+import { ObjectsPanel } from "/objects_panel.js";
 import { RunData } from "/run_data.js";
 import { ScenePanel } from "/scene_panel.js";
+import { TimelinePanel } from "/timeline_panel.js";
 import { TimingPanel } from "/timing_panel.js";
+import { TracksPanel } from "/tracks_panel.js";
+import { WorstPanel } from "/worst_panel.js";
 
 const element = (id) => document.getElementById(id);
-const kPast = 600;
+const kPast = 600, kPathBehind = 150, kPathAhead = 30, kOverview_ms = 1000, kMostMapMarks = 5;
 const kStates = {
   running: ["live", "good"], paused: ["paused", "warn"], recorded: ["finished run", ""], connecting: ["connecting", ""],
   ended: ["ended; open it with motorcade view RUN", ""], unreachable: ["ended, or not reachable", "warn"],
   refused: ["all places are taken; trying again", "bad"],
 };
 const kTracking = { good: ["tracking", "good"], degraded: ["tracking, degraded", "warn"], lost: ["lost", "bad"], rejected: ["image rejected", "bad"], dropped: ["dropped", "warn"] };
+const kMayNotHold = "Only the page at the address that motorcade printed can hold the run";
 
-let chosen = null, shownFrame = null, shownImage = null, playing = false, info = null, timing = null, scene = null;
-const image = new ImagePanel(element("image"), choose);
-const history = new HistoryPanel();
+let chosen = null, shown = null, playing = false, truthOn = true, info = null, timing = null, scene = null, overviewDue = 0;
+const image = new ImagePanel(element("image"), choose), otherImage = new ImagePanel(element("image-other"), () => {});
+const history = new HistoryPanel(), difference = new DifferencePanel();
 const data = new RunData(showFrame, showRun);
+const link = new FrameLink(({ frame, object }) => { chosen = object; goTo(frame, { linked: true }); });
+const objects = new ObjectsPanel((id) => choose(id === chosen ? null : id), jumpTo);
+const timeline = new TimelinePanel((frame, jump) => (jump ? jumpTo(frame) : goTo(frame)));
+const tracks = new TracksPanel(jumpTo), worst = new WorstPanel(jumpTo), map = new MapPanel(element("map"), jumpTo);
 
-function showFrame({ frame, image: picture }) {
-  shownFrame = frame;
-  shownImage = picture;
+function showFrame(now) {
+  shown = now;
+  const { frame, image: picture } = now, past = data.past(kPast);
   element("no-image").hidden = picture !== null;
-  const past = data.past(kPast);
+  if (!info.recorded && performance.now() > overviewDue) showOverview();
   timing.showFrame(frame, past);
-  element("tracking").textContent = frame.cause === "none" ? kTracking[frame.status][0] : `${kTracking[frame.status][0]}: ${frame.cause.replaceAll("_", " ")}`;
-  element("tracking").className = `pill ${kTracking[frame.status][1]}`;
+  const [tracking, kind] = kTracking[frame.status];
+  element("tracking").textContent = frame.cause === "none" ? tracking : `${tracking}: ${frame.cause.replaceAll("_", " ")}`;
+  element("tracking").className = `pill ${kind}`;
   const scrub = element("scrub");
   scrub.min = data.first;
   scrub.max = data.last;
   scrub.value = frame.frame;
   element("clock").textContent = `frame ${frame.frame}, ${frame.time.toFixed(1)} s`;
   showObjects(past);
+  timeline.show(frame.frame);
+  worst.show(frame.frame);
+  if (info.against) difference.show(frame, now.other);
   document.body.dataset.frame = frame.frame;
 }
 
 function showObjects(past) {
-  image.show(shownFrame, shownImage, chosen);
-  scene?.show(shownFrame, past, chosen);
+  const { frame, image: picture, other } = shown;
+  image.show(frame, picture, chosen, truthOn);
+  if (info.against) otherImage.show(other ?? { ...frame, objects: [], outlines: [], points: [] }, picture, null, truthOn);
+  scene?.show(frame, past, chosen, extraOf(frame.frame, other));
   history.show(chosen, past);
-  listObjects();
+  objects.show(frame, chosen, data.overview?.tracks);
+  tracks.show(frame.frame, chosen);
+  map.show(frame, truthOn);
 }
 
-function listObjects() {
-  const objects = [...shownFrame.objects].sort((a, b) => a.id - b.id), body = element("objects").tBodies[0];
-  element("object-count").textContent = objects.length > 0 ? objects.length : "";
-  element("no-objects").hidden = objects.length > 0;
-  const same = body.rows.length === objects.length && objects.every((o, i) => Number(body.rows[i].dataset.id) === o.id);
-  if (!same) body.replaceChildren(...objects.map(objectRow));
-  objects.forEach((object, i) => {
-    const row = body.rows[i];
-    row.classList.toggle("chosen", object.id === chosen);
-    row.querySelector("button").setAttribute("aria-pressed", object.id === chosen);
-    row.querySelector(".kind").textContent = object.state === "moving" ? (object.cuboid?.kind ?? "").replaceAll("_", " ").replace("unknown", "") : object.state;
-    const cell = (k, value, sigma) => {
-      row.cells[k].firstChild.textContent = value === undefined ? "" : value.toFixed(1);
-      row.cells[k].lastChild.textContent = sigma === undefined ? "" : ` \u00b1 ${sigma.toFixed(1)}`;
-    };
-    cell(1, object.speed, object.speed_sigma);
-    cell(2, object.distance, object.distance_sigma);
+// What else stands in the scene: the true path around this frame, and the other run up to it.
+function extraOf(frame, other) {
+  const part = ({ path }, first, behind, ahead) => path.slice(3 * Math.max(0, frame - first - behind), 3 * Math.max(0, frame - first + ahead + 1));
+  const truth = data.overview?.truth;
+  return { true_path: truth && truthOn ? part(truth, data.overview.first_frame, kPathBehind, kPathAhead) : null, other,
+    other_path: data.other ? part(data.other.overview, data.other.info.first_frame, kPast, 0) : null };
+}
+
+function showOverview() {
+  overviewDue = performance.now() + kOverview_ms;
+  const overview = data.currentOverview(), range = [data.first, data.last], { truth } = overview;
+  timeline.setOverview(overview.marks, curvesOf(overview), range);
+  tracks.set({ tracks: overview.tracks, labels: truth?.labels }, range);
+  worst.set(overview.worst, overview.marks, info.paced);
+  const paths = [{ name: "camera", color: "--accent", path: overview.path, first_frame: overview.first_frame, wide: 2.5 }];
+  if (data.other) paths.push({ name: "other run", color: "--second", path: data.other.overview.path, dash: [8, 3] });
+  if (truth) paths.push({ name: "truth", color: "--ink", path: truth.path, dash: [4, 4], wide: 1.5, of_truth: true });
+  const marks = truth ? overview.worst.camera.slice(0, kMostMapMarks).map(({ frame }) => frame) : [];
+  map.set(paths, marks);
+  element("map-legend").replaceChildren(...paths.map(({ name, color }) => key(name, color)), ...(marks.length > 0 ? [key("largest errors of motion", "--bad", "mark")] : []));
+}
+
+function key(name, color, kind = "line") {
+  const entry = document.createElement("span");
+  entry.className = `legend-${kind}`;
+  entry.style.setProperty("--color", `var(${color})`);
+  entry.textContent = name;
+  return entry;
+}
+
+function curvesOf(overview) {
+  const { truth, first_frame } = overview, other = data.other?.overview, curves = [];
+  const lines = (of) => [{ values: of(overview), first_frame, color: "--accent" },
+    ...(other && of(other) ? [{ values: of(other), first_frame: other.first_frame, color: "--second", dash: [5, 3] }] : [])];
+  if (other) curves.push({ name: "cameras apart", unit: "m", digits: 3, lines: [{ values: apartOf(overview, other), first_frame, color: "--ink" }] });
+  if (truth) curves.push({ name: "camera off the truth", unit: "m", digits: 3, lines: lines(({ truth: t }) => t?.position_m) },
+    { name: "its motion off", unit: "m", digits: 4, lines: lines(({ truth: t }) => t?.step_m) });
+  if (truth?.object_source) curves.push({ name: "an object\u2019s motion off, at most", unit: "m", digits: 3, lines: lines(({ truth: t }) => t?.motion_m) });
+  curves.push({ name: info.paced ? "latency" : "processing", unit: "ms", digits: 1, lines: lines(({ time_ms }) => time_ms) });
+  return curves;
+}
+
+function apartOf(a, b) {
+  return Array.from({ length: a.frames }, (_, i) => {
+    const j = i + a.first_frame - b.first_frame;
+    if (j < 0 || j >= b.frames) return null;
+    return Math.hypot(...[0, 1, 2].map((k) => a.path[3 * i + k] - b.path[3 * j + k]));
   });
-}
-
-function objectRow(object) {
-  const row = document.createElement("tr");
-  row.dataset.id = object.id;
-  const button = document.createElement("button"), swatch = document.createElement("span"), kind = document.createElement("small");
-  button.type = "button";
-  swatch.className = "swatch";
-  swatch.style.background = object.color;
-  kind.className = "kind";
-  button.append(swatch, `#${object.id}`, kind);
-  button.addEventListener("click", () => choose(object.id === chosen ? null : object.id));
-  row.insertCell().append(button);
-  for (let i = 0; i < 2; ++i) row.insertCell().append(document.createElement("span"), document.createElement("small"));
-  return row;
 }
 
 function choose(id) {
   chosen = id;
-  if (shownFrame) showObjects(data.past(kPast));
+  if (!shown) return;
+  showObjects(data.past(kPast));
+  if (!data.following && !playing) link.write(shown.frame.frame, chosen);
 }
 
 function showRun(run) {
@@ -93,15 +130,17 @@ function showRun(run) {
 
 function showButtons() {
   const held = info.recorded ? !playing : data.state === "paused";
-  const over = data.state === "ended" || data.state === "unreachable";
+  const over = data.state === "ended" || data.state === "unreachable", mayHold = info.recorded || (info.can_pause && data.token !== "");
   element("play").textContent = held ? "Play" : "Pause";
-  element("play").disabled = !info.recorded && (!info.can_pause || over);
+  element("play").disabled = !mayHold || (!info.recorded && over);
+  element("play").title = mayHold || !info.can_pause ? "Pause or go on (Space)" : kMayNotHold;
   element("newest").hidden = info.recorded;
   element("newest").disabled = data.following;
 }
 
 // Of a run that is over, the page itself is the player.
 function play(on) {
+  if (playing && !on) link.write(data.shown, chosen);
   playing = on;
   showButtons();
   const step = () => {
@@ -116,7 +155,7 @@ function play(on) {
 
 function toggle() {
   if (info.recorded) return play(!playing);
-  if (!info.can_pause) return;
+  if (element("play").disabled) return;
   if (data.state === "paused") follow();
   data.control(data.state === "paused" ? "resume" : "pause");
 }
@@ -127,27 +166,38 @@ function follow() {
   showButtons();
 }
 
-function goTo(number) {
+function goTo(number, { linked = false, jump = false } = {}) {
+  const wanted = Math.max(data.first, Math.min(data.last, number));
   if (info.recorded) play(false);
-  data.following = !info.recorded && number >= data.last;
-  data.show(number);
+  data.following = !info.recorded && wanted >= data.last;
+  data.show(wanted);
+  if (!linked && !data.following) link.write(wanted, chosen, jump);
   showButtons();
 }
 
+// Where going back leads to where one was.
+function jumpTo(number, object = chosen) {
+  chosen = object ?? chosen;
+  goTo(number, { jump: true });
+}
+
 function step(by) {
-  if (shownFrame === null) return;
+  if (shown === null) return;
   if (by > 0 && !info.recorded && data.shown >= data.last) {
-    if (info.can_pause) data.control("step");
+    if (info.can_pause && data.token) data.control("step");
     return;
   }
   goTo(data.shown + by);
 }
 
-function key(event) {
+// What a focused slider or button does with a key itself.
+const kOwnKeys = { button: [" ", "Enter"], input: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "Home", "End", "PageUp", "PageDown"] };
+
+function keyPressed(event) {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
-  if (event.target.matches("input, button") && [" ", "ArrowLeft", "ArrowRight", "End", "Home"].includes(event.key)) return;
+  if (kOwnKeys[event.target.localName]?.includes(event.key)) return;
   const act = { " ": toggle, ArrowLeft: () => step(-1), ArrowRight: () => step(1), Home: () => goTo(data.first), End: follow,
-    Escape: () => choose(null), a: () => scene?.look("above"), b: () => scene?.look("behind"), f: toggleFollow }[event.key];
+    Escape: () => choose(null), a: () => scene?.look("above"), b: () => scene?.look("behind"), f: toggleFollow, t: toggleTruth, l: copyLink }[event.key];
   if (!act) return;
   event.preventDefault();
   act();
@@ -159,16 +209,46 @@ function toggleFollow() {
   element("view-follow").setAttribute("aria-pressed", scene.follow);
 }
 
+function toggleTruth() {
+  if (!data.overview?.truth) return;
+  truthOn = !truthOn;
+  element("truth").setAttribute("aria-pressed", truthOn);
+  element("truth-key").hidden = !truthOn;
+  if (shown) showObjects(data.past(kPast));
+}
+
+async function copyLink() {
+  if (!shown) return;
+  await link.copy(shown.frame.frame, chosen);
+  element("copy-link").textContent = "Copied";
+  setTimeout(() => { element("copy-link").textContent = "Link"; }, 1500);
+}
+
 function listen() {
-  element("play").addEventListener("click", toggle);
-  element("back").addEventListener("click", () => step(-1));
-  element("forth").addEventListener("click", () => step(1));
-  element("newest").addEventListener("click", follow);
-  element("scrub").addEventListener("input", (event) => goTo(Number(event.target.value)));
-  element("view-above").addEventListener("click", () => scene?.look("above"));
-  element("view-behind").addEventListener("click", () => scene?.look("behind"));
-  element("view-follow").addEventListener("click", toggleFollow);
-  document.addEventListener("keydown", key);
+  const on = (id, act, type = "click") => element(id).addEventListener(type, act);
+  on("play", toggle);
+  on("back", () => step(-1));
+  on("forth", () => step(1));
+  on("newest", follow);
+  on("truth", toggleTruth);
+  on("copy-link", copyLink);
+  on("history-close", () => choose(null));
+  on("scrub", (event) => goTo(Number(event.target.value)), "input");
+  on("view-above", () => scene?.look("above"));
+  on("view-behind", () => scene?.look("behind"));
+  on("view-follow", toggleFollow);
+  document.addEventListener("keydown", keyPressed);
+}
+
+// What only some runs have.
+function showParts() {
+  const hasTruth = Boolean(data.overview?.truth);
+  element("truth").hidden = element("truth-key").hidden = !hasTruth;
+  if (!info.against) return;
+  document.body.classList.add("two");
+  for (const id of ["other-image", "image-name", "difference-card", "other-key"]) element(id).hidden = false;
+  element("image-name").textContent = info.folder;
+  element("other-name").textContent = info.against;
 }
 
 async function start() {
@@ -177,16 +257,22 @@ async function start() {
   } catch {
     element("scene").textContent = "The scene needs WebGL, which this browser does not have.";
   }
-  info = data.info = await (await fetch("/run.json")).json();
+  const answer = await fetch("/run.json"), wanted = readLink();
+  if (!answer.ok) throw new Error(await answer.text());
+  info = data.info = await answer.json();
   document.title = `${info.name} \u2013 Motorcade`;
   element("run-name").textContent = info.name;
   element("run-name").title = info.folder;
-  image.setCamera(info.camera);
-  scene?.setCamera(info.camera);
-  timing = new TimingPanel(info);
+  for (const panel of [image, otherImage, scene]) panel?.setCamera(info.camera);
   Object.assign(Chart.defaults.font, { family: "system-ui, sans-serif", size: 11 });
+  chosen = wanted.object;
+  data.onReady = () => {
+    timing = new TimingPanel(info, data.overview?.timing);
+    showParts();
+    showOverview();
+  };
   listen();
-  await data.start();
+  await data.start(info, wanted.frame);
 }
 
 start().catch((error) => {

@@ -1,7 +1,9 @@
 // What the server tells (docs/view.md): the run, its frames as far as they are kept here, and which of them is shown.
+import { takeToken } from "/frame_link.js";
 
 const kKept = 4000;
 const kChunk = 600;
+const kDetails = 60;
 
 async function json(path) {
   const answer = await fetch(path);
@@ -9,7 +11,53 @@ async function json(path) {
   return answer.json();
 }
 
-// Calls `onFrame({frame, detail, image})` with the frame that is to be shown, and `onRun(run)` with the counts.
+// A run that is compared with: its frames, as they are asked for.
+class OtherRun {
+  constructor() { this.details = new Map(); }
+
+  async start() {
+    this.info = await json("/against/run.json");
+    this.overview = await json("/against/overview.json");
+  }
+
+  async frame(number) {
+    if (number < this.info.first_frame || number >= this.info.end_frame) return null;
+    if (!this.details.has(number)) {
+      this.details.set(number, await json(`/against/frame/${number}.json`).catch(() => null));
+      for (const old of this.details.keys()) if (this.details.size > kDetails) this.details.delete(old);
+    }
+    return this.details.get(number);
+  }
+}
+
+// The overview (docs/view.md) of a run that goes on, as far as its frames are kept here.
+export function overviewOf(frames, first_frame, paced) {
+  const marks = [], tracks = new Map(), time_ms = [], path = [];
+  for (const { frame, status, cause, T, timing, objects } of frames) {
+    const last = marks[marks.length - 1];
+    if (status !== "good" && last && last.to === frame - 1 && last.status === status && last.cause === cause) last.to = frame;
+    else if (status !== "good") marks.push({ from: frame, to: frame, status, cause });
+    while (path.length < 3 * (frame - first_frame)) path.push(T[3], T[7], T[11]);
+    path.push(T[3], T[7], T[11]);
+    time_ms[frame - first_frame] = timing ? (paced ? timing.latency_ms : timing.processing_ms) : null;
+    for (const { id, color, cuboid } of objects) addTo(tracks, id, color, cuboid?.kind, frame);
+  }
+  for (let i = 0; i < time_ms.length; ++i) time_ms[i] ??= null;
+  const late = time_ms.map((ms, i) => ({ frame: first_frame + i, ms: ms ?? 0 })).sort((a, b) => b.ms - a.ms).slice(0, 5);
+  return { first_frame, frames: time_ms.length, marks, time_ms, path, worst: { camera: [], objects: [], late },
+    tracks: [...tracks.values()].sort((a, b) => a.id - b.id) };
+}
+
+function addTo(tracks, id, color, kind, frame) {
+  if (!tracks.has(id)) tracks.set(id, { id, color, kind: "unknown", spans: [] });
+  const track = tracks.get(id), last = track.spans[track.spans.length - 1];
+  if (kind) track.kind = kind;
+  if (last && last[1] === frame - 1) last[1] = frame;
+  else track.spans.push([frame, frame]);
+}
+
+// Calls `onReady()` once the run is known, `onFrame({frame, image, other})` with the frame that is to be shown, and
+// `onRun(run)` with the counts.
 export class RunData {
   constructor(onFrame, onRun) {
     this.onFrame = onFrame;
@@ -22,15 +70,27 @@ export class RunData {
     this.state = "connecting";
     this.wanted = null;
     this.loading = false;
+    this.token = takeToken();
   }
 
-  async start() {
-    this.info = await json("/run.json");
-    await this.fetchFrames(this.info.first_frame);
-    if (this.info.recorded) this.following = false;
+  // `wanted` is the frame to begin with, or null.
+  async start(info, wanted) {
+    this.info = info;
+    if (info.recorded) this.following = false;
+    if (info.recorded) this.overview = await json("/overview.json");
+    if (info.against) await (this.other = new OtherRun()).start();
+    await this.fetchFrames(info.recorded ? Math.max(info.first_frame, (wanted ?? info.first_frame) - kChunk / 2) : info.first_frame);
+    if (!info.recorded && this.frames.has(wanted)) this.following = false;
+    this.onReady();
     this.listen();
-    if (this.info.recorded) this.show(this.info.first_frame);
-    return this.info;
+    if (!this.following) this.show(wanted ?? info.first_frame);
+  }
+
+  // Of a run that goes on, made from what is kept.
+  currentOverview() {
+    if (this.overview) return this.overview;
+    const frames = [...this.frames.keys()].sort((a, b) => a - b).slice(-kChunk).map((number) => this.frames.get(number));
+    return overviewOf(frames, frames[0]?.frame ?? this.info.first_frame, this.info.paced);
   }
 
   listen() {
@@ -66,7 +126,7 @@ export class RunData {
     if (missing) this.fetchFrames(this.newest + 1).catch(() => {});
     this.keep(event.frame);
     this.details.set(number, event.frame);
-    for (const old of this.details.keys()) if (this.details.size > 60) this.details.delete(old);
+    for (const old of this.details.keys()) if (this.details.size > kDetails) this.details.delete(old);
     if (this.following) this.show(this.newest);
   }
 
@@ -110,10 +170,11 @@ export class RunData {
     while (this.wanted !== null) {
       const number = this.wanted;
       this.wanted = null;
-      const [detail, image] = await Promise.all([this.detailOf(number), this.imageOf(number)]);
+      const [detail, image, other] = await Promise.all(
+        [this.detailOf(number), this.imageOf(number), this.other?.frame(number) ?? null]);
       if (!detail) continue;
       this.shown = number;
-      this.onFrame({ frame: detail, image });
+      this.onFrame({ frame: detail, image, other });
     }
     this.loading = false;
   }
@@ -133,5 +194,11 @@ export class RunData {
     } catch { return null; }
   }
 
-  control(action) { return fetch(`/control/${action}?token=${this.info.token}`).catch(() => {}); }
+  // A token of an earlier run at the same address is refused.
+  async control(action) {
+    const answer = await fetch(`/control/${action}?token=${this.token}`).catch(() => null);
+    if (answer?.status !== 403) return;
+    this.token = "";
+    this.tell(this.run);
+  }
 }

@@ -1,5 +1,5 @@
 // The scene in three dimensions, from behind or above, with the camera followed if wanted.
-import { dispose, dots, ego, ellipse, headingOf, place, ribbon, roadGrid, vehicle } from "/scene_shapes.js";
+import { dashes, dispose, dots, ego, ellipse, frameOf, headingOf, place, ribbon, roadGrid, vehicle } from "/scene_shapes.js";
 
 const kPast = 150, kPredicted_s = 2, kCell_m = 5, kUsualHeight_m = 1.65;
 
@@ -22,7 +22,7 @@ export class ScenePanel {
     this.orbit.addEventListener("change", () => this.render());
     this.road = null;
     this.addGrid();
-    this.dark.addEventListener("change", () => { this.addGrid(); if (this.frame) this.show(this.frame, this.past, this.chosen); });
+    this.dark.addEventListener("change", () => { this.addGrid(); if (this.frame) this.show(this.frame, this.past, this.chosen, this.extra); });
     this.listen(onChoose);
     new ResizeObserver(() => this.resize()).observe(element);
   }
@@ -91,8 +91,10 @@ export class ScenePanel {
     this.grid.material.uniforms.eye.value.copy(at);
   }
 
-  show(frame, past, chosen) {
-    Object.assign(this, { frame, past, chosen });
+  // `extra`: the true path and that of another run as lists of x, y, z of the world, both up to about now, and the other
+  // run's frame; each may be missing.
+  show(frame, past, chosen, extra = {}) {
+    Object.assign(this, { frame, past, chosen, extra });
     this.setRoad(frame);
     const group = new THREE.Group();
     const colors = { accent: new THREE.Color(css("--accent")) };
@@ -102,6 +104,8 @@ export class ScenePanel {
     if (way.length > 1) group.add(ribbon(way, 0.3, colors.accent, 0.7));
     for (const object of frame.objects) this.addObject(group, object);
     this.addPoints(group);
+    this.addTruth(group);
+    this.addOther(group);
     if (this.content) { this.scene.remove(this.content); dispose(this.content); }
     this.content = group;
     this.scene.add(group);
@@ -120,6 +124,25 @@ export class ScenePanel {
     }
     if (way.length > 1) group.add(ribbon(way, 0.16, color, 0.85));
     if (object.state !== "stopped" && object.speed > 0.5) group.add(dots(this.predicted(object, center), 0.17, 0.85, color));
+  }
+
+  onRoad(path, lift) {
+    const points = [];
+    for (let i = 0; i + 2 < path.length; i += 3) points.push(this.below(place(path.slice(i, i + 3)), lift));
+    return points;
+  }
+
+  addTruth(group) {
+    const { true_path } = this.extra, ink = new THREE.Color(css("--ink"));
+    if (!true_path) return;
+    if (true_path.length > 3) group.add(dashes(this.onRoad(true_path, 0.08), ink));
+    for (const object of this.frame.truth?.objects ?? []) group.add(frameOf(object, ink, { dashed: true, opacity: object.moving ? 1 : 0.4 }));
+  }
+
+  addOther(group) {
+    const { other, other_path } = this.extra, color = new THREE.Color(css("--second"));
+    if (other_path?.length > 3) group.add(ribbon(this.onRoad(other_path, 0.03), 0.16, color, 0.9));
+    for (const object of other?.objects ?? []) group.add(frameOf(object, color));
   }
 
   // At constant speed and rate of turn.

@@ -90,6 +90,25 @@ export function vehicle(object, color, chosen) {
   return group;
 }
 
+// The edges of an object's cuboid alone.
+export function frameOf(object, color, { dashed = false, opacity = 1 } = {}) {
+  const { size, center } = object.cuboid ?? { size: [4, 1.8, 1.5], center: [0, 0, 0] };
+  const edges = new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(size[0], size[1], size[2]));
+  const look = { color, transparent: opacity < 1, opacity };
+  const lines = new THREE.LineSegments(edges, dashed ? new THREE.LineDashedMaterial({ ...look, dashSize: 0.3, gapSize: 0.2 }) : new THREE.LineBasicMaterial(look));
+  if (dashed) lines.computeLineDistances();
+  const turned = rotationOf(object.T), offset = new THREE.Vector3(...center);
+  lines.quaternion.copy(turned);
+  lines.position.copy(place([object.T[3], object.T[7], object.T[11]])).add(offset.applyQuaternion(turned));
+  return lines;
+}
+
+export function dashes(points, color) {
+  const line = new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), new THREE.LineDashedMaterial({ color, dashSize: 1, gapSize: 0.7 }));
+  line.computeLineDistances();
+  return line;
+}
+
 // Lines on the road every so many meters of the world, fading away from where the camera is.
 export function roadGrid(cell_m, color) {
   const material = new THREE.ShaderMaterial({

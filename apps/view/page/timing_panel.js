@@ -39,9 +39,14 @@ function bars(element, entries) {
 }
 
 export class TimingPanel {
-  constructor(info) {
+  // `overall`: percentiles of a run that is over, of all its frames (docs/view.md).
+  constructor(info, overall) {
     this.info = info;
+    this.overall = overall;
     this.element = (id) => document.getElementById(id);
+    this.value = ({ latency_ms, processing_ms }) => (info.paced ? latency_ms : processing_ms);
+    if (!info.paced) this.element("latency-title").textContent = "Processing of a pair";
+    this.element("latency-note").hidden = info.paced;
     this.chart = new Chart(this.element("plot-latency"), {
       type: "bar",
       data: { labels: [], datasets: [{ data: [], barPercentage: 1, categoryPercentage: 0.92, borderRadius: 2 }] },
@@ -73,20 +78,26 @@ export class TimingPanel {
   }
 
   showFrame(frame, past) {
-    const timed = past.slice(-kRecent).map(({ timing }) => timing).filter(Boolean);
-    const sorted = timed.map(({ latency_ms }) => latency_ms).sort((a, b) => a - b);
     this.showRecent(past.slice(-200));
     const text = (value) => (value === null || value === undefined ? "\u2013" : value.toFixed(1));
-    facts(this.element("percentiles"), [["now", text(frame.timing?.latency_ms)], ["p50", text(quantile(sorted, 0.5))],
-      ["p95", text(quantile(sorted, 0.95))], ["p99", text(quantile(sorted, 0.99))], ["max", text(sorted[sorted.length - 1])]]);
-    const high = this.info.stages.map((_, i) => quantile(timed.map(({ stages_ms }) => stages_ms[i]).sort((a, b) => a - b), 0.95) ?? 0);
-    const now = frame.timing?.stages_ms ?? [], scale = Math.max(1, ...high) * 1.25;
+    const of = this.overall ?? this.recentPercentiles(past);
+    facts(this.element("percentiles"), [["this frame", text(frame.timing && this.value(frame.timing))],
+      ...["p50", "p95", "p99", "max"].map((name) => [name, text(of[name])]), [this.overall ? "frames, all" : "frames, last", String(of.frames)]]);
+    const high = of.stages_p95, now = frame.timing?.stages_ms ?? [], scale = Math.max(1, ...high) * 1.25;
     bars(this.element("stages"), this.info.stages.map((name, i) =>
       ({ name, share: (now[i] ?? 0) / scale, mark: high[i] / scale, text: text(now[i]) })));
   }
 
+  // Of a run that goes on.
+  recentPercentiles(past) {
+    const timed = past.slice(-kRecent).map(({ timing }) => timing).filter(Boolean);
+    const sorted = timed.map(this.value).sort((a, b) => a - b);
+    return { frames: timed.length, p50: quantile(sorted, 0.5), p95: quantile(sorted, 0.95), p99: quantile(sorted, 0.99), max: sorted[sorted.length - 1],
+      stages_p95: this.info.stages.map((_, i) => quantile(timed.map(({ stages_ms }) => stages_ms[i]).sort((a, b) => a - b), 0.95) ?? 0) };
+  }
+
   showRecent(past) {
-    this.recent.data.datasets[0].data = past.filter(({ timing }) => timing).map(({ frame, timing }) => ({ x: frame, y: timing.latency_ms }));
+    this.recent.data.datasets[0].data = past.filter(({ timing }) => timing).map(({ frame, timing }) => ({ x: frame, y: this.value(timing) }));
     const scale = this.recent.options.scales.x;
     scale.min = past[0]?.frame;
     scale.max = past[past.length - 1]?.frame;
@@ -104,7 +115,7 @@ export class TimingPanel {
     this.element("queues-title").hidden = queues.length === 0;
     bars(this.element("queues"), queues.map(({ name, waiting, bound }) =>
       ({ name: name.replace(">", " \u2192 "), share: waiting / bound, text: `${waiting} / ${bound}` })));
-    this.showHistogram(run.latency_counts ?? []);
+    this.showHistogram((this.info.paced ? run.latency_counts : run.processing_counts) ?? []);
   }
 
   // Without the empty ends.
