@@ -41,6 +41,13 @@ function(motorcade_library folder)
   endif()
 endfunction()
 
+# What runs once per command, such as options, tables and pages: the compiler need not work on it for long.
+function(motorcade_cold)
+  foreach(target ${ARGN})
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endforeach()
+endfunction()
+
 # With CMAKE_UNITY_BUILD (the presets but `developer`) sources of one room are compiled together, a few to a unit: a quarter of the compiler's
 # time, and a changed source is back in the program within seconds. In its anonymous namespaces a room uses each name once.
 # `motorcade_units(target a.cpp b.cpp)` groups the sources; those with flags or definitions of their own stay alone.

@@ -12,22 +12,6 @@ constexpr std::size_t kLengthAndName_bytes = 8, kAroundData_bytes = 12;
 /// Of a chunk that is no part of the image. Those that libpng finds too large are left to it.
 constexpr std::size_t kMostToSkip_bytes = 1'000'000;
 
-struct PngChunk {
-  std::string_view name, data;
-};
-
-/// Takes the first chunk off `bytes`. Empty when it is cut or its checksum is wrong.
-std::optional<PngChunk> takeChunk(std::string_view& bytes) {
-  if (bytes.size() < kAroundData_bytes) return std::nullopt;
-  const std::size_t length = bigEndian32(bytes, 0);
-  if (length > bytes.size() - kAroundData_bytes) return std::nullopt;
-  const std::string_view name_and_data = bytes.substr(4, 4 + length);
-  const std::uint32_t checksum = bigEndian32(bytes, kLengthAndName_bytes + length);
-  if (libdeflate_crc32(0, name_and_data.data(), name_and_data.size()) != checksum) return std::nullopt;
-  bytes.remove_prefix(kAroundData_bytes + length);
-  return PngChunk{name_and_data.substr(0, 4), name_and_data.substr(4)};
-}
-
 /// Zero for a palette, and where there is none such.
 int channelsOf(char color) {
   switch (color) {
@@ -75,6 +59,17 @@ bool addImageChunk(CommonPng& png, std::string_view at, std::size_t data_bytes) 
 }
 
 }  // namespace
+
+std::optional<PngChunk> takeChunk(std::string_view& bytes) {
+  if (bytes.size() < kAroundData_bytes) return std::nullopt;
+  const std::size_t length = bigEndian32(bytes, 0);
+  if (length > bytes.size() - kAroundData_bytes) return std::nullopt;
+  const std::string_view name_and_data = bytes.substr(4, 4 + length);
+  const std::uint32_t checksum = bigEndian32(bytes, kLengthAndName_bytes + length);
+  if (libdeflate_crc32(0, name_and_data.data(), name_and_data.size()) != checksum) return std::nullopt;
+  bytes.remove_prefix(kAroundData_bytes + length);
+  return PngChunk{name_and_data.substr(0, 4), name_and_data.substr(4)};
+}
 
 std::optional<CommonPng> findCommonPng(std::string_view bytes) {
   if (!bytes.starts_with(kPngSignature)) return std::nullopt;

@@ -16,6 +16,13 @@ constexpr std::uint32_t bigEndian32(std::string_view bytes, std::size_t at) {
   return value;
 }
 
+struct PngChunk {
+  std::string_view name, data;
+};
+
+/// Takes the first chunk off `bytes`, which begin behind the signature. Empty when it is cut or its checksum is wrong.
+std::optional<PngChunk> takeChunk(std::string_view& bytes);
+
 /// Where the pixels of a common PNG lie: 8-bit gray or color or 16-bit gray, with or without alpha, not interlaced, and
 /// without a chunk that would change pixels.
 struct CommonPng {

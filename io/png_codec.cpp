@@ -28,15 +28,10 @@ constexpr std::size_t kBitsAt = 24, kColorAt = 25;  // in the file: the header c
 
 /// What the sBIT chunk says of a color's bits; 0 where there is none before the pixels.
 int toldBits(std::string_view bytes, int channels) {
-  constexpr std::size_t kAroundData_bytes = 12;
   bytes.remove_prefix(kPngSignature.size());
-  while (bytes.size() >= kAroundData_bytes) {
-    const std::size_t length = bigEndian32(bytes, 0);
-    const std::string_view name = bytes.substr(4, 4);
-    if (name == "IDAT" || length > bytes.size() - kAroundData_bytes) break;
-    if (name == "sBIT" && std::cmp_greater_equal(length, channels))
-      return *std::ranges::max_element(bytes.substr(8, static_cast<std::size_t>(channels)));
-    bytes.remove_prefix(kAroundData_bytes + length);
+  for (auto chunk = takeChunk(bytes); chunk && chunk->name != "IDAT"; chunk = takeChunk(bytes)) {
+    if (chunk->name == "sBIT" && std::cmp_greater_equal(chunk->data.size(), channels))
+      return *std::ranges::max_element(chunk->data.substr(0, static_cast<std::size_t>(channels)));
   }
   return 0;
 }
@@ -129,14 +124,13 @@ DeepSamples deepSamplesOf(std::string_view bytes, const fs::path& file) {
 
 bool isDeep(std::string_view bytes) { return bytes.size() > kBitsAt && bytes[kBitsAt] == kAllSampleBits; }
 
-Image grayOf(const DeepSamples& samples, int sample_bits, ImagePool& pool) {
+Image grayOfDeep(const DeepSamples& samples, int sample_bits, ImagePool& pool) {
   Image image = pool.acquire(samples.size.width, samples.size.height);
   const std::uint16_t* at = samples.values.data();
   const auto upper = [sample_bits](std::uint16_t sample) { return upperBits(sample, sample_bits); };
   for (int y = 0; y < samples.size.height; ++y)
     for (int x = 0; x < samples.size.width; ++x, at += samples.channels)
-      image.mutableRow(y)[x] =
-          samples.channels == 1 ? upper(at[0]) : motorcade::grayOf(upper(at[0]), upper(at[1]), upper(at[2]));
+      image.mutableRow(y)[x] = samples.channels == 1 ? upper(at[0]) : grayOf(upper(at[0]), upper(at[1]), upper(at[2]));
   return image;
 }
 
@@ -152,7 +146,7 @@ Image decodePng(std::string_view bytes, const fs::path& file, ImagePool& pool, i
 }  // namespace
 
 Image decodeAnyPng(std::string_view bytes, const fs::path& file, ImagePool& pool, int sample_bits) {
-  if (sample_bits != kAllSampleBits && isDeep(bytes)) return grayOf(deepSamplesOf(bytes, file), sample_bits, pool);
+  if (sample_bits != kAllSampleBits && isDeep(bytes)) return grayOfDeep(deepSamplesOf(bytes, file), sample_bits, pool);
   const ImageSize size = decodableSize(bytes, file);
   PngReader reader(bytes);
   if (!reader.readHeader(false)) failDamaged(file, reader.context.message.data());

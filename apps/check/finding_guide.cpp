@@ -14,7 +14,7 @@ constexpr std::string_view kRectify =
     "Rectify the images anew with this rig's calibration. If they were rectified, the rig has moved since it was "
     "calibrated: calibrate it again.";
 
-constexpr std::array<std::pair<std::string_view, FindingGuide>, 16> kGuides{{
+constexpr std::array<std::pair<std::string_view, FindingGuide>, 19> kGuides{{
     {"rows",
      {"The rows of the two images do not agree", kOnRows,
       "Crop both images alike, or rectify them anew: an offset alone is often a crop or a resize that was made "

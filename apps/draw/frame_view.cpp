@@ -56,7 +56,7 @@ RgbImage drawFrame(const DrawnImages& images, const RecordedDrive& drive, std::s
   drawBar(bar, drive, frame);
   Canvas top_part = canvas.part(0, height + kBarHeight_px, width, top_height);
   const double right = width, bottom = top_height;
-  top_part.fill(std::vector<Eigen::Vector2d>{{-1, -1}, {right, -1}, {right, bottom}, {-1, bottom}}, {kGround});
+  top_part.fill(std::vector<Eigen::Vector2d>{{-1, -1}, {right, -1}, {right, bottom}, {-1, bottom}}, {kBackdrop});
   Sheet top_sheet{top_part, marks};
   paintTopView(top_sheet, drive, frame);
   Canvas legend = canvas.part(0, height + kBarHeight_px + top_height, width, legend_height);

@@ -8,7 +8,7 @@
 /// The colors of pictures.
 namespace motorcade {
 
-inline constexpr Color kGround{14, 18, 24}, kBar{22, 28, 36}, kGridLine{44, 53, 64}, kDark{10, 13, 18},
+inline constexpr Color kBackdrop{14, 18, 24}, kBar{22, 28, 36}, kGridLine{44, 53, 64}, kDark{10, 13, 18},
     kInk{232, 237, 243}, kDimInk{146, 158, 172}, kTruth{245, 245, 245}, kOwn{126, 172, 255};
 
 /// Each track its color, the same in every picture and on every page. None is blue, which is the camera's own, nor

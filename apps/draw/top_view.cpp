@@ -230,7 +230,7 @@ void paintTopView(Sheet& sheet, const RecordedDrive& drive, std::size_t frame) {
 }
 
 RgbImage drawTopView(const RecordedDrive& drive, std::size_t frame, ImageSize size) {
-  Canvas canvas(size.width, size.height, kGround);
+  Canvas canvas(size.width, size.height, kBackdrop);
   Marks marks;
   const int legend = legendHeight(size.width);
   const bool roomy = size.height > 2 * legend;

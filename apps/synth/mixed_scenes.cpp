@@ -11,7 +11,7 @@ namespace motorcade::synth {
 namespace {
 
 /// Arc length at the ego car's start: so much road lies behind it.
-constexpr double kStart_m = 60;
+constexpr double kRoadBehind_m = 60;
 constexpr double kPavement_m = 1.95;  // from the curb to where people walk, between trees and walls
 
 double jitter(SceneBuilder& b, float reach) { return b.random.uniform(-reach, reach); }
@@ -43,12 +43,12 @@ void addCyclist(SceneBuilder& b, Trajectory trajectory) {
 
 void buildTraffic(SceneBuilder& b) {
   b.scene.frames = 110;
-  const auto path = makePath(-kStart_m, 0, 0, {{160, 0}, {90, 0.2}, {120, 0}});
+  const auto path = makePath(-kRoadBehind_m, 0, 0, {{160, 0}, {90, 0.2}, {120, 0}});
   const auto side_street = makePath(68, -120, 0.5 * std::numbers::pi, {{240, 0}});
   b.setRoads({avenue(path), street(side_street)});
   const double v = vary(b.random, 8.5, 0.03);
-  b.setEgo(drive(path, kStart_m, v, -0.5 * kLane_m));
-  const auto ahead = [&](double m) { return kStart_m + m + jitter(b, 0.5F); };
+  b.setEgo(drive(path, kRoadBehind_m, v, -0.5 * kLane_m));
+  const auto ahead = [&](double m) { return kRoadBehind_m + m + jitter(b, 0.5F); };
   constexpr double kInner_m = 0.5 * kLane_m, kOuter_m = 1.5 * kLane_m, kEdge_m = 6.5;
   b.addTruckWithTrailer(drive(path, ahead(17), Profile({{0, 6.2}, {6, 5.8}, {11, 6.2}}), -kOuter_m));
   b.addMover(VehicleKind::kCar, drive(path, ahead(15), Profile({{0, v + 0.6}, {6, v - 0.2}, {11, v + 0.6}}), -kInner_m),
@@ -79,12 +79,12 @@ void buildTraffic(SceneBuilder& b) {
 void buildRain(SceneBuilder& b) {
   b.scene.frames = 100;
   b.scene.rain = true;
-  const auto path = makePath(-kStart_m, 0, 0, {{150, 0}, {70, 0.2}, {160, 0}});
+  const auto path = makePath(-kRoadBehind_m, 0, 0, {{150, 0}, {70, 0.2}, {160, 0}});
   b.setRoads({street(path)});
   const double v = vary(b.random, 8, 0.03);
   constexpr double kLeft_m = -1.5, kOncoming_m = 1.75;
-  b.setEgo(drive(path, kStart_m, v, kLeft_m));
-  const auto ahead = [&](double m) { return kStart_m + m + jitter(b, 0.5F); };
+  b.setEgo(drive(path, kRoadBehind_m, v, kLeft_m));
+  const auto ahead = [&](double m) { return kRoadBehind_m + m + jitter(b, 0.5F); };
   b.addMover(VehicleKind::kCar, drive(path, ahead(14), Profile({{0, v + 0.6}, {5, v - 0.3}, {10, v + 0.5}}), kLeft_m),
              Finish::kDark);
   b.addMover(makeBus(b.random.bits()), drive(path, ahead(28), v + 0.2, kLeft_m));
@@ -109,12 +109,13 @@ void buildRain(SceneBuilder& b) {
 void buildPeople(SceneBuilder& b) {
   b.scene.frames = 120;
   constexpr double kCrosswalk_m = 28, kSideStreet_m = 48, kEdge_m = 2.9;
-  const auto path = straight(-kStart_m, 200);
+  const auto path = straight(-kRoadBehind_m, 200);
   const auto side_street = makePath(kSideStreet_m, -100, 0.5 * std::numbers::pi, {{200, 0}});
   Road main_street = street(path);
-  main_street.crosswalks_m = {kStart_m + kCrosswalk_m};
+  main_street.crosswalks_m = {kRoadBehind_m + kCrosswalk_m};
   b.setRoads({main_street, street(side_street)});
-  b.setEgo(drive(path, kStart_m, Profile({{0, 4.5}, {1.5, 4.5}, {5, 1.0}, {8.5, 1.0}, {12, 4.5}}), -0.5 * kLane_m));
+  b.setEgo(
+      drive(path, kRoadBehind_m, Profile({{0, 4.5}, {1.5, 4.5}, {5, 1.0}, {8.5, 1.0}, {12, 4.5}}), -0.5 * kLane_m));
   // Those who cross go in lanes of their own.
   const auto cross = [&](double x_m, double from_m, double start_s, double speed_mps) {
     const double speed = vary(b.random, speed_mps, 0.03);
@@ -130,11 +131,12 @@ void buildPeople(SceneBuilder& b) {
   addWalker(b, 15, -pavement_m, 1.45);
   addWalker(b, 22, pavement_m, -1.4);
   addWalker(b, 33, pavement_m, 1.35);
-  addCyclist(b, drive(path, kStart_m + 16, vary(b.random, 5, 0.03), -kEdge_m));
-  addCyclist(b, drive(path, kStart_m + 44, vary(b.random, 5.2, 0.03), kEdge_m, true));
+  addCyclist(b, drive(path, kRoadBehind_m + 16, vary(b.random, 5, 0.03), -kEdge_m));
+  addCyclist(b, drive(path, kRoadBehind_m + 44, vary(b.random, 5.2, 0.03), kEdge_m, true));
   addCyclist(b, drive(side_street, 100 - 43, vary(b.random, 4.5, 0.03), -kEdge_m));
   // Waits for those who cross.
-  b.addMover(VehicleKind::kCar, drive(path, kStart_m + 60, Profile({{0, 6}, {1.5, 6}, {6, 0}}), 0.5 * kLane_m, true),
+  b.addMover(VehicleKind::kCar,
+             drive(path, kRoadBehind_m + 60, Profile({{0, 6}, {1.5, 6}, {6, 0}}), 0.5 * kLane_m, true),
              Finish::kSmoothDark);
   b.dress(0, {.from_m = 30, .to_m = 250, .parked_share = 0.45, .smooth_share = 0.3});
   dressSideStreet(b, 100, 70, {.parked_share = 0.3, .smooth_share = 0.3});

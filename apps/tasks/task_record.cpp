@@ -22,7 +22,7 @@ TaskFailure failureOf(const Json& json) {
           .last_lines = json.at("last_lines")};
 }
 
-TaskRecord recordOf(const Json& json) {
+TaskRecord recordIn(const Json& json) {
   TaskRecord record{.task = json.at("task"),
                     .drive = json.at("drive"),
                     .set = json.at("set"),
@@ -63,7 +63,7 @@ void writeTaskRecord(const std::filesystem::path& file, const TaskRecord& record
 }
 
 TaskRecord readTaskRecord(const std::filesystem::path& file) {
-  return readJson<TaskRecord>(file, "the record of a task", recordOf);
+  return readJson<TaskRecord>(file, "the record of a task", recordIn);
 }
 
 }  // namespace motorcade

@@ -12,7 +12,7 @@ namespace motorcade {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using FileJson = nlohmann::json;
 
 std::vector<std::string> fieldsOf(std::string_view line) {
   std::vector<std::string> fields;
@@ -61,16 +61,16 @@ std::map<std::int64_t, std::vector<std::string>> readOutlineLines(const fs::path
 }
 
 ShownOutline outlineOf(const std::string& line) {
-  const Json json = Json::parse(line, nullptr, /*allow_exceptions=*/false);
+  const FileJson json = FileJson::parse(line, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("track_id") || !json.contains("polygons")) return {};
   ShownOutline outline;
   try {
     outline.track = {json["track_id"].get<std::int64_t>()};
-    for (const Json& polygon : json["polygons"]) {
+    for (const FileJson& polygon : json["polygons"]) {
       Polygon& corners = outline.polygons.emplace_back();
-      for (const Json& corner : polygon) corners.emplace_back(corner.at(0).get<int>(), corner.at(1).get<int>());
+      for (const FileJson& corner : polygon) corners.emplace_back(corner.at(0).get<int>(), corner.at(1).get<int>());
     }
-  } catch (const Json::exception&) {
+  } catch (const FileJson::exception&) {
     return {};
   }
   return outline;

@@ -25,7 +25,7 @@ constexpr double kDistorted_px = 20;
 
 template <class... Values>
 std::string text(const char* format, Values... values) {
-  char buffer[400];
+  char buffer[1200];  // three numbers of any size, and a sentence
   std::snprintf(buffer, sizeof buffer, format, values...);
   return buffer;
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kGlancePoints = 80, kFewestOfGlance = 15;
 /// Of the matches that lie within a pixel of the row where the rig's usual geometry puts them. It is over 0.8 on all
 /// drives at hand, and under 0.6 where images are a frame apart.
-constexpr double kAgreeing_px = 1, kAgreeingShare = 0.7;
+constexpr double kAgreeingRows_px = 1, kAgreeingShare = 0.7;
 /// Longest pause after glances that were found to be mistaken [pairs].
 constexpr int kMostPatience = 80;
 
@@ -57,7 +57,7 @@ bool RigWatch::agrees(const StereoFrame& pair) {
   const auto agreeing = std::ranges::count_if(matches, [&](const EpipolarMatch& match) {
     const double predicted_px =
         predictedRowError_px(usual_, camera_, match.u_left_px, match.v_left_px, match.disparity_px());
-    return std::abs(match.rowDifference_px() - predicted_px) < kAgreeing_px;
+    return std::abs(match.rowDifference_px() - predicted_px) < kAgreeingRows_px;
   });
   return !looksExchanged(matches) &&
          static_cast<double>(agreeing) >= kAgreeingShare * static_cast<double>(matches.size());

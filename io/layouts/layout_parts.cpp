@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "io/errors.hpp"
-#include "io/image_file.hpp"
 #include "io/frame_lines.hpp"
+#include "io/image_file.hpp"
 #include "io/layouts/given_cameras.hpp"
-#include "io/layouts/sample_use.hpp"
 #include "io/layouts/numbering.hpp"
 #include "io/layouts/pairing.hpp"
+#include "io/layouts/sample_use.hpp"
 #include "io/layouts/unsupported.hpp"
 #include "io/natural_order.hpp"
 #include "io/rig/rectification.hpp"

@@ -43,8 +43,7 @@ std::optional<std::int64_t> dateDigits_ns(const std::string& digits) {
   if (!date.ok() || date.year() < year(1970) || date.year() > year(2100) || hour > 23 || minute > 59 || second > 60)
     return std::nullopt;
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
-  return (((days * 24 + hour) * 60 + minute) * 60 + second) * kSecond_ns +
-         fraction_ns(digits.substr(kWithoutFraction));
+  return (((days * 24 + hour) * 60 + minute) * 60 + second) * kSecond_ns + fraction_ns(digits.substr(kWithoutFraction));
 }
 
 /// The digits of a date that begins with this part: in one, as a day and a time of day, or each number by itself; a

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostNamed = 6;
+constexpr std::size_t kMostFoldersNamed = 6;
 
 /// What a folder holds, as a message tells it.
 struct Content {
@@ -50,8 +50,8 @@ Content contentOf(const fs::path& folder) {
 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i) text += (i > 0 ? ", " : "") + names[i];
-  if (names.size() > kMostNamed) text += " and " + std::to_string(names.size() - kMostNamed) + " more";
+  for (std::size_t i = 0; i < std::min(names.size(), kMostFoldersNamed); ++i) text += (i > 0 ? ", " : "") + names[i];
+  if (names.size() > kMostFoldersNamed) text += " and " + std::to_string(names.size() - kMostFoldersNamed) + " more";
   return text;
 }
 

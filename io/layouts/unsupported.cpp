@@ -36,9 +36,7 @@ bool isOneOf(const std::string& extension, const std::array<const char*, N>& all
   return std::ranges::find(all, extension) != all.end();
 }
 
-bool isBag(const fs::path& file) {
-  return isOneOf(lowerExtension(file), std::array{".bag", ".mcap", ".db3"});
-}
+bool isBag(const fs::path& file) { return isOneOf(lowerExtension(file), std::array{".bag", ".mcap", ".db3"}); }
 
 bool isVideo(const fs::path& file) {
   return isOneOf(lowerExtension(file), std::array{".mp4", ".avi", ".mkv", ".mov", ".webm", ".m4v", ".mpg", ".mpeg",
@@ -58,14 +56,14 @@ std::string pythonText(const std::string& text) {
   return quoted;
 }
 
-constexpr const char* kSides = "side = {\"/LEFT/image_raw\": \"left\", \"/RIGHT/image_raw\": \"right\"}\n";
+constexpr const char* kTopicSides = "side = {\"/LEFT/image_raw\": \"left\", \"/RIGHT/image_raw\": \"right\"}\n";
 
 /// Images are named by their times, so that they find their partner.
 std::string ofRos1(const fs::path& bag) {
-  return "\n  rosbag info " + shellWord(bag.string()) + "    (names the topics: write them in place of /LEFT and /RIGHT)" +
-         kMakeFolders +
-         pythonCommand(std::string("import rosbag, cv2, cv_bridge\n") + kSides + "for topic, message, _ in rosbag.Bag(" +
-                       pythonText(bag.string()) +
+  return "\n  rosbag info " + shellWord(bag.string()) +
+         "    (names the topics: write them in place of /LEFT and /RIGHT)" + kMakeFolders +
+         pythonCommand(std::string("import rosbag, cv2, cv_bridge\n") + kTopicSides +
+                       "for topic, message, _ in rosbag.Bag(" + pythonText(bag.string()) +
                        ").read_messages(list(side)):\n"
                        "  image = cv_bridge.CvBridge().imgmsg_to_cv2(message, \"mono8\")\n"
                        "  cv2.imwrite(\"DRIVE/%s/%d.png\" % (side[topic], message.header.stamp.to_nsec()), image)");
@@ -78,7 +76,7 @@ std::string ofRos2(const fs::path& bag) {
          pythonCommand(std::string("import rosbag2_py, cv2, cv_bridge\n"
                                    "from rclpy.serialization import deserialize_message\n"
                                    "from sensor_msgs.msg import Image\n") +
-                       kSides + "bag = rosbag2_py.SequentialReader()\nbag.open(rosbag2_py.StorageOptions(uri=" +
+                       kTopicSides + "bag = rosbag2_py.SequentialReader()\nbag.open(rosbag2_py.StorageOptions(uri=" +
                        pythonText(bag.string()) + ", storage_id=\"" + storage +
                        "\"), rosbag2_py.ConverterOptions(\"cdr\", \"cdr\"))\n"
                        "while bag.has_next():\n"
@@ -177,7 +175,8 @@ std::string adviceOnFile(const fs::path& file) {
   if (isBag(file))
     return ": is a bag of messages, which is not read; write its images into two folders" +
            (lowerExtension(file) == ".bag" ? ofRos1(file) : ofRos2(file)) + kThen;
-  if (isVideo(file)) return ": is a video, which is not read; write its images into two folders," + ofVideo(file) + kThen;
+  if (isVideo(file))
+    return ": is a video, which is not read; write its images into two folders," + ofVideo(file) + kThen;
   if (lowerExtension(file) == ".svo")
     return ": is a recording of a ZED camera, which is not read; write its rectified images into DRIVE/left and "
            "DRIVE/right with the ZED SDK's SVO export" +

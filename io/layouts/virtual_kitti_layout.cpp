@@ -77,9 +77,7 @@ std::optional<Sequence> openVirtualKitti(const SequenceSource& source) {
   if (!isVariation(folder)) return std::nullopt;
   const auto places = placesOf(folder);
   Sequence sequence{.folder = folder, .layout = "virtual_kitti", .pair = CameraPair::kColor};
-  NumberedFrames pairs =
-      pairByNumber(imagesByNumber(imagesOf(folder, "Camera_0")), imagesByNumber(imagesOf(folder, "Camera_1")));
-  sequence.frames = std::move(pairs.frames);
+  setFrames(sequence, imagesOf(folder, "Camera_0"), imagesOf(folder, "Camera_1"));
   setCamera(sequence, source.given, [&](ImageSize) {
     const fs::path place = placeWith(places, "intrinsic.txt");
     return readVirtualKittiCamera(

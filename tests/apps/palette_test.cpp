@@ -31,8 +31,8 @@ Vector3d labOf(const Vector3d& linear) {
   return {116 * v.y() - 16, 500 * (v.x() - v.y()), 200 * (v.y() - v.z())};
 }
 
-/// Eyes without one kind of cones (Machado, Oliveira and Fernandes, A physiologically-based model for simulation of color
-/// vision deficiency, 2009, severity 1); the first sees all colors.
+/// Eyes without one kind of cones (Machado, Oliveira and Fernandes, A physiologically-based model for simulation of
+/// color vision deficiency, 2009, severity 1); the first sees all colors.
 std::array<Matrix3d, 3> eyes() {
   std::array<Matrix3d, 3> eyes;
   eyes[0].setIdentity();
@@ -71,7 +71,7 @@ TEST(Palette, TracksThatFollowEachOtherDiffer) {
 TEST(Palette, AllColorsStandOutOnTheirGround) {
   const auto light = [](Color color) { return Vector3d(0.2126, 0.7152, 0.0722).dot(linearOf(color)); };
   for (std::int64_t track = 0; track < static_cast<std::int64_t>(kTrackColors); ++track)
-    EXPECT_GT((light(trackColor({track})) + 0.05) / (light(kGround) + 0.05), 3) << "the contrast that WCAG asks for";
+    EXPECT_GT((light(trackColor({track})) + 0.05) / (light(kBackdrop) + 0.05), 3) << "the contrast that WCAG asks for";
 }
 
 }  // namespace
