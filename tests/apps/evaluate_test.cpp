@@ -212,6 +212,20 @@ TEST_F(EvaluateDrive, BaselinesGiveRelativeErrors) {
   EXPECT_THAT(messageOf<InputError>([&] { evaluateRun(options_); }), HasSubstr("short.txt"));
 }
 
+TEST_F(EvaluateDrive, ABaselineMayBeATrajectoryWithTimes) {
+  writeRun("run", 4, kFrames, [](int, FrameEstimate&) {});
+  std::string tum = "# timestamp tx ty tz qx qy qz qw\n";
+  for (int i = 0; i < kFrames; ++i) {
+    const SE3 bent(Eigen::Matrix3d::Identity(), {0.2 * std::sin(i * 0.5), 0, 0});
+    tum += tumLine({i * 100'000'000LL}, bent * camera(i)) + "\n";
+  }
+  options_.baseline = folder_.write("baseline.tum", tum);
+  const auto against = evaluateRun(options_).camera_against_baseline;
+  ASSERT_TRUE(against);
+  EXPECT_NEAR(against->baseline_m, 0.14, 0.02) << "a sine of 0.2 m";
+  EXPECT_NEAR(against->ours_m, 0, 1e-6);
+}
+
 TEST_F(EvaluateDrive, KilledRunsAndRunsWithoutLabelsAreMeasured) {
   writeRun("run", 0, kFrames, [](int, FrameEstimate&) {});
   std::filesystem::remove(folder_ / "run/summary.json");
