@@ -113,6 +113,9 @@ CameraTruth truthAtFrames(const Sequence& sequence, const StampedPoses& known, c
     throw InputError(file.string() + ": has no poses of the time of the images");
   const auto first = std::ranges::lower_bound(stamps, known.stamps.front()) - stamps.begin();
   const auto end = std::ranges::upper_bound(stamps, known.stamps.back()) - stamps.begin();
+  if (end - first < 2 && stamps.size() > 1)
+    throw InputError(file.string() + ": tells of the time of " + std::to_string(end - first) + " of " +
+                     std::to_string(stamps.size()) + " images; more poses are needed");
   truth.first_frame = first;
   const auto poseOf = [&](std::ptrdiff_t frame) {
     return poseAt(stamps[std::max(frame, first)], known.poses, known.stamps) * T_posed_cam;

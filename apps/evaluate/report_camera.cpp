@@ -14,12 +14,21 @@ void printCameraLine(std::string& text, const char* kind, const std::optional<Tr
         errors->rpe_m.rmse, errors->rpe_m.median, errors->rpe_deg.rmse, errors->rpe_deg.median, errors->are_deg.mean);
 }
 
-void printSegmentLine(std::string& text, const char* kind, const SegmentErrors& errors, double SegmentMeans::*measured,
-                      const char* unit) {
-  print(text, "  %-8s %-5s %6zu  %7.4f ", kind, unit, errors.all.segments, errors.all.*measured);
+/// One of the two errors; which tells how many digits it needs.
+struct SegmentColumn {
+  double SegmentMeans::*error;
+  const char* unit;
+  int digits;
+};
+constexpr SegmentColumn kTranslation{&SegmentMeans::translation_percent, "%", 3},
+    kRotation{&SegmentMeans::rotation_deg_per_m, "deg/m", 4};
+
+void printSegmentLine(std::string& text, const char* kind, const SegmentErrors& errors, const SegmentColumn& column) {
+  print(text, "  %-8s %-5s %6zu  %7.*f ", kind, column.unit, errors.all.segments, column.digits,
+        errors.all.*column.error);
   for (const auto& of_length : errors.by_length) {
     if (of_length.segments > 0)
-      print(text, " %7.4f", of_length.*measured);
+      print(text, " %7.*f", column.digits, of_length.*column.error);
     else
       print(text, " %7s", "-");
   }
@@ -38,8 +47,8 @@ void printSegments(std::string& text, const Evaluation& e) {
   text += '\n';
   for (const auto& [kind, errors] : {std::pair("final", &final), std::pair("online", &online)}) {
     if (!*errors) continue;
-    printSegmentLine(text, kind, **errors, &SegmentMeans::translation_percent, "%");
-    printSegmentLine(text, "", **errors, &SegmentMeans::rotation_deg_per_m, "deg/m");
+    printSegmentLine(text, kind, **errors, kTranslation);
+    printSegmentLine(text, "", **errors, kRotation);
   }
 }
 
