@@ -133,7 +133,7 @@ CameraTruth truthFromPoses(const Sequence& sequence) {
                     .source = sequence.truth.poses.filename().string()};
   if (truth.T_world_cam.size() < sequence.frames.size()) {
     throw InputError(sequence.truth.poses.string() + ": has " + std::to_string(truth.T_world_cam.size()) +
-                     " poses for " + std::to_string(sequence.frames.size()) + " images");
+                     " poses for " + std::to_string(sequence.frames.size()) + " images; one line for each is needed");
   }
   for (auto& pose : truth.T_world_cam) pose = T_left_cam0 * pose * T_left_cam0.inverse();
   return truth;

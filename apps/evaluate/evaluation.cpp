@@ -66,6 +66,7 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
                       .camera_mounted = {},
                       .camera_segments = segmentErrors(paths.estimate, paths.truth),
                       .camera_mounted_segments = {},
+                      .course_difference_deg = courseDifference_deg(paths.estimate, paths.truth),
                       .objects = objectErrors(frames),
                       .mean_positions = {},
                       .motion = motionErrors(frames),

@@ -40,6 +40,7 @@ struct KindEvaluation {
   std::optional<TrajectoryErrors> camera;
   std::optional<TrajectoryErrors> camera_mounted;  // without the truth's mounting error, where it may have one
   std::optional<SegmentErrors> camera_segments, camera_mounted_segments;
+  double course_difference_deg = 0;  // between the camera's path and the true one, each as its camera sees it
   std::vector<ObjectErrors> objects;
   MeanPositionErrors mean_positions;
   MotionErrors motion;
@@ -88,8 +89,8 @@ Evaluation evaluateRun(const EvaluateOptions& options);
 KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequence,
                              OxtsTimes times = OxtsTimes::kInterpolated);
 
-/// A baseline's poses of the frames that a run has. The file has a pose for each frame of the sequence or of the run, or
-/// is a trajectory with times, which may end earlier. Throws InputError.
+/// A baseline's poses of the frames that a run has. The file has a pose for each frame of the sequence or of the run,
+/// or is a trajectory with times, which may end earlier. Throws InputError.
 std::vector<SE3> baselinePoses(const std::filesystem::path& file, std::int64_t first_frame, std::size_t frames_run,
                                const Sequence& sequence);
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -65,6 +66,14 @@ void printDoubt(std::string& text, const TruthCheck& check) {
   print(text, "          errors of that size say nothing of the run; --truth velocity measures by velocities\n");
 }
 
+void printOtherFrame(std::string& text, double course_difference_deg) {
+  print(text,
+        "doubt     seen from their cameras, run and truth go ways %.0f deg apart: the poses of the truth are of\n",
+        course_difference_deg);
+  print(text, "          another frame than the left camera's (x right, y down, z ahead), or its quaternions in\n");
+  print(text, "          another order; of the camera, the ATE alone says something\n");
+}
+
 }  // namespace
 
 void printHead(std::string& text, const Evaluation& e) {
@@ -78,6 +87,8 @@ void printHead(std::string& text, const Evaluation& e) {
   print(text, "truth     camera from %s%s%s\n", e.camera_source.c_str(),
         e.object_source.empty() ? "" : ", objects from ", e.object_source.c_str());
   if (e.truth_check && e.truth_check->doubtful()) printDoubt(text, *e.truth_check);
+  const double course_difference_deg = std::max(e.final.course_difference_deg, e.online.course_difference_deg);
+  if (course_difference_deg > kOtherFrame_deg) printOtherFrame(text, course_difference_deg);
 }
 
 void printCamera(std::string& text, const Evaluation& e) {
