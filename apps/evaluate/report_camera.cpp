@@ -67,11 +67,10 @@ void printDoubt(std::string& text, const TruthCheck& check) {
 }
 
 void printOtherFrame(std::string& text, double course_difference_deg) {
-  print(text,
-        "doubt     seen from their cameras, run and truth go ways %.0f deg apart: the poses of the truth are of\n",
+  print(text, "doubt     run and truth go ways %.0f deg apart, each as its camera sees it: unless the run is wrong,\n",
         course_difference_deg);
-  print(text, "          another frame than the left camera's (x right, y down, z ahead), or its quaternions in\n");
-  print(text, "          another order; of the camera, the ATE alone says something\n");
+  print(text, "          the truth's poses are of another frame than the left camera's (x right, y down, z ahead),\n");
+  print(text, "          or its quaternions in another order\n");
 }
 
 }  // namespace
