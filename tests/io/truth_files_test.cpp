@@ -130,6 +130,7 @@ TEST_F(TruthFiles, OtherFormsAreNamedWithWhatIsRead) {
   EXPECT_THAT(refused("0 0 1 0 0 0 1"), HasSubstr("without its times"));
   EXPECT_THAT(refused("0 1 0 0 0 0 1 0 0 0 0 1 0"), HasSubstr("cam0_to_world.txt"));
   EXPECT_THAT(refused("0.1 0 0 1 0 0 0 2"), HasSubstr("quaternion's length"));
+  EXPECT_THAT(refused("nan 0 0 0 0 1 0 0 0 0 1 0"), AllOf(HasSubstr("line 1"), HasSubstr("not finite")));
   EXPECT_THAT(refused("# nothing"), HasSubstr("has 0 poses for 4 images"));
 }
 
