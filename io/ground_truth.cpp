@@ -118,6 +118,9 @@ CameraTruth truthAtFrames(const Sequence& sequence, const StampedPoses& known, c
     throw InputError(file.string() + ": has no poses of the time of the images");
   const auto first = std::ranges::lower_bound(stamps, known.stamps.front()) - stamps.begin();
   const auto end = std::ranges::upper_bound(stamps, known.stamps.back()) - stamps.begin();
+  if (end - first < 2 && stamps.size() > 1)
+    throw InputError(file.string() + ": tells of the time of " + std::to_string(end - first) + " of " +
+                     std::to_string(stamps.size()) + " images; more poses are needed");
   truth.first_frame = first;
   const auto poseOf = [&](std::ptrdiff_t frame) {
     return poseAt(stamps[std::max(frame, first)], known.poses, known.stamps) * T_posed_cam;
@@ -137,7 +140,7 @@ CameraTruth truthFromPoses(const Sequence& sequence) {
     truth.T_world_cam = posesOfFrames(sequence, truth.T_world_cam, sequence.truth.poses);
   if (truth.T_world_cam.size() < sequence.frames.size()) {
     throw InputError(sequence.truth.poses.string() + ": has " + std::to_string(truth.T_world_cam.size()) +
-                     " poses for " + std::to_string(sequence.frames.size()) + " images");
+                     " poses for " + std::to_string(sequence.frames.size()) + " images; one line for each is needed");
   }
   for (auto& pose : truth.T_world_cam) pose = T_left_cam0 * pose * T_left_cam0.inverse();
   return truth;

@@ -1,7 +1,9 @@
 #include "io/pose_form.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <string>
+#include <string_view>
 
 #include "io/errors.hpp"
 
@@ -15,9 +17,12 @@ std::size_t fieldsIn(const std::filesystem::path& file, const TextLine& line) {
   return count;
 }
 
-bool beginsWithALetter(const TextLine& line) {
-  const std::string text = trimmed(line.text);
-  return !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0;
+/// A word is none of the letters of nan and inf alone.
+bool beginsWithAWord(const TextLine& line) {
+  const std::string text = trimmed(line.text), word = text.substr(0, text.find_first_of(" \t,"));
+  constexpr std::string_view kOfNumbers = "nNaAiIfF";
+  return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0 &&
+         word.find_first_not_of(kOfNumbers) != std::string::npos;
 }
 
 /// What people have under the same name.
@@ -45,7 +50,7 @@ char separatorOf(const TextLine& line) { return line.text.find(',') == std::stri
 std::vector<TextLine> readPoseLines(const std::filesystem::path& file) {
   std::vector<TextLine> lines = readLines(file);
   std::erase_if(lines, [](const TextLine& line) { return trimmed(line.text).starts_with('#'); });
-  const bool has_header = lines.size() > 1 && beginsWithALetter(lines[0]) && !beginsWithALetter(lines[1]);
+  const bool has_header = lines.size() > 1 && beginsWithAWord(lines[0]) && !beginsWithAWord(lines[1]);
   if (has_header) lines.erase(lines.begin());
   return lines;
 }

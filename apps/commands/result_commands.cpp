@@ -52,7 +52,7 @@ void addEvaluate(CLI::App& app, Action& action) {
       ->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]; the run's when absent")
       ->check(CLI::Range(0.001, 100'000.0));
   command->add_option("--baseline", options->baseline,
-                      "KITTI pose lines of another camera trajectory, for the relative error");
+                      "Another camera trajectory, as KITTI pose lines or in TUM form, for the relative error");
   command->add_option("--baseline-run", options->baseline_run,
                       "Run folder of another method, for the relative error of the objects");
   command->add_option("--half-run", options->half_run,
@@ -105,7 +105,7 @@ void addReport(CLI::App& app, Action& action) {
       ->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]; the run's when absent")
       ->check(CLI::Range(0.001, 100'000.0));
   command->add_option("--baseline", options->baseline,
-                      "KITTI pose lines of another camera trajectory, to compare with");
+                      "Another camera trajectory, as KITTI pose lines or in TUM form, to compare with");
   command->footer("Example: motorcade report RUN");
   command->callback([options, &action] { action = [options] { return runReport(*options); }; });
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <span>
 
 #include "apps/evaluate/mounting.hpp"
 #include "apps/evaluate/recovered_finals.hpp"
@@ -11,6 +12,7 @@
 #include "io/errors.hpp"
 #include "io/line_file.hpp"
 #include "io/number_text.hpp"
+#include "io/stamped_poses.hpp"
 #include "io/trajectory.hpp"
 
 namespace motorcade {
@@ -64,6 +66,7 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
                       .camera_mounted = {},
                       .camera_segments = segmentErrors(paths.estimate, paths.truth),
                       .camera_mounted_segments = {},
+                      .course_difference_deg = courseDifference_deg(paths.estimate, paths.truth),
                       .objects = objectErrors(frames),
                       .mean_positions = {},
                       .motion = motionErrors(frames),
@@ -124,6 +127,17 @@ void countFrames(Evaluation& evaluation, const RunFolder& run) {
   std::ranges::sort(evaluation.latency_ms);
 }
 
+/// The known poses at the times of the run's frames, up to the last that is known.
+std::vector<SE3> posesOfRun(const StampedPoses& known, const std::filesystem::path& file,
+                            std::span<const Timestamp> stamps, std::size_t frames_run) {
+  if (known.stamps.size() < 2 || stamps.empty() || known.stamps.front() > stamps.front())
+    throw InputError(file.string() + ": has no pose of the time of the run's first frame");
+  std::vector<SE3> poses;
+  for (const Timestamp stamp : stamps.first(std::min(frames_run, stamps.size())))
+    if (stamp <= known.stamps.back()) poses.push_back(poseAt(stamp, known.poses, known.stamps));
+  return poses;
+}
+
 std::string truthRow(const TrueObject& object) {
   std::string row;
   appendInteger(row, object.truth.frame.value);
@@ -143,8 +157,11 @@ std::string truthRow(const TrueObject& object) {
 }  // namespace
 
 std::vector<SE3> baselinePoses(const std::filesystem::path& file, std::int64_t first_frame, std::size_t frames_run,
-                               std::size_t sequence_frames) {
+                               const Sequence& sequence) {
+  if (const auto known = readTimedPoses(file, sequence))
+    return posesOfRun(*known, file, {sequence.stamps.begin() + first_frame, sequence.stamps.end()}, frames_run);
   std::vector<SE3> poses = readKittiPoses(file);
+  const std::size_t sequence_frames = sequence.frames.size();
   if (poses.size() == sequence_frames) {
     poses.erase(poses.begin(), poses.begin() + std::min<std::ptrdiff_t>(first_frame, std::ssize(poses)));
   } else if (poses.size() != frames_run) {
@@ -199,8 +216,7 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
     evaluation.half_errors = compareHalves(run, half);
   }
   if (!options.baseline.empty()) {
-    const auto poses =
-        baselinePoses(options.baseline, run.first_frame, run.final.camera.size(), sequence.frames.size());
+    const auto poses = baselinePoses(options.baseline, run.first_frame, run.final.camera.size(), sequence);
     compareCameras(evaluation, evaluateFrames(compare({poses, {}}, run.first_frame)));
   }
   if (!options.baseline_run.empty()) {

@@ -40,6 +40,7 @@ struct KindEvaluation {
   std::optional<TrajectoryErrors> camera;
   std::optional<TrajectoryErrors> camera_mounted;  // without the truth's mounting error, where it may have one
   std::optional<SegmentErrors> camera_segments, camera_mounted_segments;
+  double course_difference_deg = 0;  // between the camera's path and the true one, each as its camera sees it
   std::vector<ObjectErrors> objects;
   MeanPositionErrors mean_positions;
   MotionErrors motion;
@@ -88,9 +89,10 @@ Evaluation evaluateRun(const EvaluateOptions& options);
 KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequence,
                              OxtsTimes times = OxtsTimes::kInterpolated);
 
-/// A baseline's poses of the frames that a run has; the file may cover the sequence or just the run. Throws InputError.
+/// A baseline's poses of the frames that a run has. The file has a pose for each frame of the sequence or of the run,
+/// or is a trajectory with times, which may end earlier. Throws InputError.
 std::vector<SE3> baselinePoses(const std::filesystem::path& file, std::int64_t first_frame, std::size_t frames_run,
-                               std::size_t sequence_frames);
+                               const Sequence& sequence);
 
 /// Writes `camera_truth.txt`, `objects_truth.csv` and an `object_ID.tum` for every labeled object.
 void exportTruth(const std::filesystem::path& folder, const Sequence& sequence, const CameraTruth& camera,

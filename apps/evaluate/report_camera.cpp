@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -14,12 +15,21 @@ void printCameraLine(std::string& text, const char* kind, const std::optional<Tr
         errors->rpe_m.rmse, errors->rpe_m.median, errors->rpe_deg.rmse, errors->rpe_deg.median, errors->are_deg.mean);
 }
 
-void printSegmentLine(std::string& text, const char* kind, const SegmentErrors& errors, double SegmentMeans::*measured,
-                      const char* unit) {
-  print(text, "  %-8s %-5s %6zu  %7.4f ", kind, unit, errors.all.segments, errors.all.*measured);
+/// One of the two errors; which tells how many digits it needs.
+struct SegmentColumn {
+  double SegmentMeans::*error;
+  const char* unit;
+  int digits;
+};
+constexpr SegmentColumn kTranslation{&SegmentMeans::translation_percent, "%", 3},
+    kRotation{&SegmentMeans::rotation_deg_per_m, "deg/m", 4};
+
+void printSegmentLine(std::string& text, const char* kind, const SegmentErrors& errors, const SegmentColumn& column) {
+  print(text, "  %-8s %-5s %6zu  %7.*f ", kind, column.unit, errors.all.segments, column.digits,
+        errors.all.*column.error);
   for (const auto& of_length : errors.by_length) {
     if (of_length.segments > 0)
-      print(text, " %7.4f", of_length.*measured);
+      print(text, " %7.*f", column.digits, of_length.*column.error);
     else
       print(text, " %7s", "-");
   }
@@ -38,8 +48,8 @@ void printSegments(std::string& text, const Evaluation& e) {
   text += '\n';
   for (const auto& [kind, errors] : {std::pair("final", &final), std::pair("online", &online)}) {
     if (!*errors) continue;
-    printSegmentLine(text, kind, **errors, &SegmentMeans::translation_percent, "%");
-    printSegmentLine(text, "", **errors, &SegmentMeans::rotation_deg_per_m, "deg/m");
+    printSegmentLine(text, kind, **errors, kTranslation);
+    printSegmentLine(text, "", **errors, kRotation);
   }
 }
 
@@ -56,6 +66,13 @@ void printDoubt(std::string& text, const TruthCheck& check) {
   print(text, "          errors of that size say nothing of the run; --truth velocity measures by velocities\n");
 }
 
+void printOtherFrame(std::string& text, double course_difference_deg) {
+  print(text, "doubt     run and truth go ways %.0f deg apart, each as its camera sees it: unless the run is wrong,\n",
+        course_difference_deg);
+  print(text, "          the truth's poses are of another frame than the left camera's (x right, y down, z ahead),\n");
+  print(text, "          or its quaternions in another order\n");
+}
+
 }  // namespace
 
 void printHead(std::string& text, const Evaluation& e) {
@@ -69,6 +86,8 @@ void printHead(std::string& text, const Evaluation& e) {
   print(text, "truth     camera from %s%s%s\n", e.camera_source.c_str(),
         e.object_source.empty() ? "" : ", objects from ", e.object_source.c_str());
   if (e.truth_check && e.truth_check->doubtful()) printDoubt(text, *e.truth_check);
+  const double course_difference_deg = std::max(e.final.course_difference_deg, e.online.course_difference_deg);
+  if (course_difference_deg > kOtherFrame_deg) printOtherFrame(text, course_difference_deg);
 }
 
 void printCamera(std::string& text, const Evaluation& e) {

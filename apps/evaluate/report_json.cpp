@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "apps/evaluate/report.hpp"
@@ -297,6 +299,7 @@ std::string jsonOf(const Evaluation& e) {
                {"truth",
                 {{"camera", e.camera_source},
                  {"objects", e.object_source},
+                 {"course_difference_deg", std::max(e.final.course_difference_deg, e.online.course_difference_deg)},
                  {"velocity_check", e.truth_check ? jsonOf(*e.truth_check) : Json()}}},
                {"mounting", e.mounting ? jsonOf(*e.mounting) : Json()},
                {"final", jsonOf(e.final, with_objects)},

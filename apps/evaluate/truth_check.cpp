@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
 
 #include "io/errors.hpp"
 
@@ -36,6 +39,18 @@ void addChord(TruthCheck& check, const Eigen::Vector3d& told, const Eigen::Vecto
   check.step_to = to;
 }
 
+/// Its length is at most one; near zero where the path has no main direction.
+Eigen::Vector3d meanCourse(const std::vector<SE3>& path) {
+  Eigen::Vector3d sum_m = Eigen::Vector3d::Zero();
+  double way_m = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Eigen::Vector3d step_m = motionOf(path, i - 1, i);
+    sum_m += step_m;
+    way_m += step_m.norm();
+  }
+  return sum_m / std::max(way_m, 1e-9);
+}
+
 }  // namespace
 
 double TruthCheck::differencePercent() const { return way_m > 0 ? 100 * (velocity_way_m - way_m) / way_m : 0; }
@@ -61,6 +76,13 @@ std::optional<TruthCheck> checkTruth(const Sequence& sequence, const CameraTruth
     from = to;
   }
   return check;
+}
+
+double courseDifference_deg(const std::vector<SE3>& estimate, const std::vector<SE3>& truth) {
+  constexpr double kLeastOfWay = 0.5;
+  const Eigen::Vector3d ours = meanCourse(estimate), theirs = meanCourse(truth);
+  if (ours.norm() < kLeastOfWay || theirs.norm() < kLeastOfWay) return 0;
+  return std::atan2(ours.cross(theirs).norm(), ours.dot(theirs)) * 180 / std::numbers::pi;
 }
 
 }  // namespace motorcade

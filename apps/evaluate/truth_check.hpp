@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/messages.hpp"
 #include "io/ground_truth.hpp"
@@ -23,5 +24,12 @@ struct TruthCheck {
 
 /// Empty where the sequence has no velocities, no calibration of the unit, or no times of the packets.
 std::optional<TruthCheck> checkTruth(const Sequence& sequence, const CameraTruth& truth);
+
+/// Angle between the directions in which two paths go, each as its own camera sees it [deg]; 0 where one of them has no
+/// main direction. Mountings of inertial units are off by a degree or two: an angle above `kOtherFrame_deg` says that
+/// the truth has poses of another frame than the camera's (x ahead, as of inertial units), or quaternions in another
+/// order.
+double courseDifference_deg(const std::vector<SE3>& estimate, const std::vector<SE3>& truth);
+inline constexpr double kOtherFrame_deg = 20;
 
 }  // namespace motorcade

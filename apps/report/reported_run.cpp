@@ -54,8 +54,8 @@ ReportedRun readReportedRun(const ReportOptions& options) {
   reported.drive = recordedDrive(reported.run, sequence);
   if (readCameraTruth(sequence)) measure(reported, options);
   if (!options.baseline.empty())
-    reported.baseline = fromFirst(baselinePoses(options.baseline, reported.run.first_frame,
-                                                reported.drive.T_world_cam.size(), sequence.frames.size()));
+    reported.baseline = fromFirst(
+        baselinePoses(options.baseline, reported.run.first_frame, reported.drive.T_world_cam.size(), sequence));
   return reported;
 }
 

@@ -70,6 +70,10 @@ std::string cards(const ReportedRun& reported, const Json& summary) {
     const TrajectoryErrors& camera = *reported.evaluation->final.camera;
     text += card(fmt::format("{:.3f} m", camera.ate_m.rmse), "camera ATE (RMSE)");
     text += card(fmt::format("{:.1f} mm", 1e3 * camera.rpe_m.rmse), "camera RPE per frame");
+    if (const auto& segments = reported.evaluation->final.camera_segments)
+      text +=
+          card(fmt::format("{:.2f} %", segments->all.translation_percent),
+               segments->short_segments ? "camera error over 10 to 80 m" : "camera error over 100 to 800 m (KITTI)");
     const auto& near = reported.evaluation->final.detection.within_30m;
     if (near.labels > 0) text += card(fmt::format("{:.0f} %", 100 * near.recall()), "of movers within 30 m found");
   }

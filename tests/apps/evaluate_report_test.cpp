@@ -104,7 +104,7 @@ TEST_F(EvaluateDrive, SegmentsAndPublishedFormsAreInTableAndJson) {
     EXPECT_EQ(kitti.at("by_length").size(), 2U);
     const auto& motion = json.at(kind).at("followed_motion");
     EXPECT_EQ(motion.at("objects"), 1);
-    EXPECT_NEAR(motion.at("me_t_object_rms_m"), 0.3 / std::sqrt(29), 1e-3);
+    EXPECT_NEAR(motion.at("me_t_object_rms_m"), std::sqrt(0.09 / 29 + 0.02 * 0.02), 1e-4);
     EXPECT_EQ(motion.at("each").at(0).at("label"), 7);
     EXPECT_EQ(motion.at("largest_step").at("frame"), 12);
     EXPECT_EQ(motion.at("largest_step").at("track_id"), 3);

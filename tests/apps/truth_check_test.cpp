@@ -73,6 +73,31 @@ TEST_F(TruthOfADrive, ThatJumpsAsideIsDoubtedWhereItDoes) {
   EXPECT_THAT(tableOf(evaluation), HasSubstr("they are 1.5 m apart"));
 }
 
+TEST_F(TruthOfADrive, OfAnotherFrameIsTold) {
+  EXPECT_THAT(table(), Not(HasSubstr("doubt")));
+  Eigen::Matrix3d world_body;
+  world_body << 0, -1, 0, 0, 0, -1, 1, 0, 0;                        // x ahead, z up, as of an inertial unit
+  const Eigen::Matrix3d turned = expSO3({std::numbers::pi, 0, 0});  // a quaternion read in another order
+  for (const auto& [rotation, text] : {std::pair(world_body, "go ways 90 deg apart"), std::pair(turned, "go ways 180 deg apart")}) {
+    std::string poses;
+    for (int i = 0; i < kFrames; ++i) poses += kittiLine(SE3(rotation, {0, 0, static_cast<double>(i)})) + "\n";
+    folder_.write("drive/poses.txt", poses);
+    EXPECT_THAT(table(), HasSubstr(text));
+  }
+}
+
+TEST(CourseDifference, IsThatOfTheMountingAndNoneOfPathsWithoutDirection) {
+  std::vector<SE3> ahead, aside, round;
+  for (int i = 0; i < 40; ++i) {
+    ahead.push_back(i == 0 ? SE3() : ahead.back() * SE3(expSO3({0, 0.02, 0}), {0, 0, 0.7}));
+    aside.push_back(ahead.back() * SE3(expSO3({0, 0.03, 0}), Eigen::Vector3d::Zero()));
+    round.emplace_back(Eigen::Matrix3d::Identity(), Eigen::Vector3d(std::cos(0.3 * i), std::sin(0.3 * i), 0));
+  }
+  EXPECT_NEAR(courseDifference_deg(ahead, aside), 0.03 * 180 / std::numbers::pi, 1e-6);
+  EXPECT_EQ(courseDifference_deg(ahead, round), 0);
+  EXPECT_EQ(courseDifference_deg({}, {}), 0);
+}
+
 TEST_F(TruthOfADrive, IsMeasuredWithoutVelocitiesAndRefusedWhereTheseAreAskedFor) {
   EXPECT_FALSE(evaluateRun(options_).truth_check);
   options_.truth = OxtsTimes::kVelocities;

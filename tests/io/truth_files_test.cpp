@@ -101,6 +101,11 @@ TEST_F(TruthFiles, TumOfAnotherClockIsReadWhereItHasAPoseForEachImage) {
   EXPECT_THAT(refusalOf([](int i) { return tum(i); }), AllOf(HasSubstr("poses.txt"), HasSubstr("times.txt")));
 }
 
+TEST_F(TruthFiles, ATrajectoryOfTooShortATimeIsRefused) {
+  sequence_.truth.poses = folder_.write("poses.txt", tum(1) + "\n" + tumLine({stampOf(1).ns + 1000}, poseOf(1)) + "\n");
+  EXPECT_THAT(messageOf<InputError>([&] { readCameraTruth(sequence_); }), HasSubstr("time of 1 of 4 images"));
+}
+
 TEST_F(TruthFiles, EurocsTableIsReadByItsTimes) {
   const auto line = [](int i) {
     const Eigen::Quaterniond q(poseOf(i).rotation());
@@ -125,6 +130,7 @@ TEST_F(TruthFiles, OtherFormsAreNamedWithWhatIsRead) {
   EXPECT_THAT(refused("0 0 1 0 0 0 1"), HasSubstr("without its times"));
   EXPECT_THAT(refused("0 1 0 0 0 0 1 0 0 0 0 1 0"), HasSubstr("cam0_to_world.txt"));
   EXPECT_THAT(refused("0.1 0 0 1 0 0 0 2"), HasSubstr("quaternion's length"));
+  EXPECT_THAT(refused("nan 0 0 0 0 1 0 0 0 0 1 0"), AllOf(HasSubstr("line 1"), HasSubstr("not finite")));
   EXPECT_THAT(refused("# nothing"), HasSubstr("has 0 poses for 4 images"));
 }
 
