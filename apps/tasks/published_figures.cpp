@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -20,6 +22,20 @@ constexpr std::array<std::string_view, 9> kKeys{"dataset", "method", "measure", 
 /// Units, and how the name of a measure in each ends.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kUnits{
     {{"m", "_m"}, {"deg", "_deg"}, {"percent", "_percent"}, {"deg/m", "_deg_per_m"}}};
+
+/// How many frames each drive of a data set has, from the table [frames.DATASET]; empty without one.
+std::map<std::string, int> frameCounts(const toml::table& document, const std::string& dataset, const fs::path& file) {
+  std::map<std::string, int> counts;
+  const toml::table* const table = document["frames"][dataset].as_table();
+  if (table == nullptr) return counts;
+  for (const auto& [drive, node] : *table) {
+    const auto count = node.value_exact<std::int64_t>();
+    if (!count || *count < 1)
+      failAt({file.string(), node.source().begin.line}, "'" + printable(drive.str()) + "' must be a number of frames");
+    counts[std::string(drive.str())] = static_cast<int>(*count);
+  }
+  return counts;
+}
 
 /// Takes the keys of a [[figures]] table; each failure is a UsageError that names line and key.
 class FigureReader {
@@ -109,6 +125,7 @@ std::vector<PublishedFigure> readPublishedFigures(const fs::path& file, const st
   const toml::table document = parseToml(contentOfFigures(file), file.string());
   const toml::array* const list = document["figures"].as_array();
   if (list == nullptr) throw UsageError(file.string() + ": has no [[figures]]");
+  const auto counts = frameCounts(document, dataset, file);
   std::vector<PublishedFigure> figures;
   for (const auto& node : *list) {
     const toml::table* const table = node.as_table();
@@ -118,6 +135,11 @@ std::vector<PublishedFigure> readPublishedFigures(const fs::path& file, const st
     for (PublishedFigure& figure : reader.figures())
       if (ours) figures.push_back(std::move(figure));
   }
+  for (PublishedFigure& figure : figures)
+    for (const std::string& drive : figure.drives) {
+      const auto count = counts.find(drive);
+      figure.frames.push_back(count == counts.end() ? 0 : count->second);
+    }
   return figures;
 }
 

@@ -261,6 +261,8 @@ TEST(PublicDatasets, EachPublishedFigureIsOfADriveThatItsManifestHasAndHasASourc
       EXPECT_GT(figure.source.size(), 20U);
       EXPECT_GT(figure.value, 0);
       for (const std::string& drive : figure.drives) EXPECT_TRUE(drives.contains(drive)) << figure.method << drive;
+      EXPECT_EQ(figure.frames.size(), figure.drives.size());
+      EXPECT_THAT(figure.frames, testing::Each(testing::Gt(70)));
     }
   }
 }
