@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "apps/pipeline/toml_document.hpp"
 #include "io/errors.hpp"
 #include "io/text_file.hpp"
@@ -31,7 +33,8 @@ std::map<std::string, int> frameCounts(const toml::table& document, const std::s
   for (const auto& [drive, node] : *table) {
     const auto count = node.value_exact<std::int64_t>();
     if (!count || *count < 1)
-      failAt({file.string(), node.source().begin.line}, "'" + printable(drive.str()) + "' must be a number of frames");
+      failAt({file.string(), node.source().begin.line},
+             fmt::format("'{}' must be a number of frames", printable(drive.str())));
     counts[std::string(drive.str())] = static_cast<int>(*count);
   }
   return counts;
@@ -43,7 +46,8 @@ class FigureReader {
   FigureReader(const toml::table& table, const fs::path& file)
       : table_(table), position_{file.string(), table.source().begin.line} {
     for (const auto& [key, node] : table)
-      if (std::ranges::find(kKeys, key.str()) == kKeys.end()) fail("unknown key '" + printable(key.str()) + "'");
+      if (std::ranges::find(kKeys, key.str()) == kKeys.end())
+        fail(fmt::format("unknown key '{}'", printable(key.str())));
   }
 
   std::string text(std::string_view key) const {
@@ -92,7 +96,7 @@ class FigureReader {
 
   double number(const toml::node& node, const std::string& key) const {
     const auto value = node.value<double>();
-    if (!value || !node.is_number()) fail("'" + printable(key) + "' must be a number");
+    if (!value || !node.is_number()) fail(fmt::format("'{}' must be a number", printable(key)));
     return *value;
   }
 
