@@ -51,8 +51,8 @@ double comparedValue(const ResultGroup& group, const PublishedFigure& figure) {
 }
 
 /// The same of a drive and set in a batch.
-double valueOf(const std::vector<ResultGroup>& groups, const std::string& drive, const std::string& set,
-               const PublishedFigure& figure) {
+double comparedValueOf(const std::vector<ResultGroup>& groups, const std::string& drive, const std::string& set,
+                       const PublishedFigure& figure) {
   for (const ResultGroup& group : groups)
     if (group.drive() == drive && group.set() == set) return comparedValue(group, figure);
   return kNoValue;
@@ -91,8 +91,8 @@ double publishedValue(const std::vector<PublishedFigure>& figures, const std::st
   return kNoValue;
 }
 
-ResultTable tableOf(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures,
-                    const std::string& measure) {
+ResultTable besideTable(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures,
+                        const std::string& measure) {
   const auto methods = distinct(figures, [](const PublishedFigure& figure) { return figure.method; });
   const bool with_sets = setsOf(groups).size() > 1;
   ResultTable table{.title = "Beside published figures: " + measure, .heads = {"drive"}};
@@ -131,7 +131,7 @@ MeanPair meanOfSingles(const std::vector<ResultGroup>& groups, const std::string
   MeanPair mean;
   for (const PublishedFigure& figure : figures) {
     if (figure.method != method || figure.drives.size() != 1) continue;
-    const double value = valueOf(groups, figure.drives.front(), set, figure);
+    const double value = comparedValueOf(groups, figure.drives.front(), set, figure);
     if (std::isnan(value)) continue;
     ++mean.drives;
     mean.here += value;
@@ -147,7 +147,7 @@ MeanPair meanOfSingles(const std::vector<ResultGroup>& groups, const std::string
 double weightOf(const std::vector<ResultGroup>& groups, const std::string& drive, const std::string& set,
                 const std::string& measure) {
   if (!measure.starts_with("camera_kitti_")) return 1;
-  const double segments = valueOf(groups, drive, set, {.measure = "camera_kitti_segments"});
+  const double segments = comparedValueOf(groups, drive, set, {.measure = "camera_kitti_segments"});
   return std::isnan(segments) ? 1 : segments;
 }
 
@@ -155,7 +155,7 @@ MeanPair meanOfDrives(const std::vector<ResultGroup>& groups, const std::string&
   MeanPair mean{.of = figure.drives.size(), .published = figure.value};
   double weights = 0;
   for (const std::string& drive : figure.drives) {
-    const double value = valueOf(groups, drive, set, figure);
+    const double value = comparedValueOf(groups, drive, set, figure);
     if (std::isnan(value)) continue;
     const double weight = weightOf(groups, drive, set, figure.measure);
     ++mean.drives;
@@ -219,7 +219,7 @@ std::vector<ResultTable> publishedTables(const std::vector<ResultGroup>& groups,
                                          const std::vector<PublishedFigure>& figures) {
   std::vector<ResultTable> tables;
   for (const std::string& measure : measuresIn(figures)) {
-    ResultTable table = tableOf(groups, figuresOf(figures, measure), measure);
+    ResultTable table = besideTable(groups, figuresOf(figures, measure), measure);
     if (!table.rows.empty()) tables.push_back(std::move(table));
   }
   return tables;

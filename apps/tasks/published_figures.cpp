@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 24;
+constexpr std::size_t kMostFigures_bytes = std::size_t{1} << 24;
 constexpr std::array<std::string_view, 9> kKeys{"dataset", "method", "measure", "unit", "source",
                                                 "note",    "values", "mean_of", "value"};
 /// Units, and how the name of a measure in each ends.
@@ -117,7 +117,7 @@ class FigureReader {
 
 std::string contentOfFigures(const fs::path& file) {
   try {
-    return readWhole(file, kMostBytes);
+    return readWhole(file, kMostFigures_bytes);
   } catch (const InputError& error) {
     throw UsageError(error.what());
   }
