@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kLeft = 0, kRight = 1;  // cameraID
+constexpr std::int64_t kLeftCamera = 0, kRightCamera = 1;  // cameraID
 
 /// The lines of a table behind its header, which begins with that word.
 std::vector<TextLine> tableLines(const fs::path& file, std::string_view first_column) {
@@ -44,8 +44,8 @@ Extrinsics readExtrinsics(const fs::path& tables) {
     const SE3 T_cam_map = fields.pose("a pose from the world to the camera");
     for (const double expected : {0, 0, 0, 1})
       if (fields.number("the last row") != expected) fields.fail("the last row of the matrix must be 0 0 0 1");
-    if (camera == kLeft) extrinsics.T_left_map[frame] = T_cam_map;
-    if (camera == kRight) extrinsics.T_right_map[frame] = T_cam_map;
+    if (camera == kLeftCamera) extrinsics.T_left_map[frame] = T_cam_map;
+    if (camera == kRightCamera) extrinsics.T_right_map[frame] = T_cam_map;
   }
   if (extrinsics.T_left_map.empty()) throw InputError(file.string() + ": has no line of camera 0");
   return extrinsics;
@@ -102,7 +102,7 @@ std::map<FrameAndTrack, SeenBox> readBoxes(const fs::path& file) {
       *edge_px = fields.number("an edge of the box");
     seen.pixels = fields.number("number_pixels");
     seen.truncated = fields.number("truncation_ratio");
-    if (camera == kLeft) boxes[{frame, track}] = seen;
+    if (camera == kLeftCamera) boxes[{frame, track}] = seen;
   }
   return boxes;
 }
@@ -251,7 +251,7 @@ std::optional<ObjectTruths> virtualKittiObjects(const Sequence& sequence, const 
     FieldReader fields(poses, line);
     PosedObject object = readObject(fields);
     const auto frame = frame_of.find(object.frame);
-    if (object.camera != kLeft || frame == frame_of.end()) continue;
+    if (object.camera != kLeftCamera || frame == frame_of.end()) continue;
     object.truth.frame = {frame->second};
     object.truth.T_world_object =
         camera.T_world_cam[static_cast<std::size_t>(frame->second)] * object.truth.T_cam_object;

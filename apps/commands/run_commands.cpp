@@ -11,7 +11,8 @@ namespace motorcade {
 namespace {
 
 constexpr const char* kSequenceHelp =
-    "Folder of a sequence: KITTI (tracking, odometry, raw), KITTI-360, EuRoC, Argoverse stereo, or two folders of "
+    "Folder of a sequence: KITTI (tracking, odometry, raw), KITTI-360, Virtual KITTI 2, EuRoC, Argoverse stereo, or "
+    "two folders of "
     "images, left and right, with their calibration; or a list of images, a line LEFT RIGHT or STAMP LEFT RIGHT for "
     "each pair";
 

@@ -186,6 +186,7 @@ std::vector<ResultTable> publishedSection(const Merged& merged) {
   std::vector<ResultTable> tables = publishedTables(merged.groups, figures);
   tables.push_back(publishedMeans(merged.groups, figures));
   tables.push_back(publishedSources(merged.groups, figures));
+  tables.push_back(otherFrames(merged.groups, figures));
   std::erase_if(tables, [](const ResultTable& table) { return table.rows.empty(); });
   return tables;
 }

@@ -33,23 +33,37 @@ std::vector<std::string> setsOf(const std::vector<ResultGroup>& groups) {
   return sets;
 }
 
-/// What a batch has of a drive and set; not a number where it has nothing.
-double valueOf(const std::vector<ResultGroup>& groups, const std::string& drive, const std::string& set,
-               const std::string& measure) {
-  for (const ResultGroup& group : groups)
-    if (group.drive() == drive && group.set() == set) return group.mean(measure);
-  return kNoValue;
+/// The frames of a drive that a figure tells of; 0 where that is not told.
+int framesOf(const PublishedFigure& figure, const std::string& drive) {
+  const auto place = static_cast<std::size_t>(std::ranges::find(figure.drives, drive) - figure.drives.begin());
+  return place < figure.frames.size() ? figure.frames[place] : 0;
 }
 
-bool anySetHas(const std::vector<ResultGroup>& groups, const std::string& drive, const std::string& measure) {
-  return std::ranges::any_of(
-      groups, [&](const ResultGroup& group) { return group.drive() == drive && !std::isnan(group.mean(measure)); });
+/// Some systems report the frames from the second on, or leave out the last.
+bool hasFrames(const ResultGroup& group, int frames) {
+  constexpr double kMostApart = 0.02;
+  return frames == 0 || std::abs(group.mean("frames") - frames) <= kMostApart * frames;
+}
+
+/// What a group has to stand beside a figure of its drive; not a number where it has nothing, or other frames.
+double comparedValue(const ResultGroup& group, const PublishedFigure& figure) {
+  return hasFrames(group, framesOf(figure, group.drive())) ? group.mean(figure.measure) : kNoValue;
+}
+
+/// The same of a drive and set in a batch.
+double comparedValueOf(const std::vector<ResultGroup>& groups, const std::string& drive, const std::string& set,
+                       const PublishedFigure& figure) {
+  for (const ResultGroup& group : groups)
+    if (group.drive() == drive && group.set() == set) return comparedValue(group, figure);
+  return kNoValue;
 }
 
 /// Does the batch have one of the figure's drives?
 bool isCompared(const std::vector<ResultGroup>& groups, const PublishedFigure& figure) {
-  return std::ranges::any_of(figure.drives,
-                             [&](const std::string& drive) { return anySetHas(groups, drive, figure.measure); });
+  return std::ranges::any_of(groups, [&](const ResultGroup& group) {
+    return std::ranges::find(figure.drives, group.drive()) != figure.drives.end() &&
+           !std::isnan(comparedValue(group, figure));
+  });
 }
 
 /// In the order in which they come first.
@@ -68,16 +82,17 @@ std::vector<PublishedFigure> figuresOf(const std::vector<PublishedFigure>& figur
   return of_measure;
 }
 
-/// The figure of a method for one drive; not a number where there is none.
+/// The figure of a method for a group's drive; not a number where there is none to compare.
 double publishedValue(const std::vector<PublishedFigure>& figures, const std::string& method,
-                      const std::string& drive) {
+                      const ResultGroup& group) {
   for (const PublishedFigure& figure : figures)
-    if (figure.method == method && figure.drives.size() == 1 && figure.drives.front() == drive) return figure.value;
+    if (figure.method == method && figure.drives.size() == 1 && figure.drives.front() == group.drive())
+      return std::isnan(comparedValue(group, figure)) ? kNoValue : figure.value;
   return kNoValue;
 }
 
-ResultTable tableOf(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures,
-                    const std::string& measure) {
+ResultTable besideTable(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures,
+                        const std::string& measure) {
   const auto methods = distinct(figures, [](const PublishedFigure& figure) { return figure.method; });
   const bool with_sets = setsOf(groups).size() > 1;
   ResultTable table{.title = "Beside published figures: " + measure, .heads = {"drive"}};
@@ -91,11 +106,11 @@ ResultTable tableOf(const std::vector<ResultGroup>& groups, const std::vector<Pu
     row.push_back(numberText(group.mean(measure), kDigits));
     bool any = false;
     for (const std::string& method : methods) {
-      const double value = publishedValue(figures, method, group.drive());
+      const double value = publishedValue(figures, method, group);
       any = any || !std::isnan(value);
       row.push_back(numberText(value, kDigits));
     }
-    if (any && !std::isnan(group.mean(measure))) table.rows.push_back(std::move(row));
+    if (any) table.rows.push_back(std::move(row));
   }
   return table;
 }
@@ -116,7 +131,7 @@ MeanPair meanOfSingles(const std::vector<ResultGroup>& groups, const std::string
   MeanPair mean;
   for (const PublishedFigure& figure : figures) {
     if (figure.method != method || figure.drives.size() != 1) continue;
-    const double value = valueOf(groups, figure.drives.front(), set, figure.measure);
+    const double value = comparedValueOf(groups, figure.drives.front(), set, figure);
     if (std::isnan(value)) continue;
     ++mean.drives;
     mean.here += value;
@@ -132,7 +147,7 @@ MeanPair meanOfSingles(const std::vector<ResultGroup>& groups, const std::string
 double weightOf(const std::vector<ResultGroup>& groups, const std::string& drive, const std::string& set,
                 const std::string& measure) {
   if (!measure.starts_with("camera_kitti_")) return 1;
-  const double segments = valueOf(groups, drive, set, "camera_kitti_segments");
+  const double segments = comparedValueOf(groups, drive, set, {.measure = "camera_kitti_segments"});
   return std::isnan(segments) ? 1 : segments;
 }
 
@@ -140,7 +155,7 @@ MeanPair meanOfDrives(const std::vector<ResultGroup>& groups, const std::string&
   MeanPair mean{.of = figure.drives.size(), .published = figure.value};
   double weights = 0;
   for (const std::string& drive : figure.drives) {
-    const double value = valueOf(groups, drive, set, figure.measure);
+    const double value = comparedValueOf(groups, drive, set, figure);
     if (std::isnan(value)) continue;
     const double weight = weightOf(groups, drive, set, figure.measure);
     ++mean.drives;
@@ -204,7 +219,7 @@ std::vector<ResultTable> publishedTables(const std::vector<ResultGroup>& groups,
                                          const std::vector<PublishedFigure>& figures) {
   std::vector<ResultTable> tables;
   for (const std::string& measure : measuresIn(figures)) {
-    ResultTable table = tableOf(groups, figuresOf(figures, measure), measure);
+    ResultTable table = besideTable(groups, figuresOf(figures, measure), measure);
     if (!table.rows.empty()) tables.push_back(std::move(table));
   }
   return tables;
@@ -231,6 +246,21 @@ ResultTable publishedSources(const std::vector<ResultGroup>& groups, const std::
     std::vector<std::string> row{figure.method, figure.measure, figure.source, figure.note};
     if (std::ranges::find(table.rows, row) == table.rows.end()) table.rows.push_back(std::move(row));
   }
+  return table;
+}
+
+ResultTable otherFrames(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures) {
+  ResultTable table{.title = "Not beside published figures, as of other frames",
+                    .heads = {"drive", "set", "frames here", "frames of the drive"},
+                    .names = 2};
+  for (const ResultGroup& group : groups)
+    for (const PublishedFigure& figure : figures) {
+      if (std::ranges::find(figure.drives, group.drive()) == figure.drives.end()) continue;
+      const int frames = framesOf(figure, group.drive());
+      if (hasFrames(group, frames)) continue;
+      table.rows.push_back({group.drive(), group.set(), numberText(group.mean("frames"), 0), std::to_string(frames)});
+      break;
+    }
   return table;
 }
 

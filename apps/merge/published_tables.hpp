@@ -23,6 +23,9 @@ ResultTable publishedMeans(const std::vector<ResultGroup>& groups, const std::ve
 /// Where the figures in these tables are from, and what differs in how they were measured.
 ResultTable publishedSources(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures);
 
+/// Drives that are not compared, as a run has other frames than the drive of the published figures.
+ResultTable otherFrames(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures);
+
 /// Rows of results.csv: for each method and drive one with its figures, by the place of their measures.
 struct PublishedRow {
   std::string method{}, drive{}, source{};

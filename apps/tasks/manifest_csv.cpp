@@ -68,6 +68,7 @@ std::vector<TableLine> linesOf(const std::filesystem::path& file, std::string te
   int number = 0;
   for (std::string line; std::getline(stream, line);) {
     ++number;
+    if (line.ends_with('\r')) line.pop_back();
     const std::string content = trimmed(withoutComment(line));
     if (content.find_first_not_of(",; \t") != std::string::npos)
       lines.push_back({content, file.string() + ", line " + std::to_string(number)});

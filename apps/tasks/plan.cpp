@@ -46,7 +46,7 @@ Task taskOf(const Json& json) {
 }
 
 Json jsonOf(const PublishedFigure& figure) {
-  return {{"method", figure.method}, {"measure", figure.measure}, {"drives", figure.drives},
+  return {{"method", figure.method}, {"measure", figure.measure}, {"drives", figure.drives}, {"frames", figure.frames},
           {"value", figure.value},   {"source", figure.source},   {"note", figure.note}};
 }
 
@@ -54,6 +54,7 @@ PublishedFigure figureOf(const Json& json) {
   return {.method = json.at("method"),
           .measure = json.at("measure"),
           .drives = json.at("drives"),
+          .frames = json.at("frames"),
           .value = json.at("value"),
           .source = json.at("source"),
           .note = json.at("note")};

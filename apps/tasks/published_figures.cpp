@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <map>
 #include <string_view>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "apps/pipeline/toml_document.hpp"
 #include "io/errors.hpp"
@@ -14,12 +18,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 24;
+constexpr std::size_t kMostFigures_bytes = std::size_t{1} << 24;
 constexpr std::array<std::string_view, 9> kKeys{"dataset", "method", "measure", "unit", "source",
                                                 "note",    "values", "mean_of", "value"};
 /// Units, and how the name of a measure in each ends.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kUnits{
     {{"m", "_m"}, {"deg", "_deg"}, {"percent", "_percent"}, {"deg/m", "_deg_per_m"}}};
+
+/// How many frames each drive of a data set has, from the table [frames.DATASET]; empty without one.
+std::map<std::string, int> frameCounts(const toml::table& document, const std::string& dataset, const fs::path& file) {
+  std::map<std::string, int> counts;
+  const toml::table* const table = document["frames"][dataset].as_table();
+  if (table == nullptr) return counts;
+  for (const auto& [drive, node] : *table) {
+    const auto count = node.value_exact<std::int64_t>();
+    if (!count || *count < 1)
+      failAt({file.string(), node.source().begin.line},
+             fmt::format("'{}' must be a number of frames", printable(drive.str())));
+    counts[std::string(drive.str())] = static_cast<int>(*count);
+  }
+  return counts;
+}
 
 /// Takes the keys of a [[figures]] table; each failure is a UsageError that names line and key.
 class FigureReader {
@@ -27,7 +46,8 @@ class FigureReader {
   FigureReader(const toml::table& table, const fs::path& file)
       : table_(table), position_{file.string(), table.source().begin.line} {
     for (const auto& [key, node] : table)
-      if (std::ranges::find(kKeys, key.str()) == kKeys.end()) fail("unknown key '" + printable(key.str()) + "'");
+      if (std::ranges::find(kKeys, key.str()) == kKeys.end())
+        fail(fmt::format("unknown key '{}'", printable(key.str())));
   }
 
   std::string text(std::string_view key) const {
@@ -76,7 +96,7 @@ class FigureReader {
 
   double number(const toml::node& node, const std::string& key) const {
     const auto value = node.value<double>();
-    if (!value || !node.is_number()) fail("'" + printable(key) + "' must be a number");
+    if (!value || !node.is_number()) fail(fmt::format("'{}' must be a number", printable(key)));
     return *value;
   }
 
@@ -97,7 +117,7 @@ class FigureReader {
 
 std::string contentOfFigures(const fs::path& file) {
   try {
-    return readWhole(file, kMostBytes);
+    return readWhole(file, kMostFigures_bytes);
   } catch (const InputError& error) {
     throw UsageError(error.what());
   }
@@ -109,6 +129,7 @@ std::vector<PublishedFigure> readPublishedFigures(const fs::path& file, const st
   const toml::table document = parseToml(contentOfFigures(file), file.string());
   const toml::array* const list = document["figures"].as_array();
   if (list == nullptr) throw UsageError(file.string() + ": has no [[figures]]");
+  const auto counts = frameCounts(document, dataset, file);
   std::vector<PublishedFigure> figures;
   for (const auto& node : *list) {
     const toml::table* const table = node.as_table();
@@ -118,6 +139,11 @@ std::vector<PublishedFigure> readPublishedFigures(const fs::path& file, const st
     for (PublishedFigure& figure : reader.figures())
       if (ours) figures.push_back(std::move(figure));
   }
+  for (PublishedFigure& figure : figures)
+    for (const std::string& drive : figure.drives) {
+      const auto count = counts.find(drive);
+      figure.frames.push_back(count == counts.end() ? 0 : count->second);
+    }
   return figures;
 }
 

@@ -10,6 +10,7 @@ namespace motorcade {
 struct PublishedFigure {
   std::string method{}, measure{};    // the measure as a column of results.csv
   std::vector<std::string> drives{};  // by their names; of several, the figure is the mean
+  std::vector<int> frames{};          // that each of them has; 0 where that is not told
   double value = 0;
   std::string source{};  // paper and table
   std::string note{};    // what differs in how it was measured; may be empty

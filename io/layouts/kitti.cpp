@@ -18,6 +18,14 @@ void finish(Sequence& sequence, const SequenceSource& source, const fs::path& ti
   setStamps(sequence, times_file, source.fps_hz);
 }
 
+/// The right images of the tracking set are an archive of their own.
+void requireRightArchive(const fs::path& root, const fs::path& right) {
+  const bool tracking = fs::exists(root / "calib" / (right.filename().string() + ".txt"));
+  if (tracking && right.parent_path().filename() == "image_03" && !fs::exists(right))
+    throw InputError(right.string() + ": is missing; unpack the right images of KITTI tracking, too " +
+                     "(data_tracking_image_3.zip)");
+}
+
 }  // namespace
 
 std::optional<Sequence> openKittiRaw(const SequenceSource& source) {
@@ -47,7 +55,9 @@ std::optional<Sequence> openKittiTracking(const SequenceSource& source) {
   for (const fs::path& root : {folder.parent_path().parent_path(), folder.parent_path()}) {
     for (const auto& names : kPairs) {
       const fs::path left = root / names.left / name, right = root / names.right / name;
-      if (name.empty() || !fs::is_directory(left) || !fs::is_directory(right)) continue;
+      if (name.empty() || !fs::is_directory(left)) continue;
+      requireRightArchive(root, right);
+      if (!fs::is_directory(right)) continue;
       const fs::path text = name.string() + ".txt";
       Sequence sequence{.folder = folder, .layout = "tracking", .pair = names.pair};
       sequence.truth = {.poses = ifExists(root / "poses" / text),

@@ -16,10 +16,12 @@ namespace fs = std::filesystem;
 
 const char* const kTextArchive = "vkitti_2.0.3_textgt.tar.gz";
 
-fs::path imagesOf(const fs::path& variation, const char* camera) { return variation / "frames" / "rgb" / camera; }
+fs::path variationImages(const fs::path& variation, const char* camera) {
+  return variation / "frames" / "rgb" / camera;
+}
 
 bool isVariation(const fs::path& folder) {
-  return fs::is_directory(imagesOf(folder, "Camera_0")) && fs::is_directory(imagesOf(folder, "Camera_1"));
+  return fs::is_directory(variationImages(folder, "Camera_0")) && fs::is_directory(variationImages(folder, "Camera_1"));
 }
 
 std::vector<fs::path> foldersIn(const fs::path& folder) {
@@ -77,7 +79,7 @@ std::optional<Sequence> openVirtualKitti(const SequenceSource& source) {
   if (!isVariation(folder)) return std::nullopt;
   const auto places = placesOf(folder);
   Sequence sequence{.folder = folder, .layout = "virtual_kitti", .pair = CameraPair::kColor};
-  setFrames(sequence, imagesOf(folder, "Camera_0"), imagesOf(folder, "Camera_1"));
+  setFrames(sequence, variationImages(folder, "Camera_0"), variationImages(folder, "Camera_1"));
   setCamera(sequence, source.given, [&](ImageSize) {
     const fs::path place = placeWith(places, "intrinsic.txt");
     return readVirtualKittiCamera(

@@ -175,29 +175,36 @@ TEST_P(ManifestTable, IsTakenForWhatItSays) {
   EXPECT_THAT(paths, ElementsAre("a/0001", "b c/0002")) << text;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    First, ManifestTable,
-    testing::Values(std::pair("m.csv", "path\na/0001\nb c/0002\n"), std::pair("m.csv", "drive\na/0001\nb c/0002\n"),
-                    std::pair("m.csv", "Sequence\na/0001\nb c/0002\n"),
-                    std::pair("m.csv", "FOLDER\na/0001\nb c/0002\n"), std::pair("m.csv", "a/0001\nb c/0002\n"),
-                    std::pair("m.csv", "a/0001\nb c/0002"), std::pair("m.txt", "a/0001\nb c/0002\n"),
-                    std::pair("m.list", "a/0001\nb c/0002\n"),
-                    std::pair("m.txt", "\n# all of them\n  a/0001  \n\n\tb c/0002 # the second\n"),
-                    std::pair("m.csv", "drive\r\na/0001\r\nb c/0002\r\n"), std::pair("m.txt", "a/0001\rb c/0002\r"),
-                    std::pair("m.csv",
-                              "\xEF\xBB\xBF"
-                              "drive\na/0001\nb c/0002\n"),
-                    std::pair("m.txt",
-                              "\xEF\xBB\xBF"
-                              "a/0001\nb c/0002\n"),
-                    std::pair("m.csv", "\"a/0001\"\n\"b c/0002\"\n"), std::pair("m.txt", "'a/0001'\n'b c/0002'\n"),
-                    std::pair("m.csv", "drive,name\na/0001,x\n\"b c/0002\",y\n"),
-                    std::pair("m.csv", "name;drive;fps\nx;a/0001;10\ny;b c/0002;10\n"),
-                    std::pair("m.tsv", "Name\tPath\nx\ta/0001\ny\tb c/0002\n"),
-                    std::pair("m.csv", "drive,,\na/0001,,\nb c/0002,,\n,,\n"),
-                    std::pair("m.csv", "a/0001,\nb c/0002,\n"), std::pair("m.csv", ",drive\n0,a/0001\n1,b c/0002\n"),
-                    std::pair("m.csv", " drive , name \n a/0001 , x \n b c/0002 , y \n"),
-                    std::pair("m.csv", "# drives of May\n\ndrive\na/0001\nb c/0002\n")));
+const std::vector<std::pair<const char*, std::string>> kTables{
+    {"m.csv", "path\na/0001\nb c/0002\n"},
+    {"m.csv", "drive\na/0001\nb c/0002\n"},
+    {"m.csv", "Sequence\na/0001\nb c/0002\n"},
+    {"m.csv", "FOLDER\na/0001\nb c/0002\n"},
+    {"m.csv", "a/0001\nb c/0002\n"},
+    {"m.csv", "a/0001\nb c/0002"},
+    {"m.txt", "a/0001\nb c/0002\n"},
+    {"m.list", "a/0001\nb c/0002\n"},
+    {"m.txt", "\n# all of them\n  a/0001  \n\n\tb c/0002 # the second\n"},
+    {"m.csv", "drive\r\na/0001\r\nb c/0002\r\n"},
+    {"m.txt", "a/0001\rb c/0002\r"},
+    {"m.csv",
+     "\xEF\xBB\xBF"
+     "drive\na/0001\nb c/0002\n"},
+    {"m.txt",
+     "\xEF\xBB\xBF"
+     "a/0001\nb c/0002\n"},
+    {"m.csv", "\"a/0001\"\n\"b c/0002\"\n"},
+    {"m.txt", "'a/0001'\n'b c/0002'\n"},
+    {"m.csv", "drive,name\na/0001,x\n\"b c/0002\",y\n"},
+    {"m.csv", "name;drive;fps\nx;a/0001;10\ny;b c/0002;10\n"},
+    {"m.tsv", "Name\tPath\nx\ta/0001\ny\tb c/0002\n"},
+    {"m.csv", "drive,,\na/0001,,\nb c/0002,,\n,,\n"},
+    {"m.csv", "a/0001,\nb c/0002,\n"},
+    {"m.csv", ",drive\n0,a/0001\n1,b c/0002\n"},
+    {"m.csv", " drive , name \n a/0001 , x \n b c/0002 , y \n"},
+    {"m.csv", "# drives of May\n\ndrive\na/0001\nb c/0002\n"}};
+
+INSTANTIATE_TEST_SUITE_P(First, ManifestTable, testing::ValuesIn(kTables));
 
 TEST_F(ManifestFile, AListWithoutColumnsKeepsCommasInQuotesAlone) {
   EXPECT_EQ(read("\"a,b\"\n", "m.csv").entries.at(0).path, "a,b");
@@ -261,6 +268,8 @@ TEST(PublicDatasets, EachPublishedFigureIsOfADriveThatItsManifestHasAndHasASourc
       EXPECT_GT(figure.source.size(), 20U);
       EXPECT_GT(figure.value, 0);
       for (const std::string& drive : figure.drives) EXPECT_TRUE(drives.contains(drive)) << figure.method << drive;
+      EXPECT_EQ(figure.frames.size(), figure.drives.size());
+      EXPECT_THAT(figure.frames, testing::Each(testing::Gt(70)));
     }
   }
 }

@@ -14,6 +14,7 @@ ResultGroup groupOf(const std::string& drive, const std::string& set, double ate
                     double segments = kNoValue) {
   MergedTask task{.task = {.drive = drive, .set = set}, .outcome = TaskOutcome::kDone};
   task.values.assign(allMeasures().size(), kNoValue);
+  task.values[measureIndex("frames")] = 100;
   task.values[measureIndex("camera_ate_m")] = ate_m;
   task.values[measureIndex("camera_kitti_t_percent")] = t_percent;
   task.values[measureIndex("camera_kitti_segments")] = segments;
@@ -57,6 +58,18 @@ TEST(PublishedTables, AMeanIsComparedWhereAllOfItsDrivesAreThere) {
   const std::vector one{groupOf("00", "default", 1, 1, 30)};
   EXPECT_THAT(publishedMeans(one, {mean}).rows, ElementsAre(Row{"camera_kitti_t_percent", "C", "1 of 2", "-", "0.8"}));
   EXPECT_TRUE(publishedTables(both, {mean}).empty());
+}
+
+TEST(PublishedTables, RunsOfOtherFramesAreNotCompared) {
+  const std::vector groups{groupOf("00", "default", 0.5), groupOf("01", "default", 0.25)};
+  PublishedFigure of_most = figure("A", "00", 0.75), of_a_part = figure("A", "01", 0.5);
+  of_most.frames = {99};
+  of_a_part.frames = {447};
+  EXPECT_THAT(publishedTables(groups, {of_most, of_a_part}).at(0).rows, ElementsAre(Row{"00", "0.5", "0.75"}));
+  EXPECT_THAT(otherFrames(groups, {of_most, of_a_part}).rows, ElementsAre(Row{"01", "default", "100", "447"}));
+  EXPECT_TRUE(publishedMeans(groups, {of_most, of_a_part}).rows.empty());
+  EXPECT_TRUE(publishedTables(groups, {of_a_part}).empty());
+  EXPECT_TRUE(publishedSources(groups, {of_a_part}).rows.empty());
 }
 
 TEST(PublishedTables, AreEmptyWithoutAnyOfTheDrives) {

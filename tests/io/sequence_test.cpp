@@ -90,6 +90,13 @@ TEST_F(SequenceTest, TrackingLayoutIsFoundFromItsLeftImagesOrFromItsNumber) {
   }
 }
 
+TEST_F(SequenceTest, TrackingWithoutItsRightImagesNamesTheArchive) {
+  writeImages("training/image_02/0003", 2);
+  folder_.write("training/calib/0003.txt", kCalib);
+  EXPECT_THAT(messageOf<InputError>([&] { openSequence(folder_ / "training/image_02/0003"); }),
+              testing::AllOf(HasSubstr("training/image_03/0003: is missing"), HasSubstr("data_tracking_image_3.zip")));
+}
+
 TEST_F(SequenceTest, OdometryLayoutFindsItsPosesBesideTheSequences) {
   writeImages("sequences/04/image_0", 2);
   writeImages("sequences/04/image_1", 2);

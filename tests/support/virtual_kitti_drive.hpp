@@ -93,8 +93,8 @@ struct VirtualKittiDrive {
     std::ostringstream text;
     text << std::setprecision(digits) << "frame cameraID K[0,0] K[1,1] K[0,2] K[1,2]\n";
     for (std::size_t i = 0; i < sequence.frames.size(); ++i)
-      for (const int camera : {0, 1})
-        text << i << ' ' << camera << ' ' << sequence.camera.fx_px << ' ' << sequence.camera.fy_px << ' '
+      for (const int side : {0, 1})
+        text << i << ' ' << side << ' ' << sequence.camera.fx_px << ' ' << sequence.camera.fy_px << ' '
              << sequence.camera.cx_px << ' ' << sequence.camera.cy_px << '\n';
     return text.str();
   }
@@ -149,9 +149,9 @@ struct VirtualKittiDrive {
     const Eigen::Vector3d &p_cam = object.T_cam_object.translation(), &p_map = T_map_object.translation();
     const Eigen::Vector3d in_cam = anglesYxz(object.T_cam_object.rotation()),
                           in_map = anglesYxz(T_map_object.rotation());
-    for (const int camera : {0, 1}) {
-      const double x_m = p_cam.x() - camera * sequence.camera.baseline_m;
-      poses << object.frame.value << ' ' << camera << ' ' << object.id << ' ' << in_cam[0] - std::atan2(x_m, p_cam.z())
+    for (const int side : {0, 1}) {
+      const double x_m = p_cam.x() - side * sequence.camera.baseline_m;
+      poses << object.frame.value << ' ' << side << ' ' << object.id << ' ' << in_cam[0] - std::atan2(x_m, p_cam.z())
             << ' ' << object.size_m[1] << ' ' << object.size_m[0] << ' ' << object.size_m[2] << ' ' << p_map.x() << ' '
             << p_map.y() << ' ' << p_map.z() << ' ' << in_map[0] << ' ' << in_map[1] << ' ' << in_map[2] << ' ' << x_m
             << ' ' << p_cam.y() << ' ' << p_cam.z() << ' ' << in_cam[0] << ' ' << in_cam[1] << ' ' << in_cam[2] << '\n';
