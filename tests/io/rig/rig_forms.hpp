@@ -27,7 +27,7 @@ inline constexpr std::string_view kBodyRight =
 // The inverse of kBodyLeft.
 inline constexpr std::string_view kLeftBody = "0, -1, 0, 0, 0, 0, -1, 0.2, 1, 0, 0, -1, 0, 0, 0, 1";
 
-inline std::string braced(std::string_view numbers) { return "[" + std::string(numbers) + "]"; }
+inline std::string braced(std::string_view numbers) { return std::string("[").append(numbers).append("]"); }
 inline std::string matrix(std::string_view numbers, int rows = 4, int cols = 4) {
   return "!!opencv-matrix\n   rows: " + std::to_string(rows) + "\n   cols: " + std::to_string(cols) +
          "\n   dt: d\n   data: " + braced(numbers) + "\n";

@@ -46,10 +46,12 @@ std::string basalt(const std::string& type) {
     "intrinsics": [
       {"camera_type": ")" +
          type +
-         R"(", "intrinsics": {"fx": 420.5, "fy": 420.6, "cx": 369.4, "cy": 239.1, "k1": 0.19, "k2": 0.04, "k3": -0.23, "k4": 0.095}},
+         R"(", "intrinsics": {"fx": 420.5, "fy": 420.6, "cx": 369.4, "cy": 239.1,
+        "k1": 0.19, "k2": 0.04, "k3": -0.23, "k4": 0.095}},
       {"camera_type": ")" +
          type +
-         R"(", "intrinsics": {"fx": 421.2, "fy": 421.4, "cx": 367.7, "cy": 244.4, "k1": 0.19, "k2": 0.05, "k3": -0.24, "k4": 0.1}}],
+         R"(", "intrinsics": {"fx": 421.2, "fy": 421.4, "cx": 367.7, "cy": 244.4,
+        "k1": 0.19, "k2": 0.05, "k3": -0.24, "k4": 0.1}}],
     "resolution": [[752, 480], [752, 480]], "imu_update_rate": 200.0}})";
 }
 
