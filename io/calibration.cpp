@@ -41,7 +41,7 @@ std::optional<SE3> readRotationTranslation(const std::filesystem::path& file) {
   return rigid(squareMatrix(*R), Eigen::Map<const Eigen::Vector3d>(T->numbers.data()), *R, keys);
 }
 
-int imageSide(const CalibrationValues& values, std::size_t i, const CalibrationKeys& keys) {
+int imageSide_px(const CalibrationValues& values, std::size_t i, const CalibrationKeys& keys) {
   const double side_px = values.numbers[i];
   if (!(side_px >= 1 && side_px <= kMaxImage_pixels)) keys.fail(values, "is no size of an image");
   return static_cast<int>(side_px);
@@ -60,7 +60,7 @@ void addMiddlebury(Calibration& calibration, CalibrationKeys& keys) {
   (*calibration.P[1])(0, 3) = -squareMatrix(*left)(0, 0) * 1e-3 * baseline_mm->numbers[0];
   calibration.line_of_P = {left->line, right->line, 0, 0};
   const auto *width = keys.find({"width"}, 1), *height = keys.find({"height"}, 1);
-  if (width && height) calibration.size[0] = ImageSize{imageSide(*width, 0, keys), imageSide(*height, 0, keys)};
+  if (width && height) calibration.size[0] = ImageSize{imageSide_px(*width, 0, keys), imageSide_px(*height, 0, keys)};
 }
 
 void requireFocalLength(double focal_px, const std::string& name) {
@@ -164,7 +164,7 @@ Calibration readCalibration(const std::filesystem::path& file) {
       calibration.line_of_P[i] = v->line;
     }
     if (const auto* v = keys.find({"S_rect_0" + n}, 2))
-      calibration.size[i] = ImageSize{imageSide(*v, 0, keys), imageSide(*v, 1, keys)};
+      calibration.size[i] = ImageSize{imageSide_px(*v, 0, keys), imageSide_px(*v, 1, keys)};
   }
   addMiddlebury(calibration, keys);
   if (const auto* v = keys.find({"R0_rect", "R_rect", "R_rect_00"}, 9))

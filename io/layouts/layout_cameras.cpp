@@ -21,7 +21,7 @@ Rectification movedRight(const StereoCamera& camera, double right_cx_px) {
   return {.left = left, .right = right, .camera = camera};
 }
 
-void requireSize(const Calibration& calibration, CameraPair pair, ImageSize size) {
+void requireRectifiedSize(const Calibration& calibration, CameraPair pair, ImageSize size) {
   const auto told = calibration.rectifiedSize(pair);
   if (told && *told != size)
     throw InputError(calibration.file.string() + ": its projections are of rectified images of " + told->text() +
@@ -33,7 +33,7 @@ void requireSize(const Calibration& calibration, CameraPair pair, ImageSize size
 StereoCamera projectedCamera(Sequence& sequence, ImageSize size) {
   const Calibration& calibration = sequence.calibration;
   StereoCamera camera = calibration.stereoCamera(sequence.pair);
-  requireSize(calibration, sequence.pair, size);
+  requireRectifiedSize(calibration, sequence.pair, size);
   sequence.calibrated_by = calibration.file.string();
   camera.width_px = size.width;
   camera.height_px = size.height;

@@ -10,12 +10,12 @@
 namespace motorcade {
 namespace {
 
-struct PlacedCamera {
+struct BodyCamera {
   LensCamera lens;
   SE3 T_body_cam;
 };
 
-Rig rigOfPlaced(const YamlPart& root, const PlacedCamera& left, const PlacedCamera& right, const std::string& key) {
+Rig rigOfPlaced(const YamlPart& root, const BodyCamera& left, const BodyCamera& right, const std::string& key) {
   return {.file = root.file(),
           .left = left.lens,
           .right = right.lens,
@@ -32,8 +32,8 @@ void requirePinholeModel(const YamlPart& part, std::initializer_list<std::string
 }
 
 /// One of EuRoC's or Kimera's files.
-PlacedCamera sensorCamera(const YamlPart& sensor) {
-  PlacedCamera camera{.lens = {}, .T_body_cam = sensorPlacement(sensor)};
+BodyCamera sensorCamera(const YamlPart& sensor) {
+  BodyCamera camera{.lens = {}, .T_body_cam = sensorPlacement(sensor)};
   requirePinholeModel(sensor, {"camera_model"});
   setIntrinsics(camera.lens, sensor.at({"intrinsics"}));
   setDistortion(camera.lens, textOr(sensor, {"distortion_model"}, "none"),
@@ -43,8 +43,8 @@ PlacedCamera sensorCamera(const YamlPart& sensor) {
 }
 
 /// An entry of OKVIS' list.
-PlacedCamera okvisCamera(const YamlPart& entry) {
-  PlacedCamera camera{.lens = {}, .T_body_cam = transform44(entry.at({"T_SC"}))};
+BodyCamera okvisCamera(const YamlPart& entry) {
+  BodyCamera camera{.lens = {}, .T_body_cam = transform44(entry.at({"T_SC"}))};
   const YamlPart focal = entry.at({"focal_length"});
   const auto f = focal.numbers(2), c = entry.at({"principal_point"}).numbers(2);
   setIntrinsics(camera.lens, {f[0], f[1], c[0], c[1]}, focal);
@@ -54,9 +54,9 @@ PlacedCamera okvisCamera(const YamlPart& entry) {
 }
 
 /// An entry of maplab's and SVO's list.
-PlacedCamera ncameraCamera(const YamlPart& entry) {
+BodyCamera ncameraCamera(const YamlPart& entry) {
   const YamlPart camera = entry.at({"camera"});
-  PlacedCamera placed{.lens = {}, .T_body_cam = SE3{}};
+  BodyCamera placed{.lens = {}, .T_body_cam = SE3{}};
   requirePinholeModel(camera, {"type"});
   setIntrinsics(placed.lens, camera.at({"intrinsics"}));
   if (const auto distortion = camera.find({"distortion"}))

@@ -116,7 +116,7 @@ bool isSame(const Rig& a, const Rig& b) {
   return a.given ? isSame(*a.given, *b.given) : (a.T_right_left.inverse() * b.T_right_left).log().norm() < kRounded;
 }
 
-double baseline_m(const Rig& rig) {
+double baselineOf_m(const Rig& rig) {
   if (rig.rectified) return rig.rectified->baseline_m;
   return rig.given ? rig.given->camera.baseline_m : rig.T_right_left.translation().norm();
 }
@@ -125,7 +125,7 @@ double baseline_m(const Rig& rig) {
   std::string list;
   for (const Candidate& candidate : candidates) {
     std::array<char, 64> told{"cannot be used"};
-    if (candidate.rig) std::snprintf(told.data(), told.size(), "baseline %.4f m", baseline_m(*candidate.rig));
+    if (candidate.rig) std::snprintf(told.data(), told.size(), "baseline %.4f m", baselineOf_m(*candidate.rig));
     list += "\n  " + calibrationArgument(candidate.files) + "    (" + told.data() + ")";
   }
   throw InputError(folder.string() + ": holds " + std::to_string(candidates.size()) +

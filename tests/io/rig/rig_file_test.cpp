@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "io/errors.hpp"
+#include "io/rig/rig_search.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {
