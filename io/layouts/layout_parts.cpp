@@ -157,6 +157,7 @@ void setStamps(Sequence& sequence, const fs::path& times_file, double fps_hz) {
 
 StereoCamera rectifiedCamera(Sequence& sequence, const Rig& rig, ImageSize size) {
   sequence.rectification = std::make_shared<const Rectification>(rectificationOf(rig, size));
+  sequence.bayer = toldMosaic(rig.file);
   return sequence.rectification->camera;
 }
 
@@ -167,7 +168,7 @@ void setCamera(Sequence& sequence, const GivenCameras& given, const LayoutCamera
   sequence.camera.width_px = size.width;
   sequence.camera.height_px = size.height;
   sequence.samples = sampleUseOf(sequence);
-  if (const auto mosaic = givenMosaic(sequence, given)) sequence.bayer = mosaic;
+  sequence.bayer = mosaicOf(sequence, given);
 }
 
 }  // namespace motorcade
