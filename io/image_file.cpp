@@ -73,8 +73,7 @@ Image decodeImage(std::string_view bytes, const fs::path& name, ImagePool& pool,
   if (expected.size && header.size != *expected.size)
     throw InputError(name.string() + ": has " + header.size.text() + " pixels, the sequence has " +
                      expected.size->text());
-  if (expected.one_channel && header.channels != 1)
-    throw InputError(name.string() + ": has colors, so that it is no mosaic of a sensor; leave --bayer out");
+  if (expected.one_channel && header.channels != 1) throw InputError(name.string() + kNoMosaic);
   return codec.decode(bytes, name, pool, expected.sample_bits);
 }
 

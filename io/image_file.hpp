@@ -64,6 +64,10 @@ int readBrightestSample(const std::filesystem::path& file);
 Image readImage(const std::filesystem::path& file, ImagePool& pool, std::optional<ImageSize> expected = {},
                 int max_mb = kMaxImageFile_mb);
 
+/// What is wrong with an image in colors that is said to be a mosaic, after its name.
+inline constexpr const char* kNoMosaic =
+    ": has colors, so that it is no mosaic of a sensor; leave the Bayer pattern out";
+
 /// What is known of a file's images before it is read.
 struct ExpectedImage {
   std::optional<ImageSize> size{};

@@ -143,7 +143,7 @@ void PoseGraphFeed::add(std::size_t pose, const Value& initial, Update& update) 
   ++update.poses;
   for (const Neighbor& neighbor : index_.neighbors(pose)) {
     if (!present(neighbor.pose)) continue;
-    if (!solver_.addFactor(factorBetween(neighbor.edge))) {
+    if (!solver_.addFactor(factorTo(pose, neighbor))) {
       refused_edges_.push_back(neighbor.edge);
       continue;
     }
@@ -157,17 +157,16 @@ Value PoseGraphFeed::valueOf(std::size_t pose) const {
   return std::visit([](const auto& value) { return Value(value); }, gauge_.valueOf(pose));
 }
 
-/// Both poses are present, and not both constants.
-std::unique_ptr<Factor> PoseGraphFeed::factorBetween(std::size_t edge) const {
-  const std::size_t from = index_.at(graph_.edges[edge].from), to = index_.at(graph_.edges[edge].to);
-  auto factor = factorOf(graph_.edges[edge], variable_[from], variable_[to]);
-  if (gauge_.isConstant(from))
-    return std::make_unique<HeldEndFactor>(std::move(factor), HeldEndFactor::Held::kFirst, valueOf(from),
-                                           variable_[to]);
-  if (gauge_.isConstant(to))
-    return std::make_unique<HeldEndFactor>(std::move(factor), HeldEndFactor::Held::kSecond, valueOf(to),
-                                           variable_[from]);
-  return factor;
+/// Of a variable and its neighbor, which may be a constant.
+std::unique_ptr<Factor> PoseGraphFeed::factorTo(std::size_t pose, const Neighbor& neighbor) const {
+  using Held = HeldEndFactor::Held;
+  const auto& edge = graph_.edges[neighbor.edge];
+  const bool forward = edge.to == index_.id(pose);
+  const VariableId variable = variable_[pose], other = variable_[neighbor.pose];
+  auto factor = factorOf(edge, forward ? other : variable, forward ? variable : other);
+  if (!gauge_.isConstant(neighbor.pose)) return factor;
+  return std::make_unique<HeldEndFactor>(std::move(factor), forward ? Held::kFirst : Held::kSecond,
+                                         valueOf(neighbor.pose), variable);
 }
 
 /// From a pose at `start` over an edge to its neighbor.
@@ -184,7 +183,7 @@ Value PoseGraphFeed::moved(const Value& start, const Neighbor& from, std::size_t
 
 std::optional<VariableId> PoseGraphFeed::variableOf(std::int64_t pose_id) const {
   const std::size_t pose = index_.at(pose_id);
-  if (pose == index_.size() || index_.id(pose) != pose_id || !present(pose)) return std::nullopt;
+  if (pose == index_.size() || index_.id(pose) != pose_id || !variable_[pose].valid()) return std::nullopt;
   return variable_[pose];
 }
 

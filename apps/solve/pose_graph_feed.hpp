@@ -46,7 +46,7 @@ class PoseGraphFeed {
   IncrementalSolver& solver() { return solver_; }
   const IncrementalSolver& solver() const { return solver_; }
 
-  /// Empty while the pose is not in the solver.
+  /// Empty while the pose is no variable of the solver.
   std::optional<VariableId> variableOf(std::int64_t pose_id) const;
   std::int64_t poseOf(VariableId v) const { return index_.id(pose_of_variable_[v.value]); }
 
@@ -76,7 +76,7 @@ class PoseGraphFeed {
   Value moved(const Value& start, const Neighbor& from, std::size_t to) const;
   bool present(std::size_t pose) const { return variable_[pose].valid() || gauge_.isConstant(pose); }
   Value valueOf(std::size_t pose) const;
-  std::unique_ptr<Factor> factorBetween(std::size_t edge) const;
+  std::unique_ptr<Factor> factorTo(std::size_t pose, const Neighbor& neighbor) const;
   void feedConstant(std::size_t pose, Update& update);
   PoseGraph::Pose moveOf(std::size_t part) const;
   std::vector<PoseGraph::Vertex> placedPart(std::size_t first, std::vector<char>& placed) const;

@@ -80,8 +80,8 @@ void addPartProblems(const PoseGraphFeed& feed, std::vector<SolveProblem>& probl
   const std::string main = namesOf(idsOf(gauge.parts()[gauge.mainPart()].held));
   for (const auto& part : feed.disconnectedParts()) {
     const auto& of_first = gauge.parts()[gauge.partOf(feed.index().at(part.front()))];
-    const std::string what =
-        part.size() == 1 ? "; left where it is" : "; solved by itself, with " + namesOf(idsOf(of_first.held)) + " held";
+    const std::string what = of_first.size == 1 ? "; left where it is"
+                                                : "; solved by itself, with " + namesOf(idsOf(of_first.held)) + " held";
     problems.push_back({"disconnected_part", namesOf(part),
                         "disconnected part: no edge joins it to the rest, which is held by " + main + what, part});
   }

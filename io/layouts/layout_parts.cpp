@@ -140,6 +140,7 @@ StereoCamera rectifiedCamera(Sequence& sequence, const Rig& rig, ImageSize size)
   if (!rig.rectified) sequence.rectification = std::make_shared<const Rectification>(rectification);
   sequence.calibrated_by = joinedFiles(rig.files);
   sequence.calibration_remark = rig.remark;
+  sequence.bayer = toldMosaic(rig.file);
   return rectification.camera;
 }
 
@@ -150,7 +151,7 @@ void setCamera(Sequence& sequence, const GivenCameras& given, const LayoutCamera
   sequence.camera.width_px = size.width;
   sequence.camera.height_px = size.height;
   sequence.samples = sampleUseOf(sequence);
-  if (const auto mosaic = givenMosaic(sequence, given)) sequence.bayer = mosaic;
+  sequence.bayer = mosaicOf(sequence, given);
 }
 
 }  // namespace motorcade

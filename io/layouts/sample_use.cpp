@@ -1,11 +1,15 @@
 #include "io/layouts/sample_use.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/errors.hpp"
 #include "io/image_file.hpp"
+#include "io/rig/yaml_file.hpp"
+#include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {
@@ -80,17 +84,26 @@ std::optional<SampleUse> sampleUseOf(const Sequence& sequence) {
   return samples.use();
 }
 
-std::optional<BayerPattern> givenMosaic(const Sequence& sequence, const GivenCameras& given) {
-  if (given.bayer.empty()) return std::nullopt;
-  const auto pattern = bayerPatternOf(given.bayer);
-  if (!pattern)
+std::optional<BayerPattern> toldMosaic(const std::filesystem::path& calibration) {
+  if (calibration.extension() != ".yaml" && calibration.extension() != ".yml") return std::nullopt;
+  const YamlPart root = YamlPart::ofFile(calibration);
+  const std::initializer_list<std::string_view> keys{"bayer_pattern", "bayer"};
+  auto told = root.find(keys);
+  if (const auto left = root.find({"cam0"}); left && !told) told = left->find(keys);
+  if (!told) return std::nullopt;
+  const auto pattern = bayerPatternOf(told->text());
+  if (!pattern) told->fail("is " + printable(told->text()) + ", write RGGB, BGGR, GRBG or GBRG, or leave it out");
+  return pattern;
+}
+
+std::optional<BayerPattern> mosaicOf(const Sequence& sequence, const GivenCameras& given) {
+  const auto pattern = given.bayer.empty() ? sequence.bayer : bayerPatternOf(given.bayer);
+  if (!given.bayer.empty() && !pattern)
     throw UsageError("--bayer " + given.bayer +
                      ": write RGGB, BGGR, GRBG or GBRG, the filters of the first two pixels of the first two rows");
   for (const StereoSide side : kSides) {
-    const auto header = firstHeader(sequence, side);
-    if (header && header->channels != 1)
-      throw InputError(sequence.frames.front().of(side).string() +
-                       ": has colors, so that it is no mosaic of a sensor; leave --bayer out");
+    const auto header = pattern ? firstHeader(sequence, side) : std::nullopt;
+    if (header && header->channels != 1) throw InputError(sequence.frames.front().of(side).string() + kNoMosaic);
   }
   return pattern;
 }

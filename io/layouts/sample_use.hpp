@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 
 #include "io/sequence.hpp"
@@ -10,7 +11,11 @@ namespace motorcade {
 /// all along it, so that a part of the drive gets what the whole gets. Empty where the images have 8 bits.
 std::optional<SampleUse> sampleUseOf(const Sequence& sequence);
 
-/// The mosaic that the user gives. Throws UsageError for no such pattern, and InputError where an image has colors.
-std::optional<BayerPattern> givenMosaic(const Sequence& sequence, const GivenCameras& given);
+/// The mosaic that a calibration in YAML tells of, `bayer_pattern: RGGB` of the pair or of `cam0`; mostly none. Throws
+/// InputError for no such pattern.
+std::optional<BayerPattern> toldMosaic(const std::filesystem::path& calibration);
+/// The mosaic that the user gives, else the sequence's own. Throws UsageError for no such pattern, and InputError where
+/// an image has colors.
+std::optional<BayerPattern> mosaicOf(const Sequence& sequence, const GivenCameras& given);
 
 }  // namespace motorcade

@@ -21,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::messageOf;
+using testing::AllOf;
 using testing::HasSubstr;
 
 void overwrite(const fs::path& file, const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
@@ -183,6 +184,21 @@ TEST_F(SamplesOfDrive, OfAMosaicBecomeItsGrayInEightAndInSixteenBits) {
                 read = reader.read(sequence.frames[2], StereoSide::kRight);
     for (int y = 0; y < kHeight; ++y) ASSERT_TRUE(std::equal(read.row(y), read.row(y) + kWidth, expected.row(y))) << y;
   }
+}
+
+TEST_F(SamplesOfDrive, ACalibrationMayTellOfTheMosaic) {
+  const std::string cameras =
+      "M1: [50, 0, 20, 0, 50, 12, 0, 0, 1]\nM2: [50, 0, 20, 0, 50, 12, 0, 0, 1]\nD1: [0, 0, 0, 0]\nD2: [0, 0, 0, 0]\n"
+      "R: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [-0.5, 0, 0]\n";
+  const auto opened = [&](const std::string& more, const std::string& given) {
+    const fs::path file = folder_.write("stereo.yaml", cameras + more);
+    return drive(same, writeDeep, {.calibration = file.string(), .bayer = given}).bayer;
+  };
+  EXPECT_EQ(opened("bayer_pattern: BGGR\n", ""), BayerPattern::kBggr);
+  EXPECT_EQ(opened("bayer_pattern: BGGR\n", "RGGB"), BayerPattern::kRggb) << "what the user says comes first";
+  EXPECT_EQ(opened("", ""), std::nullopt);
+  EXPECT_THAT(messageOf<InputError>([&] { opened("bayer_pattern: yes\n", ""); }),
+              AllOf(HasSubstr("stereo.yaml"), HasSubstr("bayer_pattern"), HasSubstr("write RGGB")));
 }
 
 TEST_F(SamplesOfDrive, AMosaicHasOneOfFourPatternsAndNoColors) {
