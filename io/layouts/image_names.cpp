@@ -34,14 +34,14 @@ std::string withoutZeros(const std::string& digits) {
 
 /// The kind that all names have but a few; empty where there is no such kind.
 std::optional<std::string> usualKind(const std::vector<NameParts>& names) {
-  constexpr std::size_t kFewest = 3;
+  constexpr std::size_t kFewest = 3, kMany = 5;  // strays are at most one name in so many
   std::map<std::string, std::size_t> counts;
   for (const NameParts& name : names) ++counts[kindOf(name)];
   const auto usual =
       std::ranges::max_element(counts, {}, [](const auto& kind_and_count) { return kind_and_count.second; });
   if (counts.size() == 1) return usual->first;
   const std::size_t strays = names.size() - usual->second;
-  const bool few = strays == 1 || 10 * strays <= names.size();
+  const bool few = strays == 1 || kMany * strays <= names.size();
   return few && usual->second >= kFewest ? std::optional(usual->first) : std::nullopt;
 }
 

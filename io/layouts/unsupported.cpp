@@ -110,6 +110,13 @@ std::string glob(const fs::path& folder, const std::string& pattern) {
   return text;
 }
 
+/// All images of a folder with the same extension, as a shell finds them.
+std::string allLike(const fs::path& image) {
+  std::string pattern(1, '*');
+  pattern += image.extension().string();
+  return glob(image.parent_path(), pattern);
+}
+
 /// The names of a group of images as a pattern: digits that differ are left open.
 std::string patternOf(const std::vector<NameParts>& names, const std::set<std::size_t>& kept,
                       const std::string& extension) {
@@ -161,7 +168,7 @@ bool mayBeSideBySide(const fs::path& image) {
 }
 
 std::string ofSideBySide(const fs::path& image) {
-  const std::string all = glob(image.parent_path(), "*" + image.extension().string());
+  const std::string all = allLike(image);
   const auto cut = [&](const char* side, const char* where) {
     return std::string("\n  mogrify -path DRIVE/") + side + " -gravity " + where + " -crop 50%x100%+0+0 +repage " + all;
   };
@@ -198,7 +205,7 @@ std::string adviceOnOtherImages(const std::vector<fs::path>& images) {
   const fs::path& first = images.front();
   return "images ending with " + first.extension().string() +
          " are not read; ImageMagick writes PNG files beside them:\n  mogrify -format png " +
-         glob(first.parent_path(), "*" + first.extension().string());
+         allLike(first);
 }
 
 std::string adviceOnOneFolder(const std::vector<fs::path>& images) {
