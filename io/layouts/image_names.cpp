@@ -109,6 +109,18 @@ std::optional<KeyedImages> byTimes(const NamedImages& left, const NamedImages& r
   return keyed;
 }
 
+/// The digits that tell names of a side apart. Where both sides have as many parts, what one has but once may differ on
+/// the other.
+std::pair<std::set<std::size_t>, std::set<std::size_t>> tellingDigits(const NamedImages& left,
+                                                                      const NamedImages& right) {
+  auto of_left = varyingDigits(left.names), of_right = varyingDigits(right.names);
+  if (left.names.front().size() == right.names.front().size()) {
+    of_left.insert(of_right.begin(), of_right.end());
+    of_right = of_left;
+  }
+  return {of_left, of_right};
+}
+
 }  // namespace
 
 NameParts partsOfName(std::string_view name) {
@@ -149,11 +161,7 @@ std::set<std::size_t> varyingDigits(const std::vector<NameParts>& names) {
 KeyedImages keyedImages(const NamedImages& left, const NamedImages& right) {
   if (!left.alike || !right.alike) return byNames(left, right, std::nullopt);
   if (auto keyed = byTimes(left, right)) return *std::move(keyed);
-  auto of_left = varyingDigits(left.names), of_right = varyingDigits(right.names);
-  if (left.names.front().size() == right.names.front().size()) {  // what one side has but once may differ on the other
-    of_left.insert(of_right.begin(), of_right.end());
-    of_right = of_left;
-  }
+  const auto [of_left, of_right] = tellingDigits(left, right);
   if (of_left.size() != of_right.size()) return byNames(left, right, std::nullopt);
   KeyedImages keyed{.kind = NameKind::kNumbers};
   if (of_left.size() == 1 && insertNumbers(keyed.left, left, *of_left.begin()) &&
@@ -162,20 +170,21 @@ KeyedImages keyedImages(const NamedImages& left, const NamedImages& right) {
   return byNames(left, right, std::pair(of_left, of_right));
 }
 
-fs::path expectedImage(const NamedImages& side, const fs::path& partner) {
+fs::path expectedImage(const NamedImages& side, const NamedImages& other, const fs::path& partner) {
   const fs::path& example = side.images.front();
-  const NameParts digits = partsOfName(partner.stem().string());
-  NameParts name = side.names.front();
-  if (!side.alike || name.size() != digits.size())
+  const auto [of_side, of_other] = tellingDigits(side, other);
+  if (!side.alike || !other.alike || of_side.size() != of_other.size())
     return example.parent_path() / partner.filename().replace_extension(example.extension());
-  const auto varying = varyingDigits(side.names);
-  for (std::size_t part = 1; part < name.size(); part += 2) {
-    if (!varying.contains(part)) continue;
-    const std::size_t width = name[part].size();
+  const NameParts from = partsOfName(partner.stem().string());
+  NameParts name = side.names.front();
+  for (auto part = of_side.begin(), source = of_other.begin(); part != of_side.end(); ++part, ++source) {
+    const std::size_t width = name[*part].size();
     const bool padded =
-        std::ranges::all_of(side.names, [&](const NameParts& other) { return other[part].size() == width; });
-    name[part] = padded ? withoutZeros(digits[part]) : digits[part];
-    if (padded && name[part].size() < width) name[part].insert(0, width - name[part].size(), '0');
+        std::ranges::all_of(side.names, [&](const NameParts& each) { return each[*part].size() == width; });
+    std::string digits = withoutZeros(from[*source]);
+    const std::size_t least = padded ? width : 1;
+    if (digits.size() < least) digits.insert(0, least - digits.size(), '0');
+    name[*part] = digits;
   }
   return example.parent_path() / (joined(name) + example.extension().string());
 }

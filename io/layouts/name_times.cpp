@@ -11,8 +11,8 @@ namespace motorcade {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000, kMillisecond_ns = 1'000'000, kMicrosecond_ns = 1'000;
-/// Seconds since 1970 from 2001 to 2112, which is also how far 63 bits of nanoseconds allow differences.
-constexpr std::int64_t kEarliest_s = 1'000'000'000, kLatest_s = 4'500'000'000;
+/// Seconds since 1970 from 2004, below which numbers rather count from a round one, to 2112, which is also how far 63 bits of nanoseconds allow differences.
+constexpr std::int64_t kEarliest_s = 1'100'000'000, kLatest_s = 4'500'000'000;
 
 bool isClockTime_s(std::int64_t value_s) { return value_s >= kEarliest_s && value_s < kLatest_s; }
 
@@ -68,6 +68,10 @@ std::optional<std::int64_t> date_ns(const NameParts& name, const std::vector<Nam
   return std::nullopt;
 }
 
+bool varies(const std::vector<NameParts>& names, std::size_t part) {
+  return std::ranges::any_of(names, [&](const NameParts& name) { return name[part] != names.front()[part]; });
+}
+
 bool isOneWidth(const std::vector<NameParts>& names, std::size_t part) {
   return std::ranges::all_of(names,
                              [&](const NameParts& name) { return name[part].size() == names.front()[part].size(); });
@@ -80,11 +84,23 @@ std::optional<std::int64_t> secondsAndMore_ns(const NameParts& name, const std::
   for (std::size_t part = 1; part + 2 < name.size(); part += 2) {
     const std::string& rest = name[part + 2];
     const auto whole_s = wholeNumber(name[part]);
-    const bool point = name[part + 1] == ".", goes_on = point && names.front()[part] != names.back()[part];
+    const bool point = name[part + 1] == ".", goes_on = point && varies(names, part) && varies(names, part + 2);
     if (!whole_s || *whole_s >= kLatest_s || (!goes_on && !isClockTime_s(*whole_s)) || rest.size() > kMostDigits)
       continue;
     const bool fraction = point || (isOneWidth(names, part + 2) && rest.size() % 3 == 0);
     return *whole_s * kSecond_ns + (fraction ? fraction_ns(rest) : wholeNumber(rest).value());
+  }
+  return std::nullopt;
+}
+
+/// Milliseconds with a fraction.
+std::optional<std::int64_t> milliseconds_ns(const NameParts& name, const std::vector<NameParts>& names) {
+  constexpr std::int64_t kMost = kLatest_s * 1'000;
+  for (std::size_t part = 1; part + 2 < name.size(); part += 2) {
+    const auto whole = wholeNumber(name[part]);
+    if (name[part + 1] == "." && whole && *whole < kMost && name[part + 2].size() <= 9 && varies(names, part) &&
+        varies(names, part + 2))
+      return *whole * kMillisecond_ns + fraction_ns(name[part + 2]) / (kSecond_ns / kMillisecond_ns);
   }
   return std::nullopt;
 }
@@ -143,8 +159,9 @@ bool arePlausible(std::vector<std::int64_t> times_ns) {
 
 using TimeOfName = std::function<std::optional<std::int64_t>(const NameParts&, const std::vector<NameParts>&)>;
 
-std::optional<NameTimes> timesBy(const TimeOfName& timeOf_ns, const std::vector<NameParts>& names) {
-  NameTimes times{.all_ns = {}, .unit_ns = kSecond_ns};
+std::optional<NameTimes> timesBy(const TimeOfName& timeOf_ns, const std::vector<NameParts>& names,
+                                 std::int64_t unit_ns = kSecond_ns) {
+  NameTimes times{.all_ns = {}, .unit_ns = unit_ns};
   for (const NameParts& name : names) {
     const auto time_ns = timeOf_ns(name, names);
     if (!time_ns) return std::nullopt;
@@ -159,6 +176,7 @@ std::optional<NameTimes> timesOfNames(const std::vector<NameParts>& names) {
   if (names.empty()) return std::nullopt;
   if (auto times = timesBy(date_ns, names)) return times;
   if (auto times = timesBy(secondsAndMore_ns, names)) return times;
+  if (auto times = timesBy(milliseconds_ns, names, kMillisecond_ns)) return times;
   auto times = wholeNumberTimes(names);
   return times && arePlausible(times->all_ns) ? times : std::nullopt;
 }

@@ -53,9 +53,9 @@ class Zipper {
     paired_.kind = keyed_.kind;
     for (auto l = keyed_.left.begin(), r = keyed_.right.begin(); l != keyed_.left.end() || r != keyed_.right.end();) {
       if (r == keyed_.right.end() || (l != keyed_.left.end() && isAlone(l, r, keyed_.left, keyed_.right)))
-        add(l->first, {.left = l->second, .right = expectedImage(right_, l->second), .right_missing = true}), ++l;
+        add(l->first, {.left = l->second, .right = expectedImage(right_, left_, l->second), .right_missing = true}), ++l;
       else if (l == keyed_.left.end() || isAlone(r, l, keyed_.right, keyed_.left))
-        add(r->first, {.left = expectedImage(left_, r->second), .right = r->second, .left_missing = true}), ++r;
+        add(r->first, {.left = expectedImage(left_, right_, r->second), .right = r->second, .left_missing = true}), ++r;
       else
         addPair(l++, r++);
     }

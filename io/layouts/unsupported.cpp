@@ -186,9 +186,9 @@ std::string adviceOnFile(const fs::path& file) {
            (lowerExtension(file) == ".bag" ? ofRos1(file) : ofRos2(file)) + kThen;
   if (isVideo(file)) return ": is a video, which is not read; write its images into two folders," + ofVideo(file) + kThen;
   if (lowerExtension(file) == ".svo")
-    return ": is a recording of a ZED camera, which is not read; write its rectified images into DRIVE/left and "
-           "DRIVE/right with the ZED SDK's SVO export" +
-           std::string(kThen);
+    return ": is a recording of a ZED camera, which is not read; write its rectified images into a folder with the ZED "
+           "SDK's export, and name that folder for the next step\n  mkdir -p DRIVE/images\n  ZED_SVO_Export " +
+           shellWord(file.string()) + " DRIVE/images/ 2";
   return ": is one image; name the folder of a sequence";
 }
 

@@ -286,6 +286,8 @@ TEST(NameTimes, AreReadInTheUnitThatACameraMayHave) {
   EXPECT_THAT(times_ns({"1403636579_95000000", "1403636580_5000000"}),  // seconds and nanoseconds, as ROS has them
               ElementsAre(1403636579095000000, 1403636580005000000));
   EXPECT_THAT(times_ns({"33333", "66666", "99999"}), ElementsAre(33333000, 66666000, 99999000));  // of a clock's start
+  EXPECT_THAT(times_ns({"1548780000123.45", "1548780000156.7"}), ElementsAre(1548780000123450000, 1548780000156700000));
+  EXPECT_THAT(times_ns({"1000000000", "1100000000"}), ElementsAre(1000000000, 1100000000));
   EXPECT_THAT(times_ns({"5033333333", "5066666666"}), ElementsAre(5033333333, 5066666666));
 }
 
@@ -304,6 +306,7 @@ TEST(NameTimes, AreNotWhatMerelyCounts) {
   EXPECT_THAT(times_ns({"0000000000", "0000000010", "0000000020"}), IsEmpty());
   EXPECT_THAT(times_ns({"000000", "001000", "002000"}), IsEmpty());
   EXPECT_THAT(times_ns({"v1.01", "v1.02", "v1.03"}), IsEmpty());
+  EXPECT_THAT(times_ns({"1000000000", "1000000001", "1000000002"}), IsEmpty());  // as for Kalibr's bagcreater
   EXPECT_THAT(times_ns({"2011_09_26_0001", "2011_09_26_0002"}), IsEmpty());
   EXPECT_THAT(times_ns({"a", "b"}), IsEmpty());
   EXPECT_THAT(times_ns({"99999999999999999999999", "99999999999999999999998"}), IsEmpty());
