@@ -10,8 +10,8 @@
 #include "core/timestamp.hpp"
 #include "io/sequence.hpp"
 
-/// Files with a line per image beside a sequence of which images are missing: a line may be there for each number of the
-/// complete numbering, for each left image, for each right one or for each pair.
+/// Files with a line per image beside a sequence of which images are missing: a line may be there for each number of
+/// the complete numbering, for each left image, for each right one or for each pair.
 namespace motorcade {
 
 /// The place of a frame in the complete numbering of its images.

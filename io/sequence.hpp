@@ -81,8 +81,8 @@ struct Sequence {
   StereoCamera camera{};  // with the size of the images
   std::vector<FramePaths> frames{};
   Numbering numbering{};
-  std::int64_t left_out = 0;       // images that belong to no frame
-  std::vector<InputNote> notes{};  // to be read before the first frame
+  std::int64_t left_out = 0;        // images that belong to no frame
+  std::vector<InputNote> notes{};   // to be read before the first frame
   std::vector<Timestamp> stamps{};  // one per frame, strictly increasing
   bool stamps_measured = false;     // read from a file or the images' names, not made from the frame rate
   Truth truth{};

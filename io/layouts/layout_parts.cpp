@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "io/errors.hpp"
-#include "io/image_file.hpp"
 #include "io/frame_lines.hpp"
+#include "io/image_file.hpp"
 #include "io/layouts/given_cameras.hpp"
 #include "io/layouts/numbering.hpp"
 #include "io/layouts/pairing.hpp"

@@ -11,7 +11,8 @@ namespace motorcade {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000, kMillisecond_ns = 1'000'000, kMicrosecond_ns = 1'000;
-/// Seconds since 1970 from 2004, below which numbers rather count from a round one, to 2112, which is also how far 63 bits of nanoseconds allow differences.
+/// Seconds since 1970 from 2004, below which numbers rather count from a round one, to 2112, which is also how far 63
+/// bits of nanoseconds allow differences.
 constexpr std::int64_t kEarliest_s = 1'100'000'000, kLatest_s = 4'500'000'000;
 
 bool isClockTime_s(std::int64_t value_s) { return value_s >= kEarliest_s && value_s < kLatest_s; }
@@ -43,8 +44,7 @@ std::optional<std::int64_t> dateDigits_ns(const std::string& digits) {
   if (!date.ok() || date.year() < year(1970) || date.year() > year(2100) || hour > 23 || minute > 59 || second > 60)
     return std::nullopt;
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
-  return (((days * 24 + hour) * 60 + minute) * 60 + second) * kSecond_ns +
-         fraction_ns(digits.substr(kWithoutFraction));
+  return (((days * 24 + hour) * 60 + minute) * 60 + second) * kSecond_ns + fraction_ns(digits.substr(kWithoutFraction));
 }
 
 /// The digits of a date that begins with this part: in one, as a day and a time of day, or each number by itself; a

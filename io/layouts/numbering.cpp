@@ -90,9 +90,8 @@ void setNumbers(Sequence& sequence, PairedImages& paired) {
   if (steps.even) fillHoles(paired, steps.step);
   tellUneven(paired, steps);
   if (!steps.counting || paired.numbers.empty()) return;
-  sequence.numbering = {.first = paired.numbers.front(),
-                        .step = steps.step,
-                        .places = placesOf(paired.numbers, steps.step)};
+  sequence.numbering = {
+      .first = paired.numbers.front(), .step = steps.step, .places = placesOf(paired.numbers, steps.step)};
 }
 
 }  // namespace

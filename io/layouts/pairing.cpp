@@ -53,7 +53,8 @@ class Zipper {
     paired_.kind = keyed_.kind;
     for (auto l = keyed_.left.begin(), r = keyed_.right.begin(); l != keyed_.left.end() || r != keyed_.right.end();) {
       if (r == keyed_.right.end() || (l != keyed_.left.end() && isAlone(l, r, keyed_.left, keyed_.right)))
-        add(l->first, {.left = l->second, .right = expectedImage(right_, left_, l->second), .right_missing = true}), ++l;
+        add(l->first, {.left = l->second, .right = expectedImage(right_, left_, l->second), .right_missing = true}),
+            ++l;
       else if (l == keyed_.left.end() || isAlone(r, l, keyed_.right, keyed_.left))
         add(r->first, {.left = expectedImage(left_, right_, r->second), .right = r->second, .left_missing = true}), ++r;
       else
@@ -66,7 +67,8 @@ class Zipper {
  private:
   using Place = ImagesByNumber::const_iterator;
 
-  /// Whether an image has no partner among those of the other side that were not taken yet, of which the first is given.
+  /// Whether an image has no partner among those of the other side that were not taken yet, of which the first is
+  /// given.
   bool isAlone(Place image, Place other, const ImagesByNumber& own_side, const ImagesByNumber& other_side) const {
     if (other == other_side.end()) return true;
     if (other->first - image->first > most_apart_) return true;
@@ -139,9 +141,9 @@ void requireMostlyPairs(const PairedImages& paired) {
   std::vector<fs::path> alone;
   for (const FramePaths& frame : paired.frames)
     if (!frame.isPair()) alone.push_back(frame.left_missing ? frame.right : frame.left);
-  throw InputError(alone.front().parent_path().parent_path().string() + ": of " +
-                   std::to_string(paired.frames.size()) + " numbers or times in the images' names only " +
-                   std::to_string(pairs) + " have a left and a right image; without partner are " + namesOf(alone) +
+  throw InputError(alone.front().parent_path().parent_path().string() + ": of " + std::to_string(paired.frames.size()) +
+                   " numbers or times in the images' names only " + std::to_string(pairs) +
+                   " have a left and a right image; without partner are " + namesOf(alone) +
                    ". Give the images of a pair the same number, or list them: LEFT RIGHT in each line of a text file");
 }
 
@@ -158,9 +160,8 @@ PairedImages pairInOrder(const NamedImages& left, const NamedImages& right) {
   const fs::path left_folder = left.images.front().parent_path(), right_folder = right.images.front().parent_path();
   if (left.images.size() != right.images.size())
     throw InputError(left_folder.string() + " holds " + std::to_string(left.images.size()) + " images, " +
-                     right_folder.string() + " holds " + std::to_string(right.images.size()) +
-                     ", and their names (" + left.images.front().filename().string() + ", " +
-                     right.images.front().filename().string() +
+                     right_folder.string() + " holds " + std::to_string(right.images.size()) + ", and their names (" +
+                     left.images.front().filename().string() + ", " + right.images.front().filename().string() +
                      ") do not tell which belong together; give the images of a pair the same number, or list them: "
                      "LEFT RIGHT in each line of a text file");
   PairedImages paired;
@@ -197,8 +198,8 @@ PairedImages pairByKeys(const KeyedImages& keyed, const NamedImages& left, const
 PairedImages pairFolders(const fs::path& left_folder, const fs::path& right_folder) {
   const NamedImages left = namedImages(imagesIn(left_folder)), right = namedImages(imagesIn(right_folder));
   const KeyedImages keyed = keyedImages(left, right);
-  PairedImages paired = anyPair(Zipper(keyed, left, right).zip()) ? pairByKeys(keyed, left, right)
-                                                                  : pairInOrder(left, right);
+  PairedImages paired =
+      anyPair(Zipper(keyed, left, right).zip()) ? pairByKeys(keyed, left, right) : pairInOrder(left, right);
   tellStrays(paired, left, right);
   return paired;
 }

@@ -36,9 +36,7 @@ bool isOneOf(const std::string& extension, const std::array<const char*, N>& all
   return std::ranges::find(all, extension) != all.end();
 }
 
-bool isBag(const fs::path& file) {
-  return isOneOf(lowerExtension(file), std::array{".bag", ".mcap", ".db3"});
-}
+bool isBag(const fs::path& file) { return isOneOf(lowerExtension(file), std::array{".bag", ".mcap", ".db3"}); }
 
 bool isVideo(const fs::path& file) {
   return isOneOf(lowerExtension(file), std::array{".mp4", ".avi", ".mkv", ".mov", ".webm", ".m4v", ".mpg", ".mpeg",
@@ -62,10 +60,10 @@ constexpr const char* kSides = "side = {\"/LEFT/image_raw\": \"left\", \"/RIGHT/
 
 /// Images are named by their times, so that they find their partner.
 std::string ofRos1(const fs::path& bag) {
-  return "\n  rosbag info " + shellWord(bag.string()) + "    (names the topics: write them in place of /LEFT and /RIGHT)" +
-         kMakeFolders +
-         pythonCommand(std::string("import rosbag, cv2, cv_bridge\n") + kSides + "for topic, message, _ in rosbag.Bag(" +
-                       pythonText(bag.string()) +
+  return "\n  rosbag info " + shellWord(bag.string()) +
+         "    (names the topics: write them in place of /LEFT and /RIGHT)" + kMakeFolders +
+         pythonCommand(std::string("import rosbag, cv2, cv_bridge\n") + kSides +
+                       "for topic, message, _ in rosbag.Bag(" + pythonText(bag.string()) +
                        ").read_messages(list(side)):\n"
                        "  image = cv_bridge.CvBridge().imgmsg_to_cv2(message, \"mono8\")\n"
                        "  cv2.imwrite(\"DRIVE/%s/%d.png\" % (side[topic], message.header.stamp.to_nsec()), image)");
@@ -184,7 +182,8 @@ std::string adviceOnFile(const fs::path& file) {
   if (isBag(file))
     return ": is a bag of messages, which is not read; write its images into two folders" +
            (lowerExtension(file) == ".bag" ? ofRos1(file) : ofRos2(file)) + kThen;
-  if (isVideo(file)) return ": is a video, which is not read; write its images into two folders," + ofVideo(file) + kThen;
+  if (isVideo(file))
+    return ": is a video, which is not read; write its images into two folders," + ofVideo(file) + kThen;
   if (lowerExtension(file) == ".svo")
     return ": is a recording of a ZED camera, which is not read; write its rectified images into a folder with the ZED "
            "SDK's export, and name that folder for the next step\n  mkdir -p DRIVE/images\n  ZED_SVO_Export " +
@@ -204,8 +203,7 @@ std::vector<fs::path> otherImages(const fs::path& folder) {
 std::string adviceOnOtherImages(const std::vector<fs::path>& images) {
   const fs::path& first = images.front();
   return "images ending with " + first.extension().string() +
-         " are not read; ImageMagick writes PNG files beside them:\n  mogrify -format png " +
-         allLike(first);
+         " are not read; ImageMagick writes PNG files beside them:\n  mogrify -format png " + allLike(first);
 }
 
 std::string adviceOnOneFolder(const std::vector<fs::path>& images) {

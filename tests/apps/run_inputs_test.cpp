@@ -210,8 +210,8 @@ TEST_F(RenamedDrive, ImagesMissingOnEachSideCostTheirFramesAndNothingElse) {
   link(StereoSide::kRight, padded("right"), {14});
   for (const char* file : {"poses.txt", "times.txt"}) copyTruth(file);
   EXPECT_EQ(motorcade("check " + quoted()), 0) << contentOf(out("stdout"));
-  EXPECT_THAT(contentOf(out("stdout")), AllOf(HasSubstr("warning (pairs)"), HasSubstr("left/left0007.png"),
-                                              HasSubstr("right/right0014.png")));
+  EXPECT_THAT(contentOf(out("stdout")),
+              AllOf(HasSubstr("warning (pairs)"), HasSubstr("left/left0007.png"), HasSubstr("right/right0014.png")));
   ASSERT_EQ(runDrive("missing"), 0) << contentOf(errors());
   EXPECT_THAT(contentOf(errors()), AllOf(HasSubstr("1 left missing"), HasSubstr("left0007.png: is missing")));
   const auto images = summary("missing")["images"];
@@ -282,7 +282,8 @@ TEST_F(RenamedDrive, ImagesInOneFolderBecomeASequenceByTheCommandsOfTheMessage) 
   link(StereoSide::kLeft, padded("left it's "), {7});
   fs::rename(drive() / "left", drive() / "all");
   link(StereoSide::kRight, padded("right"));
-  for (const auto& entry : fs::directory_iterator(drive() / "right")) fs::rename(entry, drive() / "all" / entry.path().filename());
+  for (const auto& entry : fs::directory_iterator(drive() / "right"))
+    fs::rename(entry, drive() / "all" / entry.path().filename());
   fs::remove(drive() / "right");
   const std::string here = "cd '" + out("").string() + "' && ";
   EXPECT_EQ(motorcade("run '" + (drive() / "all").string() + "' --out " + out("one").string()), 3);

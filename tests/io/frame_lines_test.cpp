@@ -88,7 +88,8 @@ TEST(FrameLines, TimesOfLaterNumbersMayBeginAtZero) {
 TEST(FrameLines, PosesOfFramesWithoutLineAreInterpolated) {
   const Sequence sequence = sequenceOf({3}, {6, 7});
   std::vector<SE3> poses;  // of the left images
-  for (const int number : {0, 1, 2, 4, 5, 6, 7, 8, 9}) poses.emplace_back(Eigen::Matrix3d::Identity(), Eigen::Vector3d(number, 0, 0));
+  for (const int number : {0, 1, 2, 4, 5, 6, 7, 8, 9})
+    poses.emplace_back(Eigen::Matrix3d::Identity(), Eigen::Vector3d(number, 0, 0));
   const auto all = posesOfFrames(sequence, poses, "poses.txt");
   ASSERT_EQ(all.size(), 10U);
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(all[i].translation().x(), i, 1e-12);

@@ -36,8 +36,7 @@ TEST(NaturalOrder, OfPaddedNamesIsThatOfPlainText) {
 TEST(NaturalOrder, FoldersAreListedInIt) {
   const test::TemporaryFolder folder;
   for (const char* name : {"img10.png", "img2.png", "img1.png"}) folder.write(name, "");
-  EXPECT_THAT(listFolder(folder.path()),
-              ElementsAre(folder / "img1.png", folder / "img2.png", folder / "img10.png"));
+  EXPECT_THAT(listFolder(folder.path()), ElementsAre(folder / "img1.png", folder / "img2.png", folder / "img10.png"));
   EXPECT_THAT(listFolderIfThere(folder / "nowhere"), IsEmpty());
 }
 

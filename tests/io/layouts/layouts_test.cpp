@@ -276,7 +276,8 @@ TEST_F(Layouts, FolderOfSequencesNamesThem) {
   EXPECT_THAT(openError("drives"), AllOf(HasSubstr("are sequences: first."), Not(HasSubstr("ln -s"))));
   writeImage("mixed/left_0.png");
   writeImage("mixed/right_0.png");
-  EXPECT_THAT(openError("mixed"), AllOf(HasSubstr("it holds 2 images"), HasSubstr("-t DRIVE/right " + (folder_ / "mixed/right_*.png").string())));
+  EXPECT_THAT(openError("mixed"), AllOf(HasSubstr("it holds 2 images"),
+                                        HasSubstr("-t DRIVE/right " + (folder_ / "mixed/right_*.png").string())));
   folder_.write("empty/notes.txt", "");
   EXPECT_THAT(openError("empty"),
               AllOf(HasSubstr("notes.txt"), HasSubstr("PNG, JPEG or PGM"), Not(HasSubstr("ln -s"))));
@@ -286,7 +287,8 @@ TEST_F(Layouts, BagIsToldHowToBecomeImages) {
   folder_.write("one/drive.bag", "#ROSBAG V2.0\n");
   folder_.write("two/drive_0.db3", "SQLite");
   for (const char* name : {"one", "one/drive.bag"})
-    EXPECT_THAT(openError(name), AllOf(HasSubstr("drive.bag: is a bag"), HasSubstr("rosbag info"), HasSubstr("read_messages")));
+    EXPECT_THAT(openError(name),
+                AllOf(HasSubstr("drive.bag: is a bag"), HasSubstr("rosbag info"), HasSubstr("read_messages")));
   for (const char* name : {"two", "two/drive_0.db3"})
     EXPECT_THAT(openError(name), AllOf(HasSubstr("drive_0.db3"), HasSubstr("ros2 bag info"), HasSubstr("sqlite3")));
   EXPECT_THAT(openError("nowhere"), HasSubstr("does not exist"));

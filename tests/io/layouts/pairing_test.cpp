@@ -70,16 +70,16 @@ TEST_F(Pairing, OneImageMissingOnEachSideCostsTwoFramesAndNoOther) {
   EXPECT_EQ(namesOf(found.frames[11]), "left0011.png right0011.png");
   ASSERT_EQ(found.notes.size(), 1U);
   EXPECT_EQ(found.notes[0].name, "pairs");
-  EXPECT_THAT(found.notes[0].text, AllOf(HasSubstr("1 left missing (left/left0004.png)"),
-                                         HasSubstr("1 right missing (right/right0008.png)"),
-                                         HasSubstr("10 of 12 frames are pairs")));
+  EXPECT_THAT(found.notes[0].text,
+              AllOf(HasSubstr("1 left missing (left/left0004.png)"), HasSubstr("1 right missing (right/right0008.png)"),
+                    HasSubstr("10 of 12 frames are pairs")));
 }
 
 TEST_F(Pairing, NamesOfAnyKindTellTheirNumber) {
   const std::vector<std::pair<NameOf, NameOf>> kinds{
       {name("", 6), name("", 6)},
-      {name("left", 4), name("right", 0)},                          // zeros ahead on one side alone
-      {name("cam0_", 0), name("cam1_frame", 5, "_rect.jpg")},       // numbers of the camera, other words and endings
+      {name("left", 4), name("right", 0)},                     // zeros ahead on one side alone
+      {name("cam0_", 0), name("cam1_frame", 5, "_rect.jpg")},  // numbers of the camera, other words and endings
       {name("img_0_", 3, "_L8.png"), name("img_1_", 3, "_R16.png")},
       {name("2011_09_26_drive_0013_", 10), name("", 3, ".pgm")}};
   for (const auto& [left, right] : kinds) {
@@ -143,8 +143,7 @@ TEST_F(Pairing, OverALongGapOnlyTimePasses) {
 
 TEST_F(Pairing, UnevenNumbersTellHowFarApartFramesAre) {
   const std::vector<int> numbers{0, 3, 7, 8, 12, 19, 21};
-  for (const char* side : {"left", "right"})
-    writeAll(side, 7, [&](int i) { return padded(numbers[i], 6) + ".png"; });
+  for (const char* side : {"left", "right"}) writeAll(side, 7, [&](int i) { return padded(numbers[i], 6) + ".png"; });
   const Sequence found = sequence();
   EXPECT_EQ(found.frames.size(), 7U);
   EXPECT_THAT(found.numbering.places, ElementsAre(0, 3, 7, 8, 12, 19, 21));
@@ -215,7 +214,8 @@ TEST_F(Pairing, NamesThatTellNothingAreTakenInOrderAndToldSo) {
   const Sequence found = sequence();
   ASSERT_EQ(found.frames.size(), 8U);
   EXPECT_EQ(namesOf(found.frames[7]), "107.png 5007.png");
-  EXPECT_THAT(found.notes.at(0).text, AllOf(HasSubstr("paired in order"), HasSubstr("left/100.png with right/5000.png")));
+  EXPECT_THAT(found.notes.at(0).text,
+              AllOf(HasSubstr("paired in order"), HasSubstr("left/100.png with right/5000.png")));
   write("left", "108.png");
   EXPECT_THAT(error(), AllOf(HasSubstr("holds 9 images"), HasSubstr("holds 8"), HasSubstr("LEFT RIGHT")));
 }
@@ -244,8 +244,7 @@ TEST_F(Pairing, NumbersOfTwoPlacesAreComparedTogether) {
   writeAll("right", 18, nameOf("rightImg"));
   const Sequence found = sequence();
   ASSERT_EQ(found.frames.size(), 18U);
-  EXPECT_EQ(namesOf(found.frames[8]),
-            "aachen_000001_000021_leftImg8bit.png? aachen_000001_000021_rightImg8bit.png");
+  EXPECT_EQ(namesOf(found.frames[8]), "aachen_000001_000021_leftImg8bit.png? aachen_000001_000021_rightImg8bit.png");
   EXPECT_EQ(namesOf(found.frames[17]), nameOf("leftImg")(17) + " " + nameOf("rightImg")(17));
 }
 
