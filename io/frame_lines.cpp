@@ -37,7 +37,7 @@ FramesOfLines lineForEachNumber(const Sequence& sequence, std::size_t lines, std
   return frames;
 }
 
-std::string text(const char* format, double value) {
+std::string formatted(const char* format, double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, format, value);
   return buffer;
@@ -212,7 +212,7 @@ void tellPeriod(Sequence& sequence) {
   const std::string mend =
       sequence.stamps_measured ? "look at the times, which must be in seconds" : "give the rate of the camera, --fps";
   sequence.notes.push_back({"times",
-                            "pairs are " + text("%.4g", period_s) + " s apart, " +
+                            "pairs are " + formatted("%.4g", period_s) + " s apart, " +
                                 (period_s > kMost_s ? "too far to follow anything" : "so that no speed can be right") +
                                 "; " + mend,
                             period_s > kFarTooLong_s || period_s < kLeast_s});

@@ -43,7 +43,7 @@ void markMissing(std::vector<FramePaths>& frames) {
 }
 
 /// Names the images that are not there. Throws InputError where hardly any pair is.
-void tellMissing(Sequence& sequence) {
+void tellMissingFiles(Sequence& sequence) {
   std::vector<fs::path> missing;
   for (const FramePaths& frame : sequence.frames)
     for (const StereoSide side : {StereoSide::kLeft, StereoSide::kRight})
@@ -119,7 +119,7 @@ std::optional<Sequence> openImageList(const SequenceSource& source) {
   List list = readList(file);
   Sequence sequence{.folder = file, .layout = "list", .frames = std::move(list.frames)};
   sequence.truth.poses = ifExists(file.parent_path() / "poses.txt");
-  tellMissing(sequence);
+  tellMissingFiles(sequence);
   tellUnlikePairs(sequence);
   setCamera(sequence, source.given, [&](ImageSize size) { return cameraBeside(sequence, file.parent_path(), size); });
   if (list.stamps.empty()) {

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kDigits = "0123456789";
+constexpr std::string_view kDigitLetters = "0123456789";
 
 std::string joined(const NameParts& parts) {
   std::string name;
@@ -22,7 +22,7 @@ std::string joined(const NameParts& parts) {
 }
 
 /// The text of a name, with a mark for digits.
-std::string kindOf(const NameParts& parts) {
+std::string nameKindOf(const NameParts& parts) {
   std::string kind;
   for (std::size_t i = 0; i < parts.size(); ++i) kind += i % 2 == 0 ? parts[i] : "#";
   return kind;
@@ -36,7 +36,7 @@ std::string withoutZeros(const std::string& digits) {
 std::optional<std::string> usualKind(const std::vector<NameParts>& names) {
   constexpr std::size_t kFewest = 3, kMany = 5;  // strays are at most one name in so many
   std::map<std::string, std::size_t> counts;
-  for (const NameParts& name : names) ++counts[kindOf(name)];
+  for (const NameParts& name : names) ++counts[nameKindOf(name)];
   const auto usual =
       std::ranges::max_element(counts, {}, [](const auto& kind_and_count) { return kind_and_count.second; });
   if (counts.size() == 1) return usual->first;
@@ -45,7 +45,7 @@ std::optional<std::string> usualKind(const std::vector<NameParts>& names) {
   return few && usual->second >= kFewest ? std::optional(usual->first) : std::nullopt;
 }
 
-std::optional<std::int64_t> numberOf(const std::string& digits) {
+std::optional<std::int64_t> numberIn(const std::string& digits) {
   std::int64_t number = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   return error == std::errc() ? std::optional(number) : std::nullopt;
@@ -61,7 +61,7 @@ void insert(ImagesByNumber& images, std::int64_t number, const fs::path& image) 
 /// Numbers the images of both sides; false where a number is too large.
 bool insertNumbers(ImagesByNumber& images, const NamedImages& side, std::size_t part) {
   for (std::size_t i = 0; i < side.images.size(); ++i) {
-    const auto number = numberOf(side.names[i][part]);
+    const auto number = numberIn(side.names[i][part]);
     if (!number) return false;
     insert(images, *number, side.images[i]);
   }
@@ -127,7 +127,7 @@ NameParts partsOfName(std::string_view name) {
   NameParts parts;
   while (parts.empty() || !name.empty()) {
     const bool digits = parts.size() % 2 == 1;
-    const std::size_t end = digits ? name.find_first_not_of(kDigits) : name.find_first_of(kDigits);
+    const std::size_t end = digits ? name.find_first_not_of(kDigitLetters) : name.find_first_of(kDigitLetters);
     parts.emplace_back(name.substr(0, end));
     name.remove_prefix(std::min(end, name.size()));
   }
@@ -143,7 +143,7 @@ NamedImages namedImages(const std::vector<fs::path>& images) {
   if (!usual) return named;
   const NamedImages all = std::exchange(named, {});
   for (std::size_t i = 0; i < images.size(); ++i) {
-    const bool stray = kindOf(all.names[i]) != *usual;
+    const bool stray = nameKindOf(all.names[i]) != *usual;
     (stray ? named.strays : named.images).push_back(images[i]);
     if (!stray) named.names.push_back(all.names[i]);
   }

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostNamed = 3;
+constexpr std::size_t kMostImagesNamed = 3;
 
 std::vector<std::int64_t> numbersOf(const ImagesByNumber& images) {
   std::vector<std::int64_t> numbers;
@@ -182,9 +182,9 @@ bool anyPair(const PairedImages& paired) { return std::ranges::any_of(paired.fra
 
 std::string namesOf(const std::vector<fs::path>& images) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(images.size(), kMostNamed); ++i)
+  for (std::size_t i = 0; i < std::min(images.size(), kMostImagesNamed); ++i)
     text += (i > 0 ? ", " : "") + (images[i].parent_path().filename() / images[i].filename()).string();
-  if (images.size() > kMostNamed) text += " and " + std::to_string(images.size() - kMostNamed) + " more";
+  if (images.size() > kMostImagesNamed) text += " and " + std::to_string(images.size() - kMostImagesNamed) + " more";
   return text;
 }
 

@@ -97,7 +97,7 @@ std::string ofVideo(const fs::path& video) {
 }
 
 /// Image files whose names match, as a shell finds them.
-std::string glob(const fs::path& folder, const std::string& pattern) {
+std::string shellPattern(const fs::path& folder, const std::string& pattern) {
   std::string text = shellWord(folder.string()) + "/";
   for (std::size_t begin = 0; begin < pattern.size();) {
     const std::size_t end = std::min(pattern.find('*', begin), pattern.size());
@@ -112,7 +112,7 @@ std::string glob(const fs::path& folder, const std::string& pattern) {
 std::string allLike(const fs::path& image) {
   std::string pattern(1, '*');
   pattern += image.extension().string();
-  return glob(image.parent_path(), pattern);
+  return shellPattern(image.parent_path(), pattern);
 }
 
 /// The names of a group of images as a pattern: digits that differ are left open.
@@ -151,8 +151,8 @@ std::optional<std::pair<std::string, std::string>> twoGroups(const std::vector<f
 std::string ofTwoGroups(const fs::path& folder, const std::pair<std::string, std::string>& patterns) {
   return "\nTwo sets of images become a sequence in folders named left and right (exchange them where the first set is "
          "the right camera's):" +
-         std::string(kMakeFolders) + "\n  ln -s -t DRIVE/left " + glob(folder, patterns.first) +
-         "\n  ln -s -t DRIVE/right " + glob(folder, patterns.second) + kThen;
+         std::string(kMakeFolders) + "\n  ln -s -t DRIVE/left " + shellPattern(folder, patterns.first) +
+         "\n  ln -s -t DRIVE/right " + shellPattern(folder, patterns.second) + kThen;
 }
 
 /// Twice as wide as high, and more: each may be a pair.
