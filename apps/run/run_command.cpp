@@ -94,7 +94,11 @@ void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) 
       sequence.folder.string(), sequence.layout, range.size(), sequence.frames.size(), camera.width_px,
       camera.height_px, sequence.rectification ? "rectified on the way to " : "", camera.fx_px, camera.fy_px,
       camera.cx_px, camera.cy_px, camera.baseline_m);
-  if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
+  if (!sequence.stamps_measured)
+    spdlog::info("the sequence has no times: taken as {} Hz (--fps){}", fps_hz,
+                 sequence.numbering.step > 1
+                     ? fmt::format(" from one image to the next, whose numbers differ by {}", sequence.numbering.step)
+                     : "");
 }
 
 void tellOutside(double share) {
