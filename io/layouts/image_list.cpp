@@ -68,15 +68,15 @@ void tellUnlikePairs(Sequence& sequence) {
     differences.emplace_back(frame, *right - *left);
     ++counts[*right - *left];
   }
-  const auto same = counts.find(0);
-  if (same == counts.end() || counts.size() == 1 || 2 * same->second < std::ssize(sequence.frames)) return;
+  const std::int64_t same = counts.contains(0) ? counts.at(0) : 0;
+  if (same == 0 || counts.size() == 1) return;
   const auto unlike = std::ranges::find_if(differences, [](const auto& entry) { return entry.second != 0; });
   sequence.notes.push_back({"pairs",
-                            sequence.folder.string() + ": " +
-                                std::to_string(std::ssize(sequence.frames) - same->second) +
+                            sequence.folder.string() + ": " + std::to_string(std::ssize(sequence.frames) - same) +
                                 " lines bring together images of different numbers (" +
-                                namesOf({unlike->first.left, unlike->first.right}) + "), the others of the same one",
-                            true});
+                                namesOf({unlike->first.left, unlike->first.right}) + "), " + std::to_string(same) +
+                                " those of the same one",
+                            2 * same >= std::ssize(sequence.frames)});
 }
 
 List readList(const fs::path& file) {

@@ -217,22 +217,21 @@ void leaveOutEnds(PairedImages& paired) {
 }
 
 void tellMissing(PairedImages& paired) {
-  std::vector<fs::path> left, right;
-  std::size_t both = 0;
+  std::vector<fs::path> left, right, both;
   for (const FramePaths& frame : paired.frames) {
     if (frame.left_missing && frame.right_missing)
-      ++both;
+      both.push_back(frame.left);
     else if (frame.left_missing)
       left.push_back(frame.left);
     else if (frame.right_missing)
       right.push_back(frame.right);
   }
-  if (left.empty() && right.empty() && both == 0) return;
+  if (left.empty() && right.empty() && both.empty()) return;
   std::string text;
   const auto tell = [&](const std::string& sentence) { text += (text.empty() ? "" : ", ") + sentence; };
   if (!left.empty()) tell(std::to_string(left.size()) + " left missing (" + namesOf(left) + ")");
   if (!right.empty()) tell(std::to_string(right.size()) + " right missing (" + namesOf(right) + ")");
-  if (both > 0) tell(std::to_string(both) + " missing on both sides");
+  if (!both.empty()) tell(std::to_string(both.size()) + " missing on both sides (" + namesOf(both) + ")");
   paired.notes.push_back("images are missing: " + text + "; " + std::to_string(pairsIn(paired)) + " of " +
                          std::to_string(paired.frames.size()) +
                          " frames are pairs, the others have no images and a predicted pose");
