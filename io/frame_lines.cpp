@@ -37,7 +37,7 @@ FramesOfLines lineForEachNumber(const Sequence& sequence, std::size_t lines, std
   return frames;
 }
 
-std::string text(const char* format, double value) {
+std::string formatted(const char* format, double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, format, value);
   return buffer;
@@ -200,7 +200,7 @@ std::vector<SE3> posesOfFrames(const Sequence& sequence, const std::vector<SE3>&
 
 void tellPeriod(Sequence& sequence) {
   constexpr double kMost_s = 2, kLeast_s = 5e-4;
-  constexpr double kFarTooLong_s = 10, kFarTooShort_s = 5e-5;  // nothing can be followed over as long, or measured
+  constexpr double kFarTooLong_s = 10;  // nothing can be followed over as long
   if (sequence.stamps.size() < 2) return;
   std::vector<double> periods_s;
   for (std::size_t i = 1; i < sequence.stamps.size(); ++i)
@@ -212,10 +212,10 @@ void tellPeriod(Sequence& sequence) {
   const std::string mend =
       sequence.stamps_measured ? "look at the times, which must be in seconds" : "give the rate of the camera, --fps";
   sequence.notes.push_back({"times",
-                            "pairs are " + text("%.4g", period_s) + " s apart, " +
+                            "pairs are " + formatted("%.4g", period_s) + " s apart, " +
                                 (period_s > kMost_s ? "too far to follow anything" : "so that no speed can be right") +
                                 "; " + mend,
-                            period_s > kFarTooLong_s || period_s < kFarTooShort_s});
+                            period_s > kFarTooLong_s || period_s < kLeast_s});
 }
 
 }  // namespace motorcade

@@ -20,6 +20,7 @@
 #include "apps/tasks/planner.hpp"
 #include "apps/tasks/task_performer.hpp"
 #include "io/errors.hpp"
+#include "io/shell_words.hpp"
 
 namespace motorcade {
 namespace {
@@ -132,7 +133,7 @@ int performInSlurm(const BatchOptions& options, const BatchFolder& folder, Remai
       std::erase_if(remaining.tasks, [&](const Task* task) { return queued && queued->contains(task->name); });
   if (waiting > 0) std::cout << waiting << " tasks are in Slurm's queue already\n";
   if (remaining.tasks.empty()) {
-    std::cout << "nothing is left to submit; see motorcade batch status " << folder.path().string() << "\n";
+    std::cout << "nothing is left to submit; see motorcade batch status " << shellWord(folder.path().string()) << "\n";
     return 0;
   }
   const SlurmSubmission submission = submitTasks(remaining.tasks, folder, options.slurm_options);
@@ -141,7 +142,8 @@ int performInSlurm(const BatchOptions& options, const BatchFolder& folder, Remai
     return 0;
   }
   std::cout << remaining.tasks.size() << " tasks submitted, " << remaining.finished << " finished before, "
-            << remaining.failed << " failed before; see motorcade batch status " << folder.path().string() << "\n";
+            << remaining.failed << " failed before; see motorcade batch status " << shellWord(folder.path().string())
+            << "\n";
   return 0;
 }
 

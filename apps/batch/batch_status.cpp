@@ -16,6 +16,7 @@
 #include "apps/tasks/task_performer.hpp"
 #include "io/errors.hpp"
 #include "io/line_file.hpp"
+#include "io/shell_words.hpp"
 
 namespace motorcade {
 namespace {
@@ -31,7 +32,7 @@ BatchFolder openBatch(const std::filesystem::path& path) {
   BatchFolder folder(path);
   if (!std::filesystem::exists(folder.plan()))
     throw InputError(path.string() + ": is no folder of a batch; start one with motorcade batch MANIFEST --out " +
-                     path.string());
+                     shellWord(path.string()));
   return folder;
 }
 

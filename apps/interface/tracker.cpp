@@ -190,16 +190,18 @@ Tracker::Push Tracker::Impl::enter(const Pair& pair) {
   return {admission == Admission::kReplacedOlder ? PushStatus::kReplacedOlder : PushStatus::kAccepted, ""};
 }
 
-/// Logs, once, that stamps seem to have another unit: when several pairs in a row were too close together, or far apart.
+/// Logs, once, that stamps seem to have another unit: when several pairs in a row were too close together, or far
+/// apart.
 void Tracker::Impl::tellOfStamps(Admission admission, const Pair& pair) {
   constexpr int kRefused = 2, kSeveral = 3 * kRefused;  // of pairs far apart every second one is accepted
   if (admission != Admission::kTooClose && admission != Admission::kFarAhead) return;
   untimely_ = std::min(kSeveral, untimely_ + kRefused);
   if (untimely_ < kSeveral || std::exchange(told_of_stamps_, true)) return;
   tell(log_, motorcade::LogLevel::kError, [&] {
-    return "pairs are rejected: the stamp " + std::to_string(pair.stamp_ns) + (admission == Admission::kTooClose
-               ? " is less than half a millisecond after that of the pair before, as the stamps before it were"
-               : " is more than ten seconds after that of the pair before, as the stamps before it were") +
+    return "pairs are rejected: the stamp " + std::to_string(pair.stamp_ns) +
+           (admission == Admission::kTooClose
+                ? " is less than half a millisecond after that of the pair before, as the stamps before it were"
+                : " is more than ten seconds after that of the pair before, as the stamps before it were") +
            "; stamp_ns must be in nanoseconds";
   });
 }

@@ -14,6 +14,7 @@
 #include "apps/tasks/task_performer.hpp"
 #include "io/errors.hpp"
 #include "io/frame_table.hpp"
+#include "io/shell_words.hpp"
 #include "io/text_file.hpp"
 
 namespace motorcade {
@@ -192,7 +193,7 @@ MergedBatch readBatch(const fs::path& folder, const std::string& baseline_set) {
   const BatchFolder batch_folder(folder);
   if (!fs::exists(batch_folder.plan()))
     throw InputError(folder.string() + ": is no folder of a batch; start one with motorcade batch MANIFEST --out " +
-                     folder.string());
+                     shellWord(folder.string()));
   MergedBatch batch{.folder = folder, .plan = readPlan(batch_folder.plan())};
   batch.plan.published = comparableFigures(batch.plan.published);
   for (const Task& task : batch.plan.tasks) batch.tasks.push_back(merge(batch, task, batch_folder));

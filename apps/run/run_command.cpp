@@ -95,8 +95,12 @@ void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) 
   if (sequence.samples) spdlog::info("16-bit images, {}", sequence.samples->why);
   if (sequence.bayer) spdlog::info("the images are mosaics of a color sensor, {}", nameOf(*sequence.bayer));
   if (const auto doubt = mosaicDoubt(sequence, range, 1)) spdlog::warn(*doubt);
-  if (!sequence.stamps_measured) spdlog::info("the sequence has no times: taken as {} Hz (--fps)", fps_hz);
   for (const std::string& oddity : odditiesOf(sequence.camera)) spdlog::warn(oddity);
+  if (!sequence.stamps_measured)
+    spdlog::info("the sequence has no times: taken as {} Hz (--fps){}", fps_hz,
+                 sequence.numbering.step > 1
+                     ? fmt::format(" from one image to the next, whose numbers differ by {}", sequence.numbering.step)
+                     : "");
 }
 
 void tellOutside(double share) {

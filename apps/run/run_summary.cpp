@@ -82,6 +82,22 @@ Json toJson(const std::vector<RigFinding>& found) {
   return list;
 }
 
+Json toJson(const ImageCounts& images) {
+  return {{"pairs", images.pairs},
+          {"left_missing", images.left_missing},
+          {"right_missing", images.right_missing},
+          {"left_out", images.left_out}};
+}
+
+Json framesOf(const RunSummary& summary) {
+  const PipelineSummary& pipeline = summary.pipeline;
+  return {{"received", pipeline.received}, {"processed", pipeline.processed},
+          {"dropped", pipeline.dropped},   {"rejected", pipeline.rejected},
+          {"lost", pipeline.lost},         {"degraded", pipeline.degraded},
+          {"late", pipeline.late},         {"by_cause", byCause(pipeline)},
+          {"segments", pipeline.segments}, {"tracked_fraction", rounded(summary.trackedFraction())}};
+}
+
 /// What the program is made of.
 Json programVersions() {
   Json json = Json::object();
@@ -133,28 +149,14 @@ std::string toJson(const RunSummary& summary) {
             {"calibration_from", summary.given.empty() ? "sequence" : "option"},
             {"bayer", summary.bayer},
             {"sample_bits", summary.sample_bits},
-            {"images",
-             {{"pairs", summary.images.pairs},
-              {"left_missing", summary.images.left_missing},
-              {"right_missing", summary.images.right_missing},
-              {"left_out", summary.images.left_out}}},
+            {"images", toJson(summary.images)},
             {"inject", summary.inject},
             {"capture_rate_hz", rounded(summary.capture_rate_hz)},
             {"rate", summary.rate_hz ? Json(*summary.rate_hz) : Json("max")},
             {"policy", summary.params.policy == InputPolicy::kLive ? "live" : "replay"},
             {"threads", summary.params.threads},
             {"frames_in_flight", summary.params.frames_in_flight},
-            {"frames",
-             {{"received", pipeline.received},
-              {"processed", pipeline.processed},
-              {"dropped", pipeline.dropped},
-              {"rejected", pipeline.rejected},
-              {"lost", pipeline.lost},
-              {"degraded", pipeline.degraded},
-              {"late", pipeline.late},
-              {"by_cause", byCause(pipeline)},
-              {"segments", pipeline.segments},
-              {"tracked_fraction", rounded(summary.trackedFraction())}}},
+            {"frames", framesOf(summary)},
             {"findings", toJson(summary.found)},
             {"latency_ms", withBuckets(pipeline.latency)},
             {"latency_with_decoding_ms", withBuckets(pipeline.latency_with_decoding)},

@@ -18,9 +18,10 @@ ImagesByNumber imagesOf(const fs::path& camera) {
     if (line.text.starts_with('#')) continue;
     FieldReader fields(table, line, ',');
     const std::int64_t stamp_ns = fields.integer("a time in nanoseconds");
-    images.emplace(stamp_ns, camera / "data" / trimmed(fields.word("the name of an image")));
+    const fs::path image = camera / "data" / trimmed(fields.word("the name of an image"));
+    if (fs::exists(image)) images.emplace(stamp_ns, image);
   }
-  if (images.empty()) throw InputError(table.string() + ": names no image");
+  if (images.empty()) throw InputError(table.string() + ": names no image that is there");
   return images;
 }
 

@@ -42,7 +42,7 @@ void markMissing(std::vector<FramePaths>& frames) {
 }
 
 /// Names the images that are not there. Throws InputError where hardly any pair is.
-void tellMissing(Sequence& sequence) {
+void tellMissingFiles(Sequence& sequence) {
   std::vector<fs::path> missing;
   for (const FramePaths& frame : sequence.frames)
     for (const StereoSide side : {StereoSide::kLeft, StereoSide::kRight})
@@ -67,15 +67,15 @@ void tellUnlikePairs(Sequence& sequence) {
     differences.emplace_back(frame, *right - *left);
     ++counts[*right - *left];
   }
-  const auto same = counts.find(0);
-  if (same == counts.end() || counts.size() == 1 || 2 * same->second < std::ssize(sequence.frames)) return;
+  const std::int64_t same = counts.contains(0) ? counts.at(0) : 0;
+  if (same == 0 || counts.size() == 1) return;
   const auto unlike = std::ranges::find_if(differences, [](const auto& entry) { return entry.second != 0; });
   sequence.notes.push_back({"pairs",
-                            sequence.folder.string() + ": " +
-                                std::to_string(std::ssize(sequence.frames) - same->second) +
+                            sequence.folder.string() + ": " + std::to_string(std::ssize(sequence.frames) - same) +
                                 " lines bring together images of different numbers (" +
-                                namesOf({unlike->first.left, unlike->first.right}) + "), the others of the same one",
-                            true});
+                                namesOf({unlike->first.left, unlike->first.right}) + "), " + std::to_string(same) +
+                                " those of the same one",
+                            2 * same >= std::ssize(sequence.frames)});
 }
 
 List readList(const fs::path& file) {
@@ -114,7 +114,7 @@ std::optional<Sequence> openImageList(const SequenceSource& source) {
   List list = readList(file);
   Sequence sequence{.folder = file, .layout = "list", .frames = std::move(list.frames)};
   sequence.truth.poses = ifExists(file.parent_path() / "poses.txt");
-  tellMissing(sequence);
+  tellMissingFiles(sequence);
   tellUnlikePairs(sequence);
   setCamera(sequence, source.given, [&](ImageSize size) { return cameraBeside(sequence, file.parent_path(), size); });
   if (list.stamps.empty()) {

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kDigits = "0123456789";
+constexpr std::string_view kDigitLetters = "0123456789";
 
 std::string joined(const NameParts& parts) {
   std::string name;
@@ -22,7 +22,7 @@ std::string joined(const NameParts& parts) {
 }
 
 /// The text of a name, with a mark for digits.
-std::string kindOf(const NameParts& parts) {
+std::string nameKindOf(const NameParts& parts) {
   std::string kind;
   for (std::size_t i = 0; i < parts.size(); ++i) kind += i % 2 == 0 ? parts[i] : "#";
   return kind;
@@ -34,18 +34,18 @@ std::string withoutZeros(const std::string& digits) {
 
 /// The kind that all names have but a few; empty where there is no such kind.
 std::optional<std::string> usualKind(const std::vector<NameParts>& names) {
-  constexpr std::size_t kFewest = 3;
+  constexpr std::size_t kFewest = 3, kMany = 5;  // strays are at most one name in so many
   std::map<std::string, std::size_t> counts;
-  for (const NameParts& name : names) ++counts[kindOf(name)];
+  for (const NameParts& name : names) ++counts[nameKindOf(name)];
   const auto usual =
       std::ranges::max_element(counts, {}, [](const auto& kind_and_count) { return kind_and_count.second; });
   if (counts.size() == 1) return usual->first;
   const std::size_t strays = names.size() - usual->second;
-  const bool few = strays == 1 || 10 * strays <= names.size();
+  const bool few = strays == 1 || kMany * strays <= names.size();
   return few && usual->second >= kFewest ? std::optional(usual->first) : std::nullopt;
 }
 
-std::optional<std::int64_t> numberOf(const std::string& digits) {
+std::optional<std::int64_t> numberIn(const std::string& digits) {
   std::int64_t number = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   return error == std::errc() ? std::optional(number) : std::nullopt;
@@ -61,7 +61,7 @@ void insert(ImagesByNumber& images, std::int64_t number, const fs::path& image) 
 /// Numbers the images of both sides; false where a number is too large.
 bool insertNumbers(ImagesByNumber& images, const NamedImages& side, std::size_t part) {
   for (std::size_t i = 0; i < side.images.size(); ++i) {
-    const auto number = numberOf(side.names[i][part]);
+    const auto number = numberIn(side.names[i][part]);
     if (!number) return false;
     insert(images, *number, side.images[i]);
   }
@@ -109,13 +109,25 @@ std::optional<KeyedImages> byTimes(const NamedImages& left, const NamedImages& r
   return keyed;
 }
 
+/// The digits that tell names of a side apart. Where both sides have as many parts, what one has but once may differ on
+/// the other.
+std::pair<std::set<std::size_t>, std::set<std::size_t>> tellingDigits(const NamedImages& left,
+                                                                      const NamedImages& right) {
+  auto of_left = varyingDigits(left.names), of_right = varyingDigits(right.names);
+  if (left.names.front().size() == right.names.front().size()) {
+    of_left.insert(of_right.begin(), of_right.end());
+    of_right = of_left;
+  }
+  return {of_left, of_right};
+}
+
 }  // namespace
 
 NameParts partsOfName(std::string_view name) {
   NameParts parts;
   while (parts.empty() || !name.empty()) {
     const bool digits = parts.size() % 2 == 1;
-    const std::size_t end = digits ? name.find_first_not_of(kDigits) : name.find_first_of(kDigits);
+    const std::size_t end = digits ? name.find_first_not_of(kDigitLetters) : name.find_first_of(kDigitLetters);
     parts.emplace_back(name.substr(0, end));
     name.remove_prefix(std::min(end, name.size()));
   }
@@ -131,7 +143,7 @@ NamedImages namedImages(const std::vector<fs::path>& images) {
   if (!usual) return named;
   const NamedImages all = std::exchange(named, {});
   for (std::size_t i = 0; i < images.size(); ++i) {
-    const bool stray = kindOf(all.names[i]) != *usual;
+    const bool stray = nameKindOf(all.names[i]) != *usual;
     (stray ? named.strays : named.images).push_back(images[i]);
     if (!stray) named.names.push_back(all.names[i]);
   }
@@ -149,11 +161,7 @@ std::set<std::size_t> varyingDigits(const std::vector<NameParts>& names) {
 KeyedImages keyedImages(const NamedImages& left, const NamedImages& right) {
   if (!left.alike || !right.alike) return byNames(left, right, std::nullopt);
   if (auto keyed = byTimes(left, right)) return *std::move(keyed);
-  auto of_left = varyingDigits(left.names), of_right = varyingDigits(right.names);
-  if (left.names.front().size() == right.names.front().size()) {  // what one side has but once may differ on the other
-    of_left.insert(of_right.begin(), of_right.end());
-    of_right = of_left;
-  }
+  const auto [of_left, of_right] = tellingDigits(left, right);
   if (of_left.size() != of_right.size()) return byNames(left, right, std::nullopt);
   KeyedImages keyed{.kind = NameKind::kNumbers};
   if (of_left.size() == 1 && insertNumbers(keyed.left, left, *of_left.begin()) &&
@@ -162,20 +170,22 @@ KeyedImages keyedImages(const NamedImages& left, const NamedImages& right) {
   return byNames(left, right, std::pair(of_left, of_right));
 }
 
-fs::path expectedImage(const NamedImages& side, const fs::path& partner) {
+fs::path expectedImage(const NamedImages& side, const NamedImages& other, const fs::path& partner) {
   const fs::path& example = side.images.front();
-  const NameParts digits = partsOfName(partner.stem().string());
+  const fs::path like_partner = example.parent_path() / partner.filename().replace_extension(example.extension());
+  if (!side.alike || !other.alike) return like_partner;
+  const auto [of_side, of_other] = tellingDigits(side, other);
+  if (of_side.size() != of_other.size()) return like_partner;
+  const NameParts from = partsOfName(partner.stem().string());
   NameParts name = side.names.front();
-  if (!side.alike || name.size() != digits.size())
-    return example.parent_path() / partner.filename().replace_extension(example.extension());
-  const auto varying = varyingDigits(side.names);
-  for (std::size_t part = 1; part < name.size(); part += 2) {
-    if (!varying.contains(part)) continue;
-    const std::size_t width = name[part].size();
+  for (auto part = of_side.begin(), source = of_other.begin(); part != of_side.end(); ++part, ++source) {
+    const std::size_t width = name[*part].size();
     const bool padded =
-        std::ranges::all_of(side.names, [&](const NameParts& other) { return other[part].size() == width; });
-    name[part] = padded ? withoutZeros(digits[part]) : digits[part];
-    if (padded && name[part].size() < width) name[part].insert(0, width - name[part].size(), '0');
+        std::ranges::all_of(side.names, [&](const NameParts& each) { return each[*part].size() == width; });
+    std::string digits = withoutZeros(from[*source]);
+    const std::size_t least = padded ? width : 1;
+    if (digits.size() < least) digits.insert(0, least - digits.size(), '0');
+    name[*part] = digits;
   }
   return example.parent_path() / (joined(name) + example.extension().string());
 }

@@ -46,6 +46,7 @@ struct KeyedImages {
 KeyedImages keyedImages(const NamedImages& left, const NamedImages& right);
 
 /// The name that an image has whose partner, on the other side, is called so.
-std::filesystem::path expectedImage(const NamedImages& side, const std::filesystem::path& partner);
+std::filesystem::path expectedImage(const NamedImages& side, const NamedImages& other,
+                                    const std::filesystem::path& partner);
 
 }  // namespace motorcade

@@ -110,6 +110,8 @@ std::vector<std::int64_t> setKeyedFrames(Sequence& sequence, const KeyedImages& 
     for (const auto& [number, image] : side) files.push_back(image);
     return namedImages(files);
   };
+  if (images.left.empty() || images.right.empty())
+    throw InputError(sequence.folder.string() + ": the names of the images tell no number or time");
   PairedImages paired = pairByKeys(images, named(images.left), named(images.right));
   leaveOutEnds(paired);
   const std::vector<std::int64_t> numbers = paired.numbers;

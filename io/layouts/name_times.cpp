@@ -10,9 +10,10 @@
 namespace motorcade {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000, kMillisecond_ns = 1'000'000, kMicrosecond_ns = 1'000;
-/// Seconds since 1970 from 2001 to 2112, which is also how far 63 bits of nanoseconds allow differences.
-constexpr std::int64_t kEarliest_s = 1'000'000'000, kLatest_s = 4'500'000'000;
+constexpr std::int64_t kNameSecond_ns = 1'000'000'000, kNameMillisecond_ns = 1'000'000, kNameMicrosecond_ns = 1'000;
+/// Seconds since 1970 from 2004, below which numbers rather count from a round one, to 2112, which is also how far 63
+/// bits of nanoseconds allow differences.
+constexpr std::int64_t kEarliest_s = 1'100'000'000, kLatest_s = 4'500'000'000;
 
 bool isClockTime_s(std::int64_t value_s) { return value_s >= kEarliest_s && value_s < kLatest_s; }
 
@@ -24,8 +25,8 @@ std::optional<std::int64_t> wholeNumber(const std::string& digits) {
 
 /// Digits after the point, to the nanosecond.
 std::int64_t fraction_ns(std::string digits) {
-  constexpr std::size_t kDigits = 9;
-  digits.resize(kDigits, '0');
+  constexpr std::size_t kMostDigits = 9;
+  digits.resize(kMostDigits, '0');
   return wholeNumber(digits).value();
 }
 
@@ -43,7 +44,8 @@ std::optional<std::int64_t> dateDigits_ns(const std::string& digits) {
   if (!date.ok() || date.year() < year(1970) || date.year() > year(2100) || hour > 23 || minute > 59 || second > 60)
     return std::nullopt;
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
-  return (((days * 24 + hour) * 60 + minute) * 60 + second) * kSecond_ns + fraction_ns(digits.substr(kWithoutFraction));
+  return (((days * 24 + hour) * 60 + minute) * 60 + second) * kNameSecond_ns +
+         fraction_ns(digits.substr(kWithoutFraction));
 }
 
 /// The digits of a date that begins with this part: in one, as a day and a time of day, or each number by itself; a
@@ -67,6 +69,10 @@ std::optional<std::int64_t> date_ns(const NameParts& name, const std::vector<Nam
   return std::nullopt;
 }
 
+bool varies(const std::vector<NameParts>& names, std::size_t part) {
+  return std::ranges::any_of(names, [&](const NameParts& name) { return name[part] != names.front()[part]; });
+}
+
 bool isOneWidth(const std::vector<NameParts>& names, std::size_t part) {
   return std::ranges::all_of(names,
                              [&](const NameParts& name) { return name[part].size() == names.front()[part].size(); });
@@ -79,11 +85,23 @@ std::optional<std::int64_t> secondsAndMore_ns(const NameParts& name, const std::
   for (std::size_t part = 1; part + 2 < name.size(); part += 2) {
     const std::string& rest = name[part + 2];
     const auto whole_s = wholeNumber(name[part]);
-    const bool point = name[part + 1] == ".", goes_on = point && names.front()[part] != names.back()[part];
+    const bool point = name[part + 1] == ".", goes_on = point && varies(names, part) && varies(names, part + 2);
     if (!whole_s || *whole_s >= kLatest_s || (!goes_on && !isClockTime_s(*whole_s)) || rest.size() > kMostDigits)
       continue;
     const bool fraction = point || (isOneWidth(names, part + 2) && rest.size() % 3 == 0);
-    return *whole_s * kSecond_ns + (fraction ? fraction_ns(rest) : wholeNumber(rest).value());
+    return *whole_s * kNameSecond_ns + (fraction ? fraction_ns(rest) : wholeNumber(rest).value());
+  }
+  return std::nullopt;
+}
+
+/// Milliseconds with a fraction.
+std::optional<std::int64_t> milliseconds_ns(const NameParts& name, const std::vector<NameParts>& names) {
+  constexpr std::int64_t kMost = kLatest_s * 1'000;
+  for (std::size_t part = 1; part + 2 < name.size(); part += 2) {
+    const auto whole = wholeNumber(name[part]);
+    if (name[part + 1] == "." && whole && *whole < kMost && name[part + 2].size() <= 9 && varies(names, part) &&
+        varies(names, part + 2))
+      return *whole * kNameMillisecond_ns + fraction_ns(name[part + 2]) / (kNameSecond_ns / kNameMillisecond_ns);
   }
   return std::nullopt;
 }
@@ -99,19 +117,19 @@ std::int64_t medianStep(const std::vector<std::int64_t>& values) {
 
 /// The unit of whole numbers, or 0 where they merely count. Clocks that began when a device was switched on have large
 /// steps, but no large numbers: from 4,000 on a step is no count of images.
-std::int64_t unitOf_ns(const std::vector<std::int64_t>& values) {
+std::int64_t unitOfNames_ns(const std::vector<std::int64_t>& values) {
   constexpr std::int64_t kNanoseconds = 2'500'000, kMicroseconds = 4'000, kMostMilliseconds = 2'500, kMostSeconds = 10;
   const auto clockIn = [&](std::int64_t unit_ns) {
-    return isClockTime_s(values.front() / (kSecond_ns / unit_ns)) &&
-           isClockTime_s(values.back() / (kSecond_ns / unit_ns));
+    return isClockTime_s(values.front() / (kNameSecond_ns / unit_ns)) &&
+           isClockTime_s(values.back() / (kNameSecond_ns / unit_ns));
   };
   const std::int64_t step = medianStep(values);
   if (clockIn(1)) return 1;
-  if (clockIn(kMicrosecond_ns) && step < kNanoseconds) return kMicrosecond_ns;
-  if (clockIn(kMillisecond_ns) && step <= kMostMilliseconds) return kMillisecond_ns;
-  if (clockIn(kSecond_ns) && step <= kMostSeconds) return kSecond_ns;
+  if (clockIn(kNameMicrosecond_ns) && step < kNanoseconds) return kNameMicrosecond_ns;
+  if (clockIn(kNameMillisecond_ns) && step <= kMostMilliseconds) return kNameMillisecond_ns;
+  if (clockIn(kNameSecond_ns) && step <= kMostSeconds) return kNameSecond_ns;
   if (step >= kNanoseconds) return 1;
-  return step >= kMicroseconds ? kMicrosecond_ns : 0;
+  return step >= kMicroseconds ? kNameMicrosecond_ns : 0;
 }
 
 std::optional<NameTimes> wholeNumberTimes(const std::vector<NameParts>& names) {
@@ -124,7 +142,7 @@ std::optional<NameTimes> wholeNumberTimes(const std::vector<NameParts>& names) {
     if (!number) return std::nullopt;
     times.all_ns.push_back(*number);
   }
-  times.unit_ns = unitOf_ns(times.all_ns);
+  times.unit_ns = unitOfNames_ns(times.all_ns);
   if (times.unit_ns == 0) return std::nullopt;
   if (times.all_ns.back() > std::numeric_limits<std::int64_t>::max() / times.unit_ns) return std::nullopt;
   for (std::int64_t& time_ns : times.all_ns) time_ns *= times.unit_ns;
@@ -133,7 +151,7 @@ std::optional<NameTimes> wholeNumberTimes(const std::vector<NameParts>& names) {
 
 /// As far apart as images of a camera may be.
 bool arePlausible(std::vector<std::int64_t> times_ns) {
-  constexpr std::int64_t kLeastPeriod_ns = 500'000, kMostPeriod_ns = 10 * kSecond_ns;
+  constexpr std::int64_t kLeastPeriod_ns = 500'000, kMostPeriod_ns = 10 * kNameSecond_ns;
   std::ranges::sort(times_ns);
   const std::int64_t period_ns = medianStep(times_ns);
   const bool differ = std::ranges::adjacent_find(times_ns) == times_ns.end();
@@ -142,8 +160,9 @@ bool arePlausible(std::vector<std::int64_t> times_ns) {
 
 using TimeOfName = std::function<std::optional<std::int64_t>(const NameParts&, const std::vector<NameParts>&)>;
 
-std::optional<NameTimes> timesBy(const TimeOfName& timeOf_ns, const std::vector<NameParts>& names) {
-  NameTimes times{.all_ns = {}, .unit_ns = kSecond_ns};
+std::optional<NameTimes> timesBy(const TimeOfName& timeOf_ns, const std::vector<NameParts>& names,
+                                 std::int64_t unit_ns = kNameSecond_ns) {
+  NameTimes times{.all_ns = {}, .unit_ns = unit_ns};
   for (const NameParts& name : names) {
     const auto time_ns = timeOf_ns(name, names);
     if (!time_ns) return std::nullopt;
@@ -158,6 +177,7 @@ std::optional<NameTimes> timesOfNames(const std::vector<NameParts>& names) {
   if (names.empty()) return std::nullopt;
   if (auto times = timesBy(date_ns, names)) return times;
   if (auto times = timesBy(secondsAndMore_ns, names)) return times;
+  if (auto times = timesBy(milliseconds_ns, names, kNameMillisecond_ns)) return times;
   auto times = wholeNumberTimes(names);
   return times && arePlausible(times->all_ns) ? times : std::nullopt;
 }

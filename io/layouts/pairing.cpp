@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostNamed = 3;
+constexpr std::size_t kMostImagesNamed = 3;
 
 std::vector<std::int64_t> numbersOf(const ImagesByNumber& images) {
   std::vector<std::int64_t> numbers;
@@ -53,9 +53,10 @@ class Zipper {
     paired_.kind = keyed_.kind;
     for (auto l = keyed_.left.begin(), r = keyed_.right.begin(); l != keyed_.left.end() || r != keyed_.right.end();) {
       if (r == keyed_.right.end() || (l != keyed_.left.end() && isAlone(l, r, keyed_.left, keyed_.right)))
-        add(l->first, {.left = l->second, .right = expectedImage(right_, l->second), .right_missing = true}), ++l;
+        add(l->first, {.left = l->second, .right = expectedImage(right_, left_, l->second), .right_missing = true}),
+            ++l;
       else if (l == keyed_.left.end() || isAlone(r, l, keyed_.right, keyed_.left))
-        add(r->first, {.left = expectedImage(left_, r->second), .right = r->second, .left_missing = true}), ++r;
+        add(r->first, {.left = expectedImage(left_, right_, r->second), .right = r->second, .left_missing = true}), ++r;
       else
         addPair(l++, r++);
     }
@@ -181,9 +182,9 @@ bool anyPair(const PairedImages& paired) { return std::ranges::any_of(paired.fra
 
 std::string namesOf(const std::vector<fs::path>& images) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(images.size(), kMostNamed); ++i)
+  for (std::size_t i = 0; i < std::min(images.size(), kMostImagesNamed); ++i)
     text += (i > 0 ? ", " : "") + (images[i].parent_path().filename() / images[i].filename()).string();
-  if (images.size() > kMostNamed) text += " and " + std::to_string(images.size() - kMostNamed) + " more";
+  if (images.size() > kMostImagesNamed) text += " and " + std::to_string(images.size() - kMostImagesNamed) + " more";
   return text;
 }
 
@@ -216,22 +217,21 @@ void leaveOutEnds(PairedImages& paired) {
 }
 
 void tellMissing(PairedImages& paired) {
-  std::vector<fs::path> left, right;
-  std::size_t both = 0;
+  std::vector<fs::path> left, right, both;
   for (const FramePaths& frame : paired.frames) {
     if (frame.left_missing && frame.right_missing)
-      ++both;
+      both.push_back(frame.left);
     else if (frame.left_missing)
       left.push_back(frame.left);
     else if (frame.right_missing)
       right.push_back(frame.right);
   }
-  if (left.empty() && right.empty() && both == 0) return;
+  if (left.empty() && right.empty() && both.empty()) return;
   std::string text;
   const auto tell = [&](const std::string& sentence) { text += (text.empty() ? "" : ", ") + sentence; };
   if (!left.empty()) tell(std::to_string(left.size()) + " left missing (" + namesOf(left) + ")");
   if (!right.empty()) tell(std::to_string(right.size()) + " right missing (" + namesOf(right) + ")");
-  if (both > 0) tell(std::to_string(both) + " missing on both sides");
+  if (!both.empty()) tell(std::to_string(both.size()) + " missing on both sides (" + namesOf(both) + ")");
   paired.notes.push_back("images are missing: " + text + "; " + std::to_string(pairsIn(paired)) + " of " +
                          std::to_string(paired.frames.size()) +
                          " frames are pairs, the others have no images and a predicted pose");

@@ -97,7 +97,7 @@ std::string ofVideo(const fs::path& video) {
 }
 
 /// Image files whose names match, as a shell finds them.
-std::string glob(const fs::path& folder, const std::string& pattern) {
+std::string shellPattern(const fs::path& folder, const std::string& pattern) {
   std::string text = shellWord(folder.string()) + "/";
   for (std::size_t begin = 0; begin < pattern.size();) {
     const std::size_t end = std::min(pattern.find('*', begin), pattern.size());
@@ -106,6 +106,13 @@ std::string glob(const fs::path& folder, const std::string& pattern) {
     begin = end + 1;
   }
   return text;
+}
+
+/// All images of a folder with the same extension, as a shell finds them.
+std::string allLike(const fs::path& image) {
+  std::string pattern(1, '*');
+  pattern += image.extension().string();
+  return shellPattern(image.parent_path(), pattern);
 }
 
 /// The names of a group of images as a pattern: digits that differ are left open.
@@ -144,8 +151,8 @@ std::optional<std::pair<std::string, std::string>> twoGroups(const std::vector<f
 std::string ofTwoGroups(const fs::path& folder, const std::pair<std::string, std::string>& patterns) {
   return "\nTwo sets of images become a sequence in folders named left and right (exchange them where the first set is "
          "the right camera's):" +
-         std::string(kMakeFolders) + "\n  ln -s -t DRIVE/left " + glob(folder, patterns.first) +
-         "\n  ln -s -t DRIVE/right " + glob(folder, patterns.second) + kThen;
+         std::string(kMakeFolders) + "\n  ln -s -t DRIVE/left " + shellPattern(folder, patterns.first) +
+         "\n  ln -s -t DRIVE/right " + shellPattern(folder, patterns.second) + kThen;
 }
 
 /// Twice as wide as high, and more: each may be a pair.
@@ -159,7 +166,7 @@ bool mayBeSideBySide(const fs::path& image) {
 }
 
 std::string ofSideBySide(const fs::path& image) {
-  const std::string all = glob(image.parent_path(), "*" + image.extension().string());
+  const std::string all = allLike(image);
   const auto cut = [&](const char* side, const char* where) {
     return std::string("\n  mogrify -path DRIVE/") + side + " -gravity " + where + " -crop 50%x100%+0+0 +repage " + all;
   };
@@ -178,9 +185,9 @@ std::string adviceOnFile(const fs::path& file) {
   if (isVideo(file))
     return ": is a video, which is not read; write its images into two folders," + ofVideo(file) + kThen;
   if (lowerExtension(file) == ".svo")
-    return ": is a recording of a ZED camera, which is not read; write its rectified images into DRIVE/left and "
-           "DRIVE/right with the ZED SDK's SVO export" +
-           std::string(kThen);
+    return ": is a recording of a ZED camera, which is not read; write its rectified images into a folder with the ZED "
+           "SDK's export, and name that folder for the next step\n  mkdir -p DRIVE/images\n  ZED_SVO_Export " +
+           shellWord(file.string()) + " DRIVE/images/ 2";
   return ": is one image; name the folder of a sequence";
 }
 
@@ -196,8 +203,7 @@ std::vector<fs::path> otherImages(const fs::path& folder) {
 std::string adviceOnOtherImages(const std::vector<fs::path>& images) {
   const fs::path& first = images.front();
   return "images ending with " + first.extension().string() +
-         " are not read; ImageMagick writes PNG files beside them:\n  mogrify -format png " +
-         glob(first.parent_path(), "*" + first.extension().string());
+         " are not read; ImageMagick writes PNG files beside them:\n  mogrify -format png " + allLike(first);
 }
 
 std::string adviceOnOneFolder(const std::vector<fs::path>& images) {

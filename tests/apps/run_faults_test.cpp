@@ -35,8 +35,7 @@ TEST_F(Run, RefusesImagesThatAreLargerThanTheConfigurationAllows) {
 
 TEST_F(Run, RefusesInputsThatWouldBeWaitedFor) {
   const std::map<std::string, std::string> answers{{"calib.txt", "calib.txt: is a FIFO"},
-                                                   {"times.txt", "times.txt: is a FIFO"},
-                                                   {"image_1/000002.png", "image_0/000002.png has no partner"}};
+                                                   {"times.txt", "times.txt: is a FIFO"}};
   for (const auto& [file, answer] : answers) {
     const fs::path copy = out("copy");
     fs::remove_all(copy);
@@ -58,12 +57,12 @@ TEST_F(Run, WarnsOfTimesAndRefusesCalibrationsThatCannotBe) {
                       .c_str()),
       0);
   EXPECT_EQ(run("milliseconds", "", copy), 0);
-  EXPECT_THAT(contentOf(errors()), HasSubstr("times must be in seconds"));
+  EXPECT_THAT(contentOf(errors()), HasSubstr("are taken as milliseconds"));
   std::ofstream times(copy / "times.txt");
-  for (std::size_t frame = 0; frame < kFrames; ++frame) times << 100 * frame << '\n';
+  for (std::size_t frame = 0; frame < kFrames; ++frame) times << 1e-4 * static_cast<double>(frame) << '\n';
   times.close();
-  EXPECT_EQ(run("milliseconds", "--force", copy), 0);
-  EXPECT_THAT(contentOf(errors()), HasSubstr("times must be in seconds"));
+  EXPECT_EQ(run("too_close", "", copy), 3);
+  EXPECT_THAT(contentOf(errors()), AllOf(HasSubstr("0.0001 s apart"), HasSubstr("must be in seconds")));
   ASSERT_EQ(std::system(("sed -i 's/-387\\.5/-387500/' " + (copy / "calib.txt").string()).c_str()), 0);
   EXPECT_EQ(run("millimeters", "", copy), 3);
   EXPECT_THAT(contentOf(errors()), HasSubstr("must be in meters"));

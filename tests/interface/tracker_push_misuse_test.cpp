@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <limits>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <utility>
@@ -16,6 +18,7 @@ namespace motorcade {
 namespace {
 
 using std::chrono::milliseconds;
+using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max(),
@@ -114,6 +117,50 @@ TEST_F(BadPairs, APushAfterCloseIsRejected) {
   expectRejected("closed", [](Pair&) {});
   expectResultsOfGoodPairs();
   expectRejected("closed", [](Pair&) {});
+}
+
+/// Stamps in another unit, as they come from cameras that count microseconds or milliseconds.
+TEST(PushMisuse, StampsInAnotherUnitAreNamed) {
+  const DriveInMemory drive = readDrive(MOTORCADE_TINY_SEQUENCE);
+  for (const std::int64_t unit_ns : {1'000, 1'000'000}) {
+    std::mutex mutex;
+    std::vector<std::string> said;
+    Tracker::Options options = replay();
+    options.log = [&](Tracker::LogLevel, const std::string& text) {
+      const std::lock_guard lock(mutex);
+      said.push_back(text);
+    };
+    Tracker tracker(drive.camera, options);
+    for (std::size_t i = 0; i < drive.frames.size(); ++i) {
+      Pair pair = drive.pair(i);
+      pair.stamp_ns /= unit_ns;
+      const auto outcome = tracker.push(pair);
+      EXPECT_EQ(outcome.status == Tracker::Push::Status::kRejected, i > 0) << i;
+      if (i > 0) {
+        EXPECT_THAT(std::string(outcome.why), HasSubstr("stamps are nanoseconds"));
+      }
+    }
+    tracker.close();
+    EXPECT_EQ(rest(tracker).size(), 1U);  // no speed is reported of times that cannot be
+    const std::lock_guard lock(mutex);
+    EXPECT_EQ(std::ranges::count_if(
+                  said, [](const std::string& text) { return text.find("must be in nanoseconds") != text.npos; }),
+              1);
+  }
+}
+
+/// A thousand times too many nanoseconds: every second pair is far ahead of the last one that was taken.
+TEST(PushMisuse, StampsFarApartAreNamed) {
+  const DriveInMemory drive = readDrive(MOTORCADE_TINY_SEQUENCE);
+  Tracker tracker(drive.camera, replay());
+  std::string why;
+  for (std::size_t i = 0; i < drive.frames.size(); ++i) {
+    Pair pair = drive.pair(i);
+    pair.stamp_ns *= 1'000;
+    const auto outcome = tracker.push(pair);
+    if (outcome.status == Tracker::Push::Status::kRejected) why = outcome.why;
+  }
+  EXPECT_THAT(why, AllOf(HasSubstr("more than ten seconds"), HasSubstr("nanoseconds")));
 }
 
 /// While one thread waits in `push` for room, another one pushes.

@@ -1,10 +1,12 @@
 #include "io/sequence.hpp"
 
+#include <map>
 #include <thread>
 
 #include <gmock/gmock.h>
 
 #include "io/errors.hpp"
+#include "io/ground_truth.hpp"
 #include "io/image_file.hpp"
 #include "io/sequence_decoder.hpp"
 #include "tests/io/temporary_folder.hpp"
@@ -151,12 +153,69 @@ TEST_F(SequenceTest, MissingPartsAreNamed) {
   EXPECT_THAT(openError(), AllOf(HasSubstr("times.txt"), HasSubstr("line 3")));
 }
 
-TEST_F(SequenceTest, AnImageWithoutPartnerIsNamed) {
-  writePlain(4);
+TEST_F(SequenceTest, AnImageWithoutPartnerCostsItsFrameAlone) {
+  writePlain(6);
   std::filesystem::remove(folder_ / "image_1/000002.png");
-  EXPECT_THAT(openError(), AllOf(HasSubstr("4 images"), HasSubstr("3"), HasSubstr("000002.png")));
-  std::filesystem::remove(folder_ / "image_0/000001.png");
-  EXPECT_THAT(openError(), HasSubstr("partner"));
+  std::filesystem::remove(folder_ / "image_0/000004.png");
+  const Sequence sequence = openSequence(folder_.path());
+  ASSERT_EQ(sequence.frames.size(), 6U);
+  EXPECT_EQ(sequence.stamps[5].ns, 500'000'000);
+  ASSERT_EQ(sequence.notes.size(), 1U);
+  EXPECT_THAT(sequence.notes[0].text, AllOf(HasSubstr("image_0/000004.png"), HasSubstr("image_1/000002.png")));
+  SequenceDecoder decoder(sequence, {});
+  for (int i = 0; i < 6; ++i) {
+    const auto frame = decoder.next();
+    EXPECT_EQ(frame->frame.value, i);
+    EXPECT_EQ(frame->problem.empty(), i != 2 && i != 4) << frame->problem;
+    if (i == 5) {
+      EXPECT_EQ(frame->left.at(5, 5), 5);
+      EXPECT_EQ(frame->right.at(5, 5), 5);
+    }
+  }
+}
+
+TEST_F(SequenceTest, PosesAndLabelsFollowTheImagesThatAreThere) {
+  writePlain(6);
+  std::filesystem::remove(folder_ / "image_0/000002.png");
+  std::string poses;
+  for (const int number : {0, 1, 3, 4, 5}) poses += "1 0 0 0 0 1 0 0 0 0 1 " + std::to_string(number) + "\n";
+  folder_.write("poses.txt", poses);
+  const std::string label = " 7 Car 0 0 0 10 2 20 8 1.5 1.6 4 0 0 10 0\n";
+  folder_.write("label_02.txt", "1" + label + "2" + label);  // lines of the poses: the numbers 1 and 3
+  const Sequence sequence = openSequence(folder_.path());
+  const auto camera = readCameraTruth(sequence);
+  ASSERT_TRUE(camera);
+  ASSERT_EQ(camera->T_world_cam.size(), 6U);
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(camera->T_world_cam[i].translation().z(), i, 1e-9);
+  const auto objects = readObjectTruths(sequence, *camera);
+  ASSERT_EQ(objects->objects.size(), 2U);
+  EXPECT_EQ(objects->objects[1].frame.value, 3);
+  folder_.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  EXPECT_THAT(messageOf<InputError>([&] { readCameraTruth(openSequence(folder_.path())); }),
+              AllOf(HasSubstr("poses.txt: has 1 poses"), HasSubstr("each left image (5)")));
+}
+
+TEST_F(SequenceTest, TimesInAnotherUnitAreReadAndTold) {
+  writePlain(4);
+  const std::map<std::string, std::string> files{{"0\n100\n200\n301\n", "milliseconds"},
+                                                 {"1403636579763555\n1403636579863555\n1403636579963555\n"
+                                                  "1403636580064555\n",
+                                                  "microseconds"},
+                                                 {"1403636579763555584\n1403636579863555584\n1403636579963555584\n"
+                                                  "1403636580064555584\n",
+                                                  "nanoseconds"}};
+  for (const auto& [times, unit] : files) {
+    folder_.write("times.txt", times);
+    const Sequence sequence = openSequence(folder_.path());
+    EXPECT_EQ(sequence.stamps[3].ns - sequence.stamps[2].ns, 101'000'000) << unit;
+    ASSERT_EQ(sequence.notes.size(), 1U);
+    EXPECT_EQ(sequence.notes[0].name, "times");
+    EXPECT_THAT(sequence.notes[0].text, HasSubstr(unit));
+  }
+  folder_.write("times.txt", "# seconds\n0\n0.1\n0.2\n0.3\n");
+  EXPECT_TRUE(openSequence(folder_.path()).notes.empty());
+  folder_.write("times.txt", "0\n0.00001\n0.00002\n0.00003\n");
+  EXPECT_TRUE(openSequence(folder_.path()).notes.at(0).worthless);
 }
 
 TEST_F(SequenceTest, PairOfDifferentSizesIsRefused) {

@@ -64,6 +64,15 @@ TEST_F(TimestampFile, RefusesTimesThatDoNotFitIntoNanoseconds) {
   EXPECT_THAT(read_ns("-4499999999\n4499999999\n"), ElementsAre(-4'499'999'999'000'000'000, 4'499'999'999'000'000'000));
 }
 
+TEST_F(TimestampFile, ReadsTheUnitInWhichACameraMayHaveTakenImages) {
+  EXPECT_THAT(read_ns("0\n33.366\n66.733\n"), ElementsAre(0, 33'366'000, 66'733'000));
+  EXPECT_THAT(read_ns("5000033\n5033366\n5066700\n"), ElementsAre(5'000'033'000, 5'033'366'000, 5'066'700'000));
+  EXPECT_THAT(read_ns("1403636579763555584\n1403636579796888917\n"),
+              ElementsAre(1'403'636'579'763'555'584, 1'403'636'579'796'888'917));
+  EXPECT_THAT(read_ns("0\n2\n4\n"), ElementsAre(0, 2'000'000'000, 4'000'000'000));
+  EXPECT_THAT(read_ns("0\n0.1\n5000\n10000\n"), ElementsAre(0, 100'000'000, 5'000'000'000'000, 10'000'000'000'000));
+}
+
 TEST_F(TimestampFile, NamesTheLineThatIsNoTime) {
   EXPECT_THAT(errorOf("0.1\nnoon\n"), AllOf(HasSubstr("line 2"), HasSubstr("'noon' is not a number")));
   EXPECT_THAT(errorOf("0.1 0.2\n"), HasSubstr("more fields than expected"));
