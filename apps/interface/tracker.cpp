@@ -13,6 +13,7 @@
 
 #include "apps/interface/camera_model.hpp"
 #include "apps/interface/gray_image.hpp"
+#include "apps/interface/pair_watch.hpp"
 #include "apps/interface/result_conversion.hpp"
 #include "apps/interface/result_queue.hpp"
 #include "apps/interface/tracker_options.hpp"
@@ -104,6 +105,7 @@ class Tracker::Impl {
   ResultConversion convert_;  // the delivering thread's
   ResultQueue results_;
   ThreadPlacement placement_;
+  PairWatch watch_;
   Pipeline pipeline_;
   std::jthread deliverer_;
   std::once_flag callback_wanted_;
@@ -119,7 +121,8 @@ Tracker::Impl::Impl(const Camera& camera, const Options& options, const Pipeline
       convert_(options.axes, options.masks),
       results_(options.policy),
       placement_(config.pipeline.placement),
-      pipeline_(config.pipeline, makeStages(config, model_.rectified()), log_) {
+      watch_(model_.rectified(), log_),
+      pipeline_(config.pipeline, watch_.watched(makeStages(config, model_.rectified())), log_) {
   if (!replay_) stock(pool_, camera);
   deliverer_ = std::jthread([this] { deliver(); });  // at last: it would wait for results if anything failed after it
 }
@@ -221,7 +224,12 @@ const char* Tracker::Impl::reasonOf(Admission admission) const {
 void Tracker::Impl::deliver() {
   try {
     const PlacedThread placed(placement_);
-    while (const auto result = pipeline_.next()) results_.put(convert_(*result));
+    while (const auto result = pipeline_.next()) {
+      Result converted = convert_(*result);
+      if (converted.problem.empty()) converted.problem = watch_.problem();
+      results_.put(std::move(converted));
+      watch_.look(result->online.frame);
+    }
     if (!closed_) pipeline_.finish();
   } catch (const std::exception& error) {
     failed_ = true;

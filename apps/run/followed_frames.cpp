@@ -11,8 +11,8 @@ namespace {
 const char* sentenceOn(FrameCause cause) {
   switch (cause) {
     case FrameCause::kNothingFound:
-      return "show nothing that both eyes see: they are dark, blurred or without texture, or the images of a pair do "
-             "not belong together";
+      return "show nothing of the frame before: they are dark, blurred, without texture or frozen, or the images of a "
+             "pair do not belong together";
     case FrameCause::kUnlinked:
       return "show points, but not how the camera moved";
     case FrameCause::kFailed:
@@ -36,11 +36,15 @@ void FollowedFrames::observe(const PipelineResult& result) {
   if (first.empty()) first = result.problem;
 }
 
+bool FollowedFrames::none(const PipelineSummary& summary) const {
+  return count_ == 0 ? summary.received > 0 : count_ == 1 && summary.received > 1;
+}
+
 std::string FollowedFrames::whyNone(const PipelineSummary& summary) const {
   const auto most = std::ranges::max_element(summary.causes.begin() + 1, summary.causes.end());
   const auto cause = static_cast<std::size_t>(most - summary.causes.begin());
   const std::string& problem = first_problems_[cause];
-  return fmt::format("none of {} frames was followed; most of them, {}, {}{}{}", summary.received, *most,
+  return fmt::format("no motion was measured in {} frames; most of them, {}, {}{}{}", summary.received, *most,
                      sentenceOn(static_cast<FrameCause>(cause)), problem.empty() ? "" : ": ", problem);
 }
 

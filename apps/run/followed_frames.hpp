@@ -8,13 +8,14 @@
 
 namespace motorcade {
 
-/// Counts the frames of a run whose motion was measured, and remembers why others were not.
+/// Counts the good frames of a run, and remembers why others are not.
 class FollowedFrames {
  public:
   void observe(const PipelineResult& result);
   std::int64_t count() const { return count_; }
-  /// A sentence on a run without any: how many frames there were, what became of most of them, and of which the first
-  /// one was told.
+  /// No motion was measured, while there were frames: the first one alone has none, and is good all the same.
+  bool none(const PipelineSummary& summary) const;
+  /// A sentence on such a run: how many frames there were, what became of most of them, and why of the first of those.
   std::string whyNone(const PipelineSummary& summary) const;
 
  private:

@@ -290,7 +290,7 @@ class ExtraOutputs {
 int exitCode(const RunSummary& summary, const FollowedFrames& followed, std::optional<double> required_tracking) {
   if (summary.refused) return kExitInput;
   if (summary.signal != 0) return kExitSignal + summary.signal;
-  if (followed.count() == 0 && summary.pipeline.received > 0) {
+  if (followed.none(summary.pipeline)) {
     spdlog::error(followed.whyNone(summary.pipeline));
     return kExitInput;
   }

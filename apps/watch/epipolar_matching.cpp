@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <optional>
 #include <span>
@@ -97,12 +98,60 @@ std::optional<Place> searchBothWays(const Image& left, const Image& right, Place
   return same ? found : std::nullopt;
 }
 
+struct Levels {
+  double mean = 0, deviation = 0;  // gray levels
+};
+
+Levels levelsOf(const Image& image) {
+  constexpr int kStep_px = 8;
+  double count = 0, sum = 0, squares = 0;
+  for (int y = kStep_px / 2; y < image.height(); y += kStep_px)
+    for (int x = kStep_px / 2; x < image.width(); x += kStep_px) {
+      const double gray = image.at(x, y);
+      ++count, sum += gray, squares += gray * gray;
+    }
+  const double mean = sum / std::max(1.0, count);
+  return {mean, std::sqrt(std::max(0.0, squares / std::max(1.0, count) - mean * mean))};
+}
+
+Image stretched(const Image& image, const Levels& from, const Levels& to, ImagePool& pool) {
+  std::array<std::uint8_t, UINT8_MAX + 1> grays;
+  for (std::size_t gray = 0; gray < grays.size(); ++gray) {
+    const double level = to.mean + to.deviation / from.deviation * (static_cast<double>(gray) - from.mean);
+    grays[gray] = static_cast<std::uint8_t>(std::clamp(std::lround(level), 0L, 255L));
+  }
+  Image result = pool.acquire(image.width(), image.height());
+  for (int y = 0; y < image.height(); ++y)
+    std::transform(image.row(y), image.row(y) + image.width(), result.mutableRow(y),
+                   [&](std::uint8_t gray) { return grays[gray]; });
+  return result;
+}
+
+/// Gives the fainter image the contrast of the other where theirs differ much, as windows are compared gray by gray.
+void equalize(Image& left, Image& right, ImagePool& pool) {
+  constexpr double kAlike = 1.5, kFaintest = 1;
+  const Levels of_left = levelsOf(left), of_right = levelsOf(right);
+  if (std::min(of_left.deviation, of_right.deviation) < kFaintest) return;
+  if (of_left.deviation > kAlike * of_right.deviation) right = stretched(right, of_right, of_left, pool);
+  if (of_right.deviation > kAlike * of_left.deviation) left = stretched(left, of_left, of_right, pool);
+}
+
+/// At a lower threshold where there are few, as in images that are dark or blurred.
+std::vector<Corner> cornersOf(const Image& image) {
+  constexpr std::size_t kFew = 60;
+  constexpr double kFaintShare = 1.0 / 3;
+  const CornerDetector detect({});
+  auto corners = detect(image);
+  return corners.size() < kFew ? detect(image, kFaintShare) : corners;
+}
+
 }  // namespace
 
-PreparedPair preparePair(const Image& left, const Image& right, ImagePool& pool) {
+PreparedPair preparePair(Image left, Image right, ImagePool& pool) {
+  equalize(left, right, pool);
   PreparedPair pair{buildPyramid(left, kLevels, pool), buildPyramid(right, kLevels, pool), {}};
   if (pair.left.levels.size() <= kCornerLevel) return pair;
-  pair.corners = CornerDetector({})(pair.left.levels[kCornerLevel]);
+  pair.corners = cornersOf(pair.left.levels[kCornerLevel]);
   for (Corner& corner : pair.corners)
     corner = {fromLevel(corner.u_px, kCornerLevel), fromLevel(corner.v_px, kCornerLevel), corner.score};
   return pair;

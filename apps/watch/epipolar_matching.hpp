@@ -21,8 +21,9 @@ struct PreparedPair {
   std::vector<Corner> corners;
 };
 
-/// Takes the corners of the left image at half size: they are as good, and found at a quarter of the cost.
-PreparedPair preparePair(const Image& left, const Image& right, ImagePool& pool);
+/// Takes the corners of the left image at half size: they are as good, and found at a quarter of the cost. Where one
+/// image has far less contrast, it is given the other's.
+PreparedPair preparePair(Image left, Image right, ImagePool& pool);
 
 /// Matches at most so many corners of the left image, spread over it, with the right one, up to 20 rows above or below
 /// and whatever the sign of the disparity: images that are exchanged, turned or shifted are matched too. What is not

@@ -12,6 +12,8 @@ constexpr std::size_t kGlancePoints = 80, kFewestOfGlance = 15;
 /// Of the matches that lie within a pixel of the row where the rig's usual geometry puts them. It is over 0.8 on all
 /// drives at hand, and under 0.6 where images are a frame apart.
 constexpr double kAgreeingRows_px = 1, kAgreeingShare = 0.7;
+/// Of them in a row, after which a rig that was worthless is good again.
+constexpr int kAgreeingGlances = 3;
 /// Longest pause after glances that were found to be mistaken [pairs].
 constexpr int kMostPatience = 80;
 
@@ -39,11 +41,14 @@ std::vector<RigFinding> RigWatch::finish() {
 void RigWatch::glance(const StereoFrame& pair) {
   if (!isWhole(pair) || --until_glance_ > 0) return;
   until_glance_ = patience_;
-  if (agrees(pair)) {
+  const bool good = agrees(pair);
+  agreeing_ = good ? agreeing_ + 1 : 0;
+  if (worthless_) {
+    worthless_ = agreeing_ < kAgreeingGlances;
+  } else if (good) {
     last_good_ = pair.frame;
     until_glance_ = patience_ = kGlanceEvery;
-    worthless_ = false;
-  } else if (!worthless_) {
+  } else {
     first_bad_ = pair.frame;
     check_.emplace(camera_, kVerifiedBy);
   }

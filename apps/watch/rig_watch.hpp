@@ -50,6 +50,7 @@ class RigWatch {
   std::optional<FrameId> last_good_;
   FrameId first_bad_;                                          // of the glance that led to looking
   int until_glance_ = kGlanceEvery, patience_ = kGlanceEvery;  // pairs
+  int agreeing_ = 0;                                           // glances in a row
   bool worthless_ = false;
   std::set<std::string> told_;
 };

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <deque>
+#include <mutex>
+#include <string>
+
+#include "apps/pipeline/log_callback.hpp"
+#include "apps/pipeline/stages.hpp"
+#include "apps/watch/rig_watch.hpp"
+#include "core/messages.hpp"
+
+namespace motorcade {
+
+/// Looks at a tracker's pairs when their results are out, so that no result waits for it, and logs what is wrong with
+/// the rig or becomes so.
+class PairWatch {
+ public:
+  PairWatch(const StereoCamera& camera, LogCallback log) : watch_(camera), log_(std::move(log)) {}
+
+  /// The same stages, which leave each pair here on its way. The watch outlives them.
+  Stages watched(Stages stages);
+  /// Looks at the pairs up to that of this frame. From one thread, in the order of the frames.
+  void look(FrameId frame);
+  /// What makes results worthless now; empty where nothing does. On the thread that looks.
+  const std::string& problem() const { return problem_; }
+
+ private:
+  StereoFramePtr next(FrameId frame);
+  void observe(const StereoFrame& pair);
+
+  RigWatch watch_;
+  LogCallback log_;
+  std::string problem_;
+  std::mutex mutex_;
+  std::deque<StereoFramePtr> waiting_;  // no more than frames in flight
+};
+
+}  // namespace motorcade
