@@ -30,8 +30,8 @@ async function truthAndErrors(browser, url) {
     const { truth } = await json(page, `${url}frame/${kFrame}.json`), overview = await json(page, `${url}overview.json`);
     const value = (name) => page.locator(`.curve[data-name="${name}"] output`).textContent();
     const position = truth.position_m.toFixed(3), highest = Math.max(...overview.truth.position_m).toFixed(3);
-    check(await value("camera off the truth") === `${position} m  (max ${highest})`, `it says ${await value("camera off the truth")}, not ${position}`);
-    check((await value("its motion off")).startsWith(truth.step_m.toFixed(4)), "not the error of the camera's motion");
+    check(await value("camera position error") === `${position} m  (max ${highest})`, `it says ${await value("camera position error")}, not ${position}`);
+    check((await value("camera motion error")).startsWith(truth.step_m.toFixed(4)), "not the error of the camera's motion");
     const matched = truth.objects.filter(({ track }) => track !== undefined);
     check(matched.length > 0, "no object of the drive has a label");
     for (const { track, off_m } of matched) {
