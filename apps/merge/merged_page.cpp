@@ -18,7 +18,8 @@ namespace {
 constexpr std::string_view kStyle = R"css(
 .wide th, .wide td { white-space: nowrap; }
 td.better { color: var(--good); font-weight: 600; } td.worse { color: var(--bad); font-weight: 600; }
-td.better::before { content: "\25B2\00A0"; font-size: 0.7em; } td.worse::before { content: "\25BC\00A0"; font-size: 0.7em; }
+td.better::before { content: "\25B2\00A0"; font-size: 0.7em; }
+td.worse::before { content: "\25BC\00A0"; font-size: 0.7em; }
 )css";
 
 constexpr std::size_t kMostRows = 40;  // of a chart: more drives than that are told by the tables

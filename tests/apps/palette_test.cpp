@@ -31,8 +31,8 @@ Vector3d labOf(const Vector3d& linear) {
   return {116 * v.y() - 16, 500 * (v.x() - v.y()), 200 * (v.y() - v.z())};
 }
 
-/// Eyes without one kind of cones (Machado, Oliveira and Fernandes, A physiologically-based model for simulation of color
-/// vision deficiency, 2009, severity 1); the first sees all colors.
+/// Eyes without one kind of cones (Machado, Oliveira and Fernandes, A physiologically-based model for simulation of
+/// color vision deficiency, 2009, severity 1); the first sees all colors.
 std::array<Matrix3d, 3> eyes() {
   std::array<Matrix3d, 3> eyes;
   eyes[0].setIdentity();

@@ -121,7 +121,8 @@ TEST_F(ViewOfARun, AnotherRunIsShownInTheSameWorld) {
   EXPECT_EQ(shown->run().against, out("later").string());
   ASSERT_NE(shown->against(), nullptr);
   const json ours = frameOf(*shown, 4), theirs = frameOf(*shown->against(), 4);
-  for (const int i : {3, 7, 11}) EXPECT_NEAR(ours["T"][i], theirs["T"][i], 2e-3) << "they meet in their first common frame";
+  for (const int i : {3, 7, 11})
+    EXPECT_NEAR(ours["T"][i], theirs["T"][i], 2e-3) << "they meet in their first common frame";
   const json far = frameOf(*shown, 13), other = frameOf(*shown->against(), 13);
   EXPECT_GT(std::abs(far["T"][11].get<double>()), 1) << "the camera drives";
   EXPECT_NEAR(far["T"][11], other["T"][11], 0.3);
@@ -132,7 +133,8 @@ TEST_F(ViewOfARun, RunsWithoutACommonFrameAreRefused) {
   ASSERT_EQ(run("early", "--frames 0:6"), 0);
   ASSERT_EQ(run("late", "--frames 8:14"), 0);
   EXPECT_THROW(worldOfOther(readRunFolder(out("early")), readRunFolder(out("late"))), InputError);
-  EXPECT_EQ(motorcade("view " + out("early").string() + " --against " + out("late").string() + " --view 127.0.0.1:0"), 3);
+  EXPECT_EQ(motorcade("view " + out("early").string() + " --against " + out("late").string() + " --view 127.0.0.1:0"),
+            3);
   EXPECT_THAT(contentOf(errors()), testing::HasSubstr("no frame in common"));
 }
 
