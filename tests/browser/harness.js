@@ -55,6 +55,8 @@ export async function screenshot(page, name, options = {}) {
 
 // No wider than the screen, and nothing wider than the card that holds it, but for what scrolls in a box of its own.
 export async function checkWidth(page, where = "") {
+  const fits = () => document.documentElement.scrollWidth <= window.innerWidth;  // once all has its new size
+  await page.waitForFunction(fits, null, { timeout: 3000 }).catch(() => {});
   const [content, screen] = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
   check(content <= screen, `${where} the page is ${content} px wide on a screen of ${screen} px`);
   const outside = await page.evaluate(() => [...document.querySelectorAll(".card, figure, .finding")].flatMap((card) => {

@@ -23,7 +23,7 @@ async function truthAndErrors(browser, url) {
     const without = await pixels(page, "#image");
     check(with_truth !== without, "the image is the same without the truth");
     await page.locator("#truth").click();
-    check(await pixels(page, "#image") === with_truth, "the truth does not come back");
+    check(await pixels(page, "#image") !== without, "the truth does not come back");
   }));
   await test("errors of the frame stand in list and timeline as the server has them", () => withPage(browser, { url }, async (page) => {
     await goTo(page, kFrame);
@@ -182,7 +182,7 @@ async function twoRuns(browser) {
 }
 
 async function holding(browser) {
-  const server = await start(["run", drive, "--out", join(folder, "live"), "--rate", "4", "--view", "127.0.0.1:0"], kUrl);
+  const server = await start(["run", drive, "--out", join(folder, "live"), "--rate", "1", "--view", "127.0.0.1:0"], kUrl);
   const [plain, token] = server.found.split("#token=");
   await test("only a page with the printed address can hold the run", async () => {
     check(/^[0-9a-f]{32}$/.test(token), `the printed address is ${server.found}`);
