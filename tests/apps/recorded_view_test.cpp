@@ -69,7 +69,8 @@ TEST_F(ViewOfARun, TheErrorsAreThoseOfEvaluate) {
   const ObjectFrameError& object = evaluation.worst.objects.front();
   EXPECT_EQ(overview["worst"]["objects"][0]["frame"], object.frame.value);
   double motion_m = -1;
-  for (const json& label : frameOf(*shown, object.frame.value)["truth"]["objects"])
+  const json of_object = frameOf(*shown, object.frame.value);
+  for (const json& label : of_object["truth"]["objects"])
     if (label["id"] == object.label) motion_m = label.value("motion_m", -1.0);
   EXPECT_NEAR(motion_m, object.me_t_m, 1e-4);
   EXPECT_EQ(truth["labels"].size(), evaluation.final.objects.size());
