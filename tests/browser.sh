@@ -2,7 +2,8 @@
 # Looks at the pages in a headless Chromium: each tests/browser/*_test.js, with the program of the release build. Where no
 # browser can be had, it prints one line and does nothing.
 #   tests/browser.sh [FOLDER]   also writes screenshots there
-# MOTORCADE_PROGRAM and CHROMIUM name another program and browser.
+# MOTORCADE_PROGRAM and CHROMIUM name another program and browser, MOTORCADE_TESTS a pattern of the tests to do, MOTORCADE_PATIENCE_MS how long
+# a page may take on a busy machine.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export MOTORCADE_PROGRAM=${MOTORCADE_PROGRAM:-$PWD/build/release/apps/motorcade}

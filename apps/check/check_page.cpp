@@ -167,6 +167,7 @@ h1 .badge { vertical-align: middle; margin-left: 0.4rem; white-space: normal; }
 .finding h3 { margin-top: 0; }
 .small { font-size: 0.84rem; font-weight: 400; }
 p.small { margin-top: 0.6rem; }
+.wide tbody th { min-width: 9rem; }
 figure .wide img { min-width: min(44rem, 100%); }
 @media (max-width: 40rem) { figure .wide img { max-width: none; width: 56rem; } }
 )css";

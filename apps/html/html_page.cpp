@@ -28,7 +28,7 @@ constexpr std::string_view kBaseStyle = R"css(
 *, *::before, *::after { box-sizing: border-box; }
 html { -webkit-text-size-adjust: 100%; text-size-adjust: 100%; }
 body {
-  --under: var(--page); --edge: color-mix(in srgb, var(--ink) 26%, transparent);
+  --under: var(--page); --edge: color-mix(in srgb, var(--ink) 20%, transparent);
   margin: 0; background: var(--page); color: var(--ink);
   font: 16px/1.55 system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "DejaVu Sans", sans-serif;
   -webkit-print-color-adjust: exact; print-color-adjust: exact;

@@ -115,8 +115,9 @@ std::string bandOf(const ChartFrame& frame, const ChartLine& line) {
 
 const std::string_view kChartStyle = R"css(
 :root {
+  --strength: 72%;
   --line1: #0b62c4; --line2: #c2410c; --truth: #4b5563; --s1: #2f6fb7; --s2: #69a5dc; --s3: #2a9d8f; --s4: #d9a62e;
-  --s5: #b4558a; --s6: #6b5bbf; --s7: #d1663a; --wait: #c3cad2; --strength: 72%;
+  --s5: #b4558a; --s6: #6b5bbf; --s7: #d1663a; --wait: #c3cad2;
 }
 @media (prefers-color-scheme: dark) {
   :root {
@@ -137,7 +138,8 @@ const std::string_view kChartStyle = R"css(
 .chart .grid { stroke: var(--rule); stroke-width: 1; } .chart .axis { stroke: var(--muted); stroke-width: 1; }
 .chart .line { fill: none; stroke-width: 1.8; stroke-linejoin: round; stroke-linecap: round; }
 .chart .dashed { stroke-dasharray: 5 5; stroke-width: 1.5; } .chart .band { opacity: 0.2; }
-figure.plate { --under: var(--card); background: var(--card); border: 1px solid var(--rule); border-radius: 10px; padding: 0.8rem; }
+figure.plate { --under: var(--card); background: var(--card); border: 1px solid var(--rule); border-radius: 10px;
+  padding: 0.8rem; }
 )css";
 
 std::string chartFigure(const std::string& svg, const std::string& caption) {

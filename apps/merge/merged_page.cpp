@@ -17,8 +17,11 @@ namespace {
 /// Better and worse differ by a sign, too, for who sees no red or no green.
 constexpr std::string_view kStyle = R"css(
 .wide th, .wide td { white-space: nowrap; }
+.grid { display: grid; gap: 1rem; grid-template-columns: repeat(auto-fill, minmax(min(100%, 26rem), 1fr)); align-items: start; }
+.grid figure { margin: 0; }
 td.better { color: var(--good); font-weight: 600; } td.worse { color: var(--bad); font-weight: 600; }
-td.better::before { content: "\25B2\00A0"; font-size: 0.7em; } td.worse::before { content: "\25BC\00A0"; font-size: 0.7em; }
+td.better::before { content: "\2713\00A0"; }
+td.worse::before { content: "\2717\00A0"; }
 )css";
 
 constexpr std::size_t kMostRows = 40;  // of a chart: more drives than that are told by the tables
@@ -95,6 +98,16 @@ std::string distribution(const std::vector<ResultGroup>& groups, std::string_vie
   return chartFigure(dotChart(label, seriesOf(sets), rows), caption);
 }
 
+std::string distributions(const std::vector<ResultGroup>& groups) {
+  const std::string charts = distribution(groups, "camera_ate_m", "camera ATE, m") +
+                             distribution(groups, "camera_rpe_t_rmse_m", "camera RPE, m per frame") +
+                             distribution(groups, "me_t_m", "motion error of objects, m per frame") +
+                             distribution(groups, "objects_as_seen_m", "objects as seen, m") +
+                             distribution(groups, "latency_p50_ms", "median latency, ms") +
+                             distribution(groups, "latency_p99_ms", "99th percentile of latency, ms");
+  return charts.empty() ? "" : "<div class=\"grid\">\n" + charts + "</div>\n";
+}
+
 /// Which share of all frames came out within so many milliseconds.
 std::string latencyDistribution(const MergedBatch& batch) {
   std::vector<ChartLine> lines;
@@ -123,7 +136,7 @@ std::string comparisonSection(const BatchComparison& comparison) {
   html +=
       "<p class=\"muted\">Pairs of the same drive, set and seed; repetitions are averaged first. Changes are relative "
       "to the mean of both. p is that of Wilcoxon's signed-rank test, corrected by Holm for the number of "
-      "measures. \u25B2 marks what is surely better, \u25BC what is worse.</p>\n";
+      "measures. \u2713 marks what is surely better, \u2717 what is worse.</p>\n";
   const ResultTable regressions = regressionTable(comparison);
   html += regressions.rows.empty() ? "<p class=\"finding good\">No accuracy became worse by more than 2 %.</p>\n"
                                    : section(regressions);
@@ -155,18 +168,16 @@ std::string pageOf(const Merged& merged) {
   body += failureSection(batch) + section(overviewTable(merged.groups));
   for (const ResultTable& table : publishedSection(merged)) body += section(table);
   body += section(leftOutTable(batch));
-  body += section("Distributions", distribution(merged.groups, "camera_ate_m", "camera ATE, m") +
-                                       distribution(merged.groups, "camera_rpe_t_rmse_m", "camera RPE, m per frame") +
-                                       distribution(merged.groups, "me_t_m", "motion error of objects, m per frame") +
-                                       distribution(merged.groups, "objects_as_seen_m", "objects as seen, m") +
-                                       distribution(merged.groups, "latency_p50_ms", "median latency, ms") +
-                                       distribution(merged.groups, "latency_p99_ms", "99th percentile of latency, ms") +
-                                       latencyDistribution(batch));
-  body +=
-      section(worstFrameTable("Frames with the largest error of the camera's motion", "RPE_t m", batch.worst_camera_m));
-  body +=
-      section(worstFrameTable("Frames with the largest error of an object's motion", "ME_t m", batch.worst_object_m));
-  body += section(worstFrameTable("Frames that came out latest", "latency ms", batch.latest_ms));
+  if (setNames(merged.groups).size() > 1)
+    body +=
+        "<p class=\"muted\">Of the sets of a drive \u2713 marks the best by a measure, \u2717 the worst, where they "
+        "differ by more than 2 %.</p>\n";
+  body += section("Distributions", distributions(merged.groups) + latencyDistribution(batch));
+  body += section(worstFrameTable("Frames with the largest error of the camera's motion", "motion error [m]",
+                                  batch.worst_camera_m));
+  body += section(
+      worstFrameTable("Frames with the largest error of an object's motion", "motion error [m]", batch.worst_object_m));
+  body += section(worstFrameTable("Frames that came out latest", "latency [ms]", batch.latest_ms));
   for (const ResultTable& table : measureTables(merged.groups)) body += section(table);
   return htmlPage("Batch " + batch.folder.filename().string(), body, std::string(kChartStyle).append(kStyle));
 }

@@ -23,10 +23,9 @@ constexpr std::int64_t kLateApart = 5;  // frames: what is closer to a later one
 double shortened(double value, double digits = 1e3) { return std::round(value * digits) / digits; }
 
 Json pathJson(const std::vector<SE3>& path) {
-  constexpr double kCentimeter = 1e2;
   Json json = Json::array();
   for (const SE3& pose : path)
-    for (int axis = 0; axis < 3; ++axis) json.push_back(shortened(pose.translation()[axis], kCentimeter));
+    for (int axis = 0; axis < 3; ++axis) json.push_back(shortened(pose.translation()[axis]));
   return json;
 }
 

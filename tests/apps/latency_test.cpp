@@ -57,7 +57,8 @@ TEST(Percentiles, AreByNearestRank) {
 TEST(Processing, IsTheWorkWithoutAnyWaiting) {
   FrameRow row = slowFrame(0, 3, 50);
   row.entry_wait_ms = 400;
-  EXPECT_DOUBLE_EQ(processing_ms(row), 9) << "six stages of a millisecond and a flow of four, beside it stereo matching";
+  EXPECT_DOUBLE_EQ(processing_ms(row), 9)
+      << "six stages of a millisecond and a flow of four, beside it stereo matching";
   workOf(row, Stage::kStereoMatching) = 6;
   EXPECT_DOUBLE_EQ(processing_ms(row), 11);
 }

@@ -69,7 +69,8 @@ TEST_F(ViewOfARun, TheErrorsAreThoseOfEvaluate) {
   const ObjectFrameError& object = evaluation.worst.objects.front();
   EXPECT_EQ(overview["worst"]["objects"][0]["frame"], object.frame.value);
   double motion_m = -1;
-  for (const json& label : frameOf(*shown, object.frame.value)["truth"]["objects"])
+  const json of_object = frameOf(*shown, object.frame.value);
+  for (const json& label : of_object["truth"]["objects"])
     if (label["id"] == object.label) motion_m = label.value("motion_m", -1.0);
   EXPECT_NEAR(motion_m, object.me_t_m, 1e-4);
   EXPECT_EQ(truth["labels"].size(), evaluation.final.objects.size());
@@ -121,7 +122,8 @@ TEST_F(ViewOfARun, AnotherRunIsShownInTheSameWorld) {
   EXPECT_EQ(shown->run().against, out("later").string());
   ASSERT_NE(shown->against(), nullptr);
   const json ours = frameOf(*shown, 4), theirs = frameOf(*shown->against(), 4);
-  for (const int i : {3, 7, 11}) EXPECT_NEAR(ours["T"][i], theirs["T"][i], 2e-3) << "they meet in their first common frame";
+  for (const int i : {3, 7, 11})
+    EXPECT_NEAR(ours["T"][i], theirs["T"][i], 2e-3) << "they meet in their first common frame";
   const json far = frameOf(*shown, 13), other = frameOf(*shown->against(), 13);
   EXPECT_GT(std::abs(far["T"][11].get<double>()), 1) << "the camera drives";
   EXPECT_NEAR(far["T"][11], other["T"][11], 0.3);
@@ -132,7 +134,8 @@ TEST_F(ViewOfARun, RunsWithoutACommonFrameAreRefused) {
   ASSERT_EQ(run("early", "--frames 0:6"), 0);
   ASSERT_EQ(run("late", "--frames 8:14"), 0);
   EXPECT_THROW(worldOfOther(readRunFolder(out("early")), readRunFolder(out("late"))), InputError);
-  EXPECT_EQ(motorcade("view " + out("early").string() + " --against " + out("late").string() + " --view 127.0.0.1:0"), 3);
+  EXPECT_EQ(motorcade("view " + out("early").string() + " --against " + out("late").string() + " --view 127.0.0.1:0"),
+            3);
   EXPECT_THAT(contentOf(errors()), testing::HasSubstr("no frame in common"));
 }
 

@@ -62,9 +62,9 @@ TEST(LineChart, ABreakStaysOneWhereALongLineIsThinned) {
 }
 
 TEST(LineChart, ASinglePointBetweenBreaksIsADot) {
-  const std::string svg = lineChart({.x = "s", .y = "m"}, {{.name = "",
-                                                            .color = "red",
-                                                            .points = {{0, 1}, lineBreak(), {2, 1}, lineBreak(), {3, 1}, {4, 1}}}});
+  const std::string svg =
+      lineChart({.x = "s", .y = "m"},
+                {{.name = "", .color = "red", .points = {{0, 1}, lineBreak(), {2, 1}, lineBreak(), {3, 1}, {4, 1}}}});
   EXPECT_EQ(countOf(svg, "h0"), 2u);
 }
 

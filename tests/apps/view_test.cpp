@@ -146,7 +146,9 @@ TEST(FrameJson, HoldsWhatThePageShows) {
 
 TEST(FrameJson, ALabelHasTheCuboidOfItsBox) {
   ShownFrame frame = frameWithACar();
-  ShownTruth truth{.position_m = 0.25, .step_m = 0.0125};
+  ShownTruth truth;
+  truth.position_m = 0.25;
+  truth.step_m = 0.0125;
   truth.objects.push_back({.label = 7,
                            .type = "Car",
                            .T_world_object = SE3(Eigen::Matrix3d::Identity(), {1, 1.5, 12}),
@@ -154,7 +156,7 @@ TEST(FrameJson, ALabelHasTheCuboidOfItsBox) {
                            .moving = true,
                            .track = {1},
                            .off_m = 0.75});
-  truth.objects.push_back({.label = 8, .type = "Van"});
+  truth.objects.emplace_back().label = 8;
   frame.truth = truth;
   const json of_frame = json::parse(toJson(frame, {}))["truth"];
   EXPECT_EQ(of_frame["position_m"], 0.25);

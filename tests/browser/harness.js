@@ -4,7 +4,7 @@ import { chromium } from "playwright-core";
 
 export const kProgram = process.env.MOTORCADE_PROGRAM;
 export const kScreenshots = process.env.MOTORCADE_SCREENSHOTS || "";
-const kPatience_ms = 30_000;
+const kPatience_ms = Number(process.env.MOTORCADE_PATIENCE_MS || 30_000);  // more where a machine is busy
 
 export function check(condition, sentence) {
   if (!condition) throw new Error(sentence);
@@ -55,6 +55,8 @@ export async function screenshot(page, name, options = {}) {
 
 // No wider than the screen, and nothing wider than the card that holds it, but for what scrolls in a box of its own.
 export async function checkWidth(page, where = "") {
+  const fits = () => document.documentElement.scrollWidth <= window.innerWidth;  // once all has its new size
+  await page.waitForFunction(fits, null, { timeout: 3000 }).catch(() => {});
   const [content, screen] = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
   check(content <= screen, `${where} the page is ${content} px wide on a screen of ${screen} px`);
   const outside = await page.evaluate(() => [...document.querySelectorAll(".card, figure, .finding")].flatMap((card) => {
@@ -122,7 +124,9 @@ export async function run(args) {
   check(code === 0, `motorcade ${args.join(" ")} ended with ${code}`);
 }
 
+// MOTORCADE_TESTS is a pattern of the names of those to do, all when empty.
 export async function test(name, use) {
+  if (!new RegExp(process.env.MOTORCADE_TESTS || "").test(name)) return;
   const begin = Date.now();
   try {
     await use();

@@ -43,8 +43,7 @@ async function files(browser) {
   await run(["check", drive, "--page", join(folder, "check.html")]);
   await atAllWidths(browser, "check", page_of(join(folder, "check.html")));
   const manifest = join(folder, "m.toml"), batch = join(folder, "batch"), before = join(folder, "before");
-  writeFileSync(join(folder, "pose_graph.toml"), '[backend]\nkind = "pose_graph"\n');
-  writeFileSync(manifest, `[[drives]]\nname = "street"\npath = "${drive}"\n[[sets]]\nname = "default"\n[[sets]]\nname = "pose_graph"\nconfig = "pose_graph.toml"\n`);
+  writeFileSync(manifest, `[[drives]]\nname = "street"\npath = "${drive}"\n[sets.joint]\n[sets.pose_graph]\nbackend.kind = "pose_graph"\n`);
   for (const out of [before, batch]) await run(["batch", manifest, "--out", out, "-j", "1", "-q"]);
   await run(["batch", "merge", batch, "--against", before]);
   await atAllWidths(browser, "batch", page_of(join(batch, "merged", "report.html")));

@@ -3,10 +3,11 @@
 const element = (id) => document.getElementById(id);
 const kNear_m = 3;  // two estimates of one object are closer
 
+// Between two poses, by the sine, which is exact for small angles where the cosine is not.
 function angle_deg(A, B) {
-  let trace = 0;
-  for (const i of [0, 1, 2, 4, 5, 6, 8, 9, 10]) trace += A[i] * B[i];
-  return Math.acos(Math.min(1, Math.max(-1, (trace - 1) / 2))) * 180 / Math.PI;
+  const turn = (i, j) => [0, 4, 8].reduce((sum, row) => sum + A[row + i] * B[row + j], 0);  // of A's inverse times B
+  const sine = Math.hypot(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)) / 2;
+  return Math.atan2(sine, (turn(0, 0) + turn(1, 1) + turn(2, 2) - 1) / 2) * 180 / Math.PI;
 }
 
 const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -39,9 +40,9 @@ export class DifferencePanel {
     const rows = [["", "this run", "the other"]];
     const truth = frame.truth && other.truth;
     if (truth) {
-      rows.push(["camera off the truth", text(frame.truth.position_m, 3, "m"), text(other.truth.position_m, 3, "m")]);
-      rows.push(["its motion off", text(100 * frame.truth.step_m, 2, "cm"), text(100 * other.truth.step_m, 2, "cm")]);
-      rows.push(["its turn off", text(frame.truth.step_deg, 3, "deg"), text(other.truth.step_deg, 3, "deg")]);
+      rows.push(["camera position error", text(frame.truth.position_m, 3, "m"), text(other.truth.position_m, 3, "m")]);
+      rows.push(["camera motion error", text(100 * frame.truth.step_m, 2, "cm"), text(100 * other.truth.step_m, 2, "cm")]);
+      rows.push(["camera rotation error", text(frame.truth.step_deg, 3, "deg"), text(other.truth.step_deg, 3, "deg")]);
     }
     rows.push(["objects in view", String(frame.objects.length), String(other.objects.length)]);
     this.fill(element("difference-values"), rows);

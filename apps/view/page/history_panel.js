@@ -1,23 +1,23 @@
 // Speed, yaw rate and distance of one object over time, each with the band of one standard deviation; while none is
-// chosen, those of the camera.
+// chosen, those of the camera. A dot stands at the frame that is shown.
 
 const kDegrees = 180 / Math.PI;
 const kQuantities = {
   speed: { value: (o) => o.speed, sigma: (o) => o.speed_sigma, digits: 2, unit: "m/s" },
-  yaw: { value: (o) => o.yaw_rate * kDegrees, sigma: (o) => o.yaw_rate_sigma * kDegrees, digits: 1, unit: "deg/s" },
+  yaw: { value: (o) => o.yaw_rate * kDegrees, sigma: (o) => (o.yaw_rate_sigma == null ? null : o.yaw_rate_sigma * kDegrees), digits: 1, unit: "deg/s" },
   distance: { value: (o) => o.distance, sigma: (o) => o.distance_sigma, digits: 2, unit: "m" },
 };
 const kAround = 2;  // frames before and after, over which the camera's speed is taken
 
 // The camera as if it were an object: its speed over the ground, how fast it turns to the left, how far it has come.
-function cameraRows(past) {
-  let driven = 0;
-  return past.flatMap((frame, i) => {
-    if (i > 0) driven += Math.hypot(...[3, 7, 11].map((k) => frame.T[k] - past[i - 1].T[k]));
-    const a = past[Math.max(0, i - kAround)], b = past[Math.min(past.length - 1, i + kAround)], dt = b.time - a.time;
+// `driven` is how far it had come by the first of these frames.
+function cameraRows(frames, driven) {
+  return frames.flatMap((frame, i) => {
+    if (i > 0) driven += Math.hypot(...[3, 7, 11].map((k) => frame.T[k] - frames[i - 1].T[k]));
+    const a = frames[Math.max(0, i - kAround)], b = frames[Math.min(frames.length - 1, i + kAround)], dt = b.time - a.time;
     if (!(dt > 0)) return [];
     const turn = Math.atan2(a.T[2], a.T[10]) - Math.atan2(b.T[2], b.T[10]);
-    return [{ time: frame.time, object: { speed: Math.hypot(...[3, 7, 11].map((k) => b.T[k] - a.T[k])) / dt,
+    return [{ frame: frame.frame, time: frame.time, object: { speed: Math.hypot(...[3, 7, 11].map((k) => b.T[k] - a.T[k])) / dt,
       yaw_rate: Math.atan2(Math.sin(turn), Math.cos(turn)) / dt, distance: driven } }];
   });
 }
@@ -35,7 +35,7 @@ export class HistoryPanel {
   charts() {
     this.made ??= Object.fromEntries(Object.keys(kQuantities).map((name) => [name, new Chart(this.element(`plot-${name}`), {
       type: "line",
-      data: { datasets: [{ pointRadius: 0, borderWidth: 0 }, { pointRadius: 0, borderWidth: 0, fill: "-1" }, { pointRadius: 0, borderWidth: 2 }] },
+      data: { datasets: [{ pointRadius: 0, borderWidth: 0 }, { pointRadius: 0, borderWidth: 0, fill: "-1" }, { pointRadius: 0, borderWidth: 2 }, { pointRadius: 4, borderWidth: 2, showLine: false }] },
       options: {
         animation: false, parsing: false, normalized: true, maintainAspectRatio: false, events: [],
         plugins: { legend: { display: false }, tooltip: { enabled: false } },
@@ -52,39 +52,44 @@ export class HistoryPanel {
       for (const axis of ["x", "y"]) chart.options.scales[axis].ticks.color = css("--dim");
       chart.options.scales.y.grid = { color: css("--line"), drawBorder: false };
       chart.data.datasets[1].backgroundColor = `${this.color}44`;
+      chart.data.datasets[3].borderColor = css("--ink");
+      chart.data.datasets[3].backgroundColor = css("--card");
       chart.data.datasets[2].borderColor = this.dark.matches || this.of_camera ? this.color : `color-mix(in srgb, ${this.color} 74%, black)`;
       chart.update();
     }
   }
 
-  show(id, past) {
-    const rows = id === null ? cameraRows(past) : past.flatMap((frame) => {
-      const object = frame.objects.find((o) => o.id === id);
-      return object ? [{ time: frame.time, object }] : [];
+  // `frames` around the one that is shown, or up to it, and how far the camera had come by the first of them.
+  show(id, shown, frames, driven) {
+    const rows = id === null ? cameraRows(frames, driven) : frames.flatMap(({ frame, time, objects }) => {
+      const object = objects.find((o) => o.id === id);
+      return object ? [{ frame, time, object }] : [];
     });
+    const now = rows.find(({ frame }) => frame === shown.frame) ?? null;
     const known = rows.length > 0;
     this.element("history").hidden = !known;
     this.element("history-hint").hidden = known;
-    this.element("history-hint").textContent = id === null ? "The camera has not moved yet." : `#${id} has not been seen yet.`;
+    this.element("history-hint").textContent = id === null ? "The camera has not moved yet." : `#${id} is not seen around this frame.`;
     this.element("history-title").textContent = id === null ? "History of the camera" : `History of #${id}`;
     this.element("history-close").hidden = id === null;
     this.element("distance-title").textContent = id === null ? "Driven" : "Distance";
     if (!known) return;
     this.color = id === null ? css("--accent") : rows[rows.length - 1].object.color;
     this.of_camera = id === null;
-    for (const [name, chart] of Object.entries(this.charts())) this.fill(name, chart, rows);
+    for (const [name, chart] of Object.entries(this.charts())) this.fill(name, chart, rows, now);
     this.paint();
   }
 
-  fill(name, chart, rows) {
+  fill(name, chart, rows, now) {
     const { value, sigma, digits, unit } = kQuantities[name];
     const points = (sign) => rows.filter(({ object }) => value(object) != null)
       .map(({ time, object }) => ({ x: time, y: value(object) + sign * (sigma(object) ?? 0) }));
     [-1, 1, 0].forEach((sign, i) => { chart.data.datasets[i].data = points(sign); });
     Object.assign(chart.options.scales.x, { min: rows[0].time, max: Math.max(rows[rows.length - 1].time, rows[0].time + 1) });
-    const last = rows[rows.length - 1].object;
+    const shown = now === null ? null : value(now.object);
+    chart.data.datasets[3].data = shown == null ? [] : [{ x: now.time, y: shown }];
     const text = (number) => number.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
-    this.element(`now-${name}`).textContent = value(last) == null ? "" :
-      `${text(value(last))}${sigma(last) == null ? "" : ` \u00b1 ${text(sigma(last))}`} ${unit}`;
+    this.element(`now-${name}`).textContent = shown == null ? "" :
+      `${text(shown)}${sigma(now.object) == null ? "" : ` \u00b1 ${text(sigma(now.object))}`} ${unit}`;
   }
 }

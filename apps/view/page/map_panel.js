@@ -18,20 +18,24 @@ export class MapPanel {
       const frame = this.frameAt(event);
       if (frame !== null) onGo(frame);
     });
-    new ResizeObserver(() => this.draw()).observe(canvas);
-    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+    this.still = document.createElement("canvas");  // all that does not change with the frame
+    new ResizeObserver(() => this.drawStill()).observe(canvas);
+    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.drawStill());
   }
 
   // `paths`: of the name, color, points and first frame; that of the run itself comes first. `marks`: frames to point out.
   set(paths, marks) {
     this.paths = paths.map((path) => ({ ...path, points: ground(path.path) }));
     this.marks = marks;
-    this.draw();
+    this.drawStill();
   }
 
   show(frame, truth_on) {
     this.frame = frame;
-    this.truth_on = truth_on;
+    if (truth_on !== this.truth_on) {
+      this.truth_on = truth_on;
+      this.drawStill();
+    }
     this.draw();
   }
 
@@ -59,18 +63,28 @@ export class MapPanel {
     return frame;
   }
 
-  draw() {
-    const { canvas } = this, width = canvas.clientWidth, height = canvas.clientHeight, ratio = window.devicePixelRatio || 1;
+  drawStill() {
+    const { canvas, still } = this, width = canvas.clientWidth, height = canvas.clientHeight, ratio = window.devicePixelRatio || 1;
     if (!width || !height || !this.paths.some(({ points }) => points.length > 0)) return;
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-    const context = this.context = canvas.getContext("2d");
-    context.scale(ratio, ratio);
+    still.width = Math.round(width * ratio);
+    still.height = Math.round(height * ratio);
+    this.context = still.getContext("2d");
+    this.context.scale(ratio, ratio);
     this.layOut(width, height);
     for (const path of [...this.paths].reverse()) if (!path.of_truth || this.truth_on) this.drawPath(path);
     for (const frame of this.marks ?? []) this.drawMark(frame);
-    this.drawHere();
     this.drawScale(height);
+    this.draw();
+  }
+
+  draw() {
+    const { canvas, still } = this;
+    if (!this.at) return;
+    Object.assign(canvas, { width: still.width, height: still.height });
+    const context = this.context = canvas.getContext("2d");
+    context.drawImage(still, 0, 0);
+    context.scale(window.devicePixelRatio || 1, window.devicePixelRatio || 1);
+    this.drawHere();
   }
 
   drawPath({ points, color, dash = [], wide = 2 }) {

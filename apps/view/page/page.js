@@ -13,7 +13,7 @@ import { TracksPanel } from "/tracks_panel.js";
 import { WorstPanel } from "/worst_panel.js";
 
 const element = (id) => document.getElementById(id);
-const kPast = 600, kPathBehind = 150, kPathAhead = 30, kOverview_ms = 1000, kMostMapMarks = 5;
+const kPast = 600, kPathBehind = 150, kPathAhead = 30, kTimes = 200, kOverview_ms = 1000, kMostMapMarks = 5;
 const kStates = {
   running: ["live", "good"], paused: ["paused", "warn"], recorded: ["finished run", ""], connecting: ["connecting", ""],
   ended: ["ended; open it with motorcade view RUN", ""], unreachable: ["ended, or not reachable", "warn"],
@@ -36,7 +36,7 @@ function showFrame(now) {
   const { frame, image: picture } = now, past = data.past(kPast);
   element("no-image").hidden = picture !== null;
   if (!info.recorded && performance.now() > overviewDue) showOverview();
-  timing.showFrame(frame, past);
+  timing.showFrame(frame, past, data.around(kTimes));
   const [tracking, kind] = kTracking[frame.status];
   element("tracking").textContent = frame.cause === "none" ? tracking : `${tracking}: ${frame.cause.replaceAll("_", " ")}`;
   element("tracking").className = `pill ${kind}`;
@@ -57,7 +57,8 @@ function showObjects(past) {
   image.show(frame, picture, chosen, truthOn);
   if (info.against) otherImage.show(other ?? { ...frame, objects: [], outlines: [], points: [] }, picture, null, truthOn);
   scene?.show(frame, past, chosen, extraOf(frame.frame, other));
-  history.show(chosen, past);
+  const around = data.around(kPast);
+  history.show(chosen, frame, around, drivenTo(around[0]?.frame));
   objects.show(frame, chosen, data.overview?.tracks);
   tracks.show(frame.frame, chosen);
   map.show(frame, truthOn);
@@ -71,6 +72,14 @@ function extraOf(frame, other) {
     other_path: data.other ? part(data.other.overview, data.other.info.first_frame, kPast, 0) : null };
 }
 
+function drivenTo(frame) {
+  if (!data.overview) return 0;
+  const { path, first_frame } = data.overview, end = 3 * Math.max(0, (frame ?? first_frame) - first_frame);
+  let driven = 0;
+  for (let i = 3; i <= end && i + 2 < path.length; i += 3) driven += Math.hypot(path[i] - path[i - 3], path[i + 1] - path[i - 2], path[i + 2] - path[i - 1]);
+  return driven;
+}
+
 function showOverview() {
   overviewDue = performance.now() + kOverview_ms;
   const overview = data.currentOverview(), range = [data.first, data.last], { truth } = overview;
@@ -82,13 +91,14 @@ function showOverview() {
   if (truth) paths.push({ name: "truth", color: "--ink", path: truth.path, dash: [4, 4], wide: 1.5, of_truth: true });
   const marks = truth ? overview.worst.camera.slice(0, kMostMapMarks).map(({ frame }) => frame) : [];
   map.set(paths, marks);
-  element("map-legend").replaceChildren(...paths.map(({ name, color }) => key(name, color)), ...(marks.length > 0 ? [key("largest errors of motion", "--bad", "mark")] : []));
+  element("map-legend").replaceChildren(...paths.map(({ name, color, dash }) => key(name, color, "line", Boolean(dash))), ...(marks.length > 0 ? [key("largest errors of motion", "--bad", "mark")] : []));
 }
 
-function key(name, color, kind = "line") {
+function key(name, color, kind = "line", dash = false) {
   const entry = document.createElement("span");
   entry.className = `legend-${kind}`;
   entry.style.setProperty("--color", `var(${color})`);
+  entry.style.setProperty("--line-style", dash ? "dashed" : "solid");
   entry.textContent = name;
   return entry;
 }
@@ -98,10 +108,10 @@ function curvesOf(overview) {
   const lines = (of) => [{ values: of(overview), first_frame, color: "--accent" },
     ...(other && of(other) ? [{ values: of(other), first_frame: other.first_frame, color: "--second", dash: [5, 3] }] : [])];
   if (other) curves.push({ name: "cameras apart", unit: "m", digits: 3, lines: [{ values: apartOf(overview, other), first_frame, color: "--ink" }] });
-  if (truth) curves.push({ name: "camera off the truth", unit: "m", digits: 3, lines: lines(({ truth: t }) => t?.position_m) },
-    { name: "its motion off", unit: "m", digits: 4, lines: lines(({ truth: t }) => t?.step_m) });
-  if (truth?.object_source) curves.push({ name: "an object\u2019s motion off, at most", unit: "m", digits: 3, lines: lines(({ truth: t }) => t?.motion_m) });
-  curves.push({ name: info.paced ? "latency" : "processing", unit: "ms", digits: 1, lines: lines(({ time_ms }) => time_ms) });
+  if (truth) curves.push({ name: "camera position error", unit: "m", digits: 3, lines: lines(({ truth: t }) => t?.position_m) },
+    { name: "camera motion error", unit: "m", digits: 4, lines: lines(({ truth: t }) => t?.step_m) });
+  if (truth?.object_source) curves.push({ name: "largest motion error of an object", unit: "m", digits: 3, lines: lines(({ truth: t }) => t?.motion_m) });
+  curves.push({ name: info.paced ? "latency" : "processing", unit: "ms", digits: 1, lines: lines((of) => (of === overview || data.other.info.paced === info.paced ? of.time_ms : null)) });
   return curves;
 }
 

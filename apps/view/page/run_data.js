@@ -159,6 +159,17 @@ export class RunData {
     return frames.reverse();
   }
 
+  // Frames near the one shown, oldest first; of a run that is over those after it, too.
+  around(count) {
+    if (!this.info.recorded) return this.past(count);
+    const from = Math.max(this.first, Math.min(this.shown - Math.floor(count / 2), this.last + 1 - count)), frames = [];
+    for (let number = from; number < from + count; ++number) {
+      const frame = this.frames.get(number);
+      if (frame) frames.push(frame);
+    }
+    return frames;
+  }
+
   // The newest wish wins; one is fetched at a time.
   show(number) {
     this.wanted = Math.max(this.first, Math.min(this.last, number));

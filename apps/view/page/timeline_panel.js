@@ -1,6 +1,7 @@
 // Below the slider: frames that were not simply good, and how errors and times went over the drive. A click goes there.
 
 const kMargin = 8;  // half of the slider's thumb, so that both are in line
+const kText = 15;   // height of a curve's name and value, above it
 const kStatus = { degraded: "degraded", lost: "lost", rejected: "image rejected", dropped: "dropped" };
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const element = (id) => document.getElementById(id);
@@ -112,7 +113,7 @@ export class TimelinePanel {
     context.beginPath();
     let before = null;
     for (const [x, value] of [...columns].sort((a, b) => a[0] - b[0])) {
-      const y = height - 1.5 - (height - 4) * value / high;
+      const y = height - 1.5 - (height - kText - 3) * value / high;
       if (before === null || x - before > step) context.moveTo(x - 0.5, y);
       context.lineTo(x, y);
       before = x;

@@ -47,6 +47,7 @@ export class TimingPanel {
     this.value = ({ latency_ms, processing_ms }) => (info.paced ? latency_ms : processing_ms);
     if (!info.paced) this.element("latency-title").textContent = "Processing of a pair";
     this.element("latency-note").hidden = info.paced;
+    if (info.recorded) this.element("recent-title").firstChild.textContent = "Frames around";
     this.chart = new Chart(this.element("plot-latency"), {
       type: "bar",
       data: { labels: [], datasets: [{ data: [], barPercentage: 1, categoryPercentage: 0.92, borderRadius: 2 }] },
@@ -77,12 +78,14 @@ export class TimingPanel {
     }
   }
 
-  showFrame(frame, past) {
-    this.showRecent(past.slice(-200));
+  // `past` is what percentiles are taken of while a run goes on, `around` what is drawn.
+  showFrame(frame, past, around) {
+    this.showRecent(around);
     const text = (value) => (value === null || value === undefined ? "\u2013" : value.toFixed(1));
     const of = this.overall ?? this.recentPercentiles(past);
     facts(this.element("percentiles"), [["this frame", text(frame.timing && this.value(frame.timing))],
-      ...["p50", "p95", "p99", "max"].map((name) => [name, text(of[name])]), [this.overall ? "frames, all" : "frames, last", String(of.frames)]]);
+      ...["p50", "p95", "p99", "max"].map((name) => [name, text(of[name])])]);
+    this.element("percentiles-of").textContent = this.overall ? `percentiles of all ${of.frames} frames` : `percentiles of the last ${of.frames} frames`;
     const high = of.stages_p95, now = frame.timing?.stages_ms ?? [], scale = Math.max(1, ...high) * 1.25;
     bars(this.element("stages"), this.info.stages.map((name, i) =>
       ({ name, share: (now[i] ?? 0) / scale, mark: high[i] / scale, text: text(now[i]) })));
@@ -96,11 +99,11 @@ export class TimingPanel {
       stages_p95: this.info.stages.map((_, i) => quantile(timed.map(({ stages_ms }) => stages_ms[i]).sort((a, b) => a - b), 0.95) ?? 0) };
   }
 
-  showRecent(past) {
-    this.recent.data.datasets[0].data = past.filter(({ timing }) => timing).map(({ frame, timing }) => ({ x: frame, y: this.value(timing) }));
+  showRecent(around) {
+    this.recent.data.datasets[0].data = around.filter(({ timing }) => timing).map(({ frame, timing }) => ({ x: frame, y: this.value(timing) }));
     const scale = this.recent.options.scales.x;
-    scale.min = past[0]?.frame;
-    scale.max = past[past.length - 1]?.frame;
+    scale.min = around[0]?.frame;
+    scale.max = around[around.length - 1]?.frame;
     const now = performance.now();
     if (now - (this.recent_drawn ?? 0) < 200) return;
     this.recent_drawn = now;

@@ -1,7 +1,7 @@
 // When each object was followed, and, where there is truth, when each label moved: a row each. A click goes there.
 
 const element = (id) => document.getElementById(id);
-const kMargin = 4;
+const kRest_ms = 400;
 
 const frames = (spans) => spans.reduce((sum, [from, to]) => sum + to - from + 1, 0);
 
@@ -9,6 +9,7 @@ export class TracksPanel {
   constructor(onGo) {
     this.onGo = onGo;
     this.key = "";
+    this.scroll_due = 0;
   }
 
   // `labels` stand below the first track that followed them, those that nothing followed where they began.
@@ -73,5 +74,15 @@ export class TracksPanel {
       item.classList.toggle("here", row.spans.some(([from, to]) => frame >= from && frame <= to));
       item.classList.toggle("chosen", row.label === undefined && row.id === chosen);
     }
+    this.scrollToHere();
+  }
+
+  // Of many rows those that are there come into view, unless somebody is at the list.
+  scrollToHere() {
+    const list = element("tracks"), box = list.parentElement, first = list.querySelector(".here");
+    if (performance.now() < this.scroll_due || !first || box.scrollHeight <= box.clientHeight || box.matches(":hover, :focus-within")) return;
+    this.scroll_due = performance.now() + kRest_ms;
+    const top = first.offsetTop - list.offsetTop;
+    if (top < box.scrollTop || top + first.offsetHeight > box.scrollTop + box.clientHeight) box.scrollTop = Math.max(0, top - 30);
   }
 }

@@ -15,8 +15,8 @@ export class WorstPanel {
     this.key = key;
     const entry = (text) => ({ frame, track, ...rest }) => ({ frame, track, text: text({ frame, track, ...rest }) });
     const groups = [
-      ["Camera\u2019s motion off", worst.camera.map(entry(({ step_m }) => `${(100 * step_m).toFixed(1)} cm`))],
-      ["Object\u2019s motion off", worst.objects.map(entry(({ track, motion_m }) => `#${track} ${motion_m.toFixed(2)} m`))],
+      ["Camera motion error", worst.camera.map(entry(({ step_m }) => `${(100 * step_m).toFixed(1)} cm`))],
+      ["Object motion error", worst.objects.map(entry(({ track, motion_m }) => `#${track} ${motion_m.toFixed(2)} m`))],
       ["Not simply tracked", marks.map(({ from, status }) => ({ frame: from, text: status }))],
       [paced ? "Latest" : "Slowest", worst.late.map(entry(({ ms }) => `${ms.toFixed(1)} ms`))],
     ];
