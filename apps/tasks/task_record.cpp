@@ -22,7 +22,7 @@ TaskFailure failureOf(const Json& json) {
           .last_lines = json.at("last_lines")};
 }
 
-TaskRecord recordIn(const Json& json) {
+TaskRecord recordOfJson(const Json& json) {
   TaskRecord record{.task = json.at("task"),
                     .drive = json.at("drive"),
                     .set = json.at("set"),
@@ -63,7 +63,7 @@ void writeTaskRecord(const std::filesystem::path& file, const TaskRecord& record
 }
 
 TaskRecord readTaskRecord(const std::filesystem::path& file) {
-  return readJson<TaskRecord>(file, "the record of a task", recordIn);
+  return readJson<TaskRecord>(file, "the record of a task", recordOfJson);
 }
 
 }  // namespace motorcade
