@@ -7,14 +7,10 @@ cd "$(dirname "$0")/.."
 root=${1:-build/clean_root}
 build=build/release tried=build/packages_tried
 
-apps/setup.sh debootstrap lintian file dpkg-dev gzip python3-dev pybind11-dev python3-numpy
+apps/setup.sh debootstrap lintian gzip
 mkdir -p $tried
 echo "== Packages"
-cmake --preset release -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_INSTALL_LIBDIR="lib/$(gcc -print-multiarch)" -DMOTORCADE_BUILD_PYTHON=ON --log-level=WARNING
-cmake --build --preset release
-rm -rf $build/packages
-(cd $build && cpack -G DEB >cpack.log) || { cat $build/cpack.log; exit 1; }
-ls -sh $build/packages/*.deb
+apps/package.sh
 lintian --fail-on error --suppress-tags bogus-mail-host,initial-upload-closes-no-bugs $build/packages/*.deb
 tests/symbols.sh $build/apps/interface/libmotorcade.so
 

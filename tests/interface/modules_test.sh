@@ -3,7 +3,7 @@
 # missing: modules_test.sh MODULE_USER MOTORCADE LIBRARY DRIVE
 set -euo pipefail
 user=$1 motorcade=$2 library=$3 drive=$4
-data=$(realpath "${MOTORCADE_DATA:-$(dirname "$0")/../../../shared/data}")
+data=$(realpath -m "${MOTORCADE_DATA:-$(dirname "$0")/../../../shared/data}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 failures=0
