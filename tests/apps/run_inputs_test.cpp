@@ -274,7 +274,7 @@ std::string commandsIn(const std::string& message) {
   std::string commands;
   std::istringstream lines(message);
   for (std::string line; std::getline(lines, line);)
-    if (line.starts_with("  ") && line.find("motorcade") == std::string::npos) commands += line + "\n";
+    if (line.starts_with("  ") && !line.starts_with("  motorcade")) commands += line + "\n";
   return commands;
 }
 
