@@ -161,7 +161,8 @@ class MOTORCADE_API Tracker {
   ~Tracker();
 
   /// A pair of another size than the camera's, without pixels, not after the one before (a clock that was set back is
-  /// followed after four pairs), after `close`, or beside another thread's push is rejected.
+  /// followed after four pairs) or less than half a millisecond after it, as stamps in another unit are, after `close`,
+  /// or beside another thread's push is rejected.
   Push push(const Pair& pair) noexcept;
   /// No further pair comes: the results of those that were accepted still do.
   void close() noexcept;

@@ -1,3 +1,5 @@
+#include <string>
+
 #include "io/errors.hpp"
 #include "io/layouts/layout_parts.hpp"
 #include "io/rig/rectification.hpp"
@@ -14,13 +16,20 @@ ImagesByNumber imagesOf(const fs::path& camera) {
   const fs::path table = camera / "data.csv";
   if (!fs::exists(table)) return imagesByNumber(camera / "data");
   ImagesByNumber images;
+  std::size_t missing = 0;
   for (const TextLine& line : readLines(table)) {
     if (line.text.starts_with('#')) continue;
     FieldReader fields(table, line, ',');
     const std::int64_t stamp_ns = fields.integer("a time in nanoseconds");
     const fs::path image = camera / "data" / trimmed(fields.word("the name of an image"));
-    if (fs::exists(image)) images.emplace(stamp_ns, image);
+    if (fs::exists(image))
+      images.emplace(stamp_ns, image);
+    else
+      ++missing;
   }
+  if (missing > images.size())
+    throw InputError(table.string() + ": names " + std::to_string(missing) + " images that are not in " +
+                     (camera / "data").string() + "; is it the table of another recording?");
   if (images.empty()) throw InputError(table.string() + ": names no image that is there");
   return images;
 }

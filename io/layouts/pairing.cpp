@@ -116,12 +116,15 @@ void keepOnly(PairedImages& paired, const std::vector<bool>& kept) {
 
 /// Where one side has several images for each of the other, leaves out those between the pairs.
 void leaveOutSurplus(PairedImages& paired) {
-  constexpr double kOnGrid = 0.25;  // of the pairs' step
+  constexpr double kOnGrid = 0.25;            // of the pairs' step
+  constexpr std::ptrdiff_t kFewestPairs = 5;  // that tell a step
   std::vector<std::int64_t> of_pairs;
   for (std::size_t i = 0; i < paired.frames.size(); ++i)
     if (paired.frames[i].isPair()) of_pairs.push_back(paired.numbers[i]);
   const std::int64_t step = middleStep(of_pairs);
-  if (paired.kind == NameKind::kNames || 2 * step < 3 * middleStep(paired.numbers)) return;
+  if (paired.kind == NameKind::kNames || std::ssize(of_pairs) < kFewestPairs ||
+      2 * step < 3 * middleStep(paired.numbers))
+    return;
   const auto isSurplus = [&](std::size_t i) {
     const double place = static_cast<double>(paired.numbers[i] - of_pairs.front()) / static_cast<double>(step);
     return !paired.frames[i].isPair() && std::abs(place - std::round(place)) > kOnGrid;

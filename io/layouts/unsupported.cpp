@@ -21,8 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kThen =
-    "\nLay the calibration beside them (DRIVE/calib.txt, camchain.yaml or left.yaml and right.yaml), or give it:\n"
-    "  motorcade run DRIVE --camera fx,fy,cx,cy,baseline --out RUN    (rectified; else --calibration FILE.yaml)";
+    "\nLay the calibration beside them (DRIVE/calib.txt, camchain.yaml or left.yaml and right.yaml), or give it, with "
+    "--calibration FILE.yaml instead of --camera where the images are not rectified:\n"
+    "  motorcade run DRIVE --camera fx,fy,cx,cy,baseline --out RUN";
 constexpr const char* kMakeFolders = "\n  mkdir -p DRIVE/left DRIVE/right";
 
 std::string lowerExtension(const fs::path& file) {
@@ -56,12 +57,12 @@ std::string pythonText(const std::string& text) {
   return quoted;
 }
 
+constexpr const char* kTopics = " (the first command names the topics: write them in place of /LEFT and /RIGHT)";
 constexpr const char* kTopicSides = "side = {\"/LEFT/image_raw\": \"left\", \"/RIGHT/image_raw\": \"right\"}\n";
 
 /// Images are named by their times, so that they find their partner.
 std::string ofRos1(const fs::path& bag) {
-  return "\n  rosbag info " + shellWord(bag.string()) +
-         "    (names the topics: write them in place of /LEFT and /RIGHT)" + kMakeFolders +
+  return kTopics + std::string("\n  rosbag info ") + shellWord(bag.string()) + kMakeFolders +
          pythonCommand(std::string("import rosbag, cv2, cv_bridge\n") + kTopicSides +
                        "for topic, message, _ in rosbag.Bag(" + pythonText(bag.string()) +
                        ").read_messages(list(side)):\n"
@@ -71,8 +72,7 @@ std::string ofRos1(const fs::path& bag) {
 
 std::string ofRos2(const fs::path& bag) {
   const std::string storage = lowerExtension(bag) == ".mcap" ? "mcap" : "sqlite3";
-  return "\n  ros2 bag info " + shellWord(bag.string()) +
-         "    (names the topics: write them in place of /LEFT and /RIGHT)" + kMakeFolders +
+  return kTopics + std::string("\n  ros2 bag info ") + shellWord(bag.string()) + kMakeFolders +
          pythonCommand(std::string("import rosbag2_py, cv2, cv_bridge\n"
                                    "from rclpy.serialization import deserialize_message\n"
                                    "from sensor_msgs.msg import Image\n") +
@@ -92,8 +92,8 @@ std::string ofVideo(const fs::path& video) {
   const std::string from = "\n  ffmpeg -i " + shellWord(video.string());
   return "\nwhere it shows left and right side by side:" + std::string(kMakeFolders) + from +
          " -vf crop=iw/2:ih:0:0 DRIVE/left/%06d.png -vf crop=iw/2:ih:iw/2:0 DRIVE/right/%06d.png"
-         "\nwhere it is that of one camera, with as many images as the other's:" +
-         kMakeFolders + from + " DRIVE/left/%06d.png" + "    (and the other one to DRIVE/right)";
+         "\nwhere it is that of the left camera, and the right one's, with as many images, goes to DRIVE/right alike:" +
+         kMakeFolders + from + " DRIVE/left/%06d.png";
 }
 
 /// Image files whose names match, as a shell finds them.

@@ -278,20 +278,20 @@ class RenamedDrive : public Run {
 };
 
 TEST_F(RenamedDrive, ImagesMissingOnEachSideCostTheirFramesAndNothingElse) {
-  link(StereoSide::kLeft, padded("left"), {7});
-  link(StereoSide::kRight, padded("right"), {14});
+  link(StereoSide::kLeft, padded("left"), {5});
+  link(StereoSide::kRight, padded("right"), {9});
   for (const char* file : {"poses.txt", "times.txt"}) copyTruth(file);
   EXPECT_EQ(motorcade("check " + quoted()), 0) << contentOf(out("stdout"));
   EXPECT_THAT(contentOf(out("stdout")),
-              AllOf(HasSubstr("warning (pairs)"), HasSubstr("left/left0007.png"), HasSubstr("right/right0014.png")));
+              AllOf(HasSubstr("warning (pairs)"), HasSubstr("left/left0005.png"), HasSubstr("right/right0009.png")));
   ASSERT_EQ(runDrive("missing"), 0) << contentOf(errors());
-  EXPECT_THAT(contentOf(errors()), AllOf(HasSubstr("1 left missing"), HasSubstr("left0007.png: is missing")));
+  EXPECT_THAT(contentOf(errors()), AllOf(HasSubstr("1 left missing"), HasSubstr("left0005.png: is missing")));
   const auto images = summary("missing")["images"];
   EXPECT_EQ(images["pairs"], kFrames - 2);
   EXPECT_EQ(images["left_missing"], 1);
   EXPECT_EQ(images["right_missing"], 1);
   EXPECT_EQ(summary("missing")["frames"]["rejected"], 2);
-  ASSERT_EQ(run("dropped", "--inject drop@7,drop@14"), 0) << contentOf(errors());
+  ASSERT_EQ(run("dropped", "--inject drop@5,drop@9"), 0) << contentOf(errors());
   const double missing_m = ate_m("missing", quoted()), dropped_m = ate_m("dropped", kSequence.string());
   EXPECT_NEAR(missing_m, dropped_m, 0.1 * dropped_m + 0.002);  // the same pairs, in other ways of passing over
 }
@@ -346,7 +346,7 @@ std::string commandsIn(const std::string& message) {
   std::string commands;
   std::istringstream lines(message);
   for (std::string line; std::getline(lines, line);)
-    if (line.starts_with("  ") && line.find("motorcade") == std::string::npos) commands += line + "\n";
+    if (line.starts_with("  ") && !line.starts_with("  motorcade")) commands += line + "\n";
   return commands;
 }
 
