@@ -78,7 +78,8 @@ TEST_F(TruthOfADrive, OfAnotherFrameIsTold) {
   Eigen::Matrix3d world_body;
   world_body << 0, -1, 0, 0, 0, -1, 1, 0, 0;                        // x ahead, z up, as of an inertial unit
   const Eigen::Matrix3d turned = expSO3({std::numbers::pi, 0, 0});  // a quaternion read in another order
-  for (const auto& [rotation, text] : {std::pair(world_body, "go ways 90 deg apart"), std::pair(turned, "go ways 180 deg apart")}) {
+  for (const auto& [rotation, text] :
+       {std::pair(world_body, "go ways 90 deg apart"), std::pair(turned, "go ways 180 deg apart")}) {
     std::string poses;
     for (int i = 0; i < kFrames; ++i) poses += kittiLine(SE3(rotation, {0, 0, static_cast<double>(i)})) + "\n";
     folder_.write("drive/poses.txt", poses);
