@@ -13,18 +13,18 @@ constexpr std::size_t kLeastSteps = 5;  // of a part of a track, among which a s
 
 Eigen::Vector3d wayBetween(const StampedPlace& from, const StampedPlace& to) { return to.p_world - from.p_world; }
 
-/// True when a part of a track covers enough way, fast enough, and at least half of its steps go that way at half its
-/// speed or more: a jump of the truth is one large step among small ones.
+/// True when a part of a track covers enough way, fast enough, and by more than a jump: no step has half of the way
+/// more than its share of the time.
 bool goesAway(std::span<const StampedPlace> part) {
+  constexpr double kJump = 0.5;
   const Eigen::Vector3d way = wayBetween(part.front(), part.back());
   const double time_s = secondsBetween(part.front().stamp, part.back().stamp), way_m = way.norm();
   if (way_m <= kLeastWay_m || way_m <= kMovingSpeed_mps * time_s) return false;
-  std::size_t steady = 0;
   for (std::size_t i = 1; i < part.size(); ++i) {
     const double along_m = wayBetween(part[i - 1], part[i]).dot(way) / way_m;
-    steady += along_m >= way_m / 2 * secondsBetween(part[i - 1].stamp, part[i].stamp) / time_s;
+    if (along_m / way_m >= kJump + secondsBetween(part[i - 1].stamp, part[i].stamp) / time_s) return false;
   }
-  return 2 * steady >= part.size() - 1;
+  return true;
 }
 
 }  // namespace

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cstdio>
+
+#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 
 #include "io/errors.hpp"
