@@ -28,7 +28,8 @@ void expectNear(const nlohmann::json& a, const nlohmann::json& b, const std::str
 
 class VirtualKitti : public Run {
  protected:
-  void expectTheSame(const fs::path& folder) {
+  /// Runs a drive in both forms and compares these parts of their measures.
+  void expectTheSame(const fs::path& folder, const std::vector<std::string>& parts) {
     auto drive = virtualKittiDriveOf(folder);
     ASSERT_TRUE(drive);
     drive->T_map_world = SE3(Eigen::AngleAxisd(2.1, Eigen::Vector3d(0.02, 1, -0.01).normalized()).toRotationMatrix(),
@@ -41,18 +42,23 @@ class VirtualKitti : public Run {
     const auto plain = evaluate("plain", folder), as_virtual = evaluate("virtual", variation);
     EXPECT_GT(plain["final"]["motion"]["me_t_m"]["count"].get<int>(), 0);
     EXPECT_GT(plain["masks"]["within_30m"]["rows_with_mask"].get<int>(), 0);
-    for (const char* const part : {"final", "online", "masks", "covariance", "worst_frames"})
-      expectNear(plain[part], as_virtual[part], part);
+    for (const std::string& part : parts) {
+      const nlohmann::json::json_pointer place(part);
+      expectNear(plain.at(place), as_virtual.at(place), part);
+    }
     EXPECT_EQ(as_virtual["truth"]["objects"], "pose.txt and bbox.txt");
   }
 };
 
-TEST_F(VirtualKitti, ARenderedDriveIsMeasuredAsInItsOwnLayout) { expectTheSame(kSequence); }
+TEST_F(VirtualKitti, ARenderedDriveIsMeasuredAsInItsOwnLayout) {
+  expectTheSame(kSequence, {"/final", "/online", "/masks", "/covariance", "/worst_frames"});
+}
 
-TEST_F(VirtualKitti, ADriveOfAnotherRendererIsMeasuredAsInItsOwnLayout) {
+/// Its labels do not tell what is hidden, so that other objects count.
+TEST_F(VirtualKitti, TheCameraOfADriveOfAnotherRendererIsMeasuredAsInItsOwnLayout) {
   const fs::path street = dataFolder() / "rendered_street";
   if (!fs::exists(street)) GTEST_SKIP() << street << " is not there";
-  expectTheSame(street);
+  expectTheSame(street, {"/final/camera", "/online/camera", "/covariance/camera"});
 }
 
 }  // namespace
