@@ -140,16 +140,17 @@ std::optional<double> projectedArea_px2(const ObjectTruth& object, const StereoC
 }
 
 /// KITTI's levels from the share of the object's pixels that can be seen. The table's occupancy_ratio is the share of
-/// the box that its pixels fill, which is no measure of that: a free car fills .55 to .85.
+/// the box that its pixels fill, which is no measure of that: a free car fills .55 to .85. At the image's edge, where a
+/// cuboid's projection is boundless, the box has to do.
 int occlusionOf(const ObjectTruth& object, const SeenBox& seen, const StereoCamera& camera) {
-  constexpr double kVehicleInCuboid = 0.8;  // how much of a cuboid's projection a vehicle covers
-  constexpr double kVisible = 0.8, kPartly = 0.4;
-  constexpr int kHidden = 2, kUnknown = 3;
-  if (!(seen.pixels > 0)) return kHidden;
+  constexpr double kVehicleInCuboid = 0.75;  // how much of a cuboid's projection a vehicle covers
+  constexpr double kAtEdge = 0.25, kVisible = 0.8, kPartly = 0.4;
+  constexpr int kHidden = 2;
+  const double box_px2 = (seen.box.right_px - seen.box.left_px) * (seen.box.bottom_px - seen.box.top_px);
+  if (!(seen.pixels > 0) || !(box_px2 > 0)) return kHidden;
   const auto area_px2 = projectedArea_px2(object, camera);
-  if (!area_px2) return 0;  // the camera stands beside it
-  const double expected_px2 = kVehicleInCuboid * (1 - seen.truncated) * *area_px2;
-  if (!(expected_px2 > 0)) return kUnknown;
+  const bool at_edge = seen.truncated > kAtEdge || !area_px2;
+  const double expected_px2 = kVehicleInCuboid * (at_edge ? box_px2 : (1 - seen.truncated) * *area_px2);
   const double visible = seen.pixels / expected_px2;
   return visible >= kVisible ? 0 : visible >= kPartly ? 1 : kHidden;
 }

@@ -240,11 +240,16 @@ ResultTable publishedMeans(const std::vector<ResultGroup>& groups, const std::ve
 
 ResultTable publishedSources(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures) {
   ResultTable table{
-      .title = "Sources of the published figures", .heads = {"method", "measure", "source", "note"}, .names = 4};
+      .title = "Sources of the published figures", .heads = {"method", "measures", "source", "note"}, .names = 4};
   for (const PublishedFigure& figure : figures) {
     if (!isCompared(groups, figure)) continue;
-    std::vector<std::string> row{figure.method, figure.measure, figure.source, figure.note};
-    if (std::ranges::find(table.rows, row) == table.rows.end()) table.rows.push_back(std::move(row));
+    const auto same = std::ranges::find_if(table.rows, [&](const std::vector<std::string>& row) {
+      return row[0] == figure.method && row[2] == figure.source && row[3] == figure.note;
+    });
+    if (same == table.rows.end())
+      table.rows.push_back({figure.method, figure.measure, figure.source, figure.note});
+    else if ((*same)[1].find(figure.measure) == std::string::npos)
+      (*same)[1] += ", " + figure.measure;
   }
   return table;
 }

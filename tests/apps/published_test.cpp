@@ -43,6 +43,13 @@ TEST(PublishedTables, StandBesideTheDrivesThatBothHave) {
               ElementsAre(Row{"A", "camera_ate_m", "paper of A", ""}, Row{"B", "camera_ate_m", "paper of B", ""}));
 }
 
+TEST(PublishedTables, MeasuresOfOneSourceShareALine) {
+  const std::vector groups{groupOf("00", "default", 0.5, 1, 10)};
+  PublishedFigure percent = figure("A", "00", 0.9, "camera_kitti_t_percent");
+  EXPECT_THAT(publishedSources(groups, {figure("A", "00", 1), percent}).rows,
+              ElementsAre(Row{"A", "camera_ate_m, camera_kitti_t_percent", "paper of A", ""}));
+}
+
 TEST(PublishedTables, NameTheSetWhereThereAreSeveral) {
   const std::vector groups{groupOf("00", "x", 0.5), groupOf("00", "y", 0.625)};
   const auto tables = publishedTables(groups, {figure("A", "00", 1)});

@@ -49,7 +49,8 @@ class VirtualKittiLayout : public testing::Test {
     folder_.write(place / "info.txt",
                   "trackID label model color\n0 Van Renault_Kangoo White\n3 Car Sedan4Door Black\n");
   }
-  void writeObjects(const std::filesystem::path& place, const std::string& pixels) {
+  void writeObjects(const std::filesystem::path& place, const std::string& pixels,
+                    const std::string& truncation = "0") {
     folder_.write(place / "pose.txt", std::string(kPoseHead) +
                                           "0 0 3 -1.57 1.8 1.5 4 0 0 10 1.57 0 0 0 1.6 10 -1.570796 0 0\n"
                                           "0 1 3 -1.57 1.8 1.5 4 0 0 10 1.57 0 0 -0.53 1.6 10 -1.570796 0 0\n"
@@ -57,7 +58,7 @@ class VirtualKittiLayout : public testing::Test {
     folder_.write(place / "bbox.txt",
                   "frame cameraID trackID left right top bottom number_pixels truncation_ratio occupancy_ratio "
                   "isMoving\n0 0 3 540 700 190 330 " +
-                      pixels + " 0 0.7 True\n0 1 3 500 660 190 330 " + pixels + " 0 0.7 True\n");
+                      pixels + " " + truncation + " 0.7 True\n0 1 3 500 660 190 330 " + pixels + " 0 0.7 True\n");
   }
   Sequence open() { return openSequence(folder_ / "Scene01" / "clone"); }
   ObjectTruths objects() {
@@ -130,6 +131,11 @@ TEST_F(VirtualKittiLayout, OcclusionFollowsTheShareOfThePixelsThatCanBeSeen) {
   EXPECT_EQ(occlusion("10500"), 1);
   EXPECT_EQ(occlusion("4000"), 2);
   EXPECT_EQ(occlusion("0"), 2);
+  // Half of it is outside of the image: what fills most of the box of 160 x 140 px is not hidden.
+  writeObjects("Scene01/clone", "14000", "0.5");
+  EXPECT_EQ(objects().objects[0].occluded, 0);
+  writeObjects("Scene01/clone", "4000", "0.5");
+  EXPECT_EQ(objects().objects[0].occluded, 2);
 }
 
 TEST_F(VirtualKittiLayout, AnglesTurnAboutZThenXThenY) {
