@@ -43,7 +43,8 @@ Axes commonAxes(const Rig& rig) {
                      ": the second camera does not stand to the right of the first (translation in the first one's "
                      "axes, x right, y down, z ahead: " +
                      std::to_string(right_center.x()) + " " + std::to_string(right_center.y()) + " " +
-                     std::to_string(right_center.z()) + " m); only pairs side by side are followed");
+                     std::to_string(right_center.z()) + " m); only pairs side by side are followed" +
+                     (rig.transform.empty() ? "" : ". Is " + rig.transform + " the inverse of what is meant?"));
   const Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ() + rig.T_right_left.rotation().row(2).transpose();
   if (!(ahead.cross(x).norm() > kLeastAhead))
     throw InputError(rig.file.string() + ": the two cameras see nothing in common; one looks where the other does not");

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <optional>
 #include <set>
@@ -31,10 +33,12 @@ std::string lowered(std::string text) {
 
 std::set<fs::path> filesOf(const fs::path& folder) {
   constexpr std::array kExtensions{".yaml", ".yml", ".json", ".xml"};
+  constexpr std::uintmax_t kMost_bytes = std::uintmax_t{1} << 20;  // larger ones are no calibrations
   std::set<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string extension = lowered(entry.path().extension().string());
-    if (std::ranges::find(kExtensions, extension) != kExtensions.end() && entry.is_regular_file())
+    if (std::ranges::find(kExtensions, extension) != kExtensions.end() && entry.is_regular_file() &&
+        entry.file_size() <= kMost_bytes)
       files.insert(entry.path());
   }
   return files;
