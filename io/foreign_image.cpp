@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "io/errors.hpp"
 #include "io/image_codec.hpp"
@@ -98,10 +99,13 @@ std::string shellWord(const fs::path& path) {
   return word + "'";
 }
 
+/// Files whose names say image are replaced: beside new ones they would be images of their own.
 std::string conversionOf(const fs::path& file) {
-  return "ImageMagick converts those of a folder (of both; work on a copy, it may replace files):\n"
-         "  mogrify -format png -colorspace Gray " +
-         likeIt(file);
+  const bool replaced = hasImageName(file);
+  const std::string format = replaced ? file.extension().string().substr(1) : "png";
+  return std::string("ImageMagick converts those of a folder, here and in that of the other camera") +
+         (replaced ? " (it replaces them: keep a copy)" : "") + ":\n  mogrify -format " + format +
+         " -colorspace Gray " + likeIt(file);
 }
 
 void failForeign(std::string_view bytes, const fs::path& file) {

@@ -10,7 +10,7 @@ namespace motorcade {
 /// A word of a shell that names the path, whatever characters it has.
 std::string shellWord(const std::filesystem::path& path);
 
-/// A sentence with a command that writes the file's folder anew as gray images.
+/// A sentence with a command that writes the images of the file's folder anew, in gray.
 std::string conversionOf(const std::filesystem::path& file);
 
 /// Throws InputError that names what lies in a file, by its first bytes.

@@ -48,8 +48,7 @@ int runSolve(const SolveOptions& options) {
   }
   if (!solution.complete) return kExitSignal + signals.received();
   if (!solution.unsolved.empty())
-    throw InputError(options.graph.string() + ": could not be solved: " + solution.unsolved.front().name + ": " +
-                     solution.unsolved.front().detail);
+    throw InputError(options.graph.string() + ": could not be solved: " + solution.unsolved.front().detail);
   return 0;
 }
 

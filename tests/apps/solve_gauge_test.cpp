@@ -114,7 +114,7 @@ TEST_F(SolveGauge, PartsThatNothingJoinsAreSolvedByThemselves) {
   const std::string main = quarterTurn(0, 1) + quarterTurn(1, 2),
                     loop = quarterTurn(10, 11) + quarterTurn(11, 12) + "EDGE_SE2 12 10 1 1 3" + kUnit3;
   const double of_loop = solved(loop, "--batch")["chi2"];
-  EXPECT_GT(of_loop, 0.1);
+  EXPECT_GT(of_loop, 0.001);
   const json result = solved("VERTEX_SE2 11 7 8 0.5\nFIX 11\nVERTEX_SE2 30 4 5 0\n" + main + loop, "--batch");
   ASSERT_THAT(kinds(result), ElementsAre("disconnected_part", "disconnected_part"));
   EXPECT_THAT(

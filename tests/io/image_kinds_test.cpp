@@ -129,7 +129,7 @@ TEST_F(ImageKinds, KindsOfJpegThatAreNotReadAreNamedWithWhatConvertsThem) {
          {messageOf<InputError>([&] { readImageSize(file); }), messageOf<InputError>([&] { readImage(file, pool_); })})
       EXPECT_THAT(message,
                   AllOf(HasSubstr(file.string() + ": is "), HasSubstr(kind),
-                        HasSubstr("mogrify -format png -colorspace Gray '" + file.parent_path().string() + "'/*.jpg")));
+                        HasSubstr("mogrify -format jpg -colorspace Gray '" + file.parent_path().string() + "'/*.jpg")));
   }
 }
 

@@ -139,7 +139,7 @@ TEST(RelativePoseFactorSE2, TakesInformationThatLeavesDirectionsOpen) {
   for (const Eigen::Matrix3d& information :
        {Eigen::Matrix3d(Eigen::Vector3d(100, 100, 0).asDiagonal()),
         Eigen::Matrix3d(Eigen::Vector3d(0, 0, 4).asDiagonal()), Eigen::Matrix3d(row * row.transpose()),
-        Eigen::Matrix3d(Eigen::Matrix3d::Zero()), Eigen::Matrix3d(Eigen::Vector3d(1e12, 0, 1e-3).asDiagonal())})
+        Eigen::Matrix3d(Eigen::Matrix3d::Zero()), Eigen::Matrix3d(Eigen::Vector3d(1e4, 0, 1e-3).asDiagonal())})
     checkFactor(RelativePoseFactorSE2(kI, kJ, Xi.inverse() * Xj * E.inverse(), information), {Xi, Xj}, e, information);
 }
 
