@@ -176,7 +176,8 @@ TEST_F(Check, AndRunAgreeOnEveryFault) {
     EXPECT_EQ(run("agree", "--inject '" + faults + "'"), found.exit_code) << contentOf(errors());
     std::vector<std::string> of_run;
     for (const auto& finding : summary("agree")["findings"]) of_run.push_back(finding["name"]);
-    if (found.names != std::vector<std::string>{"images"}) EXPECT_EQ(of_run, found.names);
+    const bool nothing_came = found.names == std::vector<std::string>{"images"};  // which a run tells at its end
+    EXPECT_TRUE(nothing_came || of_run == found.names);
     fs::remove_all(out("agree"));
   }
 }
@@ -211,7 +212,7 @@ TEST_F(Check, ARunEndsWithinTwentyPairsOfAChangeOfTheRig) {
       EXPECT_THAT(contentOf(errors()), HasSubstr("the pairs changed: "));
       const auto json = summary("changed");
       EXPECT_EQ(json["complete"], false);
-      if (pace.empty()) EXPECT_LE(json["frames"]["received"], 50);
+      EXPECT_TRUE(!pace.empty() || json["frames"]["received"] <= 50);
       ASSERT_EQ(json["findings"].size(), 1U);
       EXPECT_EQ(json["findings"][0]["name"], name);
       EXPECT_LT(json["findings"][0]["last_good_frame"], 30);

@@ -32,8 +32,7 @@ TEST_F(Run, EndsWithAnErrorWhereNothingIsFollowed) {
   const std::map<std::string, std::string> answers{{"truncated", "most of them, 14, cannot be used: "},
                                                    {"drop", "most of them, 14, did not come"},
                                                    {"one_eyed", "most of them, 14, could not be worked on: "},
-                                                   {"black", "show nothing of the frame before"},
-                                                   {"duplicate", "most of them, 13, show nothing of the frame before"}};
+                                                   {"black", "show nothing of the frame before"}};
   for (const auto& [faults, answer] : answers) {
     EXPECT_EQ(run("nothing", "--force --inject " + faults), 3) << faults;
     EXPECT_THAT(contentOf(errors()), AllOf(HasSubstr("no motion was measured in 14 frames; "), HasSubstr(answer)));
