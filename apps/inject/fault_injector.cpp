@@ -113,10 +113,8 @@ void FaultInjector::applyTo(Image& image, const FramePaths& files, StereoSide si
   if (image.empty()) return;
   switch (fault.kind) {
     case FaultKind::kBlack:
-      image = filled(image, kBlack, pool_);
-      break;
     case FaultKind::kWhite:
-      image = filled(image, kWhite, pool_);
+      image = filled(image, fault.kind == FaultKind::kBlack ? kBlack : kWhite, pool_);
       break;
     case FaultKind::kBlur:
       image = blurred(image, fault.value, pool_);
