@@ -135,14 +135,11 @@ std::vector<Finding> InputCheck::rigFindings() const {
   return findings;
 }
 
-/// A few pairs alone are bridged by a run: they make results worse, not worthless. What an error of the cameras' places
-/// explains in all pairs is one: an image that is larger looks like that of a moment later.
+/// A few pairs alone are bridged by a run: they make results worse, not worthless.
 std::optional<Finding> InputCheck::apart() const {
   constexpr std::size_t kMinPairs = 3;
-  constexpr double kExplainedShare = 0.9;
   const std::size_t most = std::max(apart_.before, apart_.after);
   if (most < kMinPairs || 2 * most < apart_.bad) return std::nullopt;
-  if (2 * apart_.bad >= apart_.compared && geometry().agreeing_share > kExplainedShare) return std::nullopt;
   return Finding{"apart",
                  text("the images of a pair are not taken at the same time: in %zu of %zu pairs, the left image fits "
                       "the right one of the pair %s better; number the images by their times",
