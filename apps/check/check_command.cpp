@@ -46,8 +46,10 @@ Seen look(InputCheck& check, const Sequence& sequence, const CheckOptions& optio
   const FrameRange range = selectedFrames(options.frames, sequence);
   FaultInjector faults(parseFaultSpec(options.inject), sequence);
   Seen seen;
+  FrameId passed_over;  // the last one; what comes of it or of one before is late, and a run ignores it
   const FaultInjector::Outlet outlet{.push =
                                          [&](const StereoFrame& pair) {
+                                           if (pair.frame <= passed_over) return true;
                                            seen.count(pair);
                                            const std::size_t before = check.pairs();
                                            check.observe(pair);
@@ -55,7 +57,7 @@ Seen look(InputCheck& check, const Sequence& sequence, const CheckOptions& optio
                                              seen.kept.push_back(pair);
                                            return !check.complete();
                                          },
-                                     .pass_over = [](FrameId, Timestamp) {},
+                                     .pass_over = [&](FrameId frame, Timestamp) { passed_over = frame; },
                                      .wait = [](std::chrono::duration<double>) {}};
   SequenceDecoder decoder(sequence, range, {});
   bool wanted = true;

@@ -14,6 +14,20 @@
 #include "io/image_file.hpp"
 
 namespace motorcade {
+namespace {
+
+/// How many pairs back the faults reach.
+std::size_t reachOf(const FaultSpec& spec) {
+  double most = 1;
+  for (const Fault& fault : spec.faults)
+    if (fault.kind == FaultKind::kApart) most = std::max(most, fault.value);
+  return static_cast<std::size_t>(most);
+}
+
+}  // namespace
+
+FaultInjector::FaultInjector(FaultSpec spec, const Sequence& sequence)
+    : spec_(std::move(spec)), sequence_(sequence), kept_(reachOf(spec_)) {}
 
 bool FaultInjector::give(StereoFrame frame, const Outlet& outlet) {
   const Image right = frame.right;
@@ -29,7 +43,8 @@ bool FaultInjector::give(StereoFrame frame, const Outlet& outlet) {
   }
   left_before_ = frame.left;
   right_before_ = frame.right;
-  right_taken_ = right;
+  rights_taken_.push_front(right);
+  if (rights_taken_.size() > kept_) rights_taken_.pop_back();
   frame.stamp = shifted(frame.stamp);
   const std::int64_t id = frame.frame.value;
   if (dropped || overtaken_by > 0) outlet.pass_over(frame.frame, frame.stamp);
@@ -56,8 +71,7 @@ void FaultInjector::applyTo(StereoFrame& frame, const Fault& fault, std::uint64_
       if (!left_before_.empty()) frame.left = left_before_, frame.right = right_before_;
       return;
     case FaultKind::kApart:
-      if (!right_taken_.empty()) frame.right = right_taken_;
-      return;
+      return takeEarlierRight(frame, static_cast<std::size_t>(fault.value));
     case FaultKind::kExchanged:
       return std::swap(frame.left, frame.right);
     case FaultKind::kTimeJump:
@@ -81,6 +95,13 @@ void FaultInjector::applyTo(StereoFrame& frame, const Fault& fault, std::uint64_
   }
 }
 
+/// The oldest one while there are fewer; its own while there is none.
+void FaultInjector::takeEarlierRight(StereoFrame& frame, std::size_t pairs_before) const {
+  if (rights_taken_.empty()) return;
+  const Image& right = rights_taken_[std::min(rights_taken_.size(), pairs_before) - 1];
+  if (!right.empty()) frame.right = right;
+}
+
 PairReader& FaultInjector::reader() {
   if (!reader_) reader_.emplace(sequence_);
   return *reader_;
@@ -92,10 +113,8 @@ void FaultInjector::applyTo(Image& image, const FramePaths& files, StereoSide si
   if (image.empty()) return;
   switch (fault.kind) {
     case FaultKind::kBlack:
-      image = filled(image, kBlack, pool_);
-      break;
     case FaultKind::kWhite:
-      image = filled(image, kWhite, pool_);
+      image = filled(image, fault.kind == FaultKind::kBlack ? kBlack : kWhite, pool_);
       break;
     case FaultKind::kBlur:
       image = blurred(image, fault.value, pool_);
@@ -114,6 +133,9 @@ void FaultInjector::applyTo(Image& image, const FramePaths& files, StereoSide si
       break;
     case FaultKind::kRolled:
       image = rolled(image, fault.value * std::numbers::pi / 180, pool_);
+      break;
+    case FaultKind::kZoomed:
+      image = zoomed(image, 1 + fault.value / 100, pool_);
       break;
     case FaultKind::kBarrel:
       image = distorted(image, fault.value, pool_);

@@ -27,7 +27,7 @@ class FaultInjector {
     std::function<void(std::chrono::duration<double>)> wait;
   };
   /// `sequence` must outlive it: faults of files read them again.
-  FaultInjector(FaultSpec spec, const Sequence& sequence) : spec_(std::move(spec)), sequence_(sequence) {}
+  FaultInjector(FaultSpec spec, const Sequence& sequence);
 
   /// Gives a pair on, changed, later or not at all; false when no further pair is wanted.
   bool give(StereoFrame frame, const Outlet& outlet);
@@ -44,6 +44,7 @@ class FaultInjector {
   void applyTo(StereoFrame& frame, const Fault& fault, std::uint64_t seed);
   /// `files` and `side` say which image it is.
   void applyTo(Image& image, const FramePaths& files, StereoSide side, const Fault& fault, std::uint64_t seed);
+  void takeEarlierRight(StereoFrame& frame, std::size_t pairs_before) const;
   PairReader& reader();
   bool giveLate(std::int64_t frame, const Outlet& outlet);
 
@@ -53,7 +54,8 @@ class FaultInjector {
   std::optional<PairReader> reader_;  // made for the first fault of a file
   std::int64_t jumps_ns_ = 0;
   Image left_before_, right_before_;  // as they were given on
-  Image right_taken_;                 // as the camera took it before
+  std::deque<Image> rights_taken_;    // as the camera took them before, the newest first
+  std::size_t kept_;                  // of them
   std::deque<Late> late_;
 };
 

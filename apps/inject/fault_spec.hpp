@@ -25,9 +25,10 @@ enum class FaultKind {
   kTruncated,    // only this share of the file's bytes is there
   kBitFlips,     // so many bits of the file are wrong
   kExchanged,    // left is right
-  kApart,        // the right image is that of the pair before
+  kApart,        // the right image is that of so many pairs before
   kLowered,      // the content is so many pixels lower
   kRolled,       // turned by so many degrees
+  kZoomed,       // larger by so many percent
   kBarrel,       // radial distortion
   kOneEyed,      // one image does not come
   kStall,        // nothing comes for so many seconds, then the rest at once

@@ -105,6 +105,10 @@ Image rolled(const Image& image, double angle_rad, ImagePool& pool) {
   return moved(image, pool, [c, s](double x, double y) { return std::pair(c * x + s * y, c * y - s * x); });
 }
 
+Image zoomed(const Image& image, double factor, ImagePool& pool) {
+  return moved(image, pool, [factor](double x, double y) { return std::pair(x / factor, y / factor); });
+}
+
 Image distorted(const Image& image, double k1, ImagePool& pool) {
   const double unit_px = image.width() / 2.0;
   return moved(image, pool, [k1, unit_px](double x, double y) {

@@ -18,10 +18,12 @@ Image exposed(const Image& image, double factor, ImagePool& pool);
 /// Through JPEG compression and back.
 Image throughJpeg(const Image& image, int quality, ImagePool& pool);
 /// As a camera sees it that stands so many rows too high: its content is lower. Interpolated bilinearly, as are the
-/// next two; the border's pixels are repeated.
+/// next three; the border's pixels are repeated.
 Image lowered(const Image& image, double rows_px, ImagePool& pool);
 /// Turned clockwise about its middle.
 Image rolled(const Image& image, double angle_rad, ImagePool& pool);
+/// Larger by this factor about its middle.
+Image zoomed(const Image& image, double factor, ImagePool& pool);
 /// With the radial distortion of a lens, r (1 + k1 r^2), about its middle; r = 1 at half the image's width.
 Image distorted(const Image& image, double k1, ImagePool& pool);
 

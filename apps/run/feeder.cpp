@@ -72,12 +72,13 @@ bool Feeder::enter(StereoFrame frame, const std::stop_token& stopped) {
   return faults_ ? faults_->give(std::move(frame), pipelineAfterFaults(stopped)) : push(std::move(frame));
 }
 
-/// The pair enters first, so that looking at it does not delay it.
+/// The pair enters first, so that looking at it does not delay it. One that is late is ignored there, and so here.
 bool Feeder::push(StereoFrame frame) {
   const StereoFrame seen = frame;
-  if (pipeline_.push(std::move(frame)) == Admission::kClosed) return false;
+  const Admission admission = pipeline_.push(std::move(frame));
+  if (admission == Admission::kClosed) return false;
   for (RunListener* const listener : listeners_) listener->frameEntered(seen);
-  return !watch_ || watch_->admits(seen);
+  return !watch_ || admission == Admission::kLate || watch_->admits(seen);
 }
 
 FaultInjector::Outlet Feeder::pipelineAfterFaults(const std::stop_token& stopped) {

@@ -17,6 +17,7 @@ namespace {
 constexpr double kInRowShare = 0.75;
 // Effects on the rows from which on an error is told, and from which on results are worthless [px].
 constexpr double kTold_px = 0.8, kWorthless_px = 1.2;
+constexpr double kTogether_px = 1.5;  // of all errors; good calibrations stay below 0.6
 constexpr double kSure = 5;           // standard deviations
 constexpr double kSureDistorted = 4;  // as the least displacement below asks for much already
 /// Displacement in the corner of the image from which on distortion is told: good calibrations stay below the half
@@ -174,6 +175,7 @@ std::optional<Finding> InputCheck::exchanged() const {
                  true};
 }
 
+/// Errors that are told apart by nothing in view, as before a wall, are unsure each, but not together.
 void InputCheck::addRowErrors(const PairGeometry& geometry, std::vector<Finding>& findings) {
   const RowErrorEstimate& barrel = geometry[RowError::kBarrel];
   if (barrel.effect_px > kDistorted_px && std::abs(barrel.value) > kSureDistorted * barrel.sigma)
@@ -191,6 +193,12 @@ void InputCheck::addRowErrors(const PairGeometry& geometry, std::vector<Finding>
                             text(": %.1f px between the rows; rectify the images anew", estimate.effect_px),
                         estimate.effect_px > kWorthless_px});
   }
+  if (std::ranges::none_of(findings, &Finding::worthless) && geometry.explained_px > kTogether_px)
+    findings.push_back({"rows",
+                        text("rows of the left and the right image differ by %.1f px, by which error these pairs do "
+                             "not tell; rectify the images anew",
+                             geometry.explained_px),
+                        true});
 }
 
 std::vector<LookedAt> InputCheck::looks() const {

@@ -66,12 +66,14 @@ PairGeometry estimatePairGeometry(std::span<const EpipolarMatch> matches, const 
   }
   PairGeometry geometry;
   std::size_t agreeing = 0;
-  double squares = 0;
+  double squares = 0, explained_squares = 0;
   for (const EpipolarMatch& match : matches) {
-    const double residual_px = match.rowDifference_px() - derivatives(match, camera) * solution;
+    const double explained_px = derivatives(match, camera) * solution;
+    const double residual_px = match.rowDifference_px() - explained_px;
     if (std::abs(residual_px) > kAgreeing_px) continue;
     ++agreeing;
     squares += residual_px * residual_px;
+    explained_squares += explained_px * explained_px;
   }
   const Vector reach_px = reach(camera);
   for (int k = 0; k < kSize; ++k)
@@ -80,6 +82,7 @@ PairGeometry estimatePairGeometry(std::span<const EpipolarMatch> matches, const 
   geometry.matches = matches.size();
   geometry.rms_px = rowRms_px(matches);
   geometry.remaining_px = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, agreeing)));
+  geometry.explained_px = std::sqrt(explained_squares / static_cast<double>(std::max<std::size_t>(1, agreeing)));
   geometry.agreeing_share =
       static_cast<double>(agreeing) / static_cast<double>(std::max<std::size_t>(1, matches.size()));
   return geometry;

@@ -32,6 +32,7 @@ struct PairGeometry {
   std::array<RowErrorEstimate, kRowErrors> errors;
   double rms_px = 0;          // of row differences, as they are
   double remaining_px = 0;    // once the errors above are taken out
+  double explained_px = 0;    // of the errors above, all together, at the matches; root mean square
   double agreeing_share = 0;  // of the matches that follow them
   std::size_t matches = 0;
 

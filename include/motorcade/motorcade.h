@@ -153,7 +153,7 @@ typedef struct {
   bool has_motion_covariance;
   size_t object_count;
   double latency_ms;    // from push to the result
-  const char* problem;  // why the pair was lost or rejected, in a sentence; lives as long as the result
+  const char* problem;  // why the pair was lost or rejected, or the rig is wrong; lives as long as the result
 } motorcade_frame;
 
 typedef enum { MOTORCADE_STATE_MOVING, MOTORCADE_STATE_STOPPED, MOTORCADE_STATE_PREDICTED } motorcade_state;

@@ -119,7 +119,9 @@ struct Result {
   std::vector<Object> objects{};  // by id
   int dropped_before = 0;         // pairs since the result before that a newer one replaced
   double latency_ms = 0;          // from `push` to the result
-  std::string problem{};          // why the pair is of no use, or what failed, in a sentence; see `cause` for the rest
+  /// Why the pair is of no use, what failed, or what of the rig makes results worthless, in a sentence; see `cause` for
+  /// the rest.
+  std::string problem{};
 };
 
 /// Follows the camera and the objects. One thread pushes, one takes results; every other call is for any thread.

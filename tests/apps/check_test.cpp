@@ -1,15 +1,18 @@
+#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 
 #include "tests/apps/program_run.hpp"
+#include "tests/support/data_folder.hpp"
 
 /// `motorcade check` on the rendered drive with faults, and what `motorcade run` makes of them.
 namespace motorcade::test {
 namespace {
 
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -115,10 +118,109 @@ TEST_F(Check, WritesAPageThatShowsTheWorstPairsAndSaysWhereToFindIt) {
   EXPECT_EQ(motorcade("check " + kSequence.string() + " --page " + out("nowhere/check.html").string()), 4);
 }
 
-TEST_F(Check, SaysThatBlackImagesTellNothing) {
-  const Found found = check("black");
-  EXPECT_THAT(found.names, Contains("points"));
-  EXPECT_EQ(found.exit_code, 0);
+TEST_F(Check, SaysThatBlackOrMissingImagesTellNothing) {
+  const Found black = check("black");
+  EXPECT_THAT(black.names, ElementsAre("points"));
+  EXPECT_EQ(black.exit_code, 3);
+  EXPECT_THAT(contentOf(out("stdout")), HasSubstr("it finds nothing to follow"));
+  const Found truncated = check("truncated");
+  EXPECT_THAT(truncated.names, ElementsAre("images"));
+  EXPECT_EQ(truncated.exit_code, 3);
+  EXPECT_THAT(contentOf(out("stdout")), HasSubstr("none of 14 pairs can be used: "));
+  EXPECT_THAT(contentOf(out("stdout")), HasSubstr("000000.png"));
+}
+
+/// The same evidence, the same findings, the same exit code: of each kind of fault, at the strength that it has unless
+/// told and weaker, all along and of single frames.
+TEST_F(Check, AndRunAgreeOnEveryFault) {
+  for (const std::string faults : {"drop",
+                                   "drop@::3",
+                                   "duplicate@::2",
+                                   "late=3",
+                                   "reordered",
+                                   "black",
+                                   "black@0:5",
+                                   "black/right",
+                                   "white",
+                                   "blur",
+                                   "blur=31",
+                                   "noise",
+                                   "noise=200",
+                                   "exposure",
+                                   "exposure=0.2/right",
+                                   "jpeg",
+                                   "jpeg=1",
+                                   "truncated",
+                                   "truncated~0.3",
+                                   "bitflips",
+                                   "exchanged",
+                                   "exchanged@4",
+                                   "apart",
+                                   "apart=2",
+                                   "apart@3:6",
+                                   "lowered=1/right",
+                                   "lowered=1.5/right",
+                                   "lowered/right",
+                                   "rolled=0.1/right",
+                                   "rolled/right",
+                                   "zoomed/right",
+                                   "zoomed=3/right",
+                                   "barrel",
+                                   "one_eyed",
+                                   "one_eyed@::2",
+                                   "stall=0.01@2",
+                                   "jump",
+                                   "jump=-3600@4"}) {
+    SCOPED_TRACE(faults);
+    const Found found = check(faults);
+    EXPECT_EQ(run("agree", "--inject '" + faults + "'"), found.exit_code) << contentOf(errors());
+    std::vector<std::string> of_run;
+    for (const auto& finding : summary("agree")["findings"]) of_run.push_back(finding["name"]);
+    const bool nothing_came = found.names == std::vector<std::string>{"images"};  // which a run tells at its end
+    EXPECT_TRUE(nothing_came || of_run == found.names);
+    fs::remove_all(out("agree"));
+  }
+}
+
+/// Kinds of folders that people have.
+TEST_F(Check, AndRunAgreeOnCasesFromTheField) {
+  const fs::path maker = test::dataFolder().parent_path() / "cases" / "make.py";
+  const fs::path cases = out("cases");
+  if (!fs::exists(maker)) GTEST_SKIP() << maker << " is not there";
+  if (std::system(("python3 " + maker.string() + " " + kSequence.string() + " " + cases.string() +
+                   " --frames 14 >/dev/null 2>&1")
+                      .c_str()) != 0)
+    GTEST_SKIP() << "needs Python with numpy";
+  std::vector<fs::path> drives;
+  for (const auto& entry : fs::directory_iterator(cases)) drives.push_back(entry.path());
+  ASSERT_GE(drives.size(), 7U);
+  for (const fs::path& drive : drives)
+    EXPECT_EQ(run(drive.filename().string(), "", drive), check("seed=1", drive).exit_code)
+        << drive << contentOf(errors());
+}
+
+TEST_F(Check, ARunEndsWithinTwentyPairsOfAChangeOfTheRig) {
+  const fs::path drive = test::dataFolder() / "kitti_tracking_0003";
+  if (!fs::exists(drive)) GTEST_SKIP() << drive << " is not there";
+  const struct {
+    std::string faults, name;
+  } cases[] = {{"exchanged@30:", "exchanged"}, {"apart@30:", "apart"}, {"lowered=2/right@30:", "rows"}};
+  for (const auto& [faults, name] : cases)
+    for (const std::string pace : {"", " --live --rate 20"}) {
+      SCOPED_TRACE(faults + pace);
+      EXPECT_EQ(run("changed", "--frames 0:60 --inject " + faults + pace, drive), 3);
+      EXPECT_THAT(contentOf(errors()), HasSubstr("the pairs changed: "));
+      const auto json = summary("changed");
+      EXPECT_EQ(json["complete"], false);
+      EXPECT_TRUE(!pace.empty() || json["frames"]["received"] <= 50);
+      ASSERT_EQ(json["findings"].size(), 1U);
+      EXPECT_EQ(json["findings"][0]["name"], name);
+      EXPECT_LT(json["findings"][0]["last_good_frame"], 30);
+      EXPECT_GE(json["findings"][0]["first_bad_frame"], 30);
+    }
+  EXPECT_EQ(run("forced", "--force --frames 0:60 --inject exchanged@30:", drive), 0);
+  EXPECT_EQ(summary("forced")["frames"]["received"], 60);
+  EXPECT_EQ(summary("forced")["findings"].size(), 1U);
 }
 
 TEST_F(Check, ARunEndsWhereItsResultsWouldBeWorthless) {

@@ -56,6 +56,14 @@ Outcome inject(const std::string& spec, int frames) {
   return outcome;
 }
 
+TEST(FaultInjector, TakesTheRightImageOfSoManyPairsBefore) {
+  const Outcome outcome = inject("apart=2@1:", 4);
+  EXPECT_TRUE(same(outcome.frames[0].right, picture(100)));
+  EXPECT_TRUE(same(outcome.frames[1].right, picture(100))) << "there is none before";
+  EXPECT_TRUE(same(outcome.frames[3].right, picture(101)));
+  EXPECT_TRUE(same(outcome.frames[3].left, picture(3)));
+}
+
 TEST(FaultInjector, LeavesPairsAsTheyAreWhereNothingStrikes) {
   const Outcome outcome = inject("black@7", 3);
   EXPECT_EQ(outcome.order, "+0+1+2");
@@ -145,6 +153,7 @@ TEST(ImageFaults, MoveTheContentAsTheyTell) {
     return std::pair(u / sum, v / sum);
   };
   EXPECT_NEAR(spot(lowered(image, 2.5, pool)).second, 2.5, 0.05);
+  EXPECT_NEAR(spot(zoomed(image, 1.05, pool)).first, 63, 0.1);
   EXPECT_NEAR(spot(rolled(image, 0.1, pool)).first, 60 * std::cos(0.1), 0.1);
   EXPECT_NEAR(spot(rolled(image, 0.1, pool)).second, 60 * std::sin(0.1), 0.1);  // rows go down: clockwise
   EXPECT_NEAR(spot(distorted(image, -0.2, pool)).first, 60 * (1 - 0.2 * 0.36), 0.3);

@@ -28,6 +28,18 @@ TEST_F(Run, RejectsADamagedImageAndGoesOn) {
   EXPECT_EQ(run("strict", "--require tracked=1", damaged), 5);
 }
 
+TEST_F(Run, EndsWithAnErrorWhereNothingIsFollowed) {
+  const std::map<std::string, std::string> answers{{"truncated", "most of them, 14, cannot be used: "},
+                                                   {"drop", "most of them, 14, did not come"},
+                                                   {"one_eyed", "most of them, 14, could not be worked on: "},
+                                                   {"black", "show nothing of the frame before"}};
+  for (const auto& [faults, answer] : answers) {
+    EXPECT_EQ(run("nothing", "--force --inject " + faults), 3) << faults;
+    EXPECT_THAT(contentOf(errors()), AllOf(HasSubstr("no motion was measured in 14 frames; "), HasSubstr(answer)));
+  }
+  EXPECT_EQ(run("one", "--force --frames 3:4"), 0) << "a single frame has no motion, and is good";
+}
+
 TEST_F(Run, RefusesImagesThatAreLargerThanTheConfigurationAllows) {
   EXPECT_EQ(run("large", "--set input.max_pixels=1000"), 3);
   EXPECT_THAT(contentOf(errors()), HasSubstr("input.max_pixels is 1000"));

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <mutex>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -157,6 +160,36 @@ TEST(TrackerRig, RectifiesARealRigAsIfBeforehand) {
   EXPECT_NEAR(ours.cx_px, read_camera.cx_px, kTol_px);
   EXPECT_NEAR(ours.cy_px, read_camera.cy_px, kTol_px);
   EXPECT_NEAR(ours.baseline_m, read_camera.baseline_m, 1e-6);
+}
+
+/// The drive to and fro, long enough for the rig to be judged.
+DriveInMemory toAndFro(DriveInMemory drive) {
+  constexpr std::int64_t kPeriod_ns = 100'000'000;
+  const auto there = drive.frames;
+  drive.frames.insert(drive.frames.end(), there.rbegin() + 1, there.rend());
+  for (std::size_t i = 0; i < drive.frames.size(); ++i)
+    drive.frames[i].stamp_ns = static_cast<std::int64_t>(i) * kPeriod_ns;
+  return drive;
+}
+
+TEST(WatchedRig, ALogAndTheResultsTellOfImagesThatAreExchanged) {
+  DriveInMemory drive = toAndFro(readDrive(MOTORCADE_SMALL_SEQUENCE));
+  for (const bool exchanged : {false, true}) {
+    if (exchanged)
+      for (auto& frame : drive.frames) std::swap(frame.left, frame.right);
+    std::mutex mutex;
+    std::string log;
+    Tracker::Options options = replay();
+    options.log = [&](Tracker::LogLevel, const std::string& line) {
+      const std::scoped_lock lock(mutex);
+      log += line + "\n";
+    };
+    const std::vector<Result> results = track(drive, options);
+    ASSERT_EQ(results.size(), drive.frames.size());
+    EXPECT_EQ(log.find("the rig: left and right image are exchanged") != std::string::npos, exchanged) << log;
+    EXPECT_EQ(results.back().problem.find("are exchanged") != std::string::npos, exchanged) << results.back().problem;
+    EXPECT_TRUE(exchanged || log.find("the rig: ") == std::string::npos) << log;
+  }
 }
 
 }  // namespace
