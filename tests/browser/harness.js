@@ -53,20 +53,28 @@ export async function screenshot(page, name, options = {}) {
   if (kScreenshots) await page.screenshot({ ...kind, ...options });
 }
 
-// No wider than the screen, and nothing wider than the card that holds it, but for what scrolls in a box of its own.
+// What is wider than the card that holds it, but for what scrolls in a box of its own.
+const outsideOf = () => [...document.querySelectorAll(".card, figure, .finding")].flatMap((card) => {
+  const { left, right, width } = card.getBoundingClientRect();
+  if (width === 0) return [];
+  return [...card.querySelectorAll("*")].filter((part) => {
+    const box = part.getBoundingClientRect();
+    return box.width > 0 && (box.right > right + 1 || box.left < left - 1) && !part.closest(".scroll, .wide, pre, svg, .label, #cursor, .mark, .bar");
+  }).map((part) => `${part.localName}#${part.id}.${part.className} leaves ${card.id || card.className}`);
+});
+
+// The page is no wider than the screen, and nothing wider than its card, once all has its new size.
 export async function checkWidth(page, where = "") {
-  const fits = () => document.documentElement.scrollWidth <= window.innerWidth;  // once all has its new size
-  await page.waitForFunction(fits, null, { timeout: 3000 }).catch(() => {});
-  const [content, screen] = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
-  check(content <= screen, `${where} the page is ${content} px wide on a screen of ${screen} px`);
-  const outside = await page.evaluate(() => [...document.querySelectorAll(".card, figure, .finding")].flatMap((card) => {
-    const { left, right, width } = card.getBoundingClientRect();
-    if (width === 0) return [];
-    return [...card.querySelectorAll("*")].filter((part) => !part.closest(".scroll, .wide, pre, svg, .label, #cursor, .mark, .bar") &&
-      part.getBoundingClientRect().width > 0 && (part.getBoundingClientRect().right > right + 1 || part.getBoundingClientRect().left < left - 1))
-      .map((part) => `${part.localName}#${part.id}.${part.className} leaves ${card.id || card.className}`);
-  }));
-  check(outside.length === 0, `${where} ${outside.slice(0, 4).join("; ")}`);
+  const problems = async () => {
+    const [content, screen] = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
+    return [...(content > screen ? [`the page is ${content} px wide on a screen of ${screen} px`] : []), ...await page.evaluate(outsideOf)];
+  };
+  let found = await problems();
+  for (let i = 0; i < 15 && found.length > 0; ++i) {
+    await page.waitForTimeout(200);
+    found = await problems();
+  }
+  check(found.length === 0, `${where} ${found.slice(0, 4).join("; ")}`);
 }
 
 // What a finished run and one that goes on print.

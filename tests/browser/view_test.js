@@ -2,7 +2,7 @@
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { check, checkWidth, goTo, kUrl, reaches, run, screenshot, shown, start, test, withBrowser, withPage } from "./harness.js";
+import { check, checkWidth, goTo, kUrl, reaches, run, screenshot, shown, shows, start, test, withBrowser, withPage } from "./harness.js";
 
 const folder = mkdtempSync(join(tmpdir(), "motorcade_browser_"));
 const drive = join(folder, "drive"), long = join(folder, "long"), results = join(folder, "run");
@@ -64,9 +64,10 @@ async function recorded(browser) {
     const box = await page.locator("#scrub").boundingBox();
     await page.mouse.click(box.x + box.width / 4, box.y + box.height / 2);
     check(await page.evaluate(() => document.activeElement.id) === "scrub", "the slider does not have the focus");
+    await page.waitForFunction(() => document.body.dataset.frame === document.getElementById("scrub").value);
     const from = await shown(page);
     await page.keyboard.press("ArrowRight");
-    await reaches(page, from + 1);
+    await shows(page, from + 1);
     await page.keyboard.press("Space");
     await reaches(page, from + 4);
     check(await page.locator("#play").textContent() === "Pause", "it does not play");

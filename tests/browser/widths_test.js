@@ -56,7 +56,7 @@ try {
   await withBrowser(async (browser) => {
     await served(browser, "view", ["view", results], (page) => goTo(page, 20));
     await served(browser, "two", ["view", results, "--against", other], (page) => goTo(page, 20));
-    await served(browser, "live", ["run", drive, "--out", join(folder, "live"), "--rate", "2"], (page) => reaches(page, 1));
+    await served(browser, "live", ["run", drive, "--out", join(folder, "live"), "--rate", "0.5"], (page) => reaches(page, 1));
     await files(browser);
   });
 } finally {
