@@ -6,6 +6,7 @@
 
 #include "io/errors.hpp"
 #include "io/image_codec.hpp"
+#include "io/shell_words.hpp"
 
 namespace motorcade {
 namespace {
@@ -71,7 +72,7 @@ std::string likeIt(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   const std::string end = file.extension().string();
   const bool plain = std::ranges::all_of(end, [](unsigned char c) { return c == '.' || std::isalnum(c); });
-  return shellWord(folder) + "/*" + (plain ? end : "");
+  return shellWord(folder.string()) + "/*" + (plain ? end : "");
 }
 
 std::string mendOf(Mend mend, const fs::path& file) {
@@ -79,7 +80,8 @@ std::string mendOf(Mend mend, const fs::path& file) {
     case Mend::kConvertFolder:
       return "; images are read from PNG, JPEG and PGM files. " + conversionOf(file);
     case Mend::kSplitVideo:
-      return "; write its pictures as files:\n  ffmpeg -i " + shellWord(file) + " -pix_fmt gray DRIVE/left/%06d.png";
+      return "; write its pictures as files:\n  ffmpeg -i " + shellWord(file.string()) +
+             " -pix_fmt gray DRIVE/left/%06d.png";
     case Mend::kNone:
       break;
   }
@@ -87,17 +89,6 @@ std::string mendOf(Mend mend, const fs::path& file) {
 }
 
 }  // namespace
-
-std::string shellWord(const fs::path& path) {
-  const std::string text = path.string();
-  const auto plain = [](unsigned char c) {
-    return std::isalnum(c) || std::string_view("/._-+=:,@%").find(static_cast<char>(c)) != std::string_view::npos;
-  };
-  if (!text.empty() && std::ranges::all_of(text, plain)) return text;
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
 
 /// Files whose names say image are replaced: beside new ones they would be images of their own.
 std::string conversionOf(const fs::path& file) {

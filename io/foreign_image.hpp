@@ -7,9 +7,6 @@
 /// Files that are no image that is read: what they are, and what makes one of them.
 namespace motorcade {
 
-/// A word of a shell that names the path, whatever characters it has.
-std::string shellWord(const std::filesystem::path& path);
-
 /// A sentence with a command that writes the images of the file's folder anew, in gray.
 std::string conversionOf(const std::filesystem::path& file);
 

@@ -185,7 +185,8 @@ std::vector<Label> labelsOfFrames(const Sequence& sequence) {
   std::vector<Label> labels = readLabels(sequence.truth.labels);
   if (sequence.frames.empty()) return labels;
   std::size_t lines = static_cast<std::size_t>(placeOf(sequence, sequence.frames.size() - 1)) + 1;
-  if (!sequence.truth.poses.empty()) lines = readLines(sequence.truth.poses).size();
+  if (!sequence.truth.poses.empty() && !readTimedPoses(sequence.truth.poses, sequence))
+    lines = readKittiPoses(sequence.truth.poses).size();
   if (!linesBelongToNumbers(sequence, lines)) return labels;
   const FramesOfLines frames = framesOfLines(sequence, lines, sequence.truth.labels, "numbers");
   std::erase_if(labels, [&](Label& label) {

@@ -11,7 +11,7 @@
 
 #include "io/rig/rig_file.hpp"
 #include "io/rig/rig_readers.hpp"
-#include "io/shell_quoted.hpp"
+#include "io/shell_words.hpp"
 
 namespace motorcade {
 namespace {
@@ -148,7 +148,7 @@ std::string joinedFiles(const std::vector<fs::path>& files) {
 }
 
 std::string calibrationArgument(const std::vector<fs::path>& files) {
-  return "--calibration " + shellQuoted(joinedFiles(files));
+  return "--calibration " + shellWord(joinedFiles(files));
 }
 
 std::vector<fs::path> usualRigFiles(const fs::path& folder, RigNames names) {
