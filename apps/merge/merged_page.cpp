@@ -17,7 +17,8 @@ namespace {
 /// Better and worse differ by a sign, too, for who sees no red or no green.
 constexpr std::string_view kStyle = R"css(
 .wide th, .wide td { white-space: nowrap; }
-.grid { display: grid; gap: 1rem; grid-template-columns: repeat(auto-fill, minmax(min(100%, 26rem), 1fr)); align-items: start; }
+.grid { display: grid; gap: 1rem; align-items: start;
+  grid-template-columns: repeat(auto-fill, minmax(min(100%, 26rem), 1fr)); }
 .grid figure { margin: 0; }
 td.better { color: var(--good); font-weight: 600; } td.worse { color: var(--bad); font-weight: 600; }
 td.better::before { content: "\2713\00A0"; }
