@@ -23,19 +23,19 @@ py::object enumOf(const char* type, const std::array<const char*, count>& names,
   return packaged(type)(names.at(static_cast<std::size_t>(value)));
 }
 
-py::object toPython(Result::Status status) { return enumOf("Status", std::array{"good", "lost", "rejected"}, status); }
+py::object pythonOf(Result::Status status) { return enumOf("Status", std::array{"good", "lost", "rejected"}, status); }
 
-py::object toPython(Result::Cause cause) {
+py::object pythonOf(Result::Cause cause) {
   constexpr std::array kNames{"none",   "after_gap", "few_points",   "no_points", "unlinked",
                               "failed", "unusable",  "out_of_order", "too_late"};
   return enumOf("Cause", kNames, cause);
 }
 
-py::object toPython(Result::State state) {
+py::object pythonOf(Result::State state) {
   return enumOf("State", std::array{"moving", "stopped", "predicted"}, state);
 }
 
-py::object toPython(Result::Kind kind) {
+py::object pythonOf(Result::Kind kind) {
   return enumOf("Kind", std::array{"unknown", "car", "large_vehicle", "two_wheeler", "pedestrian"}, kind);
 }
 
@@ -63,7 +63,7 @@ py::array_t<double> transformOf(const std::array<double, 12>& rows) {
   return py::array_t<double>({4, 4}, whole.data());
 }
 
-py::object toPython(const std::optional<Result::Mask>& mask) {
+py::object pythonOf(const std::optional<Result::Mask>& mask) {
   if (!mask) return py::none();
   py::array_t<bool> inside({mask->height_cells, mask->width_cells});
   std::transform(mask->inside.begin(), mask->inside.end(), inside.mutable_data(),
@@ -72,22 +72,22 @@ py::object toPython(const std::optional<Result::Mask>& mask) {
                           "inside"_a = inside);
 }
 
-py::object toPython(const Result::Object& object) {
+py::object pythonOf(const Result::Object& object) {
   return packaged("Object")(
-      "id"_a = object.id, "state"_a = toPython(object.state), "T_world_body"_a = transformOf(object.T_world_body),
+      "id"_a = object.id, "state"_a = pythonOf(object.state), "T_world_body"_a = transformOf(object.T_world_body),
       "T_cam_body"_a = transformOf(object.T_cam_body), "covariance"_a = squareOf(object.covariance),
       "velocity_world_mps"_a = vectorOf(object.velocity_world_mps),
       "velocity_covariance"_a = squareOf(object.velocity_covariance), "yaw_rate_radps"_a = object.yaw_rate_radps,
       "yaw_rate_sigma_radps"_a = object.yaw_rate_sigma_radps, "age_s"_a = object.age_s, "points"_a = object.points,
       "image_box_px"_a = vectorOf(object.image_box_px), "box_center_body_m"_a = vectorOf(object.box_center_body_m),
       "box_size_m"_a = vectorOf(object.box_size_m), "box_size_sigma_m"_a = vectorOf(object.box_size_sigma_m),
-      "kind"_a = toPython(object.kind), "kind_probability"_a = object.kind_probability,
-      "mask"_a = toPython(object.mask));
+      "kind"_a = pythonOf(object.kind), "kind_probability"_a = object.kind_probability,
+      "mask"_a = pythonOf(object.mask));
 }
 
-py::tuple toPython(const std::vector<Result::Object>& objects) {
+py::tuple pythonOf(const std::vector<Result::Object>& objects) {
   py::tuple all(objects.size());
-  for (std::size_t i = 0; i < objects.size(); ++i) all[i] = toPython(objects[i]);
+  for (std::size_t i = 0; i < objects.size(); ++i) all[i] = pythonOf(objects[i]);
   return all;
 }
 
@@ -95,11 +95,11 @@ py::tuple toPython(const std::vector<Result::Object>& objects) {
 
 py::object toPython(const Result& result) {
   return packaged("Result")(
-      "frame"_a = result.frame, "stamp_ns"_a = result.stamp_ns, "status"_a = toPython(result.status),
-      "cause"_a = toPython(result.cause), "segment"_a = result.segment,
+      "frame"_a = result.frame, "stamp_ns"_a = result.stamp_ns, "status"_a = pythonOf(result.status),
+      "cause"_a = pythonOf(result.cause), "segment"_a = result.segment,
       "T_world_cam"_a = transformOf(result.T_world_cam), "motion_covariance"_a = squareOf(result.motion_covariance),
       "velocity"_a = vectorOf(result.velocity), "velocity_covariance"_a = squareOf(result.velocity_covariance),
-      "objects"_a = toPython(result.objects), "dropped_before"_a = result.dropped_before,
+      "objects"_a = pythonOf(result.objects), "dropped_before"_a = result.dropped_before,
       "latency_ms"_a = result.latency_ms, "problem"_a = result.problem);
 }
 

@@ -3,6 +3,7 @@
 #include "io/errors.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/sequence.hpp"
+#include "io/sequence_decoder.hpp"
 #include "tests/io/layouts/layout_folder.hpp"
 
 /// The calibration of a layout: beside its images, or as the user gives it.
