@@ -74,18 +74,19 @@ int brightestOf(const Pair::Image& image) {
 /// Samples that eight bits hold may be those of a dark pair of a camera with more: a later pair will tell.
 int SampleBits::of(const Pair& pair) {
   constexpr int kDark = 8;
-  just_decided_ = false;
   if (pair.left.format != Pair::Format::kGray16 && pair.right.format != Pair::Format::kGray16) return kAllSampleBits;
-  if (decided_) return *decided_;
+  if (const int decided = decided_.load(std::memory_order_relaxed); decided != 0) return decided;
   brightest_ = std::max(brightestOf(pair.left), brightestOf(pair.right));
   const int bits = usedSampleBits(0, brightest_);
-  just_decided_ = bits > kDark;
-  if (just_decided_) decided_ = bits;
+  if (bits > kDark) decided_.store(bits, std::memory_order_release);
   return bits;
 }
 
-std::string SampleBits::decision() const {
-  return "images of 16 bits, taken as " + std::to_string(decided_.value_or(kAllSampleBits)) +
+std::optional<std::string> SampleBits::news() {
+  const int decided = decided_.load(std::memory_order_acquire);
+  if (told_ || decided == 0) return std::nullopt;
+  told_ = true;
+  return "images of 16 bits, taken as " + std::to_string(decided) +
          ": the brightest sample of the first pair that is not dark is " + std::to_string(brightest_);
 }
 

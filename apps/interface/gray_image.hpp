@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <string>
 
@@ -17,15 +18,13 @@ class SampleBits {
  public:
   /// The bits of this pair's samples, the same for both images. The pair has no problem.
   int of(const Pair& pair);
-  /// The last pair has told it.
-  bool justDecided() const { return just_decided_; }
-  /// What was found out, as a sentence.
-  std::string decision() const;
+  /// What was found out, as a sentence, once. From the thread that delivers results, so that a push writes no text.
+  std::optional<std::string> news();
 
  private:
-  std::optional<int> decided_;
   int brightest_ = 0;
-  bool just_decided_ = false;
+  std::atomic<int> decided_{0};  // 0 until it is known; published after `brightest_`, which stays from then on
+  bool told_ = false;            // the delivering thread's
 };
 
 /// The image as 8-bit gray in a buffer of the pool: the one copy between the caller and the stages. Of samples of 16

@@ -95,7 +95,7 @@ class Tracker::Impl {
   std::chrono::milliseconds patience_;
   LogCallback log_;
   ImagePool pool_;
-  SampleBits sample_bits_;  // the pushing thread's
+  SampleBits sample_bits_;
   std::atomic<int> visits_{0};
   std::atomic_flag pushing_;
   int untimely_ = 0;             // by how many stamps seem to have another unit; the pushing thread's
@@ -181,7 +181,6 @@ Tracker::Push Tracker::Impl::enter(const Pair& pair) {
   frame.stamp = {pair.stamp_ns};
   frame.due = std::chrono::steady_clock::now();
   const int sample_bits = sample_bits_.of(pair);
-  if (sample_bits_.justDecided()) tell(log_, motorcade::LogLevel::kInfo, [this] { return sample_bits_.decision(); });
   frame.left = model_.leftOf(grayImage(pair.left, sample_bits, pool_), pool_);
   frame.right = model_.rightOf(grayImage(pair.right, sample_bits, pool_), pool_);
   const Admission admission = pipeline_.push(std::move(frame));
@@ -225,6 +224,7 @@ void Tracker::Impl::deliver() {
   try {
     const PlacedThread placed(placement_);
     while (const auto result = pipeline_.next()) {
+      if (const auto news = sample_bits_.news()) tell(log_, motorcade::LogLevel::kInfo, [&] { return *news; });
       Result converted = convert_(*result);
       if (converted.problem.empty()) converted.problem = watch_.problem();
       results_.put(std::move(converted));

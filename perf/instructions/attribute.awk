@@ -11,7 +11,7 @@ BEGIN {
   if (parts == "libpng") part("libpng", "motorcade::decodeAnyPng(", 2 * frames)
   else {
     part("decoding", "motorcade::PairReader::read(", 2 * frames)
-    part("input check", "motorcade::InputCheck::observe(", frames)
+    part("input check", "motorcade::RigWatch::observe(", frames)
     stage("prepare", "prepare")
     stage("stereo matching", "matchStereo")
     stage("optical flow", "trackFlow")

@@ -57,7 +57,7 @@ TEST_F(Batch, DoesNothingTwiceAndWhatFailedOnlyWhenAsked) {
 }
 
 TEST_F(Batch, TriesWhatFailedAgainWhenAsked) {
-  write(drive("inject = \"black\"\nrequire = \"tracked=0.9\""));
+  write(drive("inject = \"black@3:12\"\nrequire = \"tracked=0.9\""));
   EXPECT_EQ(batch(), kExitFailedTasks);
   EXPECT_EQ(readTaskRecord(recordIn(folder().failure("drive.default"))).failure->exit_code, 5);
   EXPECT_EQ(batch("--retry"), kExitFailedTasks);
