@@ -50,7 +50,7 @@ log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 [[ ! -t 1 ]] || set -- --progress "$@"
 status=0
-ctest --preset $preset "$@" 2>&1 | tee "$log" || status=$?
+ctest --preset $preset --parallel "$(nproc)" "$@" 2>&1 | tee "$log" || status=$?
 if [[ $whole ]]; then
   tests/mcap.sh || status=$?
   tests/browser.sh || status=$?
@@ -60,7 +60,8 @@ fi
 skipped=$(sed -nE 's/^\s*[0-9]+ - (.*) \(Skipped\)$/\1/p' "$log")
 if [[ $skipped ]]; then
   for_data=$(grep -cE "$(data_readers)" <<<"$skipped" || true)
-  others=$(grep -vE "$(data_readers)" <<<"$skipped" | paste -sd ' ' || true)
-  echo "Skipped: $for_data tests for want of real drives in ${MOTORCADE_DATA:-../shared/data}${others:+; for other reasons $others}"
+  others=$(grep -vE "$(data_readers)" <<<"$skipped" | sed -E 's/  # .*//; s/[.\/][^.\/]*$//' | sort | uniq -c |
+    awk '{ printf "%s%s (%d)", sep, $2, $1; sep = ", " }' || true)
+  echo "Skipped: $for_data tests for want of real drives in ${MOTORCADE_DATA:-../shared/data}${others:+; for other reasons, as they say: $others}"
 fi
 exit $status
