@@ -28,7 +28,7 @@ constexpr int kRed = 77, kGreen = 150, kBlue = 29;
 constexpr Weights kOnRed{4 * kRed, kGreen, kGreen, kBlue}, kOnBlue{4 * kBlue, kGreen, kGreen, kRed};
 constexpr Weights kGreenByRed{4 * kGreen, 2 * kRed, 2 * kBlue, 0}, kGreenByBlue{4 * kGreen, 2 * kBlue, 2 * kRed, 0};
 
-/// Of the even and the odd pixels of a row.
+/// Weights of the even and the odd pixels of a row.
 using RowWeights = std::array<Weights, 2>;
 
 RowWeights weightsOf(BayerPattern pattern, bool odd_row) {

@@ -20,8 +20,8 @@ std::optional<BayerPattern> bayerPatternOf(std::string_view name);
 /// nearest pixels. See the source for the formula.
 Image grayOfMosaic(const Image& mosaic, BayerPattern pattern, ImagePool& pool);
 
-/// What a gray image looks like that is a mosaic in truth: the patterns with its two green pixels. Empty for others,
-/// and where it cannot be told surely, as in a scene without colors.
+/// Names the Bayer patterns with the same two green pixels if a gray image is in fact a mosaic. Empty for other images
+/// and where this is uncertain, as in a scene without colors.
 std::optional<std::string> suspectedMosaic(const Image& image);
 
 }  // namespace motorcade

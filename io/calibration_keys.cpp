@@ -17,7 +17,7 @@ std::string withoutComment(const std::string& text) {
   return trimmed(std::string_view(text).substr(0, end));
 }
 
-/// What YAML, JSON and XML begin with, and the extension by which they are read.
+/// First characters of YAML, JSON and XML files, and the extension that selects their reader.
 constexpr std::array<std::array<const char*, 2>, 5> kOtherForms{
     {{"%YAML", ".yaml"}, {"---", ".yaml"}, {"cam0:", ".yaml"}, {"{", ".json"}, {"<", ".xml"}}};
 

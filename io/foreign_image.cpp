@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How to make images that are read of a file.
+/// Advice on turning a foreign file into images that can be read.
 enum class Mend { kConvertFolder, kSplitVideo, kNone };
 
 struct ForeignFormat {

@@ -43,7 +43,7 @@ std::string formatted(const char* format, double value) {
   return buffer;
 }
 
-/// What a file may have, for messages.
+/// Describes the numbers of lines that a file may have, for messages.
 std::string neededLines(const Sequence& sequence) {
   const std::size_t numbers = static_cast<std::size_t>(placeOf(sequence, sequence.frames.size() - 1)) + 1;
   const auto counted = [&](bool (*has)(const FramePaths&)) {
@@ -76,7 +76,7 @@ TimedLines timedLines(const Sequence& sequence, const FramesOfLines& frames, con
   return timed;
 }
 
-/// Whether time passes where frames have no line of their own.
+/// Checks that enough time passes where frames have no line of their own.
 bool agree(const Sequence& sequence, const FramesOfLines& frames, const std::vector<Timestamp>& times) {
   constexpr double kLeast = 0.6;  // of the usual time from place to place
   const TimedLines timed = timedLines(sequence, frames, times);
@@ -95,7 +95,7 @@ std::optional<FramesOfLines> agreeingWay(const Sequence& sequence, const std::ve
   return std::nullopt;
 }
 
-/// Between the times of two places, or at the usual pace before the first and after the last.
+/// Interpolates stamps between lines, and extrapolates them at the median rate before the first and after the last.
 void interpolateStamps(Sequence& sequence, const FramesOfLines& frames, const std::vector<Timestamp>& times) {
   const TimedLines timed = timedLines(sequence, frames, times);
   sequence.stamps.assign(sequence.frames.size(), {});

@@ -23,15 +23,15 @@ bool isComplete(const Sequence& sequence);
 using FramesOfLines = std::vector<std::int64_t>;
 /// All ways in which so many lines may belong to the frames, the likeliest first.
 std::vector<FramesOfLines> waysToRead(const Sequence& sequence, std::size_t lines);
-/// Whether such lines are to be read by the images' numbers: images are missing, or the lines begin before the first.
+/// True if lines are assigned by the images' numbers: images are missing, or the lines begin before the first image.
 bool linesBelongToNumbers(const Sequence& sequence, std::size_t lines);
 /// The likeliest of them. Throws InputError that says what the file has and what is needed; `what` is in the plural.
 FramesOfLines framesOfLines(const Sequence& sequence, std::size_t lines, const std::filesystem::path& file,
                             const std::string& what);
 
 /// Sets the stamps of all frames from the times of a file's lines; those of frames without a line are interpolated.
-/// Where nothing is missing in time, frames that both sides lack are taken out. Throws InputError where it is not sure
-/// to which images the times belong.
+/// Frames that both sides lack are removed if the times have no gap there. Throws InputError if it is uncertain which
+/// images the times belong to.
 void setStampsOfLines(Sequence& sequence, const std::vector<Timestamp>& times, const std::filesystem::path& file);
 
 /// The poses of all frames from those of a file's lines; those of frames without a line are interpolated.

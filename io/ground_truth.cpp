@@ -146,7 +146,7 @@ CameraTruth truthFromPoses(const Sequence& sequence) {
   return truth;
 }
 
-/// Of poses that are stamped otherwise than the images.
+/// Camera truth from poses whose stamps differ from those of the images.
 std::optional<CameraTruth> truthFromStampedPoses(const Sequence& sequence) {
   const bool numbered = sequence.truth.stamped_poses.empty();
   const fs::path& file = numbered ? sequence.truth.numbered_poses : sequence.truth.stamped_poses;

@@ -17,9 +17,9 @@ namespace motorcade {
 struct ImageCodec {
   ImageFormat format;
   bool (*recognizes)(std::string_view bytes);
-  /// From the header alone. Throws on a kind of image that is not read.
+  /// Parses the header alone. Throws on an unsupported kind of image.
   ImageHeader (*header)(std::string_view bytes, const std::filesystem::path& file);
-  /// As 8-bit gray; see `readImage` of samples with more bits.
+  /// Decodes to 8-bit gray; `readImage` describes the treatment of samples with more bits.
   Image (*decode)(std::string_view bytes, const std::filesystem::path& file, ImagePool& pool, int sample_bits);
   /// The brightest sample of a file whose header tells of 16 bits.
   int (*brightest)(std::string_view bytes, const std::filesystem::path& file);

@@ -23,7 +23,7 @@ struct ImageSize {
   std::string text() const { return std::to_string(width) + "x" + std::to_string(height); }
 };
 
-/// What a file tells of its pixels before them.
+/// Properties of an image that its file's header states.
 struct ImageHeader {
   ImageSize size;
   int channels = 1;   // 3 where it has colors; transparency is not counted
@@ -51,8 +51,8 @@ struct Gray16Image {
 bool hasImageName(const std::filesystem::path& file);
 /// Recognized by the first bytes; unknown also when the file cannot be read.
 ImageFormat imageFormat(const std::filesystem::path& file);
-/// From the header alone. Refuses sizes below 16 or above 16384 in either direction, more than 2^26 pixels, and kinds
-/// of images that are not read.
+/// Parses the header alone. Refuses sizes below 16 or above 16384 in either direction, more than 2^26 pixels, and
+/// unsupported kinds of images.
 ImageHeader readImageHeader(const std::filesystem::path& file);
 ImageSize readImageSize(const std::filesystem::path& file);
 /// The brightest sample of a file whose header tells of 16 bits; 0 of others.
@@ -64,11 +64,11 @@ int readBrightestSample(const std::filesystem::path& file);
 Image readImage(const std::filesystem::path& file, ImagePool& pool, std::optional<ImageSize> expected = {},
                 int max_mb = kMaxImageFile_mb);
 
-/// What is wrong with an image in colors that is said to be a mosaic, after its name.
+/// Error message, after the file's name, for a color image that is declared to be a mosaic.
 inline constexpr const char* kNoMosaic =
     ": has colors, so that it is no mosaic of a sensor; leave the Bayer pattern out";
 
-/// What is known of a file's images before it is read.
+/// Properties of a file's image that are known before the file is read.
 struct ExpectedImage {
   std::optional<ImageSize> size{};
   int sample_bits = kAllSampleBits;  // that samples of 16 bits use, see `usedSampleBits`

@@ -28,7 +28,7 @@ int channelsOf(char color) {
   }
 }
 
-/// Without bytes per pixel unless the header is that of a common PNG.
+/// Reads the size and depth of a pixel from the header; `pixel_bytes` is 0 unless the header is that of a common PNG.
 CommonPng commonPngOf(const PngChunk& header) {
   constexpr std::size_t kHeader_bytes = 13, kBits = 8, kColor = 9, kInterlace = 12;
   if (header.name != "IHDR" || header.data.size() != kHeader_bytes) return {};

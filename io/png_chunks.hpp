@@ -23,8 +23,8 @@ struct PngChunk {
 /// Takes the first chunk off `bytes`, which begin behind the signature. Empty when it is cut or its checksum is wrong.
 std::optional<PngChunk> takeChunk(std::string_view& bytes);
 
-/// Where the pixels of a common PNG lie: 8-bit gray or color or 16-bit gray, with or without alpha, not interlaced, and
-/// without a chunk that would change pixels.
+/// The location of the pixels in a common PNG: 8-bit gray or color, or 16-bit gray, with or without alpha. Such a file
+/// is not interlaced and has no chunk that would change pixels.
 struct CommonPng {
   int pixel_bytes = 0;
   bool deep = false;                // 16-bit gray

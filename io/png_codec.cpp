@@ -26,7 +26,7 @@ std::uint8_t grayOfPixel(const std::uint8_t* rgb) { return grayOf(rgb[0], rgb[1]
 
 constexpr std::size_t kBitsAt = 24, kColorAt = 25;  // in the file: the header comes first
 
-/// What the sBIT chunk says of a color's bits; 0 where there is none before the pixels.
+/// The largest number of significant bits of a channel, from the sBIT chunk; 0 where none precedes the pixels.
 int toldBits(std::string_view bytes, int channels) {
   bytes.remove_prefix(kPngSignature.size());
   for (auto chunk = takeChunk(bytes); chunk && chunk->name != "IDAT"; chunk = takeChunk(bytes)) {

@@ -25,7 +25,7 @@ bool beginsWithAWord(const TextLine& line) {
          word.find_first_not_of(kOfNumbers) != std::string::npos;
 }
 
-/// What people have under the same name.
+/// Guesses from the number of fields which other form the file has; adds how to convert it where possible.
 std::string guessAt(std::size_t fields) {
   switch (fields) {
     case 3:

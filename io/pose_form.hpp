@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// How a file of poses is written.
+/// The form in which a file of poses is written.
 enum class PoseForm {
   kRows,      // 12 numbers, the upper three rows of T_world_cam, or 16, all four
   kTum,       // time tx ty tz qx qy qz qw
@@ -21,7 +21,7 @@ std::vector<TextLine> readPoseLines(const std::filesystem::path& file);
 /// Tells by the first line. Throws InputError saying what the file seems to be and what is read.
 PoseForm poseFormOf(const std::filesystem::path& file, const std::vector<TextLine>& lines);
 
-/// What stands between the fields of a line.
+/// The character between the fields of a line.
 char separatorOf(const TextLine& line);
 
 }  // namespace motorcade

@@ -70,7 +70,7 @@ bool allUsable(std::span<const double> numbers) {
   return std::ranges::all_of(numbers, [](double n) { return std::abs(n) <= kLargestNumber; });
 }
 
-/// How to mend a line of a tag that is not known; empty where only its name can be told.
+/// Advises how to mend a line with an unknown tag; empty for tags without specific advice.
 std::string adviceFor(std::string_view tag) {
   const auto has = [&](std::string_view part) { return tag.find(part) != std::string_view::npos; };
   if (tag.starts_with("TUTORIAL_")) return "take the prefix off all lines: sed -i 's/^TUTORIAL_//' FILE";

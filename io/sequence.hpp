@@ -29,14 +29,14 @@ struct FramePaths {
   bool isPair() const { return !left_missing && !right_missing; }
 };
 
-/// What the user should know of a sequence, in a sentence.
+/// A note to the user about a sequence, in one sentence.
 struct InputNote {
   std::string name;  // as of a finding in docs/formats.md: pairs, times or images
   std::string text;
   bool worthless = false;  // results would be
 };
 
-/// How the images are numbered by their names.
+/// The numbers of the images as their names give them.
 struct Numbering {
   std::int64_t first = 0, step = 1;    // of the numbers
   std::vector<std::int64_t> places{};  // of each frame: (number - first) / step; empty where they are 0, 1, 2, ...
@@ -53,7 +53,7 @@ struct FrameRange {
 /// Reads `A:B`, `A:` or `:B`; throws UsageError.
 FrameRange parseFrameRange(std::string_view text);
 
-/// What a user says of the cameras where the sequence's own files do not; at most one of the first two.
+/// Camera data given by the user where the sequence's own files have none; at most one of the first two is set.
 struct GivenCameras {
   std::string camera{};       // fx,fy,cx,cy,baseline of a rectified pair [px, m]
   std::string calibration{};  // FILE, or two as LEFT,RIGHT
@@ -63,7 +63,7 @@ struct GivenCameras {
   bool empty() const { return camera.empty() && calibration.empty(); }
 };
 
-/// How samples of 16 bits become gray, for all images of a drive.
+/// The conversion of 16-bit samples to gray, the same for all images of a drive.
 struct SampleUse {
   int bits = kAllSampleBits;  // that they use, see `upperBits`
   std::string why{};          // after "16-bit images, "

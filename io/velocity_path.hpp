@@ -14,9 +14,9 @@ namespace motorcade {
 std::vector<SE3> velocityPoses(const std::vector<OxtsPacket>& packets, const std::vector<Timestamp>& stamps,
                                const std::filesystem::path& file);
 
-/// When the packets of a sequence were taken: as their own file of times tells, else when the images were, one for
-/// each. Throws InputError where neither is known: velocities at an assumed rate would lead to a path of a wrong
-/// length.
+/// Capture times of a sequence's packets, one for each: from their own file of times, else those of the images. Throws
+/// InputError where neither is known or the number of times is not `packets`. Velocities at an assumed rate would give
+/// a path of the wrong length.
 std::vector<Timestamp> packetStamps(const Sequence& sequence, std::size_t packets);
 
 }  // namespace motorcade

@@ -7,9 +7,9 @@
 namespace motorcade {
 namespace {
 
-/// From 3 mm: a baseline that was written into P1 without the focal length comes out at most that small (0.54 m / 721
-/// px is 0.7 mm, 2 m / 700 px is 2.9 mm), and the closest pairs on sale are 18 mm apart (RealSense D405).
-/// To 2.6 m: road vehicles are at most 2.55 m wide; centimeters and millimeters taken for meters lie above.
+/// The least baseline excludes one that was written into P1 without the focal length (0.54 m / 721 px is 0.7 mm, 2 m /
+/// 700 px is 2.9 mm). The closest pairs on sale are 18 mm apart (RealSense D405).
+/// The largest exceeds the width of road vehicles, 2.55 m; centimeters and millimeters taken for meters lie above it.
 constexpr double kLeastBaseline_m = 0.003, kMostBaseline_m = 2.6;
 constexpr double kLeastFocal = 0.2, kMostFocal = 10;  // focal length over image width: 136 and 6 degrees wide
 

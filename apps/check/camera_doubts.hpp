@@ -11,7 +11,7 @@ namespace motorcade {
 /// another image size.
 std::vector<std::string> doubtsAbout(const StereoCamera& camera);
 
-/// What a stereo camera may have but seldom does, in sentences that say what it may come from.
+/// Properties that a stereo camera may have but seldom does, in sentences that name their possible cause.
 std::vector<std::string> odditiesOf(const StereoCamera& camera);
 
 }  // namespace motorcade

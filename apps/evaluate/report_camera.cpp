@@ -53,7 +53,7 @@ void printSegments(std::string& text, const Evaluation& e) {
   }
 }
 
-/// Of a truth that cannot be right.
+/// Prints how positions and velocities of the truth contradict each other.
 void printDoubt(std::string& text, const TruthCheck& check) {
   print(text, "doubt     positions and velocities of the truth contradict each other:\n");
   if (check.waysDiffer())

@@ -20,7 +20,7 @@ SE3 stepError(const SE3& estimate_before, const SE3& estimate, const SE3& truth_
 
 namespace {
 
-/// Of sorted values, between two of them at a constant rate.
+/// Quantile of sorted values, interpolated linearly between two of them.
 double quantileOf(const std::vector<double>& sorted, double part) {
   const double at = part * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(at);

@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// How the path that the truth tells fits the velocities of the inertial unit, over the frames that it knows.
+/// Compares the truth's path with the velocities of the inertial unit, over the frames that have a true pose.
 struct TruthCheck {
   double way_m = 0, velocity_way_m = 0;  // in chords of 5 m and more, so that jitter adds nothing
   double largest_step_m = 0;             // between the two motions over a chord

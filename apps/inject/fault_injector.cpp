@@ -16,7 +16,7 @@
 namespace motorcade {
 namespace {
 
-/// How many pairs back the faults reach.
+/// Number of pairs that the faults reach back, at least one.
 std::size_t reachOf(const FaultSpec& spec) {
   double most = 1;
   for (const Fault& fault : spec.faults)

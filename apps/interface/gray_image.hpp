@@ -18,7 +18,7 @@ class SampleBits {
  public:
   /// The bits of this pair's samples, the same for both images. The pair has no problem.
   int of(const Pair& pair);
-  /// What was found out, as a sentence, once. From the thread that delivers results, so that a push writes no text.
+  /// Returns the finding once, as a sentence. Call it where results are delivered, so that a push writes no text.
   std::optional<std::string> news();
 
  private:

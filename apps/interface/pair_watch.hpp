@@ -21,7 +21,7 @@ class PairWatch {
   Stages watched(Stages stages);
   /// Looks at the pairs up to that of this frame. From one thread, in the order of the frames.
   void look(FrameId frame);
-  /// What makes results worthless now; empty where nothing does. On the thread that looks.
+  /// Reason why results are worthless now; empty if they are not. Call it on the thread that looks.
   const std::string& problem() const { return problem_; }
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 using Entry = std::pair<std::string_view, std::string_view>;
 
-/// What keys end with.
+/// Endings of keys and the units that they stand for.
 constexpr std::array kUnits{Entry{"_deg_per_m", "deg/m"},
                             Entry{"_percent", "%"},
                             Entry{"_mps", "m/s"},
@@ -24,7 +24,7 @@ constexpr std::array kUnits{Entry{"_deg_per_m", "deg/m"},
                             Entry{"_s", "s"},
                             Entry{"_frames", "frames"}};
 
-/// What a part of a key means, the longer ones first.
+/// Parts of keys and their meanings; longer parts come first.
 constexpr std::array kParts{Entry{"first_report", "frames until first reported"},
                             Entry{"origin_drift", "drift of the origin"},
                             Entry{"offset_removed", "offset removed"},
@@ -78,7 +78,7 @@ constexpr std::array kParts{Entry{"first_report", "frames until first reported"}
                             Entry{"2d", "in the image"},
                             Entry{"3d", "in 3D"}};
 
-/// After these a comma stands before the next part: they are how values are put together, or a place.
+/// Tells whether a comma follows the part in a name: it does after a statistic and after a range of distances.
 bool closesName(std::string_view part) {
   constexpr std::array<std::string_view, 10> kSummaries{
       "RMSE",    "RMS",     "median",  "mean",           "95th percentile", "99th percentile",

@@ -45,7 +45,7 @@ bool hasFrames(const ResultGroup& group, int frames) {
   return frames == 0 || std::abs(group.mean("frames") - frames) <= kMostApart * frames;
 }
 
-/// What a group has to stand beside a figure of its drive; not a number where it has nothing, or other frames.
+/// Value of a group to compare with a figure of its drive; not a number if it has none or ran other frames.
 double comparedValue(const ResultGroup& group, const PublishedFigure& figure) {
   return hasFrames(group, framesOf(figure, group.drive())) ? group.mean(figure.measure) : kNoValue;
 }
@@ -125,7 +125,7 @@ struct MeanPair {
   bool whole() const { return drives == of; }
 };
 
-/// Of the figures of one method and measure that tell of single drives.
+/// Averages those figures of one method and measure that are each of a single drive.
 MeanPair meanOfSingles(const std::vector<ResultGroup>& groups, const std::string& set,
                        const std::vector<PublishedFigure>& figures, const std::string& method) {
   MeanPair mean;
@@ -143,7 +143,7 @@ MeanPair meanOfSingles(const std::vector<ResultGroup>& groups, const std::string
   return mean;
 }
 
-/// What a drive counts in a mean: the benchmark's figures are means over the segments of all drives.
+/// Weight of a drive in a mean: the benchmark's figures are means over the segments of all drives.
 double weightOf(const std::vector<ResultGroup>& groups, const std::string& drive, const std::string& set,
                 const std::string& measure) {
   if (!measure.starts_with("camera_kitti_")) return 1;

@@ -10,7 +10,7 @@
 /// Published figures beside those of a batch, each with a measure of the same definition alone.
 namespace motorcade {
 
-/// Without figures of measures that no result has, which are told of.
+/// Leaves out figures of measures that no result has, and logs a warning for each such measure.
 std::vector<PublishedFigure> comparableFigures(const std::vector<PublishedFigure>& figures);
 
 /// A table for each measure, with a row for each drive and set that both have and a column for each method.
@@ -20,7 +20,7 @@ std::vector<ResultTable> publishedTables(const std::vector<ResultGroup>& groups,
 /// Means of each measure and method over the drives that both have.
 ResultTable publishedMeans(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures);
 
-/// Where the figures in these tables are from, and what differs in how they were measured.
+/// Lists the sources of the figures in these tables, with notes on how their measurement differs.
 ResultTable publishedSources(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures);
 
 /// Drives that are not compared, as a run has other frames than the drive of the published figures.

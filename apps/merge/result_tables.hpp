@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// Whether a cell tells of something better or worse than what it is compared with.
+/// Marks a cell as better or worse than what it is compared with.
 enum class Tone { kNone, kBetter, kWorse };
 
 /// A table of texts; the first `names` columns are names, the others numbers.

@@ -43,7 +43,7 @@ fs::path recordedFolder(const RunFolder& run, const Json& summary) {
   return folder;
 }
 
-/// What the user gave. A calibration that the sequence has of itself is found again.
+/// Camera options that the user gave. A calibration found in the sequence is left out, as it is found again.
 GivenCameras givenCamerasOf(const Json& summary) {
   const bool found = textOf(summary, "calibration_from") == "sequence";
   return {textOf(summary, "camera"), found ? "" : textOf(summary, "calibration"), textOf(summary, "bayer")};

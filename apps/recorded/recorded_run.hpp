@@ -12,9 +12,9 @@ namespace motorcade {
 /// Whether a run came to its end there; a folder that a killed or interrupted run left does not count.
 bool holdsFinishedRun(const std::filesystem::path& folder);
 
-/// Whether pairs came at the pace of a clock (`--rate`, `--live`), so that a latency counts from when a pair was due.
-/// Without one, pairs follow each other as fast as they can, and a latency is mostly waiting. False where the run does
-/// not tell.
+/// Tells whether pairs came at the pace of a clock (`--rate`, `--live`); latency then counts from when a pair was due.
+/// Without a clock, pairs follow each other as fast as they can, and latency is mostly waiting. Returns false if the
+/// run does not record its pace.
 bool wasPaced(const RunFolder& run);
 
 /// Which sequence the user says that a run is of; what is empty stands in the run's summary.

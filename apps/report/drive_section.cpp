@@ -19,7 +19,7 @@ constexpr std::size_t kMostSpeedCharts = 24;
 constexpr std::int64_t kAround = 3;    // frames before and after, of a true speed, as in the measures
 constexpr std::size_t kLeastRows = 5;  // of an object with a chart of its own
 
-/// As in pictures, but strong enough on the page's ground.
+/// Color of a track as in pictures, but strong enough to show on the page's background.
 std::string colorOf(std::int64_t track) {
   const Color color = trackColor({track});
   return fmt::format("color-mix(in srgb,rgb({},{},{}) var(--strength),black)", color.red, color.green, color.blue);

@@ -7,7 +7,7 @@
 namespace motorcade {
 namespace {
 
-/// How to go on from "most of them, 12, ".
+/// Continues the sentence "most of them, 12, ".
 const char* sentenceOn(FrameCause cause) {
   switch (cause) {
     case FrameCause::kNothingFound:

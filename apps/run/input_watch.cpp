@@ -9,7 +9,7 @@ bool InputWatch::admits(const StereoFrame& pair) {
   return !refused_;
 }
 
-/// Where no point is seen in the whole drive, the run knows itself how many frames it could follow.
+/// The finding "points" (the whole drive shows none) refuses nothing: the run itself counts the frames it followed.
 void InputWatch::tell(const std::vector<RigFinding>& found) {
   for (const RigFinding& each : found) {
     found_.push_back(each);

@@ -16,7 +16,7 @@ class InputWatch {
 
   /// Takes the pairs in order; false from when it is known that results would be worthless.
   bool admits(const StereoFrame& pair);
-  /// After the last pair.
+  /// Logs what is found if the run ended before enough pairs were seen; call it after the last pair.
   void finish() { tell(watch_.finish()); }
   /// The run was, or should have been, ended.
   bool refused() const { return refused_; }

@@ -286,7 +286,7 @@ class ExtraOutputs {
   std::optional<McapRecorder> mcap_;
 };
 
-/// What the run's end says to whoever started it.
+/// Exit code that tells the run's outcome to whoever started it.
 int exitCode(const RunSummary& summary, const FollowedFrames& followed, std::optional<double> required_tracking) {
   if (summary.refused) return kExitInput;
   if (summary.signal != 0) return kExitSignal + summary.signal;

@@ -98,8 +98,8 @@ void PoseGraphFeed::feedConstant(std::size_t pose, Update& update) {
     if (gauge_.isConstant(neighbor.pose) && neighbor.pose < pose) ++edge_count_, ++update.edges;
 }
 
-/// By odometry where there is any, else by the first edge in the file to a pose that is there; by one that tells of all
-/// directions, if there is one.
+/// Finds the edge to a present pose that gives `pose` its initial value. Edges that constrain all directions come
+/// first, then odometry, then the first edge in the file.
 std::optional<PoseGraphFeed::Neighbor> PoseGraphFeed::joinedTo(std::size_t pose) const {
   std::optional<Neighbor> best;
   int best_rank = 0;
@@ -157,7 +157,7 @@ Value PoseGraphFeed::valueOf(std::size_t pose) const {
   return std::visit([](const auto& value) { return Value(value); }, gauge_.valueOf(pose));
 }
 
-/// Of a variable and its neighbor, which may be a constant.
+/// Factor between a variable and its neighbor, which may be a constant.
 std::unique_ptr<Factor> PoseGraphFeed::factorTo(std::size_t pose, const Neighbor& neighbor) const {
   using Held = HeldEndFactor::Held;
   const auto& edge = graph_.edges[neighbor.edge];
@@ -213,7 +213,7 @@ std::vector<std::vector<std::int64_t>> PoseGraphFeed::disconnectedParts() const 
   return parts;
 }
 
-/// From the solver's frame of a part to the graph's: takes the one pose that is held to its value.
+/// Transform from the solver's frame of a part to the graph's; it takes the one held pose to its given value.
 PoseGraph::Pose PoseGraphFeed::moveOf(std::size_t part) const {
   const auto& held = gauge_.parts()[part].held;
   if (held.size() > 1 || !present(held.front())) return graph_.planar ? PoseGraph::Pose(SE2{}) : PoseGraph::Pose(SE3{});

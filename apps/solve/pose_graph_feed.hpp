@@ -59,7 +59,7 @@ class PoseGraphFeed {
   /// Edges that the solver refused because they are not finite where they entered: indices into the graph's.
   const std::vector<std::size_t>& refusedEdges() const { return refused_edges_; }
   const std::vector<LateJoin>& lateJoins() const { return late_joins_; }
-  /// What is wrong with the system as it is now.
+  /// Problems of the solver's system in its current state.
   std::vector<SolverProblem> problemsNow() const;
   /// The ids of the poses fed so far, of each part but the main one.
   std::vector<std::vector<std::int64_t>> disconnectedParts() const;

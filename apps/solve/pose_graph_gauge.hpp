@@ -30,7 +30,7 @@ class PoseGraphGauge {
   std::size_t partOf(std::size_t pose) const { return part_of_[pose]; }
   /// The part that the graph is about: the first one with an edge, or else the first one.
   std::size_t mainPart() const { return main_part_; }
-  /// As its vertex says, or the origin.
+  /// Value of the pose's vertex, or the origin if it has none.
   PoseGraph::Pose valueOf(std::size_t pose) const;
   /// Several poses of its part are held and this is one of them: a constant.
   bool isConstant(std::size_t pose) const { return constant_[pose] != 0; }

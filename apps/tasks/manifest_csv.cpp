@@ -45,7 +45,7 @@ std::vector<std::string> fieldsOf(const TableLine& line, char separator) {
   return fields;
 }
 
-/// Without a comment, which begins a line or stands behind a blank, outside of quotes.
+/// Cuts off a comment, which begins the line or follows a blank, outside of quotes.
 std::string withoutComment(const std::string& line) {
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -76,7 +76,7 @@ std::vector<TableLine> linesOf(const std::filesystem::path& file, std::string te
   return lines;
 }
 
-/// What the first line tells of a table; without columns where that is a drive already.
+/// Form of a table by its first line; has no columns if that line already names a drive.
 struct TableForm {
   char separator = ',';
   std::vector<std::string> columns{};  // by their keys, as they stand where they have none

@@ -20,7 +20,7 @@ constexpr std::size_t kMostSeeds = 100'000;
 
 constexpr std::array<const char*, 10> kEntryKeys{"path", "scene", "name",        "length", "size",
                                                  "sets", "seeds", "repetitions", "each",   "optional"};
-/// What people call a drive's path at the head of a column.
+/// Names that people give to the column of the drives' paths.
 constexpr std::array<const char*, 13> kPathColumns{"path",      "paths",    "drive",   "drives", "sequence",
                                                    "sequences", "folder",   "folders", "dir",    "directory",
                                                    "file",      "filename", "location"};

@@ -73,7 +73,7 @@ void requireAmong(const std::vector<std::string>& known, const std::vector<std::
   }
 }
 
-/// Where else than at its path a drive is looked for, as a message goes on.
+/// Continues a message with the other places where a drive is looked for.
 std::string otherPlaces(const ManifestEntry& entry) {
   std::string text;
   for (const std::string& place : entry.other_paths) text += " or " + place;

@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 9> kKeys{"dataset", "method", "measure", 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kUnits{
     {{"m", "_m"}, {"deg", "_deg"}, {"percent", "_percent"}, {"deg/m", "_deg_per_m"}}};
 
-/// How many frames each drive of a data set has, from the table [frames.DATASET]; empty without one.
+/// Reads the number of frames of each drive of a data set from the table [frames.DATASET]; empty without one.
 std::map<std::string, int> frameCounts(const toml::table& document, const std::string& dataset, const fs::path& file) {
   std::map<std::string, int> counts;
   const toml::table* const table = document["frames"][dataset].as_table();

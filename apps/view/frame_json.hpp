@@ -25,7 +25,7 @@ struct ShownRun {
 
 enum class FrameDetail { kAll, kWithoutImageParts };
 
-/// As CSS has it, the same as in pictures.
+/// CSS color of a track, the same as in pictures.
 std::string trackColorText(TrackId track);
 std::string toJson(const ShownRun& run);
 std::string toJson(const ShownFrame& frame, Timestamp first_stamp, FrameDetail detail = FrameDetail::kAll);

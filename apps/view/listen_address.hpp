@@ -16,7 +16,7 @@ struct ListenAddress {
   bool loopback() const;
   /// All addresses of the machine.
   bool everywhere() const;
-  /// As `text`, but such that a browser on this machine gets there.
+  /// Variant of `text` that a browser on this machine can open.
   std::string localText() const;
 };
 

@@ -31,7 +31,7 @@ class LiveView final : public RunListener, public PageSource {
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;
 
-  /// With the token that holds the run, where it can be held.
+  /// URL of the page, with the token that holds the run if the run can be held.
   std::string url() const { return run_.can_pause ? server_->controlUrl() : server_->url(); }
   /// What holds the replay; null where the run cannot be held.
   ReplayGate* gate() { return run_.can_pause ? &gate_ : nullptr; }

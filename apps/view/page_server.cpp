@@ -171,7 +171,7 @@ void PageServer::Impl::route() {
               [this](const Request& request, Response& response) { answerControl(request, response); });
 }
 
-/// What is told of a run, below a path; `run` gives null where there is none.
+/// Registers the routes of a run's JSON below `path`; they answer 404 if `run` returns null.
 void PageServer::Impl::routeRun(const std::string& path, const std::function<const PageSource*()>& run) {
   const auto answer = [run](Response& response, const std::function<std::string(const PageSource&)>& json) {
     const PageSource* const source = run();

@@ -21,7 +21,7 @@ class PageServer {
   PageServer& operator=(const PageServer&) = delete;
 
   int port() const;
-  /// Where the page is seen, from this machine.
+  /// URL of the page for a browser on this machine.
   std::string url() const;
   /// The same with the token that holds the run. The browser sends what is behind `#` to nobody.
   std::string controlUrl() const;

@@ -29,8 +29,8 @@ class RequestGuard {
 
   /// Empty where the request may be answered.
   std::optional<Refusal> refusalOf(const RequestFacts& request) const;
-  /// What a control call must carry. No answer of the server holds it: it is in the address that is printed for the
-  /// user, behind the `#` that browsers keep to themselves.
+  /// Token that every control call must carry. The server never sends it: it is in the URL printed for the user,
+  /// behind the `#`, and browsers do not transmit that part.
   const std::string& token() const { return token_; }
 
  private:

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostLate = 10;
 constexpr std::int64_t kLateApart = 5;  // frames: what is closer to a later one shows the same
 
-/// Without digits that nobody sees.
+/// Rounds away digits that nobody sees.
 double shortened(double value, double digits = 1e3) { return std::round(value * digits) / digits; }
 
 Json pathJson(const std::vector<SE3>& path) {
@@ -55,12 +55,12 @@ Json marksJson(const RunOverview& overview) {
   return marks;
 }
 
-/// What counts as a frame's time: from when it was due, or where nothing was due, the work alone.
+/// Time of a frame: the latency since it was due if the run is paced, otherwise the processing time alone.
 double timeOf_ms(const ShownTiming& timing, bool paced) {
   return paced ? timing.latency_ms : processing_ms(timing.stages_ms);
 }
 
-/// Of frames that entered the pipeline.
+/// Times of the frames that entered the pipeline.
 std::vector<std::pair<std::int64_t, double>> times_ms(const RunOverview& overview) {
   std::vector<std::pair<std::int64_t, double>> times;
   for (const auto& [frame, timing] : overview.timings) {

@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t kClose = 5;
 constexpr std::size_t kMostWorst = 10;
 
-/// By frame, track and label.
+/// Motion errors of objects [m], keyed by frame and label.
 using MotionErrorsOfRows = std::map<std::pair<FrameId, std::int64_t>, double>;
 
 MotionErrorsOfRows motionErrorsOfRows(const std::vector<ComparedFrame>& frames) {
@@ -59,7 +59,7 @@ void addSteps(std::vector<ShownTruth>& shown, const std::vector<ComparedFrame>& 
   }
 }
 
-/// How far each position is from the true one, the path moved onto the truth as a whole.
+/// Adds the position errors and their root mean square [m], with the path aligned to the truth as a whole.
 void addPositions(RunTruth& truth, const std::vector<ComparedFrame>& frames) {
   std::vector<SE3> estimate, true_path;
   for (const ComparedFrame& frame : frames) {

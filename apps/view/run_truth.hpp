@@ -26,7 +26,7 @@ struct AskedLabel {
   std::vector<TrackId> tracks{};  // that followed it, the first one first; none where it was missed
 };
 
-/// What the truth of a sequence says of a run. Poses are in the run's world, its first frame.
+/// Comparison of a run with its sequence's truth. Poses are in the run's world, which is its first frame.
 struct RunTruth {
   std::string source{}, object_source{};  // the latter empty without labels
   double ate_m = 0;                       // root mean square of the positions below

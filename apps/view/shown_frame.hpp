@@ -49,7 +49,7 @@ struct ShownTrueObject {
   std::optional<double> motion_m{};                  // error of the track's motion since the frame before
 };
 
-/// What the truth says of one frame.
+/// Comparison of one frame with the truth.
 struct ShownTruth {
   SE3 T_world_cam;
   double position_m = 0;            // of the camera, the path moved onto the truth as a whole

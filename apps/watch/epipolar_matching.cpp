@@ -37,7 +37,7 @@ struct Columns {
 constexpr int kSearchedRows = 2 * kRows_px + 1;
 using RowCosts = std::array<std::array<std::uint16_t, kMaxWindowCosts>, kSearchedRows>;
 
-/// Without a branch, so that it becomes vector code.
+/// Finds the least cost without a branch, so that the compiler vectorizes the loop.
 std::uint16_t leastOf(std::span<const std::uint16_t> costs) {
   std::uint16_t least = UINT16_MAX;
   for (const std::uint16_t cost : costs) least = std::min(least, cost);
@@ -58,7 +58,7 @@ std::uint16_t leastBesides(const RowCosts& costs, int count, Place best) {
   return least;
 }
 
-/// Where another image looks most like the window, within some rows of it; empty when two places do.
+/// Finds the place in another image most like the window, within a few rows of it; empty if it is ambiguous.
 std::optional<Place> searchArea(const Window& window, const Image& other, Columns columns) {
   const int half_columns = window.size.columns / 2, half_rows = window.size.rows / 2;
   columns.first = std::max(columns.first, half_columns);

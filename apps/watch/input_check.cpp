@@ -13,7 +13,7 @@
 namespace motorcade {
 namespace {
 
-/// Of a pair whose rows agree: on all drives at hand it is over 0.8, and under 0.6 where images are a frame apart.
+/// Least share of matches in their row if rows agree: over 0.8 on all drives at hand, under 0.6 when a frame apart.
 constexpr double kInRowShare = 0.75;
 // Effects on the rows from which on an error is told, and from which on results are worthless [px].
 constexpr double kTold_px = 0.8, kWorthless_px = 1.2;
@@ -277,7 +277,7 @@ void InputCheck::addTimes(std::vector<Finding>& findings) const {
                         false});
 }
 
-/// Where no pair at all shows anything, nothing can be followed either.
+/// Reports too few matches; results are worthless if no pair shows any, because nothing can be tracked then.
 void InputCheck::addPoints(std::vector<Finding>& findings) const {
   if (matches_.size() >= kFewestMatches || passed_over_ + pairs_ == 0) return;
   findings.push_back({"points",

@@ -67,8 +67,8 @@ class InputCheck {
   std::vector<Finding> rigFindings() const;
 
  private:
-  /// How many pairs were compared with the one before, and how many of them have rows that agree badly, among
-  /// themselves and better with the right image before, or after.
+  /// Counts the pairs compared with the previous pair and, among them, those whose rows agree badly. The last two
+  /// count the bad pairs where a left image fits the right image before or after its own better.
   struct Apart {
     std::size_t compared = 0, bad = 0, before = 0, after = 0;
   };

@@ -9,10 +9,10 @@ namespace {
 
 /// Points of a glance, and the fewest matches by which it tells anything.
 constexpr std::size_t kGlancePoints = 80, kFewestOfGlance = 15;
-/// Of the matches that lie within a pixel of the row where the rig's usual geometry puts them. It is over 0.8 on all
-/// drives at hand, and under 0.6 where images are a frame apart.
+/// Least share of matches that lie within a pixel of the row predicted by the rig's usual geometry. The share is over
+/// 0.8 on all drives at hand, and under 0.6 where images are a frame apart.
 constexpr double kAgreeingRows_px = 1, kAgreeingShare = 0.7;
-/// Of them in a row, after which a rig that was worthless is good again.
+/// Consecutive agreeing glances after which a worthless rig is good again.
 constexpr int kAgreeingGlances = 3;
 /// Longest pause after glances that were found to be mistaken [pairs].
 constexpr int kMostPatience = 80;

@@ -30,9 +30,9 @@ class RigWatch {
   static constexpr std::size_t kVerifiedBy = 12;  // pairs
   explicit RigWatch(const StereoCamera& camera) : camera_(camera), check_(std::in_place, camera) {}
 
-  /// What is found with this pair and was not found before: of the first pairs all, later what the rig has become.
+  /// Returns the new findings if this pair completes a check: all for the first pairs, later only those on the rig.
   std::vector<RigFinding> observe(const StereoFrame& pair);
-  /// After the last pair, which may come before enough were seen.
+  /// Judges an unfinished check after the last pair; fewer pairs than usual suffice.
   std::vector<RigFinding> finish();
   /// True from when results would be worthless, until the rows agree again.
   bool worthless() const { return worthless_; }

@@ -50,7 +50,7 @@ std::vector<fs::path> calibrationFiles(const std::string& text) {
   return {parts.begin(), parts.end()};
 }
 
-/// By what lies in a folder, under whatever name.
+/// Reads the camera from a calibration in a folder, whatever its name.
 StereoCamera cameraInFolder(Sequence& sequence, const fs::path& folder, ImageSize size) {
   if (const auto camera = cameraIn(sequence, folder, {.any_pair = true, .names = RigNames::kAny}, size)) return *camera;
   if (fs::exists(folder / "calib_cam_to_cam.txt"))

@@ -82,7 +82,7 @@ struct InOrderOfParts {
   }
 };
 
-/// By the places that the names of both sides together have in natural order.
+/// Keys each image by the place of its name in the natural order of the names of both sides together.
 KeyedImages byNames(const NamedImages& left, const NamedImages& right,
                     const std::optional<std::pair<std::set<std::size_t>, std::set<std::size_t>>>& varying) {
   const auto of_left = varying ? std::optional(varying->first) : std::nullopt,

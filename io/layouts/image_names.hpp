@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-/// What the names of images tell: which belong together, in what order, and, where they are times, when they were
+/// Derives from the names of images which belong together, in what order, and, if the names are times, when they were
 /// taken.
 namespace motorcade {
 

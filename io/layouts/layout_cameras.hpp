@@ -13,7 +13,7 @@ namespace motorcade {
 /// The camera by the sequence's `calibration`. Where the middles of the two images differ, the right one is moved on
 /// the way. Throws InputError.
 StereoCamera projectedCamera(Sequence& sequence, ImageSize size);
-/// What names and files tell of a sequence's camera.
+/// Options of the search for a sequence's camera, set by what its names and files tell.
 struct CameraSearch {
   bool any_pair = false;  // the images' folders do not tell which pair of KITTI's it is: gray if there is one
   RigNames names = RigNames::kUsual;
@@ -23,7 +23,7 @@ struct CameraSearch {
 /// Empty where neither does.
 std::optional<StereoCamera> cameraIn(Sequence& sequence, const std::filesystem::path& folder,
                                      const CameraSearch& search, ImageSize size);
-/// By a file in KITTI's form.
+/// Takes the camera from a calibration in KITTI's form.
 StereoCamera cameraByKitti(Sequence& sequence, Calibration calibration, bool any_pair, ImageSize size);
 
 /// The end of a message that the calibration is missing: files in the folder that may be meant; often empty.

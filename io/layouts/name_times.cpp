@@ -30,7 +30,7 @@ std::int64_t fraction_ns(std::string digits) {
   return wholeNumber(digits).value();
 }
 
-/// From YYYYMMDDhhmmss and the digits of a fraction.
+/// Parses YYYYMMDDhhmmss and the digits of a fraction of a second.
 std::optional<std::int64_t> dateDigits_ns(const std::string& digits) {
   constexpr std::size_t kWithoutFraction = 14, kMost = kWithoutFraction + 9;
   if (digits.size() < kWithoutFraction || digits.size() > kMost) return std::nullopt;
@@ -149,7 +149,7 @@ std::optional<NameTimes> wholeNumberTimes(const std::vector<NameParts>& names) {
   return times;
 }
 
-/// As far apart as images of a camera may be.
+/// Checks that times are as far apart as images of a camera may be.
 bool arePlausible(std::vector<std::int64_t> times_ns) {
   constexpr std::int64_t kLeastPeriod_ns = 500'000, kMostPeriod_ns = 10 * kNameSecond_ns;
   std::ranges::sort(times_ns);

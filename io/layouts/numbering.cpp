@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kMostFilled = 100;  // frames in a row, ten seconds of a usual camera
 
-/// How numbers go on.
+/// The pattern that the numbers in image names follow.
 struct Steps {
   std::int64_t step = 1;
   bool even = false;      // most differences are one step
@@ -69,7 +69,7 @@ void fillHoles(PairedImages& paired, std::int64_t step) {
   paired = std::move(filled);
 }
 
-/// Where each frame stands in the complete numbering; nothing where they stand side by side.
+/// The place of each frame in the complete numbering; empty where the numbering has no holes.
 std::vector<std::int64_t> placesOf(const std::vector<std::int64_t>& numbers, std::int64_t step) {
   std::vector<std::int64_t> places;
   for (const std::int64_t number : numbers) places.push_back((number - numbers.front()) / step);

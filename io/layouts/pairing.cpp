@@ -33,7 +33,7 @@ std::int64_t middleStep(const std::vector<std::int64_t>& numbers) {
   return *middle;
 }
 
-/// By how much the numbers of a pair may differ: less than half of the shorter step.
+/// The largest difference between the numbers of a pair: less than half of the shorter step.
 std::int64_t mostApart(const KeyedImages& keyed) {
   if (keyed.kind == NameKind::kNames) return 0;
   const std::int64_t left = middleStep(numbersOf(keyed.left)), right = middleStep(numbersOf(keyed.right));
@@ -67,8 +67,8 @@ class Zipper {
  private:
   using Place = ImagesByNumber::const_iterator;
 
-  /// Whether an image has no partner among those of the other side that were not taken yet, of which the first is
-  /// given.
+  /// Returns whether an image has no partner among the images of the other side that are not yet paired. `other` is the
+  /// first of these.
   bool isAlone(Place image, Place other, const ImagesByNumber& own_side, const ImagesByNumber& other_side) const {
     if (other == other_side.end()) return true;
     if (other->first - image->first > most_apart_) return true;
@@ -114,7 +114,7 @@ void keepOnly(PairedImages& paired, const std::vector<bool>& kept) {
   paired = std::move(rest);
 }
 
-/// Where one side has several images for each of the other, leaves out those between the pairs.
+/// Leaves out the images between the pairs where one side has several images for each of the other.
 void leaveOutSurplus(PairedImages& paired) {
   constexpr double kOnGrid = 0.25;            // of the pairs' step
   constexpr std::ptrdiff_t kFewestPairs = 5;  // that tell a step
@@ -158,7 +158,7 @@ void tellStrays(PairedImages& paired, const NamedImages& left, const NamedImages
   paired.notes.push_back("names of another kind than the others are left out: " + namesOf(strays));
 }
 
-/// By order, as nothing else tells which images belong together.
+/// Pairs the images in order, as nothing else tells which belong together.
 PairedImages pairInOrder(const NamedImages& left, const NamedImages& right) {
   const fs::path left_folder = left.images.front().parent_path(), right_folder = right.images.front().parent_path();
   if (left.images.size() != right.images.size())
@@ -178,7 +178,7 @@ PairedImages pairInOrder(const NamedImages& left, const NamedImages& right) {
   return paired;
 }
 
-/// Whether any image has a partner; where none has, names tell nothing.
+/// Returns whether any image has a partner; where none has, the names tell nothing about pairs.
 bool anyPair(const PairedImages& paired) { return std::ranges::any_of(paired.frames, &FramePaths::isPair); }
 
 }  // namespace

@@ -43,7 +43,7 @@ std::vector<std::size_t> pairsToLookAt(std::size_t count) {
   return pairs;
 }
 
-/// What the images that were looked at say together.
+/// Gathers the significant bits, the maximum and the brightest sample of the inspected images.
 class Samples {
  public:
   void add(const std::filesystem::path& file) {

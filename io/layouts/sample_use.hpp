@@ -7,8 +7,8 @@
 
 namespace motorcade {
 
-/// How images with samples of 16 bits become gray, the same way for the whole drive and both sides: told by some pairs
-/// all along it, so that a part of the drive gets what the whole gets. Empty where the images have 8 bits.
+/// Chooses how 16-bit samples become gray, for the whole drive and both sides alike. Pairs spread over the drive
+/// decide, so that a part of it is converted as the whole is. Empty for 8-bit images.
 std::optional<SampleUse> sampleUseOf(const Sequence& sequence);
 
 /// The mosaic that a calibration in YAML tells of, `bayer_pattern: RGGB` of the pair or of `cam0`; mostly none. Throws

@@ -20,7 +20,7 @@ LensCamera kalibrCamera(const YamlPart& part) {
   return camera;
 }
 
-/// From the camera to the inertial unit, where the chain tells.
+/// T_imu_cam, from the camera to the inertial unit; empty where the chain does not give it.
 std::optional<SE3> kalibrPlacement(const YamlPart& camera) {
   const auto to_camera = camera.find({"T_cam_imu"}), to_imu = camera.find({"T_imu_cam"});
   if (!to_camera && !to_imu) return std::nullopt;

@@ -43,7 +43,7 @@ void setLenses(Rig& rig, const YamlPart& intrinsics) {
   if (width && height) rig.left.size = {imageSide(*width, width->number()), imageSide(*height, height->number())};
 }
 
-/// From one file that holds both, or from two; the first has the left camera's matrix.
+/// Reads a rig from one file that holds both parts, or from two; `intrinsics` has the left camera's matrix.
 Rig openCvRigOf(const YamlPart& intrinsics, const YamlPart& extrinsics) {
   Rig rig{.file = intrinsics.file(), .transform = "T"};
   setLenses(rig, intrinsics);

@@ -98,8 +98,8 @@ void requireSize(const Rig& rig, ImageSize size) {
                        size.text() + "; calibrate anew, or take the images of the calibrated size");
 }
 
-/// Where the calibration does not tell the size of its images, the principal points do: a larger or smaller size moves
-/// both coordinates alike.
+/// Throws InputError if a calibration that gives no image size was made for another one. A larger or smaller size moves
+/// both coordinates of the principal point alike.
 void requireMiddle(const Rig& rig, ImageSize size) {
   constexpr double kLeast = 0.35, kMost = 0.65;
   for (const LensCamera* camera : {&rig.left, &rig.right}) {

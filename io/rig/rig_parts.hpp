@@ -15,7 +15,7 @@ namespace motorcade {
 Eigen::Matrix3d matrix33(const YamlPart& part);
 /// Of nine numbers that must be a rotation's, which is put back onto SO(3) from its printed digits.
 Eigen::Matrix3d rotation33(const YamlPart& part);
-/// From three or four rows of four numbers.
+/// Reads a transform from three or four rows of four numbers.
 SE3 transform44(const YamlPart& part);
 /// The difference of two transforms that must be one, as a message tells it; empty where they agree.
 std::string disagreement(const SE3& a, const SE3& b);

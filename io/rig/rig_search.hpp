@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// Which files of a folder are looked at: those whose names tell that they are a pair's calibration, or all.
+/// Selects the files of a folder to look at: those whose names are usual for a pair's calibration, or all.
 enum class RigNames { kUsual, kAny };
 
 /// The files of the calibration that lies in a folder: a name with `camchain`, `stereo` or `calib` in it, two with

@@ -24,8 +24,8 @@ LensCamera rosCamera(const YamlPart& root) {
   return camera;
 }
 
-/// Of two parts with a projection. The pair is rectified by both R, into the left P: it may differ from the right one
-/// in where its middle lies.
+/// Builds a rig from two parts with a projection. Each image is rectified by its own R into the left P, whose principal
+/// point may differ from that of the right P.
 Rig rosRigOf(const YamlPart& left, const YamlPart& right) {
   const YamlPart left_part = *rosProjection(left), right_part = *rosProjection(right);
   const auto P_left = left_part.numbers(12), P_right = right_part.numbers(12);

@@ -63,7 +63,7 @@ StereoCamera settingsCamera(const YamlPart& root, const LensCamera& lens) {
       .fx_px = lens.fx_px, .fy_px = lens.fy_px, .cx_px = lens.cx_px, .cy_px = lens.cy_px, .baseline_m = *baseline_m};
 }
 
-/// What ORB-SLAM2 (LEFT.K) or stella_vslam (StereoRectifier.K_left) rectifies by.
+/// Names of the keys that hold the rectification of ORB-SLAM2 (LEFT.K) or stella_vslam (StereoRectifier.K_left).
 struct RectifierKeys {
   std::array<std::string, 2> K, D, R;
 };

@@ -28,7 +28,7 @@ LensCamera vinsLens(const YamlPart& camera) {
   return lens;
 }
 
-/// By the file that the configuration names, relative to itself.
+/// Reads a camera from the file that the configuration names, relative to the configuration's folder.
 LensCamera vinsCamera(const YamlPart& name) {
   constexpr std::size_t kMostTold = 300;
   std::string problem;

@@ -28,7 +28,7 @@ class XmlReader {
   using Kind = YamlNode::Kind;
 
   [[noreturn]] void fail(const char* problem) const { throw NoXml{line_, problem}; }
-  /// What comes before a text, which is passed over, too.
+  /// Returns the text before `end` and skips both.
   std::string_view upTo(std::string_view end) {
     const std::size_t found = rest_.find(end);
     if (found == std::string_view::npos) fail("an element does not end");
@@ -37,7 +37,7 @@ class XmlReader {
     rest_.remove_prefix(found + end.size());
     return before;
   }
-  /// Of blanks, `<?...?>` and `<!--...-->`.
+  /// Skips blanks, `<?...?>` and `<!--...-->`.
   void skipRemarks() {
     while (true) {
       const std::size_t begin = std::min(rest_.find_first_not_of(" \t\r\n\xef\xbb\xbf"), rest_.size());

@@ -9,7 +9,7 @@
 namespace motorcade {
 namespace {
 
-/// Where a body is beside its label, frame by frame; the steps between are the errors of its motion.
+/// Sideways offsets of a body from its label [m], frame by frame; their differences are the errors of its motion.
 using Offsets = std::vector<double>;
 
 /// Frames in which each label stands still and is followed by the track of its number plus ten.

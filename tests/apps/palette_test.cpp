@@ -41,7 +41,7 @@ std::array<Matrix3d, 3> eyes() {
   return eyes;
 }
 
-/// To the eye that tells them least.
+/// The smallest difference between two colors over all eyes, in L*a*b*.
 double distance(Color a, Color b) {
   double least = 1e9;
   for (const Matrix3d& eye : eyes()) {

@@ -178,7 +178,7 @@ TEST(RigWatch, JudgesByTheFirstPairsInWhichSomethingIsSeen) {
   EXPECT_FALSE(found[0].second.last_good.has_value());
 }
 
-/// What `check` finds in the first pairs, a run finds.
+/// A run finds what `check` finds in the first pairs.
 TEST(RigWatch, FindsInTheFirstPairsWhatTheCheckFinds) {
   Drive drive;
   for (const double rows_px : {0.5, 0.9, 1.1, 1.3, 2.0}) {

@@ -8,7 +8,7 @@
 #include "tests/apps/solved_graph.hpp"
 #include "tests/support/matchers.hpp"
 
-/// What holds a pose graph where it is, and what of it nothing determines.
+/// Tests the gauge of a pose graph: what holds it in place, and which directions nothing determines.
 namespace motorcade {
 namespace {
 

@@ -63,7 +63,7 @@ class SolvedGraph : public testing::Test {
     EXPECT_EQ(solve(folder_.write("graph.g2o", content)), 3);
     return folder_.read("stderr");
   }
-  /// Of the written graph.
+  /// The pose of a vertex in the written graph.
   SE2 planarPose(std::int64_t id) const {
     for (const auto& vertex : readPoseGraph(folder_ / "out.g2o").vertices)
       if (vertex.id == id) return std::get<SE2>(vertex.pose);

@@ -97,7 +97,7 @@ class ViewServer : public testing::Test {
     client.say(request);
     return client.hear();
   }
-  /// As it stands in the address that is printed.
+  /// The token in the address that is printed.
   std::string token() const {
     const std::string url = server_.controlUrl(), key = "#token=";
     return url.substr(url.find(key) + key.size());

@@ -33,7 +33,7 @@ RgbImage scene(int width, int height) {
   return image;
 }
 
-/// What a sensor with such filters sees of an image.
+/// Simulates the mosaic that a sensor with such filters records of an image.
 Image mosaicOf(const RgbImage& image, BayerPattern pattern, ImagePool& pool) {
   Image mosaic = pool.acquire(image.width, image.height);
   for (int y = 0; y < image.height; ++y)
@@ -78,7 +78,7 @@ TEST_F(Bayer, ASceneOfOneColorHasItsLumaUpToTheCorners) {
   }
 }
 
-/// By hand, of one bright pixel on black: its weights as the formula of the source has them.
+/// Compares one bright pixel on black with weights computed by hand from the formula of the source.
 TEST_F(Bayer, EachPixelWeighsAsTheFormulaSays) {
   Image mosaic = pool_.acquire(16, 16);
   for (int y = 0; y < 16; ++y) std::fill_n(mosaic.mutableRow(y), 16, std::uint8_t{0});

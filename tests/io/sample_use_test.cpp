@@ -68,7 +68,7 @@ class SamplesOfDrive : public testing::Test {
       }
   }
   static void writeDeep(const fs::path& file, const Gray16Image& image) { writePng16(file, image); }
-  /// With a chunk that tells of the camera's bits.
+  /// Writes an image with an sBIT chunk, which tells the camera's bits.
   static void writeTold(const fs::path& file, const Gray16Image& image, char bits) {
     writePng16(file, image);
     std::string bytes = readImageBytes(file);

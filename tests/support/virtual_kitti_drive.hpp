@@ -49,7 +49,7 @@ inline Eigen::Vector3d anglesYxz(const Eigen::Matrix3d& R) {
   return {std::atan2(R(0, 2), R(2, 2)), -std::asin(R(1, 2)), std::atan2(R(1, 0), R(1, 1))};
 }
 
-/// What `writeVirtualKitti` writes.
+/// The drive that `writeVirtualKitti` writes.
 struct VirtualKittiDrive {
   Sequence sequence;
   CameraTruth camera;
