@@ -172,7 +172,7 @@ KeyedImages keyedImages(const NamedImages& left, const NamedImages& right) {
 
 fs::path expectedImage(const NamedImages& side, const NamedImages& other, const fs::path& partner) {
   const fs::path& example = side.images.front();
-  const fs::path like_partner = example.parent_path() / partner.filename().replace_extension(example.extension());
+  fs::path like_partner = example.parent_path() / partner.filename().replace_extension(example.extension());
   if (!side.alike || !other.alike) return like_partner;
   const auto [of_side, of_other] = tellingDigits(side, other);
   if (of_side.size() != of_other.size()) return like_partner;

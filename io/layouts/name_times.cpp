@@ -160,11 +160,11 @@ bool arePlausible(std::vector<std::int64_t> times_ns) {
 
 using TimeOfName = std::function<std::optional<std::int64_t>(const NameParts&, const std::vector<NameParts>&)>;
 
-std::optional<NameTimes> timesBy(const TimeOfName& timeOf_ns, const std::vector<NameParts>& names,
+std::optional<NameTimes> timesBy(const TimeOfName& time_of, const std::vector<NameParts>& names,
                                  std::int64_t unit_ns = kNameSecond_ns) {
   NameTimes times{.all_ns = {}, .unit_ns = unit_ns};
   for (const NameParts& name : names) {
-    const auto time_ns = timeOf_ns(name, names);
+    const auto time_ns = time_of(name, names);
     if (!time_ns) return std::nullopt;
     times.all_ns.push_back(*time_ns);
   }

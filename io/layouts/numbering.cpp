@@ -1,6 +1,7 @@
 #include "io/layouts/numbering.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdlib>
 #include <numeric>
 #include <utility>
@@ -30,7 +31,8 @@ Steps stepsOf(const std::vector<std::int64_t>& numbers) {
     common = std::gcd(common, difference);
     if (difference == usual) ++usual_count;
   }
-  Steps steps{.step = common, .even = usual == common && 2 * usual_count >= std::ssize(numbers) - 1};
+  Steps steps{.step = std::max<std::int64_t>(common, 1),
+              .even = usual == common && 2 * usual_count >= std::ssize(numbers) - 1};
   const std::int64_t mean = (numbers.back() - numbers.front()) / (std::ssize(numbers) - 1);
   steps.counting = steps.even || mean <= kMostBetween * common;
   return steps;

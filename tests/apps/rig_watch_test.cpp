@@ -124,15 +124,15 @@ TEST(RigWatch, TellsWithinTwentyPairsWhatBecomesOfTheRig) {
                {"rows", [](StereoFrame& pair, ImagePool& pool) { pair.right = lowered(pair.right, 2, pool); }},
                {"roll", [](StereoFrame& pair, ImagePool& pool) { pair.right = rolled(pair.right, 0.02, pool); }}};
   int begin = 21;
-  for (const auto& [name, change] : cases) {
-    SCOPED_TRACE(name);
+  for (const auto& each : cases) {
+    SCOPED_TRACE(each.name);
     RigWatch watch(kCamera);
     const auto found = drive.watched(watch, 39, [&](StereoFrame& pair, ImagePool& pool) {
-      if (within(pair, begin, 39)) change(pair, pool);
+      if (within(pair, begin, 39)) each.change(pair, pool);
     });
     ASSERT_THAT(found, SizeIs(1));
     const auto& [at, finding] = found.front();
-    EXPECT_EQ(finding.finding.name, name);
+    EXPECT_EQ(finding.finding.name, each.name);
     EXPECT_TRUE(finding.finding.worthless && watch.worthless());
     EXPECT_LT(at, begin + 20);
     ASSERT_TRUE(finding.last_good.has_value());

@@ -31,7 +31,10 @@ TEST_F(SolveGauge, AFixedPoseStaysWhereItsVertexIs) {
   const std::string vertices = "VERTEX_SE2 0 10 20 1.0\nVERTEX_SE2 1 11 20 1.0\n",
                     edge = "EDGE_SE2 0 1 1 0 0 100 0 0 100 0 100\n";
   for (const std::string& fixed : {std::string("FIX 0\n"), std::string()}) {
-    solved(vertices + fixed + edge);
+    std::string graph = vertices;
+    graph += fixed;
+    graph += edge;
+    solved(graph);
     EXPECT_THAT(planarPose(0), IsNearPose(SE2(1, {10, 20}), kExact));
     EXPECT_THAT(planarPose(1), IsNearPose(SE2(1, {10 + std::cos(1.0), 20 + std::sin(1.0)}), kTol));
   }

@@ -162,7 +162,8 @@ TEST_F(SamplesOfDrive, OfEightBitsNeedNoScale) {
     Image gray = pool.acquire(image.width, image.height);
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x)
-        gray.mutableRow(y)[x] = static_cast<std::uint8_t>(image.pixels[static_cast<std::size_t>(y * kWidth + x)]);
+        gray.mutableRow(y)[x] =
+            static_cast<std::uint8_t>(image.pixels[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)]);
     writePng(file, gray);
   });
   EXPECT_FALSE(sequence.samples);
