@@ -36,11 +36,11 @@ std::string kittiLine(const SE3& T_world_cam) {
 }
 
 std::string tumLine(Timestamp stamp, const SE3& T_world_cam) {
-  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  constexpr std::int64_t kNanosPerSecond = 1'000'000'000;
   std::string line = stamp.ns < 0 ? "-" : "";
   const std::int64_t magnitude_ns = stamp.ns < 0 ? -stamp.ns : stamp.ns;
-  const std::string fraction = std::to_string(magnitude_ns % kSecond_ns);
-  line += std::to_string(magnitude_ns / kSecond_ns) + '.' + std::string(9 - fraction.size(), '0') + fraction;
+  const std::string fraction = std::to_string(magnitude_ns % kNanosPerSecond);
+  line += std::to_string(magnitude_ns / kNanosPerSecond) + '.' + std::string(9 - fraction.size(), '0') + fraction;
   Eigen::Quaterniond q(T_world_cam.rotation());
   if (q.w() < 0) q.coeffs() = -q.coeffs();
   for (const double value : {T_world_cam.translation().x(), T_world_cam.translation().y(),
