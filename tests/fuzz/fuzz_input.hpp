@@ -50,7 +50,7 @@ inline void require(bool holds, std::string_view what) {
 }
 
 /// The message names the file first, then the line, unless the fault is that something is not in the file at all; and
-/// it is one line of text, whatever bytes the file has.
+/// it is text, whatever bytes the file has: one line, and the program's own commands, each on a line of its own.
 inline void requireClear(std::string_view message, std::string_view file, std::span<const std::string_view> no_line) {
   constexpr std::size_t kLongest = 600;
   const std::string said(message);
@@ -60,7 +60,10 @@ inline void requireClear(std::string_view message, std::string_view file, std::s
   for (const std::string_view fault : no_line) clear = clear || rest.find(fault) != std::string_view::npos;
   require(clear, "the message names no line: " + said);
   require(message.size() < kLongest, "the message is long: " + said);
-  for (const char c : message) require(c >= ' ' && c <= '~', "the message is no text: " + said);
+  for (std::size_t i = 0; i < message.size(); ++i) {
+    const bool command = message[i] == '\n' && message.substr(i + 1).starts_with("  ");
+    require(command || (message[i] >= ' ' && message[i] <= '~'), "the message is no text: " + said);
+  }
 }
 
 /// Reads; an error of the user is an answer, if it is clear. Anything else that is thrown ends the program.
