@@ -4,7 +4,7 @@ import { chromium } from "playwright-core";
 
 export const kProgram = process.env.MOTORCADE_PROGRAM;
 export const kScreenshots = process.env.MOTORCADE_SCREENSHOTS || "";
-const kPatience_ms = Number(process.env.MOTORCADE_PATIENCE_MS || 30_000);  // more where a machine is busy
+const kPatience_ms = Number(process.env.MOTORCADE_PATIENCE_MS || 120_000);  // more where a machine is busy
 
 export function check(condition, sentence) {
   if (!condition) throw new Error(sentence);
