@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 preset=$1 && shift
 targets=("$@")
 export NINJA_STATUS="[%p of the build, %e s] "
-build=(cmake --build --preset "$preset" ${targets[0]:+--target "${targets[@]}"})
+build=(cmake --build --preset "$preset" --parallel "${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}" ${targets[0]:+--target "${targets[@]}"})
 
 if [[ -t 1 ]]; then exec "${build[@]}"; fi
 "${build[@]}" 2>&1 | awk '

@@ -6,7 +6,7 @@
 #include <new>
 #include <system_error>
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "apps/command_line.hpp"
@@ -47,15 +47,16 @@ int perform(const std::function<int()>& action) {
   try {
     return action();
   } catch (const motorcade::UserError& error) {
-    spdlog::error(error.what());
+    motorcade::logError(error.what());
     return error.exitCode();
   } catch (const std::bad_alloc&) {
-    spdlog::error("out of memory");
+    motorcade::logError("out of memory");
   } catch (const std::system_error& error) {
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
-    spdlog::error("{}: {}", no_thread ? "no thread can be started, out of memory" : "internal error", error.what());
+    motorcade::logError(
+        fmt::format("{}: {}", no_thread ? "no thread can be started, out of memory" : "internal error", error.what()));
   } catch (const std::exception& error) {
-    spdlog::error("internal error: {}", error.what());
+    motorcade::logError(fmt::format("internal error: {}", error.what()));
   }
   return kExitInternal;
 }

@@ -27,21 +27,30 @@ if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   add_compile_options($<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE> $<$<NOT:$<CONFIG:Debug>>:-D_FORTIFY_SOURCE=3>)
 endif()
 
-# One library per folder: `motorcade_library(core a.cpp b.cpp)` makes motorcade_core and motorcade::core.
+# One library per folder: `motorcade_library(core a.cpp b.cpp)` makes motorcade_core and motorcade::core. COLD after the name marks a folder
+# that runs once per command, such as options, tables and pages: the compiler need not work on it for long.
 function(motorcade_library folder)
-  add_library(motorcade_${folder} STATIC ${ARGN})
+  cmake_parse_arguments(PARSE_ARGV 1 library "COLD" "" "")
+  set(sources ${library_UNPARSED_ARGUMENTS})
+  add_library(motorcade_${folder} STATIC ${sources})
   add_library(motorcade::${folder} ALIAS motorcade_${folder})
   set_target_properties(motorcade_${folder} PROPERTIES EXPORT_NAME ${folder})
   target_include_directories(motorcade_${folder} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/motorcade>)
   motorcade_options(motorcade_${folder})
-  motorcade_units(motorcade_${folder} ${ARGN})
+  if(library_COLD)
+    motorcade_cold(motorcade_${folder})
+    math(EXPR MOTORCADE_UNIT_SOURCES "2 * ${MOTORCADE_UNIT_SOURCES}")
+  else()
+    target_compile_options(motorcade_${folder} PRIVATE $<$<CONFIG:Release>:-O2>)  # only kernels gain from more
+  endif()
+  motorcade_units(motorcade_${folder} ${sources})
   if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)  # else io would wait for the back-end all the same
-    motorcade_precompiled_headers(${folder})
+    motorcade_precompiled_headers(${folder} ${library_COLD})
   endif()
 endfunction()
 
-# What runs once per command, such as options, tables and pages: the compiler need not work on it for long.
+# Compiles targets with -O1: what runs once per command gains nothing from more.
 function(motorcade_cold)
   foreach(target ${ARGN})
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
@@ -51,30 +60,48 @@ endfunction()
 # With CMAKE_UNITY_BUILD (the presets but `developer`) sources of one room are compiled together, a few to a unit: about half of the compiler's
 # time, and a changed source is back in the program within seconds. In its anonymous namespaces a room uses each name once.
 # `motorcade_units(target a.cpp b.cpp)` groups the sources; those with flags or definitions of their own stay alone.
-set(MOTORCADE_UNIT_SOURCES 8 CACHE STRING "Sources that are compiled together with CMAKE_UNITY_BUILD, at most")
+set(MOTORCADE_UNIT_SOURCES 8 CACHE STRING "Sources that are compiled together with CMAKE_UNITY_BUILD, at most; twice as many in cold folders")
 function(motorcade_units target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  set(rooms)
   foreach(source ${ARGN})
     cmake_path(GET source PARENT_PATH room)
     string(MAKE_C_IDENTIFIER "room_${room}" room)
-    list(LENGTH ${room} position)
-    math(EXPR unit "${position} / ${MOTORCADE_UNIT_SOURCES}")
-    set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${room}_${unit})
+    list(APPEND rooms ${room})
     list(APPEND ${room} ${source})
+  endforeach()
+  list(REMOVE_DUPLICATES rooms)
+  foreach(room ${rooms})
+    motorcade_group_units(${target} ${room} ${${room}})
   endforeach()
 endfunction()
 
-# What nearly every file includes is parsed once: by core for itself and the front-end, whose flags are the same, and by the back-end for
-# the others. No file may rely on it: each includes what it uses, and .ci/lint compiles without it.
-function(motorcade_precompiled_headers folder)
-  if(folder STREQUAL core OR folder STREQUAL backend)
-    target_precompile_headers(motorcade_${folder} PRIVATE
-      <algorithm> <array> <atomic> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory> <optional> <span> <sstream> <string>
-      <thread> <utility> <vector> <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry>)
-  elseif(folder STREQUAL frontend)
-    target_precompile_headers(motorcade_frontend REUSE_FROM motorcade_core)
-  elseif(NOT folder STREQUAL synth)  # it has flags of its own
-    target_precompile_headers(motorcade_${folder} REUSE_FROM motorcade_backend)
+# The sources of one group in units of about the same length.
+function(motorcade_group_units target group)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  list(LENGTH ARGN count)
+  math(EXPR units "(${count} + ${MOTORCADE_UNIT_SOURCES} - 1) / ${MOTORCADE_UNIT_SOURCES}")
+  set(position 0)
+  foreach(source ${ARGN})
+    math(EXPR unit "${position} * ${units} / ${count}")
+    set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${group}_${unit})
+    math(EXPR position "${position} + 1")
+  endforeach()
+endfunction()
+
+# What nearly every file includes is parsed once per set of flags: by core for itself and the estimators, and by io for the cold folders. GCC
+# keeps the optimization level of the parsed headers wherever fmt restores it, so folders of two levels share none. No file may rely on them:
+# each includes what it uses, and .ci/lint compiles without.
+function(motorcade_precompiled_headers folder cold)
+  set(headers <algorithm> <array> <atomic> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory> <optional> <span> <sstream>
+    <string> <thread> <utility> <vector> <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry>)
+  if(folder STREQUAL core)
+    target_precompile_headers(motorcade_core PRIVATE ${headers})
+  elseif(folder STREQUAL io)
+    target_precompile_headers(motorcade_io PRIVATE ${headers} <nlohmann/json.hpp>)
+  elseif(folder STREQUAL frontend OR folder STREQUAL backend)
+    target_precompile_headers(motorcade_${folder} REUSE_FROM motorcade_core)
+  elseif(cold AND NOT folder STREQUAL synth)  # it has flags of its own
+    target_precompile_headers(motorcade_${folder} REUSE_FROM motorcade_io)
   endif()
 endfunction()
 

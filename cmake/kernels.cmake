@@ -21,19 +21,21 @@ function(motorcade_kernels folder)
   if(NOT MOTORCADE_DISPATCH)
     target_sources(motorcade_${folder} PRIVATE ${ARGN})
     motorcade_units(motorcade_${folder} ${ARGN})
+    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O3>)
     if(MOTORCADE_X86_64)
       set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS ${kernel_flags_v3})
       set_source_files_properties(${ARGN} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
     endif()
     return()
   endif()
+  math(EXPR MOTORCADE_UNIT_SOURCES "2 * ${MOTORCADE_UNIT_SOURCES}")  # they are short
   foreach(version any v3)
     set(objects motorcade_${folder}_kernels_${version})
     add_library(${objects} OBJECT ${ARGN})
-    motorcade_units(${objects} ${ARGN})
+    motorcade_group_units(${objects} kernels ${ARGN})
     # No symbol may be shared between versions by name.
     target_compile_options(${objects} PRIVATE
-      $<TARGET_PROPERTY:motorcade_${folder},COMPILE_OPTIONS> -fno-gnu-unique ${kernel_flags_${version}})
+      $<TARGET_PROPERTY:motorcade_${folder},COMPILE_OPTIONS> $<$<CONFIG:Release>:-O3> -fno-gnu-unique ${kernel_flags_${version}})
     target_include_directories(${objects} PRIVATE
       ${PROJECT_SOURCE_DIR} $<TARGET_PROPERTY:motorcade_${folder},INTERFACE_INCLUDE_DIRECTORIES>)
     target_link_libraries(${objects} PRIVATE Eigen3::Eigen)

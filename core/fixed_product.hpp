@@ -26,4 +26,11 @@ Eigen::Matrix<double, Rows, Cols> fixedProduct(const Eigen::Matrix<double, Rows,
   return product;
 }
 
+/// J C J^T, the covariance of J x when that of x is C.
+template <int Rows, int Inner>
+Eigen::Matrix<double, Rows, Rows> propagated(const Eigen::Matrix<double, Rows, Inner>& J,
+                                             const Eigen::Matrix<double, Inner, Inner>& C) {
+  return fixedProduct(fixedProduct(J, C), J.transpose().eval());
+}
+
 }  // namespace motorcade

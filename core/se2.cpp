@@ -47,6 +47,8 @@ SE2 SE2::inverse() const { return {-angle_rad_, -(rotation().transpose() * trans
 
 SE2 SE2::operator*(const SE2& other) const { return {angle_rad_ + other.angle_rad_, *this * other.translation_}; }
 
+Eigen::Vector2d SE2::operator*(const Eigen::Vector2d& p) const { return rotation() * p + translation_; }
+
 Eigen::Matrix3d SE2::adjoint() const {
   Eigen::Matrix3d Ad = Eigen::Matrix3d::Identity();
   Ad.topLeftCorner<2, 2>() = rotation();

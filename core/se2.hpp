@@ -21,7 +21,7 @@ class SE2 {
 
   SE2 inverse() const;
   SE2 operator*(const SE2& other) const;
-  Eigen::Vector2d operator*(const Eigen::Vector2d& p) const { return rotation() * p + translation_; }
+  Eigen::Vector2d operator*(const Eigen::Vector2d& p) const;
 
   /// Ad with T * exp(xi) * T^-1 = exp(Ad * xi).
   Eigen::Matrix3d adjoint() const;

@@ -85,6 +85,12 @@ Eigen::Vector3d logSO3(const Eigen::Matrix3d& rotation) {
   return 2.0 * arcTangent(n, q.w()) / n * q.vec();
 }
 
+SE3 SE3::inverse() const { return {rotation_.transpose(), -(rotation_.transpose() * translation_)}; }
+
+SE3 SE3::operator*(const SE3& other) const {
+  return {rotation_ * other.rotation_, rotation_ * other.translation_ + translation_};
+}
+
 SE3 SE3::exp(const Vector6d& xi) {
   const Eigen::Vector3d phi = xi.tail<3>();
   return {expSO3(phi), leftJacobianSO3(phi) * xi.head<3>()};

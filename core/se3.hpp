@@ -29,11 +29,15 @@ class SE3 {
   const Eigen::Matrix3d& rotation() const { return rotation_; }
   const Eigen::Vector3d& translation() const { return translation_; }
 
-  SE3 inverse() const { return {rotation_.transpose(), -(rotation_.transpose() * translation_)}; }
-  SE3 operator*(const SE3& other) const {
-    return {rotation_ * other.rotation_, rotation_ * other.translation_ + translation_};
+  SE3 inverse() const;
+  SE3 operator*(const SE3& other) const;
+  /// R p + t, in the order of Eigen's sums. Spelled out, as every source would compile Eigen's product anew.
+  Eigen::Vector3d operator*(const Eigen::Vector3d& p) const {
+    const auto& R = rotation_;
+    return {R(0, 0) * p[0] + (R(0, 1) * p[1] + R(0, 2) * p[2]) + translation_[0],
+            R(1, 0) * p[0] + (R(1, 1) * p[1] + R(1, 2) * p[2]) + translation_[1],
+            R(2, 0) * p[0] + (R(2, 1) * p[1] + R(2, 2) * p[2]) + translation_[2]};
   }
-  Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return rotation_ * p + translation_; }
 
   /// The same motion with the rotation put back onto SO(3); call it where many products are chained.
   SE3 normalized() const;

@@ -10,9 +10,9 @@
 #include <unordered_map>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "core/decompositions.hpp"
 #include "io/errors.hpp"
 #include "io/line_file.hpp"
 #include "io/text_file.hpp"
@@ -106,8 +106,8 @@ bool isNegative(const PoseGraph::Information& information) {
   if (!(diagonal.minCoeff() >= 0)) return true;
   const Eigen::VectorXd scale = (diagonal.array() > 0).select(diagonal.cwiseSqrt().cwiseInverse(), 1.0);  // m and rad
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled, Eigen::EigenvaluesOnly);
-  return !(eigen.eigenvalues().minCoeff() >= -kRounding * std::max(1.0, eigen.eigenvalues().maxCoeff()));
+  const Eigen::VectorXd values = SymmetricEigen(scaled).values;
+  return !(values.minCoeff() >= -kRounding * std::max(1.0, values.maxCoeff()));
 }
 
 /// Goes through a file line by line. Knows where it is, so that errors and problems can tell.

@@ -174,7 +174,7 @@ struct PosedObject {
   ObjectTruth truth;
 };
 
-PosedObject readObject(FieldReader& fields) {
+PosedObject readPosedObject(FieldReader& fields) {
   PosedObject object;
   object.frame = fields.integer("frame");
   object.camera = fields.integer("cameraID");
@@ -250,7 +250,7 @@ std::optional<ObjectTruths> virtualKittiObjects(const Sequence& sequence, const 
   ObjectTruths truths{.objects = {}, .ignored = {}, .source = "pose.txt and bbox.txt"};
   for (const TextLine& line : tableLines(poses, "frame")) {
     FieldReader fields(poses, line);
-    PosedObject object = readObject(fields);
+    PosedObject object = readPosedObject(fields);
     const auto frame = frame_of.find(object.frame);
     if (object.camera != kLeftCamera || frame == frame_of.end()) continue;
     object.truth.frame = {frame->second};

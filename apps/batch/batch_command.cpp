@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include "apps/batch/attempts.hpp"
 #include "apps/batch/local_lock.hpp"
@@ -13,6 +13,7 @@
 #include "apps/batch/slots.hpp"
 #include "apps/batch/slurm_submission.hpp"
 #include "apps/batch/task_time.hpp"
+#include "apps/console/log.hpp"
 #include "apps/console/own_program.hpp"
 #include "apps/console/stop_signals.hpp"
 #include "apps/merge/merge_command.hpp"
@@ -82,8 +83,8 @@ LocalRunner::Options slotsFor(const BatchOptions& options) {
   LocalRunner::Options runner{.slots = processorSlots(usable, jobs, options.threads),
                               .limit = taskTime(options.slurm_options.time)};
   if (runner.slots.front().empty())
-    spdlog::warn("{} tasks of {} threads at a time on {} processors: their times are not comparable", jobs,
-                 options.threads, processors);
+    logWarning(fmt::format("{} tasks of {} threads at a time on {} processors: their times are not comparable", jobs,
+                           options.threads, processors));
   return runner;
 }
 
@@ -169,10 +170,10 @@ int perform(const Task& task, Workplace workplace, bool only_render) {
   }
   if (signals.received() != 0) return kExitSignal + signals.received();
   if (failure) {
-    spdlog::error("{}: {}", task.name, failure->message);
-    for (const std::string& line : failure->last_lines) spdlog::error("    {}", line);
+    logError(fmt::format("{}: {}", task.name, failure->message));
+    for (const std::string& line : failure->last_lines) logError(fmt::format("    {}", line));
   } else {
-    spdlog::info("{}: {}", task.name, only_render ? "rendered" : "done");
+    logInfo(fmt::format("{}: {}", task.name, only_render ? "rendered" : "done"));
   }
   return failure ? kExitFailedTasks : 0;
 }
@@ -206,7 +207,7 @@ int runBatchTask(const BatchTaskOptions& options) {
   const std::string slurm = slurmAttemptName();
   if (!slurm.empty()) removeEarlierRestarts(folder, slurm);
   if (!options.only_render && finishedRecord(task, folder)) {
-    spdlog::info("{}: finished before", task.name);
+    logInfo(fmt::format("{}: finished before", task.name));
     return 0;
   }
   return perform(task,

@@ -4,7 +4,6 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "apps/batch/attempts.hpp"
 #include "apps/batch/batch_command.hpp"

@@ -4,10 +4,11 @@
 #include <thread>
 #include <utility>
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include "apps/batch/attempts.hpp"
 #include "apps/batch/time_left.hpp"
+#include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
 #include "apps/tasks/task_performer.hpp"
 #include "io/errors.hpp"
@@ -86,7 +87,7 @@ void LocalRunner::performItem(const TaskQueue::Item& item, std::size_t slot) {
 void LocalRunner::take(const TaskRecord& record) {
   if (record.failure) {
     const auto& lines = record.failure->last_lines;
-    spdlog::error("{}: {}{}", record.task, record.failure->message, lines.empty() ? "" : ": " + lines.back());
+    logError(fmt::format("{}: {}{}", record.task, record.failure->message, lines.empty() ? "" : ": " + lines.back()));
   }
   const std::lock_guard lock(mutex_);
   if (record.failure)

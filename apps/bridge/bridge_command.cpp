@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include "apps/bridge/bridge_options.hpp"
 #include "apps/bridge/dds_publisher.hpp"
@@ -19,6 +19,7 @@
 #include "apps/bridge/message_conversion.hpp"
 #include "apps/bridge/object_markers.hpp"
 #include "apps/bridge/path_covariance.hpp"
+#include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
 #include "apps/console/stop_signals.hpp"
 #include "io/errors.hpp"
@@ -32,11 +33,11 @@ using namespace std::chrono_literals;
 void logToSpdlog(Tracker::LogLevel level, const std::string& text) {
   switch (level) {
     case Tracker::LogLevel::kInfo:
-      return spdlog::info(text);
+      return logInfo(text);
     case Tracker::LogLevel::kWarning:
-      return spdlog::warn(text);
+      return logWarning(text);
     case Tracker::LogLevel::kError:
-      return spdlog::error(text);
+      return logError(text);
   }
 }
 
@@ -107,19 +108,22 @@ std::int64_t playOnce(Tracker& tracker, DrivePlayer& player, const DrivePlayer::
 }
 
 void tellDriven(const DrivePlayer::Counts& player, std::int64_t dropped) {
-  spdlog::info("{} pairs; {} dropped by a newer one, {} overtaken before they were read", player.pushed, dropped,
-               player.overtaken);
-  if (player.rejected > 0) spdlog::warn("{} pairs were rejected: damaged, or without a later stamp", player.rejected);
+  logInfo(fmt::format("{} pairs; {} dropped by a newer one, {} overtaken before they were read", player.pushed, dropped,
+                      player.overtaken));
+  if (player.rejected > 0)
+    logWarning(fmt::format("{} pairs were rejected: damaged, or without a later stamp", player.rejected));
 }
 
 void tellPublished(const std::vector<DdsPublisher::Counts>& topics) {
   for (const auto& topic : topics) {
-    spdlog::info("{}: {} messages published, {} subscribers at the end", topic.topic, topic.published,
-                 topic.subscribers);
-    if (topic.timed_out > 0) spdlog::warn("{}: {} messages were not sent in time", topic.topic, topic.timed_out);
+    logInfo(fmt::format("{}: {} messages published, {} subscribers at the end", topic.topic, topic.published,
+                        topic.subscribers));
+    if (topic.timed_out > 0)
+      logWarning(fmt::format("{}: {} messages were not sent in time", topic.topic, topic.timed_out));
     if (topic.overtaken > 0)
-      spdlog::warn("{}: {} messages left the history before every subscriber acknowledged them, and may be missing",
-                   topic.topic, topic.overtaken);
+      logWarning(
+          fmt::format("{}: {} messages left the history before every subscriber acknowledged them, and may be missing",
+                      topic.topic, topic.overtaken));
   }
 }
 
@@ -127,8 +131,8 @@ void awaitSubscribers(const DdsPublisher& out, const BridgeOptions& options, con
   if (options.subscribers == 0) return;
   const std::chrono::milliseconds patience(std::llround(1e3 * options.patience_s));
   if (!out.waitForSubscribers(options.subscribers, patience, stop) && !stop.stop_requested())
-    spdlog::warn("not every topic has {} subscribers after {} s (--wait-at-most): going on without",
-                 options.subscribers, options.patience_s);
+    logWarning(fmt::format("not every topic has {} subscribers after {} s (--wait-at-most): going on without",
+                           options.subscribers, options.patience_s));
 }
 
 }  // namespace
@@ -144,9 +148,9 @@ int runBridge(const BridgeOptions& options) {
   DrivePlayer player(recording);
   const DrivePlayer::Pace pace{.speed = speedOf(options, player.captureRate_hz()), .live = options.live};
   DdsPublisher out(place);
-  spdlog::info("/motorcade/pose, /motorcade/odometry and /motorcade/objects in {}", textOf(place));
+  logInfo(fmt::format("/motorcade/pose, /motorcade/odometry and /motorcade/objects in {}", textOf(place)));
   if (isLoopback(place) && !out.isShielded())
-    spdlog::warn("DDS' sockets cannot be bound to the loopback device: others in the network can send to them");
+    logWarning("DDS' sockets cannot be bound to the loopback device: others in the network can send to them");
 
   std::stop_source stop;
   const auto watch = signals.watch([&stop] { stop.request_stop(); });

@@ -17,6 +17,7 @@
 #include "apps/check/sequence_line.hpp"
 #include "apps/inject/fault_injector.hpp"
 #include "apps/watch/input_check.hpp"
+#include "io/json_text.hpp"
 #include "io/line_file.hpp"
 #include "io/sequence.hpp"
 #include "io/sequence_decoder.hpp"
@@ -125,7 +126,7 @@ void writeJson(const std::filesystem::path& file, const PairGeometry& geometry, 
   json["findings"] = nlohmann::ordered_json::array();
   for (const Finding& finding : findings)
     json["findings"].push_back({{"name", finding.name}, {"worthless", finding.worthless}, {"text", finding.text}});
-  writeAtOnce(file, json.dump(2) + "\n");
+  writeAtOnce(file, jsonText(json, 2) + "\n");
 }
 
 void printFindings(const std::vector<Finding>& findings, const CheckOptions& options) {

@@ -7,6 +7,11 @@
 
 namespace motorcade {
 
+void logDebug(std::string_view message) { spdlog::debug(message); }
+void logInfo(std::string_view message) { spdlog::info(message); }
+void logWarning(std::string_view message) { spdlog::warn(message); }
+void logError(std::string_view message) { spdlog::error(message); }
+
 void startLog() {
   const char* const no_color = std::getenv("NO_COLOR");
   const bool colorless = no_color && *no_color != '\0';

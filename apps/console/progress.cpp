@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <utility>
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -53,7 +53,7 @@ void Progress::show(std::size_t done, const std::string& more) {
   const auto text =
       fmt::format("{0} {1} of {2}, {3:.1f} {0}s/s{4}{5}", item_, done, count_, rate_hz, more.empty() ? "" : ", ", more);
   if (!terminal_) {
-    spdlog::info(text);
+    logInfo(text);
     return;
   }
   const double share_done = count_ > 0 ? static_cast<double>(done) / static_cast<double>(count_) : 1;

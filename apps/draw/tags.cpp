@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kEdge_px = 3, kPad_px = 6, kLine_px = 14, kAbove_px = 3;
+constexpr double kTagEdge_px = 3, kPad_px = 6, kLine_px = 14, kAbove_px = 3;
 
 TextStyle nameStyle(Color color) { return {.color = lightened(color), .size_px = 11.5, .bold = true}; }
 const TextStyle kFacts{.color = kInk, .size_px = 11.5};
@@ -19,7 +19,7 @@ const TextStyle kFacts{.color = kInk, .size_px = 11.5};
 LabelRequest requestOf(const Tag& tag) {
   const double name = Canvas::textWidth(tag.name, nameStyle(tag.color)), facts = Canvas::textWidth(tag.facts, kFacts);
   const double lines = tag.facts.empty() ? 1 : 2;
-  return {tag.anchor, std::ceil(std::max(name, facts) + kEdge_px + 2 * kPad_px), lines * kLine_px + 2 * kAbove_px};
+  return {tag.anchor, std::ceil(std::max(name, facts) + kTagEdge_px + 2 * kPad_px), lines * kLine_px + 2 * kAbove_px};
 }
 
 /// From the plate to the nearest point of what it belongs to.
@@ -37,8 +37,8 @@ void drawThread(Canvas& canvas, const Rectangle& plate, const Tag& tag) {
 void drawPlate(Canvas& canvas, const Rectangle& plate, const Tag& tag) {
   constexpr double kRadius_px = 4;
   canvas.fillRounded(plate, kRadius_px, {kDark, 0.84});
-  canvas.fillRounded({plate.left + 3, plate.top + 4, kEdge_px, plate.height - 8}, kEdge_px / 2, {tag.color, 1});
-  const Vector2d at(plate.left + kEdge_px + kPad_px, plate.top + kAbove_px + kLine_px - 3.5);
+  canvas.fillRounded({plate.left + 3, plate.top + 4, kTagEdge_px, plate.height - 8}, kTagEdge_px / 2, {tag.color, 1});
+  const Vector2d at(plate.left + kTagEdge_px + kPad_px, plate.top + kAbove_px + kLine_px - 3.5);
   canvas.text(at, tag.name, nameStyle(tag.color));
   canvas.text(at + Vector2d(0, kLine_px), tag.facts, kFacts);
 }

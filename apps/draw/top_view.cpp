@@ -154,7 +154,8 @@ void drawEllipse(const View& view, const ObjectEstimate& object) {
   Eigen::Matrix2d on_ground;  // ahead and to the right
   on_ground << covariance(2, 2), covariance(2, 0), covariance(0, 2), covariance(0, 0);
   if (!on_ground.allFinite() || !(on_ground.trace() > 0)) return;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(on_ground);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+  solver.computeDirect(on_ground);
   const Eigen::Matrix2d axes = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
   const auto corners = ellipse(view.at(place.center_world), kSigmas * view.map.px_per_m * axes);
   if (!view.sheet.note(Mark::kEllipse, corners)) return;

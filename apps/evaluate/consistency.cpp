@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 
 #include "apps/evaluate/object_positions.hpp"
+#include "core/decompositions.hpp"
 
 namespace motorcade {
 namespace {

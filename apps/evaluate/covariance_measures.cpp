@@ -9,6 +9,7 @@
 
 #include "apps/evaluate/object_positions.hpp"
 #include "core/assignment.hpp"
+#include "core/decompositions.hpp"
 
 namespace motorcade {
 namespace {
@@ -129,9 +130,12 @@ std::vector<ErrorSample> cameraErrorSamples(const std::vector<ComparedFrame>& fr
 std::vector<FrameNees> cameraNees(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows,
                                   const SE3& T_true_cam) {
   std::vector<FrameNees> nees;
-  for (const auto& row : rows)
-    if (const auto sample = cameraError(frames, row, T_true_cam))
-      nees.push_back({row.frame, sample->xi.dot(sample->covariance.ldlt().solve(sample->xi))});
+  for (const auto& row : rows) {
+    const auto sample = cameraError(frames, row, T_true_cam);
+    if (!sample) continue;
+    const Eigen::LLT<Matrix6d> cholesky(sample->covariance);
+    if (cholesky.info() == Eigen::Success) nees.push_back({row.frame, sample->xi.dot(cholesky.solve(sample->xi))});
+  }
   return nees;
 }
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/decompositions.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -59,7 +61,7 @@ Vector6d stepFrom(const SE3& X, const std::vector<MotionPair>& pairs) {
     H += J.transpose() * pair.weight.asDiagonal() * J;
     gradient += J.transpose() * pair.weight.cwiseProduct(residual);
   }
-  return -H.ldlt().solve(gradient);
+  return -Eigen::LLT<Matrix6d>(H).solve(gradient);
 }
 
 }  // namespace

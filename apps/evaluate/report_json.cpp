@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/evaluate/report.hpp"
+#include "io/json_text.hpp"
 #include "io/object_row.hpp"
 
 namespace motorcade {
@@ -314,7 +315,7 @@ std::string jsonOf(const Evaluation& e) {
                  {"max", e.latencyQuantile_ms(1)}}}};
   json["baseline"] = {{"camera", e.camera_against_baseline ? jsonOf(*e.camera_against_baseline) : Json()},
                       {"objects", e.objects_against_baseline ? jsonOf(*e.objects_against_baseline) : Json()}};
-  return json.dump(2);
+  return jsonText(json, 2);
 }
 
 }  // namespace motorcade

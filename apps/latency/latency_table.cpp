@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "io/json_text.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -80,7 +82,7 @@ std::string latencyJson(const LatencyReport& report) {
                   {"publish_wait_ms", toJson(report.publish_wait_ms)},
                   {"stages", stages},
                   {"slowest", slowest}};
-  return json.dump(2) + "\n";
+  return jsonText(json, 2) + "\n";
 }
 
 }  // namespace motorcade

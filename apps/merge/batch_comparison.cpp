@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -39,12 +38,6 @@ constexpr std::array<std::string_view, 4> kCost{"latency_p50_ms", "latency_p99_m
                                                 "peak_memory_mb"};
 
 using SeedValues = std::map<std::string, const MeasureValues*>;  // by drive, seed and set
-
-std::size_t setsIn(const std::vector<ResultGroup>& groups) {
-  std::set<std::string> sets;
-  for (const ResultGroup& group : groups) sets.insert(group.set());
-  return sets.size();
-}
 
 SeedValues valuesBySeed(const std::vector<ResultGroup>& groups, bool with_sets) {
   SeedValues values;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace motorcade {
 
@@ -80,6 +81,12 @@ std::vector<ResultGroup> groupsOf(const MergedBatch& batch) {
       all.push_back(std::move(group));
     }
   return all;
+}
+
+std::size_t setsIn(const std::vector<ResultGroup>& groups) {
+  std::set<std::string> sets;
+  for (const ResultGroup& group : groups) sets.insert(group.set());
+  return sets.size();
 }
 
 }  // namespace motorcade

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <spdlog/spdlog.h>
 
+#include "apps/console/log.hpp"
 #include "apps/evaluate/evaluation.hpp"
 #include "apps/latency/latency_report.hpp"
 #include "apps/merge/published_tables.hpp"
@@ -14,6 +14,7 @@
 #include "apps/tasks/task_performer.hpp"
 #include "io/errors.hpp"
 #include "io/frame_table.hpp"
+#include "io/json_text.hpp"
 #include "io/shell_words.hpp"
 #include "io/text_file.hpp"
 
@@ -29,7 +30,7 @@ nlohmann::json jsonIn(const fs::path& file) {
   std::error_code none;
   if (!fs::exists(file, none)) return nullptr;
   try {
-    return nlohmann::json::parse(readWhole(file));
+    return parsedJson(readWhole(file));
   } catch (const nlohmann::json::exception& error) {
     throw InputError(file.string() + ": is damaged (" + printable(error.what(), 100) +
                      "); remove the folder of this result and run the batch again");
@@ -146,7 +147,7 @@ void compareWith(const Task& baseline, MergedTask& task, const BatchFolder& fold
     set("re_offset_removed", PositionKind::kWorldOffsetRemoved);
     set("re_as_seen", PositionKind::kAsSeenOffsetRemoved);
   } catch (const UserError& error) {
-    spdlog::warn("{} is not compared with {}: {}", task.task.name, baseline.name, error.what());
+    logWarning(fmt::format("{} is not compared with {}: {}", task.task.name, baseline.name, error.what()));
   }
 }
 

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
+
+#include "apps/console/log.hpp"
 
 namespace motorcade {
 namespace {
@@ -211,7 +212,8 @@ std::vector<PublishedFigure> comparableFigures(const std::vector<PublishedFigure
     if (isMeasure(figure.measure))
       known.push_back(figure);
     else if (unknown.insert(figure.measure).second)
-      spdlog::warn("published figures of '{}' are left out: no column of results.csv has this name", figure.measure);
+      logWarning(fmt::format("published figures of '{}' are left out: no column of results.csv has this name",
+                             figure.measure));
   return known;
 }
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <functional>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -195,12 +194,6 @@ std::vector<Column> worstColumns() {
   return {{"RPE_t m", [](const ResultGroup& group) { return worstText(group.worst().camera_m, 3); }},
           {"ME_t m", [](const ResultGroup& group) { return worstText(group.worst().object_m, 3); }},
           {"latency ms", [](const ResultGroup& group) { return worstText(group.worst().latest_ms, 1); }}};
-}
-
-std::size_t setsIn(const std::vector<ResultGroup>& groups) {
-  std::set<std::string> sets;
-  for (const ResultGroup& group : groups) sets.insert(group.set());
-  return sets.size();
 }
 
 /// Marks, of one drive's results in rows next to each other, the best set by each measure and the worst, where they

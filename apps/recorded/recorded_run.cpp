@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/errors.hpp"
+#include "io/json_text.hpp"
 #include "io/text_file.hpp"
 
 namespace motorcade {
@@ -21,7 +22,7 @@ constexpr double kUsualRate_hz = 10;
 
 /// An object without keys where there is no summary, or none that can be read.
 Json summaryOf(const RunFolder& run) {
-  Json json = Json::parse(run.summary_json, nullptr, /*allow_exceptions=*/false);
+  Json json = jsonOrDiscarded(run.summary_json);
   return json.is_object() ? json : Json::object();
 }
 
@@ -93,7 +94,7 @@ bool holdsFinishedRun(const fs::path& folder) {
   const fs::path file = folder / "summary.json";
   std::error_code unreachable;  // then nothing can be replaced there either
   if (!fs::exists(file, unreachable)) return false;
-  const Json summary = Json::parse(readWhole(file), nullptr, /*allow_exceptions=*/false);
+  const Json summary = jsonOrDiscarded(readWhole(file));
   return !summary.is_object() || summary.value("complete", Json(true)) != Json(false);
 }
 

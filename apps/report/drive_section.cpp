@@ -55,7 +55,7 @@ Eigen::Matrix<double, 2, 3> mapAxes(const std::vector<SE3>& path) {
     const Eigen::Vector2d from = Eigen::Vector2d(pose.translation().x(), pose.translation().z()) - mean;
     spread += from * from.transpose();
   }
-  Eigen::Vector2d along = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvectors().col(1);
+  Eigen::Vector2d along = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>().computeDirect(spread).eigenvectors().col(1);
   const bool stands = spread.trace() < 1e-6;
   if (stands) along = {0, 1};
   if (!stands && along.dot(Eigen::Vector2d(path.back().translation().x() - path.front().translation().x(),

@@ -10,6 +10,7 @@
 #include "apps/latency/latency_report.hpp"
 #include "apps/recorded/recorded_run.hpp"
 #include "apps/report/report_sections.hpp"
+#include "io/json_text.hpp"
 #include "io/text_file.hpp"
 
 namespace motorcade {
@@ -19,7 +20,7 @@ using Json = nlohmann::json;
 
 /// An object without keys where there is no summary that can be read.
 Json summaryOf(const RunFolder& run) {
-  Json json = Json::parse(run.summary_json, nullptr, /*allow_exceptions=*/false);
+  Json json = jsonOrDiscarded(run.summary_json);
   return json.is_object() ? json : Json::object();
 }
 
@@ -91,7 +92,7 @@ std::string versionRows(const Json& summary) {
   if (const auto versions = summary.find("versions"); versions != summary.end() && versions->is_object())
     for (const auto& [name, version] : versions->items())
       rows += "<tr><th>" + escaped(name) + "</th><td>" +
-              escaped(version.is_string() ? version.get<std::string>() : version.dump()) + "</td></tr>\n";
+              escaped(version.is_string() ? version.get<std::string>() : "-") + "</td></tr>\n";
   return rows;
 }
 

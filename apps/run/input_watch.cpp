@@ -1,6 +1,8 @@
 #include "apps/run/input_watch.hpp"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
+
+#include "apps/console/log.hpp"
 
 namespace motorcade {
 
@@ -15,10 +17,10 @@ void InputWatch::tell(const std::vector<RigFinding>& found) {
     found_.push_back(each);
     if (each.finding.worthless && each.finding.name != "points" && !force_) {
       refused_ = true;
-      spdlog::error("{}; {}--force goes on", each.text(),
-                    each.last_good ? "what is written of frames before is good, " : "");
+      logError(fmt::format("{}; {}--force goes on", each.text(),
+                           each.last_good ? "what is written of frames before is good, " : ""));
     } else {
-      spdlog::warn(each.text());
+      logWarning(each.text());
     }
   }
 }

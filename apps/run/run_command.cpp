@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include "apps/check/camera_doubts.hpp"
 #include "apps/check/mosaic_doubt.hpp"
@@ -45,11 +45,11 @@ constexpr int kExitInput = 3, kExitUntracked = 5;
 void logToSpdlog(LogLevel level, const std::string& text) {
   switch (level) {
     case LogLevel::kInfo:
-      return spdlog::info(text);
+      return logInfo(text);
     case LogLevel::kWarning:
-      return spdlog::warn(text);
+      return logWarning(text);
     case LogLevel::kError:
-      return spdlog::error(text);
+      return logError(text);
   }
 }
 
@@ -77,7 +77,7 @@ void requireWithin(const ImageLimits& limits, const Sequence& sequence) {
 void requireBelievable(const Sequence& sequence, bool force) {
   for (const std::string& doubt : doubtsAbout(sequence.camera)) {
     if (!force) throw InputError(sequence.folder.string() + ": " + doubt + "; --force goes on");
-    spdlog::warn(doubt);
+    logWarning(doubt);
   }
 }
 
@@ -86,30 +86,31 @@ void requireBelievable(const Sequence& sequence, bool force) {
 void tellNotes(const Sequence& sequence, bool force) {
   for (const InputNote& note : sequence.notes) {
     if (note.worthless && !force) throw InputError(sequence.folder.string() + ": " + note.text + "; --force goes on");
-    spdlog::warn(note.text);
+    logWarning(note.text);
   }
 }
 
 void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) {
-  spdlog::info(sequenceLine(sequence, range));
-  if (sequence.samples) spdlog::info("16-bit images, {}", sequence.samples->why);
-  if (sequence.bayer) spdlog::info("the images are mosaics of a color sensor, {}", nameOf(*sequence.bayer));
-  if (const auto doubt = mosaicDoubt(sequence, range, 1)) spdlog::warn(*doubt);
-  for (const std::string& oddity : odditiesOf(sequence.camera)) spdlog::warn(oddity);
+  logInfo(sequenceLine(sequence, range));
+  if (sequence.samples) logInfo(fmt::format("16-bit images, {}", sequence.samples->why));
+  if (sequence.bayer) logInfo(fmt::format("the images are mosaics of a color sensor, {}", nameOf(*sequence.bayer)));
+  if (const auto doubt = mosaicDoubt(sequence, range, 1)) logWarning(*doubt);
+  for (const std::string& oddity : odditiesOf(sequence.camera)) logWarning(oddity);
   if (!sequence.stamps_measured)
-    spdlog::info("the sequence has no times: taken as {} Hz (--fps){}", fps_hz,
-                 sequence.numbering.step > 1
-                     ? fmt::format(" from one image to the next, whose numbers differ by {}", sequence.numbering.step)
-                     : "");
+    logInfo(fmt::format(
+        "the sequence has no times: taken as {} Hz (--fps){}", fps_hz,
+        sequence.numbering.step > 1
+            ? fmt::format(" from one image to the next, whose numbers differ by {}", sequence.numbering.step)
+            : ""));
 }
 
 void tellOutside(double share) {
   constexpr double kTold = 0.02;
   if (share > kTold)
-    spdlog::warn(
+    logWarning(fmt::format(
         "{:.0f} % of a rectified image lies outside of what its camera saw: what is followed there is not real; "
         "calibrate with a projection that crops (alpha 0)",
-        100 * share);
+        100 * share));
 }
 
 /// Takes the pipeline's results into the run folder.
@@ -122,7 +123,7 @@ class Recorder {
     recordDropped(result.dropped, result.timing.due);
     folder_.writeTiming(result.timing);
     folder_.writeOnline(result.online);
-    if (const auto doubt = plausibility_.observe(result.online)) spdlog::warn(*doubt);
+    if (const auto doubt = plausibility_.observe(result.online)) logWarning(*doubt);
     for (RunListener* const listener : listeners_) listener->frameLeft(result);
     for (const FrameEstimate& estimate : result.settled) folder_.writeSettled(estimate);
     recordFinals(result.finals);
@@ -276,8 +277,8 @@ class ExtraOutputs {
     mcap_->close();
     const auto [images, frames] = mcap_->leftOut();
     if (images + frames > 0)
-      spdlog::warn("{}: {} images and {} whole frames are left out, as writing was too slow", mcap_file_.string(),
-                   images, frames);
+      logWarning(fmt::format("{}: {} images and {} whole frames are left out, as writing was too slow",
+                             mcap_file_.string(), images, frames));
     summary.mcap = {mcap_file_.string(), mcap_->bytes(), images, frames};
   }
 
@@ -291,12 +292,12 @@ int exitCode(const RunSummary& summary, const FollowedFrames& followed, std::opt
   if (summary.refused) return kExitInput;
   if (summary.signal != 0) return kExitSignal + summary.signal;
   if (followed.none(summary.pipeline)) {
-    spdlog::error(followed.whyNone(summary.pipeline));
+    logError(followed.whyNone(summary.pipeline));
     return kExitInput;
   }
   if (required_tracking && summary.trackedFraction() < *required_tracking) {
-    spdlog::error("{:.4f} of the frames are tracked, --require asks for {:.4f}", summary.trackedFraction(),
-                  *required_tracking);
+    logError(fmt::format("{:.4f} of the frames are tracked, --require asks for {:.4f}", summary.trackedFraction(),
+                         *required_tracking));
     return kExitUntracked;
   }
   return 0;
@@ -319,8 +320,8 @@ int runSequence(const RunOptions& options) {
   Stages stages = makeStages(config, sequence.camera);
   if (auto other_camera = otherCamera(options, config, sequence)) replaceOdometry(stages, *std::move(other_camera));
   announce(sequence, range, options.fps_hz);
-  spdlog::debug("{} threads, {} frames in flight; results go to {}", config.pipeline.threads,
-                config.pipeline.frames_in_flight, options.out.string());
+  logDebug(fmt::format("{} threads, {} frames in flight; results go to {}", config.pipeline.threads,
+                       config.pipeline.frames_in_flight, options.out.string()));
 
   RunSummary summary = summaryBefore(options, config, sequence, range, rate_hz);
   StopSignals signals;  // before all threads

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/console/versions.hpp"
+#include "io/json_text.hpp"
 #include "io/run_folder.hpp"
 
 namespace motorcade {
@@ -175,7 +176,7 @@ std::string toJson(const RunSummary& summary) {
             {"versions", programVersions()}};
   if (summary.mcap) json["mcap"] = toJson(*summary.mcap);
   if (summary.signal != 0) json["interrupted_by"] = summary.signal == SIGINT ? "SIGINT" : "SIGTERM";
-  return json.dump(2) + "\n";
+  return jsonText(json, 2) + "\n";
 }
 
 std::string shortReport(const RunSummary& summary, const std::string& folder) {

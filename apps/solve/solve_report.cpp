@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "io/json_text.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -67,7 +69,7 @@ std::string jsonOf(const Solution& solution, const SolveOptions& options) {
     json["update_ms"] = solution.update_ms;
     json["update_eliminated_scalars"] = solution.update_eliminated_scalars;
   }
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);  // paths may hold any bytes
+  return jsonText(json, 2);
 }
 
 }  // namespace motorcade

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/errors.hpp"
+#include "io/json_text.hpp"
 #include "io/text_file.hpp"
 
 /// What plans and records have in common as JSON.
@@ -24,14 +25,13 @@ inline std::optional<std::uint32_t> seedOf(const Json& json) {
   return seed.is_null() ? std::nullopt : std::optional(seed.get<std::uint32_t>());
 }
 
-/// Bytes that are no UTF-8, as names of files may have, are replaced.
-inline std::string textOf(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n'; }
+inline std::string textOf(const Json& json) { return jsonText(json, 1) + '\n'; }
 
 /// Throws InputError that says that the file is not `what`.
 template <class Value, class Convert>
 Value readJson(const std::filesystem::path& file, const std::string& what, const Convert& convert) {
   try {
-    return convert(Json::parse(readWhole(file)));
+    return convert(parsedOrderedJson(readWhole(file)));
   } catch (const nlohmann::json::exception& error) {
     throw InputError(file.string() + ": is not " + what + " (" + printable(error.what(), 100) + ")");
   }

@@ -8,6 +8,7 @@
 #include "apps/draw/palette.hpp"
 #include "apps/latency/latency_report.hpp"
 #include "core/object_place.hpp"
+#include "io/json_text.hpp"
 #include "io/object_row.hpp"
 #include "io/run_folder.hpp"
 
@@ -145,26 +146,25 @@ std::string toJson(const ShownRun& run) {
   const StereoCamera& camera = run.camera;
   Json stages = Json::array();
   for (const auto& name : kStageNames) stages.push_back(name);
-  return Json{{"name", run.name},
-              {"folder", run.folder},
-              {"recorded", run.recorded},
-              {"can_pause", run.can_pause},
-              {"first_frame", run.first_frame},
-              {"end_frame", run.end_frame},
-              {"rate_hz", rounded(run.rate_hz)},
-              {"paced", run.paced},
-              {"against", run.against},
-              {"stages", stages},
-              {"latency_bounds_ms", kLatencyBounds_ms},
-              {"camera",
-               {{"fx", camera.fx_px},
-                {"fy", camera.fy_px},
-                {"cx", camera.cx_px},
-                {"cy", camera.cy_px},
-                {"baseline", camera.baseline_m},
-                {"width", camera.width_px},
-                {"height", camera.height_px}}}}
-      .dump();
+  return jsonText({{"name", run.name},
+                   {"folder", run.folder},
+                   {"recorded", run.recorded},
+                   {"can_pause", run.can_pause},
+                   {"first_frame", run.first_frame},
+                   {"end_frame", run.end_frame},
+                   {"rate_hz", rounded(run.rate_hz)},
+                   {"paced", run.paced},
+                   {"against", run.against},
+                   {"stages", stages},
+                   {"latency_bounds_ms", kLatencyBounds_ms},
+                   {"camera",
+                    {{"fx", camera.fx_px},
+                     {"fy", camera.fy_px},
+                     {"cx", camera.cx_px},
+                     {"cy", camera.cy_px},
+                     {"baseline", camera.baseline_m},
+                     {"width", camera.width_px},
+                     {"height", camera.height_px}}}});
 }
 
 std::string toJson(const ShownFrame& frame, Timestamp first_stamp, FrameDetail detail) {
@@ -186,7 +186,7 @@ std::string toJson(const ShownFrame& frame, Timestamp first_stamp, FrameDetail d
     json["outlines"] = outlinesJson(frame.outlines);
     json["points"] = pointsJson(frame.points);
   }
-  return json.dump();
+  return jsonText(json);
 }
 
 std::string eventJson(const RunSnapshot& run, const std::string& frame_json) {
@@ -203,7 +203,7 @@ std::string eventJson(const RunSnapshot& run, const std::string& frame_json) {
                   {"latency_counts", run.latency.counts},
                   {"processing_counts", run.processing.counts},
                   {"queues", queues}};
-  return R"({"run":)" + json.dump() + R"(,"frame":)" + (frame_json.empty() ? "null" : frame_json) + "}";
+  return R"({"run":)" + jsonText(json) + R"(,"frame":)" + (frame_json.empty() ? "null" : frame_json) + "}";
 }
 
 }  // namespace motorcade

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include <httplib.h>
-#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
+#include "apps/console/log.hpp"
 #include "apps/view/assets.hpp"
 #include "apps/view/request_guard.hpp"
 #include "io/errors.hpp"
@@ -104,7 +104,7 @@ PageServer::Impl::Impl(ListenAddress address, PageSource& source, Viewers& viewe
   configure();
   listen();
   guard_ = std::make_unique<RequestGuard>(address_);
-  if (const std::string warning = exposureWarning(address_); !warning.empty()) spdlog::warn(warning);
+  if (const std::string warning = exposureWarning(address_); !warning.empty()) logWarning(warning);
   route();
   thread_ = std::jthread([this] {
     ::setpriority(PRIO_PROCESS, 0, kNice);  // of this thread and of those that it starts

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "io/json_text.hpp"
 #include "io/text_file.hpp"
 
 namespace motorcade {
@@ -61,7 +62,7 @@ std::map<std::int64_t, std::vector<std::string>> readOutlineLines(const fs::path
 }
 
 ShownOutline outlineOf(const std::string& line) {
-  const FileJson json = FileJson::parse(line, nullptr, /*allow_exceptions=*/false);
+  const FileJson json = jsonOrDiscarded(line);
   if (!json.is_object() || !json.contains("track_id") || !json.contains("polygons")) return {};
   ShownOutline outline;
   try {

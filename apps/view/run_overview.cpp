@@ -9,6 +9,7 @@
 
 #include "apps/latency/latency_report.hpp"
 #include "apps/view/frame_json.hpp"
+#include "io/json_text.hpp"
 #include "io/object_row.hpp"
 
 namespace motorcade {
@@ -188,7 +189,7 @@ std::string toJson(const RunOverview& overview) {
             {"tracks", tracksJson(overview)},
             {"worst", worstJson(overview, times)}};
   if (overview.truth) json["truth"] = truthOverview(overview);
-  return json.dump();
+  return jsonText(json);
 }
 
 }  // namespace motorcade

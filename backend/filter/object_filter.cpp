@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/decompositions.hpp"
 #include "core/elementary.hpp"
 #include "core/robust_loss.hpp"
 
@@ -28,11 +29,11 @@ void ObjectFilter::predict(Timestamp stamp) {
 std::optional<double> ObjectFilter::correct(const SE3& T_world_body, const Matrix6d& covariance) {
   Matrix12d& P = state_.covariance;
   const Vector6d innovation = (state_.T_world_body.inverse() * T_world_body).log();
-  Eigen::LLT<Matrix6d> S(P.topLeftCorner<6, 6>() + covariance);
+  Eigen::LLT<Matrix6d> S(Matrix6d(P.topLeftCorner<6, 6>() + covariance));
   if (S.info() != Eigen::Success || !innovation.allFinite() || !covariance.allFinite()) return std::nullopt;
   const double normalized = innovation.dot(S.solve(innovation)) / 6;
   const double weight = robustWeight(RobustLoss::kHuber, std::sqrt(normalized), params_.innovation_scale);
-  if (weight < 1) S.compute(P.topLeftCorner<6, 6>() + covariance / weight);
+  if (weight < 1) S.compute(Matrix6d(P.topLeftCorner<6, 6>() + covariance / weight));
 
   const Eigen::Matrix<double, 12, 6> PH = P.leftCols<6>();
   const Eigen::Matrix<double, 12, 6> K = S.solve(PH.transpose()).transpose();

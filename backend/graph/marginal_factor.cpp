@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <cassert>
 
-#include <Eigen/Eigenvalues>
+#include "core/decompositions.hpp"
 
 namespace motorcade {
 namespace {
 
 /// Pseudo-inverse of a symmetric positive semidefinite matrix.
 Eigen::MatrixXd pseudoInverse(const Eigen::MatrixXd& matrix) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
-  Eigen::VectorXd inverse = eigen.eigenvalues();
+  const SymmetricEigen eigen(matrix);
+  Eigen::VectorXd inverse = eigen.values;
   const double smallest = 1e-12 * std::max(inverse.maxCoeff(), 1e-300);
   for (auto& value : inverse) value = value > smallest ? 1.0 / value : 0.0;
-  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+  return eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
 }
 
 /// Of the turn of a displacement to a pose, under a step of that pose.

@@ -4,28 +4,27 @@
 #include <numbers>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
+#include "core/decompositions.hpp"
 #include "core/elementary.hpp"
 
 namespace motorcade {
 namespace {
 
-/// The same of information that leaves directions open, in which a Cholesky decomposition breaks down.
+/// S, upper triangular, with S^T S = information that leaves directions open, in which a Cholesky decomposition breaks
+/// down: where a pivot is rounding alone, the row of S is zero.
 template <int N>
 Eigen::Matrix<double, N, N> semidefiniteUpperRoot(const Eigen::Matrix<double, N, N>& information) {
-  constexpr double kRounding = 1e-12;
-  const Eigen::Matrix<double, N, 1> diagonal = information.diagonal().cwiseMax(0),
-                                    scale = (diagonal.array() > 0).select(diagonal.cwiseSqrt(), 1.0);  // m and rad
-  const Eigen::Matrix<double, N, N> scaled =
-      scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> eigen(scaled);
-  const Eigen::Matrix<double, N, 1> values = (eigen.eigenvalues().array() > kRounding).select(eigen.eigenvalues(), 0.0);
-  const Eigen::Matrix<double, N, N> root =
-      values.cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose() * scale.asDiagonal();
-  return root.householderQr().matrixQR().template triangularView<Eigen::Upper>();
+  constexpr double kRounding = 1e-12;  // of a diagonal entry
+  Eigen::Matrix<double, N, N> left = information, root = Eigen::Matrix<double, N, N>::Zero();
+  for (int k = 0; k < N; ++k) {
+    if (!(left(k, k) > kRounding * information(k, k))) continue;
+    for (int j = k; j < N; ++j) root(k, j) = left(k, j) / std::sqrt(left(k, k));
+    for (int i = k + 1; i < N; ++i)
+      for (int j = i; j < N; ++j) left(i, j) -= root(k, i) * root(k, j);
+  }
+  return root;
 }
 
 /// S, upper triangular, with S^T S = information.

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "core/constant_twist.hpp"
+#include "core/fixed_product.hpp"
 
 namespace motorcade {
 namespace {
@@ -26,7 +27,7 @@ Eigen::Matrix3d velocityCovariance(const SE3& T_cam_body, const Eigen::Vector3d&
   Eigen::Matrix<double, 3, 12> J = Eigen::Matrix<double, 3, 12>::Zero();
   J.middleCols<3>(3) = -T_cam_body.rotation() * hat(velocity_body_mps);
   J.middleCols<3>(6) = T_cam_body.rotation();
-  return J * joint * J.transpose();
+  return fixedProduct(J, joint).lazyProduct(J.transpose());
 }
 
 }  // namespace
@@ -55,7 +56,8 @@ std::optional<Matrix6d> JointReader::cameraCovariance(FrameId frame) const {
   const SE3 T_before_now = graph_.solver().pose(before->second.x).inverse() * graph_.solver().pose(now->second.x);
   Matrix6x12d J;
   J << -T_before_now.inverse().adjoint(), Matrix6d::Identity();
-  return graph_.designEffect() * J * *joint * J.transpose();
+  const Matrix6x12d scaled = graph_.designEffect() * J;
+  return fixedProduct(fixedProduct(scaled, Matrix12d(*joint)), J.transpose().eval());
 }
 
 /// Of the pose seen from the camera, which is a variable, of the speed, the length of the twist's velocity, and of its
@@ -76,7 +78,7 @@ std::optional<JointCovariances::Object> JointReader::objectCovariance(TrackId id
   const double variance = direction.dot(covariance.block<3, 3>(6, 6) * direction);
   return JointCovariances::Object{
       .track = id,
-      .T_cam_body = by_travel * covariance * by_travel.transpose(),
+      .T_cam_body = propagated(by_travel, covariance),
       .velocity_cam = velocityCovariance(graph_.solver().pose(record.c), velocity, covariance.topLeftCorner<12, 12>()),
       .speed_sigma_mps = std::sqrt(std::max(0.0, variance)),
       .yaw_rate_sigma_radps = std::sqrt(std::max(0.0, up.dot(covariance.block<3, 3>(9, 9) * up)))};

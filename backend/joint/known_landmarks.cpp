@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/fixed_product.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -70,7 +72,8 @@ EliminatedLandmarks alignToKnown(const StereoCamera& camera, const LandmarkNoise
   by_both << Matrix6d::Identity(), -Matrix6d::Identity();
   by_both.topRightCorner<3, 3>() = hat(T_cam_world[0].inverse().translation() - T_cam_world[1].inverse().translation());
   Eigen::Matrix<double, kColumns, kColumns> system = Eigen::Matrix<double, kColumns, kColumns>::Zero();
-  system.topLeftCorner<12, 12>() = by_both.transpose() * H * by_both;
+  const Eigen::Matrix<double, 12, 6> by_both_T = by_both.transpose();
+  system.topLeftCorner<12, 12>() = fixedProduct(fixedProduct(by_both_T, H), by_both);
   system.bottomLeftCorner<1, 12>() = g.transpose() * by_both;
   system(kColumns - 1, kColumns - 1) = c;
   pack(system, result.system);

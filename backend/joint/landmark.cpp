@@ -6,6 +6,7 @@
 
 #include "backend/graph/lanes.hpp"
 #include "backend/joint/row_products.hpp"
+#include "core/decompositions.hpp"
 
 namespace motorcade {
 namespace {

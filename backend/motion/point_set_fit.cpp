@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "core/decompositions.hpp"
 #include "core/robust_loss.hpp"
 
 namespace motorcade {
@@ -63,7 +64,7 @@ std::optional<PointSetFit> fitPointSet(const StereoCamera& camera, std::span<con
     if (!(step.norm() < kGreatestStep)) return std::nullopt;
     const bool settled = iteration > kPlainIterations && step.norm() < kLeastStep;
     if (settled || iteration == kMostIterations) {
-      const Matrix6d covariance = cholesky.solve(Matrix6d::Identity());
+      const Matrix6d covariance = inverse(cholesky);
       return PointSetFit{T.normalized(), 0.5 * (covariance + covariance.transpose())};
     }
     T = T * SE3::exp(step);

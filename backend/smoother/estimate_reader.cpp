@@ -5,12 +5,15 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/fixed_product.hpp"
+
 namespace motorcade {
 namespace {
 
 using Matrix6x12d = Eigen::Matrix<double, 6, 12>;
 using Matrix6x18d = Eigen::Matrix<double, 6, 18>;
 using Matrix12d = Eigen::Matrix<double, 12, 12>;
+using Matrix18d = Eigen::Matrix<double, 18, 18>;
 
 /// Twist in the body's axes between two poses [m/s, rad/s].
 Vector6d twist(const SE3& T_world_before, const SE3& T_world_after, double dt_s) {
@@ -35,7 +38,7 @@ void addRateSigmas(FrameCovariances::Object& object, const SE3& T_other_now, con
   const Matrix6d J_now = rightJacobianInverseSE3(step);
   Matrix6x12d J_step;
   J_step << J_now, -J_now * T_other_now.inverse().adjoint();
-  const Matrix6d covariance = J_step * joint * J_step.transpose();
+  const Matrix6d covariance = propagated(J_step, Matrix12d(joint));
   const double length_m = step.head<3>().norm();
   const Eigen::Vector3d direction =
       length_m > kShortestStep_m ? Eigen::Vector3d(step.head<3>() / length_m) : Eigen::Vector3d::UnitX();
@@ -64,7 +67,7 @@ std::optional<Matrix6d> EstimateReader::cameraCovariance(FrameId frame) const {
   const SE3 T_before_now = graph_.solver().pose(before->second.x).inverse() * graph_.solver().pose(now->second.x);
   Matrix6x12d J;
   J << -T_before_now.inverse().adjoint(), Matrix6d::Identity();
-  return J * *joint * J.transpose();
+  return propagated(J, Matrix12d(*joint));
 }
 
 std::optional<FrameCovariances::Object> EstimateReader::objectCovariance(TrackId id, const ObjectTrack& track,
@@ -85,7 +88,7 @@ std::optional<FrameCovariances::Object> EstimateReader::objectCovariance(TrackId
   Matrix6x18d J;
   J << -T_body_cam.adjoint(), z.inverse().adjoint(), Matrix6d::Identity();
   FrameCovariances::Object object{.track = id,
-                                  .T_cam_body = J * joint->topLeftCorner<18, 18>() * J.transpose(),
+                                  .T_cam_body = propagated(J, Matrix18d(joint->topLeftCorner<18, 18>())),
                                   .speed_sigma_mps = {},
                                   .yaw_rate_sigma_radps = {}};
   if (other)

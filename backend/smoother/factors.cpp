@@ -4,11 +4,13 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/decompositions.hpp"
+
 namespace motorcade {
 
 std::optional<Matrix6d> squareRootInformation(const Matrix6d& covariance) {
   if (!covariance.allFinite()) return std::nullopt;
-  const Eigen::LLT<Matrix6d> cholesky(0.5 * (covariance + covariance.transpose()));
+  const Eigen::LLT<Matrix6d> cholesky(Matrix6d(0.5 * (covariance + covariance.transpose())));
   if (cholesky.info() != Eigen::Success) return std::nullopt;
   const Matrix6d root = cholesky.matrixL().solve(Matrix6d::Identity());
   if (!root.allFinite()) return std::nullopt;

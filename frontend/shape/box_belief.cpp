@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/decompositions.hpp"
 #include "core/elementary.hpp"
 
 namespace motorcade {
@@ -79,7 +80,7 @@ Posterior posteriorOf(const KindPrior& kind, const Prior& prior, const FaceInfor
   const Eigen::LLT<Matrix6d> llt(both.H);
   Posterior posterior;
   posterior.estimate.faces = llt.solve(both.b);
-  posterior.estimate.covariance = llt.solve(Matrix6d::Identity());
+  posterior.estimate.covariance = inverse(llt);
   posterior.estimate.kind = kind.kind;
   const double misfit = both.c - both.b.dot(posterior.estimate.faces);
   const double too_fast = std::max(0.0, speed_mps - kind.top_speed_mps) / kSpeedSlack_mps;

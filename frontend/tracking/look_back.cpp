@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <Eigen/LU>
-
+#include "core/decompositions.hpp"
 #include "frontend/tracking/vehicle_size.hpp"
 
 namespace motorcade {
@@ -51,7 +50,7 @@ void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKine
 /// Where the object was in an earlier frame; `then` and `later` become what is known of it there.
 std::optional<ObjectObservation> LookBack::observe(const PastScene& earlier, TrackedObject& object,
                                                    ObjectKinematics& then, MeasuredPoints& later) const {
-  const PosePrior prior{earlier.T_world_cam.inverse() * then.pose(), then.poseCovariance().inverse()};
+  const PosePrior prior{earlier.T_world_cam.inverse() * then.pose(), inverse(then.poseCovariance())};
   std::optional<ObjectObservation> observation;
   if (auto found = motion_.lookBack(object, *earlier.scene, later, prior)) {
     then.acceptPose((earlier.T_world_cam * found->fit.T_cam_ref).normalized(), found->fit.covariance);

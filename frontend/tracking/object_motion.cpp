@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 
+#include "core/decompositions.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -94,7 +96,7 @@ std::optional<ObjectMotionEstimator::Agreement> ObjectMotionEstimator::agree(con
 std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& object, const SceneMotion& scene,
                                                                const SceneMotion* previous_scene,
                                                                const SE3& T_world_cam) const {
-  const PosePrior prior{T_world_cam.inverse() * object.kinematics.pose(), object.kinematics.poseCovariance().inverse()};
+  const PosePrior prior{T_world_cam.inverse() * object.kinematics.pose(), inverse(object.kinematics.poseCovariance())};
   std::vector<Observation> seen = observations(object, scene);
   auto agreement = agree(object, seen, prior);
   std::vector<ScenePoint> searched;
@@ -144,7 +146,7 @@ std::optional<ObjectObservation> ObjectMotionEstimator::visibleEvidence(const Tr
   observation.points = static_cast<int>(visible.size());
   observation.box = imageBox(visible);
   observation.T_cam_body = predicted.mean;
-  observation.encounter_covariance = weakPrior(predicted.mean).information.inverse();
+  observation.encounter_covariance = inverse(weakPrior(predicted.mean).information);
   return observation;
 }
 
@@ -229,7 +231,7 @@ ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& o
   std::ranges::sort(observation.measured, {}, &PointMeasurement::point);
   observation.box = imageBox(visible);
   observation.T_cam_body = fit ? fit->T_cam_ref : T_cam_body;
-  observation.encounter_covariance = fit ? fit->covariance : Matrix6d(weak.information.inverse());
+  observation.encounter_covariance = fit ? fit->covariance : inverse(weak.information);
   return observation;
 }
 
@@ -297,7 +299,7 @@ ObjectObservation ObjectMotionEstimator::firstObservation(const TrackedObject& o
   observation.T_cam_body = object.T_cam_body;
   const PosePrior weak = weakPrior(object.T_cam_body);
   const auto fit = fitPose(camera_, PoseObservations(observations), object.T_cam_body, params_.fit, &weak);
-  observation.encounter_covariance = fit ? fit->covariance : Matrix6d(weak.information.inverse());
+  observation.encounter_covariance = fit ? fit->covariance : inverse(weak.information);
   return observation;
 }
 

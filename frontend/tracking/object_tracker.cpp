@@ -4,8 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include <Eigen/LU>
-
+#include "core/decompositions.hpp"
 #include "frontend/tracking/body_axes.hpp"
 #include "frontend/tracking/duplicate_objects.hpp"
 #include "frontend/tracking/object_association.hpp"
@@ -120,7 +119,7 @@ std::optional<ObjectObservation> ObjectTracker::withoutMeasurement(const Tracked
   std::optional<ObjectObservation> observation;
   if (object.kinematics.positionSigma_m() < ObjectMotionEstimator::kMaxEvidenceSigma_m)
     observation =
-        motion_.visibleEvidence(object, scene, {object.T_cam_body, object.kinematics.poseCovariance().inverse()});
+        motion_.visibleEvidence(object, scene, {object.T_cam_body, inverse(object.kinematics.poseCovariance())});
   if (observation) {
     observation->state = object.state;
   } else if (object.life.missed() <= params_.max_coasted_frames) {

@@ -7,6 +7,7 @@
 
 #include "core/se3.hpp"
 #include "io/errors.hpp"
+#include "io/json_text.hpp"
 #include "io/layouts/layout_parts.hpp"
 #include "io/text_file.hpp"
 
@@ -46,7 +47,7 @@ PlacedCamera cameraNamed(const Json& calibration, const std::string& name) {
 StereoCamera readCamera(const fs::path& file) try {
   constexpr std::size_t kMostBytes = std::size_t{1} << 20;
   constexpr double kLevel = 0.02;  // of the baseline, or radians: what is left of these between rectified cameras
-  const Json json = Json::parse(readWhole(file, kMostBytes));
+  const Json json = parsedJson(readWhole(file, kMostBytes));
   const PlacedCamera left = cameraNamed(json, kLeft), right = cameraNamed(json, kRight);
   const SE3 T_left_right = left.T_vehicle_cam.inverse() * right.T_vehicle_cam;
   StereoCamera camera = left.camera;
