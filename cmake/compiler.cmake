@@ -45,7 +45,7 @@ function(motorcade_library folder)
     target_compile_options(motorcade_${folder} PRIVATE $<$<CONFIG:Release>:-O2>)  # only kernels gain from more
   endif()
   motorcade_units(motorcade_${folder} ${sources})
-  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)  # else io would wait for the back-end all the same
+  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)  # else folders would wait for each other all the same
     motorcade_precompiled_headers(${folder} ${library_COLD})
   endif()
 endfunction()

@@ -1,14 +1,12 @@
 #pragma once
 
-#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "backend/solver/incremental_solver.hpp"
-#include "tests/support/noise.hpp"
 
 namespace motorcade::test {
 
@@ -18,81 +16,32 @@ inline constexpr IncrementalSolver::Params kExact{
     .substitution_tolerance = 0,
     .budget = {}};
 
+/// A^-1 B of a positive definite A, and A^-1 of a regular one.
+Eigen::MatrixXd solved(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+Eigen::MatrixXd inverted(const Eigen::MatrixXd& A);
+
 /// Dense Gauss-Newton over the factors of a graph, written independently of the solver.
 class DenseSystem {
  public:
   /// Begins at the graph's estimates.
-  explicit DenseSystem(const FactorGraph& graph)
-      : graph_(graph), variables_(graph.variables()), offset_(graph.slots()), values_(graph.slots()) {
-    for (const VariableId v : variables_) {
-      offset_[v.value] = size_;
-      size_ += graph.sizeOf(v);
-      values_[v.value] = graph.estimate(v);
-    }
-  }
+  explicit DenseSystem(const FactorGraph& graph);
 
   /// The information matrix at the present values, and the gradient.
-  std::pair<Eigen::MatrixXd, Eigen::VectorXd> linearized() const {
-    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(size_, size_);
-    Eigen::VectorXd g = Eigen::VectorXd::Zero(size_);
-    for (const FactorId f : graph_.factors()) {
-      const Factor& factor = graph_.factor(f);
-      std::vector<const Value*> values;
-      for (const VariableId v : factor.variables()) values.push_back(&values_[v.value]);
-      const auto at = entries(factor.variables());
-      const auto n = static_cast<Eigen::Index>(at.size());
-      Eigen::MatrixXd quadratic(factor.rows(), n + 1);
-      factor.linearize(values, quadratic);
-      if (factor.form() == Factor::Form::kJacobian) quadratic = (quadratic.transpose() * quadratic).eval();
-      quadratic.triangularView<Eigen::StrictlyUpper>() = quadratic.transpose();
-      if (factor.form() == Factor::Form::kInformation) quadratic = turned(values, quadratic);
-      H(at, at) += quadratic.topLeftCorner(n, n);
-      g(at) += quadratic.col(n).head(n);
-    }
-    return {H, g};
-  }
+  std::pair<Eigen::MatrixXd, Eigen::VectorXd> linearized() const;
 
   /// Robust losses converge linearly only, hence the many steps.
-  void converge() {
-    for (int i = 0; i < 500; ++i) {
-      const auto [H, g] = linearized();
-      const Eigen::VectorXd delta = -H.ldlt().solve(g);
-      move(delta);
-      if (delta.cwiseAbs().maxCoeff() < 1e-12) return;
-    }
-  }
+  void converge();
 
   /// Moves every value by `delta`, under right perturbations.
-  void move(const Eigen::VectorXd& delta) {
-    for (const VariableId v : variables_)
-      values_[v.value] = retract(value(v), delta.segment(offset(v), graph_.sizeOf(v)));
-  }
+  void move(const Eigen::VectorXd& delta);
 
   int size() const { return size_; }
   int offset(VariableId v) const { return offset_[v.value]; }
   /// Rows of these variables.
-  std::vector<int> entries(std::span<const VariableId> variables) const {
-    std::vector<int> at;
-    for (const VariableId v : variables)
-      for (int i = 0; i < graph_.sizeOf(v); ++i) at.push_back(offset(v) + i);
-    return at;
-  }
+  std::vector<int> entries(std::span<const VariableId> variables) const;
   const Value& value(VariableId v) const { return values_[v.value]; }
 
  private:
-  /// From steps in the world's axes to right perturbations.
-  static Eigen::MatrixXd turned(std::span<const Value* const> values, const Eigen::MatrixXd& quadratic) {
-    Eigen::MatrixXd by_perturbation = Eigen::MatrixXd::Identity(quadratic.rows(), quadratic.cols());
-    Eigen::Index at = 0;
-    for (const Value* value : values) {
-      if (const auto* pose = std::get_if<SE3>(value))
-        by_perturbation.block<3, 3>(at, at) = by_perturbation.block<3, 3>(at + 3, at + 3) = pose->rotation();
-      if (const auto* pose = std::get_if<SE2>(value)) by_perturbation.block<2, 2>(at, at) = pose->rotation();
-      at += dimension(*value);
-    }
-    return by_perturbation.transpose() * quadratic * by_perturbation;
-  }
-
   const FactorGraph& graph_;
   std::vector<VariableId> variables_;
   std::vector<int> offset_;
@@ -101,25 +50,11 @@ class DenseSystem {
 };
 
 /// Updates until nothing moves any more.
-inline void settle(IncrementalSolver& solver) {
-  for (int i = 0; i < 200; ++i)
-    if (solver.update().largest_change < 1e-11) return;
-}
+void settle(IncrementalSolver& solver);
 
 /// Largest difference of a variable between the solver and a converged dense solution of its own graph, which begins
 /// `nudge` (standard deviation of each component) beside the solver's: a point that is stationary but no minimum would
 /// be left.
-inline double differenceFromBatch(const IncrementalSolver& solver, double nudge = 0.01) {
-  DenseSystem dense(solver.graph());
-  Noise noise(static_cast<std::uint64_t>(dense.size()));
-  Eigen::VectorXd delta(dense.size());
-  for (double& d : delta) d = noise.gaussian(nudge);
-  dense.move(delta);
-  dense.converge();
-  double largest = 0;
-  for (const VariableId v : solver.graph().variables())
-    largest = std::max(largest, local(dense.value(v), solver.estimate(v)).norm());
-  return largest;
-}
+double differenceFromBatch(const IncrementalSolver& solver, double nudge = 0.01);
 
 }  // namespace motorcade::test

@@ -6,6 +6,7 @@
 
 #include "backend/graph/relative_pose_factor.hpp"
 #include "backend/smoother/factors.hpp"
+#include "core/decompositions.hpp"
 #include "tests/support/noise.hpp"
 
 /// Seeded measurements between variables of every kind that a solver may hold.
@@ -230,7 +231,7 @@ class RandomWorld {
       return std::make_unique<MotionFactor>(std::array{a, b}, MotionModel{measured(T_a_b, loss)}, poseNoise(1, loss));
     const Matrix6d covariance = correlatedNoise<6>(Vector6d(sigmaOf(SE3{})));
     return std::make_unique<RelativePoseFactorSE3>(a, b, T_a_b * SE3::exp(noise_.correlated(covariance)),
-                                                   Matrix6d(covariance.inverse()));
+                                                   inverse(covariance));
   }
 
   std::unique_ptr<const Factor> betweenInPlane(VariableId a, VariableId b) {

@@ -1,47 +1,18 @@
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "backend/elimination/elimination_tree.hpp"
 #include "tests/backend/dense_system.hpp"
-#include "tests/backend/unpacked.hpp"
 
 /// The linear system [H g; g^T *] in the coordinates of a graph, in a dense system's order of variables, from two
 /// sides. The last corner, which no solution depends on, is zero.
 namespace motorcade::test {
 
 /// Summed up from the linear models of the factors.
-inline Eigen::MatrixXd informationOfFactors(const FactorGraph& graph, const DenseSystem& dense) {
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(dense.size() + 1, dense.size() + 1);
-  for (const FactorId f : graph.factors()) {
-    auto at = dense.entries(graph.variablesOf(f));
-    at.push_back(dense.size());
-    if (graph.factor(f).form() == Factor::Form::kJacobian)
-      system(at, at) += graph.term(f).transpose() * graph.term(f);
-    else
-      system(at, at) += unpacked(graph.information(f).H, graph.information(f).g_c);
-  }
-  system(dense.size(), dense.size()) = 0;
-  return system;
-}
+Eigen::MatrixXd informationOfFactors(const FactorGraph& graph, const DenseSystem& dense);
 
 /// [R d]^T [R d] of the cliques.
-inline Eigen::MatrixXd informationOfTree(const EliminationTree& tree, const DenseSystem& dense) {
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(dense.size() + 1, dense.size() + 1);
-  std::vector<int> open = tree.roots();
-  while (!open.empty()) {
-    const Clique& clique = tree[open.back()];
-    open.pop_back();
-    for (int child = clique.first_child; child >= 0; child = tree[child].next_sibling) open.push_back(child);
-    auto at = dense.entries(clique.variables);
-    at.push_back(dense.size());
-    Eigen::MatrixXd L = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>(
-        clique.panel, clique.size + 1, clique.frontal_size, Eigen::OuterStride<>(clique.panelStride()));
-    L.topRows(clique.frontal_size).triangularView<Eigen::StrictlyUpper>().setZero();
-    system(at, at) += L * L.transpose();
-  }
-  system(dense.size(), dense.size()) = 0;
-  return system;
-}
+Eigen::MatrixXd informationOfTree(const EliminationTree& tree, const DenseSystem& dense);
 
 }  // namespace motorcade::test

@@ -35,6 +35,15 @@ TEST(SE3, LogarithmInvertsExponential) {
   for (const auto& xi : twists()) EXPECT_THAT(SE3::exp(xi).log(), IsNear(xi, 1e-9));
 }
 
+/// What hangs on last bits must not depend on which of the two a source writes.
+TEST(SE3, MovesPointsAsItsRotationAndTranslationDoToTheBit) {
+  for (const auto& xi : twists()) {
+    const SE3 T = SE3::exp(xi);
+    const Eigen::Vector3d p(3 * xi[1], -20 * xi[2], 50 * xi[0]);
+    EXPECT_EQ(T * p, T.rotation() * p + T.translation());
+  }
+}
+
 TEST(SE3, InverseAndProductCancel) {
   for (const auto& xi : twists()) {
     const SE3 T = SE3::exp(xi);

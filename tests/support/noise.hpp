@@ -4,13 +4,25 @@
 #include <cstdint>
 #include <random>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include "core/se3.hpp"
 
 namespace motorcade::test {
+
+/// L with L L^T = covariance, in plain loops: most tests include this file, and each would compile Eigen's anew.
+template <int N>
+Eigen::Matrix<double, N, N> lowerRoot(const Eigen::Matrix<double, N, N>& covariance) {
+  Eigen::Matrix<double, N, N> L = Eigen::Matrix<double, N, N>::Zero();
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      double left = covariance(i, j);
+      for (int k = 0; k < j; ++k) left -= L(i, k) * L(j, k);
+      L(i, j) = i == j ? std::sqrt(left) : left / L(j, j);
+    }
+  }
+  return L;
+}
 
 /// Seeded draws for simulated measurements.
 class Noise {
@@ -25,7 +37,12 @@ class Noise {
   }
   template <int N>
   Eigen::Matrix<double, N, 1> correlated(const Eigen::Matrix<double, N, N>& covariance) {
-    return covariance.llt().matrixL() * gaussian(Eigen::Matrix<double, N, 1>(Eigen::Matrix<double, N, 1>::Ones()));
+    const Eigen::Matrix<double, N, N> L = lowerRoot<N>(covariance);
+    const auto draws = gaussian(Eigen::Matrix<double, N, 1>(Eigen::Matrix<double, N, 1>::Ones()));
+    Eigen::Matrix<double, N, 1> drawn = Eigen::Matrix<double, N, 1>::Zero();
+    for (int i = 0; i < N; ++i)
+      for (int k = 0; k <= i; ++k) drawn[i] += L(i, k) * draws[k];
+    return drawn;
   }
   Eigen::Vector3d inBox(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
     return {uniform(low.x(), high.x()), uniform(low.y(), high.y()), uniform(low.z(), high.z())};
@@ -49,7 +66,13 @@ Eigen::Matrix<double, N, N> randomCovariance(Noise& noise, const Eigen::Matrix<d
 /// Normalized error squared (NEES): chi-square with N degrees of freedom for an error with this covariance.
 template <int N>
 double nees(const Eigen::Matrix<double, N, 1>& error, const Eigen::Matrix<double, N, N>& covariance) {
-  return error.dot(covariance.inverse() * error);
+  const Eigen::Matrix<double, N, N> L = lowerRoot<N>(covariance);
+  Eigen::Matrix<double, N, 1> whitened = error;
+  for (int i = 0; i < N; ++i) {
+    for (int k = 0; k < i; ++k) whitened[i] -= L(i, k) * whitened[k];
+    whitened[i] /= L(i, i);
+  }
+  return whitened.squaredNorm();
 }
 
 /// Half the width of the interval that the mean of n chi-square values lies in with 95 % probability; the normal

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "core/decompositions.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/noise.hpp"
 
@@ -74,10 +75,10 @@ TEST(ObjectFilter, AnObservationOfTheFirstFrameIsAKalmanUpdateOfThePose) {
     ObjectFilter filter(plain(), stampOf(0), bend.start, P);
     const auto normalized = filter.correct(bend.start * SE3::exp(innovation), R);
 
-    const Matrix6d S = P + R, K = P * S.inverse();
+    const Matrix6d S = P + R, K = P * inverse(S);
     ASSERT_TRUE(normalized);
     constexpr double kTol = 1e-9;  // rounding, through covariances of condition 1e4
-    EXPECT_NEAR(*normalized, innovation.dot(S.inverse() * innovation) / 6, kTol);
+    EXPECT_NEAR(*normalized, innovation.dot(inverse(S) * innovation) / 6, kTol);
     EXPECT_THAT(filter.pose(), IsNearPose(bend.start * SE3::exp(K * innovation), kTol));
     EXPECT_THAT(filter.poseCovariance(), IsNear(P - K * P, kTol));
     EXPECT_EQ(filter.velocityWorld_mps(), Eigen::Vector3d::Zero());  // one pose says nothing about it

@@ -98,7 +98,7 @@ TEST_F(EstimateReaderTest, AnObjectsCovarianceIsThatOfItsPoseSeenFromTheCamera) 
     const auto error = [&](const SE3& x_now, const SE3& a_now, const SE3& z_now) {
       return ((x.inverse() * a * z).inverse() * (x_now.inverse() * a_now * z_now)).log();
     };
-    Eigen::Matrix<double, 6, 18> J;
+    Eigen::MatrixXd J(6, 18);
     J << numericJacobian([&](const SE3& T) { return error(T, a, z); }, x),
         numericJacobian([&](const SE3& T) { return error(x, T, z); }, a),
         numericJacobian([&](const SE3& T) { return error(x, a, T); }, z);
@@ -116,7 +116,7 @@ TEST_F(EstimateReaderTest, TheCamerasCovarianceIsThatOfItsMotionOverTenFrames) {
   const auto error = [&](const SE3& from, const SE3& to) {
     return ((x_before.inverse() * x_now).inverse() * (from.inverse() * to)).log();
   };
-  Eigen::Matrix<double, 6, 12> J;
+  Eigen::MatrixXd J(6, 12);
   J << numericJacobian([&](const SE3& T) { return error(T, x_now); }, x_before),
       numericJacobian([&](const SE3& T) { return error(x_before, T); }, x_now);
   const std::array variables{graph_.frames().at(before).x, graph_.frames().at(kLast).x};
@@ -145,7 +145,7 @@ TEST_F(EstimateReaderTest, SigmasOfSpeedAndYawRateFollowFromTheTwoPosesTheyAreMa
     };
     const std::array variables{track(0).records.at(frame).z, track(0).records.at(other).z};
     const auto sigmaOf = [&](const auto& rate) {
-      Eigen::Matrix<double, 1, 12> J;
+      Eigen::MatrixXd J(1, 12);
       J << numericJacobian([&](const SE3& T) { return rate(z_other, T); }, z_now),
           numericJacobian([&](const SE3& T) { return rate(T, z_now); }, z_other);
       return std::sqrt((J * *graph_.solver().jointCovariance(variables) * J.transpose())(0, 0));

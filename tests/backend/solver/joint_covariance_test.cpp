@@ -60,7 +60,7 @@ class Trajectory {
 /// Each entry relative to the standard deviations of its row and column.
 void expectDenseInverse(const IncrementalSolver& solver, std::span<const VariableId> chosen) {
   const DenseSystem dense(solver.graph());
-  const Eigen::MatrixXd covariance = dense.linearized().first.inverse();
+  const Eigen::MatrixXd covariance = test::inverted(dense.linearized().first);
   const auto at = dense.entries(chosen);
   const Eigen::MatrixXd expected = covariance(at, at);
   const Eigen::VectorXd sigma = expected.diagonal().cwiseSqrt();
@@ -139,7 +139,7 @@ TEST(JointCovariance, IsStatedWhereThePoseIsNotWhereItWasLinearized) {
     Trajectory trajectory = swungTrajectory(solver, seed);
     const DenseSystem dense(solver.graph());
     const Eigen::MatrixXd covariance =
-        test::informationOfFactors(solver.graph(), dense).topLeftCorner(dense.size(), dense.size()).inverse();
+        test::inverted(test::informationOfFactors(solver.graph(), dense).topLeftCorner(dense.size(), dense.size()));
     for (const VariableId v : trajectory.variables()) {
       const auto at = dense.entries(std::array{v});
       const Eigen::MatrixXd turn = turnOf(solver.estimate(v)), expected = turn * covariance(at, at) * turn.transpose();

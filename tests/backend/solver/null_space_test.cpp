@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include <Eigen/Dense>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "backend/graph/marginal_factor.hpp"
+#include "core/decompositions.hpp"
 #include "tests/backend/random_factors.hpp"
 #include "tests/backend/tree_information.hpp"
 #include "tests/support/matchers.hpp"
@@ -92,7 +92,7 @@ TEST(NullSpace, AlongADirectionEarlierScalarsMoveSoThatTheCostRisesLeast) {
     for (std::size_t i = 0; i < scalars.size(); ++i) {
       const std::vector<int> earlier(rows.begin(), rows.begin() + i);
       VectorXd expected = VectorXd::Unit(dense.size(), rows[i]);
-      if (i > 0) expected(earlier) = -MatrixXd(H(earlier, earlier)).llt().solve(VectorXd(H.col(rows[i])(earlier)));
+      if (i > 0) expected(earlier) = -test::solved(H(earlier, earlier), H.col(rows[i])(earlier));
       const auto direction = nullSpaceDirection(scene.graph, scene.tree, scalars[i]);
       ASSERT_THAT(stacked(direction, dense), IsNear(expected, kSmallestStep * expected.cwiseAbs().maxCoeff()))
           << "seed " << seed << ", scalar " << i;
@@ -105,9 +105,9 @@ TEST(NullSpace, AlongADirectionEarlierScalarsMoveSoThatTheCostRisesLeast) {
 
 /// Orthonormal; the gap between its eigenvalues, which are rounding, and the others is wide.
 MatrixXd denseNullSpace(const MatrixXd& H) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(H);
-  const double rounding = 1e-12 * eigen.eigenvalues().maxCoeff();
-  return eigen.eigenvectors().leftCols((eigen.eigenvalues().array() < rounding).count());
+  const SymmetricEigen eigen(H);
+  const double rounding = 1e-12 * eigen.values.maxCoeff();
+  return eigen.vectors.leftCols((eigen.values.array() < rounding).count());
 }
 
 TEST(NullSpace, WithoutAPriorTheDirectionsSpanTheMotionsOfTheWhole) {
@@ -169,7 +169,7 @@ TEST(NullSpace, AlongNegativeInformationTheCostFalls) {
 double schurDiagonal(const MatrixXd& H, const std::vector<int>& eliminated, int row) {
   if (eliminated.empty()) return H(row, row);
   const VectorXd coupling = H.col(row)(eliminated);
-  return H(row, row) - coupling.dot(MatrixXd(H(eliminated, eliminated)).llt().solve(coupling));
+  return H(row, row) - coupling.dot(VectorXd(test::solved(H(eliminated, eliminated), coupling)));
 }
 
 TEST(NullSpace, WeakScalarsAreThoseWhoseCliqueTakesMostOfTheirInformation) {

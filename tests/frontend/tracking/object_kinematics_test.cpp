@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "core/decompositions.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/noise.hpp"
 
@@ -114,7 +115,7 @@ TEST(ObjectKinematics, AcceptingAPoseIsAKalmanUpdateOfTheWholeState) {
     Eigen::Matrix<double, 6, 12> H;
     H << Matrix6d::Identity(), Matrix6d::Zero();
     const Matrix6d S = H * car.covariance * H.transpose() + R;
-    const Eigen::Matrix<double, 12, 6> K = car.covariance * H.transpose() * S.inverse();
+    const Eigen::Matrix<double, 12, 6> K = car.covariance * H.transpose() * inverse(S);
     const Vector12d step = K * innovation;
     const Matrix12d P = (Matrix12d::Identity() - K * H) * car.covariance;
 
