@@ -41,8 +41,6 @@ function(motorcade_library folder)
   if(library_COLD)
     motorcade_cold(motorcade_${folder})
     math(EXPR MOTORCADE_UNIT_SOURCES "2 * ${MOTORCADE_UNIT_SOURCES}")
-  else()
-    target_compile_options(motorcade_${folder} PRIVATE $<$<CONFIG:Release>:-O2>)  # only kernels gain from more
   endif()
   motorcade_units(motorcade_${folder} ${sources})
   if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)  # else folders would wait for each other all the same
@@ -55,6 +53,11 @@ function(motorcade_cold)
   foreach(target ${ARGN})
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endforeach()
+endfunction()
+
+# Sources of a cold folder that work on every frame, compiled as elsewhere.
+function(motorcade_hot)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
 # With CMAKE_UNITY_BUILD (the presets but `developer`) sources of one room are compiled together, a few to a unit: about half of the compiler's
@@ -98,9 +101,9 @@ function(motorcade_precompiled_headers folder cold)
     target_precompile_headers(motorcade_core PRIVATE ${headers})
   elseif(folder STREQUAL io)
     target_precompile_headers(motorcade_io PRIVATE ${headers} <nlohmann/json.hpp>)
-  elseif(folder STREQUAL frontend OR folder STREQUAL backend)
+  elseif(NOT cold)
     target_precompile_headers(motorcade_${folder} REUSE_FROM motorcade_core)
-  elseif(cold AND NOT folder STREQUAL synth)  # it has flags of its own
+  elseif(NOT folder STREQUAL synth)  # it has flags of its own
     target_precompile_headers(motorcade_${folder} REUSE_FROM motorcade_io)
   endif()
 endfunction()

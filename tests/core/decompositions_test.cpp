@@ -15,7 +15,8 @@ using test::Noise;
 
 constexpr double kRounding = 1e-12;  // of some dozen operations on numbers of about one
 
-Matrix6d covariance(Noise& noise) { return test::randomCovariance<6>(noise, Vector6d::Ones()); }
+/// Its eigenvalues are one at least.
+Matrix6d covariance(Noise& noise) { return test::randomCovariance<6>(noise, Vector6d::Ones()) + Matrix6d::Identity(); }
 
 TEST(Decompositions, InvertMatricesByThemselvesAndByTheirCholeskyFactors) {
   Noise noise(1);
