@@ -30,7 +30,8 @@ Eigen::Matrix<double, Rows, Cols> fixedProduct(const Eigen::Matrix<double, Rows,
 template <int Rows, int Inner>
 Eigen::Matrix<double, Rows, Rows> propagated(const Eigen::Matrix<double, Rows, Inner>& J,
                                              const Eigen::Matrix<double, Inner, Inner>& C) {
-  return fixedProduct(fixedProduct(J, C), J.transpose().eval());
+  const Eigen::Matrix<double, Inner, Rows> J_T = J.transpose();
+  return fixedProduct(fixedProduct(J, C), J_T);
 }
 
 }  // namespace motorcade

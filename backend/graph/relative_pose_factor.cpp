@@ -33,7 +33,7 @@ Eigen::Matrix<double, N, N> upperRoot(const Eigen::Matrix<double, N, N>& informa
   constexpr double kLost = 1e-13;  // of a diagonal entry: what is left of it is rounding
   const Eigen::LLT<Eigen::Matrix<double, N, N>> cholesky(information);
   if (cholesky.info() != Eigen::Success) return semidefiniteUpperRoot<N>(information);
-  const Eigen::Matrix<double, N, N> root = cholesky.matrixU();
+  Eigen::Matrix<double, N, N> root = cholesky.matrixU();
   if ((root.diagonal().array().square() < kLost * information.diagonal().array()).any())
     return semidefiniteUpperRoot<N>(information);
   return root;

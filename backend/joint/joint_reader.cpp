@@ -57,7 +57,8 @@ std::optional<Matrix6d> JointReader::cameraCovariance(FrameId frame) const {
   Matrix6x12d J;
   J << -T_before_now.inverse().adjoint(), Matrix6d::Identity();
   const Matrix6x12d scaled = graph_.designEffect() * J;
-  return fixedProduct(fixedProduct(scaled, Matrix12d(*joint)), J.transpose().eval());
+  const Eigen::Matrix<double, 12, 6> J_T = J.transpose();
+  return fixedProduct(fixedProduct(scaled, Matrix12d(*joint)), J_T);
 }
 
 /// Of the pose seen from the camera, which is a variable, of the speed, the length of the twist's velocity, and of its

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <Eigen/QR>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
