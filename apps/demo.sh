@@ -45,5 +45,6 @@ echo "images and truth   $PWD/$results/sequence"
 echo "trajectories       $PWD/$results/run"
 echo "accuracy           $PWD/$results/evaluation.json"
 echo "latency            $PWD/$results/run/summary.json"
-echo "a picture          $PWD/$results/pictures/frame_000032.png"
+pictures=("$results"/pictures/frame_*.png)
+echo "a picture          $PWD/${pictures[-1]}"
 echo "the report         $PWD/$results/run/report.html"
