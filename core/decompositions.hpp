@@ -16,7 +16,7 @@ Matrix6d inverse(const Matrix6d& matrix);
 /// The inverse of the matrix that was decomposed.
 Matrix6d inverse(const Eigen::LLT<Matrix6d>& cholesky);
 
-/// Of a symmetric matrix: eigenvalues in rising order, and their unit vectors as columns.
+/// The eigenvalues of a symmetric matrix in rising order, and their unit vectors as columns.
 struct SymmetricEigen {
   explicit SymmetricEigen(const Eigen::MatrixXd& matrix);
 

@@ -49,7 +49,7 @@ class ResultGroup {
 /// Those of a batch that have results, in its order: all sets of a drive one after the other.
 std::vector<ResultGroup> groupsOf(const MergedBatch& batch);
 
-/// How many parameter sets there are.
+/// Counts the parameter sets.
 std::size_t setsIn(const std::vector<ResultGroup>& groups);
 
 }  // namespace motorcade

@@ -73,7 +73,7 @@ EliminatedLandmarks alignToKnown(const StereoCamera& camera, const LandmarkNoise
   by_both.topRightCorner<3, 3>() = hat(T_cam_world[0].inverse().translation() - T_cam_world[1].inverse().translation());
   Eigen::Matrix<double, kColumns, kColumns> system = Eigen::Matrix<double, kColumns, kColumns>::Zero();
   const Eigen::Matrix<double, 12, 6> by_both_T = by_both.transpose();
-  system.topLeftCorner<12, 12>() = fixedProduct(fixedProduct(by_both_T, H), by_both);
+  system.topLeftCorner<12, 12>() = propagated(by_both_T, H);
   system.bottomLeftCorner<1, 12>() = g.transpose() * by_both;
   system(kColumns - 1, kColumns - 1) = c;
   pack(system, result.system);

@@ -11,7 +11,7 @@
 namespace motorcade::test {
 namespace {
 
-/// From steps in the world's axes to right perturbations.
+/// Turns a quadratic in steps along the world's axes into one in right perturbations.
 Eigen::MatrixXd turned(std::span<const Value* const> values, const Eigen::MatrixXd& quadratic) {
   Eigen::MatrixXd by_perturbation = Eigen::MatrixXd::Identity(quadratic.rows(), quadratic.cols());
   Eigen::Index at = 0;
