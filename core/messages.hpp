@@ -153,6 +153,8 @@ struct ObjectEstimate {
   std::optional<Matrix6d> covariance;  // of T_cam_body of the same frame
   std::optional<ObjectBox> cuboid{};
   double age_s = 0;  // since its first estimate of the same kind, online or final
+  /// That the body is there, and moves or moved before: by what was seen up to now, of a final estimate by all.
+  double existence_probability = 1;
 };
 
 /// A camera's covariance is that of its motion over this many frames: the drift of an absolute pose has no bound. Where

@@ -28,6 +28,7 @@ void readMotion(FieldReader& fields, ObjectEstimate& object) {
   object.yaw_rate_sigma_radps = fields.number("yaw_rate_sigma_radps");
   for (int column = 0; column < 6; ++column) fields.number("center");
   object.age_s = fields.number("age_s");
+  if (!fields.atEnd()) object.existence_probability = fields.number("existence_probability");
 }
 
 }  // namespace
@@ -95,6 +96,7 @@ std::string objectLine(FrameId frame, const ObjectEstimate& object) {
   for (const Eigen::Vector3d& vector : {place.center_world, place.centerSigma_m()})
     for (const double value_m : vector) add(value_m, 3);
   add(object.age_s, 3);
+  add(object.existence_probability, 3);
   return line;
 }
 

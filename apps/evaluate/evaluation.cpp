@@ -72,6 +72,7 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
                       .motion = motionErrors(frames),
                       .followed_motion = followedMotion(frames),
                       .detection = detectionErrors(frames),
+                      .existence = existenceErrors(frames),
                       .boxes_within_30m = boxErrors(frames, 0, kNear_m),
                       .boxes_from_30_to_50m = boxErrors(frames, kNear_m, kFar_m),
                       .image_within_30m = movingObjectsHota(frames, HotaBox::kImage, kNear_m),

@@ -7,6 +7,7 @@
 
 #include "apps/evaluate/box_measures.hpp"
 #include "apps/evaluate/covariance_measures.hpp"
+#include "apps/evaluate/existence_measures.hpp"
 #include "apps/evaluate/followed_motion.hpp"
 #include "apps/evaluate/kind_measures.hpp"
 #include "apps/evaluate/mask_measures.hpp"
@@ -46,6 +47,7 @@ struct KindEvaluation {
   MotionErrors motion;
   FollowedMotion followed_motion;
   DetectionErrors detection;
+  ExistenceErrors existence;
   BoxErrors boxes_within_30m, boxes_from_30_to_50m;
   Hota image_within_30m, image_within_50m, footprint_within_30m, footprint_within_50m;
   KindErrors kinds_within_30m;

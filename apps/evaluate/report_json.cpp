@@ -111,6 +111,13 @@ Json jsonOf(const KindCounts& counts) {
   return json;
 }
 
+Json jsonOf(const ExistenceErrors& errors) {
+  Json tenths = Json::array();
+  for (const ExistenceTenth& tenth : errors.tenths)
+    tenths.push_back({{"rows", tenth.rows}, {"real", tenth.real}, {"probability_sum", tenth.probability_sum}});
+  return {{"rows", errors.rows()}, {"brier", errors.brier()}, {"tenths", std::move(tenths)}};
+}
+
 Json jsonOf(const KindErrors& kinds) {
   return {{"from_tenth_row", jsonOf(kinds.from_tenth_row)}, {"before", jsonOf(kinds.before)}};
 }
@@ -227,6 +234,7 @@ Json jsonOf(const KindEvaluation& kind, bool with_objects) {
       {"image", {{"within_30m", jsonOf(kind.image_within_30m)}, {"within_50m", jsonOf(kind.image_within_50m)}}},
       {"footprint",
        {{"within_30m", jsonOf(kind.footprint_within_30m)}, {"within_50m", jsonOf(kind.footprint_within_50m)}}}};
+  json["existence"] = jsonOf(kind.existence);
   json["kinds_within_30m"] = jsonOf(kind.kinds_within_30m);
   json["first_report"] = {{"within_30m", jsonOf(kind.first_within_30m)}, {"within_50m", jsonOf(kind.first_within_50m)}};
   return json;

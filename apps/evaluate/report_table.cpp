@@ -134,6 +134,26 @@ void printKinds(std::string& text, const Evaluation& e) {
   printSection(text, head, lines);
 }
 
+void printExistenceLine(std::string& text, const char* estimate, const ExistenceErrors& errors) {
+  if (errors.rows() == 0) return;
+  print(text, "  %-8s %6d  %6.3f ", estimate, errors.rows(), errors.brier());
+  for (const ExistenceTenth& tenth : errors.tenths) {
+    if (tenth.rows == 0)
+      text += "          -";
+    else
+      print(text, " %5.2f/%4d", tenth.shareReal(), tenth.rows);
+  }
+  text += '\n';
+}
+
+void printExistence(std::string& text, const Evaluation& e) {
+  std::string lines;
+  printExistenceLine(lines, "final", e.final.existence);
+  printExistenceLine(lines, "online", e.online.existence);
+  printSection(text, "existence    rows   Brier   share that is real / rows, by the tenth of existence_probability",
+               lines);
+}
+
 void printMaskLine(std::string& text, const char* range, const MaskErrors& masks) {
   if (masks.rows == 0) return;
   print(text, "  %-18s %5d  %5d  %5.2f  %5.2f  %6.2f / %.2f\n", range, masks.rows, masks.rows_with_mask, masks.iou,
@@ -228,6 +248,7 @@ std::string tableOf(const Evaluation& evaluation) {
     printHota(text, evaluation);
     printFirstReports(text, evaluation);
     printKinds(text, evaluation);
+    printExistence(text, evaluation);
     printMasks(text, evaluation);
   }
   printRest(text, evaluation);

@@ -40,6 +40,7 @@ std::vector<ConfigurationKey> parameterTable(PipelineConfig& config) {
   add("frontend.ground_plane", parametersOf(segmentation.ground_plane));
   add("frontend.segmentation", parametersOf(segmentation.segmenter));
   add("frontend.tracking", parametersOf(config.tracking));
+  add("frontend.shapes", parametersOf(config.shapes));
   add("backend", {backendKind(config.backend)});
   add("backend", parametersOf(config.backend.smoother));
   add("backend.joint", parametersOf(config.backend.joint));

@@ -38,6 +38,7 @@ struct PipelineConfig {
   OpticalFlowTracker::Params optical_flow;
   SceneFlowSegmentation::Params scene_flow_segmentation;
   ObjectTracker::Params tracking;
+  ObjectShapes::Params shapes;
   BackendParams backend;
 };
 

@@ -60,7 +60,7 @@ Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
   const auto flow = std::make_shared<OpticalFlowTracker>(config.optical_flow);
   const auto motion = std::make_shared<SceneFlowSegmentation>(config.scene_flow_segmentation, camera);
   const auto tracking = std::make_shared<ObjectTracker>(config.tracking, camera);
-  const auto shapes = std::make_shared<ObjectShapes>(camera);
+  const auto shapes = std::make_shared<ObjectShapes>(config.shapes, camera);
   const std::shared_ptr<Backend> backend =
       std::make_shared<RestartingBackend>([params = config.backend, camera] { return makeBackend(params, camera); });
   return {.prepare =

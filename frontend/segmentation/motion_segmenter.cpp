@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "frontend/motion/shared_velocity_error.hpp"
 #include "frontend/segmentation/motion_graph.hpp"
 
 namespace motorcade {
@@ -19,17 +20,10 @@ constexpr double kMaxSpeedSigma_mps = 4.0;   // points less certain than this ar
 constexpr int kPoolingIterations = 3;    // from the median to the weighted mean: the weights hardly change after two
 constexpr double kNoInformation = 1e-6;  // keeps sums of information regular [s^2/m^2]
 
-// Errors that the velocities of all points of a component share: those of the camera's own motion.
-constexpr double kSystematicSpeed_mps = 0.25;
-constexpr double kSystematicAngle_radps = 0.003;
-constexpr double kSystematicDisparity_pxps = 0.15;
-
 constexpr double kStaticSigma_mps = 1.0;  // a component is static when its velocity is known this well
 constexpr double kMaxHeight_m = 2.5;      // of its lowest point above the road: what is all higher is leaves and signs
 constexpr double kMaxVerticalRatio = 0.35;  // vertical part of a vehicle's velocity: roads are less steep
 constexpr double kNoiseSigmas = 2;          // of room for noise where a size or a speed is compared with a bound
-
-double square(double x) { return x * x; }
 
 Eigen::Matrix3d velocityCovariance(const ScenePoint& p) { return p.flow->covariance.bottomRightCorner<3, 3>(); }
 Eigen::Matrix3d positionCovariance(const ScenePoint& p) { return p.flow->covariance.topLeftCorner<3, 3>(); }
@@ -120,17 +114,9 @@ Segment MotionSegmenter::describe(std::vector<int> members, const std::vector<Sc
     segment.centroid_cam += points[i].flow->p_cam / static_cast<double>(segment.points.size());
   const auto pooled = poolVelocities(segment.points, points, params_.max_flow_chi2);
   segment.velocity_mps = pooled.velocity_mps;
-  segment.velocity_covariance = pooled.covariance + systematicCovariance(segment.centroid_cam);
+  segment.velocity_covariance = pooled.covariance + sharedVelocityCovariance(camera_, segment.centroid_cam);
   segment.label = decide(segment, points, ground);
   return segment;
-}
-
-Eigen::Matrix3d MotionSegmenter::systematicCovariance(const Eigen::Vector3d& p_cam) const {
-  const double z = p_cam.z(), range2 = p_cam.squaredNorm();
-  const Eigen::Vector3d ray = p_cam / std::sqrt(range2);
-  const double across = square(kSystematicSpeed_mps) + range2 * square(kSystematicAngle_radps);
-  const double along = square(kSystematicDisparity_pxps * z * z / (camera_.fx_px * camera_.baseline_m));
-  return across * Eigen::Matrix3d::Identity() + along * ray * ray.transpose();
 }
 
 PointLabel MotionSegmenter::decide(const Segment& segment, const std::vector<ScenePoint>& points,

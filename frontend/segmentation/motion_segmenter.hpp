@@ -38,7 +38,6 @@ class MotionSegmenter {
   Segment describe(std::vector<int> members, const std::vector<ScenePoint>& points, const GroundPlane& ground) const;
   PointLabel decide(const Segment& segment, const std::vector<ScenePoint>& points, const GroundPlane& ground) const;
   bool isLikeAVehicle(const Segment& segment, const std::vector<ScenePoint>& points, const GroundPlane& ground) const;
-  Eigen::Matrix3d systematicCovariance(const Eigen::Vector3d& p_cam) const;
 
   Params params_;
   StereoCamera camera_;

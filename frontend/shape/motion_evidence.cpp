@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #ifdef __SSE2__
 #include <emmintrin.h>
 #endif
@@ -94,10 +95,12 @@ class SumsAround {
 
 }  // namespace
 
-MotionEvidence::MotionEvidence(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera)
+MotionEvidence::MotionEvidence(const LevelDisparities& disparities, const ObjectView& view,
+                               const ObjectView::Before& before, const StereoCamera& camera, int slack)
     : map_(disparities.map),
-      now_(view.before->now->levels[disparities.level]),
-      before_(view.before->before->levels[disparities.level]),
+      now_(before.now->levels[disparities.level]),
+      before_(before.before->levels[disparities.level]),
+      slack_(slack),
       scale_(static_cast<float>(1 << disparities.level)),
       offset_px_(static_cast<float>(view.disparity_offset_px)),
       fb_(static_cast<float>(camera.fx_px * camera.baseline_m)),
@@ -107,8 +110,8 @@ MotionEvidence::MotionEvidence(const LevelDisparities& disparities, const Object
   const auto motion = [](const SE3& T_before_cam) {
     return Motion{T_before_cam.rotation().cast<float>(), T_before_cam.translation().cast<float>()};
   };
-  moved_ = motion(view.before->T_before_body * view.T_cam_body.inverse());
-  rested_ = motion(view.before->T_before_cam);
+  moved_ = motion(before.T_before_body * view.T_cam_body.inverse());
+  rested_ = motion(before.T_before_cam);
 }
 
 std::vector<std::int16_t> MotionEvidence::operator()(std::span<const int> cells) const {
@@ -132,9 +135,10 @@ void MotionEvidence::compare(std::span<const int> cells, std::int16_t* evidence)
                                     (loadFloats(rows.data()) - middle_.y()) * (1 / focal_.y()) * z, z};
   const Places moved = before(moved_, p_cam), rested = before(rested_, p_cam);
   constexpr auto kNear_m = static_cast<float>(StereoCamera::kMinDepth_m);
+  const float least_shift = kLeastShift + static_cast<float>(2 * slack_);
   const Floats du = moved.u - rested.u, dv = moved.v - rested.v;
   const FloatMask tells =
-      (moved.depth_m >= kNear_m) & (rested.depth_m >= kNear_m) & (du * du + dv * dv >= kLeastShift * kLeastShift);
+      (moved.depth_m >= kNear_m) & (rested.depth_m >= kNear_m) & (du * du + dv * dv >= least_shift * least_shift);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const int lane = static_cast<int>(i);
     evidence[i] = static_cast<std::int16_t>(tells[lane] != 0 ? difference(cells[i], moved, rested, lane) : 0);
@@ -154,9 +158,19 @@ int MotionEvidence::difference(int cell, const Places& moved, const Places& rest
   const int u = map_.window.u0 + cell % map_.window.width, v = map_.window.v0 + cell / map_.window.width;
   const int u_moved = nearest(moved.u[lane]), v_moved = nearest(moved.v[lane]);
   const int u_rested = nearest(rested.u[lane]), v_rested = nearest(rested.v[lane]);
-  if (!has3x3(now_, u, v) || !has3x3(before_, u_moved, v_moved) || !has3x3(before_, u_rested, v_rested)) return 0;
+  if (!has3x3(now_, u, v) || !has3x3(before_, u_moved - slack_, v_moved - slack_) ||
+      !has3x3(before_, u_moved + slack_, v_moved + slack_) || !has3x3(before_, u_rested - slack_, v_rested - slack_) ||
+      !has3x3(before_, u_rested + slack_, v_rested + slack_))
+    return 0;
   const Pixels3x3 now(now_, u, v);
-  return now.differenceFrom({before_, u_moved, v_moved}) - now.differenceFrom({before_, u_rested, v_rested});
+  const auto least_around = [&](int u_before, int v_before) {
+    int least = std::numeric_limits<int>::max();
+    for (int j = -slack_; j <= slack_; ++j)
+      for (int i = -slack_; i <= slack_; ++i)
+        least = std::min(least, now.differenceFrom({before_, u_before + i, v_before + j}));
+    return least;
+  };
+  return least_around(u_moved, v_moved) - least_around(u_rested, v_rested);
 }
 
 /// Every other cell tells, as on a chessboard; one that is dropped no longer does, but what it told stands.
@@ -168,7 +182,7 @@ void dropResting(Outline& outline, const LevelDisparities& disparities, const Ob
   for (int row = 0; row < height; ++row)
     for (int column = row % 2; column < width; column += 2)
       if (outline.at(column, row)) telling.push_back(row * width + column);
-  const std::vector<std::int16_t> rests_rather = MotionEvidence(disparities, view, camera)(telling);
+  const std::vector<std::int16_t> rests_rather = MotionEvidence(disparities, view, *view.before, camera)(telling);
   if (std::ranges::none_of(rests_rather, [](std::int16_t rests) { return rests > 0; })) return;
   SumsAround evidence(outline.window), tells(outline.window);
   for (std::size_t i = 0; i < telling.size(); ++i)

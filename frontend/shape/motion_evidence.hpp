@@ -17,8 +17,10 @@ class MotionEvidence {
  public:
   static constexpr int kPixels = 9;  // around a cell that are compared
 
-  /// `view.before` is known. All three outlive the evidence.
-  MotionEvidence(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera);
+  /// Against the frame of `before`. All four outlive the evidence. The best place up to `slack` cells around the
+  /// predicted one is compared, of motion as of rest.
+  MotionEvidence(const LevelDisparities& disparities, const ObjectView& view, const ObjectView::Before& before,
+                 const StereoCamera& camera, int slack = 0);
 
   /// By how much better each cell rested than moved with the body [gray levels, added over kPixels]; zero where the two
   /// can hardly be told apart. The cells are places in the map, and their disparities are known.
@@ -40,6 +42,7 @@ class MotionEvidence {
 
   const DisparityMap& map_;
   const Image &now_, &before_;
+  int slack_;
   float scale_, offset_px_, fb_;
   Eigen::Vector2f focal_, middle_;  // of the level
   Motion moved_, rested_;

@@ -8,8 +8,10 @@
 
 #include "core/elementary.hpp"
 #include "frontend/image/image_pyramid.hpp"
+#include "frontend/motion/shared_velocity_error.hpp"
 #include "frontend/shape/disparity_refinement.hpp"
 #include "frontend/shape/face_measurement.hpp"
+#include "frontend/shape/motion_verdict.hpp"
 #include "frontend/shape/outline_completion.hpp"
 
 namespace motorcade {
@@ -110,14 +112,13 @@ void dropLeft(FrameEstimate& frame, const StereoCamera& camera) {
   });
 }
 
-std::vector<ObjectView::Other> cuboidsBeside(TrackId track, const FrameEstimate& frame) {
-  std::vector<ObjectView::Other> others;
-  for (const ObjectEstimate& other : frame.objects)
-    if (other.track != track && other.cuboid)
-      others.push_back({(frame.T_world_cam.inverse() * other.T_world_body).inverse(),
-                        other.cuboid->center_body - 0.5 * other.cuboid->size_m,
-                        other.cuboid->center_body + 0.5 * other.cuboid->size_m});
-  return others;
+/// The finest of so many levels at which the window around a box has few cells.
+int levelOf(const Box& box, int levels) {
+  const double width_px = box.right_px - box.left_px, height_px = box.bottom_px - box.top_px;
+  int level = kFinestLevel;
+  const auto cells = [&] { return (1 + 2 * kMargin) * (1 + 2 * kMargin) * width_px * height_px / (1 << 2 * level); };
+  while (cells() > kMostCells && level + 1 < levels) ++level;
+  return level;
 }
 
 ObjectMask maskOf(const Outline& outline, int level, TrackId track) {
@@ -139,6 +140,7 @@ ObjectMask maskOf(const Outline& outline, int level, TrackId track) {
 }  // namespace
 
 EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& estimates) {
+  recent_.move(inputs.scene->T_previous_now);
   auto shaped = std::make_shared<Estimates>(*estimates);
   const SE3 T_cam_world = shaped->online.T_world_cam.inverse();
   for (ObjectEstimate& object : shaped->online.objects)
@@ -146,7 +148,13 @@ EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& 
       setBox(object, estimateBox(known->second.evidence, known->second.speed_mps), T_cam_world * object.T_world_body);
   for (ObjectEstimate& object : shaped->online.objects) lookAt(object, inputs, shaped->online, shaped->masks);
   dropLeft(shaped->online, camera_);
-  before_ = inputs.features;
+  dropUnlikely(shaped->online);
+  std::erase_if(shaped->masks, [&](const ObjectMask& mask) {
+    return std::ranges::find(shaped->online.objects, mask.track, &ObjectEstimate::track) ==
+           shaped->online.objects.end();
+  });
+  recent_.add(*inputs.features);
+  for (const FrameEstimate& settled : shaped->settled) settleMotion(settled);
   for (FrameEstimate& settled : shaped->settled) gatherShapes(settled);
   complete(shaped->finals);
   forgetGone(*shaped);
@@ -158,8 +166,13 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
   Shape& shape = shapes_[object.track];
   ObjectView view = viewOf(object, inputs, frame, shape);
   const bool predicted = object.state == ObjectState::kPredicted;
-  if (!predicted) shape.state = object.state;
-  if (auto seen = sightOf(view, *inputs.features)) {
+  auto seen = sightOf(view, *inputs.features);
+  if (!predicted) {
+    shape.state = object.state;
+    shape.existence.addSpeed(object.velocity_world_mps.norm(), speedSigma_mps(object, frame.T_world_cam));
+    shape.existence.addVerdict(verdictOn(view, observationOf(object.track, frame.frame, inputs), seen));
+  }
+  if (seen) {
     if (predicted && movesWithBody(seen->outline, seen->disparities, view, camera_))
       markSeen(object, shape.only_dense[frame.frame] = {shape.state, seen->outline.count()});
     const bool whole =
@@ -173,7 +186,41 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
       masks.push_back(maskOf(seen->outline, seen->disparities.level, object.track));
     }
   }
+  object.existence_probability = shape.existence.probability();
   setBox(object, view.box, view.T_cam_body);
+}
+
+/// With the errors that all of its points share.
+double ObjectShapes::speedSigma_mps(const ObjectEstimate& object, const SE3& T_world_cam) const {
+  const SE3 T_cam_world = T_world_cam.inverse();
+  const Eigen::Vector3d velocity = T_cam_world.rotation() * object.velocity_world_mps;
+  const Eigen::Vector3d p_cam = (T_cam_world * object.T_world_body).translation();
+  const double squared = velocity.squaredNorm();
+  const Eigen::Matrix3d shared = sharedVelocityCovariance(camera_, p_cam);
+  const double along = squared > 0 ? velocity.dot(shared * velocity) / squared : shared.trace() / 3;
+  return hypotenuse(object.speed_sigma_mps, std::sqrt(along));
+}
+
+/// Where there is no outline, or no point of the object was measured, nothing is seen of it.
+MotionVerdict ObjectShapes::verdictOn(const ObjectView& view, const ObjectObservation* observed,
+                                      const std::optional<Sight>& seen) const {
+  if (!view.well_before) return MotionVerdict::kUntold;
+  if (!seen || !observed)
+    return view.well_before->apart > ObjectView::kWellApart ? MotionVerdict::kNothing : MotionVerdict::kUntold;
+  return motionVerdict(observed->measured, seen->disparities, view, camera_);
+}
+
+/// What the frame's earlier stages measured of an object; null where it was not seen.
+const ObjectObservation* ObjectShapes::observationOf(TrackId track, FrameId frame, const Inputs& inputs) {
+  const auto& objects = inputs.measurements->objects;
+  const auto observed =
+      std::ranges::find_if(objects, [&](const ObjectObservation& o) { return o.track == track && o.frame == frame; });
+  return observed != objects.end() ? &*observed : nullptr;
+}
+
+void ObjectShapes::dropUnlikely(FrameEstimate& frame) const {
+  std::erase_if(frame.objects,
+                [&](const ObjectEstimate& object) { return object.existence_probability < params_.min_existence; });
 }
 
 /// How the object stands to the camera, and what is believed of its cuboid. Its shape becomes that of this frame.
@@ -181,33 +228,81 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
                                 Shape& shape) const {
   const SceneMotion& scene = *inputs.scene;
   const SE3 T_cam_body = frame.T_world_cam.inverse() * object.T_world_body;
-  const bool is_new = !shape.last.valid();
-  if (!is_new) {
+  const bool is_new = shape.places.empty();
+  if (is_new) {  // where it was before it was reported
+    for (const ObjectObservation& o : inputs.measurements->objects)
+      if (o.track == object.track && o.frame < frame.frame) shape.places.push_back({o.frame, o.T_cam_body});
+  } else {
     FaceInformation faded;
-    faded.add(shape.evidence, fading(frame.frame.value - shape.last.value));
+    faded.add(shape.evidence, fading(frame.frame.value - shape.places.back().frame.value));
     shape.evidence = faded;
   }
-  const bool has_before = !is_new && before_ && !before_->left.levels.empty() && before_->frame->frame == shape.last;
-  const SE3 T_cam_body_before = std::exchange(shape.T_cam_body_last, T_cam_body);
-  shape.last = frame.frame;
   shape.speed_mps = object.velocity_world_mps.norm();
   ObjectView view{.T_cam_body = T_cam_body,
                   .box = estimateBox(shape.evidence, shape.speed_mps),
                   .ground = scene.ground,
                   .disparity_offset_px = scene.disparity_offset_px};
-  if (has_before) view.before = {&inputs.features->left, &before_->left, T_cam_body_before, scene.T_previous_now};
-  const auto observed = std::ranges::find_if(inputs.measurements->objects, [&](const ObjectObservation& o) {
-    return o.track == object.track && o.frame == frame.frame;
-  });
-  if (observed != inputs.measurements->objects.end())
-    view.points = extentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
+  const auto* observed = observationOf(object.track, frame.frame, inputs);
+  if (observed) view.points = extentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
   if (is_new && view.points) {
     const double disparity_px = camera_.fx_px * camera_.baseline_m / T_cam_body.translation().z();
     if (!isCutOff(observed->box, disparity_px, camera_)) shape.evidence = shape.first = nearFaceAtPoints(view);
     view.box = estimateBox(shape.evidence, shape.speed_mps);
   }
-  view.others = cuboidsBeside(object.track, frame);
+  if (const auto in_image = usualBox(view))
+    view.level = levelOf(*in_image, static_cast<int>(inputs.features->right.levels.size()));
+  const auto& recent = recent_.frames();
+  if (!is_new && !recent.empty() && recent.back().frame == shape.places.back().frame)
+    view.before = beforeIn(recent.back(), shape, view, *inputs.features);
+  view.well_before = wellBefore(shape, view, *inputs.features);
+  view.others = cuboidsBeside(object.track, frame, view.well_before);
+  shape.places.push_back({frame.frame, T_cam_body});
+  if (shape.places.size() > RecentFrames::kMost) shape.places.pop_front();
   return view;
+}
+
+std::optional<Box> ObjectShapes::usualBox(const ObjectView& view) const {
+  return projectedBox(view.box.usual_least, view.box.usual_most, view.T_cam_body, camera_);
+}
+
+std::vector<ObjectView::Other> ObjectShapes::cuboidsBeside(TrackId track, const FrameEstimate& frame,
+                                                           const std::optional<ObjectView::Before>& before) const {
+  std::vector<ObjectView::Other> others;
+  for (const ObjectEstimate& object : frame.objects) {
+    if (object.track == track || !object.cuboid) continue;
+    const SE3 T_body_cam = (frame.T_world_cam.inverse() * object.T_world_body).inverse();
+    ObjectView::Other& other = others.emplace_back();
+    other = {T_body_cam, object.cuboid->center_body - 0.5 * object.cuboid->size_m,
+             object.cuboid->center_body + 0.5 * object.cuboid->size_m};
+    const auto shape = shapes_.find(object.track);
+    if (!before || shape == shapes_.end() || track < object.track) continue;
+    const auto place = std::ranges::find(shape->second.places, before->frame, &Place::frame);
+    if (place != shape->second.places.end()) other.T_before_cam = place->T_cam_body * T_body_cam;
+  }
+  return others;
+}
+
+std::optional<ObjectView::Before> ObjectShapes::beforeIn(const RecentFrames::Frame& then, const Shape& shape,
+                                                         const ObjectView& view, const Features& now) const {
+  const auto place = std::ranges::find(shape.places, then.frame, &Place::frame);
+  if (place == shape.places.end()) return std::nullopt;
+  const auto moved = camera_.project(place->T_cam_body.translation()),
+             rested = camera_.project(then.T_then_now * view.T_cam_body.translation());
+  const double apart = moved && rested ? (moved->head<2>() - rested->head<2>()).norm() / (1 << view.level) : 0;
+  return ObjectView::Before{&now.left, &then.left, place->T_cam_body, then.T_then_now, then.frame, apart};
+}
+
+/// In the newest of the frames before in which the body and what rests are well apart, else in the one in which they
+/// are farthest.
+std::optional<ObjectView::Before> ObjectShapes::wellBefore(const Shape& shape, const ObjectView& view,
+                                                           const Features& now) const {
+  std::optional<ObjectView::Before> farthest;
+  for (auto then = recent_.frames().rbegin(); then != recent_.frames().rend(); ++then) {
+    const auto before = beforeIn(*then, shape, view, now);
+    if (before && (!farthest || before->apart > farthest->apart)) farthest = before;
+    if (farthest && farthest->apart > ObjectView::kWellApart) break;
+  }
+  return farthest;
 }
 
 /// Empty where nothing, or hardly anything, is seen of the object.
@@ -242,12 +337,10 @@ std::optional<FaceInformation> ObjectShapes::measured(const Sight& seen, ObjectV
 
 /// In the window around the cuboid, at a level of the pyramid where it has few cells.
 std::optional<LevelDisparities> ObjectShapes::disparitiesAround(const ObjectView& view, const Features& features) {
-  const auto box = projectedBox(view.box.usual_least, view.box.usual_most, view.T_cam_body, camera_);
+  const auto box = usualBox(view);
   if (!box) return std::nullopt;
   const double width_px = box->right_px - box->left_px, height_px = box->bottom_px - box->top_px;
-  int level = kFinestLevel;
-  const auto cells = [&] { return (1 + 2 * kMargin) * (1 + 2 * kMargin) * width_px * height_px / (1 << 2 * level); };
-  while (cells() > kMostCells && level + 1 < static_cast<int>(features.right.levels.size())) ++level;
+  const int level = view.level;
   const auto cell = [&](double px) { return static_cast<int>(std::floor(toLevel(static_cast<float>(px), level))); };
   const double aside_px = kMargin * width_px + kMargin_px, above_px = kMargin * height_px + kMargin_px;
   PixelWindow window{.u0 = cell(box->left_px - aside_px), .v0 = cell(box->top_px - above_px), .width = 0, .height = 0};
@@ -294,8 +387,16 @@ std::vector<FrameEstimate> ObjectShapes::finish(std::vector<FrameEstimate> final
 
 /// All looks of these frames first, as each frame's cuboid gathers what is around it.
 void ObjectShapes::complete(std::vector<FrameEstimate>& finals) {
+  for (const FrameEstimate& final : finals) settleMotion(final);
   for (const FrameEstimate& final : finals) moveLooks(final);
   for (FrameEstimate& final : finals) gatherShapes(final);
+}
+
+void ObjectShapes::settleMotion(const FrameEstimate& frame) {
+  for (const ObjectEstimate& object : frame.objects)
+    if (const auto shape = shapes_.find(object.track); shape != shapes_.end())
+      shape->second.existence.addSettledSpeed(object.velocity_world_mps.norm(),
+                                              speedSigma_mps(object, frame.T_world_cam));
 }
 
 /// From what was seen of each object before and after the frame.
@@ -308,8 +409,10 @@ void ObjectShapes::gatherShapes(FrameEstimate& frame) const {
       markSeen(object, dense->second);
     const SE3 T_cam_body = frame.T_world_cam.inverse() * object.T_world_body;
     setBox(object, estimateBox(evidenceAround(shape->second, frame.frame), shape->second.speed_mps), T_cam_body);
+    object.existence_probability = shape->second.existence.settledProbability();
   }
   dropLeft(frame, camera_);
+  dropUnlikely(frame);
 }
 
 /// Into the body frame of the final estimate.
@@ -342,8 +445,13 @@ void ObjectShapes::forgetGone(const Estimates& estimates) {
     auto& looks = it->second.looks;
     looks.erase(looks.begin(), looks.lower_bound(oldest));
     it->second.only_dense.erase(it->second.only_dense.begin(), it->second.only_dense.lower_bound(oldest));
-    it = looks.empty() && it->second.last < oldest ? shapes_.erase(it) : std::next(it);
+    it = looks.empty() && it->second.places.back().frame < oldest ? shapes_.erase(it) : std::next(it);
   }
+}
+
+std::vector<Parameter> parametersOf(ObjectShapes::Params& params) {
+  return {numberParameter("min_existence", params.min_existence, {0, 1},
+                          "higher reports surer objects alone; 0 reports all, each with its probability")};
 }
 
 }  // namespace motorcade

@@ -227,7 +227,8 @@ bool movesWithBody(const Outline& outline, const LevelDisparities& disparities, 
   std::vector<int> known = outline.samples();
   std::erase_if(known, [&](int cell) { return disparities.map.disparity_px[cell] == DisparityMap::kNone; });
   int sum = 0, told = 0;
-  for (const int rests : MotionEvidence(disparities, view, camera)(known)) sum -= rests, told += rests != 0;
+  for (const int rests : MotionEvidence(disparities, view, *view.before, camera)(known))
+    sum -= rests, told += rests != 0;
   return told >= kLeastTold && sum > kLeastMoving_gray * MotionEvidence::kPixels * told;
 }
 

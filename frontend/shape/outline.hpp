@@ -17,22 +17,32 @@ namespace motorcade {
 
 /// How an object stands to the camera in one frame, as far as it is known before its outline.
 struct ObjectView {
+  /// Cells between a body that moved and what rests, in the image of an earlier frame: the two can be told apart
+  /// although each estimate may be off by a cell.
+  static constexpr double kWellApart = 6;
   SE3 T_cam_body;
   BoxEstimate box;
+  int level = 1;  // of the pyramid, at which its surroundings are looked at
   GroundPlane ground;
   double disparity_offset_px = 0;
   struct Other {
     SE3 T_body_cam;
     Eigen::Vector3d least, most;
+    /// From the camera now to that of the earlier frame, for what goes along with it; of an object that was known
+    /// before this one alone.
+    std::optional<SE3> T_before_cam{};
   };
   std::optional<Eigen::AlignedBox3d> points{};  // body frame: around the followed points, without outliers
-  /// The left images of this frame and the one before, and where the body and what rests were then.
+  /// The left images of this frame and an earlier one, and where the body and what rests were then.
   struct Before {
     const ImagePyramid *now, *before;
     SE3 T_before_body, T_before_cam;
+    FrameId frame{};
+    double apart = 0;  // cells in the image of then, between the body and what rests where it is now
   };
-  std::optional<Before> before{};
-  std::vector<Other> others{};  // cuboids of other objects, where the object cannot be
+  std::optional<Before> before{};       // the frame before, where the object was reported in it
+  std::optional<Before> well_before{};  // a recent one in which the body and what rests are well apart, if there is one
+  std::vector<Other> others{};          // cuboids of other objects, where the object cannot be
 };
 
 /// Disparities of a window at some level of the image pyramid.

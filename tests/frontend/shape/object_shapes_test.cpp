@@ -99,8 +99,8 @@ class Crossing {
  public:
   static constexpr double kFrame_s = 0.1, kDepth_m = 13;
 
-  explicit Crossing(double first_x_m, double speed_mps = 8)
-      : first_x_m_(first_x_m), speed_mps_(speed_mps), shapes_(kRig) {}
+  explicit Crossing(double first_x_m, double speed_mps = 8, const ObjectShapes::Params& params = {.min_existence = 0})
+      : first_x_m_(first_x_m), speed_mps_(speed_mps), shapes_(params, kRig) {}
 
   SE3 T_cam_car(int frame) const {
     return StreetByHand::standingAt(first_x_m_ + speed_mps_ * kFrame_s * frame, kDepth_m,
@@ -260,6 +260,27 @@ TEST(ObjectShapes, APredictionThatHasLeftTheImageIsDropped) {
   for (int frame = 5; frame < 7; ++frame) crossing.look(ObjectState::kPredicted, Scene(std::nullopt));
   EXPECT_TRUE(crossing.look(ObjectState::kPredicted, Scene(std::nullopt)).objects.empty());
   EXPECT_TRUE(crossing.finish()[7].objects.empty());
+}
+
+/// An estimate of a car that crosses, where the street is empty: what is seen densely contradicts it.
+TEST(ObjectShapes, BelieveInWhatMovesInTheImages) {
+  Crossing crossing(-6), imagined(-6);
+  double there = 0, not_there = 1;
+  for (int frame = 0; frame < 8; ++frame) {
+    there = crossing.look(ObjectState::kMoving).objects[0].existence_probability;
+    not_there = imagined.look(ObjectState::kMoving, Scene({})).objects[0].existence_probability;
+  }
+  EXPECT_GT(there, 0.95);
+  EXPECT_LT(not_there, 0.5);
+  for (const FrameEstimate& final : crossing.finish()) EXPECT_GT(final.objects[0].existence_probability, 0.95);
+}
+
+TEST(ObjectShapes, LeaveOutRowsThatAreUnlikely) {
+  Crossing imagined(-6, 8, {.min_existence = 0.5});
+  for (int frame = 0; frame < 7; ++frame) imagined.look(ObjectState::kMoving, Scene({}));
+  EXPECT_TRUE(imagined.look(ObjectState::kMoving, Scene({})).objects.empty());
+  EXPECT_TRUE(imagined.masks().empty());
+  for (const FrameEstimate& final : imagined.finish()) EXPECT_TRUE(final.objects.empty());
 }
 
 }  // namespace

@@ -1,0 +1,60 @@
+#include "frontend/shape/existence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/elementary.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr double kTrafficSpeed_mps = 10;  // standard deviation, along each axis
+// Wrong matches on what repeats are as certain as right ones: a sure speed alone proves no more than this.
+constexpr double kMostBySpeed = 2, kLeastBySpeed = -4;
+constexpr double kForgetting = 0.1;  // of the best recent speed, a frame
+constexpr double kMostByVerdicts = 6;
+
+/// How often a body, and a nothing, that goes on being observed gets each verdict for a while.
+struct VerdictShare {
+  double of_body, of_nothing;
+};
+constexpr std::array<VerdictShare, 4> kShares{{{0.7, 0.15}, {0.07, 0.07}, {0.05, 0.35}, {0.18, 0.43}}};
+
+/// How much likelier a speed is among those of traffic than as an error of something at rest: both are Gaussian.
+double speedEvidence(double speed_mps, double sigma_mps) {
+  const double misfit_at_rest = speed_mps / sigma_mps, spread = kTrafficSpeed_mps / sigma_mps;
+  const double variance = 1 + spread * spread;  // of the misfit in traffic
+  const double evidence = 0.5 * misfit_at_rest * misfit_at_rest * (1 - 1 / variance) - 0.5 * logarithm(variance);
+  return std::clamp(evidence, kLeastBySpeed, kMostBySpeed);
+}
+
+double probabilityOf(double log_odds) { return 1 / (1 + exponential(-log_odds)); }
+
+}  // namespace
+
+Existence::Existence() : recent_speed_(kLeastBySpeed), settled_speed_(kLeastBySpeed) {}
+
+void Existence::addSpeed(double speed_mps, double sigma_mps) {
+  recent_speed_ = std::max(recent_speed_ - kForgetting, speedEvidence(speed_mps, sigma_mps));
+}
+
+void Existence::addSettledSpeed(double speed_mps, double sigma_mps) {
+  settled_speed_ = std::max(settled_speed_, speedEvidence(speed_mps, sigma_mps));
+}
+
+/// Successive frames show much the same: the n-th with one verdict counts as a part of 1 / n.
+void Existence::addVerdict(MotionVerdict verdict) {
+  if (verdict == MotionVerdict::kUntold) return;
+  repeated_ = verdict == last_ ? repeated_ + 1 : 1;
+  last_ = verdict;
+  const VerdictShare& share = kShares[static_cast<std::size_t>(verdict)];
+  verdicts_ += logarithm(share.of_body / share.of_nothing) / repeated_;
+  verdicts_ = std::clamp(verdicts_, -kMostByVerdicts, kMostByVerdicts);
+}
+
+double Existence::probability() const { return probabilityOf(std::max(recent_speed_, settled_speed_) + verdicts_); }
+
+double Existence::settledProbability() const { return probabilityOf(settled_speed_ + verdicts_); }
+
+}  // namespace motorcade

@@ -1,0 +1,38 @@
+#pragma once
+
+namespace motorcade {
+
+/// What the image around an object's followed points says of one frame.
+enum class MotionVerdict {
+  kMoved,    // nearly all of it moved with the body
+  kMixed,    // some did, some rested
+  kRested,   // nearly all of it rested
+  kNothing,  // no point of the object has a surface around it that tells, although motion and rest are well apart
+  kUntold    // motion and rest cannot be told apart
+};
+
+/// How sure it is that a track is a body that moves or once moved, by the odds of that against something at rest which
+/// was measured wrongly. Before anything is seen of it, a track is as likely the one as the other.
+class Existence {
+ public:
+  Existence();
+  /// An online estimate of the speed. `sigma_mps` holds the errors that all points share. Each estimate gathers what
+  /// was seen before it, so that they are not added up: an object that stops is the one that moved for some time yet.
+  void addSpeed(double speed_mps, double sigma_mps);
+  /// The same of a settled or final estimate: what moved then has moved for good.
+  void addSettledSpeed(double speed_mps, double sigma_mps);
+  void addVerdict(MotionVerdict verdict);
+
+  /// By what was seen up to now.
+  double probability() const;
+  /// By what is settled of its motion.
+  double settledProbability() const;
+
+ private:
+  double recent_speed_, settled_speed_;  // log likelihood ratios
+  double verdicts_ = 0;
+  MotionVerdict last_ = MotionVerdict::kUntold;
+  int repeated_ = 0;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,93 @@
+#include "frontend/shape/motion_verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "frontend/shape/motion_evidence.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr double kReach_m = 0.3;                 // of a point's surroundings, on its surface
+constexpr int kSteps = 2;                        // of the samples to each side of the point
+constexpr double kDepth_m = 0.5, kSlack_px = 1;  // by which its surface may leave the point's depth, and its disparity
+constexpr int kLeastTold_gray = 2;               // per pixel: three standard deviations of the images' noise
+constexpr double kNearlyAll = 0.75;              // of the points with a vote
+constexpr int kSlack = 1;                        // cells by which an estimate may misplace the surface
+constexpr int kLeastAhead = 3;                   // samples by which one side wins
+
+struct AgainstOther {
+  Eigen::AlignedBox3d reach;  // of the other, in its body frame
+  SE3 T_body_cam;
+  ObjectView::Before before;
+};
+
+/// The cells of the map that show the surface around a point.
+std::vector<int> cellsAround(const PointMeasurement& point, const LevelDisparities& disparities, double z_m,
+                             const StereoCamera& camera) {
+  const PixelWindow& window = disparities.map.window;
+  const double cell_px = 1 << disparities.level;
+  const double spacing = std::max(1.0, camera.fx_px * kReach_m / z_m / cell_px / kSteps);  // cells
+  const double tolerance_px = kSlack_px + point.uvd_px.z() * kDepth_m / z_m;
+  std::vector<int> cells;
+  for (int j = -kSteps; j <= kSteps; ++j)
+    for (int i = -kSteps; i <= kSteps; ++i) {
+      const int column = static_cast<int>(std::lround(point.uvd_px.x() / cell_px + i * spacing)) - window.u0;
+      const int row = static_cast<int>(std::lround(point.uvd_px.y() / cell_px + j * spacing)) - window.v0;
+      if (column < 0 || row < 0 || column >= window.width || row >= window.height) continue;
+      const auto disparity_px = disparities.disparity_px(column, row);
+      if (disparity_px && std::abs(*disparity_px - point.uvd_px.z()) < tolerance_px)
+        cells.push_back(row * window.width + column);
+    }
+  return cells;
+}
+
+/// What goes along with another object in place of what rests, where a point may be of one that was known
+/// before: a pattern that repeats on its flank may seem to go another way.
+const ObjectView::Before* againstOther(const Eigen::Vector3d& p_cam, std::span<const AgainstOther> against) {
+  const auto holds = [&](const AgainstOther& other) { return other.reach.contains(other.T_body_cam * p_cam); };
+  const auto of = std::ranges::find_if(against, holds);
+  return of != against.end() ? &of->before : nullptr;
+}
+
+std::vector<AgainstOther> againstOthers(const ObjectView& view) {
+  constexpr double kMargin_m = 0.5;  // of another's cuboid
+  std::vector<AgainstOther> against;
+  for (const ObjectView::Other& other : view.others) {
+    if (!other.T_before_cam) continue;
+    Eigen::AlignedBox3d reach(other.least, other.most);
+    reach.min().array() -= kMargin_m, reach.max().array() += kMargin_m;
+    against.push_back({reach, other.T_body_cam, *view.well_before});
+    against.back().before.T_before_cam = *other.T_before_cam;
+  }
+  return against;
+}
+
+}  // namespace
+
+MotionVerdict motionVerdict(std::span<const PointMeasurement> points, const LevelDisparities& disparities,
+                            const ObjectView& view, const StereoCamera& camera) {
+  const std::vector<AgainstOther> against = againstOthers(view);
+  int moved_points = 0, rested_points = 0;
+  for (const PointMeasurement& point : points) {
+    const Eigen::Vector3d uvd_px = point.uvd_px.cast<double>() + Eigen::Vector3d(0, 0, view.disparity_offset_px);
+    const double z_m = camera.fx_px * camera.baseline_m / uvd_px.z();
+    const ObjectView::Before* other = againstOther(camera.triangulate(uvd_px), against);
+    const MotionEvidence rests_rather(disparities, view, other ? *other : *view.well_before, camera, kSlack);
+    int moved = 0, rested = 0;
+    for (const int rests : rests_rather(cellsAround(point, disparities, z_m, camera))) {
+      moved += rests < -kLeastTold_gray * MotionEvidence::kPixels;
+      rested += rests > kLeastTold_gray * MotionEvidence::kPixels;
+    }
+    moved_points += moved >= rested + kLeastAhead;
+    rested_points += rested >= moved + kLeastAhead;
+  }
+  const double all = moved_points + rested_points;
+  if (all == 0)
+    return view.well_before->apart > ObjectView::kWellApart ? MotionVerdict::kNothing : MotionVerdict::kUntold;
+  if (moved_points >= kNearlyAll * all) return MotionVerdict::kMoved;
+  return rested_points >= kNearlyAll * all ? MotionVerdict::kRested : MotionVerdict::kMixed;
+}
+
+}  // namespace motorcade
