@@ -27,7 +27,6 @@ function(motorcade_kernels folder)
     endif()
     return()
   endif()
-  math(EXPR MOTORCADE_UNIT_SOURCES "4 * ${MOTORCADE_UNIT_SOURCES} / 3")  # they are short
   foreach(version any v3)
     set(objects motorcade_${folder}_kernels_${version})
     add_library(${objects} OBJECT ${ARGN})

@@ -12,7 +12,7 @@ using test::StreetByHand;
 
 constexpr PixelWindow kVolumeWindow{
     .u0 = 230, .v0 = 60, .width = 141, .height = 100};  // the last cells of a row fill no vector
-constexpr int kLevel = 1;
+constexpr int kVolumeLevel = 1;
 
 class VolumesOfCar : public testing::Test {
  protected:
@@ -42,7 +42,7 @@ class VolumesOfCar : public testing::Test {
   SE3 T_cam_body_ = StreetByHand::standingAt(-0.3, 13, 0.4);
   BoxFaces faces_ = StreetByHand::faces({4.2, 1.8, 1.5});
   StreetByHand street_{{{T_cam_body_, faces_}}};
-  LevelDisparities seen_ = street_.disparities(kVolumeWindow, kLevel);
+  LevelDisparities seen_ = street_.disparities(kVolumeWindow, kVolumeLevel);
   ObjectView view_{.T_cam_body = T_cam_body_,
                    .box = {},
                    .ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m},
