@@ -4,12 +4,12 @@
 #include <exception>
 #include <functional>
 #include <new>
+#include <string>
 #include <system_error>
 
-#include <fmt/format.h>
 #include <unistd.h>
 
-#include "apps/command_line.hpp"
+#include "apps/commands/command_line.hpp"
 #include "apps/console/log.hpp"
 #include "io/errors.hpp"
 
@@ -53,10 +53,10 @@ int perform(const std::function<int()>& action) {
     motorcade::logError("out of memory");
   } catch (const std::system_error& error) {
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
-    motorcade::logError(
-        fmt::format("{}: {}", no_thread ? "no thread can be started, out of memory" : "internal error", error.what()));
+    const std::string kind = no_thread ? "no thread can be started, out of memory" : "internal error";
+    motorcade::logError(kind + ": " + error.what());
   } catch (const std::exception& error) {
-    motorcade::logError(fmt::format("internal error: {}", error.what()));
+    motorcade::logError(std::string("internal error: ") + error.what());
   }
   return kExitInternal;
 }

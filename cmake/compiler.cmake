@@ -40,7 +40,7 @@ function(motorcade_library folder)
   motorcade_options(motorcade_${folder})
   if(library_COLD)
     motorcade_cold(motorcade_${folder})
-    math(EXPR MOTORCADE_UNIT_SOURCES "2 * ${MOTORCADE_UNIT_SOURCES}")
+    math(EXPR MOTORCADE_UNIT_SOURCES "3 * ${MOTORCADE_UNIT_SOURCES} / 2")
   endif()
   motorcade_units(motorcade_${folder} ${sources})
   if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)  # else folders would wait for each other all the same
@@ -63,7 +63,7 @@ endfunction()
 # With CMAKE_UNITY_BUILD (the presets but `developer`) sources of one room are compiled together, a few to a unit: about half of the compiler's
 # time, and a changed source is back in the program within seconds. In its anonymous namespaces a room uses each name once.
 # `motorcade_units(target a.cpp b.cpp)` groups the sources; those with flags or definitions of their own stay alone.
-set(MOTORCADE_UNIT_SOURCES 8 CACHE STRING "Sources that are compiled together with CMAKE_UNITY_BUILD, at most; twice as many in cold folders")
+set(MOTORCADE_UNIT_SOURCES 15 CACHE STRING "Sources that are compiled together with CMAKE_UNITY_BUILD, at most; half as many again in cold folders")
 function(motorcade_units target)
   set(rooms)
   foreach(source ${ARGN})

@@ -27,7 +27,6 @@ function(motorcade_kernels folder)
     endif()
     return()
   endif()
-  math(EXPR MOTORCADE_UNIT_SOURCES "2 * ${MOTORCADE_UNIT_SOURCES}")  # they are short
   foreach(version any v3)
     set(objects motorcade_${folder}_kernels_${version})
     add_library(${objects} OBJECT ${ARGN})
@@ -40,6 +39,10 @@ function(motorcade_kernels folder)
     target_link_libraries(${objects} PRIVATE Eigen3::Eigen)
     target_compile_features(${objects} PRIVATE cxx_std_20)
     target_compile_definitions(${objects} PRIVATE $<TARGET_PROPERTY:motorcade_${folder},COMPILE_DEFINITIONS>)
+    # Those for any processor are compiled as core is; synth has flags of its own.
+    if(version STREQUAL any AND NOT folder STREQUAL synth AND NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+      target_precompile_headers(${objects} REUSE_FROM motorcade_core)
+    endif()
   endforeach()
   set(dispatched ${CMAKE_CURRENT_BINARY_DIR}/${folder}_kernels.o)
   add_custom_command(OUTPUT ${dispatched}

@@ -6,8 +6,8 @@ namespace CLI {
 class App;
 }
 
-/// The options of each command; what a command does is in the room of its name. Only the sources of this folder and
-/// command_line.cpp include CLI11, which takes long to compile.
+/// The options of each command; what a command does is in the room of its name. Only the sources of this folder
+/// include CLI11, which takes long to compile.
 namespace motorcade {
 
 /// What a command line asks for; gives the exit code.

@@ -1,7 +1,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,8 +21,6 @@ namespace {
 
 using testing::HasSubstr;
 using Rows = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>;
-
-constexpr double kHalfTurn = std::numbers::pi, kRounding = 1e-12;
 
 /// A full covariance without symmetries that could hide a mistake.
 Matrix6d someCovariance() {

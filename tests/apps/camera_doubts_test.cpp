@@ -10,12 +10,12 @@ namespace {
 
 using testing::HasSubstr;
 
-const StereoCamera kCamera{720, 720, 620, 188, 0.54, 1242, 375};
+const StereoCamera kOrdinaryCamera{720, 720, 620, 188, 0.54, 1242, 375};
 
-TEST(DoubtsAboutACamera, NoneOfAnOrdinaryOne) { EXPECT_TRUE(doubtsAbout(kCamera).empty()); }
+TEST(DoubtsAboutACamera, NoneOfAnOrdinaryOne) { EXPECT_TRUE(doubtsAbout(kOrdinaryCamera).empty()); }
 
 TEST(DoubtsAboutACamera, NameWhatCannotBe) {
-  StereoCamera millimeters = kCamera, of_larger = kCamera, absurd = kCamera;
+  StereoCamera millimeters = kOrdinaryCamera, of_larger = kOrdinaryCamera, absurd = kOrdinaryCamera;
   millimeters.baseline_m *= 1000;
   of_larger.cx_px *= 2.1;
   absurd.fx_px = 1e308;
@@ -23,7 +23,7 @@ TEST(DoubtsAboutACamera, NameWhatCannotBe) {
   EXPECT_THAT(doubtsAbout(millimeters)[0], HasSubstr("baseline of 540 m"));
   ASSERT_EQ(doubtsAbout(of_larger).size(), 1U);
   EXPECT_THAT(doubtsAbout(of_larger)[0], HasSubstr("(1302, 188) lies outside"));
-  StereoCamera of_half = kCamera;
+  StereoCamera of_half = kOrdinaryCamera;
   of_half.fx_px /= 2, of_half.fy_px /= 2, of_half.cx_px /= 2, of_half.cy_px /= 2;
   ASSERT_EQ(doubtsAbout(of_half).size(), 1U);
   EXPECT_THAT(doubtsAbout(of_half)[0], HasSubstr("far from the middle"));
@@ -51,14 +51,15 @@ TEST(DoubtsAboutACamera, NoneOfWhatIsOnlyUnusual) {
 }
 
 TEST(DoubtsAboutACamera, RemainWhereUnitsOrSizesAreWrong) {
-  StereoCamera without_focal = kCamera, centimeters = kCamera, side_by_side = kCamera, of_three_quarters = kCamera;
+  StereoCamera without_focal = kOrdinaryCamera, centimeters = kOrdinaryCamera, side_by_side = kOrdinaryCamera,
+               of_three_quarters = kOrdinaryCamera;
   without_focal.baseline_m = 0.54 / 720;  // P1 with -0.54 in place of -720 * 0.54
   centimeters.baseline_m = 12;
   side_by_side.width_px *= 2;
   of_three_quarters.cx_px *= 0.66, of_three_quarters.cy_px *= 0.66;
   for (const StereoCamera& camera : {without_focal, centimeters, side_by_side, of_three_quarters})
     EXPECT_EQ(doubtsAbout(camera).size(), 1U);
-  StereoCamera confused = kCamera;  // fx, cx, fy, cy in this order
+  StereoCamera confused = kOrdinaryCamera;  // fx, cx, fy, cy in this order
   confused.fy_px = 620, confused.cx_px = 720;
   EXPECT_THAT(odditiesOf(confused)[0], HasSubstr("the order is fx, fy, cx, cy"));
 }

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr int kWidth_px = 714, kHeight_px = 200;
-constexpr StereoCamera kCamera{500, 500, 357, 100, 0.5, kWidth_px, kHeight_px};
+constexpr StereoCamera kPageCamera{500, 500, 357, 100, 0.5, kWidth_px, kHeight_px};
 
 Image gray() {
   ImagePool pool;
@@ -73,30 +73,30 @@ TEST(EpipolarPicture, ABarReachesFromTheRowToThePartnerEnlarged) {
 TEST(EpipolarPicture, ArrowsShowWhatTheGeometryMakesOfTheRows) {
   PairGeometry geometry;
   const auto matches = lowered(0);
-  const auto still = redAndGreen(drawRowErrors(gray(), matches, geometry, kCamera), 0, 250);
+  const auto still = redAndGreen(drawRowErrors(gray(), matches, geometry, kPageCamera), 0, 250);
   geometry.errors[static_cast<std::size_t>(RowError::kOffset)].value = 5;
-  const auto arrows = redAndGreen(drawRowErrors(gray(), matches, geometry, kCamera), 0, 250);
+  const auto arrows = redAndGreen(drawRowErrors(gray(), matches, geometry, kPageCamera), 0, 250);
   EXPECT_EQ(still.first, 0);
   EXPECT_GT(arrows.first, 2000);
-  EXPECT_GT(drawRowErrors(gray(), {}, geometry, kCamera).height, 250) << "without a match";
+  EXPECT_GT(drawRowErrors(gray(), {}, geometry, kPageCamera).height, 250) << "without a match";
 }
 
 TEST(PairGeometry, PredictsTheRowErrorsThatItWasEstimatedFrom) {
   auto matches = lowered(3);
-  for (EpipolarMatch& match : matches) match.v_right_px += 0.01 * (match.u_left_px - kCamera.cx_px);
-  const PairGeometry geometry = estimatePairGeometry(matches, kCamera);
+  for (EpipolarMatch& match : matches) match.v_right_px += 0.01 * (match.u_left_px - kPageCamera.cx_px);
+  const PairGeometry geometry = estimatePairGeometry(matches, kPageCamera);
   for (const EpipolarMatch& match : matches)
-    EXPECT_NEAR(predictedRowError_px(geometry, kCamera, match.u_left_px, match.v_left_px, match.disparity_px()),
+    EXPECT_NEAR(predictedRowError_px(geometry, kPageCamera, match.u_left_px, match.v_left_px, match.disparity_px()),
                 match.rowDifference_px(), 0.05);  // the prior pulls it a little to zero
   EXPECT_NEAR(rowRms_px(lowered(3)), 3, 1e-9);
   EXPECT_EQ(rowRms_px({}), 0);
 }
 
 TEST(CheckPage, StandsInOneFileAndEscapesWhatComesFromOutside) {
-  const InputCheck check(kCamera);
+  const InputCheck check(kPageCamera);
   const auto matches = lowered(4);
   const std::string page = checkPage({.sequence = "<script>drive</script>",
-                                      .camera = kCamera,
+                                      .camera = kPageCamera,
                                       .check = &check,
                                       .findings = {{"rows", "4 (+-0.1) px <lower>; rectify", true}},
                                       .worst = {{{7}, gray(), gray(), matches}}});
@@ -106,9 +106,9 @@ TEST(CheckPage, StandsInOneFileAndEscapesWhatComesFromOutside) {
 }
 
 TEST(CheckPage, WithoutFindingsItSaysSoWithWhatWasMeasured) {
-  const InputCheck check(kCamera);
+  const InputCheck check(kPageCamera);
   const std::string page =
-      checkPage({.sequence = "drive", .camera = kCamera, .check = &check, .findings = {}, .worst = {}});
+      checkPage({.sequence = "drive", .camera = kPageCamera, .check = &check, .findings = {}, .worst = {}});
   EXPECT_THAT(page, AllOf(HasSubstr("nothing is wrong"), HasSubstr("No pair has points"), HasSubstr("714")));
   for (const RowErrorName& name : kRowErrorNames) EXPECT_THAT(page, HasSubstr(name.title));
 }

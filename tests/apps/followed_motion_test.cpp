@@ -30,24 +30,24 @@ std::vector<ComparedFrame> framesOf(const std::vector<Offsets>& objects) {
   return frames;
 }
 
-constexpr double kRounding = 1e-12;
+constexpr double kMotionRounding = 1e-12;
 
 TEST(FollowedMotion, ThePublishedFormIsTheMeanOverObjectsOfTheirRootMeanSquares) {
   const FollowedMotion motion = followedMotion(framesOf({{0, 0.3, 0.3, 0.7, 0.7}, {0, 0.1}}));  // .3 0 .4 0; .1
   ASSERT_EQ(motion.objects.size(), 2U);
-  EXPECT_NEAR(motion.objects[0].me_m.rmse, 0.25, kRounding);
-  EXPECT_NEAR(motion.rms_m, (0.25 + 0.1) / 2, kRounding);
+  EXPECT_NEAR(motion.objects[0].me_m.rmse, 0.25, kMotionRounding);
+  EXPECT_NEAR(motion.rms_m, (0.25 + 0.1) / 2, kMotionRounding);
   EXPECT_NEAR(motion.rms_deg, 0, 1e-9);
   EXPECT_EQ(motion.me_m.count, 5U);
-  EXPECT_NEAR(motion.me_m.mean, 0.8 / 5, kRounding);
-  EXPECT_NEAR(motion.me_m.rmse, std::sqrt((0.09 + 0.16 + 0.01) / 5), kRounding) << "not the published form";
-  EXPECT_NEAR(motion.me_m.median, 0.1, kRounding);
-  EXPECT_NEAR(motion.me_m.p95, 0.38, kRounding) << "a fifth of the way from the largest to the second";
+  EXPECT_NEAR(motion.me_m.mean, 0.8 / 5, kMotionRounding);
+  EXPECT_NEAR(motion.me_m.rmse, std::sqrt((0.09 + 0.16 + 0.01) / 5), kMotionRounding) << "not the published form";
+  EXPECT_NEAR(motion.me_m.median, 0.1, kMotionRounding);
+  EXPECT_NEAR(motion.me_m.p95, 0.38, kMotionRounding) << "a fifth of the way from the largest to the second";
 }
 
 TEST(FollowedMotion, TheLargestStepIsNamedWithFrameLabelAndTrack) {
   const FollowedMotion motion = followedMotion(framesOf({{0, 0.1, 0.2, 0.1}, {0, 0, 0.6, 0.6}}));
-  EXPECT_NEAR(motion.largest_m.error, 0.6, kRounding);
+  EXPECT_NEAR(motion.largest_m.error, 0.6, kMotionRounding);
   EXPECT_EQ(motion.largest_m.error, motion.me_m.max);
   EXPECT_EQ(motion.largest_m.frame.value, 22);
   EXPECT_EQ(motion.largest_m.label, 1);
@@ -64,7 +64,7 @@ TEST(FollowedMotion, HiddenLabelsAndPredictedRowsCountAndParkedOnesDoNot) {
   }
   const FollowedMotion motion = followedMotion(frames);
   ASSERT_EQ(motion.objects.size(), 2U) << "a single row is no step";
-  EXPECT_NEAR(motion.rms_m, (0.2 + 0.1) / 2, kRounding);
+  EXPECT_NEAR(motion.rms_m, (0.2 + 0.1) / 2, kMotionRounding);
 }
 
 }  // namespace

@@ -5,13 +5,13 @@
 namespace motorcade {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000, kHour_ns = 3600 * kSecond_ns;
+constexpr std::int64_t kGapSecond_ns = 1'000'000'000, kHour_ns = 3600 * kGapSecond_ns;
 
 /// A camera that goes forward by ten meters a second, ten frames a second.
 FrameEstimate estimateAt(std::int64_t frame) {
   FrameEstimate estimate;
   estimate.frame = {frame};
-  estimate.stamp = {frame * kSecond_ns / 10};
+  estimate.stamp = {frame * kGapSecond_ns / 10};
   estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, static_cast<double>(frame)});
   return estimate;
 }
@@ -22,8 +22,8 @@ TEST(GapFiller, PredictsASteadyMotionForASecond) {
   GapFiller filler;
   filler.published(estimateAt(0), true);
   filler.published(estimateAt(1), true);
-  EXPECT_NEAR(wayTo_m(filler, 3 * kSecond_ns / 10), 3, 1e-9);
-  EXPECT_NEAR(wayTo_m(filler, 11 * kSecond_ns / 10), 11, 1e-9);
+  EXPECT_NEAR(wayTo_m(filler, 3 * kGapSecond_ns / 10), 3, 1e-9);
+  EXPECT_NEAR(wayTo_m(filler, 11 * kGapSecond_ns / 10), 11, 1e-9);
   EXPECT_NEAR(wayTo_m(filler, kHour_ns), 11, 1e-9);
   EXPECT_NEAR(wayTo_m(filler, -kHour_ns), -10, 1e-9);
 }
@@ -31,7 +31,7 @@ TEST(GapFiller, PredictsASteadyMotionForASecond) {
 TEST(GapFiller, InterpolatesBetweenFinalPoses) {
   GapFiller filler;
   filler.published(estimateAt(0), true);
-  filler.fill({{{1}, {kSecond_ns / 10}}});
+  filler.fill({{{1}, {kGapSecond_ns / 10}}});
   filler.published(estimateAt(2), true);
   const auto finals = filler.completed({estimateAt(0), estimateAt(2)});
   ASSERT_EQ(finals.size(), 3u);
@@ -40,7 +40,7 @@ TEST(GapFiller, InterpolatesBetweenFinalPoses) {
 
 TEST(GapFiller, TakesTheFirstMotionToHaveGoneOnBefore) {
   GapFiller filler;
-  filler.fill({{{0}, {0}}, {{1}, {kSecond_ns / 10}}});
+  filler.fill({{{0}, {0}}, {{1}, {kGapSecond_ns / 10}}});
   for (const std::int64_t frame : {2, 3, 4}) filler.published(estimateAt(frame), true);
   const auto finals = filler.completed({estimateAt(2)});
   ASSERT_EQ(finals.size(), 3u);

@@ -10,7 +10,7 @@
 namespace motorcade {
 namespace {
 
-StereoFrame frameAt(std::int64_t index) {
+StereoFrame stampedFrame(std::int64_t index) {
   constexpr std::int64_t kPeriod_ns = 100'000'000;
   StereoFrame frame;
   frame.stamp = {index * kPeriod_ns};
@@ -43,7 +43,7 @@ TEST_P(IntakeClosing, LosesNoFrameThatItTook) {
       intake.close();
     });
     for (Admission admission = Admission::kTaken; admission != Admission::kClosed; ++pushed) {
-      admission = intake.push(frameAt(pushed));
+      admission = intake.push(stampedFrame(pushed));
       if (isTaken(admission)) ++taken;
     }
     closer.join();
@@ -57,7 +57,7 @@ TEST_P(IntakeClosing, LosesNoFrameThatItTook) {
 class LiveIntake : public testing::Test {
  protected:
   void push(std::int64_t frames) {
-    for (std::int64_t i = 0; i < frames; ++i) intake_.push(frameAt(pushed_++));
+    for (std::int64_t i = 0; i < frames; ++i) intake_.push(stampedFrame(pushed_++));
   }
   /// The next admitted frame's id, and how many it says were dropped before it: named, and in all.
   std::tuple<std::int64_t, std::size_t, std::int64_t> admitted() {

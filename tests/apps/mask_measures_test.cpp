@@ -15,7 +15,7 @@ using test::messageOf;
 using test::rowByHand;
 using testing::HasSubstr;
 
-constexpr double kTol = 1e-12;  // of sums of distances
+constexpr double kDistanceTol = 1e-12;  // of sums of distances
 
 struct Rectangle {
   int left, top, width, height;
@@ -36,7 +36,7 @@ Gray16Image imageOf(const std::vector<std::pair<Rectangle, std::uint16_t>>& rect
 TEST(MaskMeasures, OfShiftedSquares) {
   const Gray16Image a = imageOf({{{20, 20, 10, 10}, 1}}), b = imageOf({{{22, 20, 10, 10}, 5}});
   EXPECT_NEAR(maskIou({&a, 1}, {&b, 5}), 80.0 / 120, 1e-12);
-  EXPECT_NEAR(boundaryDistance_px({&a, 1}, {&b, 5}).value(), (20 + 14 + 2) / 36.0, kTol);
+  EXPECT_NEAR(boundaryDistance_px({&a, 1}, {&b, 5}).value(), (20 + 14 + 2) / 36.0, kDistanceTol);
   EXPECT_EQ(maskIou({&a, 1}, {&a, 1}), 1);
   EXPECT_EQ(boundaryDistance_px({&a, 1}, {&a, 1}), 0);
 }
@@ -46,7 +46,7 @@ TEST(MaskMeasures, OfShiftedSquares) {
 /// 12 + 12 + 8, of which the last two of the upper and lower side are 1 and 2 px away and the right side's 2 px (22).
 TEST(MaskMeasures, TheImagesBorderIsNoBoundary) {
   const Gray16Image a = imageOf({{{0, 20, 10, 10}, 1}}), b = imageOf({{{0, 20, 12, 10}, 1}});
-  EXPECT_NEAR(boundaryDistance_px({&a, 1}, {&b, 1}).value(), (14 + 22) / (28 + 32.0), kTol);
+  EXPECT_NEAR(boundaryDistance_px({&a, 1}, {&b, 1}).value(), (14 + 22) / (28 + 32.0), kDistanceTol);
 }
 
 TEST(MaskMeasures, AnEmptyMaskHasNoBoundary) {
@@ -86,7 +86,7 @@ TEST_F(MaskFiles, ATracksPixelsAreComparedWithItsLabels) {
   EXPECT_EQ(errors->within_30m.rows_with_mask, 1);
   EXPECT_NEAR(errors->within_30m.iou, 0.5 * 80 / 120, 1e-12);
   EXPECT_NEAR(errors->within_30m.iou_of_masks, 80.0 / 120, 1e-12);
-  EXPECT_NEAR(errors->within_30m.boundary_px.mean, 1, kTol);
+  EXPECT_NEAR(errors->within_30m.boundary_px.mean, 1, kDistanceTol);
   EXPECT_EQ(errors->from_30_to_50m.rows, 2);
   EXPECT_EQ(errors->from_30_to_50m.iou, 1);
   EXPECT_FALSE(maskErrors({frame(0)}, folder_ / "none", folder_ / "instance"));

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-FrameEstimate frameAt(std::int64_t s, std::initializer_list<std::int64_t> tracks) {
+FrameEstimate estimateOfTracks(std::int64_t s, std::initializer_list<std::int64_t> tracks) {
   FrameEstimate estimate;
   estimate.stamp = {s * kSecond_ns};
   for (const std::int64_t track : tracks) {
@@ -25,18 +25,18 @@ double ageOfLast(ObjectAges& ages, FrameEstimate estimate) {
 
 TEST(ObjectAges, CountFromTheFirstEstimateAlsoOverGaps) {
   ObjectAges ages;
-  EXPECT_DOUBLE_EQ(ageOfLast(ages, frameAt(10, {4})), 0);
-  EXPECT_DOUBLE_EQ(ageOfLast(ages, frameAt(12, {4, 5})), 0);
-  EXPECT_DOUBLE_EQ(ageOfLast(ages, frameAt(13, {5, 4})), 3);
-  FrameEstimate none = frameAt(20, {});
+  EXPECT_DOUBLE_EQ(ageOfLast(ages, estimateOfTracks(10, {4})), 0);
+  EXPECT_DOUBLE_EQ(ageOfLast(ages, estimateOfTracks(12, {4, 5})), 0);
+  EXPECT_DOUBLE_EQ(ageOfLast(ages, estimateOfTracks(13, {5, 4})), 3);
+  FrameEstimate none = estimateOfTracks(20, {});
   ages.fill(none);
-  EXPECT_DOUBLE_EQ(ageOfLast(ages, frameAt(25, {4})), 15) << "found again";
+  EXPECT_DOUBLE_EQ(ageOfLast(ages, estimateOfTracks(25, {4})), 15) << "found again";
 }
 
 TEST(ObjectAges, AreForgottenOfWhatIsGoneForLong) {
   ObjectAges ages;
-  ageOfLast(ages, frameAt(10, {4}));
-  EXPECT_DOUBLE_EQ(ageOfLast(ages, frameAt(100, {4})), 0);
+  ageOfLast(ages, estimateOfTracks(10, {4}));
+  EXPECT_DOUBLE_EQ(ageOfLast(ages, estimateOfTracks(100, {4})), 0);
 }
 
 }  // namespace

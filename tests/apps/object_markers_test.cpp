@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,8 +18,6 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 using Type = ros::Marker::Type;
-
-constexpr double kHalfTurn = std::numbers::pi, kRounding = 1e-12;
 
 /// Ahead and to the left of the camera, turned to the left, at 5 m/s.
 Result::Object car(std::int64_t id) {

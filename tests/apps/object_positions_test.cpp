@@ -13,7 +13,7 @@ namespace {
 using test::followedByHand;
 
 const Eigen::Vector3d kOffset_m{0.5, -0.8, 0.2};
-constexpr double kRounding = 1e-9;
+constexpr double kPositionRounding = 1e-9;
 
 Eigen::Vector3d fixedOrigin(int /*frame*/) { return kOffset_m; }
 
@@ -23,14 +23,14 @@ TEST(PositionErrors, AConstantOffsetIsRemovedWhereTheLabelTurnsToo) {
   const auto errors = positionErrors(followedByHand(0, 30, fixedOrigin));
   ASSERT_TRUE(errors);
   EXPECT_EQ(errors->frames, 30U);
-  EXPECT_NEAR(rmseOf(*errors, PositionKind::kWorld), kOffset_m.norm(), kRounding);
-  EXPECT_NEAR(rmseOf(*errors, PositionKind::kAsSeen), kOffset_m.norm(), kRounding);
+  EXPECT_NEAR(rmseOf(*errors, PositionKind::kWorld), kOffset_m.norm(), kPositionRounding);
+  EXPECT_NEAR(rmseOf(*errors, PositionKind::kAsSeen), kOffset_m.norm(), kPositionRounding);
   for (const PositionKind kind :
        {PositionKind::kWorldOffsetRemoved, PositionKind::kAlignedOffsetRemoved, PositionKind::kAsSeenOffsetRemoved})
-    EXPECT_NEAR(rmseOf(*errors, kind), 0, kRounding);
+    EXPECT_NEAR(rmseOf(*errors, kind), 0, kPositionRounding);
   EXPECT_NEAR(errors->are_deg.max, 0, 1e-5);  // an angle near zero loses half of the digits
   EXPECT_NEAR(errors->are_as_seen_deg.max, 0, 1e-5);
-  EXPECT_NEAR(errors->origin_drift_m->norm(), 0, kRounding);
+  EXPECT_NEAR(errors->origin_drift_m->norm(), 0, kPositionRounding);
 }
 
 TEST(PositionErrors, ASlideAlongTheObjectStaysAsErrorAndAsDriftOfTheOrigin) {
@@ -39,19 +39,19 @@ TEST(PositionErrors, ASlideAlongTheObjectStaysAsErrorAndAsDriftOfTheOrigin) {
   // The median is the middle of the slide: |i - 10| steps are left, whose squares add up to 770.
   const double step_m = std::hypot(0.05, 0.01);
   const Statistics& seen = errors->of(PositionKind::kAsSeenOffsetRemoved);
-  EXPECT_NEAR(seen.rmse, step_m * std::sqrt(770.0 / 21), kRounding);
-  EXPECT_NEAR(seen.mean, step_m * 110 / 21, kRounding);
-  EXPECT_NEAR(seen.median, step_m * 5, kRounding);
+  EXPECT_NEAR(seen.rmse, step_m * std::sqrt(770.0 / 21), kPositionRounding);
+  EXPECT_NEAR(seen.mean, step_m * 110 / 21, kPositionRounding);
+  EXPECT_NEAR(seen.median, step_m * 5, kPositionRounding);
   EXPECT_EQ(seen.count, 21U);
   // Medians over five frames stand for the frames 2 to 18.
-  EXPECT_NEAR((*errors->origin_drift_m - Eigen::Vector3d(0.8, 0, 0.16)).norm(), 0, kRounding);
+  EXPECT_NEAR((*errors->origin_drift_m - Eigen::Vector3d(0.8, 0, 0.16)).norm(), 0, kPositionRounding);
 }
 
 TEST(PositionErrors, SeenFromTheCameraItsDriftDoesNotMatter) {
   const auto drift = [](int i) { return SE3(expSO3({0, 0.002 * i, 0}), {0.1 * i, 0, 0}); };
   const auto errors = positionErrors(followedByHand(0, 30, fixedOrigin, drift));
   EXPECT_GT(rmseOf(*errors, PositionKind::kWorldOffsetRemoved), 1);
-  EXPECT_NEAR(rmseOf(*errors, PositionKind::kAsSeenOffsetRemoved), 0, kRounding);
+  EXPECT_NEAR(rmseOf(*errors, PositionKind::kAsSeenOffsetRemoved), 0, kPositionRounding);
 }
 
 TEST(PositionErrors, AlignmentTakesOutAPathThatIsMovedAsAWhole) {
@@ -68,7 +68,7 @@ TEST(OriginDrift, SkipsSingleFramesAndFramesFarAway) {
     return i < 55 ? kOffset_m : Eigen::Vector3d(5, 5, 5);  // 30 m away in frame 50
   };
   const auto errors = positionErrors(followedByHand(0, 60, jumping));
-  EXPECT_NEAR(errors->origin_drift_m->norm(), 0, kRounding);
+  EXPECT_NEAR(errors->origin_drift_m->norm(), 0, kPositionRounding);
   EXPECT_FALSE(positionErrors(followedByHand(70, 90, fixedOrigin))->origin_drift_m);
 }
 
@@ -78,7 +78,8 @@ TEST(MeanPositionErrors, CountObjectsThatWereFollowedLongEnough) {
              brief = positionErrors(followedByHand(0, 9, [](int) { return Eigen::Vector3d(50, 0, 0); }));
   const MeanPositionErrors mean = meanOf({*near, *brief, *far});
   EXPECT_EQ(mean.objects, 2);
-  EXPECT_NEAR(mean.ate_m[static_cast<std::size_t>(PositionKind::kAsSeen)], (kOffset_m.norm() + 3) / 2, kRounding);
+  EXPECT_NEAR(mean.ate_m[static_cast<std::size_t>(PositionKind::kAsSeen)], (kOffset_m.norm() + 3) / 2,
+              kPositionRounding);
 }
 
 /// An origin that swings along its object's x axis, with a constant offset beside it.
@@ -94,8 +95,8 @@ TEST(CompareRuns, TakesTheFramesThatBothHave) {
   EXPECT_EQ(comparison.objects[0].ours.frames, 20U);
   EXPECT_EQ(comparison.objects[0].baseline.frames, 20U);
   const auto seen = static_cast<std::size_t>(PositionKind::kAsSeenOffsetRemoved);
-  EXPECT_NEAR(comparison.objects[0].relativeError(seen), 0.6, kRounding);
-  EXPECT_NEAR(comparison.mean_relative_error[seen], 0.6, kRounding);
+  EXPECT_NEAR(comparison.objects[0].relativeError(seen), 0.6, kPositionRounding);
+  EXPECT_NEAR(comparison.mean_relative_error[seen], 0.6, kPositionRounding);
 }
 
 TEST(CompareRuns, TakesTheTracksWithTheMostFramesInCommonAndLeavesLonelyLabelsOut) {
@@ -108,7 +109,7 @@ TEST(CompareRuns, TakesTheTracksWithTheMostFramesInCommonAndLeavesLonelyLabelsOu
   EXPECT_EQ(comparison.objects[0].track, TrackId{3});
   EXPECT_EQ(comparison.objects[0].ours.frames, 28U);
   EXPECT_NEAR(comparison.objects[0].relativeError(static_cast<std::size_t>(PositionKind::kWorldOffsetRemoved)), 0.5,
-              kRounding);
+              kPositionRounding);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace motorcade {
 namespace {
 
-const StereoCamera kCamera{720, 720, 620, 188, 0.54, 1242, 375};
+const StereoCamera kStreetCamera{720, 720, 620, 188, 0.54, 1242, 375};
 
 struct Rig {
   double down_px = 0, roll_rad = 0, k1 = 0;
@@ -27,15 +27,17 @@ std::vector<EpipolarMatch> seenBy(const Rig& rig, unsigned seed) {
   std::normal_distribution<double> noise_px(0, 0.2);
   const auto pixel = [&](double x, double y) {
     const double growth = 1 + rig.k1 * (x * x + y * y);
-    return Eigen::Vector2d(kCamera.cx_px + kCamera.fx_px * x * growth, kCamera.cy_px + kCamera.fy_px * y * growth);
+    return Eigen::Vector2d(kStreetCamera.cx_px + kStreetCamera.fx_px * x * growth,
+                           kStreetCamera.cy_px + kStreetCamera.fy_px * y * growth);
   };
   std::vector<EpipolarMatch> matches;
   for (int i = 0; i < 3000; ++i) {
-    const double x = (u(random) - kCamera.cx_px) / kCamera.fx_px, y = (v(random) - kCamera.cy_px) / kCamera.fy_px;
+    const double x = (u(random) - kStreetCamera.cx_px) / kStreetCamera.fx_px,
+                 y = (v(random) - kStreetCamera.cy_px) / kStreetCamera.fy_px;
     const double depth_m = 1 / inverse_depth(random), depth_right_m = depth_m - rig.ahead_m;
-    const Eigen::Vector2d left = pixel(x, y), right = pixel((x * depth_m - kCamera.baseline_m) / depth_right_m,
+    const Eigen::Vector2d left = pixel(x, y), right = pixel((x * depth_m - kStreetCamera.baseline_m) / depth_right_m,
                                                             (y * depth_m + rig.up_m) / depth_right_m);
-    const double turned_px = rig.down_px + rig.roll_rad * (right.x() - kCamera.cx_px);
+    const double turned_px = rig.down_px + rig.roll_rad * (right.x() - kStreetCamera.cx_px);
     const double outlier_px = i % 10 == 0 ? wrong_px(random) : 0;
     matches.push_back({left.x(), left.y(), right.x(), right.y() + turned_px + noise_px(random) + outlier_px});
   }
@@ -43,14 +45,14 @@ std::vector<EpipolarMatch> seenBy(const Rig& rig, unsigned seed) {
 }
 
 TEST(PairGeometry, OfARectifiedRigIsZero) {
-  const PairGeometry geometry = estimatePairGeometry(seenBy({}, 1), kCamera);
+  const PairGeometry geometry = estimatePairGeometry(seenBy({}, 1), kStreetCamera);
   for (const RowErrorEstimate& error : geometry.errors) EXPECT_LT(std::abs(error.value), 4 * error.sigma);
   EXPECT_LT(geometry.remaining_px, 0.3);
   EXPECT_NEAR(geometry.agreeing_share, 0.9, 0.03);
 }
 
 TEST(PairGeometry, IsWhatTheRigIs) {
-  const PairGeometry geometry = estimatePairGeometry(seenBy({3, 0.017, -0.05, 0, 0}, 2), kCamera);
+  const PairGeometry geometry = estimatePairGeometry(seenBy({3, 0.017, -0.05, 0, 0}, 2), kStreetCamera);
   EXPECT_NEAR(geometry[RowError::kOffset].value, 3, 0.2);
   EXPECT_NEAR(geometry[RowError::kRoll].value, 0.017, 0.002);
   EXPECT_NEAR(geometry[RowError::kBarrel].value, -0.05, 0.015);
@@ -61,9 +63,9 @@ TEST(PairGeometry, IsWhatTheRigIs) {
 TEST(PairGeometry, TellsWhereTheRightCameraStands) {
   Rig rig;
   rig.up_m = 0.05, rig.ahead_m = 0.08;
-  const PairGeometry geometry = estimatePairGeometry(seenBy(rig, 4), kCamera);
-  EXPECT_NEAR(geometry[RowError::kLift].value, rig.up_m / kCamera.baseline_m, 0.02);
-  EXPECT_NEAR(geometry[RowError::kAhead].value, rig.ahead_m / kCamera.baseline_m, 0.04);
+  const PairGeometry geometry = estimatePairGeometry(seenBy(rig, 4), kStreetCamera);
+  EXPECT_NEAR(geometry[RowError::kLift].value, rig.up_m / kStreetCamera.baseline_m, 0.02);
+  EXPECT_NEAR(geometry[RowError::kAhead].value, rig.ahead_m / kStreetCamera.baseline_m, 0.04);
 }
 
 TEST(PairGeometry, ErrorsThatNothingShowsStayUnsure) {
@@ -72,10 +74,10 @@ TEST(PairGeometry, ErrorsThatNothingShowsStayUnsure) {
     match.u_right_px = match.u_left_px;
     far.push_back(match);
   }
-  const RowErrorEstimate barrel = estimatePairGeometry(far, kCamera)[RowError::kBarrel];
+  const RowErrorEstimate barrel = estimatePairGeometry(far, kStreetCamera)[RowError::kBarrel];
   EXPECT_LT(std::abs(barrel.value), 1e-6);
   EXPECT_GT(barrel.sigma, 0.3);
-  EXPECT_GT(estimatePairGeometry({}, kCamera)[RowError::kOffset].sigma, 10);
+  EXPECT_GT(estimatePairGeometry({}, kStreetCamera)[RowError::kOffset].sigma, 10);
 }
 
 TEST(MatchUnrectified, FindsRowsAndDisparitiesOfEitherSign) {

@@ -14,8 +14,6 @@
 namespace motorcade::test {
 namespace {
 
-constexpr double kRounding = 1e-12;
-
 /// A drive at 10 m/s and 10 Hz along a bend, as the tracker reports it.
 Result onBend(std::int64_t frame) {
   Result result;

@@ -9,6 +9,9 @@
 /// What the tests of rendered scenes share.
 namespace motorcade::synth {
 
+/// A third of KITTI's images, so that scenes are quickly rendered.
+inline const StereoCamera kSmallCamera = kittiCamera(414, 125);
+
 constexpr RenderOptions kNoNoise{.threads = 2, .noise_levels = 0, .equal_gains = true};
 
 inline std::vector<std::uint8_t> pixels(const Image& image) {

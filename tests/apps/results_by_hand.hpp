@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 
 #include <Eigen/Core>
 
@@ -8,6 +9,9 @@
 
 /// Parts of results as the public interface has them, for tests that write results down.
 namespace motorcade::test {
+
+inline constexpr double kHalfTurn = std::numbers::pi;  // of rotations
+inline constexpr double kRounding = 1e-12;             // of a few operations on numbers of about one
 
 inline std::array<double, 12> rowsOf(const SE3& T) {
   std::array<double, 12> rows{};

@@ -22,7 +22,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 constexpr int kWidth_px = 480, kHeight_px = 240;
-constexpr StereoCamera kCamera{300, 300, 240, 120, 0.5, kWidth_px, kHeight_px};
+constexpr StereoCamera kWallCamera{300, 300, 240, 120, 0.5, kWidth_px, kHeight_px};
 
 /// A wall full of spots, toward which the cameras drive. It leans, so that what is lower in the image is nearer.
 class Wall {
@@ -48,8 +48,9 @@ class Wall {
     std::normal_distribution<double> noise(0, 1.5);
     for (int y = 0; y < kHeight_px; ++y)
       for (int x = 0; x < kWidth_px; ++x) {
-        const double down = (y - kCamera.cy_px) / kCamera.cy_px, moved_px = left_px * (1 + lean * down);
-        const double gray = at(scale * (x + moved_px - kCamera.cx_px), scale * (y - kCamera.cy_px)) + noise(random);
+        const double down = (y - kWallCamera.cy_px) / kWallCamera.cy_px, moved_px = left_px * (1 + lean * down);
+        const double gray =
+            at(scale * (x + moved_px - kWallCamera.cx_px), scale * (y - kWallCamera.cy_px)) + noise(random);
         image.mutableRow(y)[x] = static_cast<std::uint8_t>(std::clamp(gray, 0.0, 255.0));
       }
     return image;
@@ -108,7 +109,7 @@ bool within(const StereoFrame& pair, int begin, int end) { return pair.frame.val
 
 TEST(RigWatch, IsQuietWhereTheRigStaysAsItIs) {
   Drive drive;
-  RigWatch watch(kCamera);
+  RigWatch watch(kWallCamera);
   EXPECT_THAT(drive.watched(watch, 39, [](StereoFrame&, ImagePool&) {}), IsEmpty());
   EXPECT_FALSE(watch.worthless());
 }
@@ -126,7 +127,7 @@ TEST(RigWatch, TellsWithinTwentyPairsWhatBecomesOfTheRig) {
   int begin = 21;
   for (const auto& each : cases) {
     SCOPED_TRACE(each.name);
-    RigWatch watch(kCamera);
+    RigWatch watch(kWallCamera);
     const auto found = drive.watched(watch, 39, [&](StereoFrame& pair, ImagePool& pool) {
       if (within(pair, begin, 39)) each.change(pair, pool);
     });
@@ -145,7 +146,7 @@ TEST(RigWatch, TellsWithinTwentyPairsWhatBecomesOfTheRig) {
 
 TEST(RigWatch, PassesOverAFewBadPairs) {
   Drive drive;
-  RigWatch watch(kCamera);
+  RigWatch watch(kWallCamera);
   EXPECT_THAT(drive.watched(watch, 39,
                             [](StereoFrame& pair, ImagePool&) {
                               if (within(pair, 23, 28)) std::swap(pair.left, pair.right);
@@ -155,7 +156,7 @@ TEST(RigWatch, PassesOverAFewBadPairs) {
 
 TEST(RigWatch, TellsOfAChangeAgainAfterTheRigWasGood) {
   Drive drive;
-  RigWatch watch(kCamera);
+  RigWatch watch(kWallCamera);
   const auto found = drive.watched(watch, 110, [](StereoFrame& pair, ImagePool&) {
     if (within(pair, 25, 40) || within(pair, 70, 110)) std::swap(pair.left, pair.right);
   });
@@ -167,7 +168,7 @@ TEST(RigWatch, TellsOfAChangeAgainAfterTheRigWasGood) {
 
 TEST(RigWatch, JudgesByTheFirstPairsInWhichSomethingIsSeen) {
   Drive drive;
-  RigWatch watch(kCamera);
+  RigWatch watch(kWallCamera);
   const auto found = drive.watched(watch, 36, [](StereoFrame& pair, ImagePool& pool) {
     if (within(pair, 0, 15)) pair.left = pair.right = filled(pair.left, 0, pool);
     pair.right = lowered(pair.right, 3, pool);
@@ -182,8 +183,8 @@ TEST(RigWatch, JudgesByTheFirstPairsInWhichSomethingIsSeen) {
 TEST(RigWatch, FindsInTheFirstPairsWhatTheCheckFinds) {
   Drive drive;
   for (const double rows_px : {0.5, 0.9, 1.1, 1.3, 2.0}) {
-    RigWatch watch(kCamera);
-    InputCheck check(kCamera);
+    RigWatch watch(kWallCamera);
+    InputCheck check(kWallCamera);
     const auto found = drive.watched(watch, 20, [&](StereoFrame& pair, ImagePool& pool) {
       pair.right = lowered(pair.right, rows_px, pool);
       check.observe(pair);
@@ -199,7 +200,7 @@ TEST(RigWatch, FindsInTheFirstPairsWhatTheCheckFinds) {
 
 TEST(InputCheck, JudgesTheRowsOfImagesWithUnequalContrast) {
   Drive drive;
-  InputCheck check(kCamera);
+  InputCheck check(kWallCamera);
   ImagePool pool;
   for (int frame = 0; frame < 20; ++frame) {
     StereoFrame pair = drive.pair(frame);
@@ -213,7 +214,7 @@ TEST(InputCheck, JudgesTheRowsOfImagesWithUnequalContrast) {
 
 TEST(InputCheck, NamesImagesThatLieHalfAFrameApart) {
   Drive drive;
-  InputCheck check(kCamera);
+  InputCheck check(kWallCamera);
   for (int frame = 0; frame < 19; ++frame) {
     StereoFrame pair = drive.pair(2 * frame);
     pair.right = drive.pair(2 * frame + 1).right;
@@ -229,7 +230,7 @@ TEST(InputCheck, NamesImagesThatLieHalfAFrameApart) {
 TEST(InputCheck, NamesRowsThatDifferBeforeAWallToo) {
   const Wall wall;
   ImagePool pool;
-  InputCheck check(kCamera);
+  InputCheck check(kWallCamera);
   for (int frame = 0; frame < 20; ++frame) {
     StereoFrame pair;
     pair.frame = {frame};
@@ -245,7 +246,7 @@ TEST(InputCheck, NamesRowsThatDifferBeforeAWallToo) {
 
 TEST(InputCheck, IgnoresPairsThatComeAfterTheirTurn) {
   Drive drive;
-  InputCheck check(kCamera);
+  InputCheck check(kWallCamera);
   check.observe(drive.pair(5));
   check.observe(drive.pair(3));
   check.observe(drive.pair(5));

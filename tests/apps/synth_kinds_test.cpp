@@ -18,7 +18,7 @@
 namespace motorcade::synth {
 namespace {
 
-const StereoCamera kCamera = kittiCamera(828, 250);
+const StereoCamera kLargeCamera = kittiCamera(828, 250);
 constexpr int kId = 3;
 
 /// One thing on an empty road, `ahead_m` before the camera, after `driven_m` of its way across the picture.
@@ -78,14 +78,14 @@ TEST(SynthKinds, TheLabelsBoxFitsTheMaskInEveryPose) {
     for (const double driven_m : {0.0, 1.2}) {
       const Scene scene = alone(kind.make(7), kind.ahead_m, driven_m, 1.3);
       const FrameScene frame(scene, kFrame, true);
-      const Rendering left = render(frame, kCamera, StereoSide::kLeft, kNoNoise);
-      const auto labels = labelsOf(frame, kCamera, left);
+      const Rendering left = render(frame, kLargeCamera, StereoSide::kLeft, kNoNoise);
+      const auto labels = labelsOf(frame, kLargeCamera, left);
       ASSERT_EQ(labels.size(), 1U) << kind.type;
       const Label& label = labels.front();
       EXPECT_EQ(label.id, kId);
       EXPECT_EQ(label.occluded, 0);
       Eigen::AlignedBox2d mask;
-      for (const Eigen::Vector2d& pixel : pixelsOf(left, kCamera, kId)) mask.extend(pixel);
+      for (const Eigen::Vector2d& pixel : pixelsOf(left, kLargeCamera, kId)) mask.extend(pixel);
       const Eigen::Vector4d seen(mask.min().x(), mask.min().y(), mask.max().x(), mask.max().y());
       const Eigen::Vector4d told(label.left_px, label.top_px, label.right_px, label.bottom_px);
       EXPECT_LT((seen - told).cwiseAbs().maxCoeff(), kSampling_px)

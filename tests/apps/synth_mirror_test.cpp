@@ -12,8 +12,6 @@
 namespace motorcade::synth {
 namespace {
 
-const StereoCamera kCamera = kittiCamera(414, 125);
-
 /// A board across an empty road, 14 m ahead.
 Scene boardAhead(float tone, bool rain) {
   Scene scene;
@@ -33,12 +31,12 @@ Scene boardAhead(float tone, bool rain) {
 /// Mean gray level of the road in a window of rows that lie `from_m` to `to_m` before the camera.
 double roadLevel(const Scene& scene, double from_m, double to_m) {
   const FrameScene frame(scene, 0, true);
-  const Rendering left = render(frame, kCamera, StereoSide::kLeft, kNoNoise);
+  const Rendering left = render(frame, kSmallCamera, StereoSide::kLeft, kNoNoise);
   double sum = 0;
   int count = 0;
-  for (int y = 0; y < kCamera.height_px; ++y)
+  for (int y = 0; y < kSmallCamera.height_px; ++y)
     for (int x = 150; x < 260; ++x) {
-      const auto depth = static_cast<double>(left.depth_m[y * kCamera.width_px + x]);
+      const auto depth = static_cast<double>(left.depth_m[y * kSmallCamera.width_px + x]);
       if (depth < from_m || depth > to_m) continue;
       sum += left.image.at(x, y);
       ++count;
@@ -69,9 +67,9 @@ TEST(SynthRain, AWetRoadIsDarkerWhereItMirrorsLittle) {
 TEST(SynthRain, TruthIsThatOfTheFirstSurface) {
   for (const StereoSide side : {StereoSide::kLeft, StereoSide::kRight}) {
     Scene scene = makeScene("rain", 1);
-    const Rendering wet = render(FrameScene(scene, 20, true), kCamera, side, kNoNoise);
+    const Rendering wet = render(FrameScene(scene, 20, true), kSmallCamera, side, kNoNoise);
     scene.rain = false;
-    const Rendering dry = render(FrameScene(scene, 20, true), kCamera, side, kNoNoise);
+    const Rendering dry = render(FrameScene(scene, 20, true), kSmallCamera, side, kNoNoise);
     EXPECT_EQ(wet.depth_m, dry.depth_m);
     EXPECT_EQ(wet.object, dry.object);
     EXPECT_NE(pixels(wet.image), pixels(dry.image));

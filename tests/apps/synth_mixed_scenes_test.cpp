@@ -12,8 +12,6 @@
 namespace motorcade::synth {
 namespace {
 
-const StereoCamera kCamera = kittiCamera(414, 125);
-
 /// Frames in which a mover of a type moves within 30 m and in view, by id.
 std::map<int, int> framesInView(const Scene& scene, const std::string& type) {
   std::map<int, int> frames;
@@ -22,8 +20,9 @@ std::map<int, int> framesInView(const Scene& scene, const std::string& type) {
     for (const Mover& mover : scene.movers) {
       if (mover.model->kitti_type != type || mover.trajectory.speedAt_mps(t_s) < 1) continue;
       const Eigen::Vector3d p_cam = scene.ego.T_map_cam(t_s).inverse() * mover.trajectory.T_map_body(t_s).translation();
-      const auto uvd = kCamera.project(p_cam);
-      if (uvd && p_cam.z() < 30 && kCamera.inLeftImage(uvd->x(), 0.5 * kCamera.height_px, 0)) ++frames[mover.id];
+      const auto uvd = kSmallCamera.project(p_cam);
+      if (uvd && p_cam.z() < 30 && kSmallCamera.inLeftImage(uvd->x(), 0.5 * kSmallCamera.height_px, 0))
+        ++frames[mover.id];
     }
   }
   return frames;
@@ -54,12 +53,12 @@ TEST(SynthMixedScenes, EveryLabelHasItsMaskAndEveryMaskItsLabel) {
     const Scene scene = makeScene(name, 3);
     for (const int k : {0, 60}) {
       const FrameScene frame(scene, k, true);
-      const Rendering left = render(frame, kCamera, StereoSide::kLeft, kNoNoise);
+      const Rendering left = render(frame, kSmallCamera, StereoSide::kLeft, kNoNoise);
       std::map<int, int> pixels;
       for (const std::int16_t id : left.object)
         if (id >= 0) ++pixels[id];
       std::set<int> labeled, large;
-      for (const Label& label : labelsOf(frame, kCamera, left)) labeled.insert(label.id);
+      for (const Label& label : labelsOf(frame, kSmallCamera, left)) labeled.insert(label.id);
       constexpr int kLeastPixels = 12;  // labelsOf's
       for (const auto& [id, count] : pixels)
         if (count >= kLeastPixels) large.insert(id);

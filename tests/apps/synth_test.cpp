@@ -21,13 +21,12 @@
 namespace motorcade::synth {
 namespace {
 
-const StereoCamera kCamera = kittiCamera(414, 125);
-
-int indexOf(int x, int y) { return y * kCamera.width_px + x; }
+int indexOf(int x, int y) { return y * kSmallCamera.width_px + x; }
 
 Eigen::Vector3d behindPixel(const Rendering& left, int x, int y) {
-  return kCamera.triangulate({static_cast<double>(x), static_cast<double>(y),
-                              kCamera.fx_px * kCamera.baseline_m / static_cast<double>(left.depth_m[indexOf(x, y)])});
+  return kSmallCamera.triangulate(
+      {static_cast<double>(x), static_cast<double>(y),
+       kSmallCamera.fx_px * kSmallCamera.baseline_m / static_cast<double>(left.depth_m[indexOf(x, y)])});
 }
 
 /// Footprints overlap when a point on the outline or middle line of one lies in the other.
@@ -52,7 +51,7 @@ TEST(SynthRays, MeetWhatTryingEveryPartFinds) {
   for (const char* name : {"urban", "highway"}) {
     const Scene scene = makeScene(name, 2);
     const FrameScene frame(scene, 30, true);
-    const CameraRays rays(frame, kCamera, StereoSide::kRight);
+    const CameraRays rays(frame, kSmallCamera, StereoSide::kRight);
     const ParallelRays to_sun(frame, scene.sun);
     Random random(5);
     for (int i = 0; i < 3000; ++i) {
@@ -71,10 +70,10 @@ TEST(SynthRays, MeetWhatTryingEveryPartFinds) {
 TEST(SynthRenderer, DepthsLieOnTheRoadAndInsideTheVehicles) {
   const Scene scene = makeScene("static", 3);
   const FrameScene frame(scene, 5, true);
-  const Rendering left = render(frame, kCamera, StereoSide::kLeft, kNoNoise);
+  const Rendering left = render(frame, kSmallCamera, StereoSide::kLeft, kNoNoise);
   int road = 0, vehicle = 0;
-  for (int y = 0; y < kCamera.height_px; ++y)
-    for (int x = 0; x < kCamera.width_px; ++x) {
+  for (int y = 0; y < kSmallCamera.height_px; ++y)
+    for (int x = 0; x < kSmallCamera.width_px; ++x) {
       if (left.depth_m[indexOf(x, y)] <= 0) continue;
       const Eigen::Vector3d p_map = frame.T_map_cam() * behindPixel(left, x, y);
       ASSERT_GT(p_map.z(), -1e-3);  // single precision at 100 m
@@ -89,24 +88,24 @@ TEST(SynthRenderer, DepthsLieOnTheRoadAndInsideTheVehicles) {
       EXPECT_LE(p_body.z(), placed->model->height_m + 0.01);
       ++vehicle;
     }
-  EXPECT_GT(road, kCamera.width_px * kCamera.height_px / 6);
+  EXPECT_GT(road, kSmallCamera.width_px * kSmallCamera.height_px / 6);
   EXPECT_GT(vehicle, 200);
 }
 
 TEST(SynthRenderer, TheRightEyeShowsTheLeftPictureShiftedByTheDisparity) {
   const Scene scene = makeScene("overtake", 2);
   const FrameScene frame(scene, 14, true);
-  const Rendering left = render(frame, kCamera, StereoSide::kLeft, kNoNoise),
-                  right = render(frame, kCamera, StereoSide::kRight, kNoNoise);
+  const Rendering left = render(frame, kSmallCamera, StereoSide::kLeft, kNoNoise),
+                  right = render(frame, kSmallCamera, StereoSide::kRight, kNoNoise);
   std::vector<double> differences;
   double shift = 0, weight = 0;
-  for (int y = 1; y < kCamera.height_px - 1; ++y)
-    for (int x = 1; x < kCamera.width_px - 1; ++x) {
+  for (int y = 1; y < kSmallCamera.height_px - 1; ++y)
+    for (int x = 1; x < kSmallCamera.width_px - 1; ++x) {
       const double depth = left.depth_m[indexOf(x, y)];
       if (depth <= 0) continue;
-      const double u = x - kCamera.fx_px * kCamera.baseline_m / depth;
+      const double u = x - kSmallCamera.fx_px * kSmallCamera.baseline_m / depth;
       const int u0 = static_cast<int>(std::floor(u));
-      if (u0 < 1 || u0 + 2 >= kCamera.width_px) continue;
+      if (u0 < 1 || u0 + 2 >= kSmallCamera.width_px) continue;
       // Where the other camera sees the same surface.
       const bool same = std::abs(right.depth_m[indexOf(u0, y)] - depth) < 0.02 * depth &&
                         std::abs(right.depth_m[indexOf(u0 + 1, y)] - depth) < 0.02 * depth;
@@ -135,8 +134,8 @@ TEST(SynthRenderer, NoiseDiffersBetweenTheEyesAndHasTheSizeAskedFor) {
   noisy.noise_levels = 1.5F;
   std::vector<double> left, right;
   for (const StereoSide side : {StereoSide::kLeft, StereoSide::kRight}) {
-    const auto clean = pixels(render(frame, kCamera, side, kNoNoise).image),
-               with = pixels(render(frame, kCamera, side, noisy).image);
+    const auto clean = pixels(render(frame, kSmallCamera, side, kNoNoise).image),
+               with = pixels(render(frame, kSmallCamera, side, noisy).image);
     for (std::size_t i = 0; i < clean.size(); ++i)
       if (clean[i] > 100 && clean[i] < 150)
         (side == StereoSide::kLeft ? left : right).push_back(static_cast<double>(with[i]) - clean[i]);
@@ -151,13 +150,13 @@ TEST(SynthGroundTruth, LabelsAgreeWithPosesAndMasks) {
   for (const char* name : {"overtake", "urban", "convoy", "traffic", "rain", "people"}) {
     const Scene scene = makeScene(name, 4);
     const FrameScene frame(scene, 20, true);
-    const Rendering left = render(frame, kCamera, StereoSide::kLeft, kNoNoise);
-    const auto labels = labelsOf(frame, kCamera, left);
+    const Rendering left = render(frame, kSmallCamera, StereoSide::kLeft, kNoNoise);
+    const auto labels = labelsOf(frame, kSmallCamera, left);
     ASSERT_GE(labels.size(), 2U);
     for (const auto& label : labels) {
       if (label.truncated == 0) {
         const Eigen::Vector3d middle = label.location_cam - Eigen::Vector3d(0, 0.5 * label.height_m, 0);
-        const auto uvd = kCamera.project(middle);
+        const auto uvd = kSmallCamera.project(middle);
         ASSERT_TRUE(uvd);
         EXPECT_GT(uvd->x(), label.left_px);
         EXPECT_LT(uvd->x(), label.right_px);
@@ -166,7 +165,7 @@ TEST(SynthGroundTruth, LabelsAgreeWithPosesAndMasks) {
       }
       const Eigen::AlignedBox2d box(Eigen::Vector2d(label.left_px - 0.01, label.top_px - 0.01),
                                     Eigen::Vector2d(label.right_px + 0.01, label.bottom_px + 0.01));
-      for (const Eigen::Vector2d& pixel : pixelsOf(left, kCamera, label.id))
+      for (const Eigen::Vector2d& pixel : pixelsOf(left, kSmallCamera, label.id))
         ASSERT_TRUE(box.contains(pixel)) << name << " " << label.id << " at " << pixel.transpose();
     }
   }

@@ -100,4 +100,8 @@ class PointDrive {
   std::array<Eigen::Vector3d, 2> common_px_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of this frame
 };
 
+/// Vehicles in a street whose points at rest are seen, too, and an odometry that errs.
+inline const PointDrive::Options kStreet{.static_points = 150,
+                                         .drive = {.odometry_sigma_m = 0.02, .odometry_sigma_rad = 0.001}};
+
 }  // namespace motorcade::test

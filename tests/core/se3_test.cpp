@@ -83,9 +83,9 @@ TEST(SE3, ScaledMotionComposesToTheWhole) {
 }
 
 TEST(SE3, IsFiniteWhenAllItsNumbersAre) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(isFinite(SE3(Eigen::Matrix3d::Identity(), {1e300, 0, 0})));
-  EXPECT_FALSE(isFinite(SE3(Eigen::Matrix3d::Identity(), {0, kInfinity, 0})));
+  EXPECT_FALSE(isFinite(SE3(Eigen::Matrix3d::Identity(), {0, kInf, 0})));
   EXPECT_FALSE(isFinite(SE3(kNan * Eigen::Matrix3d::Identity(), {0, 0, 0})));
 }
 

@@ -65,7 +65,7 @@ struct Seen {
   Eigen::Isometry3d T_cam_body;
 };
 
-Seen someObject() {
+Seen someSeenObject() {
   Seen seen;
   seen.T_cam_body = poseOf({14, 3, -0.8}, {0.1, -0.05, 0.9});
   seen.object.T_cam_body = rowsOf(seen.T_cam_body);
@@ -104,7 +104,7 @@ TEST(VehicleFrame, ACameraThatLooksToTheLeftSeesWhatIsLeftOfTheVehicle) {
 }
 
 TEST(VehicleFrame, APoseIsThatOfTheMountingTimesThatInTheCamera) {
-  const Seen seen = someObject();
+  const Seen seen = someSeenObject();
   const VehicleObject object = VehicleFrame(kMounting, 1).object(seen.result, seen.object);
   const Eigen::Matrix3d R = vehicleFromCamera(kMounting);
   const Eigen::Vector3d mounted_m(kMounting.x_m, kMounting.y_m, kMounting.z_m);
@@ -118,7 +118,7 @@ TEST(VehicleFrame, APoseIsThatOfTheMountingTimesThatInTheCamera) {
 TEST(VehicleFrame, CovariancesOfPoseAndBoxAreThoseOfManyPerturbedPoses) {
   constexpr int kSamples = 40'000;
   constexpr double kTolerance = 0.04;  // eight standard errors of a sample variance, relative
-  const Seen seen = someObject();
+  const Seen seen = someSeenObject();
   const VehicleFrame frame(kMounting, 1);
   const VehicleObject mean = frame.object(seen.result, seen.object);
   const Eigen::Matrix<double, 6, 6> root = Covariance(seen.object.covariance->data()).llt().matrixL();
@@ -144,7 +144,7 @@ TEST(VehicleFrame, CovariancesOfPoseAndBoxAreThoseOfManyPerturbedPoses) {
 }
 
 TEST(VehicleFrame, VelocityOverGroundIsTurnedIntoTheVehiclesAxesWithItsCovariance) {
-  const Seen seen = someObject();
+  const Seen seen = someSeenObject();
   const VehicleFrame frame(kMounting, 1);
   const VehicleObject object = frame.object(seen.result, seen.object);
   const Eigen::Isometry3d T_world_cam = poseOf({120, -40, 1}, {0.2, 0.1, -2});
@@ -189,7 +189,7 @@ TEST(VehicleFrame, TheCovarianceOfTheVehiclesMotionIsThatOfALinearFunctionOfTheC
 }
 
 TEST(VehicleFrame, AMarginMultipliesStandardDeviations) {
-  const Seen seen = someObject();
+  const Seen seen = someSeenObject();
   const VehicleObject plain = VehicleFrame(kMounting, 1).object(seen.result, seen.object);
   const VehicleObject wide = VehicleFrame(kMounting, 3).object(seen.result, seen.object);
   EXPECT_TRUE(eigen(*wide.pose_covariance).isApprox(9 * eigen(*plain.pose_covariance)));
@@ -198,7 +198,7 @@ TEST(VehicleFrame, AMarginMultipliesStandardDeviations) {
 }
 
 TEST(VehicleFrame, WhatIsNotKnownIsLeftOut) {
-  Seen seen = someObject();
+  Seen seen = someSeenObject();
   seen.object.covariance.reset();
   const VehicleFrame frame(kMounting, 1);
   EXPECT_FALSE(frame.object(seen.result, seen.object).pose_covariance);

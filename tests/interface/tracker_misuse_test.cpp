@@ -18,7 +18,7 @@ using std::chrono::milliseconds;
 using testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kGreatestIndex = std::numeric_limits<std::int64_t>::max();
 
 template <class Value>
 struct Misuse {
@@ -183,7 +183,7 @@ TEST(RecordingMisuse, NamesWhatIsWrong) {
   Recording recording(MOTORCADE_TINY_SEQUENCE);
   EXPECT_EQ(field([&] { recording.read(-1); }), "index");
   EXPECT_EQ(field([&] { recording.read(recording.size()); }), "index");
-  EXPECT_EQ(field([&] { recording.read(kMost); }), "index");
+  EXPECT_EQ(field([&] { recording.read(kGreatestIndex); }), "index");
 }
 
 }  // namespace

@@ -4,32 +4,13 @@
 
 #include "io/errors.hpp"
 #include "tests/io/temporary_folder.hpp"
+#include "tests/io/timing_by_hand.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace motorcade {
 namespace {
 
-using std::chrono::milliseconds;
-
-FrameTiming timingOf(int i) {
-  FrameTiming timing;
-  timing.frame = {i};
-  timing.stamp = {i * 100'000'000LL};
-  timing.due = SteadyTime(milliseconds(1000 + 100 * i));
-  timing.admitted = timing.due + milliseconds(2);
-  timing.decode_ms = 8;
-  timing.decoded = timing.due - milliseconds(40);
-  SteadyTime now = timing.admitted;
-  for (StageSpan& span : timing.stages) {
-    span = {now + milliseconds(1), now + milliseconds(4), i % 2, 2.5};
-    now = span.end;
-  }
-  timing.published = now + milliseconds(1);
-  timing.points = 300;
-  timing.inliers = 250;
-  timing.objects = 2;
-  return timing;
-}
+using test::timingOf;
 
 TEST(FrameTable, ARowComesBackAsWritten) {
   const test::TemporaryFolder folder;

@@ -50,7 +50,7 @@ FrameEstimate estimateOf(int i) {
   return estimate;
 }
 
-FrameTiming timingOf(int i) {
+FrameTiming timingOfEstimate(int i) {
   FrameTiming timing;
   timing.frame = {i};
   timing.stamp = estimateOf(i).stamp;
@@ -64,7 +64,7 @@ void writeRun(const std::filesystem::path& folder, int first, int count) {
   RunFolderWriter writer(folder);
   for (int i = first; i < first + count; ++i) {
     writer.writeOnline(estimateOf(i));
-    writer.writeTiming(timingOf(i));
+    writer.writeTiming(timingOfEstimate(i));
     writer.writeFinal(estimateOf(i));
   }
   writer.finish("{\"complete\": true}\n");
@@ -106,7 +106,7 @@ TEST(RunFolder, ShowsWhatHasSettledUntilTheRunHasEnded) {
     RunFolderWriter writer(folder / "run");
     for (int i = 0; i < 4; ++i) {
       writer.writeOnline(estimateOf(i));
-      writer.writeTiming(timingOf(i));
+      writer.writeTiming(timingOfEstimate(i));
       if (i > 0) writer.writeSettled(estimateOf(i - 1));
     }
     writer.writeFinal(estimateOf(0));

@@ -1,37 +1,19 @@
 #include "io/trace_file.hpp"
 
+#include <chrono>
 #include <map>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/io/temporary_folder.hpp"
+#include "tests/io/timing_by_hand.hpp"
 
 namespace motorcade {
 namespace {
 
-using std::chrono::milliseconds;
+using test::timingOf;
 using Json = nlohmann::json;
-
-FrameTiming timingOf(int i) {
-  FrameTiming timing;
-  timing.frame = {i};
-  timing.stamp = {i * 100'000'000LL};
-  timing.due = SteadyTime(milliseconds(1000 + 100 * i));
-  timing.admitted = timing.due + milliseconds(2);
-  timing.decode_ms = 8;
-  timing.decoded = timing.due - milliseconds(40);
-  SteadyTime now = timing.admitted;
-  for (StageSpan& span : timing.stages) {
-    span = {now + milliseconds(1), now + milliseconds(4), i % 2, 2.5};
-    now = span.end;
-  }
-  timing.published = now + milliseconds(1);
-  timing.points = 300;
-  timing.inliers = 250;
-  timing.objects = 2;
-  return timing;
-}
 
 Json eventsOf(const std::vector<FrameTiming>& timings) {
   const test::TemporaryFolder folder;
@@ -89,7 +71,7 @@ TEST(TraceFile, AnArrowLeadsFromEachFrameToTheNext) {
 
 TEST(TraceFile, CountsFramesInFlightAndMarksThoseThatWereDropped) {
   FrameTiming second = timingOf(1), dropped;
-  second.due = second.admitted = timingOf(0).admitted + milliseconds(5);  // while the first is under way
+  second.due = second.admitted = timingOf(0).admitted + std::chrono::milliseconds(5);  // while the first is under way
   dropped.frame = {2};
   dropped.due = dropped.published = timingOf(2).due;
   dropped.status = FrameStatus::kDropped;

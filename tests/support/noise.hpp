@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <random>
 
@@ -29,6 +30,11 @@ class Noise {
  public:
   explicit Noise(std::uint64_t seed) : generator_(seed) {}
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
+  /// An integer in [0, n).
+  template <std::integral Integer>
+  Integer below(Integer n) {
+    return static_cast<Integer>(uniform(0, static_cast<double>(n) - 1e-9));
+  }
   double gaussian(double sigma = 1.0) { return sigma * normal_(generator_); }
   /// Independent components.
   template <int N>

@@ -18,8 +18,8 @@ using test::RandomWorld;
 using testing::UnorderedElementsAreArray;
 
 /// A long chain with a few short cuts, and what an update would eliminate anew of it.
-struct Scene {
-  Scene(std::uint64_t seed, std::size_t count) : world(seed, RandomWorld::Kind::kPlane) {
+struct ChainWithShortcuts {
+  ChainWithShortcuts(std::uint64_t seed, std::size_t count) : world(seed, RandomWorld::Kind::kPlane) {
     for (std::size_t i = 0; i < count; ++i) {
       variables.push_back(world.addVariable(graph));
       graph.addFactor(world.prior(variables.back()));
@@ -60,7 +60,7 @@ struct Scene {
 };
 
 /// Factors between each variable and the nearest touched one, by relaxation until nothing changes.
-std::vector<int> distances(const Scene& scene, std::span<const VariableId> touched) {
+std::vector<int> distances(const ChainWithShortcuts& scene, std::span<const VariableId> touched) {
   constexpr int kFar = 1 << 20;
   std::vector<int> distance(scene.graph.slots(), kFar);
   for (const VariableId v : touched) distance[v.value] = 0;
@@ -85,7 +85,8 @@ int bandOf(int distance) {
   return band;
 }
 
-void expectNearerIsLater(const Scene& scene, std::span<const VariableId> order, std::span<const VariableId> touched) {
+void expectNearerIsLater(const ChainWithShortcuts& scene, std::span<const VariableId> order,
+                         std::span<const VariableId> touched) {
   EXPECT_THAT(order, UnorderedElementsAreArray(scene.removed.variables));
   const auto distance = distances(scene, touched);
   for (std::size_t i = 1; i < order.size(); ++i)
@@ -96,7 +97,7 @@ TEST(AffectedOrder, TheNearerToWhatWasTouchedTheLater) {
   std::set<int> bands;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Scene scene(seed, 80);
+    ChainWithShortcuts scene(seed, 80);
     const auto touched = scene.draw(1 + seed % 3);
     expectNearerIsLater(scene, scene.order(touched), touched);
     for (const int distance : distances(scene, touched)) bands.insert(bandOf(distance));
@@ -107,7 +108,7 @@ TEST(AffectedOrder, TheNearerToWhatWasTouchedTheLater) {
 TEST(AffectedOrder, DistancesGoThroughTheWholeGraph) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Scene scene(seed, 80);
+    ChainWithShortcuts scene(seed, 80);
     const auto touched = scene.draw(8);
     scene.keepTopAbove(touched);
     ASSERT_GT(scene.removed.variables.size(), 6U);  // fewer cannot be told apart in six bands
@@ -117,7 +118,7 @@ TEST(AffectedOrder, DistancesGoThroughTheWholeGraph) {
 
 /// As an offset that all measurements share does not bring them nearer to each other.
 TEST(AffectedOrder, DistancesDoNotGoThroughWhatVeryManyFactorsShare) {
-  Scene scene(3, 200);
+  ChainWithShortcuts scene(3, 200);
   const std::vector touched{scene.variables.back()};
   auto distance = distances(scene, touched);
   const VariableId shared = scene.world.addVariable(scene.graph);
@@ -131,7 +132,7 @@ TEST(AffectedOrder, DistancesDoNotGoThroughWhatVeryManyFactorsShare) {
 }
 
 TEST(AffectedOrder, TheNewestComeLastAndWhatManyFactorsShare) {
-  Scene scene(4, 60);
+  ChainWithShortcuts scene(4, 60);
   const VariableId shared = scene.world.addVariable(scene.graph);
   for (const VariableId v : scene.variables) scene.graph.addFactor(scene.world.between(shared, v, true));
   scene.removed.variables.push_back(shared);
@@ -145,7 +146,7 @@ TEST(AffectedOrder, TheNewestComeLastAndWhatManyFactorsShare) {
 
 TEST(AffectedOrder, DoesNotDependOnCallsBefore) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    Scene used(seed, 40), fresh(seed, 40);
+    ChainWithShortcuts used(seed, 40), fresh(seed, 40);
     const auto touched = used.draw(2), same = fresh.draw(2);
     ASSERT_EQ(touched, same);
     used.order(std::vector{used.variables[3]});
@@ -157,7 +158,7 @@ TEST(AffectedOrder, DoesNotDependOnCallsBefore) {
 /// The graph of the terms over the variables at hand.
 class TermGraph {
  public:
-  explicit TermGraph(const Scene& scene) : neighbors_(scene.graph.slots()) {
+  explicit TermGraph(const ChainWithShortcuts& scene) : neighbors_(scene.graph.slots()) {
     for (const FactorId f : scene.removed.factors) join(scene.graph.variablesOf(f));
     for (const int orphan : scene.removed.orphans) join(scene.tree[orphan].separator());
   }
@@ -178,7 +179,7 @@ class TermGraph {
 };
 
 /// Blocks of R beyond the diagonal.
-std::size_t blocksOfFactor(const Scene& scene, std::span<const VariableId> order) {
+std::size_t blocksOfFactor(const ChainWithShortcuts& scene, std::span<const VariableId> order) {
   TermGraph graph(scene);
   std::size_t blocks = 0;
   for (const VariableId v : order) {
@@ -188,7 +189,7 @@ std::size_t blocksOfFactor(const Scene& scene, std::span<const VariableId> order
   return blocks;
 }
 
-std::vector<VariableId> minimumDegreeOrder(const Scene& scene) {
+std::vector<VariableId> minimumDegreeOrder(const ChainWithShortcuts& scene) {
   TermGraph graph(scene);
   std::vector<VariableId> left = scene.removed.variables, order;
   while (!left.empty()) {
@@ -203,7 +204,7 @@ std::vector<VariableId> minimumDegreeOrder(const Scene& scene) {
 TEST(AffectedOrder, WithinABandThereIsLittleFill) {
   std::size_t blocks = 0, least = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
-    Scene scene(seed, 120);
+    ChainWithShortcuts scene(seed, 120);
     if (seed % 4 != 0) scene.keepTopAbove(scene.draw(20));
     blocks += blocksOfFactor(scene, scene.order({}));
     least += blocksOfFactor(scene, minimumDegreeOrder(scene));

@@ -15,8 +15,6 @@ namespace {
 
 using Group = EliminationPattern::Group;
 
-int below(test::Noise& noise, int n) { return static_cast<int>(noise.uniform(0, n - 1e-9)); }
-
 struct Problem {
   int count = 0, boundary = 0;
   std::vector<std::vector<int>> terms;
@@ -24,17 +22,17 @@ struct Problem {
 };
 
 Problem randomProblem(test::Noise& noise) {
-  Problem problem{.count = 1 + below(noise, 25), .boundary = below(noise, 4), .terms = {}, .scalars = {}};
+  Problem problem{.count = 1 + noise.below(25), .boundary = noise.below(4), .terms = {}, .scalars = {}};
   const int total = problem.count + problem.boundary;
-  for (int t = below(noise, 40); t >= 0; --t) {
-    std::set<int> term{below(noise, problem.count)};
+  for (int t = noise.below(40); t >= 0; --t) {
+    std::set<int> term{noise.below(problem.count)};
     // Mostly near each other, as in trajectories.
-    for (int i = below(noise, 3); i > 0; --i)
-      term.insert(std::min(total - 1, *term.begin() + below(noise, below(noise, 4) == 0 ? total : 4)));
+    for (int i = noise.below(3); i > 0; --i)
+      term.insert(std::min(total - 1, *term.begin() + noise.below(noise.below(4) == 0 ? total : 4)));
     problem.terms.emplace_back(term.begin(), term.end());
-    if (below(noise, 2) == 0) std::ranges::reverse(problem.terms.back());  // any order will do
+    if (noise.below(2) == 0) std::ranges::reverse(problem.terms.back());  // any order will do
   }
-  for (int i = 0; i < total; ++i) problem.scalars.push_back(1 + below(noise, 6));
+  for (int i = 0; i < total; ++i) problem.scalars.push_back(1 + noise.below(6));
   return problem;
 }
 

@@ -22,8 +22,8 @@ bool contains(std::span<const T> items, const T& item) {
 }
 
 /// A connected graph of up to twenty variables, eliminated in random order.
-struct Scene {
-  Scene(std::uint64_t seed, RandomWorld::Kind kind) : world(seed, kind) {
+struct EliminatedGraph {
+  EliminatedGraph(std::uint64_t seed, RandomWorld::Kind kind) : world(seed, kind) {
     const std::size_t count = 2 + world.below(19);
     for (std::size_t i = 0; i < count; ++i) addVariable();
     std::vector<VariableId> order = variables;
@@ -78,7 +78,7 @@ struct Scene {
 
 /// Each variable is frontal once, each factor belongs to the clique that owns it, each separator lies in the parent,
 /// where the rows say.
-void Scene::expectSound() const {
+void EliminatedGraph::expectSound() const {
   std::vector<VariableId> frontals;
   std::vector<FactorId> factors;
   for (const int c : cliques()) {
@@ -116,7 +116,7 @@ template <class Check>
 void forRandomTrees(const Check& check) {
   for (std::uint64_t seed = 0; seed < 80; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Scene scene(seed, RandomWorld::kKinds[seed % 4]);
+    EliminatedGraph scene(seed, RandomWorld::kKinds[seed % 4]);
     check(scene);
     scene.expectSound();
     scene.expectEqual();
@@ -124,11 +124,11 @@ void forRandomTrees(const Check& check) {
 }
 
 TEST(EliminationTree, IsARootOfTheInformation) {
-  forRandomTrees([](Scene&) {});
+  forRandomTrees([](EliminatedGraph&) {});
 }
 
 TEST(EliminationTree, TheTopCanBeTakenOutAndEliminatedWithNewVariables) {
-  forRandomTrees([](Scene& scene) {
+  forRandomTrees([](EliminatedGraph& scene) {
     std::vector<int> removed_cliques;
     for (int i = 0; i < 2; ++i)
       for (const int c :
@@ -157,7 +157,7 @@ TEST(EliminationTree, TheTopCanBeTakenOutAndEliminatedWithNewVariables) {
 }
 
 TEST(EliminationTree, RemovedVariablesComeInTheirEliminationOrder) {
-  forRandomTrees([](Scene& scene) {
+  forRandomTrees([](EliminatedGraph& scene) {
     std::vector<VariableId> expected = scene.variables;
     std::ranges::sort(expected, {}, [&](VariableId v) { return scene.tree.sequence(scene.tree.cliqueOf(v)); });
     EliminationTree::Removed removed;
@@ -181,7 +181,7 @@ TEST(EliminationTree, RemovedVariablesComeInTheirEliminationOrder) {
 }
 
 TEST(EliminationTree, APartInTheMiddleCanBeTakenOutAndHungBack) {
-  forRandomTrees([](Scene& scene) {
+  forRandomTrees([](EliminatedGraph& scene) {
     const auto all = scene.cliques();
     const int middle = all[scene.world.below(all.size())];
     const int parent = scene.tree[middle].parent;
@@ -210,7 +210,7 @@ TEST(EliminationTree, APartInTheMiddleCanBeTakenOutAndHungBack) {
 }
 
 TEST(EliminationTree, RefreshingAPathTakesUpNewLinearModels) {
-  forRandomTrees([](Scene& scene) {
+  forRandomTrees([](EliminatedGraph& scene) {
     for (const VariableId v : scene.variables) {
       for (int i = 0; i < scene.graph.sizeOf(v); ++i) scene.graph[v].x[i] += scene.world.noise().gaussian(0.1);
       scene.graph.apply(v);
@@ -236,7 +236,7 @@ TEST(EliminationTree, RefreshingAPathTakesUpNewLinearModels) {
 }
 
 /// Adds J^T r of a factor to the rows of a front.
-void addGradient(const Scene& scene, FactorId f, const Eigen::VectorXd& r, const Clique& clique,
+void addGradient(const EliminatedGraph& scene, FactorId f, const Eigen::VectorXd& r, const Clique& clique,
                  std::vector<double>& change) {
   const auto term = scene.graph.term(f);
   const Eigen::VectorXd gradient = term.leftCols(term.cols() - 1).transpose() * r;
@@ -249,7 +249,7 @@ void addGradient(const Scene& scene, FactorId f, const Eigen::VectorXd& r, const
 }
 
 TEST(EliminationTree, ShiftingTheRightHandSideTakesUpNewResiduals) {
-  forRandomTrees([](Scene& scene) {
+  forRandomTrees([](EliminatedGraph& scene) {
     const auto factors = scene.graph.factors();
     for (int round = 0; round < 3; ++round) {
       const FactorId f = factors[scene.world.below(factors.size())];
@@ -275,7 +275,7 @@ TEST(EliminationTree, ShiftingTheRightHandSideTakesUpNewResiduals) {
 }
 
 TEST(EliminationTree, FindsTheCliquesThatHoldAVariable) {
-  forRandomTrees([](Scene& scene) {
+  forRandomTrees([](EliminatedGraph& scene) {
     for (const VariableId v : scene.variables) {
       std::vector<int> found, expected;
       scene.tree.appendCliquesWith(v, found);
@@ -287,7 +287,7 @@ TEST(EliminationTree, FindsTheCliquesThatHoldAVariable) {
 }
 
 TEST(EliminationTree, AMarginalIsTheSchurComplementOfItsFactors) {
-  forRandomTrees([](Scene& scene) {
+  forRandomTrees([](EliminatedGraph& scene) {
     const VariableId gone = scene.variables[scene.world.below(scene.variables.size())];
     std::vector<VariableId> neighbors;
     for (const FactorId f : scene.graph[gone].factors)

@@ -16,16 +16,11 @@ namespace {
 
 using Rows = std::vector<std::vector<int>>;
 
-std::size_t below(test::Noise& noise, std::size_t n) {
-  return static_cast<std::size_t>(noise.uniform(0, static_cast<double>(n) - 1e-9));
-}
-
 Rows randomRows(test::Noise& noise, int columns, int rows) {
   Rows result;
   for (int r = 0; r < rows; ++r) {
     std::set<int> entries;
-    for (std::size_t i = 0; i < 2 + below(noise, 2); ++i)
-      entries.insert(static_cast<int>(below(noise, static_cast<std::size_t>(columns))));
+    for (int i = 0; i < 2 + noise.below(2); ++i) entries.insert(noise.below(columns));
     result.emplace_back(entries.begin(), entries.end());
   }
   return result;
@@ -61,8 +56,8 @@ TEST(Ordering, IsAPermutation) {
   test::Noise noise(1);
   Ordering ordering;
   for (int i = 0; i < 200; ++i) {
-    const int columns = static_cast<int>(below(noise, 40));
-    const auto rows = columns == 0 ? Rows{} : randomRows(noise, columns, static_cast<int>(below(noise, 80)));
+    const int columns = noise.below(40);
+    const auto rows = columns == 0 ? Rows{} : randomRows(noise, columns, noise.below(80));
     auto order = ordered(ordering, columns, rows, std::vector<int>(static_cast<std::size_t>(columns), 0));
     std::ranges::sort(order);
     std::vector<int> all(static_cast<std::size_t>(columns));
@@ -75,10 +70,9 @@ TEST(Ordering, PutsHigherGroupsLater) {
   test::Noise noise(2);
   Ordering ordering;
   for (int i = 0; i < 200; ++i) {
-    const int columns = 1 + static_cast<int>(below(noise, 40));
+    const int columns = 1 + noise.below(40);
     std::vector<int> group(static_cast<std::size_t>(columns));
-    for (int& g : group)
-      g = static_cast<int>(below(noise, std::min<std::size_t>(3, static_cast<std::size_t>(columns))));
+    for (int& g : group) g = noise.below(std::min(3, columns));
     auto groups = ordered(ordering, columns, randomRows(noise, columns, 60), group);
     for (int& column : groups) column = group[column];
     EXPECT_THAT(groups, testing::WhenSorted(testing::ElementsAreArray(groups)));
@@ -90,8 +84,8 @@ TEST(Ordering, FillsLittleMoreThanTheBestOrder) {
   Ordering ordering;
   int total = 0, least = 0;
   for (int i = 0; i < 60; ++i) {
-    const int columns = 4 + static_cast<int>(below(noise, 4));
-    const auto rows = randomRows(noise, columns, columns + static_cast<int>(below(noise, 4)));
+    const int columns = 4 + noise.below(4);
+    const auto rows = randomRows(noise, columns, columns + noise.below(4));
     total += entriesOfR(columns, rows,
                         ordered(ordering, columns, rows, std::vector<int>(static_cast<std::size_t>(columns), 0)));
     std::vector<int> order(static_cast<std::size_t>(columns));
@@ -110,7 +104,7 @@ TEST(Ordering, EliminatesAChainWithoutFill) {
   std::vector<int> place(kColumns);
   std::iota(place.begin(), place.end(), 0);
   test::Noise noise(4);
-  for (std::size_t i = kColumns; --i > 0;) std::swap(place[i], place[below(noise, i + 1)]);
+  for (std::size_t i = kColumns; --i > 0;) std::swap(place[i], place[noise.below(i + 1)]);
   for (std::size_t i = 1; i < kColumns; ++i) chain.push_back({place[i - 1], place[i]});
   Ordering ordering;
   const auto order = ordered(ordering, kColumns, chain, std::vector<int>(kColumns, 0));

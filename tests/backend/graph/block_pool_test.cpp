@@ -18,10 +18,6 @@ struct Block {
   std::size_t doubles;
 };
 
-std::size_t below(test::Noise& noise, std::size_t n) {
-  return static_cast<std::size_t>(noise.uniform(0, static_cast<double>(n) - 1e-9));
-}
-
 TEST(BlockPool, BlocksBeginOnACacheLine) {
   BlockPool pool;
   for (const std::size_t doubles : {0, 1, 7, 8, 9, 63, 64, 65, 80, 81, 1000, 65536, 65537, 200000})
@@ -33,13 +29,13 @@ TEST(BlockPool, BlocksThatAreOutNeverOverlap) {
   test::Noise noise(1);
   std::vector<Block> out;
   for (int i = 0; i < 3000; ++i) {
-    if (!out.empty() && below(noise, 5) < 2) {
-      std::swap(out[below(noise, out.size())], out.back());
+    if (!out.empty() && noise.below(5) < 2) {
+      std::swap(out[noise.below(out.size())], out.back());
       pool.give(out.back().data);
       out.pop_back();
       continue;
     }
-    const std::size_t doubles = below(noise, 20) == 0 ? below(noise, 100000) : below(noise, 300);
+    const std::size_t doubles = noise.below(20) == 0 ? noise.below<std::size_t>(100000) : noise.below<std::size_t>(300);
     out.push_back({pool.take(doubles), doubles});
     std::fill_n(out.back().data, doubles, 1.0);  // the address sanitizer watches the chunks' ends
   }
@@ -52,7 +48,7 @@ TEST(BlockPool, GivesTheSameMemoryOutAgain) {
   test::Noise noise(2);
   std::vector<Block> out;
   for (int i = 0; i < 500; ++i) {
-    const std::size_t doubles = below(noise, 2000);
+    const std::size_t doubles = noise.below<std::size_t>(2000);
     out.push_back({pool.take(doubles), doubles});
   }
   const std::size_t held = pool.heldBytes(), used = pool.usedBytes();
@@ -86,9 +82,9 @@ TEST(BlockPool, HoldsLittleMoreThanTheLargestDemand) {
   constexpr std::size_t kLargest_bytes = 20'000'000;
   for (int i = 0; i < 60000; ++i) {
     const std::size_t usual = 100 + static_cast<std::size_t>(i / 1000 % 10) * 500,
-                      doubles = usual / 2 + below(noise, usual);
+                      doubles = usual / 2 + noise.below(usual);
     if (demand_bytes + doubles * sizeof(double) > kLargest_bytes) {
-      std::swap(out[below(noise, out.size())], out.back());
+      std::swap(out[noise.below(out.size())], out.back());
       pool.give(out.back().data);
       demand_bytes -= out.back().doubles * sizeof(double);
       out.pop_back();

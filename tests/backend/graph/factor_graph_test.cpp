@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "backend/graph/marginal_factor.hpp"
+#include "tests/backend/factor_differences.hpp"
 #include "tests/backend/random_factors.hpp"
 #include "tests/backend/unpacked.hpp"
 #include "tests/support/matchers.hpp"
@@ -12,10 +13,12 @@ namespace motorcade {
 namespace {
 
 using test::IsNear;
+using test::numericJacobian;
 using test::RandomWorld;
+using test::residualAt;
 
-constexpr double kRounding = 1e-9;  // of whitened residuals of some hundreds
-constexpr double kNumeric = 2e-4;   // of central differences with a step of 1e-6 on them
+constexpr double kResidualRounding = 1e-9;  // of whitened residuals of some hundreds
+constexpr double kNumeric = 2e-4;           // of central differences with a step of 1e-6 on them
 
 /// Four variables of a world, and factors between them.
 struct Scene {
@@ -56,31 +59,6 @@ struct Scene {
   std::vector<FactorId> factors;
 };
 
-Eigen::VectorXd residualAt(const Factor& factor, const std::vector<Value>& values) {
-  std::vector<const Value*> pointers;
-  for (const Value& value : values) pointers.push_back(&value);
-  Eigen::VectorXd r(factor.rows());
-  factor.residual(pointers, r);
-  return r;
-}
-
-/// Over steps of the factor's variables in the world's axes.
-Eigen::MatrixXd numericJacobian(const Factor& factor, const std::vector<Value>& values) {
-  constexpr double kStep = 1e-6;
-  Eigen::MatrixXd J(factor.rows(), 0);
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    for (int i = 0; i < dimension(values[k]); ++i) {
-      const SmallVector step = kStep * SmallVector::Unit(dimension(values[k]), i);
-      auto plus = values, minus = values;
-      plus[k] = displaced(values[k], step);
-      minus[k] = displaced(values[k], -step);
-      J.conservativeResize(Eigen::NoChange, J.cols() + 1);
-      J.col(J.cols() - 1) = (residualAt(factor, plus) - residualAt(factor, minus)) / (2 * kStep);
-    }
-  }
-  return J;
-}
-
 template <class Check>
 void forAllKinds(const Check& check) {
   for (const auto kind : RandomWorld::kKinds)
@@ -96,8 +74,8 @@ TEST(FactorGraph, ANewModelIsTheFactorToFirstOrderInStepsOfTheWorldsAxes) {
       const Factor& factor = scene.graph.factor(f);
       const auto values = scene.estimatesOf(factor);
       const auto term = scene.graph.term(f);
-      EXPECT_THAT(term.leftCols(term.cols() - 1), IsNear(numericJacobian(factor, values), kNumeric));
-      EXPECT_THAT(scene.modeled(f), IsNear(residualAt(factor, values), kRounding));
+      EXPECT_THAT(term.leftCols(term.cols() - 1), IsNear(numericJacobian(factor, values, displaced), kNumeric));
+      EXPECT_THAT(scene.modeled(f), IsNear(residualAt(factor, values), kResidualRounding));
     }
   });
 }
@@ -111,9 +89,9 @@ TEST(FactorGraph, AModelThatIsLinearizedAfterAMoveIsTheFactorThere) {
       const Factor& factor = scene.graph.factor(f);
       const auto values = scene.estimatesOf(factor);
       const auto term = scene.graph.term(f);
-      EXPECT_THAT(term.leftCols(term.cols() - 1), IsNear(numericJacobian(factor, values), kNumeric));
-      EXPECT_THAT(scene.modeled(f), IsNear(residualAt(factor, values), kRounding));
-      EXPECT_LT(scene.graph.mismatch(f).norm, kRounding);
+      EXPECT_THAT(term.leftCols(term.cols() - 1), IsNear(numericJacobian(factor, values, displaced), kNumeric));
+      EXPECT_THAT(scene.modeled(f), IsNear(residualAt(factor, values), kResidualRounding));
+      EXPECT_LT(scene.graph.mismatch(f).norm, kResidualRounding);
     }
   });
 }
@@ -124,8 +102,8 @@ TEST(FactorGraph, AFactorAddedAfterAMoveIsStatedInTheSameCoordinates) {
     for (const VariableId v : scene.variables) scene.graph.moveLinearizationPoint(v);
     const FactorId f = *scene.graph.addFactor(scene.world.between(scene.variables[0], scene.variables[2], true));
     EXPECT_THAT(scene.modeled(f),
-                IsNear(residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))), kRounding));
-    EXPECT_LT(scene.graph.mismatch(f).norm, kRounding);
+                IsNear(residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))), kResidualRounding));
+    EXPECT_LT(scene.graph.mismatch(f).norm, kResidualRounding);
   });
 }
 
@@ -136,9 +114,9 @@ TEST(FactorGraph, TheMismatchIsWhatTheModelMissesOfTheFactor) {
       const Eigen::VectorXd missed =
           residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))) - scene.modeled(f);
       const auto mismatch = scene.graph.mismatch(f);
-      EXPECT_NEAR(mismatch.norm, missed.norm(), kRounding);
+      EXPECT_NEAR(mismatch.norm, missed.norm(), kResidualRounding);
       ASSERT_EQ(static_cast<Eigen::Index>(mismatch.r.size()), missed.size());
-      for (Eigen::Index i = 0; i < missed.size(); ++i) EXPECT_NEAR(mismatch.r[i], missed[i], kRounding);
+      for (Eigen::Index i = 0; i < missed.size(); ++i) EXPECT_NEAR(mismatch.r[i], missed[i], kResidualRounding);
     }
   });
 }
@@ -165,7 +143,7 @@ TEST(FactorGraph, ACorrectedModelMeetsTheFactorWithItsFormerJacobian) {
       const Eigen::MatrixXd before = term.leftCols(term.cols() - 1);
       const auto mismatch = scene.graph.mismatch(f);
       scene.graph.correctResidual(f, mismatch.r);
-      EXPECT_LT(scene.graph.mismatch(f).norm, kRounding);
+      EXPECT_LT(scene.graph.mismatch(f).norm, kResidualRounding);
       EXPECT_EQ(before, scene.graph.term(f).leftCols(before.cols()));
     }
   });
@@ -178,13 +156,13 @@ TEST(FactorGraph, RestartingTheCoordinatesKeepsTheEstimates) {
     for (const VariableId v : scene.variables) before.push_back(scene.graph.estimate(v));
     scene.graph.restartCoordinates();
     for (std::size_t i = 0; i < before.size(); ++i) {
-      EXPECT_LT(local(before[i], scene.graph.estimate(scene.variables[i])).norm(), kRounding);
+      EXPECT_LT(local(before[i], scene.graph.estimate(scene.variables[i])).norm(), kResidualRounding);
       EXPECT_EQ(scene.graph[scene.variables[i]].x, FactorGraph::Coordinates{});
     }
     for (const FactorId f : scene.factors) {
       scene.graph.linearize(f);
-      EXPECT_THAT(scene.modeled(f),
-                  IsNear(residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))), kRounding));
+      EXPECT_THAT(scene.modeled(f), IsNear(residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))),
+                                           kResidualRounding));
     }
   });
 }
@@ -246,7 +224,7 @@ TEST(FactorGraph, AMarginalPriorsModelHasTheGradientOfItsCost) {
     for (double& entry : root.reshaped()) entry = scene.world.noise().gaussian();
     const Eigen::MatrixXd information = root.transpose() * root;
     const FactorId f = *scene.graph.addFactor(std::make_unique<MarginalFactor>(scene.variables, values, information));
-    EXPECT_LT(scene.graph.mismatch(f).norm, kRounding);
+    EXPECT_LT(scene.graph.mismatch(f).norm, kResidualRounding);
     const auto cost = [&](const std::vector<Value>& at) {
       Eigen::VectorXd e(n + 1);
       Eigen::Index row = 0;
@@ -287,7 +265,7 @@ TEST(FactorGraph, TheTotalCostIsTheSumOfTheSquaredResiduals) {
       scene.graph.mismatch(f);
       expected += residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))).squaredNorm();
     }
-    EXPECT_NEAR(scene.graph.totalCost(), expected, kRounding * expected);
+    EXPECT_NEAR(scene.graph.totalCost(), expected, kResidualRounding * expected);
   });
 }
 
@@ -300,7 +278,7 @@ TEST(FactorGraph, TheTurnSinceLinearizationIsTheAngle) {
     scene->graph[v].x[planar ? 2 : 4] += 0.3;
     scene->graph[v].x[0] += 5;
     scene->graph.apply(v);
-    EXPECT_NEAR(scene->graph.turnSinceLinearization(v), 0.3, kRounding);
+    EXPECT_NEAR(scene->graph.turnSinceLinearization(v), 0.3, kResidualRounding);
     scene->graph.moveLinearizationPoint(v);
     EXPECT_NEAR(scene->graph.turnSinceLinearization(v), 0, 1e-7);
   }

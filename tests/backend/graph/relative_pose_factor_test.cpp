@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "backend/graph/held_end_factor.hpp"
+#include "tests/backend/factor_differences.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/noise.hpp"
 
@@ -15,33 +16,11 @@ namespace {
 
 using test::IsNear;
 using test::Noise;
+using test::numericJacobian;
 
 constexpr VariableId kI{0}, kJ{1};
 constexpr double kTol = 1e-5;  // of central differences with a step of 1e-6, on whitened residuals of up to a hundred
-constexpr double kRounding = 1e-9;  // of some dozen operations on numbers of up to a thousand
-
-/// Of the whitened residual over the stacked perturbations of the values.
-Eigen::MatrixXd numericJacobian(const Factor& factor, const std::vector<Value>& values) {
-  constexpr double kStep = 1e-6;
-  const auto residual = [&](std::size_t moved, const SmallVector& delta) {
-    std::vector<Value> at = values;
-    at[moved] = retract(values[moved], delta);
-    std::vector<const Value*> pointers;
-    for (const Value& value : at) pointers.push_back(&value);
-    Eigen::VectorXd r(factor.rows());
-    factor.residual(pointers, r);
-    return r;
-  };
-  const int size = dimension(values.front());
-  Eigen::MatrixXd J(factor.rows(), size * static_cast<int>(values.size()));
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    for (int i = 0; i < size; ++i) {
-      const SmallVector step = kStep * SmallVector::Unit(size, i);
-      J.col(size * static_cast<int>(k) + i) = (residual(k, step) - residual(k, -step)) / (2 * kStep);
-    }
-  }
-  return J;
-}
+constexpr double kFactorRounding = 1e-9;  // of some dozen operations on numbers of up to a thousand
 
 /// Jacobians against finite differences, both residuals against each other, the cost against e^T Omega e.
 void checkFactor(const Factor& factor, const std::vector<Value>& values, const Eigen::VectorXd& e,
@@ -54,9 +33,9 @@ void checkFactor(const Factor& factor, const std::vector<Value>& values, const E
   Eigen::VectorXd r(factor.rows());
   factor.residual(pointers, r);
   EXPECT_THAT(term.leftCols(columns), IsNear(numericJacobian(factor, values), kTol));
-  EXPECT_THAT(term.col(columns), IsNear(r, kRounding));
+  EXPECT_THAT(term.col(columns), IsNear(r, kFactorRounding));
   const double cost = e.dot(information * e);
-  EXPECT_NEAR(r.squaredNorm(), cost, kRounding * (1 + cost));
+  EXPECT_NEAR(r.squaredNorm(), cost, kFactorRounding * (1 + cost));
 }
 
 Vector6d randomTwist(Noise& noise, double angle_rad) {

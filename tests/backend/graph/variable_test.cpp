@@ -13,7 +13,7 @@ namespace {
 using test::IsNear;
 using test::Noise;
 
-constexpr double kRounding = 1e-12;  // of a few operations on numbers of order one
+constexpr double kValueRounding = 1e-12;  // of a few operations on numbers of order one
 
 SmallVector randomVector(Noise& noise, int size, double sigma) {
   SmallVector v(size);
@@ -47,9 +47,9 @@ TEST(Variable, RetractAndLocalAreInverse) {
   for (int i = 0; i < 50; ++i) {
     const auto from = randomValues(noise), to = randomValues(noise);
     for (std::size_t k = 0; k < from.size(); ++k) {
-      EXPECT_LT(difference(retract(from[k], local(from[k], to[k])), to[k]), kRounding);
+      EXPECT_LT(difference(retract(from[k], local(from[k], to[k])), to[k]), kValueRounding);
       const SmallVector delta = randomVector(noise, dimension(from[k]), 0.5);
-      EXPECT_THAT(local(from[k], retract(from[k], delta)), IsNear(delta, kRounding));
+      EXPECT_THAT(local(from[k], retract(from[k], delta)), IsNear(delta, kValueRounding));
     }
   }
 }
@@ -59,9 +59,9 @@ TEST(Variable, DisplacedAndDisplacementAreInverse) {
   for (int i = 0; i < 50; ++i) {
     const auto from = randomValues(noise), to = randomValues(noise);
     for (std::size_t k = 0; k < from.size(); ++k) {
-      EXPECT_LT(difference(displaced(from[k], displacement(from[k], to[k])), to[k]), kRounding);
+      EXPECT_LT(difference(displaced(from[k], displacement(from[k], to[k])), to[k]), kValueRounding);
       const SmallVector step = randomVector(noise, dimension(from[k]), 0.5);  // turns by less than half a turn
-      EXPECT_THAT(displacement(from[k], displaced(from[k], step)), IsNear(step, kRounding));
+      EXPECT_THAT(displacement(from[k], displaced(from[k], step)), IsNear(step, kValueRounding));
     }
   }
 }
@@ -71,19 +71,19 @@ TEST(Variable, AStepIsInTheWorldsAxesAndTurnsAPoseAboutItsOrigin) {
   SmallVector step(6);
   step << 1, 2, 3, 0, 0, std::numbers::pi / 2;
   const auto moved = std::get<SE3>(displaced(pose, step));
-  EXPECT_THAT(moved.translation(), IsNear(Eigen::Vector3d(5, 7, 9), kRounding));
+  EXPECT_THAT(moved.translation(), IsNear(Eigen::Vector3d(5, 7, 9), kValueRounding));
   const Eigen::Vector3d ahead = pose.rotation().col(0);  // turned about the world's z axis
-  EXPECT_THAT(moved.rotation().col(0), IsNear(Eigen::Vector3d(-ahead.y(), ahead.x(), ahead.z()), kRounding));
+  EXPECT_THAT(moved.rotation().col(0), IsNear(Eigen::Vector3d(-ahead.y(), ahead.x(), ahead.z()), kValueRounding));
 
   const SE2 planar(0.4, {1, 2});
   const auto moved_planar = std::get<SE2>(displaced(planar, Eigen::Vector3d(3, 4, 0.5)));
-  EXPECT_THAT(moved_planar.translation(), IsNear(Eigen::Vector2d(4, 6), kRounding));
-  EXPECT_NEAR(moved_planar.angle_rad(), 0.9, kRounding);
+  EXPECT_THAT(moved_planar.translation(), IsNear(Eigen::Vector2d(4, 6), kValueRounding));
+  EXPECT_NEAR(moved_planar.angle_rad(), 0.9, kValueRounding);
 }
 
 TEST(Variable, ADisplacementInThePlaneTakesTheShortWayRound) {
   const SmallVector step = displacement(SE2(3.1, {0, 0}), SE2(-3.1, {0, 0}));
-  EXPECT_NEAR(step[2], 2 * std::numbers::pi - 6.2, kRounding);
+  EXPECT_NEAR(step[2], 2 * std::numbers::pi - 6.2, kValueRounding);
 }
 
 /// Many small steps must not take a rotation off SO(3).

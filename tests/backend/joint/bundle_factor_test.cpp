@@ -6,15 +6,15 @@
 #include <gtest/gtest.h>
 
 #include "tests/backend/unpacked.hpp"
+#include "tests/support/stereo_views.hpp"
 
 namespace motorcade {
 namespace {
 
-const StereoCamera kCamera{
-    .fx_px = 720, .fy_px = 720, .cx_px = 620, .cy_px = 188, .baseline_m = 0.54, .width_px = 1242, .height_px = 376};
+using test::kRig;
 
 /// A body seen in a few frames by a camera that moves, with the values of the factor's variables.
-struct Scene {
+struct BodyInFewFrames {
   static constexpr int kFrames = 4, kLandmarks = 12;
   std::vector<Value> values;
   std::unique_ptr<BundleFactor> factor;
@@ -22,7 +22,7 @@ struct Scene {
   LandmarkNoise noise;
   FramePose pose;
 
-  Scene(bool moving, double noise_px, LandmarkNoise landmark_noise, unsigned seed)
+  BodyInFewFrames(bool moving, double noise_px, LandmarkNoise landmark_noise, unsigned seed)
       : pose(moving ? FramePose::kCamBody : FramePose::kWorldCam) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal(0, 1);
@@ -41,7 +41,7 @@ struct Scene {
       const Eigen::Vector3d p_body = T[0].inverse() * (x[0] * p_cam);
       for (int k = 0; k < kFrames; ++k) {
         if (j % 4 == k) continue;
-        Eigen::Vector3d uvd_px = *kCamera.project(x[k].inverse() * (T[k] * p_body));
+        Eigen::Vector3d uvd_px = *kRig.project(x[k].inverse() * (T[k] * p_body));
         uvd_px.z() -= offset_px;
         for (double& value : uvd_px) value += noise_px * normal(random);
         landmarks.views.push_back({k, uvd_px, {4, 4, 3}});
@@ -58,12 +58,12 @@ struct Scene {
     values.emplace_back(SmallVector(SmallVector::Constant(1, offset_px)));
     factor = std::make_unique<BundleFactor>(
         variables, VariableId{kFrames},
-        eliminateLandmarks(kCamera, landmark_noise, landmarks, pose, T_cam_body, offset_px));
+        eliminateLandmarks(kRig, landmark_noise, landmarks, pose, T_cam_body, offset_px));
     noise = landmark_noise;
   }
   /// Of the landmarks fitted anew at the present values.
   double freshCost() const {
-    const auto fresh = eliminateLandmarks(kCamera, noise, landmarks, pose, factor->posesFromCamera(pointers()),
+    const auto fresh = eliminateLandmarks(kRig, noise, landmarks, pose, factor->posesFromCamera(pointers()),
                                           std::get<SmallVector>(values.back())[0]);
     return fresh.system.g_c[fresh.system.g_c.size() - 1];
   }
@@ -95,19 +95,19 @@ struct Scene {
 class BundleFactorOf : public testing::TestWithParam<bool> {};
 
 TEST_P(BundleFactorOf, NoResidualsAtTheTruth) {
-  const Scene scene(GetParam(), 0, {}, 1);
+  const BodyInFewFrames scene(GetParam(), 0, {}, 1);
   const Eigen::MatrixXd term = scene.linearize();
   EXPECT_LT(scene.cost(), 1e-12);
   EXPECT_LT(term.row(scene.dimension()).norm(), 1e-6);
 }
 
 TEST_P(BundleFactorOf, GradientMatchesFiniteDifferencesOfTheCost) {
-  Scene scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2);
+  BodyInFewFrames scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2);
   const Eigen::MatrixXd term = scene.linearize();
   for (int i = 0; i < scene.dimension(); ++i) {
     constexpr double kStep = 1e-4;
-    Scene plus = Scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2),
-          minus = Scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2);
+    BodyInFewFrames plus = BodyInFewFrames(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2),
+                    minus = BodyInFewFrames(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 2);
     plus.move(i, kStep), minus.move(i, -kStep);
     const double numeric = (plus.freshCost() - minus.freshCost()) / (4 * kStep);
     EXPECT_NEAR(term(scene.dimension(), i), numeric, 1e-3 * (1 + std::abs(numeric))) << i;
@@ -117,14 +117,14 @@ TEST_P(BundleFactorOf, GradientMatchesFiniteDifferencesOfTheCost) {
 }
 
 TEST_P(BundleFactorOf, TheQuadraticHoldsAwayFromItsLinearization) {
-  Scene scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 3);
+  BodyInFewFrames scene(GetParam(), 0.2, {.loss = RobustLoss::kNone}, 3);
   const double before = scene.cost();
   for (int i = 0; i < scene.dimension(); ++i) scene.move(i, i % 2 == 0 ? 2e-3 : -1e-3);
   EXPECT_NEAR(scene.cost(), scene.freshCost(), 0.02 * std::abs(scene.freshCost() - before));
 }
 
 TEST_P(BundleFactorOf, HoldsTheSystemWhereItWasLinearized) {
-  Scene scene(GetParam(), 0.2, {}, 8);
+  BodyInFewFrames scene(GetParam(), 0.2, {}, 8);
   const Quadratic* const held = scene.factor->heldModel(scene.pointers());
   ASSERT_TRUE(held);
   const Eigen::MatrixXd at = test::unpacked(*held);
@@ -137,7 +137,7 @@ TEST_P(BundleFactorOf, HoldsTheSystemWhereItWasLinearized) {
 }
 
 TEST_P(BundleFactorOf, TheGradientAloneIsThatOfTheSystem) {
-  Scene scene(GetParam(), 0.2, {}, 5);
+  BodyInFewFrames scene(GetParam(), 0.2, {}, 5);
   for (int i = 0; i < scene.dimension(); ++i) scene.move(i, 1e-2);
   Eigen::VectorXd gradient(scene.factor->rows());
   scene.factor->gradient(scene.pointers(), gradient);
@@ -146,7 +146,7 @@ TEST_P(BundleFactorOf, TheGradientAloneIsThatOfTheSystem) {
 }
 
 TEST_P(BundleFactorOf, KnowsNothingOfWhereTheWholeIs) {
-  Scene scene(GetParam(), 0.2, {}, 4);
+  BodyInFewFrames scene(GetParam(), 0.2, {}, 4);
   const double before = scene.cost();
   const SE3 elsewhere(expSO3({0.4, -1, 2}), {100, -30, 7});
   for (Value& value : scene.values)
@@ -156,16 +156,16 @@ TEST_P(BundleFactorOf, KnowsNothingOfWhereTheWholeIs) {
 
 /// An error of all points in one half of the image, in one frame after the other to either side.
 TEST_P(BundleFactorOf, SeesResidualsThatHaveACauseInCommon) {
-  Scene scene(GetParam(), 0.1, {}, 6);
+  BodyInFewFrames scene(GetParam(), 0.1, {}, 6);
   const auto commonShare = [&] {
-    const auto levels = eliminateLandmarks(kCamera, {.loss = RobustLoss::kNone}, scene.landmarks, scene.pose,
+    const auto levels = eliminateLandmarks(kRig, {.loss = RobustLoss::kNone}, scene.landmarks, scene.pose,
                                            scene.factor->posesFromCamera(scene.pointers()), 0.3)
                             .levels;
     return levels.common_sum / (levels.uv_sum + levels.d_sum);
   };
   const double independent = commonShare();
   for (LandmarkView& view : scene.landmarks.views)
-    if (view.uvd_px.x() < 0.5 * kCamera.width_px) view.uvd_px.y() += view.frame % 2 == 0 ? 0.5 : -0.5;
+    if (view.uvd_px.x() < 0.5 * kRig.width_px) view.uvd_px.y() += view.frame % 2 == 0 ? 0.5 : -0.5;
   EXPECT_LT(independent, 1);
   EXPECT_GT(commonShare(), 1.5);
 }
@@ -175,7 +175,7 @@ Eigen::MatrixXd eliminatedOneByOne(const LandmarkViews& landmarks, const Landmar
                                    const EliminatedLandmarks& at) {
   const auto n = static_cast<Eigen::Index>(6 * at.T_cam_body.size());
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + 2, n + 2);
-  LandmarkFit fit(kCamera, noise, at.pose, at.T_cam_body, at.offset_px);
+  LandmarkFit fit(kRig, noise, at.pose, at.T_cam_body, at.offset_px);
   for (int j = 0; j < landmarks.count(); ++j) {
     const auto views = landmarks.of(j);
     if (!fit(views)) continue;
@@ -196,7 +196,7 @@ Eigen::MatrixXd eliminatedOneByOne(const LandmarkViews& landmarks, const Landmar
 
 TEST_P(BundleFactorOf, ManyLandmarksAreEliminatedAsOneByOne) {
   constexpr int kTimes = 5;  // more than are subtracted at a time
-  const Scene scene(GetParam(), 0.5, {}, 6);
+  const BodyInFewFrames scene(GetParam(), 0.5, {}, 6);
   LandmarkViews many;
   for (int time = 0; time < kTimes; ++time)
     for (int j = 0; j < scene.landmarks.count(); ++j) {
@@ -206,19 +206,19 @@ TEST_P(BundleFactorOf, ManyLandmarksAreEliminatedAsOneByOne) {
       many.first_view.push_back(static_cast<int>(many.views.size()));
     }
   const EliminatedLandmarks& at = scene.factor->landmarks();
-  const auto eliminated = eliminateLandmarks(kCamera, {}, many, at.pose, at.T_cam_body, at.offset_px);
+  const auto eliminated = eliminateLandmarks(kRig, {}, many, at.pose, at.T_cam_body, at.offset_px);
   const Eigen::MatrixXd expected = eliminatedOneByOne(many, {}, at);
   EXPECT_LT((test::unpacked(eliminated.system) - expected).norm(), 1e-10 * expected.norm());
 }
 
 /// Robust weights follow slowly: fits from the estimate before come nearer.
 TEST_P(BundleFactorOf, LandmarksThatWereFoundBeforeAreFoundBetter) {
-  const Scene scene(GetParam(), 0.3, {}, 7);
+  const BodyInFewFrames scene(GetParam(), 0.3, {}, 7);
   LandmarkViews landmarks = scene.landmarks;
   const EliminatedLandmarks& at = scene.factor->landmarks();
   std::vector<Eigen::MatrixXd> systems;
   for (int time = 0; time < 40; ++time) {
-    auto eliminated = eliminateLandmarks(kCamera, {}, landmarks, at.pose, at.T_cam_body, at.offset_px);
+    auto eliminated = eliminateLandmarks(kRig, {}, landmarks, at.pose, at.T_cam_body, at.offset_px);
     systems.push_back(test::unpacked(eliminated.system));
     landmarks.before = std::move(eliminated.estimates);
   }

@@ -14,10 +14,8 @@ namespace motorcade {
 namespace {
 
 using test::kPointRig;
+using test::kStreet;
 using test::PointDrive;
-
-const PointDrive::Options kStreet{.static_points = 150,
-                                  .drive = {.odometry_sigma_m = 0.02, .odometry_sigma_rad = 0.001}};
 
 /// Mean distance of the camera from where it was.
 double cameraError_m(const std::vector<FrameEstimate>& finals, const test::SimulatedDrive& truth) {

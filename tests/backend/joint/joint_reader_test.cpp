@@ -13,10 +13,8 @@ namespace motorcade {
 namespace {
 
 using test::kPointRig;
+using test::kStreet;
 using test::PointDrive;
-
-const PointDrive::Options kStreet{.static_points = 150,
-                                  .drive = {.odometry_sigma_m = 0.02, .odometry_sigma_rad = 0.001}};
 
 /// Mean normalized error of the camera's motion over ten frames.
 double cameraNees(const PointDrive::Options& options) {

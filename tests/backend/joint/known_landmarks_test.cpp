@@ -8,24 +8,24 @@
 #include "backend/graph/variable.hpp"
 #include "tests/backend/unpacked.hpp"
 #include "tests/support/matchers.hpp"
+#include "tests/support/stereo_views.hpp"
 
 namespace motorcade {
 namespace {
 
 using test::IsNear;
+using test::kRig;
 
-const StereoCamera kCamera{
-    .fx_px = 720, .fy_px = 720, .cx_px = 620, .cy_px = 188, .baseline_m = 0.54, .width_px = 1242, .height_px = 376};
 const Eigen::Vector3d kInverseSigma(4, 4, 3);
 const LandmarkNoise kNoise{.loss = RobustLoss::kNone, .shared_disparity_sigma_px = 0.5};
 constexpr double kOffset_px = 0.3;
 
 /// Points at rest that a camera on its way sees twice, without noise.
-struct Scene {
+struct PointsSeenTwice {
   std::array<SE3, 2> T_cam_world;
   std::vector<std::array<Eigen::Vector3d, 2>> uvd_px;
 
-  explicit Scene(int points = 30) {
+  explicit PointsSeenTwice(int points = 30) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(-1, 1);
     const SE3 x_first(expSO3({0.1, 0.2, 0.3}), {5, 1, 2});
@@ -33,13 +33,13 @@ struct Scene {
     T_cam_world = {x_first.inverse(), (x_first * motion).inverse()};
     for (int j = 0; j < points; ++j) {
       const Eigen::Vector3d p_first(6 * uniform(random), 2 * uniform(random), 16 + 8 * uniform(random));
-      uvd_px.push_back({*kCamera.project(p_first), *kCamera.project(motion.inverse() * p_first)});
+      uvd_px.push_back({*kRig.project(p_first), *kRig.project(motion.inverse() * p_first)});
       for (Eigen::Vector3d& view : uvd_px.back()) view.z() -= kOffset_px;
     }
   }
   std::vector<ViewOfKnown> views() const {
     std::vector<ViewOfKnown> views;
-    LandmarkFit fit(kCamera, kNoise, FramePose::kWorldCam, T_cam_world, kOffset_px);
+    LandmarkFit fit(kRig, kNoise, FramePose::kWorldCam, T_cam_world, kOffset_px);
     for (const auto& [first, last] : uvd_px) {
       const LandmarkView view{0, first, kInverseSigma};
       EXPECT_TRUE(fit(std::span(&view, 1)));
@@ -48,19 +48,19 @@ struct Scene {
     return views;
   }
   EliminatedLandmarks align(const std::array<SE3, 2>& poses) const {
-    return alignToKnown(kCamera, kNoise, views(), poses, kOffset_px);
+    return alignToKnown(kRig, kNoise, views(), poses, kOffset_px);
   }
 };
 
 /// A landmark that one view has told, and whose second view is a measurement: that is the elimination of two views.
 TEST(KnownLandmarks, TellWhatTheEliminationOfTwoViewsDoes) {
-  const Scene scene;
+  const PointsSeenTwice scene;
   LandmarkViews landmarks;
   for (const auto& views : scene.uvd_px) {
     for (int k = 0; k < 2; ++k) landmarks.views.push_back({k, views[k], kInverseSigma});
     landmarks.first_view.push_back(static_cast<int>(landmarks.views.size()));
   }
-  const auto eliminated = eliminateLandmarks(kCamera, kNoise, landmarks, FramePose::kWorldCam,
+  const auto eliminated = eliminateLandmarks(kRig, kNoise, landmarks, FramePose::kWorldCam,
                                              {scene.T_cam_world[0], scene.T_cam_world[1]}, kOffset_px);
   const Matrix6d H = test::unpacked(eliminated.system).topLeftCorner<6, 6>(),
                  of_known = test::unpacked(scene.align(scene.T_cam_world).system).topLeftCorner<6, 6>();
@@ -68,7 +68,7 @@ TEST(KnownLandmarks, TellWhatTheEliminationOfTwoViewsDoes) {
 }
 
 TEST(KnownLandmarks, GiveBackTheMotion) {
-  const Scene scene;
+  const PointsSeenTwice scene;
   const Vector6d displacement = (Vector6d() << 0.02, -0.01, 0.05, 0.002, -0.001, 0.003).finished();
   const Value x_first = scene.T_cam_world[0].inverse();
   const auto aligned = scene.align({std::get<SE3>(displaced(x_first, -displacement)).inverse(), scene.T_cam_world[1]});
@@ -80,24 +80,24 @@ TEST(KnownLandmarks, GiveBackTheMotion) {
 }
 
 TEST(KnownLandmarks, CountLessWhereTheyAreKnownLess) {
-  const Scene scene;
+  const PointsSeenTwice scene;
   std::vector<ViewOfKnown> sure = scene.views();
   for (ViewOfKnown& view : sure) view.landmark.covariance *= 0.1;
   const Matrix6d H = test::unpacked(scene.align(scene.T_cam_world).system).topLeftCorner<6, 6>();
   const Matrix6d more =
-      test::unpacked(alignToKnown(kCamera, kNoise, sure, scene.T_cam_world, kOffset_px).system).topLeftCorner<6, 6>();
+      test::unpacked(alignToKnown(kRig, kNoise, sure, scene.T_cam_world, kOffset_px).system).topLeftCorner<6, 6>();
   EXPECT_GT((more - H).llt().matrixL().toDenseMatrix().diagonal().minCoeff(), 0);
   EXPECT_GT(more(2, 2), 2 * H(2, 2));
 }
 
 TEST(KnownLandmarks, BehindTheCameraAreLeftOut) {
-  const Scene scene(1);
+  const PointsSeenTwice scene(1);
   std::vector<ViewOfKnown> views = scene.views();
   const SE3 beyond = SE3(Eigen::Matrix3d::Identity(), {0, 0, -100}) * scene.T_cam_world[1];
-  const auto behind = alignToKnown(kCamera, kNoise, views, {scene.T_cam_world[0], beyond}, kOffset_px);
+  const auto behind = alignToKnown(kRig, kNoise, views, {scene.T_cam_world[0], beyond}, kOffset_px);
   EXPECT_EQ(test::unpacked(behind.system).norm(), 0);
   views[0].landmark.unknowns[2] = 0;
-  EXPECT_EQ(test::unpacked(alignToKnown(kCamera, kNoise, views, scene.T_cam_world, kOffset_px).system).norm(), 0);
+  EXPECT_EQ(test::unpacked(alignToKnown(kRig, kNoise, views, scene.T_cam_world, kOffset_px).system).norm(), 0);
 }
 
 }  // namespace

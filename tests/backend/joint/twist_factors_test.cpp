@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "tests/backend/factor_differences.hpp"
 #include "tests/backend/random_graphs.hpp"
 #include "tests/support/matchers.hpp"
 
@@ -10,39 +11,13 @@ namespace motorcade {
 namespace {
 
 using test::IsNear;
+using test::numericJacobian;
+using test::pointersTo;
 using test::RandomPoses;
+using test::residualAt;
 
 constexpr double kDt_s = 0.1;
 const Vector6d kDensity = (Vector6d() << 2, 0.3, 0.1, 0.01, 0.01, 0.05).finished();
-
-std::vector<const Value*> pointersTo(const std::vector<Value>& values) {
-  std::vector<const Value*> pointers;
-  for (const Value& value : values) pointers.push_back(&value);
-  return pointers;
-}
-
-Eigen::VectorXd residualOf(const Factor& factor, const std::vector<Value>& values) {
-  Eigen::VectorXd r(factor.rows());
-  factor.residual(pointersTo(values), r);
-  return r;
-}
-
-/// Central differences of the residual, variable by variable.
-Eigen::MatrixXd numericJacobian(const Factor& factor, const std::vector<Value>& values) {
-  constexpr double kStep = 1e-6;
-  Eigen::MatrixXd J(factor.rows(), 0);
-  for (std::size_t k = 0; k < values.size(); ++k)
-    for (int i = 0; i < dimension(values[k]); ++i) {
-      SmallVector step = SmallVector::Zero(dimension(values[k]));
-      step[i] = kStep;
-      auto plus = values, minus = values;
-      plus[k] = retract(values[k], step);
-      minus[k] = retract(values[k], -step);
-      J.conservativeResize(Eigen::NoChange, J.cols() + 1);
-      J.rightCols<1>() = (residualOf(factor, plus) - residualOf(factor, minus)) / (2 * kStep);
-    }
-  return J;
-}
 
 void expectJacobianOfResidual(const Factor& factor, const std::vector<Value>& values) {
   const Eigen::MatrixXd numeric = numericJacobian(factor, values);
@@ -50,7 +25,7 @@ void expectJacobianOfResidual(const Factor& factor, const std::vector<Value>& va
   factor.linearize(pointersTo(values), term);
   const double scale = numeric.cwiseAbs().maxCoeff();
   EXPECT_THAT(Eigen::MatrixXd(term.leftCols(numeric.cols()) / scale), IsNear(Eigen::MatrixXd(numeric / scale), 1e-5));
-  EXPECT_THAT(Eigen::VectorXd(term.rightCols<1>()), IsNear(residualOf(factor, values), 1e-9));
+  EXPECT_THAT(Eigen::VectorXd(term.rightCols<1>()), IsNear(residualAt(factor, values), 1e-9));
 }
 
 /// A vehicle on an arc of constant twist, seen from a moving camera: (c_a, w, c_b, w, x_a, x_b).
@@ -72,7 +47,7 @@ TEST(ConstantTwistFactor, HasNoResidualOnAnArc) {
   RandomPoses random(1);
   const std::vector<Value> values = arc(random);
   const ConstantTwistFactor factor(variables(true), SE3{}, kDt_s, kDensity);
-  EXPECT_LT(residualOf(factor, values).norm(), 1e-6);
+  EXPECT_LT(residualAt(factor, values).norm(), 1e-6);
 }
 
 TEST(ConstantTwistFactor, JacobianMatchesFiniteDifferences) {
@@ -97,7 +72,7 @@ TEST(ConstantTwistFactor, WhitensByTheIntegratedNoise) {
   Vector6d moved = Vector6d::Zero(), changed = Vector6d::Zero();
   moved[1] = error[0], changed[1] = error[1];
   const std::vector<Value> values{SE3{}, SmallVector(Vector6d::Zero()), SE3::exp(moved), SmallVector(changed)};
-  EXPECT_NEAR(residualOf(factor, values).squaredNorm(), error.dot(Q.inverse() * error) / kDensity[1], 1e-6);
+  EXPECT_NEAR(residualAt(factor, values).squaredNorm(), error.dot(Q.inverse() * error) / kDensity[1], 1e-6);
 }
 
 /// Noise along the axes of travel is that along the body's of the same motion in axes that are turned.
@@ -112,8 +87,8 @@ TEST(ConstantTwistFactor, TakesTheNoiseAlongTheAxesOfTravel) {
   for (const int k : {1, 3}) turned[k] = SmallVector(turn.inverse().adjoint() * std::get<SmallVector>(values[k]));
   const ConstantTwistFactor plain(variables(false), SE3{}, kDt_s, kDensity),
       along_travel(variables(false), SE3{}, kDt_s, kDensity, turn.rotation());
-  EXPECT_THAT(residualOf(along_travel, values), IsNear(residualOf(plain, turned), 1e-6));
-  EXPECT_GT((residualOf(plain, values) - residualOf(plain, turned)).norm(), 1);
+  EXPECT_THAT(residualAt(along_travel, values), IsNear(residualAt(plain, turned), 1e-6));
+  EXPECT_GT((residualAt(plain, values) - residualAt(plain, turned)).norm(), 1);
   expectJacobianOfResidual(along_travel, values);
 }
 
@@ -132,18 +107,18 @@ TEST(RollingFactor, HasNoResidualWhereTheRearAxleDoesNotSlip) {
   const Eigen::Matrix3d R = travelAxes(travel);
   Vector6d w;
   w << R * along_travel.head<3>(), R * along_travel.tail<3>();
-  EXPECT_LT(residualOf(factor, {SmallVector(w), SmallVector(travel)}).norm(), 1e-12);
+  EXPECT_LT(residualAt(factor, {SmallVector(w), SmallVector(travel)}).norm(), 1e-12);
   for (int k = 0; k < 3; ++k) {
     Eigen::Vector3d other = travel;
     other[k] *= -1;
-    EXPECT_GT(residualOf(factor, {SmallVector(w), SmallVector(other)}).norm(), 1) << k;
+    EXPECT_GT(residualAt(factor, {SmallVector(w), SmallVector(other)}).norm(), 1) << k;
   }
 }
 
 TEST(VectorPriorFactor, CountsInStandardDeviations) {
   const VectorPriorFactor factor({0}, SmallVector::Constant(2, 1.0), SmallVector::Constant(2, 0.5));
   const std::vector<Value> values{SmallVector(SmallVector::Constant(2, 2.0))};
-  EXPECT_THAT(residualOf(factor, values), IsNear(Eigen::VectorXd(Eigen::VectorXd::Constant(2, 2.0)), 1e-12));
+  EXPECT_THAT(residualAt(factor, values), IsNear(Eigen::VectorXd(Eigen::VectorXd::Constant(2, 2.0)), 1e-12));
   expectJacobianOfResidual(factor, values);
 }
 

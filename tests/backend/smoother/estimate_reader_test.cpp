@@ -20,15 +20,15 @@ using test::SimulatedDrive;
 using testing::Each;
 using testing::Field;
 
-constexpr int kFrames = 16;
-constexpr FrameId kLast{kFrames - 1};
+constexpr int kReadFrames = 16;
+constexpr FrameId kLast{kReadFrames - 1};
 
-/// A drive of `kFrames` frames in a graph, changed by `change` frame by frame.
+/// A drive of `kReadFrames` frames in a graph, changed by `change` frame by frame.
 class EstimateReaderTest : public testing::Test {
  protected:
   void drive(const SimulatedDrive::Options& options = {}) {
     SimulatedDrive drive(8, options);
-    for (int frame = 0; frame < kFrames; ++frame) {
+    for (int frame = 0; frame < kReadFrames; ++frame) {
       FrameMeasurements measurements = *drive.measure(frame);
       change_(frame, measurements);
       graph_.add(measurements);
@@ -187,7 +187,7 @@ TEST_F(EstimateReaderTest, VelocityAndYawRateAreExactOnAnArcOfConstantSpeed) {
   drive(exact);
   const SimulatedDrive truth(8, exact);
   const int turning = 1;  // at 6 m/s and 0.15 rad/s
-  for (const int frame : {0, 7, kFrames - 1}) {
+  for (const int frame : {0, 7, kReadFrames - 1}) {
     const Eigen::Vector3d expected = truth.object(turning, frame).rotation() * Eigen::Vector3d(6, 0, 0);
     constexpr double kNoise_mps = 2e-3;  // 1e-5 m over 0.1 s, with the camera's and a margin
     EXPECT_THAT(estimateOf(turning, {frame}).velocity_world_mps, IsNear(expected, kNoise_mps)) << "frame " << frame;

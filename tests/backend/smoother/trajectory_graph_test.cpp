@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-constexpr int kFrames = 30;
+constexpr int kGraphFrames = 30;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSame = 1e-8;  // of converged systems
 const SE3 kNoPose(Eigen::Matrix3d::Identity(), {kNan, 0, 0});
@@ -33,7 +33,7 @@ template <class Change>
 std::vector<std::vector<std::string>> drive(TrajectoryGraph& graph, const Change& change) {
   SimulatedDrive drive(8, {});
   std::vector<std::vector<std::string>> problems;
-  for (int frame = 0; frame < kFrames; ++frame) {
+  for (int frame = 0; frame < kGraphFrames; ++frame) {
     FrameMeasurements measurements = *drive.measure(frame);
     change(frame, measurements);
     graph.add(measurements);
@@ -69,7 +69,7 @@ TEST(TrajectoryGraph, AnObjectWhoseAnchorNothingConstrainsIsDroppedByName) {
       Contains(AllOf(StartsWith("object 100 is dropped: anchor of object 100 is not constrained in any direction"),
                      HasSubstr("its 1 factor touches it alone"))));
   for (const auto& [id, track] : graph.tracks()) EXPECT_FALSE(track.anchor.valid());
-  EXPECT_EQ(graph.solver().counters().variables, kFrames);
+  EXPECT_EQ(graph.solver().counters().variables, kGraphFrames);
   expectSameCamera(graph, camera_alone);
 }
 
@@ -100,12 +100,12 @@ TEST(TrajectoryGraph, AnObjectStartsAnewWhenItIsSeenAgain) {
     for (auto& seen : m.objects) seen.encounter_covariance.setConstant(kNan);
   });
   EXPECT_THAT(problems[4], Contains(StartsWith("object 100 is dropped")));
-  for (int frame = 5; frame < kFrames; ++frame) EXPECT_THAT(problems[frame], IsEmpty());
+  for (int frame = 5; frame < kGraphFrames; ++frame) EXPECT_THAT(problems[frame], IsEmpty());
   const auto& track = graph.tracks().at(SimulatedDrive::track(0));
   EXPECT_TRUE(track.anchor.valid());
   constexpr double kDriftAndNoise = 2;
-  EXPECT_THAT(graph.objectPose(track, {kFrames - 1}),
-              IsNearPose(SimulatedDrive(8, {}).object(0, kFrames - 1), kDriftAndNoise));
+  EXPECT_THAT(graph.objectPose(track, {kGraphFrames - 1}),
+              IsNearPose(SimulatedDrive(8, {}).object(0, kGraphFrames - 1), kDriftAndNoise));
 }
 
 TEST(TrajectoryGraph, EveryMeasurementThatIsNoNumberIsNamed) {

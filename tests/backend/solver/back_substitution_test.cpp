@@ -13,10 +13,10 @@ constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 constexpr double kSmallStep_sigmas = 1e-9;
 
 /// Poses in a row, each measured against the one before it, eliminated from the first to the last.
-struct Chain {
+struct PoseChain {
   static constexpr int kPoses = 8;
 
-  Chain() {
+  PoseChain() {
     for (int i = 0; i < kPoses; ++i) poses.push_back(world.addVariable(graph));
     factors.push_back(*graph.addFactor(world.prior(poses[0])));
     for (int i = 1; i < kPoses; ++i) factors.push_back(*graph.addFactor(world.between(poses[i - 1], poses[i], true)));
@@ -45,7 +45,7 @@ struct Chain {
 };
 
 TEST(BackSubstitution, TellsFactorsOfWhichAPartHasFollowedAStep) {
-  Chain chain;
+  PoseChain chain;
   for (const FactorId f : chain.factors) EXPECT_TRUE(chain.hasFollowed(f));
   chain.moveTheLast();
   chain.substitution(kSmallStep_sigmas, 0);
@@ -59,10 +59,10 @@ TEST(BackSubstitution, TellsFactorsOfWhichAPartHasFollowedAStep) {
 }
 
 TEST(BackSubstitution, ComesOutTheSameWhateverACallMayDo) {
-  Chain at_once, little_by_little;
-  for (Chain* chain : {&at_once, &little_by_little}) chain->moveTheLast();
+  PoseChain at_once, little_by_little;
+  for (PoseChain* chain : {&at_once, &little_by_little}) chain->moveTheLast();
   at_once.substitution(kSmallStep_sigmas, kNoLimit);
-  for (int calls = 0; calls < Chain::kPoses; ++calls) little_by_little.substitution(kSmallStep_sigmas, 6);
+  for (int calls = 0; calls < PoseChain::kPoses; ++calls) little_by_little.substitution(kSmallStep_sigmas, 6);
   for (const VariableId v : at_once.poses) EXPECT_EQ(at_once.graph[v].x, little_by_little.graph[v].x);
 }
 

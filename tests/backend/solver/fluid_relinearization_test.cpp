@@ -17,7 +17,7 @@ namespace {
 
 const StereoCamera kCamera{
     .fx_px = 720, .fy_px = 720, .cx_px = 620, .cy_px = 188, .baseline_m = 0.54, .width_px = 1242, .height_px = 376};
-constexpr int kPoses = 40, kSeenIn = 3;
+constexpr int kPathPoses = 40, kSeenIn = 3;
 
 SE3 cameraAt(int k) { return SE3(expSO3({0, 0.01 * k, 0}), {0.1 * k, 0, 0.9 * k}); }
 
@@ -51,7 +51,7 @@ TEST(FluidRelinearization, LeavesQuadraticsAloneThatShareAVectorOnly) {
   const VariableId offset = solver.addVariable(zero);
   solver.addFactor(std::make_unique<VectorPriorFactor>(offset, zero, SmallVector::Constant(1, 1e-3)));
   std::vector<VariableId> x;
-  for (int k = 0; k < kPoses; ++k) {
+  for (int k = 0; k < kPathPoses; ++k) {
     x.push_back(solver.addVariable(cameraAt(k)));
     const PoseNoise sure{.sqrt_information = 1e3 * Matrix6d::Identity()};
     if (k == 0) solver.addFactor(std::make_unique<PriorFactor>(std::array{x[0]}, PriorModel{cameraAt(0)}, sure));
@@ -62,14 +62,15 @@ TEST(FluidRelinearization, LeavesQuadraticsAloneThatShareAVectorOnly) {
           std::make_unique<BundleFactor>(std::vector(x.end() - kSeenIn, x.end()), offset, landmarksAt(k, noise)));
     solver.update();
   }
-  const SE3 elsewhere = cameraAt(kPoses - 2).inverse() * cameraAt(kPoses - 1) * SE3(expSO3({0, 0.1, 0}), {0.6, 0, 0});
+  const SE3 elsewhere =
+      cameraAt(kPathPoses - 2).inverse() * cameraAt(kPathPoses - 1) * SE3(expSO3({0, 0.1, 0}), {0.6, 0, 0});
   const PoseNoise very_sure{.sqrt_information = 1e5 * Matrix6d::Identity()};
-  solver.addFactor(
-      std::make_unique<MotionFactor>(std::array{x[kPoses - 2], x[kPoses - 1]}, MotionModel{elsewhere}, very_sure));
+  solver.addFactor(std::make_unique<MotionFactor>(std::array{x[kPathPoses - 2], x[kPathPoses - 1]},
+                                                  MotionModel{elsewhere}, very_sure));
   int relinearized = 0;
   for (int i = 0; i < 5; ++i) relinearized = std::max(relinearized, solver.update().relinearized_factors);
   EXPECT_GT(relinearized, 0);
-  EXPECT_LT(relinearized, kPoses / 2);
+  EXPECT_LT(relinearized, kPathPoses / 2);
 }
 
 /// A pose is turned, ten meters away from another that follows.

@@ -46,7 +46,7 @@ IncrementalSolver::Params withBudget(std::int64_t scalars) {
   return params;
 }
 
-constexpr double kTol = 1e-6;  // m and rad: what turns by 1e-6 rad is not relinearized
+constexpr double kBudgetTol = 1e-6;  // m and rad: what turns by 1e-6 rad is not relinearized
 
 /// What is saved at any time is less than a variable costs, which is less than all of them.
 std::int64_t mostSaved(const IncrementalSolver& solver) {
@@ -115,7 +115,7 @@ TEST(IncrementalSolverBudget, WorkThatIsPutOffIsDoneInQuietUpdates) {
     EXPECT_GT(most_deferred, 0);
     EXPECT_LE(most_deferred, solver.counters().variables);
     EXPECT_EQ(finishOverQuietUpdates(solver, kBudget), 0);
-    EXPECT_LT(differenceFromBatch(solver), kTol) << "seed " << seed;
+    EXPECT_LT(differenceFromBatch(solver), kBudgetTol) << "seed " << seed;
   }
 }
 
@@ -130,7 +130,7 @@ TEST(IncrementalSolverBudget, ABudgetBelowTheWholeGetsThereToo) {
     solver.update();
   }
   EXPECT_EQ(finishOverQuietUpdates(solver, kBudget), 0);
-  EXPECT_LT(differenceFromBatch(solver), kTol);
+  EXPECT_LT(differenceFromBatch(solver), kBudgetTol);
 }
 
 TEST(IncrementalSolverBudget, ATimeNextToZeroPutsOffAllButTheNewMeasurement) {

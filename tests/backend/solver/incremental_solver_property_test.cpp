@@ -19,7 +19,7 @@ using test::RandomWorld;
 using test::settle;
 
 /// Of meters and radians. The systems have condition numbers of up to 1e7, which leaves 1e-9 of rounding.
-constexpr double kTol = 1e-8;
+constexpr double kBatchTol = 1e-8;
 
 constexpr std::array kLosses{RobustLoss::kNone, RobustLoss::kHuber, RobustLoss::kCauchy, RobustLoss::kTukey};
 
@@ -130,7 +130,7 @@ void expectEditsToEndAtTheBatchSolution(RandomWorld::Kind kind) {
     RandomEdits edits(solver, seed, kind, kLosses[seed % 4]);
     for (std::size_t i = 0; i < 10 + 2 * seed; ++i) edits.edit();
     settle(solver);
-    EXPECT_LT(differenceFromBatch(solver), kTol) << "seed " << seed;
+    EXPECT_LT(differenceFromBatch(solver), kBatchTol) << "seed " << seed;
   }
 }
 
@@ -193,7 +193,7 @@ TEST(IncrementalSolverProperty, RandomMultibodyDrivesEndAtTheBatchSolution) {
     IncrementalSolver solver(kExact);
     playMultibodyDrive(solver, seed, kLosses[seed % 3]);
     settle(solver);
-    EXPECT_LT(differenceFromBatch(solver, 1e-3), kTol) << "seed " << seed;
+    EXPECT_LT(differenceFromBatch(solver, 1e-3), kBatchTol) << "seed " << seed;
   }
 }
 
@@ -204,7 +204,7 @@ TEST(IncrementalSolverProperty, ConvergingReachesTheBatchSolutionFromDefaultThre
     for (int i = 0; i < 60; ++i) edits.edit();
     solver.update();
     solver.converge(50, 1e-11);
-    EXPECT_LT(differenceFromBatch(solver), kTol) << "seed " << seed;
+    EXPECT_LT(differenceFromBatch(solver), kBatchTol) << "seed " << seed;
   }
 }
 

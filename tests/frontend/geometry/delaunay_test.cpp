@@ -76,7 +76,7 @@ void expectDelaunay(const Points& points_px, const DelaunayGraph& graph) {
   EXPECT_EQ(euler, 1);  // without the outer face; a chain too
 }
 
-Points randomPoints(int count, unsigned seed, double step_px) {
+Points roundedPoints(int count, unsigned seed, double step_px) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> u(0, 400), v(0, 120);
   Points points;
@@ -87,14 +87,14 @@ Points randomPoints(int count, unsigned seed, double step_px) {
 
 TEST(Delaunay, RandomPointsHaveEmptyCircles) {
   for (unsigned seed = 0; seed < 20; ++seed) {
-    const Points points = randomPoints(3 + 6 * static_cast<int>(seed), seed, 0.01);
+    const Points points = roundedPoints(3 + 6 * static_cast<int>(seed), seed, 0.01);
     expectDelaunay(points, delaunay(points));
   }
 }
 
 TEST(Delaunay, WholePixelsWithDuplicatesAndCocircularPointsStayATriangulation) {
   for (unsigned seed = 0; seed < 20; ++seed) {
-    const Points points = randomPoints(100, 100 + seed, 20);
+    const Points points = roundedPoints(100, 100 + seed, 20);
     expectDelaunay(points, delaunay(points));
   }
 }

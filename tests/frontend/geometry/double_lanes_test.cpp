@@ -5,13 +5,14 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "tests/frontend/geometry/lane.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/noise.hpp"
 
 namespace motorcade {
 namespace {
 
-Eigen::Vector3d lane(const Doubles3& v, std::size_t i) { return {v.x[i], v.y[i], v.z[i]}; }
+using test::lane;
 
 TEST(DoubleLanes, SymmetricMatricesHaveTheirInverse) {
   test::Noise noise(2);

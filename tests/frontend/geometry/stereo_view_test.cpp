@@ -6,6 +6,7 @@
 
 #include "core/robust_loss.hpp"
 #include "core/se3.hpp"
+#include "tests/frontend/geometry/lane.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/stereo_views.hpp"
 
@@ -13,8 +14,7 @@ namespace motorcade {
 namespace {
 
 using test::kRig;
-
-Eigen::Vector3d lane(const Doubles3& v, std::size_t i) { return {v.x[i], v.y[i], v.z[i]}; }
+using test::lane;
 
 struct FourPoints {
   SE3 T_cam_ref{expSO3({0.1, -0.2, 0.05}), {0.3, -0.1, 1}};

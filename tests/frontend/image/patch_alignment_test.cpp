@@ -10,13 +10,13 @@
 namespace motorcade {
 namespace {
 
-constexpr int kWidth = 260, kHeight = 140;
+constexpr int kAlignedWidth_px = 260, kAlignedHeight_px = 140;
 
 /// Calls f(u, v) for positions of patches, off the border and at varying fractions of a pixel.
 template <class Function>
 void forEachPosition(double border_px, const Function& f) {
-  for (double v = border_px; v < kHeight - border_px; v += 17.3)
-    for (double u = border_px; u < kWidth - border_px; u += 19.7) f(u, v);
+  for (double v = border_px; v < kAlignedHeight_px - border_px; v += 17.3)
+    for (double u = border_px; u < kAlignedWidth_px - border_px; u += 19.7) f(u, v);
 }
 
 struct ErrorStatistics {
@@ -35,10 +35,11 @@ struct ErrorStatistics {
 
 TEST(PatchAlignment, FindsSubPixelShiftsUnderGainBiasAndNoise) {
   const test::Texture texture(11);
-  const Image from = test::render(kWidth, kHeight, texture, {.noise = 1.5, .seed = 1});
+  const Image from = test::render(kAlignedWidth_px, kAlignedHeight_px, texture, {.noise = 1.5, .seed = 1});
   for (const double shift_px : {0.0, 0.25, 0.5, 0.8}) {
     const auto moved = [&](double x, double y) { return texture(x - 1 - shift_px, y + shift_px); };
-    const Image to = test::render(kWidth, kHeight, moved, {.gain = 0.8, .bias = 15, .noise = 1.5, .seed = 2});
+    const Image to =
+        test::render(kAlignedWidth_px, kAlignedHeight_px, moved, {.gain = 0.8, .bias = 15, .noise = 1.5, .seed = 2});
     ErrorStatistics u_error, v_error;
     forEachPosition(20, [&](double u, double v) {
       const auto patch =
@@ -63,8 +64,8 @@ TEST(PatchAlignment, PyramidReachesFarShifts) {
   const auto texture = [&](double x, double y) { return 0.8 * coarse(x, y) + 0.4 * (fine(x, y) - 128) + 0.2 * 128; };
   const auto moved = [&](double x, double y) { return texture(x - 21.3, y + 9.6); };
   ImagePool pool;
-  const ImagePyramid from = buildPyramid(test::render(kWidth, kHeight, texture), 4, pool);
-  const ImagePyramid to = buildPyramid(test::render(kWidth, kHeight, moved), 4, pool);
+  const ImagePyramid from = buildPyramid(test::render(kAlignedWidth_px, kAlignedHeight_px, texture), 4, pool);
+  const ImagePyramid to = buildPyramid(test::render(kAlignedWidth_px, kAlignedHeight_px, moved), 4, pool);
   int found = 0, tried = 0;
   forEachPosition(45, [&](double u, double v) {
     ++tried;
@@ -80,12 +81,12 @@ TEST(PatchAlignment, PyramidReachesFarShifts) {
 
 TEST(PatchAlignment, ScaleChangeMovesNoPoint) {
   const test::Texture texture(13, 8, 30);
-  const Image from = test::render(kWidth, kHeight, texture);
+  const Image from = test::render(kAlignedWidth_px, kAlignedHeight_px, texture);
   ErrorStatistics error, growth;
   forEachPosition(25, [&](double u, double v) {
     constexpr double kScale = 1.08;
     const auto grown = [&](double x, double y) { return texture(u + (x - u) / kScale, v + (y - v) / kScale); };
-    const Image to = test::render(kWidth, kHeight, grown);
+    const Image to = test::render(kAlignedWidth_px, kAlignedHeight_px, grown);
     const auto patch =
         makeTemplate(from, static_cast<float>(u), static_cast<float>(v), kPatchWindow_px, PatchDeformation::kScale);
     const auto aligned = patch ? alignPatch(*patch, to, Eigen::Vector2d(u, v).cast<float>(), {}) : std::nullopt;
@@ -100,12 +101,12 @@ TEST(PatchAlignment, ScaleChangeMovesNoPoint) {
 
 TEST(PatchAlignment, AlignsATemplateMadeAtTheScaleOfNow) {
   const test::Texture texture(18, 8, 30);
-  const Image from = test::render(kWidth, kHeight, texture);
+  const Image from = test::render(kAlignedWidth_px, kAlignedHeight_px, texture);
   constexpr float kScale = 1.4F;
   const auto grown = [&](double x, double y) {
     return texture(120.3 + (x - 131.8) / kScale, 65.6 + (y - 60.1) / kScale);
   };
-  const Image to = test::render(kWidth, kHeight, grown);
+  const Image to = test::render(kAlignedWidth_px, kAlignedHeight_px, grown);
   const auto patch = makeTemplate(from, 120.3F, 65.6F, 11, PatchDeformation::kScale, kScale);
   ASSERT_TRUE(patch);
   const auto aligned = alignPatch(*patch, to, {131, 61}, {});
@@ -122,7 +123,7 @@ TEST(PatchAlignment, AlignsATemplateMadeAtTheScaleOfNow) {
 }
 
 TEST(PatchAlignment, TakesNothingFromUninitializedMemory) {
-  const Image image = test::render(kWidth, kHeight, test::Texture(11), {.noise = 1.5, .seed = 1});
+  const Image image = test::render(kAlignedWidth_px, kAlignedHeight_px, test::Texture(11), {.noise = 1.5, .seed = 1});
   for (const float scale : {1.0F, 1.1F}) {
     for (const int window_px : {9, 11, kMaxPatchWindow_px}) {
       poisonStack();
@@ -145,8 +146,8 @@ TEST(PatchAlignment, RejectsPatchesWithoutTexture) {
 }
 
 TEST(PatchAlignment, RejectsAnotherScene) {
-  const Image from = test::render(kWidth, kHeight, test::Texture(14)),
-              to = test::render(kWidth, kHeight, test::Texture(15));
+  const Image from = test::render(kAlignedWidth_px, kAlignedHeight_px, test::Texture(14)),
+              to = test::render(kAlignedWidth_px, kAlignedHeight_px, test::Texture(15));
   PatchParams params;
   params.min_ncc = 0.9;
   int found = 0, tried = 0;
@@ -170,11 +171,12 @@ TEST(PatchAlignment, ReadsNothingOutsideTheImage) {  // for the sanitizers; the 
 
 TEST(RefineDisparity, HasNoBiasByTheFractionOfTheDisparity) {
   const test::Texture texture(21);
-  const Image left = test::render(kWidth, kHeight, texture, {.noise = 1.5, .seed = 3});
+  const Image left = test::render(kAlignedWidth_px, kAlignedHeight_px, texture, {.noise = 1.5, .seed = 3});
   for (int tenths = 0; tenths < 10; ++tenths) {
     const double disparity_px = 20 + 0.1 * tenths;
     const auto shifted = [&](double x, double y) { return texture(x + disparity_px, y); };
-    const Image right = test::render(kWidth, kHeight, shifted, {.gain = 1.1, .bias = -8, .noise = 1.5, .seed = 4});
+    const Image right =
+        test::render(kAlignedWidth_px, kAlignedHeight_px, shifted, {.gain = 1.1, .bias = -8, .noise = 1.5, .seed = 4});
     ErrorStatistics error;
     forEachPosition(45, [&](double u, double v) {
       const auto match = refineDisparity(left, right, u, v, disparity_px + (tenths % 3 - 1) * 1.5);
@@ -189,12 +191,12 @@ TEST(RefineDisparity, HasNoBiasByTheFractionOfTheDisparity) {
 
 TEST(RefineDisparity, FollowsTheSlopeOfTheRoad) {
   const test::Texture texture(22);
-  const Image left = test::render(kWidth, kHeight, texture);
+  const Image left = test::render(kAlignedWidth_px, kAlignedHeight_px, texture);
   constexpr double kSlope = 0.33;  // px per row: a camera 1.65 m above the road, 0.54 m of baseline
   ErrorStatistics error;
   // The right image shows at (x, y) what the left one shows at (x + d(y), y).
-  const Image right =
-      test::render(kWidth, kHeight, [&](double x, double y) { return texture(x + 10 + kSlope * (y - 70), y); });
+  const Image right = test::render(kAlignedWidth_px, kAlignedHeight_px,
+                                   [&](double x, double y) { return texture(x + 10 + kSlope * (y - 70), y); });
   forEachPosition(42, [&](double u, double v) {
     const double disparity_px = 10 + kSlope * (v - 70);
     const auto match = refineDisparity(left, right, u, v, disparity_px + 0.8);

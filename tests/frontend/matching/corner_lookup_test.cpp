@@ -15,11 +15,11 @@
 namespace motorcade {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 200;
-constexpr float kShiftU_px = 17, kShiftV_px = -6;
+constexpr int kLookupWidth_px = 320, kLookupHeight_px = 200;
+constexpr float kLookupShiftU_px = 17, kLookupShiftV_px = -6;
 
 FeaturesPtr prepare(const std::function<double(double, double)>& gray, const test::Exposure& exposure) {
-  const Image image = test::render(kWidth, kHeight, gray, exposure);
+  const Image image = test::render(kLookupWidth_px, kLookupHeight_px, gray, exposure);
   return FeaturePreparation({})(test::stereoFrame(0, image, image));
 }
 
@@ -27,7 +27,7 @@ FeaturesPtr prepare(const std::function<double(double, double)>& gray, const tes
 struct TwoImages {
   test::Texture texture{81, 7, 40};
   FeaturesPtr before = prepare(texture, {.noise = 2, .seed = 1});
-  FeaturesPtr now = prepare([this](double x, double y) { return texture(x - kShiftU_px, y - kShiftV_px); },
+  FeaturesPtr now = prepare([this](double x, double y) { return texture(x - kLookupShiftU_px, y - kLookupShiftV_px); },
                             {.gain = 0.9, .bias = 12, .noise = 2, .seed = 2});
 };
 
@@ -112,7 +112,7 @@ TEST(CornerLookup, GuessesTheShiftOfMostCorners) {
     Guesses guesses;
     lookup.addSimilar(lookOf(corner, images.before), positionOf(corner), {-60, 60, -60, 60}, 255, guesses);
     right += std::ranges::any_of(guesses.all(), [](const Shift& shift) {
-      return std::hypot(shift.du_px - kShiftU_px, shift.dv_px - kShiftV_px) < 1.5;
+      return std::hypot(shift.du_px - kLookupShiftU_px, shift.dv_px - kLookupShiftV_px) < 1.5;
     });
   }
   EXPECT_GT(right, 0.7 * static_cast<double>(images.before->corners.size()));  // some leave the image, others are lost

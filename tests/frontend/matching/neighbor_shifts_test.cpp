@@ -8,15 +8,15 @@
 namespace motorcade {
 namespace {
 
-constexpr int kWidth = 400, kHeight = 160;
+constexpr int kNeighborsWidth_px = 400, kNeighborsHeight_px = 160;
 
 /// Points at whole pixels, so that equal distances occur.
 std::vector<MovedPoint> randomPoints(int count, float spread, std::mt19937& random) {
   std::uniform_real_distribution<float> unit(0, 1), shift(-20, 20);
   std::vector<MovedPoint> points;
   for (int i = 0; i < count; ++i) {
-    const Eigen::Vector2f from_px(std::round(spread * kWidth * unit(random)),
-                                  std::round(spread * kHeight * unit(random)));
+    const Eigen::Vector2f from_px(std::round(spread * kNeighborsWidth_px * unit(random)),
+                                  std::round(spread * kNeighborsHeight_px * unit(random)));
     points.push_back({from_px, {shift(random), shift(random)}});
   }
   return points;
@@ -38,7 +38,7 @@ TEST(NeighborShifts, AreTheMedianOfTheThreeNearestOfAllPoints) {
   for (const float spread : {1.0F, 0.2F}) {  // all over the image, or in a corner, far from most positions
     for (const int count : {3, 10, 300}) {
       const auto points = randomPoints(count, spread, random);
-      const NeighborShifts shifts(points, kWidth, kHeight);
+      const NeighborShifts shifts(points, kNeighborsWidth_px, kNeighborsHeight_px);
       for (const MovedPoint& query : randomPoints(100, 1, random)) {
         const auto median = shifts.medianAround(query.from_px);
         const Shift expected = medianByBruteForce(points, query.from_px);
@@ -53,7 +53,8 @@ TEST(NeighborShifts, AreTheMedianOfTheThreeNearestOfAllPoints) {
 TEST(NeighborShifts, AreUnknownBelowThreePoints) {
   std::mt19937 random(5);
   for (int count = 0; count < 3; ++count)
-    EXPECT_FALSE(NeighborShifts(randomPoints(count, 1, random), kWidth, kHeight).medianAround({50, 50}));
+    EXPECT_FALSE(
+        NeighborShifts(randomPoints(count, 1, random), kNeighborsWidth_px, kNeighborsHeight_px).medianAround({50, 50}));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace motorcade {
 namespace {
 
-constexpr int kWidth = 120, kHeight = 70;
+constexpr int kOccupancyWidth_px = 120, kOccupancyHeight_px = 70;
 constexpr double kDistance_px = 5;
 
 struct Point {
@@ -19,8 +19,8 @@ struct Point {
 /// Takes random points that are not near others, as the flow does.
 TEST(Occupancy, KeepsPointsApartAndNoneAwayWithoutReason) {
   std::mt19937 random(6);
-  std::uniform_real_distribution<float> u(0, kWidth), v(0, kHeight);
-  Occupancy occupancy(kWidth, kHeight, kDistance_px);
+  std::uniform_real_distribution<float> u(0, kOccupancyWidth_px), v(0, kOccupancyHeight_px);
+  Occupancy occupancy(kOccupancyWidth_px, kOccupancyHeight_px, kDistance_px);
   std::vector<Point> taken;
   for (int i = 0; i < 3000; ++i) {
     const Point p{u(random), v(random)};
@@ -40,8 +40,9 @@ TEST(Occupancy, KeepsPointsApartAndNoneAwayWithoutReason) {
 }
 
 TEST(Occupancy, LooksIntoNeighboringCellsUpToTheBorder) {
-  for (const Point p : {Point{0, 0}, Point{kWidth - 1, 0}, Point{0, kHeight - 1}, Point{kWidth - 1, kHeight - 1}}) {
-    Occupancy occupancy(kWidth, kHeight, kDistance_px);
+  for (const Point p : {Point{0, 0}, Point{kOccupancyWidth_px - 1, 0}, Point{0, kOccupancyHeight_px - 1},
+                        Point{kOccupancyWidth_px - 1, kOccupancyHeight_px - 1}}) {
+    Occupancy occupancy(kOccupancyWidth_px, kOccupancyHeight_px, kDistance_px);
     EXPECT_FALSE(occupancy.near(p.u_px, p.v_px));
     occupancy.take(p.u_px, p.v_px);
     const float inwards_u = p.u_px > 0 ? -1 : 1, inwards_v = p.v_px > 0 ? -1 : 1;

@@ -12,7 +12,7 @@
 namespace motorcade {
 namespace {
 
-constexpr int kWidth = 480, kHeight = 240;
+constexpr int kFlowWidth_px = 480, kFlowHeight_px = 240;
 
 /// A texture that moves by (du, dv) per frame and is taken with changing exposure.
 class MovingWall {
@@ -22,7 +22,7 @@ class MovingWall {
     const auto gray = [&](double x, double y) { return texture_(x - frame * du_px_, y - frame * dv_px_); };
     const test::Exposure exposure{
         .gain = 1 - 0.02 * frame, .bias = 2.0 * frame, .noise = 2, .seed = static_cast<unsigned>(frame)};
-    const Image image = test::render(kWidth, kHeight, gray, exposure);
+    const Image image = test::render(kFlowWidth_px, kFlowHeight_px, gray, exposure);
     return prepare_(test::stereoFrame(frame, image, image));
   }
   Eigen::Vector2d velocity_px() const { return {du_px_, dv_px_}; }
@@ -86,7 +86,8 @@ TEST(OpticalFlowTracker, FollowsWhatCrossesAStandingScene) {
       const bool on_vehicle = x > left_px(frame) && x < left_px(frame) + 140 && y > 80 && y < 160;
       return on_vehicle ? vehicle(x - left_px(frame), y) : wall(x, y);
     };
-    const Image image = test::render(kWidth, kHeight, gray, {.noise = 2, .seed = static_cast<unsigned>(frame)});
+    const Image image =
+        test::render(kFlowWidth_px, kFlowHeight_px, gray, {.noise = 2, .seed = static_cast<unsigned>(frame)});
     return track(prepare(test::stereoFrame(frame, image, image)));
   };
   const auto before = at(0), now = at(1);

@@ -10,33 +10,35 @@
 namespace motorcade {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 200, kLevel = 1;
+constexpr int kFollowedWidth_px = 320, kFollowedHeight_px = 200, kLevel = 1;
 constexpr float kShiftU_px = 14.3F, kShiftV_px = -5.6F;
 constexpr double kMaxRoundTrip_px = 0.5;
 constexpr Shift kGuess{kShiftU_px + 1.5F, kShiftV_px - 1};
 
 /// A textured wall before and after a shift.
-struct Wall {
+struct FollowedWall {
   test::Texture texture{91, 8, 40};
   ImagePool pool;
-  ImagePyramid before = buildPyramid(test::render(kWidth, kHeight, texture, {.noise = 1, .seed = 1}), 4, pool);
-  ImagePyramid now = buildPyramid(
-      test::render(kWidth, kHeight, [this](double x, double y) { return texture(x - kShiftU_px, y - kShiftV_px); },
-                   {.gain = 0.9, .noise = 1, .seed = 2}),
-      4, pool);
+  ImagePyramid before =
+      buildPyramid(test::render(kFollowedWidth_px, kFollowedHeight_px, texture, {.noise = 1, .seed = 1}), 4, pool);
+  ImagePyramid now =
+      buildPyramid(test::render(kFollowedWidth_px, kFollowedHeight_px,
+                                [this](double x, double y) { return texture(x - kShiftU_px, y - kShiftV_px); },
+                                {.gain = 0.9, .noise = 1, .seed = 2}),
+                   4, pool);
   PointFollower follower{before, now, kMaxRoundTrip_px};
 };
 
 /// Points whose patches stay inside the image.
 std::vector<FlowObservation> innerPoints() {
   std::vector<FlowObservation> points;
-  for (float v = 40; v < kHeight - 40; v += 19.3F)
-    for (float u = 40; u < kWidth - 40; u += 23.7F) points.push_back({.point = {0}, .u_px = u, .v_px = v});
+  for (float v = 40; v < kFollowedHeight_px - 40; v += 19.3F)
+    for (float u = 40; u < kFollowedWidth_px - 40; u += 23.7F) points.push_back({.point = {0}, .u_px = u, .v_px = v});
   return points;
 }
 
 TEST(PointFollower, FollowsAGuessThatIsNear) {
-  const Wall wall;
+  const FollowedWall wall;
   int followed = 0;
   const auto points = innerPoints();
   for (const FlowObservation& point : points) {
@@ -50,7 +52,7 @@ TEST(PointFollower, FollowsAGuessThatIsNear) {
 }
 
 TEST(PointFollower, FitsBestWhereTheGuessIsRight) {
-  const Wall wall;
+  const FollowedWall wall;
   int fits = 0;
   const auto points = innerPoints();
   for (const FlowObservation& point : points) {
@@ -67,7 +69,7 @@ TEST(PointFollower, FitsBestWhereTheGuessIsRight) {
 }
 
 TEST(PointFollower, TakesTheGuessForAPointWithoutACoarsePatch) {
-  const Wall wall;
+  const FollowedWall wall;
   const auto fit = wall.follower.fit(innerPoints().front(), std::nullopt, kGuess, kLevel);
   ASSERT_TRUE(fit);
   EXPECT_EQ(fit->shift.du_px, kGuess.du_px);
@@ -75,15 +77,16 @@ TEST(PointFollower, TakesTheGuessForAPointWithoutACoarsePatch) {
 }
 
 TEST(PointFollower, GivesUpWhenTheWayBackLeadsElsewhere) {
-  const Wall wall;
+  const FollowedWall wall;
   const PointFollower strict(wall.before, wall.now, 1e-9);
   for (const FlowObservation& point : innerPoints()) EXPECT_FALSE(strict.follow(point, kGuess, kLevel));
 }
 
 TEST(PointFollower, FindsNothingInAnotherScene) {
-  const Wall wall;
+  const FollowedWall wall;
   ImagePool pool;
-  const ImagePyramid other = buildPyramid(test::render(kWidth, kHeight, test::Texture(92, 8, 40)), 4, pool);
+  const ImagePyramid other =
+      buildPyramid(test::render(kFollowedWidth_px, kFollowedHeight_px, test::Texture(92, 8, 40)), 4, pool);
   const PointFollower follower(wall.before, other, kMaxRoundTrip_px);
   int followed = 0;
   const auto points = innerPoints();

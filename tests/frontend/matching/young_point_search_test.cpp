@@ -10,15 +10,16 @@
 namespace motorcade {
 namespace {
 
-constexpr int kWidth = 480, kHeight = 240;
-constexpr double kMaxRoundTrip_px = 0.5, kMaxFlow_px = 250;
+constexpr int kSearchedWidth_px = 480, kSearchedHeight_px = 240;
+constexpr double kSearchRoundTrip_px = 0.5, kMaxFlow_px = 250;
 
 /// A textured wall before and after a shift.
-struct Wall {
-  explicit Wall(double shift_px) {
+struct SearchedWall {
+  explicit SearchedWall(double shift_px) {
     const test::Texture texture(93, 8, 40);
-    const Image before_image = test::render(kWidth, kHeight, texture, {.noise = 1, .seed = 1});
-    const Image now_image = test::render(kWidth, kHeight, [&](double x, double y) { return texture(x - shift_px, y); },
+    const Image before_image = test::render(kSearchedWidth_px, kSearchedHeight_px, texture, {.noise = 1, .seed = 1});
+    const Image now_image = test::render(kSearchedWidth_px, kSearchedHeight_px,
+                                         [&](double x, double y) { return texture(x - shift_px, y); },
                                          {.gain = 0.9, .noise = 1, .seed = 2});
     const FeaturePreparation prepare{{}};
     before = prepare(test::stereoFrame(0, before_image, before_image));
@@ -29,14 +30,15 @@ struct Wall {
 
 /// Share of the corners that are found where they went, when all neighbors seem to have moved by `neighbors_px`.
 double foundShare(double shift_px, float neighbors_px) {
-  const Wall wall(shift_px);
-  const PointFollower follower(wall.before->left, wall.now->left, kMaxRoundTrip_px);
+  const SearchedWall wall(shift_px);
+  const PointFollower follower(wall.before->left, wall.now->left, kSearchRoundTrip_px);
   std::vector<MovedPoint> neighbors;
-  for (float u = 20; u < kWidth; u += 40) neighbors.push_back({{u, 120}, {neighbors_px, 0}});
-  const YoungPointSearch search(follower, *wall.before, *wall.now, {neighbors, kWidth, kHeight}, kMaxFlow_px);
+  for (float u = 20; u < kSearchedWidth_px; u += 40) neighbors.push_back({{u, 120}, {neighbors_px, 0}});
+  const YoungPointSearch search(follower, *wall.before, *wall.now, {neighbors, kSearchedWidth_px, kSearchedHeight_px},
+                                kMaxFlow_px);
   int asked = 0, right = 0;
   for (const Corner& corner : wall.before->corners) {
-    if (corner.u_px + shift_px > kWidth - 20) continue;  // it leaves the image
+    if (corner.u_px + shift_px > kSearchedWidth_px - 20) continue;  // it leaves the image
     ++asked;
     const auto found = search({.point = {0}, .u_px = corner.u_px, .v_px = corner.v_px});
     right += found && std::abs(found->u_px - corner.u_px - shift_px) < 0.3 && std::abs(found->v_px - corner.v_px) < 0.3;

@@ -13,7 +13,7 @@ namespace {
 
 using test::kRig;
 
-const SE3 kStep(expSO3({0, 0.01, 0}), {0, 0, 1});  // T_previous_now in 0.1 s
+const SE3 kOdometryStep(expSO3({0, 0.01, 0}), {0, 0, 1});  // T_previous_now in 0.1 s
 
 StereoFrame frameAt(int number, std::int64_t ms) {
   StereoFrame frame;
@@ -53,13 +53,13 @@ const Views kNothingKnown(0, SE3{}, 1);
 
 TEST(CameraOdometry, MeasuresTheMotionAndLeavesATrail) {
   CameraOdometry odometry({}, kRig);
-  const Views views(200, kStep, 1);
+  const Views views(200, kOdometryStep, 1);
   EXPECT_FALSE(odometry.motionKnown({0}));
   EXPECT_THAT(see(odometry, frameAt(0, 0), views).T_previous_now, test::IsNearPose(SE3{}, 0.0));
   EXPECT_FALSE(odometry.motionKnown({0}));
   const CameraMotion motion = see(odometry, frameAt(1, 100), views);
   EXPECT_EQ(motion.status, FrameStatus::kGood);
-  EXPECT_THAT(motion.T_previous_now, test::IsNearPose(kStep, 0.02));  // five of its standard deviations
+  EXPECT_THAT(motion.T_previous_now, test::IsNearPose(kOdometryStep, 0.02));  // five of its standard deviations
   EXPECT_THAT(odometry.trail().find(0)->T_then_now, test::IsNearPose(motion.T_previous_now, 1e-12));
   EXPECT_TRUE(odometry.motionKnown({200'000'000}));
   EXPECT_FALSE(odometry.motionKnown({2'000'000'000}));
@@ -77,7 +77,7 @@ TEST(CameraOdometry, PredictsTheVelocityOfTheFrameBefore) {
   CameraOdometry odometry({}, kRig);
   EXPECT_THAT(odometry.predict({0}).T_previous_now, test::IsNearPose(SE3{}, 0.0));
   see(odometry, frameAt(0, 0), kNothingKnown);
-  const Views views(200, kStep, 2);
+  const Views views(200, kOdometryStep, 2);
   const SE3 measured = see(odometry, frameAt(1, 100), views).T_previous_now;
   EXPECT_THAT(odometry.predict({200'000'000}).T_previous_now, test::IsNearPose(measured, 1e-9));
   EXPECT_THAT(odometry.predict({300'000'000}).T_previous_now, test::IsNearPose(measured * measured, 0.02));
@@ -85,7 +85,7 @@ TEST(CameraOdometry, PredictsTheVelocityOfTheFrameBefore) {
 
 TEST(CameraOdometry, WithTooFewPointsTheMotionIsPredictedAndItsCovarianceWide) {
   CameraOdometry odometry({}, kRig);
-  const Views views(200, kStep, 3);
+  const Views views(200, kOdometryStep, 3);
   see(odometry, frameAt(0, 0), kNothingKnown);
   const CameraMotion measured = see(odometry, frameAt(1, 100), views);
   const CameraMotion lost = see(odometry, frameAt(2, 200), kNothingKnown);
@@ -96,7 +96,7 @@ TEST(CameraOdometry, WithTooFewPointsTheMotionIsPredictedAndItsCovarianceWide) {
 
 TEST(CameraOdometry, AFrameAtTheTimeOfTheOneBeforeIsPredictedToStand) {
   CameraOdometry odometry({}, kRig);
-  const Views views(200, kStep, 4);
+  const Views views(200, kOdometryStep, 4);
   see(odometry, frameAt(0, 0), kNothingKnown);
   see(odometry, frameAt(1, 0), views);
   EXPECT_THAT(odometry.predict({100'000'000}).T_previous_now, test::IsNearPose(SE3{}, 0.0));
@@ -105,12 +105,12 @@ TEST(CameraOdometry, AFrameAtTheTimeOfTheOneBeforeIsPredictedToStand) {
 TEST(CameraOdometry, FramesInWhichNothingIsSeenArePassedOver) {
   CameraOdometry odometry({}, kRig);
   see(odometry, frameAt(0, 0), kNothingKnown);
-  const SE3 first = see(odometry, frameAt(1, 100), Views(200, kStep, 5)).T_previous_now;
+  const SE3 first = see(odometry, frameAt(1, 100), Views(200, kOdometryStep, 5)).T_previous_now;
   const CameraMotion unseen = odometry.passOver(frameAt(2, 200));
   EXPECT_EQ(unseen.cause, FrameCause::kNothingFound);
   EXPECT_THAT(unseen.T_previous_now, test::IsNearPose(first, 0.02));
   EXPECT_EQ(odometry.trail().newest().step, 1);
-  const SE3 two_steps = kStep * SE3(Eigen::Matrix3d::Identity(), {0, 0, 1.3});
+  const SE3 two_steps = kOdometryStep * SE3(Eigen::Matrix3d::Identity(), {0, 0, 1.3});
   const CameraMotion after = see(odometry, frameAt(3, 300), Views(200, two_steps, 6));
   EXPECT_EQ(after.status, FrameStatus::kGood);
   EXPECT_THAT(unseen.T_previous_now * after.T_previous_now, test::IsNearPose(two_steps, 0.03));
@@ -124,24 +124,25 @@ TEST(CameraOdometry, AStartInTheDarkIsNoMotion) {
   const CameraMotion first = see(odometry, frameAt(3, 300), kNothingKnown);
   EXPECT_EQ(first.status, FrameStatus::kGood);
   EXPECT_FALSE(odometry.motionKnown({300'000'000}));
-  EXPECT_THAT(see(odometry, frameAt(4, 400), Views(200, kStep, 7)).T_previous_now, test::IsNearPose(kStep, 0.02));
+  EXPECT_THAT(see(odometry, frameAt(4, 400), Views(200, kOdometryStep, 7)).T_previous_now,
+              test::IsNearPose(kOdometryStep, 0.02));
 }
 
 TEST(CameraOdometry, WhatIsNotLinkedBeginsANewSegment) {
   CameraOdometry odometry({}, kRig);
   see(odometry, frameAt(0, 0), kNothingKnown);
-  see(odometry, frameAt(1, 100), Views(200, kStep, 8));
+  see(odometry, frameAt(1, 100), Views(200, kOdometryStep, 8));
   const CameraMotion lost = see(odometry, frameAt(2, 200), kNothingKnown);
   EXPECT_EQ(lost.cause, FrameCause::kUnlinked);
   EXPECT_EQ(odometry.segment(), 0);
-  see(odometry, frameAt(3, 300), Views(200, kStep, 9));
+  see(odometry, frameAt(3, 300), Views(200, kOdometryStep, 9));
   EXPECT_EQ(odometry.segment(), 1);
 }
 
 TEST(CameraOdometry, NoMotionIsTakenToGoOnForLong) {
   CameraOdometry odometry({}, kRig);
   see(odometry, frameAt(0, 0), kNothingKnown);
-  see(odometry, frameAt(1, 100), Views(200, kStep, 10));
+  see(odometry, frameAt(1, 100), Views(200, kOdometryStep, 10));
   const double second_m = odometry.predict({1'100'000'000}).T_previous_now.translation().norm();
   EXPECT_NEAR(second_m, 10, 0.5);
   EXPECT_NEAR(odometry.predict({3600'000'000'000}).T_previous_now.translation().norm(), second_m, 1e-9);
@@ -151,7 +152,7 @@ TEST(CameraOdometry, NoMotionIsTakenToGoOnForLong) {
 TEST(CameraOdometry, AMotionThatIsOverIsNoLongerSteady) {
   CameraOdometry odometry({}, kRig);
   see(odometry, frameAt(0, 0), kNothingKnown);
-  for (int i = 1; i <= 12; ++i) see(odometry, frameAt(i, 100 * i), Views(200, kStep, 10 + i));
+  for (int i = 1; i <= 12; ++i) see(odometry, frameAt(i, 100 * i), Views(200, kOdometryStep, 10 + i));
   EXPECT_GE(odometry.predict({1'300'000'000}).steady_frames, 10);
   see(odometry, frameAt(13, 2900), kNothingKnown);
   EXPECT_EQ(odometry.predict({3'000'000'000}).steady_frames, 0);
@@ -160,7 +161,7 @@ TEST(CameraOdometry, AMotionThatIsOverIsNoLongerSteady) {
 TEST(CameraOdometry, ACarsCameraIsOneThatHasDrivenAhead) {
   CameraOdometry odometry({}, kRig);
   int frame = 0;
-  for (; frame < 30; ++frame) see(odometry, frameAt(frame, 100 * frame), Views(200, kStep, frame));
+  for (; frame < 30; ++frame) see(odometry, frameAt(frame, 100 * frame), Views(200, kOdometryStep, frame));
   EXPECT_EQ(odometry.predict(frameAt(frame, 100 * frame).stamp).ahead_frames, 29);
   const SE3 aside(Eigen::Matrix3d::Identity(), {0.5, 0, 0});
   const CameraMotion refused = see(odometry, frameAt(frame, 100 * frame), Views(200, aside, 1));

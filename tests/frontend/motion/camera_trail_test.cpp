@@ -7,18 +7,18 @@
 namespace motorcade {
 namespace {
 
-const SE3 kStep(expSO3({0, 0.02, 0}), {0.1, 0, 1});
+const SE3 kTrailStep(expSO3({0, 0.02, 0}), {0.1, 0, 1});
 
 CameraTrail trailOf(int frames) {
   CameraTrail trail;
-  for (int k = 0; k < frames; ++k) trail.add({k * 100'000'000}, k ? kStep : SE3{});
+  for (int k = 0; k < frames; ++k) trail.add({k * 100'000'000}, k ? kTrailStep : SE3{});
   return trail;
 }
 
 TEST(CameraTrail, RelatesTheNewestFrameToEarlierOnes) {
   const CameraTrail trail = trailOf(4);
   ASSERT_TRUE(trail.find(1));
-  EXPECT_THAT(trail.find(1)->T_then_now, test::IsNearPose(kStep * kStep, 1e-12));  // rounding
+  EXPECT_THAT(trail.find(1)->T_then_now, test::IsNearPose(kTrailStep * kTrailStep, 1e-12));  // rounding
   EXPECT_NEAR(trail.find(1)->dt_s, -0.2, 1e-12);
   ASSERT_TRUE(trail.find(3));
   EXPECT_THAT(trail.find(3)->T_then_now, test::IsNearPose(SE3{}, 1e-12));

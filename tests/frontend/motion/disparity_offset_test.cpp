@@ -14,7 +14,7 @@ using test::Noise;
 
 constexpr int kWindow = 5;  // frames from one measurement to the next
 
-SE3 trueMotion() {
+SE3 trueWindowMotion() {
   Vector6d xi;
   xi << 0.1, 0, -5, 0, 0.05, 0;
   return SE3::exp(xi);  // T_now_then over a window at 10 m/s
@@ -26,7 +26,7 @@ std::vector<StereoCorrespondence> window(double offset_px, double in_use_px, Noi
   std::vector<StereoCorrespondence> points;
   while (points.size() < 200) {
     const Eigen::Vector3d p = test::streetPoint(noise, 9, 60);
-    const auto then = test::look(p, noise), now = test::look(trueMotion() * p, noise);
+    const auto then = test::look(p, noise), now = test::look(trueWindowMotion() * p, noise);
     if (then && now)
       points.push_back({*then + error, test::kObservationSigma_px, *now + error, test::kObservationSigma_px});
   }
@@ -37,7 +37,7 @@ std::vector<StereoCorrespondence> window(double offset_px, double in_use_px, Noi
 SE3 estimatedMotion(Noise& noise) {
   Vector6d sigma;
   sigma << Eigen::Vector3d::Constant(0.03), Eigen::Vector3d::Constant(0.002);
-  return trueMotion() * SE3::exp(noise.gaussian(sigma));
+  return trueWindowMotion() * SE3::exp(noise.gaussian(sigma));
 }
 
 void drive(DisparityOffsetEstimator& estimator, double offset_px, int windows, Noise& noise) {
@@ -83,7 +83,7 @@ TEST(DisparityOffset, ACameraThatStandsLearnsNothing) {
   const auto points = window(0.2, 0, noise);
   estimator.learn(points, SE3{Eigen::Matrix3d::Identity(), {0, 0, 0.5}});
   EXPECT_EQ(estimator.sigma_px(), DisparityOffsetEstimator::Params{}.prior_sigma_px);
-  estimator.learn(std::span(points).first(20), trueMotion());  // too few points
+  estimator.learn(std::span(points).first(20), trueWindowMotion());  // too few points
   EXPECT_EQ(estimator.sigma_px(), DisparityOffsetEstimator::Params{}.prior_sigma_px);
 }
 
@@ -99,7 +99,7 @@ TEST(DisparityOffset, FollowsTheEstimateAtABoundedRate) {
   Noise noise(1);
   const DisparityOffsetEstimator::Params params;
   DisparityOffsetEstimator estimator(params, kRig);
-  for (int w = 0; w < 5; ++w) estimator.learn(window(0.2, 0, noise), trueMotion());
+  for (int w = 0; w < 5; ++w) estimator.learn(window(0.2, 0, noise), trueWindowMotion());
   double before = estimator.offset_px();
   for (int frame = 0; frame < 100; ++frame) {
     const double change = estimator.advance();

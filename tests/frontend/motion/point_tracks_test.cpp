@@ -20,9 +20,9 @@ const Eigen::Vector3d kPoint(2, 0.5, 20);  // in the first camera
 constexpr PointId kA{4}, kB{9};
 
 /// A camera that drives ahead by 1 m a frame, and what circular matching tells of the points that optical flow follows.
-class Drive {
+class DriveAhead {
  public:
-  explicit Drive(const PointTracks::Params& params = {}) : tracks(params, kRig) {}
+  explicit DriveAhead(const PointTracks::Params& params = {}) : tracks(params, kRig) {}
 
   OpticalFlow flow(const std::vector<PointId>& points) const {
     OpticalFlow flow;
@@ -80,7 +80,7 @@ class Drive {
 };
 
 TEST(PointTracks, APointAtRestIsKnownMoreExactlyWithEveryFrame) {
-  Drive drive;
+  DriveAhead drive;
   EXPECT_FALSE(drive.known(kA));
   double before_m2 = 1e9;
   for (int k = 0; k < 5; ++k) {
@@ -96,7 +96,7 @@ TEST(PointTracks, APointAtRestIsKnownMoreExactlyWithEveryFrame) {
 }
 
 TEST(PointTracks, TellsMotionFromRest) {
-  Drive drive;
+  DriveAhead drive;
   for (int k = 0; k < 5; ++k) drive.observe({kA, kB});
   for (const PointTrack& track : drive.tracks.observedNow()) {
     ASSERT_TRUE(track.flow);
@@ -108,7 +108,7 @@ TEST(PointTracks, TellsMotionFromRest) {
 TEST(PointTracks, ATrackThatMissesItsDisparityForLongEnds) {
   PointTracks::Params params;
   params.max_missed_frames = 2;
-  Drive drive(params);
+  DriveAhead drive(params);
   drive.observe({kA, kB});
   for (int missed = 1; missed <= 3; ++missed) {
     EXPECT_TRUE(drive.known(kA));
@@ -120,7 +120,7 @@ TEST(PointTracks, ATrackThatMissesItsDisparityForLongEnds) {
 }
 
 TEST(PointTracks, ATrackEndsWhenOpticalFlowNoLongerFollowsItsPoint) {
-  Drive drive;
+  DriveAhead drive;
   drive.observe({kA, kB});
   drive.observe({kB});
   EXPECT_FALSE(drive.known(kA));
@@ -130,7 +130,7 @@ TEST(PointTracks, ATrackEndsWhenOpticalFlowNoLongerFollowsItsPoint) {
 }
 
 TEST(PointTracks, NothingIsKnownOfAPointThatTheTrailHasForgotten) {
-  Drive drive;
+  DriveAhead drive;
   drive.observe({kA});
   for (int k = 0; k < 2 * CameraTrail::kCapacity; ++k) drive.addFrame();
   EXPECT_FALSE(drive.known(kA));
@@ -139,7 +139,7 @@ TEST(PointTracks, NothingIsKnownOfAPointThatTheTrailHasForgotten) {
 }
 
 TEST(PointTracks, LabelsComeBackAndSayWhatIsAtRest) {
-  Drive drive;
+  DriveAhead drive;
   for (int k = 0; k < 4; ++k) drive.observe({kA, kB});
   EXPECT_EQ(drive.tracks.atRestSince(1).size(), 1U);
   EXPECT_TRUE(drive.tracks.atRestSince(-1).empty());
@@ -152,7 +152,7 @@ TEST(PointTracks, LabelsComeBackAndSayWhatIsAtRest) {
 }
 
 TEST(PointTracks, AllDisparitiesFollowTheOffset) {
-  Drive drive;
+  DriveAhead drive;
   drive.observe({kA});
   drive.observe({kA});
   const double before_px = drive.known(kA)->disparity_px;
@@ -164,7 +164,7 @@ TEST(PointTracks, AllDisparitiesFollowTheOffset) {
 
 TEST(PointTracks, TrustedPointsAreCheckedForAmbiguousTextureInTurn) {
   const std::vector<PointId> points{kB, {10}, {11}, {12}};
-  Drive drive, young;
+  DriveAhead drive, young;
   for (int k = 0; k < 6; ++k) drive.observe(points);
   EXPECT_EQ(drive.ambiguousPoints(), 0);
   drive.showChecks();

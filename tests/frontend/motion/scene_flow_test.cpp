@@ -17,11 +17,11 @@ constexpr double kDt_s = 0.1;
 const Eigen::Vector3d kCameraStep_m(0, 0, 1.0);  // 10 m/s
 
 /// Camera in a bend, and points seen from it.
-struct Drive {
+struct DriveInBend {
   CameraTrail trail;
   std::vector<SE3> T_world_cam;
 
-  explicit Drive(int frames) {
+  explicit DriveInBend(int frames) {
     const SE3 step(expSO3({0, 0.01, 0}), kCameraStep_m);
     for (int k = 0; k < frames; ++k) {
       T_world_cam.push_back(k ? T_world_cam.back() * step : SE3{});
@@ -57,7 +57,8 @@ SceneFlowEstimator exactModel() {
   return {params, kRig};
 }
 
-std::optional<SceneFlow> flowOf(const SceneFlowEstimator& estimator, const Drive& drive, const PointTrack& track) {
+std::optional<SceneFlow> flowOf(const SceneFlowEstimator& estimator, const DriveInBend& drive,
+                                const PointTrack& track) {
   const auto fits = estimator.fit(track, drive.trail);
   return fits.at_rest ? fits.moving : std::nullopt;
 }
@@ -68,7 +69,7 @@ struct MeanNees {
 };
 MeanNees meanNees(int frames, const Eigen::Vector3d& velocity_mps, int seeds) {
   const SceneFlowEstimator estimator = exactModel();
-  const Drive drive(frames);
+  const DriveInBend drive(frames);
   MeanNees nees;
   for (int seed = 0; seed < seeds; ++seed) {
     Noise noise(static_cast<std::uint64_t>(seed));
@@ -100,7 +101,7 @@ TEST_P(SceneFlowOverFrames, CovarianceIsThatOfTheErrors) {
 TEST_P(SceneFlowOverFrames, PointsAtRestFitWithTheirDegreesOfFreedom) {
   constexpr int kSeeds = 2000;
   const SceneFlowEstimator estimator = exactModel();
-  const Drive drive(GetParam());
+  const DriveInBend drive(GetParam());
   double mean = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {
     Noise noise(static_cast<std::uint64_t>(seed));
@@ -116,7 +117,7 @@ TEST_P(SceneFlowOverFrames, AccelerationLeavesTheVelocityWithinItsSigma) {
   constexpr int kSeeds = 2000;
   const SceneFlowEstimator::Params params;
   const SceneFlowEstimator estimator(params, kRig);
-  const Drive drive(GetParam());
+  const DriveInBend drive(GetParam());
   double mean = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {
     Noise noise(static_cast<std::uint64_t>(seed));
@@ -136,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(Windows, SceneFlowOverFrames, testing::Values(3, 5, 8))
 
 TEST(SceneFlow, MoversAtTheCamerasOwnSpeedAreRecognized) {
   const SceneFlowEstimator estimator({}, kRig);
-  const Drive drive(6);
+  const DriveInBend drive(6);
   const Eigen::Vector3d velocity = kCameraStep_m / kDt_s;  // hardly moves in the image
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Noise noise(seed);
@@ -151,7 +152,7 @@ TEST(SceneFlow, MoversAtTheCamerasOwnSpeedAreRecognized) {
 
 TEST(SceneFlow, ATrackThatJumpsHasNone) {
   const SceneFlowEstimator estimator({}, kRig);
-  const Drive drive(8);
+  const DriveInBend drive(8);
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Noise noise(seed);
     PointTrack track = drive.follow({2, 0.5, 15}, {0, 0, 0}, noise);
@@ -163,14 +164,14 @@ TEST(SceneFlow, ATrackThatJumpsHasNone) {
 
 TEST(SceneFlow, TwoObservationsTellNothing) {
   const SceneFlowEstimator estimator({}, kRig);
-  const Drive drive(2);
+  const DriveInBend drive(2);
   Noise noise(1);
   EXPECT_FALSE(flowOf(estimator, drive, drive.follow({2, 0.5, 15}, {0, 0, 0}, noise)));
 }
 
 TEST(SceneFlow, ObservationsOfForgottenFramesAreLeftOut) {
   const SceneFlowEstimator estimator({}, kRig);
-  const Drive drive(8);
+  const DriveInBend drive(8);
   Noise noise(1);
   PointTrack track = drive.follow({2, 0.5, 15}, {0, 0, 0}, noise);
   track.observations[0].step = -5;

@@ -9,15 +9,15 @@
 namespace motorcade {
 namespace {
 
-constexpr int kWidth = 90, kHeight = 20;
+constexpr int kCensusWidth_px = 90, kCensusHeight_px = 20;
 
 Image texturedImage() {
   const test::Texture texture(4);
-  return test::render(kWidth, kHeight, [&](double u, double v) { return texture(u, v); });
+  return test::render(kCensusWidth_px, kCensusHeight_px, [&](double u, double v) { return texture(u, v); });
 }
 
 std::uint8_t pixelAt(const Image& image, int u, int v) {
-  return image.at(std::clamp(u, 0, kWidth - 1), std::clamp(v, 0, kHeight - 1));
+  return image.at(std::clamp(u, 0, kCensusWidth_px - 1), std::clamp(v, 0, kCensusHeight_px - 1));
 }
 
 /// In the corner of the image, in its middle and all of it.
@@ -47,7 +47,7 @@ TEST_P(CensusOfWindow, SaysWhichPixelsAroundAreDarker) {
 
 INSTANTIATE_TEST_SUITE_P(Windows, CensusOfWindow,
                          testing::Values(PixelWindow{0, 0, 10, 5}, PixelWindow{30, 8, 40, 4},
-                                         PixelWindow{0, 0, kWidth, kHeight}));
+                                         PixelWindow{0, 0, kCensusWidth_px, kCensusHeight_px}));
 
 }  // namespace
 }  // namespace motorcade

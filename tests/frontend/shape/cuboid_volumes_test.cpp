@@ -10,9 +10,9 @@ namespace {
 using test::kRig;
 using test::StreetByHand;
 
-constexpr PixelWindow kWindow{
+constexpr PixelWindow kVolumeWindow{
     .u0 = 230, .v0 = 60, .width = 141, .height = 100};  // the last cells of a row fill no vector
-constexpr int kLevel = 1;
+constexpr int kVolumeLevel = 1;
 
 class VolumesOfCar : public testing::Test {
  protected:
@@ -22,15 +22,15 @@ class VolumesOfCar : public testing::Test {
     view_.box = estimateBox(sure, 10);
   }
   std::vector<std::uint8_t> tell(std::uint8_t asked = CuboidVolumes::kPossible) const {
-    std::vector<std::uint8_t> cells(kWindow.area(), asked);
+    std::vector<std::uint8_t> cells(kVolumeWindow.area(), asked);
     CuboidVolumes(seen_, view_, kRig).tell(CuboidVolumes::kDisparitySigma_px, cells);
     return cells;
   }
   /// Of the cells that show the car well above the road, and of those that show something else: the share so told.
   double share(const std::vector<std::uint8_t>& cells, bool of_car, std::uint8_t told) const {
     int all = 0, such = 0;
-    for (int cell = 0; cell < kWindow.area(); ++cell) {
-      const double u_px = seen_.u_px(cell % kWindow.width), v_px = seen_.v_px(cell / kWindow.width);
+    for (int cell = 0; cell < kVolumeWindow.area(); ++cell) {
+      const double u_px = seen_.u_px(cell % kVolumeWindow.width), v_px = seen_.v_px(cell / kVolumeWindow.width);
       const auto hit = street_.at(u_px, v_px);
       const double height_m = StreetByHand::kRoad_m - hit.depth_m * (v_px - kRig.cy_px) / kRig.fy_px;
       if ((hit.item == 0) != of_car || (of_car && height_m < 0.2)) continue;
@@ -42,7 +42,7 @@ class VolumesOfCar : public testing::Test {
   SE3 T_cam_body_ = StreetByHand::standingAt(-0.3, 13, 0.4);
   BoxFaces faces_ = StreetByHand::faces({4.2, 1.8, 1.5});
   StreetByHand street_{{{T_cam_body_, faces_}}};
-  LevelDisparities seen_ = street_.disparities(kWindow, kLevel);
+  LevelDisparities seen_ = street_.disparities(kVolumeWindow, kVolumeLevel);
   ObjectView view_{.T_cam_body = T_cam_body_,
                    .box = {},
                    .ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m},
@@ -56,7 +56,7 @@ TEST_F(VolumesOfCar, HoldItAndNotTheRoadOrTheWall) {
 
 TEST_F(VolumesOfCar, HoldNothingThatIsNotAskedForOrUnknown) {
   EXPECT_EQ(share(tell(CuboidVolumes::kOutside), true, CuboidVolumes::kOutside), 1);
-  seen_.map.disparity_px.assign(kWindow.area(), DisparityMap::kNone);
+  seen_.map.disparity_px.assign(kVolumeWindow.area(), DisparityMap::kNone);
   EXPECT_EQ(share(tell(), true, CuboidVolumes::kOutside), 1);
 }
 

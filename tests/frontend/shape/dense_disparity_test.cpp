@@ -12,7 +12,7 @@
 namespace motorcade {
 namespace {
 
-constexpr int kWidth = 160, kHeight = 60;
+constexpr int kDenseWidth_px = 160, kDenseHeight_px = 60;
 constexpr double kBehind_px = 4, kBefore_px = 12.5;
 
 bool isBefore(double u, double v) { return u >= 60 && u < 110 && v >= 15 && v < 45; }
@@ -20,11 +20,12 @@ bool isBefore(double u, double v) { return u >= 60 && u < 110 && v >= 15 && v < 
 /// A textured rectangle before a textured wall.
 Image leftImage() {
   const test::Texture wall(1), front(2);
-  return test::render(kWidth, kHeight, [&](double u, double v) { return isBefore(u, v) ? front(u, v) : wall(u, v); });
+  return test::render(kDenseWidth_px, kDenseHeight_px,
+                      [&](double u, double v) { return isBefore(u, v) ? front(u, v) : wall(u, v); });
 }
 Image rightImage() {
   const test::Texture wall(1), front(2);
-  return test::render(kWidth, kHeight, [&](double u, double v) {
+  return test::render(kDenseWidth_px, kDenseHeight_px, [&](double u, double v) {
     return isBefore(u + kBefore_px, v) ? front(u + kBefore_px, v) : wall(u + kBehind_px, v);
   });
 }
@@ -138,7 +139,7 @@ TEST(DenseDisparity, TellsARectangleFromTheWallBehindIt) {
 
 TEST(DenseDisparity, KnowsNothingWhereThereIsNoTextureOrNoCounterpart) {
   DenseDisparity dense;
-  const Image plain = test::render(kWidth, kHeight, [](double, double) { return 90.0; });
+  const Image plain = test::render(kDenseWidth_px, kDenseHeight_px, [](double, double) { return 90.0; });
   for (const float d : dense(plain, plain, {40, 5, 60, 40}, {0, 16}).disparity_px) EXPECT_EQ(d, DisparityMap::kNone);
   // Just left of the rectangle, the right camera sees the rectangle.
   const DisparityMap map = dense(leftImage(), rightImage(), {40, 5, 100, 50}, {0, 24});
@@ -160,8 +161,8 @@ TEST(DenseDisparity, CutsWindowAndRangeToWhatThereIs) {
   const DisparityMap map = dense(leftImage(), rightImage(), {-20, -5, 60, 500}, {-3, 20});
   EXPECT_EQ(map.window.u0, 0);
   EXPECT_EQ(map.window.width, 40);
-  EXPECT_EQ(map.window.height, kHeight);
-  EXPECT_TRUE(dense(leftImage(), rightImage(), {kWidth + 5, 0, 20, 20}, {0, 8}).window.empty());
+  EXPECT_EQ(map.window.height, kDenseHeight_px);
+  EXPECT_TRUE(dense(leftImage(), rightImage(), {kDenseWidth_px + 5, 0, 20, 20}, {0, 8}).window.empty());
   EXPECT_TRUE(dense(leftImage(), rightImage(), {0, 0, 20, 20}, {-9, 8}).window.empty());
 }
 

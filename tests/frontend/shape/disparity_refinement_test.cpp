@@ -11,16 +11,17 @@
 namespace motorcade {
 namespace {
 
-constexpr int kWidth = 160, kHeight = 60;
+constexpr int kRefinedWidth_px = 160, kRefinedHeight_px = 60;
 
 TEST(DisparityRefinement, IsMoreExactInTheImagesOfTwiceTheSize) {
   // What is seen here at half size: the wall's disparity is 2.3 there.
   constexpr double kTrue_px = 4.6;
   const test::Texture wall(1);
   const auto seen = [&](double shift_px, int scale) {
-    return test::render(kWidth * 2 / scale, kHeight * 2 / scale, [&, shift_px, scale](double u, double v) {
-      return wall(scale * (u + 0.5) - 0.5 + shift_px, scale * (v + 0.5) - 0.5);
-    });
+    return test::render(kRefinedWidth_px * 2 / scale, kRefinedHeight_px * 2 / scale,
+                        [&, shift_px, scale](double u, double v) {
+                          return wall(scale * (u + 0.5) - 0.5 + shift_px, scale * (v + 0.5) - 0.5);
+                        });
   };
   DenseDisparity dense;
   DisparityMap map = dense(seen(0, 2), seen(kTrue_px, 2), {40, 5, 100, 50}, {0, 12});

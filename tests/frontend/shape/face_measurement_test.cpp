@@ -11,8 +11,8 @@ using test::kRig;
 using test::outlineOf;
 using test::StreetByHand;
 
-const Eigen::Vector3d kCar_m(4.5, 1.75, 1.45);
-constexpr PixelWindow kWindow{.u0 = 220, .v0 = 50, .width = 160, .height = 110};
+const Eigen::Vector3d kMeasuredCar_m(4.5, 1.75, 1.45);
+constexpr PixelWindow kFaceWindow{.u0 = 220, .v0 = 50, .width = 160, .height = 110};
 
 FaceInformation measuredFaces(const LevelDisparities& seen, const Outline& outline, const ObjectView& view) {
   return measureFaces(seen, outline, surfacePoints(seen, outline, view, kRig), view, kRig);
@@ -21,7 +21,7 @@ FaceInformation measuredFaces(const LevelDisparities& seen, const Outline& outli
 /// The estimate after some looks from successive frames, as the stage makes them.
 BoxEstimate afterLooks(const SE3& T_cam_body, const SE3& T_cam_frame, const Eigen::Vector3d& size_m) {
   const StreetByHand street({{T_cam_body, StreetByHand::faces(size_m)}});
-  const LevelDisparities seen = street.disparities(kWindow, 1);
+  const LevelDisparities seen = street.disparities(kFaceWindow, 1);
   FaceInformation evidence;
   ObjectView view{.T_cam_body = T_cam_frame,
                   .box = estimateBox(evidence, 10),
@@ -38,33 +38,35 @@ TEST(FaceMeasurement, FindsTheFacesInViewAndTheRoad) {
   const double yaw_rad = 0.7;
   const SE3 T_cam_body = StreetByHand::standingAt(0, 14, yaw_rad);
   const SE3 T_cam_frame = T_cam_body * SE3(Eigen::Matrix3d::Identity(), {-1.2, 0.3, 0.8});  // on the body, anywhere
-  const BoxEstimate box = afterLooks(T_cam_body, T_cam_frame, kCar_m);
+  const BoxEstimate box = afterLooks(T_cam_body, T_cam_frame, kMeasuredCar_m);
   const Eigen::Vector3d least = box.least() + Eigen::Vector3d(-1.2, 0.3, 0.8),
                         most = box.most() + Eigen::Vector3d(-1.2, 0.3, 0.8);
-  EXPECT_NEAR(least.x(), -0.5 * kCar_m.x(), 0.15);
-  EXPECT_NEAR(most.x(), 0.5 * kCar_m.x(), 0.3);
-  EXPECT_NEAR(least.y(), -0.5 * kCar_m.y(), 0.15);
+  EXPECT_NEAR(least.x(), -0.5 * kMeasuredCar_m.x(), 0.15);
+  EXPECT_NEAR(most.x(), 0.5 * kMeasuredCar_m.x(), 0.3);
+  EXPECT_NEAR(least.y(), -0.5 * kMeasuredCar_m.y(), 0.15);
   EXPECT_NEAR(least.z(), 0, 0.08);
-  EXPECT_NEAR(most.z(), kCar_m.z(), 0.12);
+  EXPECT_NEAR(most.z(), kMeasuredCar_m.z(), 0.12);
   EXPECT_EQ(box.kind, ObjectKind::kCar);
 }
 
 TEST(FaceMeasurement, AVehicleSeenFromBehindKeepsTheUsualLength) {
   const SE3 T_cam_body = StreetByHand::standingAt(-0.2, 14);
-  const BoxEstimate box = afterLooks(T_cam_body, T_cam_body * SE3(Eigen::Matrix3d::Identity(), {-2, 0, 0.8}), kCar_m);
-  EXPECT_NEAR(box.least().x() - 2, -0.5 * kCar_m.x(), 0.15);
-  EXPECT_NEAR(box.box().size_m.y(), kCar_m.y(), 0.15);
+  const BoxEstimate box =
+      afterLooks(T_cam_body, T_cam_body * SE3(Eigen::Matrix3d::Identity(), {-2, 0, 0.8}), kMeasuredCar_m);
+  EXPECT_NEAR(box.least().x() - 2, -0.5 * kMeasuredCar_m.x(), 0.15);
+  EXPECT_NEAR(box.box().size_m.y(), kMeasuredCar_m.y(), 0.15);
   EXPECT_GT(box.box().size_sigma_m.x(), 3 * box.box().size_sigma_m.y());
 }
 
 TEST(FaceMeasurement, HoldsTheFollowedPoints) {
   const SE3 T_cam_body = StreetByHand::standingAt(0, 14);
-  const StreetByHand street({{T_cam_body, StreetByHand::faces(kCar_m)}});
-  const LevelDisparities seen = street.disparities(kWindow, 1);
+  const StreetByHand street({{T_cam_body, StreetByHand::faces(kMeasuredCar_m)}});
+  const LevelDisparities seen = street.disparities(kFaceWindow, 1);
   ObjectView view{.T_cam_body = T_cam_body, .box = estimateBox({}, 10), .ground = {}, .disparity_offset_px = 0};
   const auto front = [&] {
     FaceInformation look;
-    look.add(measuredFaces(seen, {.window = kWindow, .inside = std::vector<std::uint8_t>(kWindow.area(), 0)}, view));
+    look.add(
+        measuredFaces(seen, {.window = kFaceWindow, .inside = std::vector<std::uint8_t>(kFaceWindow.area(), 0)}, view));
     return estimateBox(look, 10).most().x();
   };
   const double without = front();
@@ -76,20 +78,20 @@ TEST(FaceMeasurement, HoldsTheFollowedPoints) {
 TEST(FaceMeasurement, AWrongBeliefOfTheRearGivesWayToTheSideThatIsSeenBehindIt) {
   // A car that overtakes: its side fills the view, and its rear is believed to be two meters ahead of where it is.
   const SE3 T_cam_body = StreetByHand::standingAt(-3.3, 9);
-  const StreetByHand street({{T_cam_body, StreetByHand::faces(kCar_m)}});
+  const StreetByHand street({{T_cam_body, StreetByHand::faces(kMeasuredCar_m)}});
   const LevelDisparities seen = street.disparities({.u0 = 40, .v0 = 60, .width = 110, .height = 60}, 2);
   FaceInformation evidence;
-  evidence.add(Vector6d::Unit(kRear), -0.5 * kCar_m.x() + 2, 0.2);
+  evidence.add(Vector6d::Unit(kRear), -0.5 * kMeasuredCar_m.x() + 2, 0.2);
   ObjectView view{.T_cam_body = T_cam_body,
                   .box = estimateBox(evidence, 15),
                   .ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m},
                   .disparity_offset_px = 0};
-  EXPECT_GT(view.box.least().x(), -0.5 * kCar_m.x() + 1.5);
+  EXPECT_GT(view.box.least().x(), -0.5 * kMeasuredCar_m.x() + 1.5);
   for (int i = 0; i < 40; ++i) {
     evidence.add(measuredFaces(seen, outlineOf(seen, view), view), 0.15);
     view.box = estimateBox(evidence, 15);
   }
-  EXPECT_NEAR(view.box.least().x(), -0.5 * kCar_m.x(), 0.3);
+  EXPECT_NEAR(view.box.least().x(), -0.5 * kMeasuredCar_m.x(), 0.3);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ using test::kRig;
 using test::outlineOf;
 using test::StreetByHand;
 
-const Eigen::Vector3d kCar_m(4.2, 1.8, 1.5);
-constexpr PixelWindow kWindow{.u0 = 230, .v0 = 60, .width = 140, .height = 100};
+const Eigen::Vector3d kOutlinedCar_m(4.2, 1.8, 1.5);
+constexpr PixelWindow kOutlineWindow{.u0 = 230, .v0 = 60, .width = 140, .height = 100};
 
 ObjectView viewOf(const SE3& T_cam_body, const Eigen::Vector3d& size_m) {
   FaceInformation sure;
@@ -45,9 +45,9 @@ class OutlineAtYaw : public testing::TestWithParam<double> {};
 
 TEST_P(OutlineAtYaw, CoversTheCarAndNotTheRoad) {
   const SE3 T_cam_body = StreetByHand::standingAt(-0.3, 13, GetParam());
-  const StreetByHand street({{T_cam_body, StreetByHand::faces(kCar_m)}});
-  const LevelDisparities seen = street.disparities(kWindow, 1);
-  const ObjectView view = viewOf(T_cam_body, kCar_m);
+  const StreetByHand street({{T_cam_body, StreetByHand::faces(kOutlinedCar_m)}});
+  const LevelDisparities seen = street.disparities(kOutlineWindow, 1);
+  const ObjectView view = viewOf(T_cam_body, kOutlinedCar_m);
   Outline outline = outlineOf(seen, view);
   const double before = overlapOf(outline, seen, street, 0).iou();
   completeOutline(outline, seen, view, kRig);
@@ -67,7 +67,7 @@ struct Completed {
 
   Completed(const Eigen::Vector3d& size_m, double z_m)
       : street({{StreetByHand::standingAt(0, z_m), StreetByHand::faces(size_m)}}),
-        seen(street.disparities(kWindow, 1)) {
+        seen(street.disparities(kOutlineWindow, 1)) {
     const ObjectView view = viewOf(StreetByHand::standingAt(0, z_m), size_m);
     outline = outlineOf(seen, view);
     completeOutline(outline, seen, view, kRig);
@@ -75,12 +75,12 @@ struct Completed {
 };
 
 TEST(OutlineCompletion, OneSeesTheRoadBetweenTheWheels) {
-  const Completed car(kCar_m, 13);
-  const double rear_m = 13 - kCar_m.x() / 2 + 0.45;  // to where the rear wheels stand
+  const Completed car(kOutlinedCar_m, 13);
+  const double rear_m = 13 - kOutlinedCar_m.x() / 2 + 0.45;  // to where the rear wheels stand
   const auto isInside = [&](double x_m, double height_m) {
     const double u = kRig.cx_px + kRig.fx_px * x_m / rear_m,
                  v = kRig.cy_px + kRig.fy_px * (StreetByHand::kRoad_m - height_m) / rear_m;
-    return car.outline.at(static_cast<int>(u / 2) - kWindow.u0, static_cast<int>(v / 2) - kWindow.v0);
+    return car.outline.at(static_cast<int>(u / 2) - kOutlineWindow.u0, static_cast<int>(v / 2) - kOutlineWindow.v0);
   };
   for (const double x_m : {-0.8, 0.8}) EXPECT_TRUE(isInside(x_m, 0.02));
   EXPECT_FALSE(isInside(0, 0.02));
@@ -94,9 +94,10 @@ TEST(OutlineCompletion, APersonStandsOnTheRoad) {
 
 TEST(Outline, LeavesOthersAlone) {
   const SE3 T_near = StreetByHand::standingAt(-0.6, 12), T_far = StreetByHand::standingAt(1.6, 13);
-  const StreetByHand street({{T_near, StreetByHand::faces(kCar_m)}, {T_far, StreetByHand::faces(kCar_m)}});
-  const LevelDisparities seen = street.disparities(kWindow, 1);
-  ObjectView view = viewOf(T_near, kCar_m);
+  const StreetByHand street(
+      {{T_near, StreetByHand::faces(kOutlinedCar_m)}, {T_far, StreetByHand::faces(kOutlinedCar_m)}});
+  const LevelDisparities seen = street.disparities(kOutlineWindow, 1);
+  ObjectView view = viewOf(T_near, kOutlinedCar_m);
   view.box.usual_most += Eigen::Vector3d(0, 0.5, 0), view.box.possible_most = view.box.usual_most;
   view.box.usual_least -= Eigen::Vector3d(0, 2.5, 0), view.box.possible_least = view.box.usual_least;  // over the other
   const auto taken = [&] {
@@ -104,7 +105,7 @@ TEST(Outline, LeavesOthersAlone) {
     return overlapOf(outline, seen, street, 1).both;
   };
   const int without = taken();
-  const BoxFaces faces = StreetByHand::faces(kCar_m);
+  const BoxFaces faces = StreetByHand::faces(kOutlinedCar_m);
   view.others.push_back({T_far.inverse(), Eigen::Vector3d(faces[0], faces[2], faces[4]).array() - 0.2,
                          Eigen::Vector3d(faces[1], faces[3], faces[5]).array() + 0.2});
   EXPECT_GT(without, 100);
@@ -117,8 +118,9 @@ TEST(Outline, LeavesOutWhatRests) {
   constexpr int kLevel = 1;
   const SE3 T_now = StreetByHand::standingAt(-0.6, 12), T_before = StreetByHand::standingAt(-1.0, 12),
             T_parked = StreetByHand::standingAt(1.6, 12);
-  const StreetByHand now({{T_now, StreetByHand::faces(kCar_m)}, {T_parked, StreetByHand::faces(kCar_m)}}),
-      before({{T_before, StreetByHand::faces(kCar_m)}, {T_parked, StreetByHand::faces(kCar_m)}});
+  const StreetByHand now(
+      {{T_now, StreetByHand::faces(kOutlinedCar_m)}, {T_parked, StreetByHand::faces(kOutlinedCar_m)}}),
+      before({{T_before, StreetByHand::faces(kOutlinedCar_m)}, {T_parked, StreetByHand::faces(kOutlinedCar_m)}});
   const test::Texture texture(3);
   const auto pyramid = [&](const StreetByHand& street, double moved_px) {
     ImagePyramid images;
@@ -130,9 +132,9 @@ TEST(Outline, LeavesOutWhatRests) {
     return images;
   };
   const ImagePyramid images_now = pyramid(now, 0),
-                     images_before = pyramid(before, -kRig.fx_px * 0.4 / (12 - kCar_m.x() / 2) / (1 << kLevel));
-  const LevelDisparities seen = now.disparities(kWindow, kLevel);
-  ObjectView view = viewOf(T_now, kCar_m);
+                     images_before = pyramid(before, -kRig.fx_px * 0.4 / (12 - kOutlinedCar_m.x() / 2) / (1 << kLevel));
+  const LevelDisparities seen = now.disparities(kOutlineWindow, kLevel);
+  ObjectView view = viewOf(T_now, kOutlinedCar_m);
   view.box.usual_least -= Eigen::Vector3d(0, 3.2, 0), view.box.possible_least = view.box.usual_least;
   const Outline without = outlineOf(seen, view);
   view.before = {&images_now, &images_before, T_before, SE3{}};
@@ -144,14 +146,14 @@ TEST(Outline, LeavesOutWhatRests) {
 
 TEST(Outline, FillsWhatGivesNoDisparity) {
   const SE3 T_cam_body = StreetByHand::standingAt(0, 12);
-  const StreetByHand street({{T_cam_body, StreetByHand::faces(kCar_m)}});
-  LevelDisparities seen = street.disparities(kWindow, 1);
-  const ObjectView view = viewOf(T_cam_body, kCar_m);
+  const StreetByHand street({{T_cam_body, StreetByHand::faces(kOutlinedCar_m)}});
+  LevelDisparities seen = street.disparities(kOutlineWindow, 1);
+  const ObjectView view = viewOf(T_cam_body, kOutlinedCar_m);
   const Outline whole = outlineOf(seen, view);
   const PixelWindow bounds = whole.bounds();
   for (int row = bounds.v0 + 5; row < bounds.v0 + bounds.height - 5; ++row)  // its windows
     for (int column = bounds.u0 + 8; column < bounds.u0 + bounds.width - 8; ++column)
-      seen.map.disparity_px[static_cast<std::size_t>(row) * kWindow.width + column] = DisparityMap::kNone;
+      seen.map.disparity_px[static_cast<std::size_t>(row) * kOutlineWindow.width + column] = DisparityMap::kNone;
   EXPECT_GT(outlineOf(seen, view).count(), 0.95 * whole.count());
 }
 

@@ -22,12 +22,12 @@ Timestamp stampOf(int frame) { return Timestamp{static_cast<std::int64_t>(1e9 * 
 
 /// A board that drives ahead of a standing camera. Corners on it are followed from the frame in which it was spawned
 /// on; the images show it from `first_seen` on.
-struct Drive {
+struct BoardDrive {
   TrackedObject object;
   LookBack look_back{12, 3, {}, kRig};
 
   /// Another object was reported `other_ahead_m` ahead of the board's place in the frames before `other_until`.
-  explicit Drive(int first_seen, int other_until = 0, double other_ahead_m = 0, double other_height_m = 1.5) {
+  explicit BoardDrive(int first_seen, int other_until = 0, double other_ahead_m = 0, double other_height_m = 1.5) {
     TrackedObject other;
     other.track = {9};
     for (const double z_m : {0.0, other_height_m})
@@ -71,7 +71,7 @@ struct Drive {
 };
 
 TEST(LookBack, FindsAnObjectInFramesInWhichNoCornerOnItWasFollowed) {
-  Drive drive(0);
+  BoardDrive drive(0);
   drive.lookBack();
   ASSERT_EQ(drive.object.backlog.size(), static_cast<std::size_t>(kFrames));
   for (int frame = 0; frame < kSpawned; ++frame) {
@@ -84,14 +84,14 @@ TEST(LookBack, FindsAnObjectInFramesInWhichNoCornerOnItWasFollowed) {
 }
 
 TEST(LookBack, EndsWhereTheObjectIsNotSeen) {
-  Drive drive(2);
+  BoardDrive drive(2);
   drive.lookBack();
   ASSERT_FALSE(drive.object.backlog.empty());
   EXPECT_EQ(drive.object.backlog.front().frame.value, 2);
 }
 
 TEST(LookBack, EndsWhereAnotherObjectWasReportedInItsPlace) {
-  Drive taken(0, 2, 1.5), behind_another(0, 2, 6);
+  BoardDrive taken(0, 2, 1.5), behind_another(0, 2, 6);
   taken.lookBack();
   EXPECT_EQ(taken.object.backlog.front().frame.value, 2);
   behind_another.lookBack();
@@ -99,7 +99,7 @@ TEST(LookBack, EndsWhereAnotherObjectWasReportedInItsPlace) {
 }
 
 TEST(LookBack, EndsOnTheFlankOfATallVehicleThatWasReported) {
-  Drive on_a_lorry(0, 2, 6, 2.5), behind_a_lorry(0, 2, 10, 2.5);
+  BoardDrive on_a_lorry(0, 2, 6, 2.5), behind_a_lorry(0, 2, 10, 2.5);
   on_a_lorry.lookBack();
   EXPECT_EQ(on_a_lorry.object.backlog.front().frame.value, 2);
   behind_a_lorry.lookBack();

@@ -16,12 +16,12 @@ using test::IsNearPose;
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 
 /// A car in a bend, its state known with all kinds of correlation.
-struct Car {
+struct CarInBend {
   SE3 T_world_body;
   Vector6d twist;
   Matrix12d covariance;
 
-  explicit Car(std::uint64_t seed) {
+  explicit CarInBend(std::uint64_t seed) {
     test::Noise noise(seed);
     Vector6d pose;
     pose << 3, 1, 20, 0.3, -1.2, 0.4;
@@ -42,7 +42,7 @@ ObjectKinematics::Params frictionless() {
 }
 
 TEST(ObjectKinematics, PredictsAConstantTwist) {
-  const Car car(1);
+  const CarInBend car(1);
   ObjectKinematics k = car.kinematics();
   for (int i = 0; i < 10; ++i) k.predict(0.1, {});
   EXPECT_THAT(k.pose(), IsNearPose(car.T_world_body * SE3::exp(car.twist), 1e-12));  // rounding
@@ -51,7 +51,7 @@ TEST(ObjectKinematics, PredictsAConstantTwist) {
 
 TEST(ObjectKinematics, APointObservedOnTheBodyDrawsItThere) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const Car car(seed);
+    const CarInBend car(seed);
     const Eigen::Vector3d p_body(2, -0.5, 0.7),
         seen_world = car.T_world_body * p_body + Eigen::Vector3d(0.04, -0.02, 0.03);
     const auto distance = [&](double sigma_m) {
@@ -73,7 +73,7 @@ TEST(ObjectKinematics, APointObservedOnTheBodyDrawsItThere) {
 
 TEST(ObjectKinematics, PredictedCovarianceFollowsTheFiniteDifferencesOfTheMotion) {
   constexpr double kDt_s = 0.3;
-  const Car car(2);
+  const CarInBend car(2);
   ObjectKinematics k = car.kinematics();
   k.predict(kDt_s, frictionless());
   const auto error = [&](const Vector12d& x) {
@@ -105,7 +105,7 @@ TEST(ObjectKinematics, NoiseOfTwoHalfStepsIsThatOfAWhole) {
 
 TEST(ObjectKinematics, AcceptingAPoseIsAKalmanUpdateOfTheWholeState) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const Car car(seed);
+    const CarInBend car(seed);
     test::Noise noise(seed);
     Vector6d sigma;
     sigma << 0.2, 0.2, 0.3, 0.03, 0.03, 0.03;
@@ -153,7 +153,7 @@ TEST(ObjectKinematics, TheVehicleModelStopsSlipAndSetsTheBodyUpright) {
 }
 
 TEST(ObjectKinematics, ChangingTheBodyFrameKeepsTheMotionOfEveryPoint) {
-  const Car car(4);
+  const CarInBend car(4);
   Vector6d other;
   other << 1.2, -0.4, 0.3, 0.1, -0.2, 0.7;
   const SE3 T_body_new = SE3::exp(other);
@@ -174,7 +174,7 @@ TEST(ObjectKinematics, ChangingTheBodyFrameKeepsTheMotionOfEveryPoint) {
 }
 
 TEST(ObjectKinematics, PredictingCommutesWithTheChoiceOfBodyFrame) {
-  const Car car(5);
+  const CarInBend car(5);
   const SE3 T_body_new(expSO3({0, 0, 0.6}), {1, -0.5, 0.2});
   ObjectKinematics a = car.kinematics(), b = a;
   a.predict(0.2, frictionless());

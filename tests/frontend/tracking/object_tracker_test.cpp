@@ -18,13 +18,13 @@ using test::SimulatedCar;
 using test::SimulatedTraffic;
 
 /// What the tracker said over a drive.
-struct Drive {
+struct TrackedDrive {
   SimulatedTraffic traffic;
   ObjectTracker tracker;
   std::vector<FrameMeasurementsPtr> frames;
 
-  Drive(const std::vector<SimulatedCar>& cars, double camera_speed_mps, int count, std::uint64_t seed = 1,
-        double odometry_sigma_m = 0.003)
+  TrackedDrive(const std::vector<SimulatedCar>& cars, double camera_speed_mps, int count, std::uint64_t seed = 1,
+               double odometry_sigma_m = 0.003)
       : traffic(cars, camera_speed_mps, seed, odometry_sigma_m), tracker({}, kRig) {
     for (int i = 0; i < count; ++i) frames.push_back(tracker(traffic.next()));
   }
@@ -60,7 +60,7 @@ struct Drive {
 };
 
 TEST(ObjectTracker, HandsOverEachPointOnceAndThoseOfAVehicleBeforeItIsKnown) {
-  const Drive drive({{.z_m = 14, .speed_mps = 12}}, 8, 12);
+  const TrackedDrive drive({{.z_m = 14, .speed_mps = 12}}, 8, 12);
   std::set<PointId> undecided, of_vehicles;
   for (const auto& f : drive.frames) {
     std::set<PointId> seen;
@@ -81,7 +81,7 @@ TEST(ObjectTracker, HandsOverEachPointOnceAndThoseOfAVehicleBeforeItIsKnown) {
 
 TEST(ObjectTracker, ALeadCarKeepsOneIdForLife) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const Drive drive({{.x_m = 0.5, .z_m = 14, .speed_mps = 10}}, 10, 40, seed);
+    const TrackedDrive drive({{.x_m = 0.5, .z_m = 14, .speed_mps = 10}}, 10, 40, seed);
     ASSERT_EQ(drive.tracks().size(), 1U) << "seed " << seed;
     const auto all = drive.observations(*drive.tracks().begin());
     EXPECT_GE(all.size(), 37U);  // scene flow needs three frames
@@ -90,7 +90,7 @@ TEST(ObjectTracker, ALeadCarKeepsOneIdForLife) {
 }
 
 TEST(ObjectTracker, IsConfirmedWithinFiveFramesAndBringsItsBacklogAlong) {
-  const Drive drive({{.x_m = -3, .z_m = 18, .speed_mps = 8}}, 10, 12);
+  const TrackedDrive drive({{.x_m = -3, .z_m = 18, .speed_mps = 8}}, 10, 12);
   const auto confirmed = std::ranges::find_if(drive.frames, [](const auto& f) { return !f->objects.empty(); });
   ASSERT_NE(confirmed, drive.frames.end());
   const auto& objects = (*confirmed)->objects;
@@ -103,7 +103,7 @@ TEST(ObjectTracker, IsConfirmedWithinFiveFramesAndBringsItsBacklogAlong) {
 }
 
 TEST(ObjectTracker, AnObjectThatVanishesIsPredictedFiveTimesAndThenEnds) {
-  const Drive drive({{.x_m = 0.5, .z_m = 15, .speed_mps = 10, .gone_from = 20}}, 10, 45);
+  const TrackedDrive drive({{.x_m = 0.5, .z_m = 15, .speed_mps = 10, .gone_from = 20}}, 10, 45);
   ASSERT_EQ(drive.tracks().size(), 1U);
   const TrackId track = *drive.tracks().begin();
   int predicted = 0;
@@ -123,7 +123,8 @@ TEST(ObjectTracker, AnObjectThatVanishesIsPredictedFiveTimesAndThenEnds) {
 
 TEST(ObjectTracker, ACarThatComesBackWithinASecondKeepsItsId) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const Drive drive({{.x_m = 0.5, .z_m = 15, .speed_mps = 10, .gone_from = 20, .gone_until = 28}}, 10, 45, seed);
+    const TrackedDrive drive({{.x_m = 0.5, .z_m = 15, .speed_mps = 10, .gone_from = 20, .gone_until = 28}}, 10, 45,
+                             seed);
     ASSERT_EQ(drive.tracks().size(), 1U) << "seed " << seed;
     const auto all = drive.observations(*drive.tracks().begin());
     EXPECT_EQ(all.back().frame.value, 44);
@@ -134,15 +135,15 @@ TEST(ObjectTracker, ACarThatComesBackWithinASecondKeepsItsId) {
 TEST(ObjectTracker, ACarThatComesBackIsWhereItIsSeenAgain) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     // Unseen it waits for half a second: its position was predicted three meters ahead.
-    const Drive drive({{.x_m = 0.5,
-                        .z_m = 18,
-                        .speed_mps = 6,
-                        .points = 60,
-                        .gone_from = 25,
-                        .gone_until = 30,
-                        .stands_from = 25,
-                        .stands_until = 30}},
-                      6, 45, seed);
+    const TrackedDrive drive({{.x_m = 0.5,
+                               .z_m = 18,
+                               .speed_mps = 6,
+                               .points = 60,
+                               .gone_from = 25,
+                               .gone_until = 30,
+                               .stands_from = 25,
+                               .stands_until = 30}},
+                             6, 45, seed);
     ASSERT_EQ(drive.tracks().size(), 1U) << "seed " << seed;
     const auto all = drive.observations(*drive.tracks().begin());
     const auto positionAt = [&](std::int64_t frame) {
@@ -155,9 +156,9 @@ TEST(ObjectTracker, ACarThatComesBackIsWhereItIsSeenAgain) {
 
 TEST(ObjectTracker, TwoCarsSideBySideAreTwoFromTheFirstFrame) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const Drive drive({{.x_m = -1.5, .z_m = 14, .speed_mps = 10, .points = 80},
-                       {.x_m = 1.1, .z_m = 14.5, .speed_mps = 10, .points = 80}},
-                      10, 30, seed);
+    const TrackedDrive drive({{.x_m = -1.5, .z_m = 14, .speed_mps = 10, .points = 80},
+                              {.x_m = 1.1, .z_m = 14.5, .speed_mps = 10, .points = 80}},
+                             10, 30, seed);
     ASSERT_EQ(drive.tracks().size(), 2U) << "seed " << seed;
     for (const TrackId track : drive.tracks()) {
       const auto all = drive.observations(track);
@@ -172,8 +173,8 @@ TEST(ObjectTracker, AFewPointsSeenThroughAVehicleAreNoVehicle) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     const SimulatedCar truck{.x_m = 0.5, .z_m = 10, .speed_mps = 10, .points = 200};
     const SimulatedCar speck{.x_m = 0.7, .z_m = 16, .speed_mps = 10, .points = 20, .size = 0.5};
-    EXPECT_EQ(Drive({speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
-    EXPECT_EQ(Drive({truck, speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
+    EXPECT_EQ(TrackedDrive({speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
+    EXPECT_EQ(TrackedDrive({truck, speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
   }
 }
 
@@ -182,14 +183,14 @@ TEST(ObjectTracker, AFewPointsBesideAVehicleThatIsCutOffAreNoVehicle) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     const SimulatedCar truck{.x_m = -4.2, .z_m = 9, .speed_mps = 10, .points = 200};
     const SimulatedCar speck{.x_m = -12.9, .z_m = 16, .speed_mps = 10, .points = 20, .size = 0.5};
-    EXPECT_EQ(Drive({speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
-    EXPECT_EQ(Drive({truck, speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
+    EXPECT_EQ(TrackedDrive({speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
+    EXPECT_EQ(TrackedDrive({truck, speck}, 10, 20, seed).tracks().size(), 1U) << "seed " << seed;
   }
 }
 
 TEST(ObjectTracker, ACarThatStopsIsStoppedUntilItMovesAgain) {
-  const Drive drive({{.x_m = 3, .z_m = 20, .speed_mps = 5, .points = 60, .stands_from = 20, .stands_until = 45}}, 2,
-                    65);
+  const TrackedDrive drive({{.x_m = 3, .z_m = 20, .speed_mps = 5, .points = 60, .stands_from = 20, .stands_until = 45}},
+                           2, 65);
   ASSERT_EQ(drive.tracks().size(), 1U);
   std::map<std::int64_t, ObjectState> state;
   for (const auto& o : drive.observations(*drive.tracks().begin())) state[o.frame.value] = o.state;
@@ -201,10 +202,10 @@ TEST(ObjectTracker, ACarThatStopsIsStoppedUntilItMovesAgain) {
 
 TEST(ObjectTracker, ParkedCarsAreNeverReported) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const Drive drive({{.x_m = 4, .z_m = 25, .speed_mps = 0},
-                       {.x_m = -4, .z_m = 40, .speed_mps = 0},
-                       {.x_m = 5, .z_m = 60, .speed_mps = 0}},
-                      10, 30, seed);
+    const TrackedDrive drive({{.x_m = 4, .z_m = 25, .speed_mps = 0},
+                              {.x_m = -4, .z_m = 40, .speed_mps = 0},
+                              {.x_m = 5, .z_m = 60, .speed_mps = 0}},
+                             10, 30, seed);
     EXPECT_TRUE(drive.tracks().empty()) << "seed " << seed;
   }
 }
@@ -212,7 +213,7 @@ TEST(ObjectTracker, ParkedCarsAreNeverReported) {
 TEST(ObjectTracker, WhatIsNoLargerThanAHandIsNoVehicle) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const auto follow = [&](double size) {
-      return Drive({{.x_m = 0.5, .z_m = 8, .points = 20, .size = size}}, 10, 20, seed).tracks().size();
+      return TrackedDrive({{.x_m = 0.5, .z_m = 8, .points = 20, .size = size}}, 10, 20, seed).tracks().size();
     };
     EXPECT_EQ(follow(0.01), 0U) << "seed " << seed;
     EXPECT_EQ(follow(1), 1U) << "seed " << seed;
@@ -222,23 +223,23 @@ TEST(ObjectTracker, WhatIsNoLargerThanAHandIsNoVehicle) {
 TEST(ObjectTracker, AWalkerIsFollowedOnceItsWayIsLongEnough) {
   int followed = 0;
   for (std::uint64_t seed = 0; seed < 5; ++seed)  // across the road, with few points
-    followed +=
-        Drive({{.x_m = -3, .z_m = 13, .heading_rad = 1.57, .speed_mps = 1.4, .points = 8, .size = 0.35}}, 2, 25, seed)
-            .tracks()
-            .size() == 1;
+    followed += TrackedDrive({{.x_m = -3, .z_m = 13, .heading_rad = 1.57, .speed_mps = 1.4, .points = 8, .size = 0.35}},
+                             2, 25, seed)
+                    .tracks()
+                    .size() == 1;
   EXPECT_GE(followed, 4);
 }
 
 TEST(ObjectTracker, PointsWithinOnePatchAreNoVehicle) {
   for (std::uint64_t seed = 0; seed < 5; ++seed)  // 20 cm at 16 m: 9 pixels
-    EXPECT_TRUE(Drive({{.x_m = 0.5, .z_m = 16, .points = 30, .size = 0.12}}, 10, 20, seed).tracks().empty())
+    EXPECT_TRUE(TrackedDrive({{.x_m = 0.5, .z_m = 16, .points = 30, .size = 0.12}}, 10, 20, seed).tracks().empty())
         << "seed " << seed;
 }
 
 TEST(ObjectTracker, TwoCarsThatPassEachOtherKeepTheirIds) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const Drive drive({{.x_m = -1.8, .z_m = 20, .speed_mps = 7}, {.x_m = 1.8, .z_m = 11, .speed_mps = 11}}, 8, 40,
-                      seed);
+    const TrackedDrive drive({{.x_m = -1.8, .z_m = 20, .speed_mps = 7}, {.x_m = 1.8, .z_m = 11, .speed_mps = 11}}, 8,
+                             40, seed);
     ASSERT_EQ(drive.tracks().size(), 2U) << "seed " << seed;
     for (const TrackId track : drive.tracks()) {
       const auto all = drive.observations(track);
@@ -250,11 +251,11 @@ TEST(ObjectTracker, TwoCarsThatPassEachOtherKeepTheirIds) {
 
 TEST(ObjectTracker, TheBodysXAxisLiesAlongTheTravel) {
   for (const double heading : {0.0, 0.6, 3.1}) {
-    const Drive drive({{.x_m = heading == 0.6 ? -5.0 : -3.0,
-                        .z_m = heading > 3 ? 40.0 : 18.0,
-                        .heading_rad = heading,
-                        .speed_mps = 7}},
-                      6, 18);
+    const TrackedDrive drive({{.x_m = heading == 0.6 ? -5.0 : -3.0,
+                               .z_m = heading > 3 ? 40.0 : 18.0,
+                               .heading_rad = heading,
+                               .speed_mps = 7}},
+                             6, 18);
     ASSERT_FALSE(drive.tracks().empty());
     const auto all = drive.observations(*drive.tracks().begin());
     for (const auto& o : all) {
@@ -271,8 +272,8 @@ TEST(ObjectTracker, EncounterAndMotionErrorsAreWithinTheirCovariances) {
   double encounter = 0, motion = 0;
   int encounters = 0, motions = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const Drive drive({{.x_m = -2, .z_m = 12, .speed_mps = 9, .points = 80}}, 8, 25, seed,
-                      1e-5);  // the points' noise alone
+    const TrackedDrive drive({{.x_m = -2, .z_m = 12, .speed_mps = 9, .points = 80}}, 8, 25, seed,
+                             1e-5);  // the points' noise alone
     ASSERT_FALSE(drive.tracks().empty());
     const auto all = drive.observations(*drive.tracks().begin());
     Vector6d mean =

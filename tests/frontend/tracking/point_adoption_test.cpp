@@ -13,12 +13,12 @@ using test::kRig;
 
 /// A car 12 m ahead with points over two meters of its length, and points of the scene that may join it. The camera
 /// stands at the world's origin.
-struct Car {
+struct CarWithPoints {
   TrackedObject object;
   SceneMotion scene;
   std::vector<bool> taken;
 
-  explicit Car(double speed_mps = 10) {
+  explicit CarWithPoints(double speed_mps = 10) {
     Eigen::Matrix3d upright;  // columns: ahead = camera's z, left = -x, up = -y
     upright << 0, -1, 0, 0, 0, -1, 1, 0, 0;
     object.T_cam_body = SE3(upright, {1, 1, 12});
@@ -58,13 +58,13 @@ struct Car {
 /// Whether a car takes a point at `p_body` after `change` was made to it.
 template <class Change>
 bool takesAfter(const Change& change, const Eigen::Vector3d& p_body = {0.5, 0.2, 0.3}) {
-  Car car;
+  CarWithPoints car;
   change(car.see(p_body));
   return car.takes();
 }
 
 TEST(PointAdoption, TakesThePointsWithinTheObjectThatMoveWithIt) {
-  Car car;
+  CarWithPoints car;
   car.see({0.5, 0.2, 0.3});
   car.see({-0.5, -0.2, 0.1});
   EXPECT_TRUE(car.takes());
@@ -82,13 +82,13 @@ TEST(PointAdoption, LeavesWhatIsTooFarAwayToKnowWhere) {
     p.flow->covariance *= 1e6;
   };
   EXPECT_FALSE(takesAfter(at_infinity));
-  Car car;
+  CarWithPoints car;
   at_infinity(car.see({0.5, 0.2, 0.3}));
   EXPECT_FALSE(car.takes(true));
 }
 
 TEST(PointAdoption, LeavesWhatBelongsToAnotherObject) {
-  Car car;
+  CarWithPoints car;
   car.see({0.5, 0.2, 0.3});
   car.taken[0] = true;
   EXPECT_FALSE(car.takes());
@@ -105,24 +105,24 @@ TEST(PointAdoption, LeavesWhatDoesNotShowThatItMovesWithTheBody) {
 }
 
 TEST(PointAdoption, ASlowObjectTakesNone) {
-  Car slow(0.5);
+  CarWithPoints slow(0.5);
   slow.see({0.5, 0.2, 0.3});
   EXPECT_FALSE(slow.takes());
 }
 
 TEST(PointAdoption, WhatLiesApartJoinsOnlyFromTheSegmentThatWasMatched) {
   for (const bool from_segment : {false, true}) {
-    Car car;
+    CarWithPoints car;
     car.see({-3, 0, 0.3});  // two meters behind the points that are known, within the length of a car
     EXPECT_EQ(car.takes(from_segment), from_segment);
   }
-  Car wide;
+  CarWithPoints wide;
   wide.see({0, 5, 0.3});
   EXPECT_FALSE(wide.takes(true));  // no vehicle is so wide
 }
 
 TEST(PointAdoption, ALongVehicleIsFoundStepByStepUpToTheLengthOfALorry) {
-  Car car;
+  CarWithPoints car;
   double reached_m = 1;
   for (double x_m = 1.5; x_m < 20; x_m += 0.5) {
     car.see({x_m, 0, 0.3});

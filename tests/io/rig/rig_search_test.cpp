@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-std::string openCv(const std::string& x_m) {
+std::string openCvRig(const std::string& x_m) {
   return "M1: [500, 0, 376, 0, 501, 240, 0, 0, 1]\nM2: [502, 0, 370, 0, 503, 241, 0, 0, 1]\nD1: [0, 0, 0, 0, 0]\n"
          "D2: [0, 0, 0, 0, 0]\nR: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [" +
          x_m + ", 0, 0]\n";
@@ -42,9 +42,9 @@ class RigSearch : public testing::Test {
 };
 
 TEST_F(RigSearch, SeveralThatDifferAreAskedFor) {
-  folder_.write("camchain-2023-01.yaml", openCv("-0.432"));
+  folder_.write("camchain-2023-01.yaml", openCvRig("-0.432"));
   EXPECT_THAT(found(), ElementsAre("camchain-2023-01.yaml"));
-  folder_.write("camchain-2024-09.yaml", openCv("-0.54"));
+  folder_.write("camchain-2024-09.yaml", openCvRig("-0.54"));
   EXPECT_THAT(error(), AllOf(HasSubstr("holds 2 calibrations"), HasSubstr("2023-01.yaml    (baseline 0.4320 m)"),
                              HasSubstr("--calibration " + (folder_ / "camchain-2024-09.yaml").string())));
   folder_.write("camchain-2024-09.yaml", "cam0: {intrinsics: [0, 0, 0, 0]}\ncam1: 1\n");
@@ -52,8 +52,8 @@ TEST_F(RigSearch, SeveralThatDifferAreAskedFor) {
 }
 
 TEST_F(RigSearch, SeveralThatAreOneAreNoQuestion) {
-  folder_.write("camchain.yaml", openCv("-0.54"));
-  folder_.write("camchain-imucam.yaml", openCv("-0.54000000001"));
+  folder_.write("camchain.yaml", openCvRig("-0.54"));
+  folder_.write("camchain-imucam.yaml", openCvRig("-0.54000000001"));
   EXPECT_THAT(found(), ElementsAre("camchain-imucam.yaml"));
 }
 
@@ -67,12 +67,12 @@ TEST_F(RigSearch, PairsAreFoundByTheirNames) {
   }
   folder_.write("left.yaml", ros("0"));
   folder_.write("right.yaml", ros("-48"));
-  folder_.write("stereo_old.yml", openCv("-0.13"));
+  folder_.write("stereo_old.yml", openCvRig("-0.13"));
   EXPECT_THAT(error(), AllOf(HasSubstr("left.yaml," + (folder_ / "right.yaml").string()), HasSubstr("stereo_old.yml")));
 }
 
 TEST_F(RigSearch, OtherNamesAndOtherContentsDoNotCount) {
-  folder_.write("rig.yaml", openCv("-0.54"));
+  folder_.write("rig.yaml", openCvRig("-0.54"));
   folder_.write("calibration_of_the_imu.yaml", "noise: 1\n");
   EXPECT_THAT(found(), IsEmpty());
   EXPECT_THAT(found(RigNames::kAny), ElementsAre("rig.yaml"));

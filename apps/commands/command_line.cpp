@@ -1,4 +1,4 @@
-#include "apps/command_line.hpp"
+#include "apps/commands/command_line.hpp"
 
 #include <algorithm>
 #include <iostream>
