@@ -82,6 +82,11 @@ void addRun(CLI::App& app, Action& action) {
   command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")
       ->type_name("KEY=VALUE");
   command
+      ->add_option("--min-existence", options->min_existence,
+                   "Leave out rows of objects that are less likely there, from 0, which reports all, to 1; short for "
+                   "--set frontend.shapes.min_existence=P")
+      ->type_name("P");
+  command
       ->add_option("--inject", options->inject,
                    "Faults on the way from the camera, to see what becomes of the results: "
                    "KIND[=VALUE][/left|/right][@A[:B[:STEP]]][~SHARE],... and seed=N, as black@20:23,noise=20~0.1\n" +

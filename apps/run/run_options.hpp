@@ -26,6 +26,7 @@ struct RunOptions {
   GivenCameras given;                    // --camera and --calibration
   std::filesystem::path camera_poses;    // KITTI pose lines
   std::vector<std::string> assignments;  // key=value
+  std::string min_existence;             // of rows, a probability; empty for the configuration's
   std::string require;                   // tracked=FRACTION
   std::string inject;                    // faults, see FaultSpec
   bool shown = false;                    // on a page
