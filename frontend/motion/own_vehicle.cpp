@@ -13,7 +13,10 @@ namespace {
 constexpr double kReachAhead_m = 3.5;
 /// Aside of the camera there is the own vehicle for sure, if anything: half a car's width. It reaches on as far as
 /// points that stay follow each other without a gap; a vehicle in the next lane is farther away.
-constexpr double kReachAside_m = 1.0, kGap_m = 0.4;
+constexpr double kReachAside_m = 1.0, kGap_m = 0.3;
+
+constexpr double kCompany_m = 0.5;  // points of the own vehicle have others as near, ...
+constexpr int kCompany = 3;         // ... so many, at least
 
 constexpr double kMove_px = 10;  // of a point at rest: twenty times the tolerance of one that stays
 /// Of each coordinate, beyond the noise: a camera behind the windshield and the bonnet shake against each other.
@@ -27,6 +30,25 @@ double misfitChi2(const Eigen::Vector3d& difference_px, const Eigen::Vector3d& s
   const Eigen::Array3d variance_px2 =
       sigma_then_px.array().square() + sigma_now_px.array().square() + kTolerance_px * kTolerance_px;
   return (difference_px.array().square() / variance_px2).sum();
+}
+
+/// T_now_then * p_then, without the inverse as a whole.
+Eigen::Vector3d intoNow(const CameraTrail::Relation& relation, const Eigen::Vector3d& p_then) {
+  return relation.T_then_now.rotation().transpose() * (p_then - relation.T_then_now.translation());
+}
+
+/// Are there other points around, among those that are ordered from left to right? A wrong disparity on a vehicle that
+/// keeps our pace is alone, or nearly so.
+template <class Points>
+bool hasCompany(const Eigen::Vector3d& p_cam, const Points& points) {
+  const auto x_m = [](const auto& point) { return point.p_cam.x(); };
+  int near = -1;  // it is among them itself
+  for (auto at = std::ranges::lower_bound(points, p_cam.x() - kCompany_m, {}, x_m); at != points.end(); ++at) {
+    if (at->p_cam.x() > p_cam.x() + kCompany_m) return false;
+    near += (at->p_cam - p_cam).norm() < kCompany_m;
+    if (near >= kCompany) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -80,7 +102,7 @@ OwnVehicle::Verdict OwnVehicle::judge(Watched& point, const StereoObservation& s
   if (point.fixed && staying) return Verdict::kStays;
   const Eigen::Vector3d uvd_px = seen.uvd_px.cast<double>();
   if (const auto* relation = trail.find(point.step)) {
-    const auto at_rest = camera_.project(relation->T_then_now.inverse() * camera_.triangulate(point.uvd_px));
+    const auto at_rest = camera_.project(intoNow(*relation, camera_.triangulate(point.uvd_px)));
     const bool moves = !at_rest || (*at_rest - point.uvd_px).norm() > kMove_px;
     if (moves && staying && isNear(seen)) return Verdict::kStays;
     if (moves && at_rest && misfitChi2(uvd_px - *at_rest, point.sigma_px, seen.sigma_px.cast<double>()) < kMaxChi2)
@@ -91,13 +113,27 @@ OwnVehicle::Verdict OwnVehicle::judge(Watched& point, const StereoObservation& s
   return Verdict::kNone;
 }
 
-/// Finds how far the own vehicle reaches to either side, going outwards over points that stay.
-void OwnVehicle::widen(std::vector<Staying> staying) {
-  std::ranges::sort(staying, {}, &Staying::x_m);
+/// Of the points that stay, takes those for fixed that are not alone and lie where the own vehicle reaches.
+void OwnVehicle::takeFixed(std::vector<Staying> staying, std::vector<Watched>& watched) {
+  std::ranges::sort(staying, {}, [](const Staying& point) { return point.p_cam.x(); });
+  std::erase_if(staying, [&, all = staying](const Staying& point) {
+    return !watched[point.watched].fixed && !hasCompany(point.p_cam, all);
+  });
+  widen(staying);
+  for (const Staying& point : staying) {
+    Watched& stayed = watched[point.watched];
+    stayed.fixed |= point.p_cam.x() >= left_m_ && point.p_cam.x() <= right_m_;
+    if (stayed.fixed) map_.voteFor(stayed.uvd_px.x(), stayed.uvd_px.y());
+  }
+}
+
+/// Finds how far the own vehicle reaches to either side, going outwards over points that are ordered from left to
+/// right.
+void OwnVehicle::widen(const std::vector<Staying>& staying) {
   for (const Staying& point : staying)
-    if (point.x_m > right_m_ && point.x_m < right_m_ + kGap_m) right_m_ = point.x_m;
+    if (const double x_m = point.p_cam.x(); x_m > right_m_ && x_m < right_m_ + kGap_m) right_m_ = x_m;
   for (const Staying& point : staying | std::views::reverse)
-    if (point.x_m < left_m_ && point.x_m > left_m_ - kGap_m) left_m_ = point.x_m;
+    if (const double x_m = point.p_cam.x(); x_m < left_m_ && x_m > left_m_ - kGap_m) left_m_ = x_m;
 }
 
 /// Has the camera gone on since the last vote?
@@ -111,6 +147,7 @@ bool OwnVehicle::isTimeToVote(const CameraTrail& trail) {
 void OwnVehicle::learn(const OpticalFlow& flow, const std::vector<std::optional<StereoObservation>>& seen,
                        const CameraTrail& trail) {
   std::vector<Watched> watched;
+  watched.reserve(watched_.size());
   std::vector<Staying> staying;
   auto before = watched_.begin();
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -127,14 +164,9 @@ void OwnVehicle::learn(const OpticalFlow& flow, const std::vector<std::optional<
     }
     const Verdict verdict = judge(watched.back(), *seen[i], trail);
     if (verdict == Verdict::kRests) map_.voteAgainst(uvd_px.x(), uvd_px.y());
-    if (verdict == Verdict::kStays) staying.push_back({watched.size() - 1, camera_.triangulate(uvd_px).x()});
+    if (verdict == Verdict::kStays) staying.push_back({watched.size() - 1, camera_.triangulate(uvd_px)});
   }
-  widen(staying);
-  for (const Staying& point : staying) {
-    Watched& stayed = watched[point.watched];
-    stayed.fixed = point.x_m >= left_m_ && point.x_m <= right_m_;
-    if (stayed.fixed) map_.voteFor(stayed.uvd_px.x(), stayed.uvd_px.y());
-  }
+  takeFixed(std::move(staying), watched);
   watched_ = std::move(watched);
   if (isTimeToVote(trail))
     map_.count();

@@ -49,10 +49,10 @@ class OwnVehicle {
     bool fixed = false;  // it stayed while a point at rest would have moved
   };
   enum class Verdict { kNone, kStays, kRests };
-  /// A near point that stays, so far aside of the camera (right positive).
+  /// A near point that stays.
   struct Staying {
     std::size_t watched;  // its index
-    double x_m;
+    Eigen::Vector3d p_cam;
   };
 
   bool isIgnored(const StereoObservation& seen) const;
@@ -60,7 +60,8 @@ class OwnVehicle {
   bool isOfInterest(const StereoObservation& seen) const;
   bool stays(const Watched& point, const StereoObservation& seen) const;
   Verdict judge(Watched& point, const StereoObservation& seen, const CameraTrail& trail) const;
-  void widen(std::vector<Staying> staying);
+  void takeFixed(std::vector<Staying> staying, std::vector<Watched>& watched);
+  void widen(const std::vector<Staying>& staying);
   bool isTimeToVote(const CameraTrail& trail);
 
   StereoCamera camera_;

@@ -6,9 +6,10 @@
 namespace motorcade {
 namespace {
 
-constexpr int kSureScore = 10;   // votes that make a cell part of the own vehicle
-constexpr int kMostScore = 20;   // so that a cell that is seen through later is given up after as many votes
-constexpr int kOpenScore = -3;   // a cell is seen through: more than one mismatched point said so
+constexpr int kSureScore = 10;  // votes that make a cell part of the own vehicle
+constexpr int kMostScore = 20;  // so that a cell that is seen through later is given up after as many votes
+constexpr int kLeastScore = -10;
+constexpr int kClearScore = -3;  // seen through: more than one mismatched point said so
 constexpr int kReach_cells = 2;  // parts of one vehicle are this near: points on weak texture are sparse
 constexpr int kMargin_cells = 1;
 constexpr int kNear_cells = 4;  // as far as points on the road go down in the image from frame to frame, about
@@ -44,11 +45,11 @@ void OwnVehicleMap::count() {
   for (std::size_t i = 0; i < ballot_.size(); ++i) {
     if (ballot_[i] == 0) continue;
     const int before = score_[i];
-    score_[i] = std::clamp(before + ((ballot_[i] & kAgainst) != 0 ? -1 : 1), -kSureScore, kMostScore);
+    score_[i] = std::clamp(before + ((ballot_[i] & kAgainst) != 0 ? -1 : 1), kLeastScore, kMostScore);
     ballot_[i] = 0;
     const bool sure = score_[i] >= kSureScore || (sure_[i] != 0 && score_[i] > 0);
     changed |= sure != (sure_[i] != 0) || (score_[i] > 0) != (before > 0) ||
-               (score_[i] <= kOpenScore) != (before <= kOpenScore);
+               (score_[i] <= kClearScore) != (before <= kClearScore);
     sure_[i] = sure ? 1 : 0;
   }
   if (changed) mask();
@@ -108,7 +109,8 @@ void OwnVehicleMap::fill(Cell cell, Border border) {
     masked_[cell.row * columns_ + cell.column] = 1;
     forEachAround(cell, kMargin_cells, [&](int column, int row) {
       const int i = row * columns_ + column;
-      if (score_[i] > kOpenScore) masked_[i] = 1;
+      if ((row - cell.row) * down + (column - cell.column) * across < 0) return;
+      if (score_[i] > kClearScore) masked_[i] = 1;
     });
   }
 }

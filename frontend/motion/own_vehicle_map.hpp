@@ -28,7 +28,7 @@ class OwnVehicleMap {
 
   /// Is the own vehicle seen there?
   bool isMasked(double u_px, double v_px) const { return masked_[cellAt(u_px, v_px)] != 0; }
-  /// May it be seen there? True in cells around those with votes for them.
+  /// Are cells with votes for them around?
   bool isNearVotes(double u_px, double v_px) const { return near_votes_[cellAt(u_px, v_px)] != 0; }
   bool empty() const { return !view_; }
   const std::optional<OwnVehicleView>& view() const { return view_; }

@@ -60,8 +60,9 @@ TEST(FeaturePreparation, SpendsNoCornersOnIgnoredPixels) {
   const Image image = test::render(320, 200, test::Texture(51));
   PixelMask ignored(320, 200);
   ignored.add(0, 100, 320, 200);
-  CornerDetector::Params few{.max_corners = 100};
-  const auto features = FeaturePreparation({.corners = few}, ignored)(test::stereoFrame(0, image, image));
+  FeaturePreparation::Params params;
+  params.corners.max_corners = 100;
+  const auto features = FeaturePreparation(params, ignored)(test::stereoFrame(0, image, image));
   EXPECT_EQ(features->corners.size(), 100U);  // as many as there may be, all of the upper half
   for (const Corner& corner : features->corners) EXPECT_LT(corner.v_px, 100);
 }

@@ -122,7 +122,7 @@ TEST(OwnVehicle, PointsOfABonnetAreLeftOutFromTheirSecondFrameOnAndItsPlaceWithi
     const auto later = drive.advance(20, kStep_m);
     EXPECT_EQ(drive.leftOf(drive.fixedIds(), later), 0);
     ASSERT_TRUE(drive.ownVehicle().view());
-    EXPECT_NEAR(drive.ownVehicle().view()->share, 0.20, 0.04);  // 0.16 and half to two cells of margin
+    EXPECT_NEAR(drive.ownVehicle().view()->share, 0.18, 0.03);  // 0.16 and up to a cell more
     EXPECT_EQ(drive.ownVehicle().view()->box.bottom_px, camera.height_px - 1);
     EXPECT_GT(drive.leftOf(drive.streetIds(), later), 0.8 * drive.seen(drive.streetIds()));
   }
@@ -162,6 +162,15 @@ TEST(OwnVehicle, VehiclesAheadAndBesideAtTheSameSpeedAreNotTheOwn) {
     const auto observed = drive.advance(kStep_m);
     EXPECT_EQ(drive.leftOf(drive.fixedIds(), observed), drive.seen(drive.fixedIds()));
   }
+  EXPECT_FALSE(drive.ownVehicle().view());
+}
+
+/// Two wrong disparities on vehicles that keep our pace.
+TEST(OwnVehicle, AFewPointsAreNotTheOwnVehicle) {
+  Drive drive(kKittiRig);
+  drive.addPart({600, 350, 620, 350}, 2.5);
+  drive.advance(30, kStep_m);
+  EXPECT_EQ(drive.leftOf(drive.fixedIds(), drive.advance(kStep_m)), 2);
   EXPECT_FALSE(drive.ownVehicle().view());
 }
 
