@@ -155,11 +155,10 @@ void OwnVehicle::learn(const OpticalFlow& flow, const std::vector<std::optional<
     while (before != watched_.end() && before->point < id) ++before;
     const bool known = before != watched_.end() && before->point == id;
     if (known) watched.push_back(*before);
-    if (!seen[i]) continue;
+    if (!seen[i] || (!known && !isOfInterest(*seen[i]))) continue;
     const Eigen::Vector3d uvd_px = seen[i]->uvd_px.cast<double>();
     if (!known) {
-      if (isOfInterest(*seen[i]))
-        watched.push_back({id, trail.newest().step, uvd_px, seen[i]->sigma_px.cast<double>()});
+      watched.push_back({id, trail.newest().step, uvd_px, seen[i]->sigma_px.cast<double>()});
       continue;
     }
     const Verdict verdict = judge(watched.back(), *seen[i], trail);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <utility>
 
 namespace motorcade {
 namespace {
@@ -40,35 +42,43 @@ void OwnVehicleMap::forEachAround(Cell cell, int reach, const Act& act) const {
       act(column, row);
 }
 
+void OwnVehicleMap::vote(double u_px, double v_px, Ballot ballot) {
+  ballot_[cellAt(u_px, v_px)] |= ballot;
+  voted_ = true;
+}
+
+void OwnVehicleMap::discard() {
+  if (std::exchange(voted_, false)) std::ranges::fill(ballot_, 0);
+}
+
 void OwnVehicleMap::count() {
+  if (!voted_) return;
   bool changed = false;
-  for (std::size_t i = 0; i < ballot_.size(); ++i) {
+  for (int i = 0; i < std::ssize(ballot_); ++i) {
     if (ballot_[i] == 0) continue;
     const int before = score_[i];
     score_[i] = std::clamp(before + ((ballot_[i] & kAgainst) != 0 ? -1 : 1), kLeastScore, kMostScore);
-    ballot_[i] = 0;
+    if (score_[i] > 0 && before <= 0) {
+      any_votes_ = true;
+      forEachAround({i % columns_, i / columns_}, kNear_cells,
+                    [&](int c, int r) { near_votes_[r * columns_ + c] = 1; });
+    }
     const bool sure = score_[i] >= kSureScore || (sure_[i] != 0 && score_[i] > 0);
-    changed |= sure != (sure_[i] != 0) || (score_[i] > 0) != (before > 0) ||
-               (score_[i] <= kClearScore) != (before <= kClearScore);
+    changed |= sure != (sure_[i] != 0) || (score_[i] <= kClearScore) != (before <= kClearScore);
     sure_[i] = sure ? 1 : 0;
   }
+  discard();
   if (changed) mask();
 }
 
 void OwnVehicleMap::mask() {
   std::ranges::fill(masked_, 0);
-  std::ranges::fill(near_votes_, 0);
   Cells sure = sure_;
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      const Cell cell{column, row};
-      if (score_[row * columns_ + column] > 0)
-        forEachAround(cell, kNear_cells, [&](int c, int r) { near_votes_[r * columns_ + c] = 1; });
-      if (sure[row * columns_ + column] == 0) continue;
-      const auto part = takeConnected(sure, cell);
-      if (const auto border = borderOf(part))
-        for (const Cell& each : part) fill(each, *border);
-    }
+  for (int i = 0; i < std::ssize(sure); ++i) {
+    if (sure[i] == 0) continue;
+    const auto part = takeConnected(sure, {i % columns_, i / columns_});
+    if (const auto border = borderOf(part))
+      for (const Cell& each : part) fill(each, *border);
   }
   view_.reset();
   if (std::ranges::find(masked_, 1) != masked_.end()) view_ = describe();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -19,17 +18,17 @@ class OwnVehicleMap {
 
   explicit OwnVehicleMap(const StereoCamera& camera);
 
-  void voteFor(double u_px, double v_px) { ballot_[cellAt(u_px, v_px)] |= kFor; }
-  void voteAgainst(double u_px, double v_px) { ballot_[cellAt(u_px, v_px)] |= kAgainst; }
+  void voteFor(double u_px, double v_px) { vote(u_px, v_px, kFor); }
+  void voteAgainst(double u_px, double v_px) { vote(u_px, v_px, kAgainst); }
   /// Counts the votes since the last time: a cell has one, and what speaks against it prevails.
   void count();
   /// Forgets them.
-  void discard() { std::ranges::fill(ballot_, 0); }
+  void discard();
 
   /// Is the own vehicle seen there?
-  bool isMasked(double u_px, double v_px) const { return masked_[cellAt(u_px, v_px)] != 0; }
-  /// Are cells with votes for them around?
-  bool isNearVotes(double u_px, double v_px) const { return near_votes_[cellAt(u_px, v_px)] != 0; }
+  bool isMasked(double u_px, double v_px) const { return view_ && masked_[cellAt(u_px, v_px)] != 0; }
+  /// Had cells around votes for them?
+  bool isNearVotes(double u_px, double v_px) const { return any_votes_ && near_votes_[cellAt(u_px, v_px)] != 0; }
   bool empty() const { return !view_; }
   const std::optional<OwnVehicleView>& view() const { return view_; }
 
@@ -42,6 +41,7 @@ class OwnVehicleMap {
   using Cells = std::vector<std::uint8_t>;  // row by row
 
   int cellAt(double u_px, double v_px) const;
+  void vote(double u_px, double v_px, Ballot ballot);
   bool has(const Cells& cells, int column, int row) const;
   template <class Act>
   void forEachAround(Cell cell, int reach, const Act& act) const;
@@ -54,6 +54,7 @@ class OwnVehicleMap {
   StereoCamera camera_;
   int columns_, rows_;
   Cells ballot_;
+  bool voted_ = false, any_votes_ = false;  // since the last count; for any cell, ever
   std::vector<int> score_;
   Cells sure_;  // the own vehicle was seen there often enough
   Cells masked_, near_votes_;
