@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <ranges>
 #include <utility>
 
 namespace motorcade {
@@ -132,8 +131,9 @@ void OwnVehicle::takeFixed(std::vector<Staying> staying, std::vector<Watched>& w
 void OwnVehicle::widen(const std::vector<Staying>& staying) {
   for (const Staying& point : staying)
     if (const double x_m = point.p_cam.x(); x_m > right_m_ && x_m < right_m_ + kGap_m) right_m_ = x_m;
-  for (const Staying& point : staying | std::views::reverse)
+  std::for_each(staying.rbegin(), staying.rend(), [&](const Staying& point) {
     if (const double x_m = point.p_cam.x(); x_m < left_m_ && x_m > left_m_ - kGap_m) left_m_ = x_m;
+  });
 }
 
 /// Has the camera gone on since the last vote?
