@@ -95,6 +95,10 @@ void addRun(CLI::App& app, Action& action) {
       ->type_name("FAULTS");
   command->add_option("--require", options->require, "Exit with 5 when fewer frames are tracked")
       ->type_name("tracked=FRACTION");
+  command
+      ->add_option("--min-existence", options->min_existence,
+                   "Leave out objects that are less likely there; short for --set frontend.shapes.min_existence=P")
+      ->type_name("P");
   command->add_flag("--force", options->force,
                     "Replace a finished run, and go on where the input is found to be worthless");
   command->footer("Example: motorcade run DRIVE --out RUN --masks");

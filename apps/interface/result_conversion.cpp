@@ -189,6 +189,7 @@ Result::Object ResultConversion::object(const ObjectEstimate& object, const SE3&
   converted.yaw_rate_radps = object.yaw_rate_radps;
   converted.yaw_rate_sigma_radps = object.yaw_rate_sigma_radps;
   converted.age_s = object.age_s;
+  converted.existence_probability = object.existence_probability;
   converted.points = object.points;
   converted.image_box_px = {object.box.left_px, object.box.top_px, object.box.right_px, object.box.bottom_px};
   if (object.cuboid) setCuboid(*object.cuboid, converted);

@@ -58,6 +58,7 @@ Json objectJson(const ObjectEstimate& object, const Eigen::Vector3d& camera_worl
             {"center", toJson(place.center_world)},
             {"points", object.points},
             {"age", rounded(object.age_s)},
+            {"existence", rounded(object.existence_probability)},
             {"box",
              {rounded(object.box.left_px, 10), rounded(object.box.top_px, 10), rounded(object.box.right_px, 10),
               rounded(object.box.bottom_px, 10)}}};

@@ -11,8 +11,8 @@ namespace {
 constexpr int kSureScore = 10;  // votes that make a cell part of the own vehicle
 constexpr int kMostScore = 20;  // so that a cell that is seen through later is given up after as many votes
 constexpr int kLeastScore = -10;
-constexpr int kClearScore = -3;  // seen through: more than one mismatched point said so
-constexpr int kReach_cells = 2;  // parts of one vehicle are this near: points on weak texture are sparse
+constexpr int kSeenThroughScore = -3;  // seen through: more than one mismatched point said so
+constexpr int kReach_cells = 2;        // parts of one vehicle are this near: points on weak texture are sparse
 constexpr int kMargin_cells = 1;
 constexpr int kNear_cells = 4;  // as far as points on the road go down in the image from frame to frame, about
 
@@ -64,7 +64,7 @@ void OwnVehicleMap::count() {
                     [&](int c, int r) { near_votes_[r * columns_ + c] = 1; });
     }
     const bool sure = score_[i] >= kSureScore || (sure_[i] != 0 && score_[i] > 0);
-    changed |= sure != (sure_[i] != 0) || (score_[i] <= kClearScore) != (before <= kClearScore);
+    changed |= sure != (sure_[i] != 0) || (score_[i] <= kSeenThroughScore) != (before <= kSeenThroughScore);
     sure_[i] = sure ? 1 : 0;
   }
   discard();
@@ -120,7 +120,7 @@ void OwnVehicleMap::fill(Cell cell, Border border) {
     forEachAround(cell, kMargin_cells, [&](int column, int row) {
       const int i = row * columns_ + column;
       if ((row - cell.row) * down + (column - cell.column) * across < 0) return;
-      if (score_[i] > kClearScore) masked_[i] = 1;
+      if (score_[i] > kSeenThroughScore) masked_[i] = 1;
     });
   }
 }

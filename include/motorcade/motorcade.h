@@ -174,6 +174,7 @@ typedef struct {
   motorcade_kind kind;
   bool has_covariance;
   double kind_probability;
+  double existence_probability;  // that the body is there, and moves or moved before
 } motorcade_object;
 typedef struct {
   size_t struct_size;

@@ -135,6 +135,8 @@ class Object:
     """3."""
     kind: Kind
     kind_probability: float
+    existence_probability: float
+    """That the body is there, and moves or moved before."""
     mask: Mask | None
     """With ``masks=True``, where the outline was found."""
 

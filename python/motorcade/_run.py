@@ -27,6 +27,7 @@ OBJECT_DTYPE = np.dtype(
         ("state", _text(State)),
         ("kind", _text(Kind)),
         ("kind_probability", "f8"),
+        ("existence_probability", "f8"),
         ("T_world_body", "f8", (4, 4)),
         ("T_cam_body", "f8", (4, 4)),
         ("covariance", "f8", (6, 6)),
@@ -86,7 +87,7 @@ class Run:
         """``objects`` as a table of plain columns: ``pandas.DataFrame(run.columns())``. Sigmas of the velocity are
         those along its axes."""
         table: dict[str, npt.NDArray[Any]] = {}
-        for name in ("frame", "stamp_ns", "id", "state", "kind", "kind_probability", "age_s", "points"):
+        for name in ("frame", "stamp_ns", "id", "state", "kind", "kind_probability", "existence_probability", "age_s", "points"):
             table[name] = self.objects[name]
         sigma_mps = np.sqrt(np.diagonal(self.objects["velocity_covariance"], axis1=1, axis2=2))
         for axis, letter in enumerate("xyz"):

@@ -82,7 +82,7 @@ py::object pythonOf(const Result::Object& object) {
       "image_box_px"_a = vectorOf(object.image_box_px), "box_center_body_m"_a = vectorOf(object.box_center_body_m),
       "box_size_m"_a = vectorOf(object.box_size_m), "box_size_sigma_m"_a = vectorOf(object.box_size_sigma_m),
       "kind"_a = pythonOf(object.kind), "kind_probability"_a = object.kind_probability,
-      "mask"_a = pythonOf(object.mask));
+      "existence_probability"_a = object.existence_probability, "mask"_a = pythonOf(object.mask));
 }
 
 py::tuple pythonOf(const std::vector<Result::Object>& objects) {

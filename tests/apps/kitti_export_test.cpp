@@ -38,7 +38,7 @@ ObjectEstimate carAt(const SE3& T_world_body) {
   object.cuboid = ObjectBox{};
   object.cuboid->size_m = {4, 1.75, 1.5};
   object.cuboid->kind = ObjectKind::kCar;
-  object.cuboid->kind_probability = 0.75;
+  object.existence_probability = 0.75;
   return object;
 }
 

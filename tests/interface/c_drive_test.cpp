@@ -122,6 +122,7 @@ void expectSame(const Result::Object& expected, const motorcade_object& object) 
   expectSame(expected.box_size_sigma_m, object.box_size_sigma_m, "box size sigma");
   EXPECT_EQ(int{object.kind}, static_cast<int>(expected.kind));
   EXPECT_EQ(object.kind_probability, expected.kind_probability);
+  EXPECT_EQ(object.existence_probability, expected.existence_probability);
 }
 
 /// All but the latency, which is of the clock.

@@ -44,6 +44,7 @@ FrameEstimate estimateOf(int i) {
   cuboid.kind = ObjectKind::kTwoWheeler;
   cuboid.kind_probability = 0.75;
   object.age_s = 0.1 * i;
+  object.existence_probability = 0.625;
   if (i != 2) object.cuboid = cuboid;
   estimate.objects.push_back(object);
   estimate.camera_covariance = Matrix6d::Identity() * 0.02;
@@ -94,6 +95,7 @@ TEST(RunFolder, ComesBackAsWritten) {
   EXPECT_DOUBLE_EQ(row.object.yaw_rate_radps, -0.125);
   EXPECT_DOUBLE_EQ(row.object.yaw_rate_sigma_radps, 0.03125);
   EXPECT_DOUBLE_EQ(row.object.age_s, 0.6);
+  EXPECT_DOUBLE_EQ(row.object.existence_probability, 0.625);
   ASSERT_EQ(run.covariances.size(), 6u);
   EXPECT_FALSE(run.covariances[0].track.valid());
   EXPECT_THAT(run.covariances[1].covariance, IsNear(Matrix6d::Identity() * 0.01, 1e-12));
@@ -130,7 +132,7 @@ TEST(RunFolder, HasTheDocumentedHeadersAndStamps) {
           "right,bottom,box_x_m,box_y_m,box_z_m,length_m,width_m,height_m,box_x_sigma_m,box_y_sigma_m,box_z_sigma_m,"
           "length_sigma_m,width_sigma_m,height_sigma_m,kind,kind_probability,heading_rad,heading_sigma_rad,"
           "yaw_rate_radps,yaw_rate_sigma_radps,center_x_m,center_y_m,center_z_m,center_x_sigma_m,center_y_sigma_m,"
-          "center_z_sigma_m,age_s\n"
+          "center_z_sigma_m,age_s,existence_probability\n"
           "0,4,moving,"));
   EXPECT_THAT(folder.read("run/camera_online.tum"), testing::StartsWith("1317042651.174740992 0.000000000 "));
   EXPECT_THAT(folder.read("run/camera_final.txt"), testing::StartsWith("1.000000000e+00 0.000000000e+00 "));
