@@ -88,6 +88,11 @@ void addRun(CLI::App& app, Action& action) {
   command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")
       ->type_name("KEY=VALUE");
   command
+      ->add_option("--min-existence", options->min_existence,
+                   "Leave out rows of objects that are less likely there, from 0, which reports all, to 1; short for "
+                   "--set frontend.shapes.min_existence=P")
+      ->type_name("P");
+  command
       ->add_option("--inject", options->inject,
                    "Faults on the way from the camera, to see what becomes of the results: "
                    "KIND[=VALUE][/left|/right][@A[:B[:STEP]]][~SHARE],... and seed=N, as black@20:23,noise=20~0.1\n" +
@@ -95,10 +100,6 @@ void addRun(CLI::App& app, Action& action) {
       ->type_name("FAULTS");
   command->add_option("--require", options->require, "Exit with 5 when fewer frames are tracked")
       ->type_name("tracked=FRACTION");
-  command
-      ->add_option("--min-existence", options->min_existence,
-                   "Leave out objects that are less likely there; short for --set frontend.shapes.min_existence=P")
-      ->type_name("P");
   command->add_flag("--force", options->force,
                     "Replace a finished run, and go on where the input is found to be worthless");
   command->footer("Example: motorcade run DRIVE --out RUN --masks");

@@ -6,6 +6,8 @@
 namespace motorcade {
 namespace {
 
+constexpr int kLeastRows = 100;  // of a tenth that is judged: the share's own deviation is .05 at most
+
 void add(ExistenceErrors& errors, double probability, bool real) {
   const auto tenth = std::min<std::size_t>(errors.tenths.size() - 1, static_cast<std::size_t>(10 * probability));
   ExistenceTenth& counts = errors.tenths[tenth];
@@ -26,11 +28,11 @@ int ExistenceErrors::rows() const {
 
 double ExistenceErrors::brier() const { return squared_error_sum / std::max(1, rows()); }
 
-double ExistenceErrors::largestGap(int least_rows) const {
-  double largest = 0;
+std::optional<double> ExistenceErrors::largestGap() const {
+  std::optional<double> largest;
   for (const ExistenceTenth& tenth : tenths)
-    if (tenth.rows >= std::max(1, least_rows))
-      largest = std::max(largest, std::abs(tenth.claimed() - tenth.shareReal()));
+    if (tenth.rows >= kLeastRows)
+      largest = std::max(largest.value_or(0), std::abs(tenth.claimed() - tenth.shareReal()));
   return largest;
 }
 

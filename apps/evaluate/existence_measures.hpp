@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "apps/evaluate/object_matching.hpp"
@@ -22,8 +23,9 @@ struct ExistenceErrors {
   int rows() const;
   /// Mean squared difference of the probability and what is there, 1 or 0 (Brier 1950); 0 without rows.
   double brier() const;
-  /// Between what is claimed and the share that is real, of the tenths with that many rows.
-  double largestGap(int least_rows) const;
+  /// Between what is claimed and the share that is real, in tenths with so many rows that chance makes less of it;
+  /// empty where no tenth has.
+  std::optional<double> largestGap() const;
 };
 
 /// Over all rows but those in an area that the labels leave open.

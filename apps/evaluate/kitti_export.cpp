@@ -30,9 +30,9 @@ std::string kittiType(ObjectKind kind) {
   return "Misc";
 }
 
-/// KITTI ranks results by their score and asks for no scale. Ours is the probability that the object is there, times a share that
-/// grows with the points in which the object was seen: one half at kHalfSure_points, in a row with the fewest that are
-/// reported a third.
+/// KITTI ranks results by their score and asks for no scale. Ours is the probability that the object is there, times a
+/// share that grows with the points in which the object was seen: one half at kHalfSure_points, in a row with the
+/// fewest that are reported a third.
 double scoreOf(const ObjectEstimate& object) {
   constexpr double kHalfSure_points = 6;
   return object.existence_probability * object.points / (object.points + kHalfSure_points);

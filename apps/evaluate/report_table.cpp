@@ -136,13 +136,17 @@ void printKinds(std::string& text, const Evaluation& e) {
 
 void printExistenceLine(std::string& text, const char* estimate, const ExistenceErrors& errors) {
   if (errors.rows() == 0) return;
-  print(text, "  %-8s %6d  %6.3f ", estimate, errors.rows(), errors.brier());
-  for (const ExistenceTenth& tenth : errors.tenths) {
-    if (tenth.rows == 0)
-      text += "          -";
+  print(text, "  %-8s %6d  %6.3f", estimate, errors.rows(), errors.brier());
+  const auto add = [&](bool known, double value) {
+    if (known)
+      print(text, " %5.2f", value);
     else
-      print(text, " %5.2f/%4d", tenth.shareReal(), tenth.rows);
-  }
+      text += "     -";
+  };
+  const auto gap = errors.largestGap();
+  add(gap.has_value(), gap.value_or(0));
+  text += ' ';
+  for (const ExistenceTenth& tenth : errors.tenths) add(tenth.rows > 0, tenth.rows > 0 ? tenth.shareReal() : 0);
   text += '\n';
 }
 
@@ -150,8 +154,7 @@ void printExistence(std::string& text, const Evaluation& e) {
   std::string lines;
   printExistenceLine(lines, "final", e.final.existence);
   printExistenceLine(lines, "online", e.online.existence);
-  printSection(text, "existence    rows   Brier   share that is real / rows, by the tenth of existence_probability",
-               lines);
+  printSection(text, "existence    rows   Brier   gap  share that is real, by tenths of existence_probability", lines);
 }
 
 void printMaskLine(std::string& text, const char* range, const MaskErrors& masks) {

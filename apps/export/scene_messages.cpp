@@ -32,6 +32,7 @@ void addFacts(foxglove::SceneEntity& entity, const ObjectEstimate& object) {
   addFact(entity, "track_id", std::to_string(object.track.value));
   addFact(entity, "state", std::string(stateName(object.state)));
   addFact(entity, "kind", std::string(kindName(object.cuboid ? object.cuboid->kind : ObjectKind::kUnknown)));
+  addFact(entity, "existence_probability", fmt::format("{:.3f}", object.existence_probability));
   addFact(entity, "speed_mps", fmt::format("{:.4f}", object.velocity_world_mps.norm()));
   addFact(entity, "speed_sigma_mps", fmt::format("{:.4f}", object.speed_sigma_mps));
   addFact(entity, "yaw_rate_radps", fmt::format("{:.6f}", object.yaw_rate_radps));

@@ -45,6 +45,7 @@ constexpr std::array kParts{Entry{"first_report", "frames until first reported"}
                             Entry{"mask_boundary", "distance of masks' boundaries"},
                             Entry{"peak_memory", "most memory"},
                             Entry{"throughput", "pairs per second"},
+                            Entry{"existence_brier", "Brier score of existence"},
                             Entry{"tracked_fraction", "share of frames tracked"},
                             Entry{"per_frame", "per pair"},
                             Entry{"never_reported", "movers never reported"},

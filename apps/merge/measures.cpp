@@ -82,6 +82,8 @@ constexpr std::array kMeasures{
     Measure{"false_rows", "/final/detection/false_rows", "", kLower},
     Measure{"id_switches", "/final/detection/id_switches", "", kLower},
     Measure{"mota", "/final/detection/mota", "/final/detection/within_30m/labels", kHigher},
+    Measure{"existence_brier", "/final/existence/brier", "/final/existence/rows", kLower},
+    Measure{"online_existence_brier", "/online/existence/brier", "/online/existence/rows", kLower},
     Measure{"objects", "/final/objects_mean/objects", "", kNeither},
     Measure{"objects_aligned_m", "/final/objects_mean/ate_rmse_m/aligned", "/final/objects_mean/objects", kLower},
     Measure{"objects_offset_removed_m", "/final/objects_mean/ate_rmse_m/world_offset_removed",

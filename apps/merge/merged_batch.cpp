@@ -93,7 +93,10 @@ void readResult(MergedBatch& batch, MergedTask& merged, const fs::path& result) 
   try {
     merged.values = measuresOf(evaluation, summary);
     merged.has_labels = evaluation.is_object() && evaluation.at("final").contains("detection");
-    if (evaluation.is_object()) addWorstErrors(batch, merged, evaluation);
+    if (evaluation.is_object()) {
+      addWorstErrors(batch, merged, evaluation);
+      addExistence(batch.existence[merged.task.set], evaluation);
+    }
     addLatencies(batch.latencies[merged.task.set], summary);
   } catch (const nlohmann::json::exception& error) {
     throw InputError(result.string() + ": has a measure of another kind than expected (" +

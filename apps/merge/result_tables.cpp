@@ -106,6 +106,7 @@ std::vector<Column> objectColumns() {
           recallColumn("recall to 30 m", "found_30m", "labels_30m"),
           recallColumn("30 to 50 m", "found_30_to_50m", "labels_30_to_50m"),
           falseRowsColumn(),
+          pairColumn("Brier score of existence final / online", "existence_brier", "online_existence_brier", 3),
           {"id switches", [](const ResultGroup& group) { return numberText(group.sum("id_switches"), 1); }}};
 }
 

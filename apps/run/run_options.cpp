@@ -23,9 +23,8 @@ PipelineConfig configurationOf(const RunOptions& options) {
   PipelineConfig config;
   if (!options.config.empty()) applyFile(config, options.config);
   for (const std::string& assignment : options.assignments) applyAssignment(config, assignment);
+  if (!options.min_existence.empty()) applyAssignment(config, "frontend.shapes.min_existence=" + options.min_existence);
   if (options.threads) applyAssignment(config, "pipeline.threads=" + std::to_string(*options.threads));
-  if (options.min_existence)
-    applyAssignment(config, "frontend.shapes.min_existence=" + std::to_string(*options.min_existence));
   if (options.live) config.pipeline.policy = InputPolicy::kLive;
   if (config.backend.smoother.budget_ms > 0 && config.pipeline.policy != InputPolicy::kLive)
     throw UsageError(

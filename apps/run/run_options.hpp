@@ -27,12 +27,12 @@ struct RunOptions {
   std::filesystem::path camera_poses;    // KITTI pose lines
   std::vector<std::string> ignored;      // --ignore: SIDE=PIXELS or a mask's file
   std::vector<std::string> assignments;  // key=value
-  std::optional<double> min_existence;
-  std::string require;  // tracked=FRACTION
-  std::string inject;   // faults, see FaultSpec
-  bool shown = false;   // on a page
-  std::string view;     // ADDR:PORT of that page, empty for the default
-  bool force = false;   // replace a finished run, go on where results will be worthless
+  std::string min_existence;             // of rows, a probability; empty for the configuration's
+  std::string require;                   // tracked=FRACTION
+  std::string inject;                    // faults, see FaultSpec
+  bool shown = false;                    // on a page
+  std::string view;                      // ADDR:PORT of that page, empty for the default
+  bool force = false;                    // replace a finished run, go on where results will be worthless
 };
 
 /// The configuration in force: defaults, then the file, then `--set`, then the options. Throws UsageError.

@@ -110,8 +110,8 @@ void ObjectPublisher::publishObject(const Result& result, const Result::Object& 
   line.add("frame", result.frame).add("stamp_ns", result.stamp_ns).add("valid_for_ms", valid_for_ms_);
   line.add("id", object.id).add("trust", vehicle_stack::nameOf(trustIn(object, in_frame)));
   line.add("state", nameOf(object.state)).add("kind", nameOf(object.kind));
-  line.add("kind_probability", object.kind_probability).add("existence_probability", object.existence_probability);
-  line.add("age_s", object.age_s);
+  line.add("kind_probability", object.kind_probability);
+  line.add("existence_probability", object.existence_probability).add("age_s", object.age_s);
   line.add("points", std::int64_t{object.points}).add("position_m", seen.position_m.values);
   line.add("orientation_xyzw", quaternionOf(seen.R_vehicle_body));
   addOrNull(line, "pose_covariance", seen.pose_covariance);

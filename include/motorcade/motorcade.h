@@ -173,8 +173,7 @@ typedef struct {
   double box_center_body_m[3], box_size_m[3], box_size_sigma_m[3];  // the cuboid on the ground; length 0: not known yet
   motorcade_kind kind;
   bool has_covariance;
-  double kind_probability;
-  double existence_probability;  // that the body is there, and moves or moved before
+  double kind_probability, existence_probability;  // the latter that it is there and moves, or moved before
 } motorcade_object;
 typedef struct {
   size_t struct_size;

@@ -106,13 +106,15 @@ struct Result {
     std::array<double, 9> velocity_covariance{};          // [m^2/s^2], the camera's own drift left out
     double yaw_rate_radps = 0, yaw_rate_sigma_radps = 0;  // about the body's z axis
     double age_s = 0;                                     // since it was first reported
-    int points = 0;                                       // seen on it in this frame
-    std::array<double, 4> image_box_px{};                 // left, top, right, bottom in the left image, inclusive
+    /// Probability that it is there and moves, or moved before. Objects that are less likely there than the key
+    /// `frontend.shapes.min_existence` of `Options::settings` says are left out.
+    double existence_probability = 1;
+    int points = 0;                        // seen on it in this frame
+    std::array<double, 4> image_box_px{};  // left, top, right, bottom in the left image, inclusive
     /// The cuboid along the body's axes, its bottom on the ground; length 0 where it is not known yet.
     std::array<double, 3> box_center_body_m{}, box_size_m{}, box_size_sigma_m{};  // length, width, height
     Kind kind = Kind::kUnknown;
     double kind_probability = 0;
-    double existence_probability = 1;  // that the body is there, and moves or moved before
     std::optional<Mask> mask{};        // with `Options::masks`, where the outline was found
   };
 

@@ -136,7 +136,7 @@ class Object:
     kind: Kind
     kind_probability: float
     existence_probability: float
-    """That the body is there, and moves or moved before."""
+    """That it is there and moves, or moved before."""
     mask: Mask | None
     """With ``masks=True``, where the outline was found."""
 

@@ -87,7 +87,9 @@ class Run:
         """``objects`` as a table of plain columns: ``pandas.DataFrame(run.columns())``. Sigmas of the velocity are
         those along its axes."""
         table: dict[str, npt.NDArray[Any]] = {}
-        for name in ("frame", "stamp_ns", "id", "state", "kind", "kind_probability", "existence_probability", "age_s", "points"):
+        for name in ("frame", "stamp_ns", "id", "state", "kind", "kind_probability"):
+            table[name] = self.objects[name]
+        for name in ("existence_probability", "age_s", "points"):
             table[name] = self.objects[name]
         sigma_mps = np.sqrt(np.diagonal(self.objects["velocity_covariance"], axis1=1, axis2=2))
         for axis, letter in enumerate("xyz"):

@@ -304,6 +304,8 @@ class FollowingADrive(unittest.TestCase):
         (thing,) = last.objects
         self.assertIs(thing.state, motorcade.State.MOVING)
         self.assertIsInstance(thing.kind, motorcade.Kind)
+        self.assertGreaterEqual(thing.existence_probability, 0.5)
+        self.assertLessEqual(thing.existence_probability, 1)
         shapes = {name: getattr(thing, name).shape for name in thing.__dataclass_fields__
                   if isinstance(getattr(thing, name), np.ndarray)}
         self.assertEqual(shapes, {
@@ -355,6 +357,7 @@ class FollowingADrive(unittest.TestCase):
         np.testing.assert_array_equal(columns["z_world_m"], run.objects["T_world_body"][:, 2, 3])
         np.testing.assert_array_equal(columns["vz_sigma_mps"], np.sqrt(run.objects["velocity_covariance"][:, 2, 2]))
         self.assertTrue((columns["kind"] == motorcade.Kind.CAR).any())
+        self.assertTrue((columns["existence_probability"] >= 0.5).all())
         self.assertEqual(len(run.masks), len(run.objects))
 
     def test_run_follows_the_frames_it_is_asked_for(self) -> None:

@@ -1,5 +1,7 @@
 #include "apps/export/drive_mcap.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Geometry>
 #include <foxglove/CompressedImage.pb.h>
 #include <foxglove/FrameTransforms.pb.h>
@@ -34,6 +36,7 @@ ExportedFrame frameAt(int index, bool with_car) {
   car.T_world_body = SE3(world_body, {0, 0.75, 12.0 + index});
   car.velocity_world_mps = {0, 0, 10};
   car.speed_sigma_mps = 0.25;
+  car.existence_probability = 0.875;
   car.cuboid = ObjectBox{.center_body = {1, 0.5, 0.25}, .size_m = {4, 2, 1.5}};
   frame.estimate.objects = {car};
   frame.points.push_back({{4}, {-1, 0.5, 12}});
@@ -98,6 +101,14 @@ TEST_F(DriveMcapFile, ACuboidHasTheObjectsPoseSizeAndLabel) {
   EXPECT_EQ(entity.texts(0).text(), "4: 10.0 +/- 0.2 m/s");
   EXPECT_LT(entity.texts(0).pose().position().y(), position.y() - 0.75) << "above it: y points down";
   EXPECT_EQ(entity.lines(0).points_size(), 4) << "frames 2 to 5";
+}
+
+TEST_F(DriveMcapFile, AnObjectsMetadataTellHowLikelyItIsThere) {
+  const auto update = parsed<foxglove::SceneUpdate>(of("/objects")[5]);
+  const auto& facts = update.entities(0).metadata();
+  const auto fact = std::ranges::find(facts, "existence_probability", &foxglove::KeyValuePair::key);
+  ASSERT_NE(fact, facts.end());
+  EXPECT_EQ(fact->value(), "0.875");
 }
 
 TEST_F(DriveMcapFile, AnObjectThatIsGoneIsDeletedOnce) {

@@ -56,7 +56,7 @@ TEST_F(EvaluateDrive, TheTableFitsAHundredColumnsAndExplainsItsMeasures) {
     EXPECT_FALSE(line.ends_with(' ')) << line;
   }
   for (const char* const section : {"camera ", "moving objects", "motion of", "detection", "boxes", "tracks of",
-                                    "kinds", "masks", "covariances", "against the baseline"})
+                                    "kinds", "existence", "masks", "covariances", "against the baseline"})
     EXPECT_THAT(table, HasSubstr(std::string("\n") + section));
   const auto legend = table.substr(table.find("\nATE "));
   for (const char* const measure : {"RPE", "ARE", "segments", "ME", "MOTA", "IoU", "HOTA", "NEES"})
@@ -80,6 +80,9 @@ TEST_F(EvaluateDrive, TheJsonHasEveryMeasureOfTheAccuracyTables) {
   EXPECT_NEAR(json.at("/final/hota/image/within_50m/det_a"_json_pointer), 1, kDigitsOfTheFiles);
   EXPECT_EQ(json.at("/final/hota/footprint/within_30m/rows"_json_pointer), kFrames);
   EXPECT_EQ(json.at("/online/kinds_within_30m/from_tenth_row/confusion/car/unknown"_json_pointer), kFrames - 9);
+  EXPECT_EQ(json.at("/final/existence/rows"_json_pointer), kFrames);
+  EXPECT_EQ(json.at("/final/existence/brier"_json_pointer), 0) << "sure rows, all on the label";
+  EXPECT_EQ(json.at("/online/existence/tenths/9/real"_json_pointer), kFrames);
   EXPECT_EQ(json.at("/online/first_report/within_50m/never"_json_pointer), 0);
   EXPECT_TRUE(json.at("masks").is_null());
   EXPECT_GT(json.at("/covariance/halves/objects/samples"_json_pointer), 0);

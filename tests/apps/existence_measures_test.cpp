@@ -7,49 +7,71 @@
 namespace motorcade {
 namespace {
 
-/// One frame: a row on a car for each probability of `real`, and a row on nothing for each of `false_rows`.
-std::vector<ComparedFrame> frameOf(const std::vector<double>& real, const std::vector<double>& false_rows) {
+using test::labelByHand;
+using test::rowByHand;
+
+constexpr double kRounding = 1e-12;  // of sums of some hundred numbers of about one
+
+/// A label that moves at some time, and one of a parked car; rows are added to them by hand.
+ComparedFrame frameWithoutRows() {
   ComparedFrame frame;
-  const auto add = [&](double probability, int object) {
-    frame.rows.push_back(test::rowByHand(static_cast<int>(frame.rows.size()), object, 20));
-    frame.rows.back().row.object.existence_probability = probability;
-  };
-  for (const double probability : real) {
-    frame.objects.push_back(test::labelByHand(static_cast<int>(frame.objects.size()), 20));
-    add(probability, static_cast<int>(frame.objects.size()) - 1);
-  }
-  for (const double probability : false_rows) add(probability, -1);
-  return {frame};
+  frame.objects = {labelByHand(7, 20), labelByHand(8, 25)};
+  frame.objects[1].counted = frame.objects[1].moving = frame.objects[1].ever_moves = false;
+  return frame;
 }
 
-TEST(ExistenceErrors, CountTheRealRowsOfEachTenth) {
-  const ExistenceErrors errors = existenceErrors(frameOf({1, 0.95, 0.75}, {0.71, 0.05, 0.79}));
-  EXPECT_EQ(errors.rows(), 6);
-  EXPECT_EQ(errors.tenths[9].rows, 2);
-  EXPECT_EQ(errors.tenths[9].real, 2);
+constexpr int kMover = 0, kParked = 1, kNoLabel = -1;
+
+void addRow(ComparedFrame& frame, int object, double probability) {
+  frame.rows.push_back(rowByHand(static_cast<int>(frame.rows.size()), object, 20));
+  frame.rows.back().row.object.existence_probability = probability;
+}
+
+TEST(ExistenceErrors, CountRowsByTheTenthOfTheirProbability) {
+  ComparedFrame frame = frameWithoutRows();
+  for (const double probability : {0.0, 0.55, 0.59, 0.9, 1.0}) addRow(frame, kMover, probability);
+  const ExistenceErrors errors = existenceErrors({frame});
+  EXPECT_EQ(errors.rows(), 5);
+  EXPECT_EQ(errors.tenths[0].rows, 1);
+  EXPECT_EQ(errors.tenths[5].rows, 2);
+  EXPECT_NEAR(errors.tenths[5].claimed(), 0.57, kRounding);
+  EXPECT_EQ(errors.tenths[9].rows, 2) << "what is sure belongs to the last one";
+}
+
+TEST(ExistenceErrors, CallRealWhatIsOnALabelThatMovesAtSomeTime) {
+  ComparedFrame frame = frameWithoutRows();
+  frame.objects[kMover].moving = false;  // it waits in this frame
+  for (const int object : {kMover, kParked, kNoLabel}) addRow(frame, object, 0.75);
+  const ExistenceErrors errors = existenceErrors({frame});
   EXPECT_EQ(errors.tenths[7].rows, 3);
   EXPECT_EQ(errors.tenths[7].real, 1);
-  EXPECT_NEAR(errors.tenths[7].claimed(), 0.75, 1e-12);
-  EXPECT_EQ(errors.tenths[0].rows, 1);
-  EXPECT_NEAR(errors.largestGap(1), 0.75 - 1.0 / 3, 1e-12);
-  EXPECT_NEAR(errors.largestGap(4), 0, 1e-12);
+  EXPECT_NEAR(errors.tenths[7].shareReal(), 1.0 / 3, kRounding);
 }
 
-TEST(ExistenceErrors, GiveTheBrierScore) {
-  EXPECT_NEAR(existenceErrors(frameOf({0.9}, {0.5})).brier(), (0.01 + 0.25) / 2, 1e-12);
+TEST(ExistenceErrors, BrierScoreIsTheMeanSquaredDifferenceOverAllFrames) {
+  ComparedFrame first = frameWithoutRows(), second = frameWithoutRows();
+  addRow(first, kMover, 0.8);
+  addRow(first, kNoLabel, 0.6);
+  addRow(second, kMover, 1);
+  EXPECT_NEAR(existenceErrors({first, second}).brier(), (0.2 * 0.2 + 0.6 * 0.6) / 3, kRounding);
   EXPECT_EQ(existenceErrors({}).brier(), 0);
 }
 
-TEST(ExistenceErrors, TakeWhatNeverMovesForFalse) {
-  auto frames = frameOf({0.9}, {});
-  frames[0].objects[0].ever_moves = false;
-  EXPECT_EQ(existenceErrors(frames).tenths[9].real, 0);
+TEST(ExistenceErrors, LeaveOutRowsInIgnoredAreas) {
+  ComparedFrame frame = frameWithoutRows();
+  addRow(frame, kNoLabel, 0.9);
+  frame.rows.back().in_ignored_area = true;
+  EXPECT_EQ(existenceErrors({frame}).rows(), 0);
 }
 
-TEST(ExistenceErrors, LeaveOutWhatTheLabelsLeaveOpen) {
-  auto frames = frameOf({}, {0.9});
-  frames[0].rows[0].in_ignored_area = true;
-  EXPECT_EQ(existenceErrors(frames).rows(), 0);
+TEST(ExistenceErrors, LargestGapIsThatOfTenthsWithEnoughRows) {
+  ComparedFrame frame = frameWithoutRows();
+  for (int i = 0; i < 99; ++i) addRow(frame, kNoLabel, 0.95);
+  EXPECT_FALSE(existenceErrors({frame}).largestGap()) << "99 rows are too few";
+  for (int i = 0; i < 100; ++i) addRow(frame, i < 60 ? kMover : kNoLabel, 0.75);
+  EXPECT_NEAR(existenceErrors({frame}).largestGap().value(), 0.15, kRounding);
+  addRow(frame, kNoLabel, 0.95);
+  EXPECT_NEAR(existenceErrors({frame}).largestGap().value(), 0.95, kRounding);
 }
 
 }  // namespace

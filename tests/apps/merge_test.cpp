@@ -63,6 +63,14 @@ class MergeBatch : public testing::Test {
             .fingerprint = "f"};
   }
 
+  /// Rows that all claim the same, of the ninth tenth.
+  static nlohmann::json existenceOf(int rows, int real, double claimed) {
+    nlohmann::json tenths(10, {{"rows", 0}, {"real", 0}, {"probability_sum", 0}});
+    tenths[8] = {{"rows", rows}, {"real", real}, {"probability_sum", claimed * rows}};
+    const double squares = real * (1 - claimed) * (1 - claimed) + (rows - real) * claimed * claimed;
+    return {{"rows", rows}, {"brier", squares / rows}, {"tenths", tenths}};
+  }
+
   static nlohmann::json evaluationOf(const Result& result) {
     nlohmann::json json;
     json["frames"] = 50;
@@ -76,6 +84,8 @@ class MergeBatch : public testing::Test {
                             {"objects", nlohmann::json::array()}};
     if (!result.labels) return json;
     json["final"]["detection"] = {{"within_30m", {{"labels", 10}, {"found", 9}}}, {"rows", 12}, {"false_rows", 1}};
+    json["final"]["existence"] = existenceOf(120, 90, 0.8);
+    json["online"]["existence"] = existenceOf(80, 80, 0.8);
     json["final"]["motion"]["me_t_m"] = {{"mean", 2 * result.ate_m}, {"count", 4}};
     json["final"]["followed_motion"] = {{"objects", 2},
                                         {"me_t_object_rms_m", 0.625},
@@ -153,6 +163,23 @@ TEST_F(MergeBatch, PublishedFormsOfMeasuresAreColumns) {
   EXPECT_THAT(merged("results.md"),
               AllOf(HasSubstr("| 1.234 / 2.5 | 0.00321 / 0.004 |"),
                     HasSubstr("| x | 0.625 / 0.875 | - / - | - / - | 0.75 / - | 1.5 / - | 0.25 / 0.5 |")));
+}
+
+TEST_F(MergeBatch, ExistenceIsCountedOverAllDrives) {
+  write("a", {{.drive = "x", .ate_m = 0.25}, {.drive = "y", .ate_m = 0.5}, {.drive = "z", .labels = false}});
+  const auto json = nlohmann::json::parse(merged("results.json"));
+  const double brier = (90 * 0.2 * 0.2 + 30 * 0.8 * 0.8) / 120;
+  EXPECT_NEAR(json["tasks"][0]["measures"]["existence_brier"], brier, 1e-12);
+  EXPECT_TRUE(json["tasks"][2]["measures"]["existence_brier"].is_null());
+  const auto& final = json["existence"]["default"]["final"];
+  EXPECT_EQ(final["rows"], 240);
+  EXPECT_EQ(final["tenths"][8]["real"], 180);
+  EXPECT_NEAR(final["brier"], brier, 1e-12);
+  EXPECT_NEAR(final["largest_gap"], 0.05, 1e-12);
+  EXPECT_THAT(merged("results.md"), AllOf(HasSubstr("| set | estimate | rows | Brier | largest gap | 0.8 to 0.9 |\n"),
+                                          HasSubstr("| default | final | 240 | 0.19 | 0.05 | 0.75 of 0.8 (240) |\n"),
+                                          HasSubstr("| default | online | 160 | 0.04 | 0.2 | 1 of 0.8 (160) |\n")));
+  EXPECT_THAT(merged("report.html"), HasSubstr("<td class=\"number\">0.75 of 0.8 (240)</td>"));
 }
 
 TEST_F(MergeBatch, SeedsCountOnceHoweverOftenTheyWereRun) {
@@ -257,6 +284,7 @@ TEST(MeasureNames, AreWordsWithUnits) {
   EXPECT_EQ(readableName("recall_30_to_50m"), "recall, from 30 to 50 m");
   EXPECT_EQ(readableName("recall_30m"), "recall, to 30 m");
   EXPECT_EQ(readableName("latency_p99_ms"), "latency, 99th percentile [ms]");
+  EXPECT_EQ(readableName("online_existence_brier"), "Brier score of existence, online");
   EXPECT_EQ(readableName("box_iou_bird"), "box IoU from above");
   EXPECT_EQ(readableName("camera_end_error_percent"), "camera error at the end [%]");
   EXPECT_EQ(readableName("camera_kitti_r_deg_per_m"), "camera KITTI r [deg/m]") << "of words that are not known, too";

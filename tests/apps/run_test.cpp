@@ -130,6 +130,17 @@ TEST_F(Run, FollowsItsOwnEffectiveConfiguration) {
   expectSame("first", "second");
 }
 
+TEST_F(Run, LeavesOutRowsThatAreLessLikelyThanItIsTold) {
+  ASSERT_EQ(run("sure", "--min-existence 0.9"), 0) << contentOf(errors());
+  EXPECT_THAT(contentOf(out("sure") / "effective_config.toml"), HasSubstr("min_existence = 0.9"));
+  const RunFolder sure = readRunFolder(out("sure"));
+  EXPECT_FALSE(sure.final.objects.empty());
+  for (const auto* rows : {&sure.final.objects, &sure.online.objects})
+    for (const auto& row : *rows) EXPECT_GE(row.object.existence_probability, 0.9) << row.frame.value;
+  EXPECT_EQ(run("beyond", "--min-existence 1.5"), 2);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("frontend.shapes.min_existence"));
+}
+
 TEST_F(Run, RunsTheOtherDetectorAndTheOtherBackends) {
   EXPECT_EQ(run("sift", "--set frontend.detector=sift --require tracked=0.8"), 0) << contentOf(errors());
   for (const std::string backend : {"filter", "filter_map", "pose_graph"})

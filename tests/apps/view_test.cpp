@@ -112,6 +112,7 @@ ShownFrame frameWithACar() {
   car.T_world_body = SE3(world_body, {0, 0.75, 12});
   car.velocity_world_mps = {0, 0, 6};
   car.speed_sigma_mps = 0.25;
+  car.existence_probability = 0.875;
   car.covariance = Matrix6d::Identity() * 0.01;
   car.cuboid = ObjectBox{};
   car.cuboid->size_m = {4, 2, 1.5};
@@ -135,6 +136,7 @@ TEST(FrameJson, HoldsWhatThePageShows) {
   EXPECT_EQ(car["color"], "#60d86e") << "as in the pictures";
   EXPECT_EQ(car["speed"], 6);
   EXPECT_EQ(car["speed_sigma"], 0.25);
+  EXPECT_EQ(car["existence"], 0.875);
   EXPECT_NEAR(car["distance"].get<double>(), std::hypot(0.75, 12), 1e-3);
   EXPECT_NEAR(car["distance_sigma"].get<double>(), 0.1, 1e-3);
   EXPECT_THAT(car["cuboid"]["size"], ElementsAre(4, 2, 1.5));

@@ -35,7 +35,7 @@ async function truthAndErrors(browser, url) {
     const matched = truth.objects.filter(({ track }) => track !== undefined);
     check(matched.length > 0, "no object of the drive has a label");
     for (const { track, off_m } of matched) {
-      const cell = await page.locator(`#objects tr[data-id="${track}"] td`).nth(3).textContent();
+      const cell = await page.locator(`#objects tr[data-id="${track}"] td`).nth(4).textContent();
       check(cell === off_m.toFixed(2), `object ${track} is ${cell} off, not ${off_m}`);
     }
   }));

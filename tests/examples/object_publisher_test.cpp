@@ -24,6 +24,7 @@ Result::Object someObject(std::int64_t id) {
   object.velocity_covariance.fill(-0.123456789e-8);
   object.box_size_m = {4, 2, 1.5};
   object.kind = Result::Kind::kCar;
+  object.existence_probability = 0.875;
   return object;
 }
 
@@ -58,6 +59,7 @@ TEST_F(ObjectPublisherTest, ALineTellsOfTheFrameAndOneOfEachObject) {
   EXPECT_EQ(lines_[0]["ego_velocity"].size(), 6u);
   EXPECT_EQ(lines_[1]["id"], 4);
   EXPECT_EQ(last()["kind"], "car");
+  EXPECT_EQ(last()["existence_probability"], 0.875);
   EXPECT_EQ(last()["position_m"], json({12, 3, 0.5}));
   EXPECT_THAT(last()["pose_covariance"], SizeIs(36));
   EXPECT_NEAR(last()["orientation_xyzw"][2], std::sqrt(0.5), 1e-6);

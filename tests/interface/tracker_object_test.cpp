@@ -91,6 +91,14 @@ TEST_F(CarAhead, IsACarOfACarsSize) {
   });
 }
 
+TEST_F(CarAhead, IsThereMoreAndMoreSurely) {
+  forEachSight([](const Sight& sight) {
+    EXPECT_GE(sight.car.existence_probability, 0.5);  // less likely ones are left out
+    EXPECT_LE(sight.car.existence_probability, 1);
+  });
+  EXPECT_GT(results_.back().objects.front().existence_probability, 0.9);
+}
+
 TEST_F(CarAhead, KeepsItsNumberAndAges) {
   double age_s = -kPeriod_s;
   forEachSight([&](const Sight& sight) {

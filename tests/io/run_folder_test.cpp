@@ -44,7 +44,7 @@ FrameEstimate estimateOf(int i) {
   cuboid.kind = ObjectKind::kTwoWheeler;
   cuboid.kind_probability = 0.75;
   object.age_s = 0.1 * i;
-  object.existence_probability = 0.625;
+  object.existence_probability = 0.875;
   if (i != 2) object.cuboid = cuboid;
   estimate.objects.push_back(object);
   estimate.camera_covariance = Matrix6d::Identity() * 0.02;
@@ -95,7 +95,7 @@ TEST(RunFolder, ComesBackAsWritten) {
   EXPECT_DOUBLE_EQ(row.object.yaw_rate_radps, -0.125);
   EXPECT_DOUBLE_EQ(row.object.yaw_rate_sigma_radps, 0.03125);
   EXPECT_DOUBLE_EQ(row.object.age_s, 0.6);
-  EXPECT_DOUBLE_EQ(row.object.existence_probability, 0.625);
+  EXPECT_DOUBLE_EQ(row.object.existence_probability, 0.875);
   ASSERT_EQ(run.covariances.size(), 6u);
   EXPECT_FALSE(run.covariances[0].track.valid());
   EXPECT_THAT(run.covariances[1].covariance, IsNear(Matrix6d::Identity() * 0.01, 1e-12));
@@ -151,7 +151,7 @@ TEST(RunFolder, RowsTellWhereTheCuboidStandsAndHeads) {
   EXPECT_THAT(
       folder.read("objects_online.csv"),
       testing::EndsWith(",two_wheeler,0.750,0.000000,0.100000,-0.125000,0.031250,3.750,1.125,21.500,0.181,0.182,"
-                        "0.104,0.000\n"));
+                        "0.104,0.000,0.875\n"));
 }
 
 /// A table without its last columns, as earlier versions wrote it.
@@ -172,7 +172,11 @@ TEST(RunFolder, ReadsRowsOfEarlierVersionsToo) {
   writeRun(folder / "run", 1, 2);
   EXPECT_FALSE(readRunFolder(folder / "run").final.objects[1].object.cuboid);  // not known in that frame
   const std::string csv = folder.read("run/objects_final.csv");
-  constexpr int kPlaceAndMotion = 11, kCuboid = 14;
+  constexpr int kExistence = 1, kPlaceAndMotion = kExistence + 11, kCuboid = 14;
+  folder.write("run/objects_final.csv", withoutLast(csv, kExistence));
+  const auto without_existence = readRunFolder(folder / "run").final.objects;
+  EXPECT_DOUBLE_EQ(without_existence[0].object.age_s, 0.1);
+  EXPECT_EQ(without_existence[0].object.existence_probability, 1) << "they reported what they held for there";
   folder.write("run/objects_final.csv", withoutLast(csv, kPlaceAndMotion));
   EXPECT_TRUE(readRunFolder(folder / "run").final.objects[0].object.cuboid);
   folder.write("run/objects_final.csv", withoutLast(csv, kPlaceAndMotion + kCuboid));

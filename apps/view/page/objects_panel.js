@@ -46,8 +46,9 @@ export class ObjectsPanel {
     cell(1, object.speed, 1, object.speed_sigma);
     cell(2, object.distance, 1, object.distance_sigma);
     const label = truth?.objects.find(({ track }) => track === object.id);
-    cell(3, label?.off_m, 2);
-    cell(4, label?.motion_m, 3);
+    cell(3, 100 * object.existence, 0);
+    cell(4, label?.off_m, 2);
+    cell(5, label?.motion_m, 3);
   }
 
   row(object) {
@@ -61,8 +62,8 @@ export class ObjectsPanel {
     button.append(swatch, `#${object.id}`, kind);
     button.addEventListener("click", () => this.onChoose(object.id));
     row.insertCell().append(button);
-    for (let i = 0; i < 4; ++i) row.insertCell().append(document.createElement("span"), document.createElement("small"));
-    row.cells[3].className = row.cells[4].className = "of-truth";
+    for (let i = 0; i < 5; ++i) row.insertCell().append(document.createElement("span"), document.createElement("small"));
+    row.cells[4].className = row.cells[5].className = "of-truth";
     return row;
   }
 
