@@ -60,6 +60,12 @@ struct Box {
   double left_px = 0, top_px = 0, right_px = 0, bottom_px = 0;
 };
 
+/// The part of the left image that shows what is fixed to the camera, as the own vehicle's bonnet.
+struct OwnVehicleView {
+  double share = 0;  // of the image
+  Box box;
+};
+
 enum class ObjectState { kMoving, kStopped, kPredicted };
 
 /// What an object is, as far as its size, height and speed tell.
@@ -135,6 +141,8 @@ struct FrameMeasurements {
   std::vector<ObjectObservation> objects;
   /// Tracks that ended: nothing will be observed of them any more.
   std::vector<TrackId> ended;
+  /// What was found of the own vehicle up to this frame; nothing is measured there.
+  std::optional<OwnVehicleView> own_vehicle{};
 };
 using FrameMeasurementsPtr = std::shared_ptr<const FrameMeasurements>;
 

@@ -121,9 +121,10 @@ struct SceneMotion {
   int ego_inliers = 0;
   double disparity_offset_px = 0;  // true minus measured disparity; the points' disparities contain it
   GroundPlane ground;
-  std::vector<ScenePoint> points;  // ordered by point id
-  std::vector<Segment> segments;   // moving and unknown ones; the static rest is not listed
-  FeaturesPtr features;            // the stereo pair
+  std::vector<ScenePoint> points;               // ordered by point id
+  std::vector<Segment> segments;                // moving and unknown ones; the static rest is not listed
+  FeaturesPtr features;                         // the stereo pair
+  std::optional<OwnVehicleView> own_vehicle{};  // as found up to this frame
 };
 using SceneMotionPtr = std::shared_ptr<const SceneMotion>;
 

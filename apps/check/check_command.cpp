@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,8 @@
 #include "apps/check/sequence_line.hpp"
 #include "apps/inject/fault_injector.hpp"
 #include "apps/watch/input_check.hpp"
+#include "apps/watch/own_vehicle_news.hpp"
+#include "apps/watch/own_vehicle_search.hpp"
 #include "io/json_text.hpp"
 #include "io/line_file.hpp"
 #include "io/sequence.hpp"
@@ -33,6 +36,7 @@ struct Seen {
   std::size_t pairs = 0, unusable = 0;
   std::string first_problem;
   std::vector<StereoFrame> kept;  // with their images, where a page needs them
+  std::optional<OwnVehicleView> own_vehicle;
 
   void count(const StereoFrame& pair) {
     ++pairs;
@@ -46,6 +50,7 @@ struct Seen {
 Seen look(InputCheck& check, const Sequence& sequence, const CheckOptions& options) {
   const FrameRange range = selectedFrames(options.frames, sequence);
   FaultInjector faults(parseFaultSpec(options.inject), sequence);
+  OwnVehicleSearch own_vehicle(sequence.camera);
   Seen seen;
   FrameId passed_over;  // the last one; what comes of it or of one before is late, and a run ignores it
   const FaultInjector::Outlet outlet{.push =
@@ -54,6 +59,7 @@ Seen look(InputCheck& check, const Sequence& sequence, const CheckOptions& optio
                                            seen.count(pair);
                                            const std::size_t before = check.pairs();
                                            check.observe(pair);
+                                           if (isWhole(pair)) own_vehicle.observe(pair);
                                            if (!options.page.empty() && check.pairs() > before)
                                              seen.kept.push_back(pair);
                                            return !check.complete();
@@ -64,7 +70,19 @@ Seen look(InputCheck& check, const Sequence& sequence, const CheckOptions& optio
   bool wanted = true;
   while (auto pair = wanted ? decoder.next() : std::nullopt) wanted = faults.give(std::move(*pair), outlet);
   if (wanted) faults.finish(outlet);
+  seen.own_vehicle = own_vehicle.found();
   return seen;
+}
+
+/// The own vehicle where it hides much of what lies ahead.
+std::optional<Finding> ownVehicleFinding(const std::optional<OwnVehicleView>& view) {
+  constexpr double kMuch = 0.1;  // of the image
+  if (!view || view->share <= kMuch) return std::nullopt;
+  return Finding{"own_vehicle",
+                 "the own vehicle " + placeOf(*view) +
+                     ", where nothing is followed; the near road is what tells distances best: mount the cameras "
+                     "higher, farther ahead or tilted up",
+                 false};
 }
 
 /// All that is wrong; without any pair that can be used nothing else is known.
@@ -75,6 +93,7 @@ std::vector<Finding> findingsOf(const InputCheck& check, const Seen& seen, const
   for (const std::string& doubt : doubtsAbout(sequence.camera)) findings.push_back({"calibration", doubt, true});
   for (const std::string& oddity : odditiesOf(sequence.camera)) findings.push_back({"camera", oddity, false});
   if (const auto doubt = mosaicDoubt(sequence, range, kMosaicPairs)) findings.push_back({"mosaic", *doubt, false});
+  if (const auto hidden = ownVehicleFinding(seen.own_vehicle)) findings.push_back(*hidden);
   for (const InputNote& note : sequence.notes) findings.push_back({note.name, note.text, note.worthless});
   if (seen.unusable == seen.pairs)
     findings.push_back({"images",

@@ -14,7 +14,7 @@ constexpr std::string_view kRectify =
     "Rectify the images anew with this rig's calibration. If they were rectified, the rig has moved since it was "
     "calibrated: calibrate it again.";
 
-constexpr std::array<std::pair<std::string_view, FindingGuide>, 19> kGuides{{
+constexpr std::array<std::pair<std::string_view, FindingGuide>, 20> kGuides{{
     {"rows",
      {"The rows of the two images do not agree", kOnRows,
       "Crop both images alike, or rectify them anew: an offset alone is often a crop or a resize that was made "
@@ -64,6 +64,12 @@ constexpr std::array<std::pair<std::string_view, FindingGuide>, 19> kGuides{{
      {"The times of the pairs jump",
       "Speeds are distances over times: a wrong time is a wrong speed, and a gap loses what was followed.",
       "Look at times.txt (seconds, one line per pair, growing), or leave it out and give the rate with --fps."}},
+    {"own_vehicle",
+     {"The own vehicle fills much of the image",
+      "What lies behind it is not seen, and the points on it are of no use. It is found by itself and left out, once "
+      "the "
+      "car moves.",
+      "Mount the cameras so that they see over it, or cut it off both images."}},
     {"mosaic",
      {"The images are a color sensor's mosaic",
       "Each pixel sees through a filter of one color: a pattern of two by two pixels lies over the texture and stays "

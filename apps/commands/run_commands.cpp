@@ -77,6 +77,12 @@ void addRun(CLI::App& app, Action& action) {
           "KITTI pose lines of another camera trajectory, one per frame of the sequence, for backend.kind filter, "
           "filter_map or pose_graph")
       ->type_name("POSES.txt");
+  command
+      ->add_option("--ignore", options->ignored,
+                   "Pixels of the left image, rectified, that are of no use: so many rows or columns at a side, as "
+                   "bottom=70 (top, left, right), or an image that is not black there; may come several times. What is "
+                   "fixed to the camera, as a bonnet, is found without it")
+      ->type_name("SIDE=PIXELS|MASK.png");
   command->add_option("--config", options->config, "Parameters; see effective_config.toml of any run")
       ->type_name("FILE.toml");
   command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")

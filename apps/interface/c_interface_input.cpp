@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/interface/c_interface_structs.hpp"
+#include "apps/interface/camera_model.hpp"
 
 namespace motorcade {
 namespace {
@@ -44,6 +45,18 @@ Camera::Rig rigOf(const motorcade_rig* given) {
   return converted;
 }
 
+/// A size that cannot be is refused later: no mask of it is read.
+Camera::Ignored ignoredOf(const motorcade_camera& camera) {
+  Camera::Ignored ignored{.left_px = camera.ignored_left_px,
+                          .top_px = camera.ignored_top_px,
+                          .right_px = camera.ignored_right_px,
+                          .bottom_px = camera.ignored_bottom_px};
+  if (camera.ignored_mask == nullptr || !isImageSize(camera.width_px, camera.height_px)) return ignored;
+  const auto pixels = static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px);
+  ignored.mask.assign(camera.ignored_mask, camera.ignored_mask + pixels);
+  return ignored;
+}
+
 /// Without pixels where there is no image.
 Pair::Image imageOf(const motorcade_image* given, const char* name, const char* format_name) {
   if (given == nullptr) return {};
@@ -67,6 +80,7 @@ Camera cameraOf(const motorcade_camera* given) {
                    .cy_px = camera.cy_px,
                    .baseline_m = camera.baseline_m};
   if (camera.rig != nullptr) converted.rig = rigOf(camera.rig);
+  converted.ignored = ignoredOf(camera);
   return converted;
 }
 

@@ -85,16 +85,17 @@ motorcade_counts countsOf(const Tracker::Counts& counts) {
           .untaken = counts.untaken};
 }
 
+/// A recording's: without a rig, and nothing is ignored.
 motorcade_camera cCameraOf(const Camera& camera) {
-  return {.struct_size = 0,
-          .width_px = camera.width_px,
-          .height_px = camera.height_px,
-          .fx_px = camera.fx_px,
-          .fy_px = camera.fy_px,
-          .cx_px = camera.cx_px,
-          .cy_px = camera.cy_px,
-          .baseline_m = camera.baseline_m,
-          .rig = nullptr};
+  motorcade_camera converted{};
+  converted.width_px = camera.width_px;
+  converted.height_px = camera.height_px;
+  converted.fx_px = camera.fx_px;
+  converted.fy_px = camera.fy_px;
+  converted.cx_px = camera.cx_px;
+  converted.cy_px = camera.cy_px;
+  converted.baseline_m = camera.baseline_m;
+  return converted;
 }
 
 motorcade_image cImageOf(const Pair::Image& image) {

@@ -35,6 +35,31 @@ void requireSize(const Camera& camera) {
   require(fits(camera.height_px) && camera.width_px <= kMaxImage_pixels / camera.height_px, "camera.height_px", range);
 }
 
+PixelMask ignoredOf(const Camera& camera) {
+  const Camera::Ignored& given = camera.ignored;
+  const int width = camera.width_px, height = camera.height_px;
+  const auto requireBand = [](const char* field, int pixels, int all) {
+    require(pixels >= 0 && pixels < all, field,
+            "is " + std::to_string(pixels) + "; some of the image's " + std::to_string(all) + " must be left");
+  };
+  requireBand("camera.ignored.left_px", given.left_px, width);
+  requireBand("camera.ignored.top_px", given.top_px, height);
+  requireBand("camera.ignored.right_px", given.right_px, width);
+  requireBand("camera.ignored.bottom_px", given.bottom_px, height);
+  PixelMask ignored(width, height);
+  require(given.mask.empty() || given.mask.size() == static_cast<std::size_t>(width) * height, "camera.ignored.mask",
+          "has " + std::to_string(given.mask.size()) + " bytes; it has one for each pixel of the image, or none");
+  ignored.add(0, 0, given.left_px, height);
+  ignored.add(0, 0, width, given.top_px);
+  ignored.add(width - given.right_px, 0, width, height);
+  ignored.add(0, height - given.bottom_px, width, height);
+  for (std::size_t i = 0; i < given.mask.size(); ++i) {
+    const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
+    if (given.mask[i] != 0) ignored.add(x, y, x + 1, y + 1);
+  }
+  return ignored;
+}
+
 /// Of one lens, or of the rectified pair.
 template <class Intrinsics>
 void requireIntrinsics(const std::string& name, const Intrinsics& lens, const Camera& camera) {
@@ -116,8 +141,14 @@ StereoCamera checked(const StereoCamera& camera, const std::string& field) {
 
 }  // namespace
 
+bool isImageSize(int width_px, int height_px) {
+  const auto fits = [](int side) { return side >= kLeastSide_px && side <= kMostSide_px; };
+  return fits(width_px) && fits(height_px) && width_px <= kMaxImage_pixels / height_px;
+}
+
 CameraModel::CameraModel(const Camera& camera) {
   requireSize(camera);
+  ignored_ = ignoredOf(camera);
   if (!camera.rig) {
     requireIntrinsics("camera", camera, camera);
     rectified_ = checked(

@@ -3,11 +3,15 @@
 #include <optional>
 
 #include "core/image.hpp"
+#include "core/pixel_mask.hpp"
 #include "core/stereo_camera.hpp"
 #include "io/rig/remap.hpp"
 #include "motorcade/motorcade.hpp"
 
 namespace motorcade {
+
+/// May images that are pushed have this size?
+bool isImageSize(int width_px, int height_px);
 
 /// A caller's camera as the stages need it: that of the rectified pair, and how its images become such.
 class CameraModel {
@@ -16,6 +20,8 @@ class CameraModel {
   explicit CameraModel(const Camera& camera);
 
   const StereoCamera& rectified() const { return rectified_; }
+  /// Of the left image, rectified.
+  const PixelMask& ignored() const { return ignored_; }
   /// From what was pushed, as gray, to what the stages take.
   Image leftOf(const Image& gray, ImagePool& pool) const { return remaps_ ? remaps_->left(gray, pool) : gray; }
   Image rightOf(const Image& gray, ImagePool& pool) const { return remaps_ ? remaps_->right(gray, pool) : gray; }
@@ -25,6 +31,7 @@ class CameraModel {
     Remap left, right;
   };
   StereoCamera rectified_;
+  PixelMask ignored_;
   std::optional<Remaps> remaps_;
 };
 

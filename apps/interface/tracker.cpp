@@ -18,6 +18,7 @@
 #include "apps/interface/result_queue.hpp"
 #include "apps/interface/tracker_options.hpp"
 #include "apps/pipeline/pipeline.hpp"
+#include "apps/watch/own_vehicle_news.hpp"
 #include "io/errors.hpp"
 #include "motorcade/motorcade.hpp"
 
@@ -102,7 +103,8 @@ class Tracker::Impl {
   bool told_of_stamps_ = false;  // the pushing thread's
   std::atomic<bool> closed_{false}, failed_{false};
   std::atomic<std::int64_t> pushed_{0}, rejected_{0}, dropped_{0};
-  ResultConversion convert_;  // the delivering thread's
+  ResultConversion convert_;    // the delivering thread's
+  OwnVehicleNews own_vehicle_;  // the delivering thread's
   ResultQueue results_;
   ThreadPlacement placement_;
   PairWatch watch_;
@@ -122,7 +124,7 @@ Tracker::Impl::Impl(const Camera& camera, const Options& options, const Pipeline
       results_(options.policy),
       placement_(config.pipeline.placement),
       watch_(model_.rectified(), log_),
-      pipeline_(config.pipeline, watch_.watched(makeStages(config, model_.rectified())), log_) {
+      pipeline_(config.pipeline, watch_.watched(makeStages(config, model_.rectified(), model_.ignored())), log_) {
   if (!replay_) stock(pool_, camera);
   deliverer_ = std::jthread([this] { deliver(); });  // at last: it would wait for results if anything failed after it
 }
@@ -225,6 +227,8 @@ void Tracker::Impl::deliver() {
     const PlacedThread placed(placement_);
     while (const auto result = pipeline_.next()) {
       if (const auto news = sample_bits_.news()) tell(log_, motorcade::LogLevel::kInfo, [&] { return *news; });
+      if (const auto news = own_vehicle_.observe(*result->measurements))
+        tell(log_, motorcade::LogLevel::kInfo, [&] { return *news; });
       Result converted = convert_(*result);
       if (converted.problem.empty()) converted.problem = watch_.problem();
       results_.put(std::move(converted));

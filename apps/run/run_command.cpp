@@ -23,13 +23,13 @@
 #include "apps/recorded/recorded_run.hpp"
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/feeder.hpp"
-#include "apps/run/followed_frames.hpp"
+#include "apps/run/ignored_pixels.hpp"
 #include "apps/run/input_watch.hpp"
 #include "apps/run/mcap_recorder.hpp"
 #include "apps/run/object_view_writer.hpp"
 #include "apps/run/other_camera.hpp"
-#include "apps/run/plausibility.hpp"
 #include "apps/run/process_usage.hpp"
+#include "apps/run/recorder.hpp"
 #include "apps/run/run_listener.hpp"
 #include "apps/run/run_options.hpp"
 #include "apps/run/run_summary.hpp"
@@ -113,53 +113,6 @@ void tellOutside(double share) {
         100 * share));
 }
 
-/// Takes the pipeline's results into the run folder.
-class Recorder {
- public:
-  Recorder(RunFolderWriter& folder, RunListeners listeners, std::size_t frames)
-      : folder_(folder), listeners_(std::move(listeners)), progress_("frame", frames) {}
-
-  void record(const PipelineResult& result) {
-    recordDropped(result.dropped, result.timing.due);
-    folder_.writeTiming(result.timing);
-    folder_.writeOnline(result.online);
-    if (const auto doubt = plausibility_.observe(result.online)) logWarning(*doubt);
-    for (RunListener* const listener : listeners_) listener->frameLeft(result);
-    for (const FrameEstimate& estimate : result.settled) folder_.writeSettled(estimate);
-    recordFinals(result.finals);
-    followed_.observe(result);
-    if (++done_ % kFramesPerTrim == 0) giveBackSpareMemory();
-    progress_.show(done_, fmt::format("latency {:.1f} ms", result.timing.latency_ms()));
-  }
-  /// Frames that never entered; `due` stands for when they were due, which nobody knows.
-  void recordDropped(const std::vector<FrameEstimate>& dropped, SteadyTime due) {
-    for (const FrameEstimate& estimate : dropped) {
-      FrameTiming timing;
-      timing.frame = estimate.frame;
-      timing.stamp = estimate.stamp;
-      timing.status = estimate.status;
-      timing.cause = estimate.cause;
-      timing.segment = estimate.segment;
-      timing.due = timing.published = due;
-      folder_.writeTiming(timing);
-      folder_.writeOnline(estimate);
-      ++done_;
-    }
-  }
-  void recordFinals(const std::vector<FrameEstimate>& finals) {
-    for (const FrameEstimate& estimate : finals) folder_.writeFinal(estimate);
-  }
-  const FollowedFrames& followed() const { return followed_; }
-
- private:
-  RunFolderWriter& folder_;
-  RunListeners listeners_;
-  Progress progress_;
-  Plausibility plausibility_;
-  FollowedFrames followed_;
-  std::size_t done_ = 0;
-};
-
 /// What is played into the pipeline.
 struct Replay {
   const Sequence& sequence;
@@ -209,6 +162,7 @@ RunSummary summaryBefore(const RunOptions& options, const PipelineConfig& config
   RunSummary summary;
   summary.params = config.pipeline;
   summary.setSequence(sequence);
+  summary.ignored = options.ignored;
   summary.inject = options.inject;
   summary.rate_hz = rate_hz;
   summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
@@ -244,6 +198,7 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   summary.pipeline = end.summary;
   summary.good_frames = recorder.followed().count();
+  summary.own_vehicle = recorder.finish();
   summary.decoded = {"decode>input", static_cast<std::int64_t>(decoder.highWater()),
                      static_cast<std::int64_t>(decoder.capacity())};
   summary.signal = signals.received();
@@ -317,7 +272,7 @@ int runSequence(const RunOptions& options) {
   requireBelievable(sequence, options.force);
   tellNotes(sequence, options.force);
   const FrameRange range = selectedFrames(options.frames, sequence);
-  Stages stages = makeStages(config, sequence.camera);
+  Stages stages = makeStages(config, sequence.camera, ignoredPixels(options.ignored, sequence.camera));
   if (auto other_camera = otherCamera(options, config, sequence)) replaceOdometry(stages, *std::move(other_camera));
   announce(sequence, range, options.fps_hz);
   logDebug(fmt::format("{} threads, {} frames in flight; results go to {}", config.pipeline.threads,

@@ -25,6 +25,7 @@ struct RunOptions {
   std::filesystem::path config;
   GivenCameras given;                    // --camera and --calibration
   std::filesystem::path camera_poses;    // KITTI pose lines
+  std::vector<std::string> ignored;      // --ignore: SIDE=PIXELS or a mask's file
   std::vector<std::string> assignments;  // key=value
   std::string min_existence;             // of rows, a probability; empty for the configuration's
   std::string require;                   // tracked=FRACTION

@@ -99,6 +99,13 @@ Json framesOf(const RunSummary& summary) {
           {"segments", pipeline.segments}, {"tracked_fraction", rounded(summary.trackedFraction())}};
 }
 
+/// Null where nothing was found.
+Json toJson(const std::optional<OwnVehicleView>& view) {
+  if (!view) return nullptr;
+  const Box& box = view->box;
+  return {{"image_share", rounded(view->share)}, {"box_px", {box.left_px, box.top_px, box.right_px, box.bottom_px}}};
+}
+
 /// What the program is made of.
 Json programVersions() {
   Json json = Json::object();
@@ -151,6 +158,7 @@ std::string toJson(const RunSummary& summary) {
             {"bayer", summary.bayer},
             {"sample_bits", summary.sample_bits},
             {"images", toJson(summary.images)},
+            {"ignored", summary.ignored},
             {"inject", summary.inject},
             {"capture_rate_hz", rounded(summary.capture_rate_hz)},
             {"rate", summary.rate_hz ? Json(*summary.rate_hz) : Json("max")},
@@ -159,6 +167,7 @@ std::string toJson(const RunSummary& summary) {
             {"frames_in_flight", summary.params.frames_in_flight},
             {"frames", framesOf(summary)},
             {"findings", toJson(summary.found)},
+            {"own_vehicle", toJson(summary.own_vehicle)},
             {"latency_ms", withBuckets(pipeline.latency)},
             {"latency_with_decoding_ms", withBuckets(pipeline.latency_with_decoding)},
             {"entry_wait_ms", toJson(pipeline.entry_wait)},

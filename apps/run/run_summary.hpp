@@ -32,16 +32,18 @@ struct RunSummary {
   QueueMark decoded;  // pairs waiting for the feeder
   std::string sequence, layout;
   ImageCounts images;
-  GivenCameras given;             // what the user said of them
-  std::string calibrated_by;      // the calibration in force, whoever named it
-  std::string bayer;              // the mosaic in force, empty for none
-  int sample_bits = 8;            // that the images' samples use
-  std::string inject;             // faults on the way from the camera, as the user gave them
-  std::optional<double> rate_hz;  // of the replay; empty for as fast as it went
+  GivenCameras given;                // what the user said of them
+  std::string calibrated_by;         // the calibration in force, whoever named it
+  std::string bayer;                 // the mosaic in force, empty for none
+  int sample_bits = 8;               // that the images' samples use
+  std::vector<std::string> ignored;  // pixels, as the user gave them
+  std::string inject;                // faults on the way from the camera, as the user gave them
+  std::optional<double> rate_hz;     // of the replay; empty for as fast as it went
   double capture_rate_hz = 0;
   std::int64_t good_frames = 0;
   double wall_s = 0;
   ProcessUsage used;
+  std::optional<OwnVehicleView> own_vehicle{};  // as found at the end
   std::optional<McapSummary> mcap{};
   std::vector<RigFinding> found{};  // wrong with the pairs
   bool refused = false;             // and so the run was ended

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/parameters.hpp"
+#include "core/pixel_mask.hpp"
 #include "frontend/messages.hpp"
 
 namespace motorcade {
@@ -23,8 +24,8 @@ class CornerDetector {
   explicit CornerDetector(const Params& params);
 
   /// Corners ordered by cell, row by row, the strongest of a cell first. Their coordinates are whole pixels. The least
-  /// score is `score_share` of the parameter.
-  std::vector<Corner> operator()(const Image& image, double score_share = 1) const;
+  /// score is `score_share` of the parameter. None lies on a pixel that is ignored.
+  std::vector<Corner> operator()(const Image& image, double score_share = 1, const PixelMask& ignored = {}) const;
 
  private:
   Params params_;

@@ -38,11 +38,12 @@ OpticalFlow merged(const OpticalFlow& flow, const std::vector<FlowObservation>& 
 
 }  // namespace
 
-SceneFlowSegmentation::SceneFlowSegmentation(const Params& params, const StereoCamera& camera)
+SceneFlowSegmentation::SceneFlowSegmentation(const Params& params, const StereoCamera& camera, const PixelMask& ignored)
     : camera_(camera),
       circular_matching_(params.circular_matching, camera),
       odometry_(params.ego_motion, camera),
       gap_bridge_(params.ego_motion, camera),
+      own_vehicle_(camera, ignored),
       tracks_(params.point_tracks, camera),
       ground_plane_(params.ground_plane),
       segmenter_(params.segmenter, camera),
@@ -56,8 +57,9 @@ SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo,
 
   Sight sight = look(*stereo, *flow, odometry_.predict(frame.stamp));
   if (sight.camera.status != FrameStatus::kGood || isAfterGap(frame.stamp)) bridge(*stereo, sight);
-  auto& [seen_flow, observed, camera] = sight;
-  odometry_.add(frame, camera);
+  odometry_.add(frame, sight.camera);
+  learnOwnVehicle(sight);
+  const auto& [seen_flow, seen, observed, camera] = sight;
   tracks_.update(seen_flow, observed, odometry_.trail());
 
   auto motion = newMotion(frame, camera);
@@ -77,9 +79,18 @@ SceneFlowSegmentation::Sight SceneFlowSegmentation::look(const StereoMatches& st
                                                          const PredictedMotion& predicted) const {
   const StereoFrame& frame = *stereo.features->frame;
   const auto known = tracks_.known(flow, odometry_.trail());
-  auto observed = circular_matching_(stereo, flow, expectDisparities(known, frame.stamp, predicted.T_previous_now));
+  auto seen = circular_matching_(stereo, flow, expectDisparities(known, frame.stamp, predicted.T_previous_now));
+  auto observed = seen;
+  own_vehicle_.leaveOut(flow, observed);
   CameraMotion camera = odometry_.measure(frame, known, observed, predicted);
-  return {flow, std::move(observed), std::move(camera)};
+  return {flow, std::move(seen), std::move(observed), std::move(camera)};
+}
+
+/// What this frame shows of the own vehicle takes no further part in it.
+void SceneFlowSegmentation::learnOwnVehicle(Sight& sight) {
+  if (sight.camera.status != FrameStatus::kGood) return own_vehicle_.forgetPoints();
+  own_vehicle_.learn(sight.flow, sight.seen, odometry_.trail());
+  own_vehicle_.leaveOut(sight.flow, sight.observed);
 }
 
 /// Are frames missing before this one?
@@ -142,7 +153,8 @@ std::shared_ptr<SceneMotion> SceneFlowSegmentation::newMotion(const StereoFrame&
                         .ground = {},
                         .points = std::move(points),
                         .segments = {},
-                        .features = {}};
+                        .features = {},
+                        .own_vehicle = own_vehicle_.view()};
   return motion;
 }
 
@@ -211,7 +223,9 @@ void SceneFlowSegmentation::calibrateDisparity() {
   const auto start = disparity_offset_.windowStart(trail.newest().step);
   if (const auto* relation = start ? trail.find(*start) : nullptr)
     disparity_offset_.learn(tracks_.atRestSince(*start), relation->T_then_now.inverse());
-  tracks_.shiftDisparities(static_cast<float>(disparity_offset_.advance()));
+  const double change_px = disparity_offset_.advance();
+  tracks_.shiftDisparities(static_cast<float>(change_px));
+  own_vehicle_.shiftDisparities(change_px);
 }
 
 }  // namespace motorcade

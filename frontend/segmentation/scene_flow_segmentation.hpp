@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/object_pool.hpp"
+#include "core/pixel_mask.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/matching/circular_matching.hpp"
 #include "frontend/messages.hpp"
@@ -12,6 +13,7 @@
 #include "frontend/motion/disparity_offset.hpp"
 #include "frontend/motion/gap_bridge.hpp"
 #include "frontend/motion/ground_plane.hpp"
+#include "frontend/motion/own_vehicle.hpp"
 #include "frontend/motion/point_tracks.hpp"
 #include "frontend/segmentation/motion_segmenter.hpp"
 
@@ -30,7 +32,8 @@ class SceneFlowSegmentation {
     MotionSegmenter::Params segmenter;
     DisparityOffsetEstimator::Params disparity_offset;
   };
-  SceneFlowSegmentation(const Params& params, const StereoCamera& camera);
+  /// `ignored` are pixels of the left image that are of no use.
+  SceneFlowSegmentation(const Params& params, const StereoCamera& camera, const PixelMask& ignored = {});
 
   /// Both messages are of the same frame.
   SceneMotionPtr operator()(const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow);
@@ -39,12 +42,14 @@ class SceneFlowSegmentation {
   /// What is seen of a frame: the points that are followed, where they are, and how the camera moved.
   struct Sight {
     OpticalFlow flow;
-    std::vector<std::optional<StereoObservation>> observed;  // one per flow observation
+    std::vector<std::optional<StereoObservation>> seen,
+        observed;  // one per flow observation: all, and those of the world
     CameraMotion camera;
   };
   Sight look(const StereoMatches& stereo, const OpticalFlow& flow, const PredictedMotion& predicted) const;
   bool isAfterGap(Timestamp stamp) const;
   void bridge(const StereoMatches& stereo, Sight& sight) const;
+  void learnOwnVehicle(Sight& sight);
   SceneMotionPtr passOver(const StereoFrame& unseen);
   std::shared_ptr<SceneMotion> newMotion(const StereoFrame& frame, const CameraMotion& camera);
   ExpectedDisparities expectDisparities(const std::vector<std::optional<KnownPoint>>& known, Timestamp stamp,
@@ -59,6 +64,7 @@ class SceneFlowSegmentation {
   CircularMatching circular_matching_;
   CameraOdometry odometry_;
   GapBridge gap_bridge_;
+  OwnVehicle own_vehicle_;
   PointTracks tracks_;
   GroundPlaneEstimator ground_plane_;
   MotionSegmenter segmenter_;

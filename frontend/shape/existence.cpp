@@ -19,7 +19,7 @@ constexpr double kMostByVerdicts = 6;
 struct VerdictShare {
   double of_body, of_nothing;
 };
-constexpr std::array<VerdictShare, 4> kShares{{{0.7, 0.15}, {0.07, 0.07}, {0.05, 0.35}, {0.18, 0.43}}};
+constexpr std::array<VerdictShare, 4> kShares{{{0.7, 0.15}, {0.07, 0.07}, {0.1, 0.35}, {0.25, 0.43}}};
 
 /// How much likelier a speed is among those of traffic than as an error of something at rest: both are Gaussian.
 double speedEvidence(double speed_mps, double sigma_mps) {

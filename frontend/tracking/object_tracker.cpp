@@ -50,6 +50,7 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   look_back_.remember(scene, T_world_cam_, measurements->objects, objects_);
   removeEnded(*measurements);
   measurements->disparity_offset_px = scene->disparity_offset_px;
+  measurements->own_vehicle = scene->own_vehicle;
   addOtherPoints(*scene, *measurements);
   std::ranges::stable_sort(measurements->objects, {}, &ObjectObservation::track);
   previous_scene_ = scene;

@@ -61,6 +61,9 @@ typedef struct {
   int width_px, height_px;                        // of the images that are pushed
   double fx_px, fy_px, cx_px, cy_px, baseline_m;  // rectified; not read where there is a rig
   const motorcade_rig* rig;                       // of a pair that is still to be rectified, which is done inside
+  /// Pixels of the left image, rectified, that are of no use: at its sides, and those of a mask that are not 0.
+  int ignored_left_px, ignored_top_px, ignored_right_px, ignored_bottom_px;
+  const uint8_t* ignored_mask;  // width_px x height_px, row by row; or NULL
 } motorcade_camera;
 
 typedef enum { MOTORCADE_GRAY8, MOTORCADE_GRAY16, MOTORCADE_RGB8, MOTORCADE_BGR8 } motorcade_format;

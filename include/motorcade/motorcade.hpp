@@ -56,6 +56,14 @@ struct Camera {
     std::array<double, 12> T_right_left{};
   };
   std::optional<Rig> rig{};
+
+  /// Pixels of the left image, rectified, that are of no use: dead ones, borders, logos. So many columns and rows at
+  /// the sides, and those of the mask, row by row, that are not 0. A bonnet is found without it.
+  struct Ignored {
+    int left_px = 0, top_px = 0, right_px = 0, bottom_px = 0;
+    std::vector<std::uint8_t> mask{};  // of width_px x height_px, or empty
+  };
+  Ignored ignored{};
 };
 
 /// One moment's two images. The pixels are copied by `Tracker::push`.
@@ -107,7 +115,7 @@ struct Result {
     std::array<double, 3> box_center_body_m{}, box_size_m{}, box_size_sigma_m{};  // length, width, height
     Kind kind = Kind::kUnknown;
     double kind_probability = 0;
-    std::optional<Mask> mask{};  // with `Options::masks`, where the outline was found
+    std::optional<Mask> mask{};        // with `Options::masks`, where the outline was found
   };
 
   std::int64_t frame = -1, stamp_ns = 0;  // of the pair; where the clock was set back, stamps go on all the same

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 Matrix: TypeAlias = npt.NDArray[np.float64] | Sequence[Sequence[float]]
+Mask: TypeAlias = npt.NDArray[np.uint8] | npt.NDArray[np.bool_]
 
 
 class Distortion(StrEnum):
@@ -52,7 +53,8 @@ class Camera:
     """The stereo camera: of a rectified pair, or with ``rig`` of one that is rectified inside.
 
     ``width_px`` and ``height_px`` are those of the images that are pushed. The intrinsics [px] and ``baseline_m`` are
-    the rectified pair's; with a rig they are not read.
+    the rectified pair's; with a rig they are not read. ``ignored`` has a row and a column for each pixel of the left
+    image, rectified; those that are not 0 are of no use. A bonnet is found without it.
     """
 
     width_px: int
@@ -63,3 +65,4 @@ class Camera:
     cy_px: float = 0.0
     baseline_m: float = 0.0
     rig: Rig | None = None
+    ignored: Mask | None = None

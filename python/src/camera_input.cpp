@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include <pybind11/numpy.h>
 
@@ -82,6 +84,16 @@ Camera::Rig rigOf(const py::object& object) {
           .T_right_left = transformOf(transform, "camera.rig.T_right_left")};
 }
 
+/// Row by row, of the images' size.
+std::vector<std::uint8_t> maskOf(const py::object& object, const Camera& camera) {
+  const auto mask = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>::ensure(object);
+  if (!mask) throw py::type_error("camera.ignored: is no array of numbers");
+  if (mask.ndim() != 2 || mask.shape(0) != camera.height_px || mask.shape(1) != camera.width_px)
+    throw Error("camera.ignored", "has another shape than the images, " + std::to_string(camera.height_px) +
+                                      " rows of " + std::to_string(camera.width_px));
+  return {mask.data(), mask.data() + mask.size()};
+}
+
 }  // namespace
 
 Camera cameraOf(const py::object& object) {
@@ -93,6 +105,9 @@ Camera cameraOf(const py::object& object) {
   py::object rig;
   read(object, "rig", "camera", rig);
   if (!rig.is_none()) camera.rig = rigOf(rig);
+  py::object ignored;
+  read(object, "ignored", "camera", ignored);
+  if (!ignored.is_none()) camera.ignored.mask = maskOf(ignored, camera);
   return camera;
 }
 

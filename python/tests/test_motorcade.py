@@ -3,6 +3,7 @@ which results are compared, is in MOTORCADE_EMBED. What the tracker itself does 
 
 import ast
 import copy
+import dataclasses
 import gc
 import multiprocessing
 import os
@@ -98,6 +99,17 @@ class DescribingACamera(unittest.TestCase):
         self.assertIsInstance(error, ValueError)
         self.assertEqual(self.error(motorcade.Camera(310, 94, 0, 180, 155, 47, 0.5)).field, "camera.fx_px")
         self.assertEqual(self.error(motorcade.Camera(31, 94, 180, 180, 15, 47, 0.5)).field, "camera.width_px")
+
+    def test_ignored_pixels_have_the_shape_of_the_images(self) -> None:
+        def camera(mask: object) -> motorcade.Camera:
+            return dataclasses.replace(CAMERA, ignored=mask)
+
+        for mask in (np.zeros((310, 94), np.uint8), np.zeros(310 * 94, np.uint8), np.zeros((93, 310), bool)):
+            self.assertEqual(self.error(camera(mask)).field, "camera.ignored")
+        for mask in (np.zeros((94, 310), np.uint8), np.ones((94, 310), bool)):
+            motorcade.Tracker(camera(mask)).stop()
+        with self.assertRaisesRegex(TypeError, "camera.ignored: is no array"):
+            motorcade.Tracker(camera("bottom"))
 
     def test_errors_survive_pickling_and_copies(self) -> None:
         error = self.error(motorcade.Camera(310, 94, 180, 180, 155, 47))

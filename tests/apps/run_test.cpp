@@ -41,6 +41,17 @@ TEST_F(Run, WritesALinePerFrameAndACompleteSummary) {
   for (const auto& queue : json["queues"]) EXPECT_LE(queue["high_water"], json["frames_in_flight"]) << queue;
 }
 
+TEST_F(Run, LeavesOutPixelsThatAreIgnored) {
+  ASSERT_EQ(run("whole"), 0) << contentOf(errors());
+  ASSERT_EQ(run("out", "--ignore bottom=40 --ignore left=10 --masks"), 0) << contentOf(errors());
+  EXPECT_EQ(summary("whole")["ignored"], nlohmann::json::array());
+  EXPECT_EQ(summary("whole")["own_vehicle"], nullptr);
+  EXPECT_EQ(summary("out")["ignored"], nlohmann::json({"bottom=40", "left=10"}));
+  EXPECT_NE(contentOf(out("out") / "camera_final.txt"), contentOf(out("whole") / "camera_final.txt"));
+  EXPECT_EQ(run("none", "--ignore bottom=0"), 2);
+  EXPECT_THAT(contentOf(errors()), HasSubstr("--ignore bottom=0"));
+}
+
 TEST_F(Run, FollowsTheCameraAndTheCarAheadOnARenderedDrive) {
   ASSERT_EQ(run("out"), 0) << contentOf(errors());
   const auto measured = evaluate("out")["final"];

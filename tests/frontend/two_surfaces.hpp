@@ -19,7 +19,8 @@ class TwoSurfaces {
  public:
   static constexpr double kCameraStep_m = 1, kWall_m = 30, kCar_m = 4;
   static constexpr int kWallPoints = 150, kCarPoints = 12;
-  explicit TwoSurfaces(double car_step_m) : car_step_m_(car_step_m) {}
+  /// The car is `car_m` ahead at first.
+  explicit TwoSurfaces(double car_step_m, double car_m = kCar_m) : car_step_m_(car_step_m), car_m_(car_m) {}
 
   /// The disparity of each corner; corner and point have the same number.
   StereoMatchesPtr stereo(int frame) const {
@@ -56,7 +57,7 @@ class TwoSurfaces {
 
  private:
   double depth_m(bool car, int frame) const {
-    return car ? kCar_m + frame * (car_step_m_ - kCameraStep_m) : kWall_m - frame * kCameraStep_m;
+    return car ? car_m_ + frame * (car_step_m_ - kCameraStep_m) : kWall_m - frame * kCameraStep_m;
   }
   Image image(int frame, double aside_m) const {
     return render(kSmallRig.width_px, kSmallRig.height_px,
@@ -80,7 +81,7 @@ class TwoSurfaces {
     return points;
   }
 
-  double car_step_m_;
+  double car_step_m_, car_m_;
   Texture car_texture_{1}, wall_texture_{2};
   std::vector<Eigen::Vector2d> points_ = choosePoints();
 };

@@ -149,6 +149,18 @@ TEST(CInterfaceCamera, BadMembersAreNamed) {
   camera = plainCamera();
   camera.width_px = 3;
   EXPECT_EQ(toldOf(camera), "-1 camera.width_px");
+  camera = plainCamera();
+  camera.ignored_bottom_px = camera.height_px;
+  EXPECT_EQ(toldOf(camera), "-1 camera.ignored.bottom_px");
+}
+
+TEST(CInterfaceCamera, AMaskIsReadAsLargeAsTheImage) {
+  auto camera = plainCamera();
+  const std::vector<std::uint8_t> mask(static_cast<std::size_t>(camera.width_px) * camera.height_px, 1);
+  camera.ignored_mask = mask.data();
+  EXPECT_EQ(toldOf(camera), "0");
+  camera.height_px = 1'000'000'000;
+  EXPECT_EQ(toldOf(camera), "-1 camera.height_px");
 }
 
 TEST(CInterfaceCamera, BadRigsAreNamed) {

@@ -57,6 +57,18 @@ TEST_F(Formats, OfTheSamePictureGiveTheSameResults) {
   EXPECT_EQ(resultsAs(Pair::Format::kBgr8, 3 * width_px + 64), expected);
 }
 
+TEST_F(Formats, OfIgnoredPixelsGiveTheSameResults) {
+  constexpr int kRows = 40;
+  DriveInMemory sides = drive_, mask = drive_;
+  const auto row_px = static_cast<std::size_t>(drive_.camera.width_px);
+  sides.camera.ignored.bottom_px = kRows;
+  mask.camera.ignored.mask.resize(row_px * static_cast<std::size_t>(drive_.camera.height_px - kRows), 0);
+  mask.camera.ignored.mask.resize(row_px * static_cast<std::size_t>(drive_.camera.height_px), 255);
+  const auto expected = bytesOf(track(sides));
+  EXPECT_EQ(bytesOf(track(mask)), expected);
+  EXPECT_NE(bytesOf(track(drive_)), expected);
+}
+
 /// Cameras of ten to fourteen bits hand their samples on as they are. The first pair is dark: the second one tells.
 TEST_F(Formats, OfFewerBitsInSixteenGiveTheSameResults) {
   const auto darkFirst = [&](std::size_t index, std::uint8_t gray) {

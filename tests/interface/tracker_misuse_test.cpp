@@ -48,6 +48,11 @@ Camera rig() {
 TEST(TrackerMisuse, EachBadFieldOfACameraIsNamed) {
   const std::vector<Misuse<Camera>> misuses = {
       {"camera.width_px", [](Camera& c) { c.width_px = 0; }},
+      {"camera.ignored.left_px", [](Camera& c) { c.ignored.left_px = c.width_px; }},
+      {"camera.ignored.top_px", [](Camera& c) { c.ignored.top_px = -1; }},
+      {"camera.ignored.right_px", [](Camera& c) { c.ignored.right_px = c.width_px; }},
+      {"camera.ignored.bottom_px", [](Camera& c) { c.ignored.bottom_px = c.height_px; }},
+      {"camera.ignored.mask", [](Camera& c) { c.ignored.mask.resize(7); }},
       {"camera.width_px", [](Camera& c) { c.width_px = -752; }},
       {"camera.width_px", [](Camera& c) { c.width_px = std::numeric_limits<int>::max(); }},
       {"camera.height_px", [](Camera& c) { c.height_px = 0; }},

@@ -56,6 +56,17 @@ TEST(FeaturePreparation, TakesFaintCornersWhereTheImageIsBlurred) {
   EXPECT_GT(corners, 30U);
 }
 
+TEST(FeaturePreparation, SpendsNoCornersOnIgnoredPixels) {
+  const Image image = test::render(320, 200, test::Texture(51));
+  PixelMask ignored(320, 200);
+  ignored.add(0, 100, 320, 200);
+  FeaturePreparation::Params params;
+  params.corners.max_corners = 100;
+  const auto features = FeaturePreparation(params, ignored)(test::stereoFrame(0, image, image));
+  EXPECT_EQ(features->corners.size(), 100U);  // as many as there may be, all of the upper half
+  for (const Corner& corner : features->corners) EXPECT_LT(corner.v_px, 100);
+}
+
 TEST(FeaturePreparation, GivesNoImagesForARejectedFrame) {
   const auto features = FeaturePreparation({})(test::rejectedFrame(7));
   EXPECT_EQ(features->frame->frame, FrameId{7});

@@ -1,5 +1,6 @@
 #include "frontend/segmentation/scene_flow_segmentation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -69,6 +70,32 @@ TEST(SceneFlowSegmentation, FindsTheDisparityOfANearVehicleWhateverItsSpeed) {
       EXPECT_GE(found, 10) << "car moves " << car_step_m << " m, frame " << frame;
     }
   }
+}
+
+/// A surface 3 m ahead that keeps the camera's pace.
+TEST(SceneFlowSegmentation, PointsThatAreFixedToTheCameraTakePartInNothing) {
+  const test::TwoSurfaces scene(test::TwoSurfaces::kCameraStep_m, 3);
+  SceneFlowSegmentation estimate({}, test::kSmallRig);
+  for (int frame = 0; frame < 5; ++frame) {
+    const auto stereo = scene.stereo(frame);
+    const auto motion = estimate(stereo, scene.flow(*stereo, frame));
+    const auto on_car =
+        std::ranges::count_if(motion->points, [&](const ScenePoint& p) { return scene.onCar(p.point); });
+    EXPECT_EQ(on_car > 0, frame == 0) << "frame " << frame;
+    EXPECT_NEAR(motion->T_previous_now.translation().z(), frame == 0 ? 0 : test::TwoSurfaces::kCameraStep_m, 0.05);
+    EXPECT_TRUE(motion->segments.empty());
+  }
+}
+
+TEST(SceneFlowSegmentation, PointsOnIgnoredPixelsTakePartInNothing) {
+  const test::TwoSurfaces scene(0.5);
+  PixelMask ignored(test::kSmallRig.width_px, test::kSmallRig.height_px);
+  ignored.add(0, 0, 300, test::kSmallRig.height_px);
+  SceneFlowSegmentation estimate({}, test::kSmallRig, ignored);
+  const auto stereo = scene.stereo(0);
+  const auto motion = estimate(stereo, scene.flow(*stereo, 0));
+  EXPECT_GT(motion->points.size(), 20U);
+  for (const ScenePoint& p : motion->points) EXPECT_GE(p.uvd_px.x() - p.uvd_px.z(), 299);  // in the right image, too
 }
 
 }  // namespace

@@ -271,12 +271,12 @@ TEST(ObjectShapes, BelieveInWhatMovesInTheImages) {
     not_there = imagined.look(ObjectState::kMoving, Scene({})).objects[0].existence_probability;
   }
   EXPECT_GT(there, 0.95);
-  EXPECT_LT(not_there, 0.5);
+  EXPECT_LT(not_there, 0.7);
   for (const FrameEstimate& final : crossing.finish()) EXPECT_GT(final.objects[0].existence_probability, 0.95);
 }
 
 TEST(ObjectShapes, LeaveOutRowsThatAreUnlikely) {
-  Crossing imagined(-6, 8, {.min_existence = 0.5});
+  Crossing imagined(-6, 8, {.min_existence = 0.7});
   for (int frame = 0; frame < 7; ++frame) imagined.look(ObjectState::kMoving, Scene({}));
   EXPECT_TRUE(imagined.look(ObjectState::kMoving, Scene({})).objects.empty());
   EXPECT_TRUE(imagined.masks().empty());

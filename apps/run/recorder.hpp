@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "apps/console/progress.hpp"
+#include "apps/pipeline/pipeline_result.hpp"
+#include "apps/run/followed_frames.hpp"
+#include "apps/run/plausibility.hpp"
+#include "apps/run/run_listener.hpp"
+#include "apps/watch/own_vehicle_news.hpp"
+#include "core/messages.hpp"
+#include "io/run_folder.hpp"
+
+namespace motorcade {
+
+/// Takes the pipeline's results, in order, into the run folder and to those who listen, and logs what is odd about
+/// them.
+class Recorder {
+ public:
+  Recorder(RunFolderWriter& folder, RunListeners listeners, std::size_t frames);
+
+  void record(const PipelineResult& result);
+  /// Frames that never entered; `due` stands for when they were due, which nobody knows.
+  void recordDropped(const std::vector<FrameEstimate>& dropped, SteadyTime due);
+  void recordFinals(const std::vector<FrameEstimate>& finals);
+  /// No further result comes; what was found of the own vehicle.
+  std::optional<OwnVehicleView> finish();
+
+  const FollowedFrames& followed() const { return followed_; }
+
+ private:
+  RunFolderWriter& folder_;
+  RunListeners listeners_;
+  Progress progress_;
+  Plausibility plausibility_;
+  FollowedFrames followed_;
+  OwnVehicleNews own_vehicle_;
+  std::size_t done_ = 0;
+};
+
+}  // namespace motorcade
