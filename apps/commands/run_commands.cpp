@@ -89,7 +89,7 @@ void addRun(CLI::App& app, Action& action) {
       ->type_name("KEY=VALUE");
   command
       ->add_option("--min-existence", options->min_existence,
-                   "Leave out rows of objects that are less likely there, from 0, which reports all, to 1; short for "
+                   "Leave out rows of objects that are less likely there, from 0, which reports all, to 0.9; short for "
                    "--set frontend.shapes.min_existence=P")
       ->type_name("P");
   command

@@ -450,7 +450,7 @@ void ObjectShapes::forgetGone(const Estimates& estimates) {
 }
 
 std::vector<Parameter> parametersOf(ObjectShapes::Params& params) {
-  return {numberParameter("min_existence", params.min_existence, {0, 1},
+  return {numberParameter("min_existence", params.min_existence, {0, 0.9},
                           "higher reports surer objects alone; 0 reports all, each with its probability")};
 }
 
