@@ -141,7 +141,7 @@ struct FrameMeasurements {
   std::vector<ObjectObservation> objects;
   /// Tracks that ended: nothing will be observed of them any more.
   std::vector<TrackId> ended;
-  /// What was found of the own vehicle up to this frame; nothing is measured there.
+  /// The part of the image that is known to show the own vehicle; nothing is measured there.
   std::optional<OwnVehicleView> own_vehicle{};
 };
 using FrameMeasurementsPtr = std::shared_ptr<const FrameMeasurements>;
@@ -161,7 +161,8 @@ struct ObjectEstimate {
   std::optional<Matrix6d> covariance;  // of T_cam_body of the same frame
   std::optional<ObjectBox> cuboid{};
   double age_s = 0;  // since its first estimate of the same kind, online or final
-  /// That the body is there, and moves or moved before: by what was seen up to now, of a final estimate by all.
+  /// The probability that the body is there and moves, or moved before. An online estimate knows what was seen up to
+  /// its frame, a final one all.
   double existence_probability = 1;
 };
 

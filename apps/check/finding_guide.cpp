@@ -66,9 +66,8 @@ constexpr std::array<std::pair<std::string_view, FindingGuide>, 20> kGuides{{
       "Look at times.txt (seconds, one line per pair, growing), or leave it out and give the rate with --fps."}},
     {"own_vehicle",
      {"The own vehicle fills much of the image",
-      "What lies behind it is not seen, and the points on it are of no use. It is found by itself and left out, once "
-      "the "
-      "car moves.",
+      "What lies behind it is not seen, and the points on it are of no use. Once the car moves, it is found by itself "
+      "and left out.",
       "Mount the cameras so that they see over it, or cut it off both images."}},
     {"mosaic",
      {"The images are a color sensor's mosaic",

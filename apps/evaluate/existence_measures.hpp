@@ -23,12 +23,12 @@ struct ExistenceErrors {
   int rows() const;
   /// Mean squared difference of the probability and what is there, 1 or 0 (Brier 1950); 0 without rows.
   double brier() const;
-  /// Between what is claimed and the share that is real, in tenths with so many rows that chance makes less of it;
-  /// empty where no tenth has.
+  /// The largest difference between what a tenth claims and its share that is real. Tenths of fewer than 100 rows do
+  /// not count, as chance alone makes one there; empty where no tenth has as many.
   std::optional<double> largestGap() const;
 };
 
-/// Over all rows but those in an area that the labels leave open.
+/// Counts all rows but those in an area that the labels leave open.
 ExistenceErrors existenceErrors(const std::vector<ComparedFrame>& frames);
 
 }  // namespace motorcade

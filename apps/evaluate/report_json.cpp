@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/evaluate/existence_json.hpp"
 #include "apps/evaluate/report.hpp"
 #include "io/json_text.hpp"
 #include "io/object_row.hpp"
@@ -109,13 +110,6 @@ Json jsonOf(const KindCounts& counts) {
       json["confusion"][std::string(kindName(label))][std::string(kindName(reported))] = counts.of(label, reported);
   }
   return json;
-}
-
-Json jsonOf(const ExistenceErrors& errors) {
-  Json tenths = Json::array();
-  for (const ExistenceTenth& tenth : errors.tenths)
-    tenths.push_back({{"rows", tenth.rows}, {"real", tenth.real}, {"probability_sum", tenth.probability_sum}});
-  return {{"rows", errors.rows()}, {"brier", errors.brier()}, {"tenths", std::move(tenths)}};
 }
 
 Json jsonOf(const KindErrors& kinds) {

@@ -85,7 +85,7 @@ motorcade_counts countsOf(const Tracker::Counts& counts) {
           .untaken = counts.untaken};
 }
 
-/// A recording's: without a rig, and nothing is ignored.
+/// The camera of a recording has no rig, and ignores nothing.
 motorcade_camera cCameraOf(const Camera& camera) {
   motorcade_camera converted{};
   converted.width_px = camera.width_px;

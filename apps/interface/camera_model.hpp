@@ -20,7 +20,7 @@ class CameraModel {
   explicit CameraModel(const Camera& camera);
 
   const StereoCamera& rectified() const { return rectified_; }
-  /// Of the left image, rectified.
+  /// The pixels of the rectified left image that are of no use.
   const PixelMask& ignored() const { return ignored_; }
   /// From what was pushed, as gray, to what the stages take.
   Image leftOf(const Image& gray, ImagePool& pool) const { return remaps_ ? remaps_->left(gray, pool) : gray; }

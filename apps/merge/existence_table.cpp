@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/evaluate/existence_json.hpp"
 #include "apps/merge/result_tables.hpp"
 
 namespace motorcade {
@@ -20,6 +21,7 @@ using Estimates = std::array<std::pair<const char*, const ExistenceErrors*>, 2>;
 Estimates estimatesOf(const ExistenceOfSet& of_set) { return {{{"final", &of_set.final}, {"online", &of_set.online}}}; }
 
 void add(ExistenceErrors& sums, const nlohmann::json& counted) {
+  if (counted.at("rows") == 0) return;
   const auto& tenths = counted.at("tenths");
   for (std::size_t i = 0; i < std::min(kTenths, tenths.size()); ++i) {
     sums.tenths[i].rows += tenths[i].at("rows").get<int>();
@@ -40,17 +42,6 @@ std::array<bool, kTenths> tenthsWithRows(const ExistenceBySet& sets) {
 std::string textOf(const ExistenceTenth& tenth) {
   if (tenth.rows == 0) return "-";
   return fmt::format("{} of {} ({})", numberText(tenth.shareReal(), 2), numberText(tenth.claimed(), 2), tenth.rows);
-}
-
-Json jsonOf(const ExistenceErrors& errors) {
-  Json tenths = Json::array();
-  for (const ExistenceTenth& tenth : errors.tenths)
-    tenths.push_back({{"rows", tenth.rows}, {"real", tenth.real}, {"probability_sum", tenth.probability_sum}});
-  const auto gap = errors.largestGap();
-  return {{"rows", errors.rows()},
-          {"brier", errors.rows() > 0 ? Json(errors.brier()) : Json()},
-          {"largest_gap", gap ? Json(*gap) : Json()},
-          {"tenths", std::move(tenths)}};
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace motorcade {
 
 struct ResultTable;
 
-/// Of one set of parameters.
+/// What the runs with one set of parameters claimed.
 struct ExistenceOfSet {
   ExistenceErrors final, online;
 };
@@ -24,7 +24,7 @@ void addExistence(ExistenceOfSet& sums, const nlohmann::json& evaluation);
 /// A row for each set and estimate that has rows, a column for each tenth in which any has some.
 ResultTable existenceTable(const ExistenceBySet& sets);
 
-/// By set, then `final` and `online`.
+/// The same as an object for each set, with `final` and `online`.
 nlohmann::ordered_json existenceJson(const ExistenceBySet& sets);
 
 }  // namespace motorcade

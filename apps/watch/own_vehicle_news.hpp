@@ -18,7 +18,7 @@ class OwnVehicleNews {
   /// No further frame comes: what was not told yet.
   std::optional<std::string> finish();
 
-  /// As found last; empty while nothing is.
+  /// What was found last; empty while nothing is.
   const std::optional<OwnVehicleView>& view() const { return view_; }
 
  private:

@@ -18,10 +18,10 @@ constexpr double kCompany_m = 0.5;  // points of the own vehicle have others as 
 constexpr int kCompany = 3;         // ... so many, at least
 
 constexpr double kMove_px = 10;  // of a point at rest: twenty times the tolerance of one that stays
-/// Of each coordinate, beyond the noise: a camera behind the windshield and the bonnet shake against each other.
+/// Each coordinate may change by this beyond the noise: camera and bonnet shake against each other.
 constexpr double kTolerance_px = 0.5;
 constexpr double kMaxChi2 = 16.3;  // 3 degrees of freedom: 99.9 %
-/// Between two votes, which are to be of different views: ten of them take a meter, and ten frames.
+/// The camera goes on by this between two votes, so that their views differ: ten of them take a meter.
 constexpr double kVoteTravel_m = 0.1;
 
 double misfitChi2(const Eigen::Vector3d& difference_px, const Eigen::Vector3d& sigma_then_px,
@@ -60,7 +60,7 @@ OwnVehicle::OwnVehicle(const StereoCamera& camera, const PixelMask& ignored)
       left_m_(-kReachAside_m),
       right_m_(kReachAside_m) {}
 
-/// In the right image, too: what is fixed to the camera hides there what the left one sees.
+/// Looks in the right image, too: what is fixed to the camera hides there what the left one sees.
 bool OwnVehicle::isIgnored(const StereoObservation& seen) const {
   const float u_px = seen.uvd_px.x(), v_px = seen.uvd_px.y(), d_px = seen.uvd_px.z();
   return ignored_.holds(u_px, v_px) || ignored_.holds(u_px - d_px, v_px);
@@ -112,7 +112,7 @@ OwnVehicle::Verdict OwnVehicle::judge(Watched& point, const StereoObservation& s
   return Verdict::kNone;
 }
 
-/// Of the points that stay, takes those for fixed that are not alone and lie where the own vehicle reaches.
+/// Takes those of the points that stay for fixed that are not alone and lie where the own vehicle reaches.
 void OwnVehicle::takeFixed(std::vector<Staying> staying, std::vector<Watched>& watched) {
   std::ranges::sort(staying, {}, [](const Staying& point) { return point.p_cam.x(); });
   std::erase_if(staying, [&, all = staying](const Staying& point) {

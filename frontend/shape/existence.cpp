@@ -15,10 +15,11 @@ constexpr double kMostBySpeed = 2, kLeastBySpeed = -4;
 constexpr double kForgetting = 0.1;  // of the best recent speed, a frame
 constexpr double kMostByVerdicts = 6;
 
-/// How often a body, and a nothing, that goes on being observed gets each verdict for a while.
+/// How often tracks of bodies, and tracks of nothing, get a verdict for a while.
 struct VerdictShare {
   double of_body, of_nothing;
 };
+/// The shares of moved, mixed, rested and nothing, in the order of MotionVerdict.
 constexpr std::array<VerdictShare, 4> kShares{{{0.7, 0.15}, {0.07, 0.07}, {0.1, 0.35}, {0.25, 0.43}}};
 
 /// How much likelier a speed is among those of traffic than as an error of something at rest: both are Gaussian.

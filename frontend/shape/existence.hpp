@@ -23,9 +23,9 @@ class Existence {
   void addSettledSpeed(double speed_mps, double sigma_mps);
   void addVerdict(MotionVerdict verdict);
 
-  /// By what was seen up to now.
+  /// Uses all that was seen up to now.
   double probability() const;
-  /// By what is settled of its motion.
+  /// Uses what is settled of the motion alone: online estimates may have been wrong.
   double settledProbability() const;
 
  private:

@@ -17,7 +17,7 @@ class MotionEvidence {
  public:
   static constexpr int kPixels = 9;  // around a cell that are compared
 
-  /// Against the frame of `before`. All four outlive the evidence. The best place up to `slack` cells around the
+  /// Compares with the frame of `before`. All four outlive the evidence. The best place up to `slack` cells around the
   /// predicted one is compared, of motion as of rest.
   MotionEvidence(const LevelDisparities& disparities, const ObjectView& view, const ObjectView::Before& before,
                  const StereoCamera& camera, int slack = 0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "frontend/shape/motion_evidence.hpp"
@@ -17,6 +18,8 @@ constexpr double kNearlyAll = 0.75;              // of the points with a vote
 constexpr int kSlack = 1;                        // cells by which an estimate may misplace the surface
 constexpr int kLeastAhead = 3;                   // samples by which one side wins
 
+/// What goes along with another object, in place of what rests: a pattern that repeats on its flank may seem to go
+/// another way.
 struct AgainstOther {
   Eigen::AlignedBox3d reach;  // of the other, in its body frame
   SE3 T_body_cam;
@@ -43,8 +46,7 @@ std::vector<int> cellsAround(const PointMeasurement& point, const LevelDispariti
   return cells;
 }
 
-/// What goes along with another object in place of what rests, where a point may be of one that was known
-/// before: a pattern that repeats on its flank may seem to go another way.
+/// The view against the object on which the point may lie; null where it lies on none.
 const ObjectView::Before* againstOther(const Eigen::Vector3d& p_cam, std::span<const AgainstOther> against) {
   const auto holds = [&](const AgainstOther& other) { return other.reach.contains(other.T_body_cam * p_cam); };
   const auto of = std::ranges::find_if(against, holds);
@@ -64,30 +66,42 @@ std::vector<AgainstOther> againstOthers(const ObjectView& view) {
   return against;
 }
 
-}  // namespace
+/// Points around which the image moved with the body, and around which it rested.
+struct Votes {
+  int moved = 0, rested = 0;
+};
 
-MotionVerdict motionVerdict(std::span<const PointMeasurement> points, const LevelDisparities& disparities,
-                            const ObjectView& view, const StereoCamera& camera) {
+Votes votesOf(const std::vector<PointMeasurement>& points, const LevelDisparities& disparities, const ObjectView& view,
+              const StereoCamera& camera) {
+  constexpr int kLeast = kLeastTold_gray * MotionEvidence::kPixels;
   const std::vector<AgainstOther> against = againstOthers(view);
-  int moved_points = 0, rested_points = 0;
+  Votes votes;
   for (const PointMeasurement& point : points) {
     const Eigen::Vector3d uvd_px = point.uvd_px.cast<double>() + Eigen::Vector3d(0, 0, view.disparity_offset_px);
-    const double z_m = camera.fx_px * camera.baseline_m / uvd_px.z();
-    const ObjectView::Before* other = againstOther(camera.triangulate(uvd_px), against);
+    if (uvd_px.z() <= 0) continue;
+    const Eigen::Vector3d p_cam = camera.triangulate(uvd_px);
+    const ObjectView::Before* other = againstOther(p_cam, against);
     const MotionEvidence rests_rather(disparities, view, other ? *other : *view.well_before, camera, kSlack);
     int moved = 0, rested = 0;
-    for (const int rests : rests_rather(cellsAround(point, disparities, z_m, camera))) {
-      moved += rests < -kLeastTold_gray * MotionEvidence::kPixels;
-      rested += rests > kLeastTold_gray * MotionEvidence::kPixels;
-    }
-    moved_points += moved >= rested + kLeastAhead;
-    rested_points += rested >= moved + kLeastAhead;
+    for (const int rests : rests_rather(cellsAround(point, disparities, p_cam.z(), camera)))
+      moved += -rests > kLeast, rested += rests > kLeast;
+    votes.moved += moved >= rested + kLeastAhead;
+    votes.rested += rested >= moved + kLeastAhead;
   }
-  const double all = moved_points + rested_points;
+  return votes;
+}
+
+}  // namespace
+
+MotionVerdict motionVerdict(const ObjectObservation* observed, const LevelDisparities* disparities,
+                            const ObjectView& view, const StereoCamera& camera) {
+  if (!view.well_before) return MotionVerdict::kUntold;
+  const Votes votes = observed && disparities ? votesOf(observed->measured, *disparities, view, camera) : Votes{};
+  const double all = votes.moved + votes.rested;
   if (all == 0)
     return view.well_before->apart > ObjectView::kWellApart ? MotionVerdict::kNothing : MotionVerdict::kUntold;
-  if (moved_points >= kNearlyAll * all) return MotionVerdict::kMoved;
-  return rested_points >= kNearlyAll * all ? MotionVerdict::kRested : MotionVerdict::kMixed;
+  if (votes.moved >= kNearlyAll * all) return MotionVerdict::kMoved;
+  return votes.rested >= kNearlyAll * all ? MotionVerdict::kRested : MotionVerdict::kMixed;
 }
 
 }  // namespace motorcade

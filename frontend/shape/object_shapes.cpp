@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/elementary.hpp"
-#include "frontend/image/image_pyramid.hpp"
 #include "frontend/motion/shared_velocity_error.hpp"
-#include "frontend/shape/disparity_refinement.hpp"
 #include "frontend/shape/face_measurement.hpp"
 #include "frontend/shape/motion_verdict.hpp"
 #include "frontend/shape/outline_completion.hpp"
@@ -20,14 +17,9 @@ namespace {
 /// Share of what was known that is still believed a frame later: errors of successive outlines have much in common, and
 /// the body frame may slide a little on the object.
 constexpr double kFading = 0.97;
-constexpr double kLookWeight = 0.15;          // of one outline: for the same reason, seven count as one
-constexpr std::int64_t kMemory_frames = 120;  // beyond which looks no longer count
-constexpr double kMargin = 0.2;               // of the window around the box in the image, on each side
-constexpr int kMargin_px = 8, kMostCells = 5'000, kFinestLevel = 1;
-constexpr int kRefinements = 2;  // of the disparities: levels of the pyramid, finer than theirs
-constexpr double kBefore_m = 2;  // how far before the cuboid disparities are told apart; behind it, all are
+constexpr double kLookWeight = 0.15;                    // of one outline: for the same reason, seven count as one
+constexpr std::int64_t kMemory_frames = 120;            // beyond which looks no longer count
 constexpr double kLeastSize_m = 0.2, kMostSize_m = 25;  // of an object that is believed, along each axis
-constexpr int kLeastCells = 30;                         // of an outline that is believed
 constexpr double kWhole = 0.85;                         // of a cuboid where both cameras see it: the look at it counts
 constexpr int kFewLooks = 5;                            // so few are too few to do without one
 constexpr int kIterations = 2;  // of the faces, as what is seen of them depends on where they are
@@ -112,13 +104,33 @@ void dropLeft(FrameEstimate& frame, const StereoCamera& camera) {
   });
 }
 
-/// The finest of so many levels at which the window around a box has few cells.
-int levelOf(const Box& box, int levels) {
-  const double width_px = box.right_px - box.left_px, height_px = box.bottom_px - box.top_px;
-  int level = kFinestLevel;
-  const auto cells = [&] { return (1 + 2 * kMargin) * (1 + 2 * kMargin) * width_px * height_px / (1 << 2 * level); };
-  while (cells() > kMostCells && level + 1 < levels) ++level;
-  return level;
+/// What the frame's earlier stages measured of an object; null where it was not seen.
+const ObjectObservation* observationOf(TrackId track, const FrameMeasurements& measurements) {
+  const auto observed = std::ranges::find_if(measurements.objects, [&](const ObjectObservation& o) {
+    return o.track == track && o.frame == measurements.frame;
+  });
+  return observed != measurements.objects.end() ? &*observed : nullptr;
+}
+
+void dropUnlikely(FrameEstimate& frame, double min_existence) {
+  std::erase_if(frame.objects,
+                [&](const ObjectEstimate& object) { return object.existence_probability < min_existence; });
+}
+
+/// An object that was known before another one may have the other's points on it: how it moved since `before` tells.
+std::vector<ObjectView::Other> cuboidsBeside(TrackId track, const FrameEstimate& frame,
+                                             const std::optional<ObjectView::Before>& before,
+                                             const EarlierViews& earlier) {
+  std::vector<ObjectView::Other> others;
+  for (const ObjectEstimate& object : frame.objects) {
+    if (object.track == track || !object.cuboid) continue;
+    const ObjectBox& box = *object.cuboid;
+    const SE3 T_body_cam = (frame.T_world_cam.inverse() * object.T_world_body).inverse();
+    others.push_back({T_body_cam, box.center_body - 0.5 * box.size_m, box.center_body + 0.5 * box.size_m});
+    const SE3* place = before && object.track < track ? earlier.place(object.track, before->frame) : nullptr;
+    if (place) others.back().T_before_cam = *place * T_body_cam;
+  }
+  return others;
 }
 
 ObjectMask maskOf(const Outline& outline, int level, TrackId track) {
@@ -140,7 +152,7 @@ ObjectMask maskOf(const Outline& outline, int level, TrackId track) {
 }  // namespace
 
 EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& estimates) {
-  recent_.move(inputs.scene->T_previous_now);
+  earlier_.move(inputs.scene->T_previous_now);
   auto shaped = std::make_shared<Estimates>(*estimates);
   const SE3 T_cam_world = shaped->online.T_world_cam.inverse();
   for (ObjectEstimate& object : shaped->online.objects)
@@ -148,12 +160,12 @@ EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& 
       setBox(object, estimateBox(known->second.evidence, known->second.speed_mps), T_cam_world * object.T_world_body);
   for (ObjectEstimate& object : shaped->online.objects) lookAt(object, inputs, shaped->online, shaped->masks);
   dropLeft(shaped->online, camera_);
-  dropUnlikely(shaped->online);
+  dropUnlikely(shaped->online, params_.min_existence);
   std::erase_if(shaped->masks, [&](const ObjectMask& mask) {
     return std::ranges::find(shaped->online.objects, mask.track, &ObjectEstimate::track) ==
            shaped->online.objects.end();
   });
-  recent_.add(*inputs.features);
+  earlier_.add(*inputs.features);
   for (const FrameEstimate& settled : shaped->settled) settleMotion(settled);
   for (FrameEstimate& settled : shaped->settled) gatherShapes(settled);
   complete(shaped->finals);
@@ -166,11 +178,12 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
   Shape& shape = shapes_[object.track];
   ObjectView view = viewOf(object, inputs, frame, shape);
   const bool predicted = object.state == ObjectState::kPredicted;
-  auto seen = sightOf(view, *inputs.features);
+  auto seen = sight_(view, *inputs.features);
   if (!predicted) {
     shape.state = object.state;
-    shape.existence.addSpeed(object.velocity_world_mps.norm(), speedSigma_mps(object, frame.T_world_cam));
-    shape.existence.addVerdict(verdictOn(view, observationOf(object.track, frame.frame, inputs), seen));
+    const auto* observed = observationOf(object.track, *inputs.measurements);
+    shape.existence.addSpeed(object.velocity_world_mps.norm(), speedSigma_mps(object, frame.T_world_cam, camera_));
+    shape.existence.addVerdict(motionVerdict(observed, seen ? &seen->disparities : nullptr, view, camera_));
   }
   if (seen) {
     if (predicted && movesWithBody(seen->outline, seen->disparities, view, camera_))
@@ -190,131 +203,39 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
   setBox(object, view.box, view.T_cam_body);
 }
 
-/// With the errors that all of its points share.
-double ObjectShapes::speedSigma_mps(const ObjectEstimate& object, const SE3& T_world_cam) const {
-  const SE3 T_cam_world = T_world_cam.inverse();
-  const Eigen::Vector3d velocity = T_cam_world.rotation() * object.velocity_world_mps;
-  const Eigen::Vector3d p_cam = (T_cam_world * object.T_world_body).translation();
-  const double squared = velocity.squaredNorm();
-  const Eigen::Matrix3d shared = sharedVelocityCovariance(camera_, p_cam);
-  const double along = squared > 0 ? velocity.dot(shared * velocity) / squared : shared.trace() / 3;
-  return hypotenuse(object.speed_sigma_mps, std::sqrt(along));
-}
-
-/// Where there is no outline, or no point of the object was measured, nothing is seen of it.
-MotionVerdict ObjectShapes::verdictOn(const ObjectView& view, const ObjectObservation* observed,
-                                      const std::optional<Sight>& seen) const {
-  if (!view.well_before) return MotionVerdict::kUntold;
-  if (!seen || !observed)
-    return view.well_before->apart > ObjectView::kWellApart ? MotionVerdict::kNothing : MotionVerdict::kUntold;
-  return motionVerdict(observed->measured, seen->disparities, view, camera_);
-}
-
-/// What the frame's earlier stages measured of an object; null where it was not seen.
-const ObjectObservation* ObjectShapes::observationOf(TrackId track, FrameId frame, const Inputs& inputs) {
-  const auto& objects = inputs.measurements->objects;
-  const auto observed =
-      std::ranges::find_if(objects, [&](const ObjectObservation& o) { return o.track == track && o.frame == frame; });
-  return observed != objects.end() ? &*observed : nullptr;
-}
-
-void ObjectShapes::dropUnlikely(FrameEstimate& frame) const {
-  std::erase_if(frame.objects,
-                [&](const ObjectEstimate& object) { return object.existence_probability < params_.min_existence; });
-}
-
 /// How the object stands to the camera, and what is believed of its cuboid. Its shape becomes that of this frame.
 ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame,
-                                Shape& shape) const {
+                                Shape& shape) {
   const SceneMotion& scene = *inputs.scene;
   const SE3 T_cam_body = frame.T_world_cam.inverse() * object.T_world_body;
-  const bool is_new = shape.places.empty();
-  if (is_new) {  // where it was before it was reported
+  const bool is_new = !shape.last.valid();
+  if (is_new) {  // the tracker knows where it was before it was reported
     for (const ObjectObservation& o : inputs.measurements->objects)
-      if (o.track == object.track && o.frame < frame.frame) shape.places.push_back({o.frame, o.T_cam_body});
+      if (o.track == object.track && o.frame < frame.frame) earlier_.addPlace(o.track, o.frame, o.T_cam_body);
   } else {
     FaceInformation faded;
-    faded.add(shape.evidence, fading(frame.frame.value - shape.places.back().frame.value));
+    faded.add(shape.evidence, fading(frame.frame.value - shape.last.value));
     shape.evidence = faded;
   }
+  shape.last = frame.frame;
   shape.speed_mps = object.velocity_world_mps.norm();
   ObjectView view{.T_cam_body = T_cam_body,
                   .box = estimateBox(shape.evidence, shape.speed_mps),
                   .ground = scene.ground,
                   .disparity_offset_px = scene.disparity_offset_px};
-  const auto* observed = observationOf(object.track, frame.frame, inputs);
+  const auto* observed = observationOf(object.track, *inputs.measurements);
   if (observed) view.points = extentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
   if (is_new && view.points) {
     const double disparity_px = camera_.fx_px * camera_.baseline_m / T_cam_body.translation().z();
     if (!isCutOff(observed->box, disparity_px, camera_)) shape.evidence = shape.first = nearFaceAtPoints(view);
     view.box = estimateBox(shape.evidence, shape.speed_mps);
   }
-  if (const auto in_image = usualBox(view))
-    view.level = levelOf(*in_image, static_cast<int>(inputs.features->right.levels.size()));
-  const auto& recent = recent_.frames();
-  if (!is_new && !recent.empty() && recent.back().frame == shape.places.back().frame)
-    view.before = beforeIn(recent.back(), shape, view, *inputs.features);
-  view.well_before = wellBefore(shape, view, *inputs.features);
-  view.others = cuboidsBeside(object.track, frame, view.well_before);
-  shape.places.push_back({frame.frame, T_cam_body});
-  if (shape.places.size() > RecentFrames::kMost) shape.places.pop_front();
+  view.level = sight_.levelOf(view, static_cast<int>(inputs.features->right.levels.size()));
+  if (!is_new) view.before = earlier_.last(object.track, view, *inputs.features);
+  view.well_before = earlier_.wellApart(object.track, view, *inputs.features);
+  view.others = cuboidsBeside(object.track, frame, view.well_before, earlier_);
+  earlier_.addPlace(object.track, frame.frame, T_cam_body);
   return view;
-}
-
-std::optional<Box> ObjectShapes::usualBox(const ObjectView& view) const {
-  return projectedBox(view.box.usual_least, view.box.usual_most, view.T_cam_body, camera_);
-}
-
-std::vector<ObjectView::Other> ObjectShapes::cuboidsBeside(TrackId track, const FrameEstimate& frame,
-                                                           const std::optional<ObjectView::Before>& before) const {
-  std::vector<ObjectView::Other> others;
-  for (const ObjectEstimate& object : frame.objects) {
-    if (object.track == track || !object.cuboid) continue;
-    const SE3 T_body_cam = (frame.T_world_cam.inverse() * object.T_world_body).inverse();
-    ObjectView::Other& other = others.emplace_back();
-    other = {T_body_cam, object.cuboid->center_body - 0.5 * object.cuboid->size_m,
-             object.cuboid->center_body + 0.5 * object.cuboid->size_m};
-    const auto shape = shapes_.find(object.track);
-    if (!before || shape == shapes_.end() || track < object.track) continue;
-    const auto place = std::ranges::find(shape->second.places, before->frame, &Place::frame);
-    if (place != shape->second.places.end()) other.T_before_cam = place->T_cam_body * T_body_cam;
-  }
-  return others;
-}
-
-std::optional<ObjectView::Before> ObjectShapes::beforeIn(const RecentFrames::Frame& then, const Shape& shape,
-                                                         const ObjectView& view, const Features& now) const {
-  const auto place = std::ranges::find(shape.places, then.frame, &Place::frame);
-  if (place == shape.places.end()) return std::nullopt;
-  const auto moved = camera_.project(place->T_cam_body.translation()),
-             rested = camera_.project(then.T_then_now * view.T_cam_body.translation());
-  const double apart = moved && rested ? (moved->head<2>() - rested->head<2>()).norm() / (1 << view.level) : 0;
-  return ObjectView::Before{&now.left, &then.left, place->T_cam_body, then.T_then_now, then.frame, apart};
-}
-
-/// In the newest of the frames before in which the body and what rests are well apart, else in the one in which they
-/// are farthest.
-std::optional<ObjectView::Before> ObjectShapes::wellBefore(const Shape& shape, const ObjectView& view,
-                                                           const Features& now) const {
-  std::optional<ObjectView::Before> farthest;
-  for (auto then = recent_.frames().rbegin(); then != recent_.frames().rend(); ++then) {
-    const auto before = beforeIn(*then, shape, view, now);
-    if (before && (!farthest || before->apart > farthest->apart)) farthest = before;
-    if (farthest && farthest->apart > ObjectView::kWellApart) break;
-  }
-  return farthest;
-}
-
-/// Empty where nothing, or hardly anything, is seen of the object.
-std::optional<ObjectShapes::Sight> ObjectShapes::sightOf(const ObjectView& view, const Features& features) {
-  if (features.right.levels.size() <= kFinestLevel) return std::nullopt;
-  auto disparities = disparitiesAround(view, features);
-  if (!disparities) return std::nullopt;
-  const std::vector<int> cells = cellsInReach(*disparities, view, camera_);
-  refine(*disparities, cells, features);
-  Outline outline = findOutline(*disparities, cells, view, camera_);
-  if (outline.count() < kLeastCells) return std::nullopt;
-  return Sight{std::move(*disparities), std::move(outline)};
 }
 
 /// What the outline says of the faces, and `view.box` with it; empty, and the box as it was, where that makes no sense.
@@ -333,40 +254,6 @@ std::optional<FaceInformation> ObjectShapes::measured(const Sight& seen, ObjectV
     return std::nullopt;
   }
   return look;
-}
-
-/// In the window around the cuboid, at a level of the pyramid where it has few cells.
-std::optional<LevelDisparities> ObjectShapes::disparitiesAround(const ObjectView& view, const Features& features) {
-  const auto box = usualBox(view);
-  if (!box) return std::nullopt;
-  const double width_px = box->right_px - box->left_px, height_px = box->bottom_px - box->top_px;
-  const int level = view.level;
-  const auto cell = [&](double px) { return static_cast<int>(std::floor(toLevel(static_cast<float>(px), level))); };
-  const double aside_px = kMargin * width_px + kMargin_px, above_px = kMargin * height_px + kMargin_px;
-  PixelWindow window{.u0 = cell(box->left_px - aside_px), .v0 = cell(box->top_px - above_px), .width = 0, .height = 0};
-  window.width = cell(box->right_px + aside_px) - window.u0 + 1;
-  window.height = cell(box->bottom_px + above_px) - window.v0 + 1;
-
-  double near_m = std::numeric_limits<double>::max();
-  for (int corner = 0; corner < 8; ++corner) {
-    const double z = (view.T_cam_body * cornerOf(view.box.usual_least, view.box.usual_most, corner)).z();
-    near_m = std::min(near_m, z);
-  }
-  constexpr double kNearest_m = 1.5;
-  const double fb = camera_.fx_px * camera_.baseline_m;
-  const int most_px = static_cast<int>(std::ceil(fb / std::max(near_m - kBefore_m, kNearest_m) / (1 << level))) + 1;
-  LevelDisparities disparities{
-      .level = level,
-      .map = dense_disparity_(features.left.levels[level], features.right.levels[level], window, {0, most_px + 1})};
-  if (disparities.map.window.empty()) return std::nullopt;
-  return disparities;
-}
-
-void ObjectShapes::refine(LevelDisparities& disparities, std::span<const int> cells, const Features& features) {
-  const int level = disparities.level;
-  for (int finer = level - 1; finer >= std::max(0, level - kRefinements); --finer)
-    refineDisparities(features.left.levels[finer], features.right.levels[finer], 1 << (level - finer), cells,
-                      disparities.map);
 }
 
 /// None of its points was followed, but its outline was found.
@@ -396,7 +283,7 @@ void ObjectShapes::settleMotion(const FrameEstimate& frame) {
   for (const ObjectEstimate& object : frame.objects)
     if (const auto shape = shapes_.find(object.track); shape != shapes_.end())
       shape->second.existence.addSettledSpeed(object.velocity_world_mps.norm(),
-                                              speedSigma_mps(object, frame.T_world_cam));
+                                              speedSigma_mps(object, frame.T_world_cam, camera_));
 }
 
 /// From what was seen of each object before and after the frame.
@@ -412,7 +299,7 @@ void ObjectShapes::gatherShapes(FrameEstimate& frame) const {
     object.existence_probability = shape->second.existence.settledProbability();
   }
   dropLeft(frame, camera_);
-  dropUnlikely(frame);
+  dropUnlikely(frame, params_.min_existence);
 }
 
 /// Into the body frame of the final estimate.
@@ -445,7 +332,7 @@ void ObjectShapes::forgetGone(const Estimates& estimates) {
     auto& looks = it->second.looks;
     looks.erase(looks.begin(), looks.lower_bound(oldest));
     it->second.only_dense.erase(it->second.only_dense.begin(), it->second.only_dense.lower_bound(oldest));
-    it = looks.empty() && it->second.places.back().frame < oldest ? shapes_.erase(it) : std::next(it);
+    it = looks.empty() && it->second.last < oldest ? shapes_.erase(it) : std::next(it);
   }
 }
 

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <deque>
 #include <map>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/messages.hpp"
@@ -11,10 +9,10 @@
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
 #include "frontend/shape/box_belief.hpp"
-#include "frontend/shape/dense_disparity.hpp"
+#include "frontend/shape/earlier_views.hpp"
 #include "frontend/shape/existence.hpp"
+#include "frontend/shape/object_sight.hpp"
 #include "frontend/shape/outline.hpp"
-#include "frontend/shape/recent_frames.hpp"
 
 namespace motorcade {
 
@@ -25,7 +23,8 @@ class ObjectShapes {
   struct Params {
     double min_existence = 0.5;  // rows of what is less likely there are left out
   };
-  ObjectShapes(const Params& params, const StereoCamera& camera) : params_(requireValid(params)), camera_(camera) {}
+  ObjectShapes(const Params& params, const StereoCamera& camera)
+      : params_(requireValid(params)), camera_(camera), sight_(camera), earlier_(camera) {}
 
   /// What the frame's earlier stages made.
   struct Inputs {
@@ -51,40 +50,21 @@ class ObjectShapes {
     ObjectState state;
     int cells;
   };
-  /// Where an object was in a frame.
-  struct Place {
-    FrameId frame;
-    SE3 T_cam_body;
-  };
   struct Shape {
     Existence existence;
     FaceInformation first;     // before its first outline
     FaceInformation evidence;  // faded with age
     double speed_mps = 0;
-    std::deque<Place> places;                  // in the last frames, the oldest first
+    FrameId last;
     ObjectState state = ObjectState::kMoving;  // when its points were last followed
     std::map<FrameId, Look> looks;
     std::map<FrameId, DenseEvidence> only_dense;
   };
-  /// What the images show of an object.
-  struct Sight {
-    LevelDisparities disparities;
-    Outline outline;
-  };
-  static const ObjectObservation* observationOf(TrackId track, FrameId frame, const Inputs& inputs);
   void lookAt(ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame, std::vector<ObjectMask>& masks);
-  ObjectView viewOf(const ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame, Shape& shape) const;
-  std::optional<ObjectView::Before> beforeIn(const RecentFrames::Frame& then, const Shape& shape,
-                                             const ObjectView& view, const Features& now) const;
-  std::optional<ObjectView::Before> wellBefore(const Shape& shape, const ObjectView& view, const Features& now) const;
-  std::vector<ObjectView::Other> cuboidsBeside(TrackId track, const FrameEstimate& frame,
-                                               const std::optional<ObjectView::Before>& before) const;
-  std::optional<Box> usualBox(const ObjectView& view) const;
-  std::optional<Sight> sightOf(const ObjectView& view, const Features& features);
+  ObjectView viewOf(const ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame, Shape& shape);
   std::optional<FaceInformation> measured(const Sight& seen, ObjectView& view, const Shape& shape) const;
-  std::optional<LevelDisparities> disparitiesAround(const ObjectView& view, const Features& features);
-  static void refine(LevelDisparities& disparities, std::span<const int> cells, const Features& features);
   void complete(std::vector<FrameEstimate>& finals);
+  void settleMotion(const FrameEstimate& frame);
   void moveLooks(const FrameEstimate& final);
   void gatherShapes(FrameEstimate& frame) const;
   FaceInformation evidenceAround(const Shape& shape, FrameId frame) const;
@@ -92,16 +72,10 @@ class ObjectShapes {
   void setBox(ObjectEstimate& object, const BoxEstimate& box, const SE3& T_cam_body) const;
   void forgetGone(const Estimates& estimates);
 
-  double speedSigma_mps(const ObjectEstimate& object, const SE3& T_world_cam) const;
-  MotionVerdict verdictOn(const ObjectView& view, const ObjectObservation* observed,
-                          const std::optional<Sight>& seen) const;
-  void settleMotion(const FrameEstimate& frame);
-  void dropUnlikely(FrameEstimate& frame) const;
-
   Params params_;
   StereoCamera camera_;
-  DenseDisparity dense_disparity_;
-  RecentFrames recent_;
+  ObjectSight sight_;
+  EarlierViews earlier_;
   std::map<TrackId, Shape> shapes_;
 };
 

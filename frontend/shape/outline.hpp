@@ -28,8 +28,8 @@ struct ObjectView {
   struct Other {
     SE3 T_body_cam;
     Eigen::Vector3d least, most;
-    /// From the camera now to that of the earlier frame, for what goes along with it; of an object that was known
-    /// before this one alone.
+    /// Takes what goes along with it from the camera now to that of the earlier frame. Only objects that were known
+    /// before this one have it.
     std::optional<SE3> T_before_cam{};
   };
   std::optional<Eigen::AlignedBox3d> points{};  // body frame: around the followed points, without outliers

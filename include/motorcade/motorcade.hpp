@@ -115,7 +115,7 @@ struct Result {
     std::array<double, 3> box_center_body_m{}, box_size_m{}, box_size_sigma_m{};  // length, width, height
     Kind kind = Kind::kUnknown;
     double kind_probability = 0;
-    std::optional<Mask> mask{};        // with `Options::masks`, where the outline was found
+    std::optional<Mask> mask{};  // with `Options::masks`, where the outline was found
   };
 
   std::int64_t frame = -1, stamp_ns = 0;  // of the pair; where the clock was set back, stamps go on all the same
