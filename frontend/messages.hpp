@@ -118,6 +118,7 @@ struct SceneMotion {
   int segment = 0;  // see FrameMeasurements
   SE3 T_previous_now;
   Matrix6d odometry_covariance = Matrix6d::Identity();
+  double camera_speed_mps = 0;  // since the frame before; 0 where there is none
   int ego_inliers = 0;
   double disparity_offset_px = 0;  // true minus measured disparity; the points' disparities contain it
   GroundPlane ground;

@@ -50,6 +50,8 @@ class CameraOdometry {
   CameraMotion passOver(const StereoFrame& frame);
 
   const CameraTrail& trail() const { return trail_; }
+  /// As last measured; 0 while it is not known.
+  double speed_mps() const { return last_motion_ ? last_motion_->translation().norm() / last_dt_s_ : 0; }
   /// See FrameMeasurements: of the last frame.
   int segment() const { return segment_; }
 

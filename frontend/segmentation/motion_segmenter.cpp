@@ -82,8 +82,8 @@ bool MotionSegmenter::belongTogether(const ScenePoint& a, const ScenePoint& b) c
 }
 
 std::vector<Segment> MotionSegmenter::operator()(std::vector<ScenePoint>& points,
-                                                 const std::vector<bool>& violates_geometry,
-                                                 const GroundPlane& ground) const {
+                                                 const std::vector<bool>& violates_geometry, const GroundPlane& ground,
+                                                 double camera_speed_mps) const {
   std::vector<int> vertices;
   std::vector<Eigen::Vector2d> pixels;
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
@@ -99,7 +99,8 @@ std::vector<Segment> MotionSegmenter::operator()(std::vector<ScenePoint>& points
   std::vector<Segment> segments;
   for (auto& component : cutDelaunayComponents(pixels, together)) {
     for (int& i : component) i = vertices[i];
-    Segment segment = describe(std::move(component), points, ground);
+    Segment segment = describe(std::move(component), points, camera_speed_mps);
+    segment.label = decide(segment, points, ground);
     for (const int i : segment.points) points[i].label = segment.label;
     if (segment.label != PointLabel::kStatic) segments.push_back(std::move(segment));
   }
@@ -107,15 +108,15 @@ std::vector<Segment> MotionSegmenter::operator()(std::vector<ScenePoint>& points
 }
 
 Segment MotionSegmenter::describe(std::vector<int> members, const std::vector<ScenePoint>& points,
-                                  const GroundPlane& ground) const {
+                                  double camera_speed_mps) const {
   Segment segment;
   segment.points = std::move(members);
   for (const int i : segment.points)
     segment.centroid_cam += points[i].flow->p_cam / static_cast<double>(segment.points.size());
   const auto pooled = poolVelocities(segment.points, points, params_.max_flow_chi2);
   segment.velocity_mps = pooled.velocity_mps;
-  segment.velocity_covariance = pooled.covariance + sharedVelocityCovariance(camera_, segment.centroid_cam);
-  segment.label = decide(segment, points, ground);
+  segment.velocity_covariance =
+      pooled.covariance + sharedVelocityCovariance(camera_, segment.centroid_cam, camera_speed_mps);
   return segment;
 }
 

@@ -23,10 +23,11 @@ class MotionSegmenter {
   };
   MotionSegmenter(const Params& params, const StereoCamera& camera) : params_(requireValid(params)), camera_(camera) {}
 
-  /// Labels the points that carry scene flow and lie off the ground; returns the moving and the unknown components.
-  /// `violates_geometry[i]` says that point i breaks the epipolar constraint or the flow-vector bound.
+  /// Labels the points that carry scene flow and lie off the ground, seen from a camera of this speed; returns the
+  /// moving and the unknown components. `violates_geometry[i]` says that point i breaks the epipolar constraint or the
+  /// flow-vector bound.
   std::vector<Segment> operator()(std::vector<ScenePoint>& points, const std::vector<bool>& violates_geometry,
-                                  const GroundPlane& ground) const;
+                                  const GroundPlane& ground, double camera_speed_mps) const;
 
   /// The edge predicate: may two points belong to one rigid body?
   bool belongTogether(const ScenePoint& a, const ScenePoint& b) const;
@@ -35,7 +36,7 @@ class MotionSegmenter {
   bool isVertex(const ScenePoint& point) const;
 
  private:
-  Segment describe(std::vector<int> members, const std::vector<ScenePoint>& points, const GroundPlane& ground) const;
+  Segment describe(std::vector<int> members, const std::vector<ScenePoint>& points, double camera_speed_mps) const;
   PointLabel decide(const Segment& segment, const std::vector<ScenePoint>& points, const GroundPlane& ground) const;
   bool isLikeAVehicle(const Segment& segment, const std::vector<ScenePoint>& points, const GroundPlane& ground) const;
 

@@ -67,7 +67,7 @@ SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo,
   addPoints(observed, camera.inliers, motion->points);
   const std::vector<bool> violates_geometry = testGeometry();
   motion->ground = findGround(violates_geometry, frame.frame, motion->points);
-  motion->segments = segmenter_(motion->points, violates_geometry, motion->ground);
+  motion->segments = segmenter_(motion->points, violates_geometry, motion->ground, motion->camera_speed_mps);
 
   tracks_.setLabels(motion->points);
   motion->disparity_offset_px = disparity_offset_.offset_px();
@@ -149,6 +149,7 @@ std::shared_ptr<SceneMotion> SceneFlowSegmentation::newMotion(const StereoFrame&
                         .segment = odometry_.segment(),
                         .T_previous_now = camera.T_previous_now,
                         .odometry_covariance = camera.covariance,
+                        .camera_speed_mps = odometry_.speed_mps(),
                         .ego_inliers = camera.inlier_count,
                         .ground = {},
                         .points = std::move(points),

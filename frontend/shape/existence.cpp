@@ -12,7 +12,8 @@ namespace {
 constexpr double kTrafficSpeed_mps = 10;  // standard deviation, along each axis
 // Wrong matches on what repeats are as certain as right ones: a sure speed alone proves no more than this.
 constexpr double kMostBySpeed = 2, kLeastBySpeed = -4;
-constexpr double kForgetting = 0.1;  // of the best recent speed, a frame
+constexpr double kMostPerSpeed = 0.5;  // per m/s: most wrong matches seem to move slowly
+constexpr double kForgetting = 0.1;    // of the best recent speed, a frame
 constexpr double kMostByVerdicts = 6;
 
 /// How often tracks of bodies, and tracks of nothing, get a verdict for a while.
@@ -27,7 +28,7 @@ double speedEvidence(double speed_mps, double sigma_mps) {
   const double misfit_at_rest = speed_mps / sigma_mps, spread = kTrafficSpeed_mps / sigma_mps;
   const double variance = 1 + spread * spread;  // of the misfit in traffic
   const double evidence = 0.5 * misfit_at_rest * misfit_at_rest * (1 - 1 / variance) - 0.5 * logarithm(variance);
-  return std::clamp(evidence, kLeastBySpeed, kMostBySpeed);
+  return std::clamp(evidence, kLeastBySpeed, std::min(kMostBySpeed, kMostPerSpeed * speed_mps));
 }
 
 double probabilityOf(double log_odds) { return 1 / (1 + exponential(-log_odds)); }

@@ -153,6 +153,7 @@ ObjectMask maskOf(const Outline& outline, int level, TrackId track) {
 
 EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& estimates) {
   earlier_.move(inputs.scene->T_previous_now);
+  camera_speed_mps_ = inputs.scene->camera_speed_mps;
   auto shaped = std::make_shared<Estimates>(*estimates);
   const SE3 T_cam_world = shaped->online.T_world_cam.inverse();
   for (ObjectEstimate& object : shaped->online.objects)
@@ -182,7 +183,8 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
   if (!predicted) {
     shape.state = object.state;
     const auto* observed = observationOf(object.track, *inputs.measurements);
-    shape.existence.addSpeed(object.velocity_world_mps.norm(), speedSigma_mps(object, frame.T_world_cam, camera_));
+    shape.existence.addSpeed(object.velocity_world_mps.norm(),
+                             speedSigma_mps(object, frame.T_world_cam, camera_, camera_speed_mps_));
     shape.existence.addVerdict(motionVerdict(observed, seen ? &seen->disparities : nullptr, view, camera_));
   }
   if (seen) {
@@ -283,7 +285,7 @@ void ObjectShapes::settleMotion(const FrameEstimate& frame) {
   for (const ObjectEstimate& object : frame.objects)
     if (const auto shape = shapes_.find(object.track); shape != shapes_.end())
       shape->second.existence.addSettledSpeed(object.velocity_world_mps.norm(),
-                                              speedSigma_mps(object, frame.T_world_cam, camera_));
+                                              speedSigma_mps(object, frame.T_world_cam, camera_, camera_speed_mps_));
 }
 
 /// From what was seen of each object before and after the frame.

@@ -76,6 +76,7 @@ class ObjectShapes {
   StereoCamera camera_;
   ObjectSight sight_;
   EarlierViews earlier_;
+  double camera_speed_mps_ = 0;  // in the newest frame
   std::map<TrackId, Shape> shapes_;
 };
 

@@ -55,12 +55,13 @@ void merge(TrackedObject& stays, TrackedObject& ends) {
 
 }  // namespace
 
-void mergeDuplicates(std::vector<TrackedObject>& objects) {
+void mergeDuplicates(std::vector<TrackedObject>& objects, const SeeThrough& see_through) {
   const auto ended = [](const TrackedObject& object) { return object.life.phase() == Phase::kEnded; };
   for (std::size_t i = 0; i < objects.size(); ++i) {
     for (std::size_t j = i + 1; j < objects.size(); ++j) {
       TrackedObject &older = objects[i], &younger = objects[j];
       if (ended(older) || ended(younger) || !areDuplicates(older, younger)) continue;
+      if (see_through.areApart(older, younger)) continue;
       if (younger.life.reported() && !older.life.reported())
         merge(younger, older);
       else

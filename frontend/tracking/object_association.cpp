@@ -4,6 +4,7 @@
 
 #include "core/assignment.hpp"
 #include "frontend/tracking/body_axes.hpp"
+#include "frontend/tracking/see_through.hpp"
 
 namespace motorcade {
 namespace {
@@ -67,13 +68,19 @@ double sharedPoints(const TrackedObject& object, const SceneMotion& scene, const
 }
 
 std::vector<int> associateObjects(const std::vector<TrackedObject>& objects, const SceneMotion& scene,
-                                  const SE3& T_world_cam) {
+                                  const SE3& T_world_cam, const StereoCamera& camera) {
   const auto segments = static_cast<int>(scene.segments.size()), known = static_cast<int>(objects.size());
   if (segments == 0 || known == 0) return std::vector<int>(segments, -1);
+  const SeeThrough see_through(scene, camera);
   Eigen::MatrixXd costs = Eigen::MatrixXd::Constant(segments, known, kForbidden);
   for (int s = 0; s < segments; ++s) {
     if (scene.segments[s].label != PointLabel::kMoving) continue;
-    for (int m = 0; m < known; ++m) costs(s, m) = cost(objects[m], scene, scene.segments[s], T_world_cam);
+    for (int m = 0; m < known; ++m) {
+      costs(s, m) = cost(objects[m], scene, scene.segments[s], T_world_cam);
+      if (costs(s, m) < kForbidden && sharedPoints(objects[m], scene, scene.segments[s]) < kClaimedShare &&
+          see_through.isApart(objects[m], scene.segments[s]))
+        costs(s, m) = kForbidden;
+    }
   }
   std::vector<int> object_of = assignMinCost(costs, kForbidden);
   claimRest(objects, scene, object_of);

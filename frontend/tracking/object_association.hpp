@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/se3.hpp"
+#include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
 #include "frontend/tracking/tracked_object.hpp"
 
@@ -10,9 +11,10 @@ namespace motorcade {
 
 /// Global nearest neighbor: which moving segment is which object, one to one at least total cost, in the world frame.
 /// For each segment of `scene` the index of its object, or -1: not moving, or new. Segments beyond the one-to-one match
-/// that consist of an object's points are given to it as well.
+/// that consist of an object's points are given to it as well. None is given to an object from which the background
+/// parts it.
 std::vector<int> associateObjects(const std::vector<TrackedObject>& objects, const SceneMotion& scene,
-                                  const SE3& T_world_cam);
+                                  const SE3& T_world_cam, const StereoCamera& camera);
 
 /// Share of a segment's points that an object holds.
 double sharedPoints(const TrackedObject& object, const SceneMotion& scene, const Segment& segment);

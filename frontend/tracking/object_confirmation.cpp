@@ -9,9 +9,6 @@ namespace motorcade {
 namespace {
 
 constexpr double kSpeedSigmas = 9.0;  // of the speed above zero: a parked car with a bad track reaches a few
-// People walk at 1.5 m/s, of which a few standard deviations are all there is: they are known by the way they go.
-constexpr double kSlowSpeedSigmas = 4, kLongTravel_m = 0.8;
-constexpr int kLongObserved = 7;
 constexpr double kMinExtent_m = 0.3;  // span of the points: less is a blot, no vehicle
 constexpr double kMinExtent_px = 20;  // in the image too: points whose patches overlap are one measurement
 
@@ -38,14 +35,23 @@ bool ObjectConfirmation::looksThrough(const ObjectObservation& few, const Object
          few.box.bottom_px < many.box.bottom_px + dv;
 }
 
-bool ObjectConfirmation::operator()(const TrackedObject& object, const std::vector<ObjectObservation>& reported) const {
+/// People walk at 1.5 m/s, of which a few standard deviations are all there is: they are known by the way they go, and
+/// by going on the ground. Errors of matching are often high up, on facades and in trees.
+bool ObjectConfirmation::walksSurely(const TrackedObject& object, double traveled_m, const GroundPlane& ground) const {
+  constexpr double kSpeedSigmas = 3, kTravel_m = 0.5, kChest_m = 1.5;
+  constexpr int kObserved = 4;
+  if (object.life.observations() < kObserved || traveled_m < kTravel_m) return false;
+  const auto isLow = [&](const BodyPoint& p) { return ground.heightOf_m(object.T_cam_body * p.p_body) < kChest_m; };
+  return movesSurely(object.kinematics, kSpeedSigmas) && std::ranges::any_of(object.points, isLow);
+}
+
+bool ObjectConfirmation::operator()(const TrackedObject& object, const std::vector<ObjectObservation>& reported,
+                                    const GroundPlane& ground) const {
   const ObjectObservation& newest = object.backlog.back();
   const auto hides = [&](const ObjectObservation& other) { return looksThrough(newest, other); };
   if (std::ranges::any_of(reported, hides) || diagonal_px(newest.box) < kMinExtent_px) return false;
   const double traveled_m = (object.kinematics.pose().translation() - object.spawned_at_world).norm();
-  const bool surely = movesSurely(object.kinematics, kSpeedSigmas) ||
-                      (traveled_m > kLongTravel_m && object.life.observations() >= kLongObserved &&
-                       movesSurely(object.kinematics, kSlowSpeedSigmas));
+  const bool surely = movesSurely(object.kinematics, kSpeedSigmas) || walksSurely(object, traveled_m, ground);
   return object.life.observations() >= params_.confirm_observations && traveled_m > params_.confirm_travel_m &&
          surely && object.extent(0).diagonal().norm() > kMinExtent_m;
 }

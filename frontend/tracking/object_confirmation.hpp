@@ -19,11 +19,14 @@ class ObjectConfirmation {
   };
   ObjectConfirmation(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
-  /// By the newest observation of the object's backlog. `reported` are this frame's observations of other objects.
-  bool operator()(const TrackedObject& object, const std::vector<ObjectObservation>& reported) const;
+  /// By the newest observation of the object's backlog, which is of this frame. `reported` are this frame's
+  /// observations of other objects.
+  bool operator()(const TrackedObject& object, const std::vector<ObjectObservation>& reported,
+                  const GroundPlane& ground) const;
 
  private:
   bool movesSurely(const ObjectKinematics& kinematics, double sigmas) const;
+  bool walksSurely(const TrackedObject& object, double traveled_m, const GroundPlane& ground) const;
 
   bool looksThrough(const ObjectObservation& few, const ObjectObservation& many) const;
 

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "core/decompositions.hpp"
+#include "frontend/tracking/small_body.hpp"
 
 namespace motorcade {
 namespace {
@@ -100,7 +101,7 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
   std::vector<Observation> seen = observations(object, scene);
   auto agreement = agree(object, seen, prior);
   std::vector<ScenePoint> searched;
-  if (!agreement || !agreement->enough) {
+  if (!agreement || !agreement->enough || mayBeWalking(object, camera_)) {
     searched = search(object, scene, object.measured, prior.mean, seen);
     agreement = agree(object, std::move(seen), prior);
   }
@@ -117,6 +118,7 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
   object.measured = measuredIn(scene, agreement->inliers);
   refinePoints(object, agreement->inliers);
   dropMisfits(object, agreement->seen, agreement->chi2);
+  if (mayBeWalking(object, camera_)) coverByPatches(object, scene, object.measured);
   return observation;
 }
 
@@ -183,10 +185,20 @@ void ObjectMotionEstimator::addNearby(const SceneMotion& scene, const SE3& T_cam
 
 void ObjectMotionEstimator::addPatches(const SceneMotion& scene, const SE3& T_cam_body, TrackedObject& object,
                                        MeasuredPoints& measured) const {
-  const std::vector<ScenePoint> patches = samplePatches(measured, scene.disparity_offset_px);
+  constexpr double kMargin_m = 0.4;  // from the points on a person to the ends of the body
+  const double margin_px = mayBeWalking(object, camera_) ? kMargin_m * camera_.fx_px / T_cam_body.translation().z() : 0;
+  const std::vector<ScenePoint> patches = samplePatches(measured, scene.disparity_offset_px, margin_px);
   std::vector<const ScenePoint*> points;
   for (const ScenePoint& p : patches) points.push_back(&p);
   add(points, T_cam_body, object, measured);
+}
+
+void ObjectMotionEstimator::coverByPatches(TrackedObject& object, const SceneMotion& scene,
+                                           MeasuredPoints measured) const {
+  std::erase_if(object.points, [](const BodyPoint& p) { return !isFollowed(p.point); });
+  std::erase_if(measured.points, [](const ScenePoint& p) { return !isFollowed(p.point); });
+  addPatches(scene, object.T_cam_body, object, measured);
+  object.measured = std::move(measured);
 }
 
 void ObjectMotionEstimator::add(const std::vector<const ScenePoint*>& points, const SE3& T_cam_body,

@@ -4,6 +4,7 @@
 
 #include "frontend/segmentation/vehicles_abreast.hpp"
 #include "frontend/tracking/body_axes.hpp"
+#include "frontend/tracking/small_body.hpp"
 #include "frontend/tracking/vehicle_size.hpp"
 
 namespace motorcade {
@@ -56,6 +57,7 @@ TrackedObject ObjectSpawner::spawn(const SceneMotion& scene, const Segment& vehi
   first.velocity_cam_mps = vehicle.velocity_mps;
   object.kinematics = firstKinematics(T_world_body, vehicle, T_world_cam, first.encounter_covariance);
   object.observed_before = scene.frame;
+  if (mayBeWalking(object, camera_)) motion_.coverByPatches(object, scene, motion_.measuredPoints(object, scene));
   object.backlog.push_back(std::move(first));
   return object;
 }

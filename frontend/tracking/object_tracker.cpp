@@ -45,8 +45,8 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   if (scene->cause == FrameCause::kUnlinked) endAll(*measurements);
   for (TrackedObject& object : objects_) follow(object, *scene, *measurements);
   matchSegments(*scene);
-  mergeDuplicates(objects_);
-  confirmSure(*measurements);
+  mergeDuplicates(objects_, SeeThrough(*scene, camera_));
+  confirmSure(*scene, *measurements);
   look_back_.remember(scene, T_world_cam_, measurements->objects, objects_);
   removeEnded(*measurements);
   measurements->disparity_offset_px = scene->disparity_offset_px;
@@ -154,10 +154,10 @@ void ObjectTracker::record(TrackedObject& object, ObjectObservation observation,
 }
 
 /// Tentative objects that were observed in this frame and are no part of others.
-void ObjectTracker::confirmSure(FrameMeasurements& measurements) {
+void ObjectTracker::confirmSure(const SceneMotion& scene, FrameMeasurements& measurements) {
   for (TrackedObject& object : objects_) {
     const bool observed = object.life.phase() == Phase::kTentative && object.observed_before == measurements.frame;
-    if (observed && is_confirmed_(object, measurements.objects)) confirm(object, measurements);
+    if (observed && is_confirmed_(object, measurements.objects, scene.ground)) confirm(object, measurements);
   }
 }
 
@@ -178,7 +178,7 @@ void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measuremen
 
 /// Segments give their points to the objects that they are matched with, and spawn new ones where they are left over.
 void ObjectTracker::matchSegments(const SceneMotion& scene) {
-  const std::vector<int> object_of = associateObjects(objects_, scene, T_world_cam_);
+  const std::vector<int> object_of = associateObjects(objects_, scene, T_world_cam_, camera_);
   std::vector<bool> taken(scene.points.size(), false);
   for (const TrackedObject& object : objects_)
     for (const BodyPoint& p : object.points)

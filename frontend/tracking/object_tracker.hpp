@@ -44,7 +44,7 @@ class ObjectTracker {
   std::optional<ObjectObservation> withoutMeasurement(const TrackedObject& object, const SceneMotion& scene) const;
   void updateState(TrackedObject& object) const;
   void record(TrackedObject& object, ObjectObservation observation, FrameMeasurements& measurements);
-  void confirmSure(FrameMeasurements& measurements);
+  void confirmSure(const SceneMotion& scene, FrameMeasurements& measurements);
   void confirm(TrackedObject& object, FrameMeasurements& measurements);
   void matchSegments(const SceneMotion& scene);
   void dropFarthest();

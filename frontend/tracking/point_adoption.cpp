@@ -1,7 +1,12 @@
 #include "frontend/tracking/point_adoption.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
+#include "frontend/tracking/see_through.hpp"
+#include "frontend/tracking/small_body.hpp"
 #include "frontend/tracking/vehicle_size.hpp"
 
 namespace motorcade {
@@ -28,6 +33,17 @@ bool isWithinReach(const Eigen::AlignedBox3d& known, const BodyPoint& candidate,
   return (close && kLongestVehicle.holds(grown, slack_m)) || (matched && kOrdinaryVehicle.holds(grown, slack_m));
 }
 
+/// The same of what may be a person or a two-wheeler: others walk and ride close by.
+bool isWithinReachOfSmall(const Eigen::AlignedBox3d& core, const BodyPoint& candidate) {
+  constexpr double kReach_m = 0.4, kReachUp_m = 0.6, kMostNoise_m = 0.5, kLongest_m = 2;
+  const double slack_m = kDepthNoiseSigmas * std::sqrt(candidate.covariance.trace());
+  const Eigen::Vector3d reach_m(kReach_m, kReach_m, kReachUp_m);
+  const Eigen::AlignedBox3d near(core.min() - reach_m, core.max() + reach_m);
+  const Eigen::Vector3d grown_m = Eigen::AlignedBox3d(core).extend(candidate.p_body).sizes();
+  return near.exteriorDistance(candidate.p_body) < std::min(slack_m, kMostNoise_m) &&
+         hypotenuse(grown_m.x(), grown_m.y()) < kLongest_m + slack_m;
+}
+
 bool mayMove(const ScenePoint& point) {
   return point.flow && point.flow->static_chi2 - point.flow->moving_chi2 > kNotStaticChi2;
 }
@@ -38,14 +54,19 @@ bool mayMove(const ScenePoint& point) {
 void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, const Segment* segment,
                                const SE3& T_world_cam, std::vector<bool>& taken) const {
   if (object.kinematics.speed_mps() < kMinSpeed_mps) return;
-  const Eigen::AlignedBox3d known = object.extent(0);
+  constexpr int kKnownFrames = 2;  // from which on an object's points tell how large it is
+  const bool small = object.life.observations() >= kKnownFrames && mayBeSmall(object);
+  const Eigen::AlignedBox3d known = object.extent(0), core = object.core(SE3{});
+  const std::optional<PointRegion> own = SeeThrough(scene, camera_).regionOf(object);
   std::vector<BodyPoint> adopted;
   const auto consider = [&](int i) {
     const ScenePoint& p = scene.points[i];
     if (taken[i] || p.ambiguous || p.label == PointLabel::kGround || !mayMove(p)) return;
     const BodyPoint candidate = toBody(p, object.T_cam_body, camera_);
-    if (!isWithinReach(known, candidate, segment != nullptr)) return;
-    if (object.velocityChi2(*p.flow, T_world_cam) >= kFitsChi2) return;
+    const bool within =
+        small ? isWithinReachOfSmall(core, candidate) : isWithinReach(known, candidate, segment != nullptr);
+    if (!within || object.velocityChi2(*p.flow, T_world_cam) >= kFitsChi2) return;
+    if (own && isSeenThrough(scene, *own, *regionOf(std::array{&p}), camera_)) return;
     taken[i] = true;
     adopted.push_back(candidate);
   };

@@ -5,7 +5,8 @@
 
 namespace motorcade {
 
-/// Decides which scene points join an object: those inside its extent that move with it.
+/// Decides which scene points join an object: those inside its extent that move with it, and from which the background
+/// does not part it.
 class PointAdoption {
  public:
   explicit PointAdoption(const StereoCamera& camera) : camera_(camera) {}

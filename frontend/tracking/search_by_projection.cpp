@@ -52,10 +52,11 @@ double medianDisparity_px(const std::vector<ScenePoint>& points) {
 
 }  // namespace
 
-std::vector<ScenePoint> samplePatches(const MeasuredPoints& measured, double disparity_offset_px) {
+std::vector<ScenePoint> samplePatches(const MeasuredPoints& measured, double disparity_offset_px, double margin_px) {
   if (!measured.features || measured.points.empty()) return {};
   Eigen::AlignedBox2d box;
   for (const ScenePoint& p : measured.points) box.extend(Eigen::Vector2d(p.uvd_px.head<2>()));
+  box.min().array() -= margin_px, box.max().array() += margin_px;
   const double disparity_px = medianDisparity_px(measured.points);
   const int step_px = std::max(kStep_px, static_cast<int>(std::sqrt(box.volume() / kMostPatches)));
   const Image &left = measured.features->left.levels.front(), &right = measured.features->right.levels.front();

@@ -146,7 +146,8 @@ class SimulatedTraffic {
       scene.points.push_back(p);
     }
     const MotionSegmenter segment({}, kRig);
-    scene.segments = segment(scene.points, std::vector<bool>(scene.points.size(), false), scene.ground);
+    scene.segments =
+        segment(scene.points, std::vector<bool>(scene.points.size(), false), scene.ground, camera_speed_mps_);
   }
 
   std::vector<SimulatedCar> cars_;

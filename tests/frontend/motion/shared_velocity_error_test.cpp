@@ -11,8 +11,11 @@ namespace {
 
 using test::kRig;
 
-double alongSigma_mps(const Eigen::Vector3d& p_cam, const Eigen::Vector3d& direction) {
-  return std::sqrt(direction.dot(sharedVelocityCovariance(kRig, p_cam) * direction));
+constexpr double kInTown_mps = 13;
+
+double alongSigma_mps(const Eigen::Vector3d& p_cam, const Eigen::Vector3d& direction,
+                      double camera_speed_mps = kInTown_mps) {
+  return std::sqrt(direction.dot(sharedVelocityCovariance(kRig, p_cam, camera_speed_mps) * direction));
 }
 
 /// A disparity that changes by 0.15 px in a second moves a point along its ray, by the square of its depth.
@@ -27,6 +30,14 @@ TEST(SharedVelocityError, IsThatOfTheCamerasMotionAcrossTheRay) {
   const Eigen::Vector3d ray(0.6, 0, 0.8), across(0.8, 0, -0.6);
   EXPECT_NEAR(alongSigma_mps(0.1 * ray, across), 0.25, 1e-3) << "its speed";
   EXPECT_NEAR(alongSigma_mps(1000 * ray, across), 3, 0.02) << "its turn rate";
+}
+
+TEST(SharedVelocityError, GrowsWithTheCamerasOwnSpeed) {
+  const Eigen::Vector3d ray(0, 0, 1), across(1, 0, 0);
+  EXPECT_NEAR(alongSigma_mps(0.1 * ray, across, 6.5), 0.125, 1e-3);
+  EXPECT_NEAR(alongSigma_mps(200 * ray, ray, 6.5), 0.5 * alongSigma_mps(200 * ray, ray), 0.02);
+  EXPECT_NEAR(alongSigma_mps(0.1 * ray, across, 0), 0.05, 1e-3) << "at rest";
+  EXPECT_EQ(alongSigma_mps(0.1 * ray, across, 30), alongSigma_mps(0.1 * ray, across));
 }
 
 }  // namespace

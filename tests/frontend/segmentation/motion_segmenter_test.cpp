@@ -9,6 +9,8 @@
 namespace motorcade {
 namespace {
 
+constexpr double kSpeed_mps = 13;  // of the camera
+
 using test::kRig;
 using test::Noise;
 
@@ -42,7 +44,7 @@ struct Street {
     return bodies++;
   }
   std::vector<Segment> segments() {
-    return MotionSegmenter({}, kRig)(points, std::vector<bool>(points.size(), false), GroundPlane{});
+    return MotionSegmenter({}, kRig)(points, std::vector<bool>(points.size(), false), GroundPlane{}, kSpeed_mps);
   }
   /// Share of a body's points with a label.
   double share(int of_body, PointLabel label) const {
@@ -145,7 +147,7 @@ TEST(MotionSegmenter, AnEndThatBreaksTheGeometryIsCutFromOneThatKeepsIt) {
   street.add({0, 0.8, 14}, kCar, {0, 0, 10}, 20);
   std::vector<bool> violates(street.points.size(), false);
   std::fill(violates.begin(), violates.begin() + 10, true);
-  const auto segments = MotionSegmenter({}, kRig)(street.points, violates, GroundPlane{});
+  const auto segments = MotionSegmenter({}, kRig)(street.points, violates, GroundPlane{}, kSpeed_mps);
   EXPECT_GE(segments.size(), 2U);
   for (const auto& s : segments)
     for (const int i : s.points) EXPECT_EQ(violates[i], violates[s.points.front()]);

@@ -36,6 +36,15 @@ TEST(Existence, OfASureSpeedAloneIsNotSure) {
   EXPECT_LT(existence.probability(), 0.9);
 }
 
+/// Most wrong matches seem to move slowly.
+TEST(Existence, OfASlowSpeedAloneIsLessSure) {
+  Existence walking, driving;
+  walking.addSpeed(1.4, 0.1);
+  driving.addSpeed(8, 0.1);
+  EXPECT_GT(walking.probability(), 0.5);
+  EXPECT_LT(walking.probability(), driving.probability() - 0.1);
+}
+
 TEST(Existence, FallsWhereLaterEstimatesShowNoMotion) {
   Existence existence;
   existence.addSpeed(6, 2);

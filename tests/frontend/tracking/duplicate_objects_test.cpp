@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/stereo_views.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -33,7 +35,7 @@ TrackedObject objectOn(const Seen& seen) {
 /// Whether the younger of two objects, one behind the other, is taken for a part of the older.
 bool areOne(const Seen& older, const Seen& younger) {
   std::vector<TrackedObject> objects{objectOn(older), objectOn(younger)};
-  mergeDuplicates(objects);
+  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig));
   EXPECT_NE(objects[0].life.phase(), Phase::kEnded);
   return objects[1].life.phase() == Phase::kEnded;
 }
@@ -41,7 +43,7 @@ bool areOne(const Seen& older, const Seen& younger) {
 TEST(DuplicateObjects, TwoOnOneVehicleBecomeOneWithThePointsOfBoth) {
   std::vector<TrackedObject> objects{objectOn({1, 10, 12}), objectOn({2, 13, 15})};
   const Eigen::Vector3d p_world = objects[1].T_cam_body * objects[1].points.front().p_body;
-  mergeDuplicates(objects);
+  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig));
   EXPECT_EQ(objects[0].life.phase(), Phase::kTentative);
   EXPECT_EQ(objects[1].life.phase(), Phase::kEnded);
   ASSERT_EQ(objects[0].points.size(), 16U);
@@ -53,12 +55,12 @@ TEST(DuplicateObjects, TwoOnOneVehicleBecomeOneWithThePointsOfBoth) {
 TEST(DuplicateObjects, TheOneThatWasReportedStays) {
   std::vector<TrackedObject> objects{objectOn({1, 10, 12}), objectOn({2, 13, 15})};
   objects[1].life.confirm();
-  mergeDuplicates(objects);
+  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig));
   EXPECT_EQ(objects[0].life.phase(), Phase::kEnded);
   EXPECT_EQ(objects[1].life.phase(), Phase::kConfirmed);
   EXPECT_EQ(objects[1].points.size(), 16U);
   for (TrackedObject& object : objects = {objectOn({1, 10, 12}), objectOn({2, 13, 15})}) object.life.confirm();
-  mergeDuplicates(objects);
+  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig));
   EXPECT_EQ(objects[0].life.phase(), Phase::kConfirmed);
   EXPECT_EQ(objects[1].life.phase(), Phase::kEnded);
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/se3.hpp"
+#include "tests/support/stereo_views.hpp"
 
 namespace motorcade {
 namespace {
@@ -40,7 +41,7 @@ struct Road {
     }
     scene.segments.push_back(segment);
   }
-  std::vector<int> associate() const { return associateObjects(objects, scene, SE3{}); }
+  std::vector<int> associate() const { return associateObjects(objects, scene, SE3{}, test::kRig); }
 };
 
 TEST(ObjectAssociation, TakesTheLeastTotalCostRatherThanTheNearest) {

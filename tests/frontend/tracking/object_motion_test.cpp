@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/frontend/tracking/textured_board.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/stereo_views.hpp"
 
@@ -156,6 +157,53 @@ TEST(ObjectMotion, PointsThatLeaveTheBodyAreDropped) {
   frames.object.observed_before = FrameId{};
   ASSERT_TRUE(frames.follow());
   EXPECT_EQ(frames.object.points.size(), 27U);
+}
+
+/// Someone who walks before a far wall, in clothes with a texture.
+struct Pedestrian {
+  TrackedObject object;
+  SceneMotion scene;
+
+  explicit Pedestrian(double speed_mps) {
+    object.T_cam_body = test::TexturedBoard::standingAt(-1, 14);
+    Vector6d twist = Vector6d::Zero();
+    twist[0] = speed_mps;
+    object.kinematics = ObjectKinematics(object.T_cam_body, twist, 0.01 * Matrix12d::Identity());
+    scene.features = test::TexturedBoard::seenAt(object.T_cam_body);
+    for (const double y : {-0.2, 0.2})
+      for (const double z : {-0.2, 0.2}) {
+        const Eigen::Vector3d p_body(0, y, z);
+        scene.points.push_back({.point = {std::ssize(scene.points)},
+                                .uvd_px = *kRig.project(object.T_cam_body * p_body),
+                                .sigma_px = test::kObservationSigma_px,
+                                .flow = {}});
+        object.points.push_back(toBody(scene.points.back(), object.T_cam_body, kRig));
+      }
+  }
+  void cover() {
+    const ObjectMotionEstimator motion({}, kRig);
+    motion.coverByPatches(object, scene, motion.measuredPoints(object, scene));
+  }
+  double height_m() const { return object.extent(0).sizes().z(); }
+};
+
+TEST(ObjectMotion, PatchesCoverAPersonBeyondThePointsFollowed) {
+  Pedestrian pedestrian(1.4);
+  pedestrian.cover();
+  EXPECT_GT(pedestrian.object.points.size(), 20U);
+  EXPECT_EQ(pedestrian.object.points.size(), pedestrian.object.measured.points.size());
+  EXPECT_GT(pedestrian.height_m(), 0.8);
+  EXPECT_LT(pedestrian.height_m(), 1.4);
+  const std::size_t covered = pedestrian.object.points.size();
+  pedestrian.cover();
+  EXPECT_EQ(pedestrian.object.points.size(), covered) << "those of the frame before are gone";
+  EXPECT_EQ(std::ranges::count_if(pedestrian.object.points, [](const auto& p) { return isFollowed(p.point); }), 4);
+}
+
+TEST(ObjectMotion, PatchesLieBetweenThePointsOfOtherObjects) {
+  Pedestrian rider(6);
+  rider.cover();
+  EXPECT_LT(rider.height_m(), 0.5);
 }
 
 }  // namespace

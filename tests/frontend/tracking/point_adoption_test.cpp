@@ -132,5 +132,48 @@ TEST(PointAdoption, ALongVehicleIsFoundStepByStepUpToTheLengthOfALorry) {
   EXPECT_LT(reached_m, 14);
 }
 
+/// A person who walks beside another one, at the same speed.
+struct PersonWithPoints : CarWithPoints {
+  PersonWithPoints() : CarWithPoints(1.5) {
+    object.points.clear();
+    for (const double z_m : {0.0, 0.8})
+      for (const double y_m : {-0.2, 0.2})
+        object.points.push_back(
+            {{1000 + std::ssize(object.points)}, {0, y_m, z_m}, 1e-4 * Eigen::Matrix3d::Identity()});
+    object.life.observe();
+  }
+};
+
+TEST(PointAdoption, APersonTakesWhatIsOnOnePerson) {
+  PersonWithPoints person;
+  person.see({0.1, 0.3, 1.2});
+  EXPECT_TRUE(person.takes()) << "the head";
+  for (const bool from_segment : {false, true}) {
+    PersonWithPoints beside;
+    beside.see({0, 1, 0.5});
+    EXPECT_FALSE(beside.takes(from_segment)) << "another person";
+  }
+}
+
+/// Whether a person of whom one frame was seen, too few to know how large it is, takes a point two meters aside.
+bool takesBeside(bool wall_between) {
+  PersonWithPoints person;
+  person.object.life = LifeCycle{};
+  for (int i = 0; i < 4; ++i) person.see({wall_between ? 8.0 : 0.0, 2 + 0.1 * i, 0.2 * i}).flow.reset();
+  person.see({0, 2, 0.5});
+  const std::int64_t beside = person.scene.points.back().point.value;
+  for (const BodyPoint& p : std::vector(person.object.points)) {
+    person.see(p.p_body).point = p.point;
+    person.taken.back() = true;
+  }
+  person.takes(true);
+  return person.object.find({beside}) != nullptr;
+}
+
+TEST(PointAdoption, WhatTheBackgroundPartsBelongsToAnother) {
+  EXPECT_TRUE(takesBeside(false));
+  EXPECT_FALSE(takesBeside(true));
+}
+
 }  // namespace
 }  // namespace motorcade
