@@ -118,7 +118,7 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
   object.measured = measuredIn(scene, agreement->inliers);
   refinePoints(object, agreement->inliers);
   dropMisfits(object, agreement->seen, agreement->chi2);
-  if (mayBeWalking(object, camera_)) coverByPatches(object, scene, object.measured);
+  if (mayBeWalking(object, camera_)) addPatches(scene, object.T_cam_body, object, object.measured);
   return observation;
 }
 
@@ -187,18 +187,15 @@ void ObjectMotionEstimator::addPatches(const SceneMotion& scene, const SE3& T_ca
                                        MeasuredPoints& measured) const {
   constexpr double kMargin_m = 0.4;  // from the points on a person to the ends of the body
   const double margin_px = mayBeWalking(object, camera_) ? kMargin_m * camera_.fx_px / T_cam_body.translation().z() : 0;
-  const std::vector<ScenePoint> patches = samplePatches(measured, scene.disparity_offset_px, margin_px);
+  MeasuredPoints followed = measured;
+  std::erase_if(followed.points, [](const ScenePoint& p) { return !isFollowed(p.point); });
+  const std::vector<ScenePoint> patches =
+      samplePatches(followed.points.empty() ? measured : followed, scene.disparity_offset_px, margin_px);
+  measured = std::move(followed);
+  std::erase_if(object.points, [](const BodyPoint& p) { return !isFollowed(p.point); });
   std::vector<const ScenePoint*> points;
   for (const ScenePoint& p : patches) points.push_back(&p);
   add(points, T_cam_body, object, measured);
-}
-
-void ObjectMotionEstimator::coverByPatches(TrackedObject& object, const SceneMotion& scene,
-                                           MeasuredPoints measured) const {
-  std::erase_if(object.points, [](const BodyPoint& p) { return !isFollowed(p.point); });
-  std::erase_if(measured.points, [](const ScenePoint& p) { return !isFollowed(p.point); });
-  addPatches(scene, object.T_cam_body, object, measured);
-  object.measured = std::move(measured);
 }
 
 void ObjectMotionEstimator::add(const std::vector<const ScenePoint*>& points, const SE3& T_cam_body,

@@ -61,13 +61,9 @@ class ObjectMotionEstimator {
   /// to its `measured` points.
   void addNearby(const SceneMotion& scene, const SE3& T_cam_body, TrackedObject& object,
                  MeasuredPoints& measured) const;
-  /// The same of patches between its points, and around them on who may be walking.
+  /// The same of patches between its points, and around them on who may be walking, in place of those it has.
   void addPatches(const SceneMotion& scene, const SE3& T_cam_body, TrackedObject& object,
                   MeasuredPoints& measured) const;
-
-  /// Takes patches all over a body, by which it is found in the next frame, in place of those of the frame before.
-  /// `measured` are its followed points in this frame.
-  void coverByPatches(TrackedObject& object, const SceneMotion& scene, MeasuredPoints measured) const;
 
   /// Encounter of an object that is spawned in this frame: its body frame is where its points say, up to their noise.
   ObjectObservation firstObservation(const TrackedObject& object, const SceneMotion& scene) const;

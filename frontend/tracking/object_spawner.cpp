@@ -57,7 +57,10 @@ TrackedObject ObjectSpawner::spawn(const SceneMotion& scene, const Segment& vehi
   first.velocity_cam_mps = vehicle.velocity_mps;
   object.kinematics = firstKinematics(T_world_body, vehicle, T_world_cam, first.encounter_covariance);
   object.observed_before = scene.frame;
-  if (mayBeWalking(object, camera_)) motion_.coverByPatches(object, scene, motion_.measuredPoints(object, scene));
+  if (mayBeWalking(object, camera_)) {
+    object.measured = motion_.measuredPoints(object, scene);
+    motion_.addPatches(scene, object.T_cam_body, object, object.measured);
+  }
   object.backlog.push_back(std::move(first));
   return object;
 }

@@ -182,7 +182,8 @@ struct Pedestrian {
   }
   void cover() {
     const ObjectMotionEstimator motion({}, kRig);
-    motion.coverByPatches(object, scene, motion.measuredPoints(object, scene));
+    if (object.measured.points.empty()) object.measured = motion.measuredPoints(object, scene);
+    motion.addPatches(scene, object.T_cam_body, object, object.measured);
   }
   double height_m() const { return object.extent(0).sizes().z(); }
 };
@@ -198,6 +199,15 @@ TEST(ObjectMotion, PatchesCoverAPersonBeyondThePointsFollowed) {
   pedestrian.cover();
   EXPECT_EQ(pedestrian.object.points.size(), covered) << "those of the frame before are gone";
   EXPECT_EQ(std::ranges::count_if(pedestrian.object.points, [](const auto& p) { return isFollowed(p.point); }), 4);
+}
+
+TEST(ObjectMotion, PatchesFollowPatchesWhereNoPointIsLeft) {
+  Pedestrian pedestrian(1.4);
+  pedestrian.cover();
+  std::erase_if(pedestrian.object.measured.points, [](const auto& p) { return isFollowed(p.point); });
+  std::erase_if(pedestrian.object.points, [](const auto& p) { return isFollowed(p.point); });
+  pedestrian.cover();
+  EXPECT_GT(pedestrian.object.points.size(), 20U);
 }
 
 TEST(ObjectMotion, PatchesLieBetweenThePointsOfOtherObjects) {
