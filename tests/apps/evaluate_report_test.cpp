@@ -62,7 +62,7 @@ TEST_F(EvaluateDrive, TheTableFitsAHundredColumnsAndExplainsItsMeasures) {
         "existence", "masks", "covariances", "against the baseline"})
     EXPECT_THAT(table, HasSubstr(std::string("\n") + section));
   const auto legend = table.substr(table.find("\nATE "));
-  for (const char* const measure : {"RPE", "ARE", "segments", "ME", "MOTA", "IoU", "HOTA", "NEES"})
+  for (const char* const measure : {"RPE", "ARE", "segments", "ME", "MOTA", "IoU", "log loss", "HOTA", "NEES"})
     EXPECT_THAT(legend, HasSubstr(std::string("\n") + measure)) << "has no explanation";
 }
 
