@@ -43,9 +43,12 @@ BoxErrors boxErrors(const std::vector<ComparedFrame>& frames, double from_m, dou
     errors.iou_bird += footprintIou(estimate, label);
     errors.iou_3d += volumeIou(estimate, label);
     sums.add(estimate, label);
+    const Eigen::Array3d two_sigma_m = 2 * row->row.object.cuboid->size_sigma_m.array();
+    errors.size_within_2_sigma += ((estimate.size_m - label.size_m).array().abs() <= two_sigma_m).cast<double>();
   }
   for (double* sum : {&errors.iou_2d, &errors.over_half_2d}) *sum /= std::max(1, errors.rows);
   for (double* sum : {&errors.iou_bird, &errors.iou_3d}) *sum /= std::max(1, errors.rows_with_cuboid);
+  errors.size_within_2_sigma /= std::max(1, errors.rows_with_cuboid);
   errors.center_m = statisticsOf(std::move(sums.center_m));
   errors.heading_deg = statisticsOf(std::move(sums.heading_deg));
   errors.length_m = statisticsOf(std::move(sums.length_m));

@@ -47,7 +47,7 @@ struct KindEvaluation {
   MotionErrors motion;
   FollowedMotion followed_motion;
   DetectionErrors detection;
-  ExistenceErrors existence;
+  Reliability existence;
   BoxErrors boxes_within_30m, boxes_from_30_to_50m;
   Hota image_within_30m, image_within_50m, footprint_within_30m, footprint_within_50m;
   KindErrors kinds_within_30m;

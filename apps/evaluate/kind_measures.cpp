@@ -1,7 +1,9 @@
 #include "apps/evaluate/kind_measures.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 namespace motorcade {
@@ -44,6 +46,24 @@ double KindCounts::shareRight() const {
   return right / std::max(1.0, static_cast<double>(total()));
 }
 
+void KindRows::add(ObjectKind label, ObjectKind reported, double probability) {
+  constexpr double kSure = 0.95, kHalfDecimal = 0.0005;
+  ++counts.rows[static_cast<std::size_t>(label)][static_cast<std::size_t>(reported)];
+  if (reported == ObjectKind::kUnknown) {
+    log_loss_sum += std::numbers::ln2;
+    return;
+  }
+  const bool right = reported == label;
+  const double of_outcome = right ? probability : 1 - probability;
+  log_loss_sum -= std::log(std::clamp(of_outcome, kHalfDecimal, 1 - kHalfDecimal));
+  sure_wrong += !right && probability >= kSure;
+  named.add(probability, right);
+}
+
+double KindRows::logLoss() const { return log_loss_sum / std::max(1, counts.total()); }
+
+double KindRows::shareSureWrong() const { return sure_wrong / std::max(1.0, static_cast<double>(counts.total())); }
+
 KindErrors kindErrors(const std::vector<ComparedFrame>& frames, double to_m) {
   constexpr int kRowsBefore = 9;  // of a track, until its kind is held to account
   std::map<const MatchedRow*, int> rows_before;
@@ -55,9 +75,8 @@ KindErrors kindErrors(const std::vector<ComparedFrame>& frames, double to_m) {
     const ObjectKind label = kindOfType(object->truth.type);
     if (label == ObjectKind::kUnknown) continue;
     const auto& cuboid = row->row.object.cuboid;
-    const ObjectKind reported = cuboid ? cuboid->kind : ObjectKind::kUnknown;
-    KindCounts& counts = rows_before[row] >= kRowsBefore ? errors.from_tenth_row : errors.before;
-    ++counts.rows[static_cast<std::size_t>(label)][static_cast<std::size_t>(reported)];
+    KindRows& rows = rows_before[row] >= kRowsBefore ? errors.from_tenth_row : errors.before;
+    rows.add(label, cuboid ? cuboid->kind : ObjectKind::kUnknown, cuboid ? cuboid->kind_probability : 0);
   }
   return errors;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/evaluate/object_matching.hpp"
+#include "apps/evaluate/reliability.hpp"
 
 /// What objects are taken for, against the types of their labels.
 namespace motorcade {
@@ -25,9 +26,24 @@ struct KindCounts {
   double shareRight() const;  // 0 without rows
 };
 
+/// What rows claim, of labels that have a kind. A row of `unknown` names none: it is never right, and never wrong with
+/// a high probability.
+struct KindRows {
+  KindCounts counts;
+  Reliability named;  // of the rows that name a kind; a hit is the label's
+  double log_loss_sum = 0;
+  int sure_wrong = 0;
+  void add(ObjectKind label, ObjectKind reported, double probability);
+  /// Mean of -log p where the named kind is the label's, of -log(1 - p) where it is not, and of log 2 where none is
+  /// named; 0 without rows. Files hold p to three decimals, so that none counts as nearer to 0 or 1 than half of one.
+  double logLoss() const;
+  /// Share of the rows that name a wrong kind with a probability of .95 and more; 0 without rows.
+  double shareSureWrong() const;
+};
+
 /// By whether the track had at least nine rows before.
 struct KindErrors {
-  KindCounts from_tenth_row, before;
+  KindRows from_tenth_row, before;
 };
 
 /// Over the reported rows that were matched to labels which are asked for nearer than `to_m` and have a kind.

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/evaluate/existence_json.hpp"
+#include "apps/evaluate/reliability_json.hpp"
 #include "apps/evaluate/report.hpp"
 #include "io/json_text.hpp"
 #include "io/object_row.hpp"
@@ -102,8 +102,14 @@ Json jsonOf(const Hota& hota) {
           {"ass_pr", hota.ass_pr}, {"loc_a", hota.loc_a}};
 }
 
-Json jsonOf(const KindCounts& counts) {
-  Json json = {{"rows", counts.total()}, {"right", counts.shareRight()}, {"confusion", Json::object()}};
+Json jsonOf(const KindRows& rows) {
+  const KindCounts& counts = rows.counts;
+  Json json = {{"rows", counts.total()},
+               {"right", counts.shareRight()},
+               {"log_loss", rows.logLoss()},
+               {"sure_wrong", rows.shareSureWrong()},
+               {"named", jsonOf(rows.named, "right")},
+               {"confusion", Json::object()}};
   for (const ObjectKind label : kAllKinds) {
     if (label == ObjectKind::kUnknown) continue;
     for (const ObjectKind reported : kAllKinds)
@@ -208,7 +214,10 @@ Json jsonOf(const BoxErrors& boxes) {
           {"heading_deg", jsonOf(boxes.heading_deg)},
           {"length_m", jsonOf(boxes.length_m)},
           {"width_m", jsonOf(boxes.width_m)},
-          {"height_m", jsonOf(boxes.height_m)}};
+          {"height_m", jsonOf(boxes.height_m)},
+          {"length_within_2_sigma", boxes.size_within_2_sigma.x()},
+          {"width_within_2_sigma", boxes.size_within_2_sigma.y()},
+          {"height_within_2_sigma", boxes.size_within_2_sigma.z()}};
 }
 
 Json jsonOf(const KindEvaluation& kind, bool with_objects) {
@@ -228,7 +237,7 @@ Json jsonOf(const KindEvaluation& kind, bool with_objects) {
       {"image", {{"within_30m", jsonOf(kind.image_within_30m)}, {"within_50m", jsonOf(kind.image_within_50m)}}},
       {"footprint",
        {{"within_30m", jsonOf(kind.footprint_within_30m)}, {"within_50m", jsonOf(kind.footprint_within_50m)}}}};
-  json["existence"] = jsonOf(kind.existence);
+  json["existence"] = jsonOf(kind.existence, "real");
   json["kinds_within_30m"] = jsonOf(kind.kinds_within_30m);
   json["first_report"] = {{"within_30m", jsonOf(kind.first_within_30m)}, {"within_50m", jsonOf(kind.first_within_50m)}};
   return json;

@@ -24,6 +24,8 @@ std::string legendOf(const Evaluation& evaluation) {
         "false      rows on what does not move or is not there\n"
         "MOTA       1 - (misses + false rows + id switches) / labels\n"
         "IoU        intersection over union with the label's box, cuboid or mask: 1 where they agree\n"
+        "log loss   mean of -log p of a kind that is right, -log(1 - p) of a wrong one, log 2 of unknown;\n"
+        "           surely wrong: of a probability of 0.95 and more\n"
         "HOTA       tracking accuracy, of detection (Det) and association (Ass), each with recall (Re)\n"
         "           and precision (Pr), and of localization (Loc): 1 is perfect\n";
   if (evaluation.camera_covariance.samples + evaluation.object_covariance.samples > 0)

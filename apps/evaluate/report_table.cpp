@@ -58,6 +58,17 @@ void printBoxLine(std::string& text, const char* kind, const BoxErrors& boxes) {
         boxes.width_m.mean, boxes.height_m.mean);
 }
 
+/// A section, unless it has no lines.
+void printSection(std::string& text, const std::string& head, const std::string& lines) {
+  if (!lines.empty()) text.append("\n").append(head).append("\n").append(lines);
+}
+
+void printSizeLine(std::string& text, const char* kind, const BoxErrors& boxes) {
+  if (boxes.rows_with_cuboid == 0) return;
+  print(text, "  %-18s %5d cuboids %24.1f %% %6.1f %% %6.1f %%\n", kind, boxes.rows_with_cuboid,
+        100 * boxes.size_within_2_sigma.x(), 100 * boxes.size_within_2_sigma.y(), 100 * boxes.size_within_2_sigma.z());
+}
+
 void printBoxes(std::string& text, const Evaluation& e) {
   text += "\nboxes                 rows  IoU in    over     IoU     IoU   mean error of\n";
   text += "                             image      .5   above      3D   center heading  length   width  height\n";
@@ -66,11 +77,12 @@ void printBoxes(std::string& text, const Evaluation& e) {
   printBoxLine(text, "final 30 to 50 m", e.final.boxes_from_30_to_50m);
   printBoxLine(text, "online to 30 m", e.online.boxes_within_30m);
   printBoxLine(text, "online 30 to 50 m", e.online.boxes_from_30_to_50m);
-}
-
-/// A section, unless it has no lines.
-void printSection(std::string& text, const std::string& head, const std::string& lines) {
-  if (!lines.empty()) text.append("\n").append(head).append("\n").append(lines);
+  std::string lines;
+  printSizeLine(lines, "final to 30 m", e.final.boxes_within_30m);
+  printSizeLine(lines, "final 30 to 50 m", e.final.boxes_from_30_to_50m);
+  printSizeLine(lines, "online to 30 m", e.online.boxes_within_30m);
+  printSizeLine(lines, "online 30 to 50 m", e.online.boxes_from_30_to_50m);
+  printSection(text, "sizes within two of their standard deviations    length    width   height", lines);
 }
 
 void printHotaLine(std::string& text, const std::string& what, const Hota& hota) {
@@ -110,50 +122,57 @@ void printFirstReports(std::string& text, const Evaluation& e) {
   printSection(text, "frames from first visibility to first report (online)", lines);
 }
 
-void printKindCounts(std::string& text, const char* what, const KindCounts& counts) {
-  if (counts.total() == 0) return;
-  print(text, "  %s: %.1f %% of %d rows right\n", what, 100 * counts.shareRight(), counts.total());
-  for (const ObjectKind label : kAllKinds) {
-    std::string line;
-    int rows = 0;
-    for (const ObjectKind reported : kAllKinds) {
-      print(line, " %13d", counts.of(label, reported));
-      rows += counts.of(label, reported);
-    }
-    if (rows > 0) print(text, "    %-14s%s\n", std::string(kindName(label)).c_str(), line.c_str());
-  }
-}
-
-void printKinds(std::string& text, const Evaluation& e) {
-  std::string head = "kinds to 30 m, as ", lines;
-  for (const ObjectKind kind : kAllKinds) print(head, "%14s", std::string(kindName(kind)).c_str());
-  printKindCounts(lines, "final, from a track's tenth row on", e.final.kinds_within_30m.from_tenth_row);
-  printKindCounts(lines, "final, before", e.final.kinds_within_30m.before);
-  printKindCounts(lines, "online, from a track's tenth row on", e.online.kinds_within_30m.from_tenth_row);
-  printKindCounts(lines, "online, before", e.online.kinds_within_30m.before);
-  printSection(text, head, lines);
-}
-
-void printExistenceLine(std::string& text, const char* estimate, const ExistenceErrors& errors) {
-  if (errors.rows() == 0) return;
-  print(text, "  %-8s %6d  %6.3f", estimate, errors.rows(), errors.brier());
+void printReliabilityLine(std::string& text, const char* estimate, const Reliability& reliability) {
+  if (reliability.rows() == 0) return;
+  print(text, "  %-8s %6d  %6.3f", estimate, reliability.rows(), reliability.brier());
   const auto add = [&](bool known, double value) {
     if (known)
       print(text, " %5.2f", value);
     else
       text += "     -";
   };
-  const auto gap = errors.largestGap();
+  const auto gap = reliability.largestGap();
   add(gap.has_value(), gap.value_or(0));
   text += ' ';
-  for (const ExistenceTenth& tenth : errors.tenths) add(tenth.rows > 0, tenth.rows > 0 ? tenth.shareReal() : 0);
+  for (const ReliabilityTenth& tenth : reliability.tenths)
+    add(tenth.rows > 0, tenth.rows > 0 ? tenth.shareOfHits() : 0);
   text += '\n';
+}
+
+void printKindRows(std::string& text, const char* what, const KindRows& rows) {
+  const KindCounts& counts = rows.counts;
+  if (counts.total() == 0) return;
+  print(text, "  %s: %.1f %% of %d right, log loss %.3f, %.1f %% surely wrong\n", what, 100 * counts.shareRight(),
+        counts.total(), rows.logLoss(), 100 * rows.shareSureWrong());
+  for (const ObjectKind label : kAllKinds) {
+    std::string line;
+    int of_label = 0;
+    for (const ObjectKind reported : kAllKinds) {
+      print(line, " %13d", counts.of(label, reported));
+      of_label += counts.of(label, reported);
+    }
+    if (of_label > 0) print(text, "    %-14s%s\n", std::string(kindName(label)).c_str(), line.c_str());
+  }
+}
+
+void printKinds(std::string& text, const Evaluation& e) {
+  std::string head = "kinds to 30 m, as ", lines;
+  for (const ObjectKind kind : kAllKinds) print(head, "%14s", std::string(kindName(kind)).c_str());
+  printKindRows(lines, "final, from a track's tenth row on", e.final.kinds_within_30m.from_tenth_row);
+  printKindRows(lines, "final, before", e.final.kinds_within_30m.before);
+  printKindRows(lines, "online, from a track's tenth row on", e.online.kinds_within_30m.from_tenth_row);
+  printKindRows(lines, "online, before", e.online.kinds_within_30m.before);
+  printSection(text, head, lines);
+  std::string named;
+  printReliabilityLine(named, "final", e.final.kinds_within_30m.from_tenth_row.named);
+  printReliabilityLine(named, "online", e.online.kinds_within_30m.from_tenth_row.named);
+  printSection(text, "kinds named  rows   Brier   gap  share that is right, by tenths of kind_probability", named);
 }
 
 void printExistence(std::string& text, const Evaluation& e) {
   std::string lines;
-  printExistenceLine(lines, "final", e.final.existence);
-  printExistenceLine(lines, "online", e.online.existence);
+  printReliabilityLine(lines, "final", e.final.existence);
+  printReliabilityLine(lines, "online", e.online.existence);
   printSection(text, "existence    rows   Brier   gap  share that is real, by tenths of existence_probability", lines);
 }
 

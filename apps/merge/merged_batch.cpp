@@ -95,7 +95,8 @@ void readResult(MergedBatch& batch, MergedTask& merged, const fs::path& result) 
     merged.has_labels = evaluation.is_object() && evaluation.at("final").contains("detection");
     if (evaluation.is_object()) {
       addWorstErrors(batch, merged, evaluation);
-      addExistence(batch.existence[merged.task.set], evaluation);
+      addReliability(batch.existence[merged.task.set], kExistenceClaim, evaluation);
+      addReliability(batch.kinds[merged.task.set], kKindClaim, evaluation);
     }
     addLatencies(batch.latencies[merged.task.set], summary);
   } catch (const nlohmann::json::exception& error) {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/merge/existence_table.hpp"
 #include "apps/merge/measures.hpp"
+#include "apps/merge/reliability_table.hpp"
 #include "apps/tasks/plan.hpp"
 #include "apps/tasks/task_record.hpp"
 
@@ -47,7 +47,7 @@ struct MergedBatch {
   std::vector<MergedTask> tasks{};
   std::vector<WorstFrame> worst_camera_m{}, worst_object_m{}, latest_ms{};  // the worst first
   std::map<std::string, std::map<double, std::int64_t>> latencies{};        // by set: frames up to so many milliseconds
-  std::map<std::string, ExistenceOfSet> existence{};                        // by set, of all tasks that are done
+  ReliabilityBySet existence{}, kinds{};                                    // of all tasks that are done
 
   std::size_t count(TaskOutcome outcome) const;
 };

@@ -151,7 +151,8 @@ std::string jsonOf(const Merged& merged) {
                   {{"camera_rpe_t_m", jsonOf(batch.worst_camera_m)},
                    {"object_me_t_m", jsonOf(batch.worst_object_m)},
                    {"latency_ms", jsonOf(batch.latest_ms)}}},
-                 {"existence", existenceJson(batch.existence)},
+                 {"existence", reliabilityJson(kExistenceClaim, batch.existence)},
+                 {"kinds", reliabilityJson(kKindClaim, batch.kinds)},
                  {"left_out", std::move(left_out)},
                  {"published", std::move(published)},
                  {"comparison", merged.comparison ? jsonOf(*merged.comparison) : Json()}});
@@ -176,7 +177,8 @@ std::string markdownOf(const Merged& merged) {
   add(unfinishedTable(batch));
   add(leftOutTable(batch));
   for (const ResultTable& table : measureTables(merged.groups)) add(table);
-  add(existenceTable(batch.existence));
+  add(reliabilityTable(kExistenceClaim, batch.existence));
+  add(reliabilityTable(kKindClaim, batch.kinds));
   add(worstFrameTable("Frames with the largest error of the camera's motion", "RPE_t m", batch.worst_camera_m));
   add(worstFrameTable("Frames with the largest error of an object's motion", "ME_t m", batch.worst_object_m));
   add(worstFrameTable("Frames that came out latest", "latency ms", batch.latest_ms));

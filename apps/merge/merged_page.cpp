@@ -180,7 +180,8 @@ std::string pageOf(const Merged& merged) {
       worstFrameTable("Frames with the largest error of an object's motion", "motion error [m]", batch.worst_object_m));
   body += section(worstFrameTable("Frames that came out latest", "latency [ms]", batch.latest_ms));
   for (const ResultTable& table : measureTables(merged.groups)) body += section(table);
-  body += section(existenceTable(batch.existence));
+  body += section(reliabilityTable(kExistenceClaim, batch.existence));
+  body += section(reliabilityTable(kKindClaim, batch.kinds));
   return htmlPage("Batch " + batch.folder.filename().string(), body, std::string(kChartStyle).append(kStyle));
 }
 

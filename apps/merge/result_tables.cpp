@@ -80,9 +80,22 @@ Column firstReportColumn(std::string head, std::string_view median, std::string_
           }};
 }
 
+std::string sizesText(const ResultGroup& group) {
+  return percentText(group.mean("box_length_in_2_sigma"), 0) + " / " +
+         percentText(group.mean("box_width_in_2_sigma"), 0) + " / " +
+         percentText(group.mean("box_height_in_2_sigma"), 0);
+}
+
 Column kindsColumn() {
   return {"kinds right final / online", [](const ResultGroup& group) {
             return percentText(group.mean("kinds_right"), 0) + " / " + percentText(group.mean("online_kinds_right"), 0);
+          }};
+}
+
+Column wrongKindsColumn() {
+  return {"wrong and sure final / online", [](const ResultGroup& group) {
+            return percentText(group.mean("kinds_sure_wrong"), 1) + " / " +
+                   percentText(group.mean("online_kinds_sure_wrong"), 1);
           }};
 }
 
@@ -147,7 +160,8 @@ std::vector<Column> boxColumns() {
           meanColumn("heading deg", "box_heading_deg", 1),
           meanColumn("length m", "box_length_m", 2),
           meanColumn("width m", "box_width_m", 2),
-          meanColumn("height m", "box_height_m", 2)};
+          meanColumn("height m", "box_height_m", 2),
+          {"length / width / height within 2 sigma", sizesText}};
 }
 
 std::vector<Column> trackingColumns() {
@@ -161,6 +175,8 @@ std::vector<Column> trackingColumns() {
           meanColumn("30 to 50 m", "mask_iou_30_to_50m", 2),
           meanColumn("boundary px", "mask_boundary_px", 1),
           kindsColumn(),
+          pairColumn("log loss of kinds final / online", "kinds_log_loss", "online_kinds_log_loss", 3),
+          wrongKindsColumn(),
           firstReportColumn("first report, median / mean", "first_report_median_frames", "first_report_mean_frames",
                             "never_reported"),
           firstReportColumn("to 50 m", "first_report_50m_median_frames", "first_report_50m_mean_frames",

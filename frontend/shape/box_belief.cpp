@@ -3,69 +3,39 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
 #include "core/decompositions.hpp"
 #include "core/elementary.hpp"
+#include "frontend/shape/kind_prior.hpp"
 
 namespace motorcade {
 namespace {
 
 /// Usual size of a kind, and how usual it is.
-struct KindPrior {
+struct SizedKind {
   ObjectKind kind;
-  Eigen::Vector3d size_m, sigma_m;  // length, width, height
+  UsualSize size;
   double share;
   double top_speed_mps;
 };
 
 /// Vans are cars here: they have their own line, as they are a size of their own.
-const std::array<KindPrior, 5> kKinds{{{ObjectKind::kCar, {4.1, 1.72, 1.55}, {0.5, 0.15, 0.15}, 0.7, 60},
-                                       {ObjectKind::kCar, {5.2, 2.0, 2.15}, {0.6, 0.2, 0.25}, 0.12, 60},
-                                       {ObjectKind::kLargeVehicle, {10.0, 2.55, 3.2}, {2.5, 0.15, 0.4}, 0.06, 40},
-                                       {ObjectKind::kTwoWheeler, {1.76, 0.6, 1.74}, {0.25, 0.12, 0.15}, 0.03, 15},
-                                       {ObjectKind::kPedestrian, {0.84, 0.66, 1.76}, {0.25, 0.15, 0.13}, 0.06, 3}}};
+const std::array<SizedKind, 5> kKinds{{{ObjectKind::kCar, {{4.1, 1.72, 1.55}, {0.5, 0.15, 0.15}}, 0.7, 60},
+                                       {ObjectKind::kCar, {{5.2, 2.0, 2.15}, {0.6, 0.2, 0.25}}, 0.12, 60},
+                                       {ObjectKind::kLargeVehicle, {{10.0, 2.55, 3.2}, {2.5, 0.15, 0.4}}, 0.06, 40},
+                                       {ObjectKind::kTwoWheeler, {{1.76, 0.6, 1.74}, {0.25, 0.12, 0.15}}, 0.03, 15},
+                                       {ObjectKind::kPedestrian, {{0.84, 0.66, 1.76}, {0.25, 0.15, 0.13}}, 0.06, 3}}};
 
 constexpr double kRuledOut = 1e-3;       // of the likeliest kind's likelihood
 constexpr double kSpeedSlack_mps = 0.7;  // by which a kind is faster than usual with one standard deviation
-// The body's origin is the median of points on it, which mostly lie on the faces in view.
-constexpr double kAheadSigma_m = 2.0, kAsideSigma_m = 0.7, kBottom_m = -0.8, kBottomSigma_m = 0.5;
+constexpr double kAheadSigma_m = 2;      // of the origin from the middle, along the body
 
-FaceInformation priorOf(const KindPrior& kind) {
-  FaceInformation prior;
-  for (int axis = 0; axis < 3; ++axis) {
-    Vector6d size = Vector6d::Zero();
-    size[2 * axis] = -1, size[2 * axis + 1] = 1;
-    prior.add(size, kind.size_m[axis], kind.sigma_m[axis]);
-  }
-  Vector6d ahead = Vector6d::Zero(), aside = Vector6d::Zero(), bottom = Vector6d::Zero();
-  ahead[kRear] = ahead[kFront] = aside[kRight] = aside[kLeft] = 0.5;
-  bottom[kBottom] = 1;
-  prior.add(ahead, 0, hypotenuse(kAheadSigma_m, 0.25 * kind.size_m.x()));
-  prior.add(aside, 0, kAsideSigma_m);
-  prior.add(bottom, kBottom_m, kBottomSigma_m);
-  return prior;
-}
-
-double logDeterminant(const Eigen::LLT<Matrix6d>& llt) {
-  double sum = 0;
-  for (const double pivot : Vector6d(llt.matrixLLT().diagonal())) sum += logarithm(pivot);
-  return 2 * sum;
-}
-
-/// What is known of a kind before anything is seen.
-struct Prior {
-  FaceInformation faces;
-  double log_determinant;
-};
-
-const std::array<Prior, kKinds.size()> kPriors = [] {
-  std::array<Prior, kKinds.size()> priors;
-  for (std::size_t i = 0; i < kKinds.size(); ++i) {
-    priors[i].faces = priorOf(kKinds[i]);
-    priors[i].log_determinant = logDeterminant(Eigen::LLT<Matrix6d>(priors[i].faces.H));
-  }
+const std::array<FacePrior, kKinds.size()> kPriors = [] {
+  std::array<FacePrior, kKinds.size()> priors;
+  for (std::size_t i = 0; i < kKinds.size(); ++i) priors[i] = facePrior(kKinds[i].size, kAheadSigma_m);
   return priors;
 }();
 
@@ -74,7 +44,8 @@ struct Posterior {
   double log_evidence = 0;
 };
 
-Posterior posteriorOf(const KindPrior& kind, const Prior& prior, const FaceInformation& evidence, double speed_mps) {
+Posterior posteriorOf(const SizedKind& kind, const FacePrior& prior, const FaceInformation& evidence,
+                      double speed_mps) {
   FaceInformation both = prior.faces;
   both.add(evidence);
   const Eigen::LLT<Matrix6d> llt(both.H);
@@ -115,8 +86,7 @@ ObjectBox BoxEstimate::box() const {
                 .size_m = most() - least(),
                 .center_sigma_m = {},
                 .size_sigma_m = {},
-                .kind = kind,
-                .kind_probability = kind_probability};
+                .kind = kind};
   for (int axis = 0; axis < 3; ++axis) {
     const int lower = 2 * axis, upper = lower + 1;
     const double sum = covariance(lower, lower) + covariance(upper, upper), cross = 2 * covariance(lower, upper);
@@ -126,18 +96,15 @@ ObjectBox BoxEstimate::box() const {
   return box;
 }
 
-BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps) {
+BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps, ObjectKind known) {
   std::array<Posterior, kKinds.size()> posteriors;
   for (std::size_t i = 0; i < kKinds.size(); ++i)
     posteriors[i] = posteriorOf(kKinds[i], kPriors[i], evidence, speed_mps);
   const auto likeliest = std::ranges::max_element(posteriors, {}, &Posterior::log_evidence);
-  double all = 0, same = 0;
-  for (const Posterior& p : posteriors) {
-    const double likelihood = exponential(p.log_evidence - likeliest->log_evidence);
-    all += likelihood;
-    if (p.estimate.kind == likeliest->estimate.kind) same += likelihood;
-  }
-  BoxEstimate estimate = likeliest->estimate;
+  const auto rank = [&](const Posterior& p) {
+    return std::pair(known == ObjectKind::kUnknown || p.estimate.kind == known, p.log_evidence);
+  };
+  BoxEstimate estimate = std::ranges::max_element(posteriors, {}, rank)->estimate;
   const BoxEstimate& car = posteriors.front().estimate;
   estimate.usual_least = estimate.least().cwiseMin(car.least()),
   estimate.usual_most = estimate.most().cwiseMax(car.most());
@@ -151,7 +118,6 @@ BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps) {
       most = std::max(most, p.estimate.faces[2 * axis + 1] + sigma[2 * axis + 1]);
     }
   }
-  estimate.kind_probability = same / all;
   return estimate;
 }
 

@@ -28,7 +28,6 @@ struct BoxEstimate {
   BoxFaces faces = BoxFaces::Zero();
   Matrix6d covariance = Matrix6d::Identity();
   ObjectKind kind = ObjectKind::kUnknown;
-  double kind_probability = 0;
 
   Eigen::Vector3d least() const { return {faces[kRear], faces[kRight], faces[kBottom]}; }
   Eigen::Vector3d most() const { return {faces[kFront], faces[kLeft], faces[kTop]}; }
@@ -40,8 +39,9 @@ struct BoxEstimate {
 };
 
 /// Each kind's usual size closes what the evidence leaves open (hidden faces), and its fit to the evidence and to the
-/// speed tells the kind: a mixture of Gaussians, of which the likeliest gives the cuboid. The sizes are the published
-/// means of KITTI's classes.
-BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps);
+/// speed tells the kind: a mixture of Gaussians, of which the likeliest gives the cuboid, or the likeliest of a kind
+/// that is known. The sizes are the published means of KITTI's classes. Standard deviations are those of independent
+/// looks; `believedBox` has those that remain.
+BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps, ObjectKind known = ObjectKind::kUnknown);
 
 }  // namespace motorcade

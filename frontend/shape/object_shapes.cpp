@@ -8,6 +8,7 @@
 #include "core/elementary.hpp"
 #include "frontend/motion/shared_velocity_error.hpp"
 #include "frontend/shape/face_measurement.hpp"
+#include "frontend/shape/kind_belief.hpp"
 #include "frontend/shape/motion_verdict.hpp"
 #include "frontend/shape/outline_completion.hpp"
 
@@ -158,7 +159,8 @@ EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& 
   const SE3 T_cam_world = shaped->online.T_world_cam.inverse();
   for (ObjectEstimate& object : shaped->online.objects)
     if (const auto known = shapes_.find(object.track); known != shapes_.end())
-      setBox(object, estimateBox(known->second.evidence, known->second.speed_mps), T_cam_world * object.T_world_body);
+      setBox(object, estimateBox(known->second.evidence, known->second.speed_mps).box(),
+             T_cam_world * object.T_world_body);
   for (ObjectEstimate& object : shaped->online.objects) lookAt(object, inputs, shaped->online, shaped->masks);
   dropLeft(shaped->online, camera_);
   dropUnlikely(shaped->online, params_.min_existence);
@@ -202,7 +204,7 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
     }
   }
   object.existence_probability = shape.existence.probability();
-  setBox(object, view.box, view.T_cam_body);
+  setBox(object, believedBox(shape.evidence, shape.speed_mps), view.T_cam_body);
 }
 
 /// How the object stands to the camera, and what is believed of its cuboid. Its shape becomes that of this frame.
@@ -264,9 +266,11 @@ void ObjectShapes::markSeen(ObjectEstimate& object, const DenseEvidence& evidenc
   object.points = evidence.cells;
 }
 
-void ObjectShapes::setBox(ObjectEstimate& object, const BoxEstimate& box, const SE3& T_cam_body) const {
-  object.cuboid = box.box();
-  if (const auto in_image = projectedBox(box.least(), box.most(), T_cam_body, camera_)) object.box = *in_image;
+void ObjectShapes::setBox(ObjectEstimate& object, const ObjectBox& box, const SE3& T_cam_body) const {
+  object.cuboid = box;
+  const Eigen::Vector3d half_m = 0.5 * box.size_m;
+  const auto in_image = projectedBox(box.center_body - half_m, box.center_body + half_m, T_cam_body, camera_);
+  if (in_image) object.box = *in_image;
 }
 
 std::vector<FrameEstimate> ObjectShapes::finish(std::vector<FrameEstimate> finals) {
@@ -297,7 +301,7 @@ void ObjectShapes::gatherShapes(FrameEstimate& frame) const {
     if (dense != shape->second.only_dense.end() && object.state == ObjectState::kPredicted)
       markSeen(object, dense->second);
     const SE3 T_cam_body = frame.T_world_cam.inverse() * object.T_world_body;
-    setBox(object, estimateBox(evidenceAround(shape->second, frame.frame), shape->second.speed_mps), T_cam_body);
+    setBox(object, believedBox(evidenceAround(shape->second, frame.frame), shape->second.speed_mps), T_cam_body);
     object.existence_probability = shape->second.existence.settledProbability();
   }
   dropLeft(frame, camera_);

@@ -69,7 +69,7 @@ class ObjectShapes {
   void gatherShapes(FrameEstimate& frame) const;
   FaceInformation evidenceAround(const Shape& shape, FrameId frame) const;
   static void markSeen(ObjectEstimate& object, const DenseEvidence& evidence);
-  void setBox(ObjectEstimate& object, const BoxEstimate& box, const SE3& T_cam_body) const;
+  void setBox(ObjectEstimate& object, const ObjectBox& box, const SE3& T_cam_body) const;
   void forgetGone(const Estimates& estimates);
 
   Params params_;

@@ -48,5 +48,23 @@ TEST(BoxErrors, CountTheRowsOfTheirRangeOnly) {
   EXPECT_NEAR(errors.iou_bird, 1, 1e-9);  // over the rows that have one
 }
 
+/// A row whose length, width and height are off by the errors in units of their standard deviations.
+ComparedFrame frameWithSizeErrors(const Eigen::Vector3d& in_sigmas) {
+  ComparedFrame frame = frameWith(20, 0, 0);
+  ObjectBox& cuboid = *frame.rows[0].row.object.cuboid;
+  cuboid.size_sigma_m = {0.4, 0.1, 0.2};
+  cuboid.size_m += in_sigmas.cwiseProduct(cuboid.size_sigma_m);
+  return frame;
+}
+
+TEST(BoxErrors, TellHowManySizesLieWithinTwoStandardDeviations) {
+  const BoxErrors errors =
+      boxErrors({frameWithSizeErrors({1.9, -1.9, 2.1}), frameWithSizeErrors({-2.1, 0, -2.1})}, 0, 30);
+  EXPECT_NEAR(errors.size_within_2_sigma.x(), 0.5, 1e-12);
+  EXPECT_NEAR(errors.size_within_2_sigma.y(), 1, 1e-12);
+  EXPECT_NEAR(errors.size_within_2_sigma.z(), 0, 1e-12);
+  EXPECT_TRUE((boxErrors({}, 0, 30).size_within_2_sigma == 0).all());
+}
+
 }  // namespace
 }  // namespace motorcade

@@ -40,6 +40,8 @@ TEST_F(EvaluateDrive, TableJsonAndTruthAreWritten) {
 TEST_F(EvaluateDrive, TheTableFitsAHundredColumnsAndExplainsItsMeasures) {
   writeRun("run", 0, kFrames, [](int i, FrameEstimate& estimate) {
     estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {100.0 * (i % 2), 0, 0}) * estimate.T_world_cam;
+    for (ObjectEstimate& object : estimate.objects)
+      object.cuboid = ObjectBox{.size_m = {4.2, 1.7, 1.5}, .kind = ObjectKind::kCar, .kind_probability = 0.9};
   });
   Gray16Image image{64, 32, std::vector<std::uint16_t>(64 * 32)};
   for (const auto& [name, value] : {std::pair("drive/instance", 8), std::pair("run/masks", 4)}) {
@@ -55,11 +57,12 @@ TEST_F(EvaluateDrive, TheTableFitsAHundredColumnsAndExplainsItsMeasures) {
     EXPECT_LE(line.size(), 100U) << line;
     EXPECT_FALSE(line.ends_with(' ')) << line;
   }
-  for (const char* const section : {"camera ", "moving objects", "motion of", "detection", "boxes", "tracks of",
-                                    "kinds", "existence", "masks", "covariances", "against the baseline"})
+  for (const char* const section :
+       {"camera ", "moving objects", "motion of", "detection", "boxes", "tracks of", "sizes within", "kinds",
+        "existence", "masks", "covariances", "against the baseline"})
     EXPECT_THAT(table, HasSubstr(std::string("\n") + section));
   const auto legend = table.substr(table.find("\nATE "));
-  for (const char* const measure : {"RPE", "ARE", "segments", "ME", "MOTA", "IoU", "HOTA", "NEES"})
+  for (const char* const measure : {"RPE", "ARE", "segments", "ME", "MOTA", "IoU", "log loss", "HOTA", "NEES"})
     EXPECT_THAT(legend, HasSubstr(std::string("\n") + measure)) << "has no explanation";
 }
 
@@ -80,6 +83,11 @@ TEST_F(EvaluateDrive, TheJsonHasEveryMeasureOfTheAccuracyTables) {
   EXPECT_NEAR(json.at("/final/hota/image/within_50m/det_a"_json_pointer), 1, kDigitsOfTheFiles);
   EXPECT_EQ(json.at("/final/hota/footprint/within_30m/rows"_json_pointer), kFrames);
   EXPECT_EQ(json.at("/online/kinds_within_30m/from_tenth_row/confusion/car/unknown"_json_pointer), kFrames - 9);
+  EXPECT_NEAR(json.at("/final/kinds_within_30m/from_tenth_row/log_loss"_json_pointer), std::log(2.0), 1e-12)
+      << "as none is named";
+  EXPECT_EQ(json.at("/final/kinds_within_30m/from_tenth_row/sure_wrong"_json_pointer), 0);
+  EXPECT_EQ(json.at("/final/kinds_within_30m/from_tenth_row/named/rows"_json_pointer), 0);
+  EXPECT_TRUE(json.contains("/final/boxes_within_30m/height_within_2_sigma"_json_pointer));
   EXPECT_EQ(json.at("/final/existence/rows"_json_pointer), kFrames);
   EXPECT_EQ(json.at("/final/existence/brier"_json_pointer), 0) << "sure rows, all on the label";
   EXPECT_EQ(json.at("/online/existence/tenths/9/real"_json_pointer), kFrames);

@@ -30,7 +30,7 @@ void addRow(ComparedFrame& frame, int object, double probability) {
 TEST(ExistenceErrors, CountRowsByTheTenthOfTheirProbability) {
   ComparedFrame frame = frameWithoutRows();
   for (const double probability : {0.0, 0.55, 0.59, 0.9, 1.0}) addRow(frame, kMover, probability);
-  const ExistenceErrors errors = existenceErrors({frame});
+  const Reliability errors = existenceErrors({frame});
   EXPECT_EQ(errors.rows(), 5);
   EXPECT_EQ(errors.tenths[0].rows, 1);
   EXPECT_EQ(errors.tenths[5].rows, 2);
@@ -42,10 +42,10 @@ TEST(ExistenceErrors, CallRealWhatIsOnALabelThatMovesAtSomeTime) {
   ComparedFrame frame = frameWithoutRows();
   frame.objects[kMover].moving = false;  // it waits in this frame
   for (const int object : {kMover, kParked, kNoLabel}) addRow(frame, object, 0.75);
-  const ExistenceErrors errors = existenceErrors({frame});
+  const Reliability errors = existenceErrors({frame});
   EXPECT_EQ(errors.tenths[7].rows, 3);
-  EXPECT_EQ(errors.tenths[7].real, 1);
-  EXPECT_NEAR(errors.tenths[7].shareReal(), 1.0 / 3, kRounding);
+  EXPECT_EQ(errors.tenths[7].hits, 1);
+  EXPECT_NEAR(errors.tenths[7].shareOfHits(), 1.0 / 3, kRounding);
 }
 
 TEST(ExistenceErrors, BrierScoreIsTheMeanSquaredDifferenceOverAllFrames) {

@@ -19,6 +19,8 @@ TEST(MeasureNames, AreWordsWithUnits) {
   EXPECT_EQ(readableName("recall_30m"), "recall, to 30 m");
   EXPECT_EQ(readableName("latency_p99_ms"), "latency, 99th percentile [ms]");
   EXPECT_EQ(readableName("online_existence_brier"), "Brier score of existence, online");
+  EXPECT_EQ(readableName("online_kinds_log_loss"), "log loss of kinds, online");
+  EXPECT_EQ(readableName("box_width_in_2_sigma"), "share of widths within two standard deviations");
   EXPECT_EQ(readableName("box_iou_bird"), "box IoU from above");
   EXPECT_EQ(readableName("camera_end_error_percent"), "camera error at the end [%]");
   EXPECT_EQ(readableName("camera_kitti_r_deg_per_m"), "camera KITTI r [deg/m]") << "of words that are not known, too";

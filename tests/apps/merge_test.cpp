@@ -12,12 +12,13 @@
 #include "apps/tasks/batch_folder.hpp"
 #include "apps/tasks/task_record.hpp"
 #include "io/errors.hpp"
-#include "tests/io/temporary_folder.hpp"
+#include "tests/apps/merged_batch_by_hand.hpp"
 
 namespace motorcade {
 namespace {
 
 namespace fs = std::filesystem;
+using test::MergeBatch;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -36,92 +37,6 @@ TEST(RelativeChange, IsTheSameInBothDirectionsAndKnowsZero) {
   EXPECT_EQ(relativeChange(0, 2), 2);
   EXPECT_EQ(relativeChange(0, 0), 0);
 }
-
-/// A batch whose results are written by hand.
-class MergeBatch : public testing::Test {
- protected:
-  struct Result {
-    std::string drive, set = "default";
-    double ate_m = 0;
-    std::optional<std::uint32_t> seed{};
-    int repetition = 1;
-    bool labels = true;
-  };
-
-  static Task taskOf(const Result& result) {
-    std::string name = result.drive;
-    if (result.seed) name.append("-").append(std::to_string(*result.seed));
-    name.append(".").append(result.set);
-    if (result.repetition > 1) name.append(".").append(std::to_string(result.repetition));
-    return {.name = name,
-            .drive = result.drive,
-            .set = result.set,
-            .seed = result.seed,
-            .repetition = result.repetition,
-            .sequence = "/nowhere",
-            .fingerprint = "f"};
-  }
-
-  /// Rows that all claim the same, of the ninth tenth.
-  static nlohmann::json existenceOf(int rows, int real, double claimed) {
-    nlohmann::json tenths(10, {{"rows", 0}, {"real", 0}, {"probability_sum", 0}});
-    tenths[8] = {{"rows", rows}, {"real", real}, {"probability_sum", claimed * rows}};
-    const double squares = real * (1 - claimed) * (1 - claimed) + (rows - real) * claimed * claimed;
-    return {{"rows", rows}, {"brier", squares / rows}, {"tenths", tenths}};
-  }
-
-  static nlohmann::json evaluationOf(const Result& result) {
-    nlohmann::json json;
-    json["frames"] = 50;
-    json["final"]["camera"] = {{"ate_m", {{"rmse", result.ate_m}}}, {"end_error_percent", 0.5}};
-    json["final"]["camera"]["kitti"] = {{"segments", 12},
-                                        {"translation_percent", 1.234},
-                                        {"rotation_deg_per_m", 0.00321},
-                                        {"by_length", {{{"length_m", result.labels ? 100 : 10}}}}};
-    json["online"]["camera"]["kitti"] = {{"translation_percent", 2.5}, {"rotation_deg_per_m", 0.004}};
-    json["worst_frames"] = {{"camera", {{{"frame", 7}, {"rpe_t_m", result.ate_m}, {"rpe_r_deg", 0.1}}}},
-                            {"objects", nlohmann::json::array()}};
-    if (!result.labels) return json;
-    json["final"]["detection"] = {{"within_30m", {{"labels", 10}, {"found", 9}}}, {"rows", 12}, {"false_rows", 1}};
-    json["final"]["existence"] = existenceOf(120, 90, 0.8);
-    json["online"]["existence"] = existenceOf(80, 80, 0.8);
-    json["final"]["motion"]["me_t_m"] = {{"mean", 2 * result.ate_m}, {"count", 4}};
-    json["final"]["followed_motion"] = {{"objects", 2},
-                                        {"me_t_object_rms_m", 0.625},
-                                        {"me_r_object_rms_deg", 0.25},
-                                        {"me_t_m", {{"p95", 0.75}, {"max", 1.5}, {"count", 4}}}};
-    json["online"]["followed_motion"] = {{"objects", 2}, {"me_t_object_rms_m", 0.875}, {"me_r_object_rms_deg", 0.5}};
-    return json;
-  }
-
-  void write(const std::string& batch, const std::vector<Result>& results, std::vector<Task> others = {}) {
-    const BatchFolder folder(root_ / batch);
-    Plan plan{.manifest = root_ / "m.toml"};
-    for (const Result& result : results) {
-      const Task task = taskOf(result);
-      plan.tasks.push_back(task);
-      const fs::path place = folder.result(task.name);
-      fs::create_directories(runIn(place));
-      writeTaskRecord(recordIn(place), {.task = task.name, .fingerprint = "f"});
-      std::ofstream(evaluationIn(place)) << evaluationOf(result);
-      std::ofstream(runIn(place) / "summary.json") << R"({"frames": {"received": 50, "tracked_fraction": 1}, "cpu_s": 2,
-        "latency_ms": {"count": 50, "p50": 20, "p99": 30, "buckets": [[20, 30], [30, 20]]}, "peak_memory_bytes": 5e7})";
-    }
-    for (Task& task : others) plan.tasks.push_back(std::move(task));
-    fs::create_directories(root_ / batch);
-    writePlan(folder.plan(), plan);
-  }
-
-  std::string merged(const std::string& file, const MergeOptions& options) {
-    EXPECT_EQ(runMerge(options), 0);
-    std::ostringstream content;
-    content << std::ifstream(options.batch / "merged" / file).rdbuf();
-    return content.str();
-  }
-  std::string merged(const std::string& file) { return merged(file, {.batch = root_ / "a"}); }
-
-  const test::TemporaryFolder root_;
-};
 
 TEST_F(MergeBatch, EachTaskIsARowOfTheTableWithAllMeasures) {
   write("a", {{.drive = "x", .ate_m = 0.25}, {.drive = "y", .ate_m = 0.5, .labels = false}});
@@ -162,23 +77,6 @@ TEST_F(MergeBatch, PublishedFormsOfMeasuresAreColumns) {
   EXPECT_THAT(merged("results.md"),
               AllOf(HasSubstr("| 1.234 / 2.5 | 0.00321 / 0.004 |"),
                     HasSubstr("| x | 0.625 / 0.875 | - / - | - / - | 0.75 / - | 1.5 / - | 0.25 / 0.5 |")));
-}
-
-TEST_F(MergeBatch, ExistenceIsCountedOverAllDrives) {
-  write("a", {{.drive = "x", .ate_m = 0.25}, {.drive = "y", .ate_m = 0.5}, {.drive = "z", .labels = false}});
-  const auto json = nlohmann::json::parse(merged("results.json"));
-  const double brier = (90 * 0.2 * 0.2 + 30 * 0.8 * 0.8) / 120;
-  EXPECT_NEAR(json["tasks"][0]["measures"]["existence_brier"], brier, 1e-12);
-  EXPECT_TRUE(json["tasks"][2]["measures"]["existence_brier"].is_null());
-  const auto& final = json["existence"]["default"]["final"];
-  EXPECT_EQ(final["rows"], 240);
-  EXPECT_EQ(final["tenths"][8]["real"], 180);
-  EXPECT_NEAR(final["brier"], brier, 1e-12);
-  EXPECT_NEAR(final["largest_gap"], 0.05, 1e-12);
-  EXPECT_THAT(merged("results.md"), AllOf(HasSubstr("| set | estimate | rows | Brier | largest gap | 0.8 to 0.9 |\n"),
-                                          HasSubstr("| default | final | 240 | 0.19 | 0.05 | 0.75 of 0.8 (240) |\n"),
-                                          HasSubstr("| default | online | 160 | 0.04 | 0.2 | 1 of 0.8 (160) |\n")));
-  EXPECT_THAT(merged("report.html"), HasSubstr("<td class=\"number\">0.75 of 0.8 (240)</td>"));
 }
 
 TEST_F(MergeBatch, SeedsCountOnceHoweverOftenTheyWereRun) {

@@ -1,5 +1,7 @@
 #include "frontend/shape/box_belief.hpp"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "tests/frontend/shape/street_by_hand.hpp"
@@ -35,7 +37,6 @@ TEST(BoxBelief, KindsAreToldBySizeAndSpeed) {
 TEST(BoxBelief, WithoutEvidenceThereIsACarOfUsualSize) {
   const BoxEstimate estimate = estimateBox({}, 10);
   EXPECT_EQ(estimate.kind, ObjectKind::kCar);
-  EXPECT_LT(estimate.kind_probability, 0.95);
   EXPECT_NEAR(estimate.box().size_m.x(), 4, 0.5);
   EXPECT_GT(estimate.box().center_sigma_m.x(), 1);
 }
@@ -55,6 +56,17 @@ TEST(BoxBelief, HiddenFacesComeFromTheKindAndGrowSureWhenTheyAreSeen) {
   const ObjectBox found = estimateBox(rear, 10).box();
   EXPECT_NEAR(found.size_m.x(), 4.7, 0.15);
   EXPECT_LT(found.size_sigma_m.x(), 0.2);
+}
+
+TEST(BoxBelief, AKnownKindClosesWhatIsHidden) {
+  FaceInformation rear;
+  for (const Face face : {kRear, kBottom}) rear.add(Vector6d::Unit(face), -0.8, 0.1);
+  for (const auto& [kind, length_m] : {std::pair(ObjectKind::kPedestrian, 0.84), {ObjectKind::kLargeVehicle, 10.0}}) {
+    const BoxEstimate estimate = estimateBox(rear, 10, kind);
+    EXPECT_EQ(estimate.kind, kind);
+    EXPECT_NEAR(estimate.box().size_m.x(), length_m, 0.25 * length_m) << "the origin tells a little, too";
+  }
+  EXPECT_EQ(estimateBox(rear, 10, ObjectKind::kUnknown).kind, ObjectKind::kCar);
 }
 
 TEST(BoxBelief, ThePossibleVolumeHoldsWhatIsNotRuledOut) {

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "apps/evaluate/reliability.hpp"
+
+/// Probabilities of all drives together: a tenth of one drive has few rows.
+namespace motorcade {
+
+struct ResultTable;
+
+/// A probability of rows that evaluations count by its tenths.
+struct Claim {
+  const char* title;
+  std::string_view path;  // JSON pointer below `final` and `online`
+  const char* hits;       // the key of what the probability is of
+};
+/// A row is there, and it is of the kind that it names.
+inline constexpr Claim kExistenceClaim{"Existence: share that is real", "/existence", "real"};
+inline constexpr Claim kKindClaim{"Kinds named to 30 m from a track's tenth row on: share that is right",
+                                  "/kinds_within_30m/from_tenth_row/named", "right"};
+
+/// What the runs with one set of parameters claimed.
+struct ReliabilityOfSet {
+  Reliability final, online;
+};
+using ReliabilityBySet = std::map<std::string, ReliabilityOfSet>;
+
+/// Adds what an evaluation counted; one without labels, or of an earlier version, counted nothing.
+void addReliability(ReliabilityOfSet& sums, const Claim& claim, const nlohmann::json& evaluation);
+
+/// A row for each set and estimate that has rows, a column for each tenth in which any has some.
+ResultTable reliabilityTable(const Claim& claim, const ReliabilityBySet& sets);
+
+/// The same as an object for each set, with `final` and `online`.
+nlohmann::ordered_json reliabilityJson(const Claim& claim, const ReliabilityBySet& sets);
+
+}  // namespace motorcade

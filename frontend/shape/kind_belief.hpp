@@ -1,0 +1,16 @@
+#pragma once
+
+#include "frontend/shape/box_belief.hpp"
+
+namespace motorcade {
+
+/// The cuboid with what is believed of it: its kind, `unknown` unless one is likelier than 0.6, the probability of the
+/// likeliest kind, be it named or not, and the standard deviations that remain.
+///
+/// The belief is a mixture of Gaussians. Each kind has its usual sizes and speeds and a share of what moves on
+/// streets; besides, the object may be something else. All looks at it may be wrong by the same amount: by how far
+/// bodies are from cuboids, or by an outline that holds more than the object, or less. Standard deviations are around
+/// the cuboid, over the whole mixture.
+ObjectBox believedBox(const FaceInformation& evidence, double speed_mps);
+
+}  // namespace motorcade
