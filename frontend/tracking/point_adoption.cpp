@@ -56,7 +56,7 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
   if (object.kinematics.speed_mps() < kMinSpeed_mps) return;
   constexpr int kKnownFrames = 2;  // from which on an object's points tell how large it is
   const bool small = object.life.observations() >= kKnownFrames && mayBeSmall(object);
-  const Eigen::AlignedBox3d known = object.extent(0), core = object.core(SE3{});
+  const Eigen::AlignedBox3d known = small ? object.core(SE3{}) : object.extent(0);
   const std::optional<PointRegion> own = SeeThrough(scene, camera_).regionOf(object);
   std::vector<BodyPoint> adopted;
   const auto consider = [&](int i) {
@@ -64,7 +64,7 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
     if (taken[i] || p.ambiguous || p.label == PointLabel::kGround || !mayMove(p)) return;
     const BodyPoint candidate = toBody(p, object.T_cam_body, camera_);
     const bool within =
-        small ? isWithinReachOfSmall(core, candidate) : isWithinReach(known, candidate, segment != nullptr);
+        small ? isWithinReachOfSmall(known, candidate) : isWithinReach(known, candidate, segment != nullptr);
     if (!within || object.velocityChi2(*p.flow, T_world_cam) >= kFitsChi2) return;
     if (own && isSeenThrough(scene, *own, *regionOf(std::array{&p}), camera_)) return;
     taken[i] = true;
