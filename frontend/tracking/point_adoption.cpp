@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/elementary.hpp"
 #include "frontend/tracking/see_through.hpp"
 #include "frontend/tracking/small_body.hpp"
 #include "frontend/tracking/vehicle_size.hpp"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -13,6 +14,7 @@
 
 #include "apps/merge/merge_command.hpp"
 #include "apps/tasks/batch_folder.hpp"
+#include "apps/tasks/plan.hpp"
 #include "apps/tasks/task_record.hpp"
 #include "tests/io/temporary_folder.hpp"
 
