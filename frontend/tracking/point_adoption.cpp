@@ -34,7 +34,7 @@ bool isWithinReach(const Eigen::AlignedBox3d& known, const BodyPoint& candidate,
   return (close && kLongestVehicle.holds(grown, slack_m)) || (matched && kOrdinaryVehicle.holds(grown, slack_m));
 }
 
-/// The same of what may be a person or a two-wheeler: others walk and ride close by.
+/// Is a candidate close to the points of what may be a person or a two-wheeler? Others walk and ride beside it.
 bool isWithinReachOfSmall(const Eigen::AlignedBox3d& core, const BodyPoint& candidate) {
   constexpr double kReach_m = 0.4, kReachUp_m = 0.6, kMostNoise_m = 0.5, kLongest_m = 2;
   const double slack_m = kDepthNoiseSigmas * std::sqrt(candidate.covariance.trace());

@@ -15,21 +15,21 @@ struct PointRegion {
   double disparity_px;  // the median
 };
 
-/// Empty without points.
+/// The region around points; empty without points.
 std::optional<PointRegion> regionOf(std::span<const ScenePoint* const> points);
 
 /// Is the background seen between two groups of points, so that they lie on two bodies? On one body, which is convex
 /// but for details, nothing between two of its places is farther than the line between these.
 bool isSeenThrough(const SceneMotion& scene, const PointRegion& a, const PointRegion& b, const StereoCamera& camera);
 
-/// Tells what does not belong to an object, although it moves alike and a vehicle may reach so far: people walk in
-/// groups, and the street is seen between them. Larger and faster objects are not asked: one sees through windows.
+/// Tells whether the background parts something from an object that moves alike: people walk in groups, and the street
+/// is seen between them. Larger and faster objects are never parted, as one sees through the windows of vehicles.
 class SeeThrough {
  public:
   /// Both outlive it.
   SeeThrough(const SceneMotion& scene, const StereoCamera& camera) : scene_(scene), camera_(camera) {}
 
-  /// The object's points in the scene; empty where it is no small body or none of them is seen.
+  /// The region of an object's points in the scene; empty where it is no small body or none of them is seen.
   std::optional<PointRegion> regionOf(const TrackedObject& object) const;
   bool areApart(const TrackedObject& a, const TrackedObject& b) const;
   bool isApart(const TrackedObject& object, const Segment& segment) const;
