@@ -81,7 +81,6 @@ typedef struct {
   int64_t frame;     // number, from 0, after that of the pair before; -1, the default: the next one
 } motorcade_pair;
 motorcade_code motorcade_pair_init(motorcade_pair* pair);  // sets all but the size to the default
-
 /// Live: the newest pair wins, push never waits. Replay: no pair is lost, push waits for room, results are repeatable.
 typedef enum { MOTORCADE_POLICY_LIVE, MOTORCADE_POLICY_REPLAY } motorcade_policy;
 typedef enum { MOTORCADE_AXES_OPTICAL, MOTORCADE_AXES_REP103 } motorcade_axes;
@@ -114,7 +113,6 @@ typedef struct {
   int64_t dropped;           // replaced by a newer one
   int64_t results, untaken;  // given so far; lost since nobody took them (live: beyond 256)
 } motorcade_counts;
-
 /// Options may be NULL: all have their default.
 motorcade_code motorcade_tracker_create(const motorcade_camera* camera, const motorcade_options* options,
                                         motorcade_tracker** tracker);
@@ -133,7 +131,6 @@ motorcade_code motorcade_tracker_done(const motorcade_tracker* tracker, bool* do
 typedef void (*motorcade_take)(motorcade_result* result, void* user);
 motorcade_code motorcade_tracker_on_result(motorcade_tracker* tracker, motorcade_take take, void* user);
 motorcade_code motorcade_tracker_counts(const motorcade_tracker* tracker, motorcade_counts* counts);
-
 /// Lost and rejected: the pose is predicted, with a wide covariance.
 typedef enum { MOTORCADE_STATUS_GOOD, MOTORCADE_STATUS_LOST, MOTORCADE_STATUS_REJECTED } motorcade_status;
 /// Why a frame is not simply good; good with a cause: measured, but less surely.
@@ -158,7 +155,6 @@ typedef struct {
   double latency_ms;    // from push to the result
   const char* problem;  // why the pair was lost or rejected, or the rig is wrong; lives as long as the result
 } motorcade_frame;
-
 typedef enum { MOTORCADE_STATE_MOVING, MOTORCADE_STATE_STOPPED, MOTORCADE_STATE_PREDICTED } motorcade_state;
 typedef struct {
   size_t struct_size;

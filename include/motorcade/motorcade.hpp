@@ -44,7 +44,6 @@ class MOTORCADE_API Error : public std::runtime_error {
 struct Camera {
   int width_px = 0, height_px = 0;                                    // of the images that are pushed
   double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0, baseline_m = 0;  // rectified; not read where there is a rig
-
   enum class Distortion { kNone, kRadialTangential, kEquidistant };
   struct Lens {
     double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0;
@@ -56,7 +55,6 @@ struct Camera {
     std::array<double, 12> T_right_left{};
   };
   std::optional<Rig> rig{};
-
   /// Pixels of the left image, rectified, that are of no use: dead ones, borders, logos. So many columns and rows at
   /// the sides, and those of the mask, row by row, that are not 0. A bonnet is found without it.
   struct Ignored {
@@ -91,7 +89,6 @@ struct Result {
   enum class Cause { kNone, kAfterGap, kFewPoints, kNoPoints, kUnlinked, kFailed, kUnusable, kOutOfOrder, kTooLate };
   enum class State { kMoving, kStopped, kPredicted };  // stopped: moved before; predicted: not seen in this frame
   enum class Kind { kUnknown, kCar, kLargeVehicle, kTwoWheeler, kPedestrian };
-
   /// The left image's pixels that show an object: cells of `cell_px` pixels each way, row by row, 1 where it is seen.
   struct Mask {
     int left_px = 0, top_px = 0, cell_px = 1, width_cells = 0, height_cells = 0;
@@ -106,18 +103,15 @@ struct Result {
     std::array<double, 9> velocity_covariance{};          // [m^2/s^2], the camera's own drift left out
     double yaw_rate_radps = 0, yaw_rate_sigma_radps = 0;  // about the body's z axis
     double age_s = 0;                                     // since it was first reported
-    /// Probability that it is there and moves, or moved before. Objects that are less likely there than the key
-    /// `frontend.shapes.min_existence` of `Options::settings` says are left out.
-    double existence_probability = 1;
-    int points = 0;                        // seen on it in this frame
-    std::array<double, 4> image_box_px{};  // left, top, right, bottom in the left image, inclusive
+    double existence_probability = 1;                     // that it is there and moves, or moved before
+    int points = 0;                                       // seen on it in this frame
+    std::array<double, 4> image_box_px{};                 // left, top, right, bottom in the left image, inclusive
     /// The cuboid along the body's axes, its bottom on the ground; length 0 where it is not known yet.
     std::array<double, 3> box_center_body_m{}, box_size_m{}, box_size_sigma_m{};  // length, width, height
     Kind kind = Kind::kUnknown;
     double kind_probability = 0;
     std::optional<Mask> mask{};  // with `Options::masks`, where the outline was found
   };
-
   std::int64_t frame = -1, stamp_ns = 0;  // of the pair; where the clock was set back, stamps go on all the same
   Status status = Status::kGood;
   Cause cause = Cause::kNone;
@@ -130,8 +124,7 @@ struct Result {
   std::vector<Object> objects{};  // by id
   int dropped_before = 0;         // pairs since the result before that a newer one replaced
   double latency_ms = 0;          // from `push` to the result
-  /// Why the pair is of no use, what failed, or what of the rig makes results worthless, in a sentence; see `cause` for
-  /// the rest.
+  /// Why the pair is of no use, what failed, or what of the rig makes results worthless; see `cause` for the rest.
   std::string problem{};
 };
 
@@ -166,13 +159,11 @@ class MOTORCADE_API Tracker {
     std::int64_t dropped = 0;               // replaced by a newer one
     std::int64_t results = 0, untaken = 0;  // given so far; lost since nobody took them (live: beyond 256)
   };
-
   /// Throws Error, or std::bad_alloc. `options` keep their defaults where they are not given.
   Tracker(const Camera& camera, const Options& options);
   explicit Tracker(const Camera& camera);
   /// Abandons what is in flight, ends calls that wait in other threads, and joins its own.
   ~Tracker();
-
   /// A pair of another size than the camera's, without pixels, not after the one before (a clock that was set back is
   /// followed after four pairs) or less than half a millisecond after it, as stamps in another unit are, after `close`,
   /// or beside another thread's push is rejected.
@@ -185,9 +176,8 @@ class MOTORCADE_API Tracker {
   /// Waits for the next result; empty when there is none in time, and at once when there will be none (`done`).
   std::optional<Result> wait(std::chrono::milliseconds timeout);
   bool done() const noexcept;
-  /// From now on results, those that wait first, go to this callback, one by one on a thread of the tracker, not to
-  /// `poll` and `wait`; empty: to them again. The one before has returned then. It may throw, and call all but
-  /// ~Tracker.
+  /// From now on results, those that wait first, go to this callback, one by one on a thread of the tracker; empty: to
+  /// `poll` and `wait` again. The one before has returned then. It may throw, and call all but ~Tracker.
   void on_result(std::function<void(Result)> take);
   Counts counts() const noexcept;
 
