@@ -105,12 +105,14 @@ BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps, Objec
     return std::pair(known == ObjectKind::kUnknown || p.estimate.kind == known, p.log_evidence);
   };
   BoxEstimate estimate = std::ranges::max_element(posteriors, {}, rank)->estimate;
-  const BoxEstimate& car = posteriors.front().estimate;
-  estimate.usual_least = estimate.least().cwiseMin(car.least()),
-  estimate.usual_most = estimate.most().cwiseMax(car.most());
+  const bool small = known == ObjectKind::kPedestrian || known == ObjectKind::kTwoWheeler;
+  const BoxEstimate& largest = small ? estimate : posteriors.front().estimate;  // a car's
+  estimate.usual_least = estimate.least().cwiseMin(largest.least()),
+  estimate.usual_most = estimate.most().cwiseMax(largest.most());
   estimate.possible_least = estimate.usual_least, estimate.possible_most = estimate.usual_most;
   for (const Posterior& p : posteriors) {
     if (p.log_evidence < likeliest->log_evidence + logarithm(kRuledOut)) continue;
+    if (small && p.estimate.kind != known) continue;
     const Vector6d sigma = p.estimate.covariance.diagonal().cwiseSqrt();
     for (int axis = 0; axis < 3; ++axis) {
       double &least = estimate.possible_least[axis], &most = estimate.possible_most[axis];

@@ -32,7 +32,7 @@ struct BoxEstimate {
   Eigen::Vector3d least() const { return {faces[kRear], faces[kRight], faces[kBottom]}; }
   Eigen::Vector3d most() const { return {faces[kFront], faces[kLeft], faces[kTop]}; }
   /// The volume that the cuboid may fill: of all kinds that are not ruled out, with a standard deviation to each side.
-  /// `usual` is that of the likeliest kind and of a car.
+  /// `usual` is that of the likeliest kind and of a car, unless the kind is known to be smaller.
   Eigen::Vector3d usual_least = Eigen::Vector3d::Zero(), usual_most = Eigen::Vector3d::Zero();
   Eigen::Vector3d possible_least = Eigen::Vector3d::Zero(), possible_most = Eigen::Vector3d::Zero();
   ObjectBox box() const;
@@ -41,7 +41,7 @@ struct BoxEstimate {
 /// Each kind's usual size closes what the evidence leaves open (hidden faces), and its fit to the evidence and to the
 /// speed tells the kind: a mixture of Gaussians, of which the likeliest gives the cuboid, or the likeliest of a kind
 /// that is known. The sizes are the published means of KITTI's classes. Standard deviations are those of independent
-/// looks; `believedBox` has those that remain.
+/// looks; `believedBox` has those that remain. What is known to walk or ride fills no more than a volume of its kind.
 BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps, ObjectKind known = ObjectKind::kUnknown);
 
 }  // namespace motorcade

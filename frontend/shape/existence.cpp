@@ -15,13 +15,18 @@ constexpr double kMostBySpeed = 2, kLeastBySpeed = -4;
 constexpr double kMostPerSpeed = 0.5;  // per m/s: most wrong matches seem to move slowly
 constexpr double kForgetting = 0.1;    // of the best recent speed, a frame
 constexpr double kMostByVerdicts = 6;
+constexpr double kSure = 2.5;           // sum of verdicts from which on a body was surely seen: one clear verdict
+constexpr double kSlip = 1.5;           // log odds against a track's slipping off its body: one in five does
+constexpr std::size_t kMostSums = 100;  // that are kept: more than an object has frames in the back-end's window
 
-/// How often tracks of bodies, and tracks of nothing, get a verdict for a while.
+/// How often tracks of bodies, and tracks of nothing, get a verdict for a while, as counted over drives: those whose
+/// online rows match what moves, and those whose rows match nothing.
 struct VerdictShare {
   double of_body, of_nothing;
 };
-/// The shares of moved, mixed, rested and nothing, in the order of MotionVerdict.
-constexpr std::array<VerdictShare, 4> kShares{{{0.7, 0.15}, {0.07, 0.07}, {0.1, 0.35}, {0.25, 0.43}}};
+/// In the order of MotionVerdict.
+constexpr std::array<VerdictShare, 7> kShares{
+    {{0.5, 0.04}, {0.2, 0.1}, {0.06, 0.07}, {0.03, 0.17}, {0.01, 0.06}, {0.01, 0.07}, {0.17, 0.4}}};
 
 /// How much likelier a speed is among those of traffic than as an error of something at rest: both are Gaussian.
 double speedEvidence(double speed_mps, double sigma_mps) {
@@ -46,17 +51,25 @@ void Existence::addSettledSpeed(double speed_mps, double sigma_mps) {
 }
 
 /// Successive frames show much the same: the n-th with one verdict counts as a part of 1 / n.
-void Existence::addVerdict(MotionVerdict verdict) {
+void Existence::addVerdict(FrameId frame, MotionVerdict verdict) {
   if (verdict == MotionVerdict::kUntold) return;
   repeated_ = verdict == last_ ? repeated_ + 1 : 1;
   last_ = verdict;
   const VerdictShare& share = kShares[static_cast<std::size_t>(verdict)];
   verdicts_ += logarithm(share.of_body / share.of_nothing) / repeated_;
   verdicts_ = std::clamp(verdicts_, -kMostByVerdicts, kMostByVerdicts);
+  while (!largest_.empty() && largest_.back().verdicts <= verdicts_) largest_.pop_back();
+  largest_.push_back({frame, verdicts_});
+  if (largest_.size() > kMostSums) largest_.pop_front();
 }
 
 double Existence::probability() const { return probabilityOf(std::max(recent_speed_, settled_speed_) + verdicts_); }
 
-double Existence::settledProbability() const { return probabilityOf(settled_speed_ + verdicts_); }
+double Existence::settledProbability(FrameId frame) const {
+  const auto later = std::ranges::lower_bound(largest_, frame, {}, &Sum::frame);
+  const bool surely_seen = later != largest_.end() && later->verdicts >= kSure;
+  const double before_slip = surely_seen ? later->verdicts - kSlip : verdicts_;
+  return probabilityOf(settled_speed_ + std::max(verdicts_, before_slip));
+}
 
 }  // namespace motorcade

@@ -1,12 +1,19 @@
 #pragma once
 
+#include <deque>
+
+#include "core/messages.hpp"
+
 namespace motorcade {
 
 /// What the image around an object's followed points says of one frame.
 enum class MotionVerdict {
   kMoved,    // nearly all of it moved with the body
-  kMixed,    // some did, some rested
+  kHardly,   // the same of a point or two, which may well be wrong
+  kMixed,    // some of it did, some rested
   kRested,   // nearly all of it rested
+  kOnRoad,   // nearly all of its points lie on the road, as a shadow or what a wet road mirrors does
+  kWithin,   // nearly all of its points lie within an object that was known before
   kNothing,  // no point of the object has a surface around it that tells, although motion and rest are well apart
   kUntold    // motion and rest cannot be told apart
 };
@@ -21,16 +28,25 @@ class Existence {
   void addSpeed(double speed_mps, double sigma_mps);
   /// The same of a settled or final estimate: what moved then has moved for good.
   void addSettledSpeed(double speed_mps, double sigma_mps);
-  void addVerdict(MotionVerdict verdict);
+  /// Call in frame order.
+  void addVerdict(FrameId frame, MotionVerdict verdict);
 
   /// Uses all that was seen up to now.
   double probability() const;
-  /// Uses what is settled of the motion alone: online estimates may have been wrong.
-  double settledProbability() const;
+  /// That it was there in a frame, by all verdicts, as far as known before and after it. Uses what is settled of the
+  /// motion alone: online estimates may have been wrong. What was surely seen later on was there before, even where
+  /// the track has slipped off it since.
+  double settledProbability(FrameId frame) const;
 
  private:
   double recent_speed_, settled_speed_;  // log likelihood ratios
+  /// The sum of verdicts after a frame, where no later one is larger.
+  struct Sum {
+    FrameId frame;
+    double verdicts;
+  };
   double verdicts_ = 0;
+  std::deque<Sum> largest_;  // oldest first, and so the largest
   MotionVerdict last_ = MotionVerdict::kUntold;
   int repeated_ = 0;
 };

@@ -163,18 +163,31 @@ void setSpread(ObjectBox& box, const Components& components, int axis) {
   box.center_sigma_m[axis] = std::sqrt(of_center), box.size_sigma_m[axis] = std::sqrt(of_size);
 }
 
+double probabilityOf(ObjectKind kind, const Components& components) {
+  double probability = 0;
+  for (const Component& c : components) probability += c.kind == kind ? c.weight : 0;
+  return probability;
+}
+
 void setKind(ObjectBox& box, const Components& components) {
   box.kind = ObjectKind::kUnknown, box.kind_probability = 0;
   for (const BelievedKind& believed : kKindsOfStreets) {
     if (believed.kind == ObjectKind::kUnknown) continue;
-    double probability = 0;
-    for (const Component& c : components) probability += c.kind == believed.kind ? c.weight : 0;
+    const double probability = probabilityOf(believed.kind, components);
     if (probability > kLeastNamed) box.kind = believed.kind;
     box.kind_probability = std::max(box.kind_probability, probability);
   }
 }
 
 }  // namespace
+
+ObjectKind smallKind(const FaceInformation& evidence, double speed_mps, double least) {
+  const Components components = componentsOf(evidence, speed_mps);
+  const double walks = probabilityOf(ObjectKind::kPedestrian, components),
+               rides = probabilityOf(ObjectKind::kTwoWheeler, components);
+  if (std::max(walks, rides) < least) return ObjectKind::kUnknown;
+  return walks > rides ? ObjectKind::kPedestrian : ObjectKind::kTwoWheeler;
+}
 
 ObjectBox believedBox(const FaceInformation& evidence, double speed_mps) {
   const Components components = componentsOf(evidence, speed_mps);

@@ -13,4 +13,7 @@ namespace motorcade {
 /// the cuboid, over the whole mixture.
 ObjectBox believedBox(const FaceInformation& evidence, double speed_mps);
 
+/// Pedestrian or two-wheeler, the likelier of both, where its probability is `least` or more; `unknown` elsewhere.
+ObjectKind smallKind(const FaceInformation& evidence, double speed_mps, double least);
+
 }  // namespace motorcade

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <vector>
 
 #include "frontend/shape/motion_evidence.hpp"
+#include "frontend/shape/other_bodies.hpp"
 
 namespace motorcade {
 namespace {
@@ -14,17 +14,10 @@ constexpr double kReach_m = 0.3;                 // of a point's surroundings, o
 constexpr int kSteps = 2;                        // of the samples to each side of the point
 constexpr double kDepth_m = 0.5, kSlack_px = 1;  // by which its surface may leave the point's depth, and its disparity
 constexpr int kLeastTold_gray = 2;               // per pixel: three standard deviations of the images' noise
-constexpr double kNearlyAll = 0.75;              // of the points with a vote
+constexpr double kNearlyAll = 0.75;              // of the points
+constexpr int kEnough = 3;                       // points that moved, so that they are no chance
 constexpr int kSlack = 1;                        // cells by which an estimate may misplace the surface
 constexpr int kLeastAhead = 3;                   // samples by which one side wins
-
-/// What goes along with another object, in place of what rests: a pattern that repeats on its flank may seem to go
-/// another way.
-struct AgainstOther {
-  Eigen::AlignedBox3d reach;  // of the other, in its body frame
-  SE3 T_body_cam;
-  ObjectView::Before before;
-};
 
 /// The cells of the map that show the surface around a point.
 std::vector<int> cellsAround(const PointMeasurement& point, const LevelDisparities& disparities, double z_m,
@@ -46,24 +39,36 @@ std::vector<int> cellsAround(const PointMeasurement& point, const LevelDispariti
   return cells;
 }
 
-/// The view against the object on which the point may lie; null where it lies on none.
-const ObjectView::Before* againstOther(const Eigen::Vector3d& p_cam, std::span<const AgainstOther> against) {
-  const auto holds = [&](const AgainstOther& other) { return other.reach.contains(other.T_body_cam * p_cam); };
-  const auto of = std::ranges::find_if(against, holds);
-  return of != against.end() ? &of->before : nullptr;
+/// A point of the object as it was measured, and where that is.
+struct PlacedPoint {
+  const PointMeasurement* measured;
+  Eigen::Vector3d p_cam;
+};
+
+std::vector<PlacedPoint> placed(const std::vector<PointMeasurement>& points, const ObjectView& view,
+                                const StereoCamera& camera) {
+  std::vector<PlacedPoint> placed;
+  for (const PointMeasurement& point : points) {
+    const Eigen::Vector3d uvd_px = point.uvd_px.cast<double>() + Eigen::Vector3d(0, 0, view.disparity_offset_px);
+    if (uvd_px.z() > 0) placed.push_back({&point, camera.triangulate(uvd_px)});
+  }
+  return placed;
 }
 
-std::vector<AgainstOther> againstOthers(const ObjectView& view) {
-  constexpr double kMargin_m = 0.5;  // of another's cuboid
-  std::vector<AgainstOther> against;
-  for (const ObjectView::Other& other : view.others) {
-    if (!other.T_before_cam) continue;
-    Eigen::AlignedBox3d reach(other.least, other.most);
-    reach.min().array() -= kMargin_m, reach.max().array() += kMargin_m;
-    against.push_back({reach, other.T_body_cam, *view.well_before});
-    against.back().before.T_before_cam = *other.T_before_cam;
-  }
-  return against;
+bool isTrueOfNearlyAll(const std::vector<PlacedPoint>& points, const auto& isTrue) {
+  const auto of = std::ranges::count_if(points, isTrue, &PlacedPoint::p_cam);
+  return !points.empty() && static_cast<double>(of) >= kNearlyAll * static_cast<double>(points.size());
+}
+
+bool lieOnRoad(const std::vector<PlacedPoint>& points, const GroundPlane& ground) {
+  constexpr double kNoise_m = 0.2;  // of the road's height
+  return isTrueOfNearlyAll(points, [&](const Eigen::Vector3d& p_cam) { return ground.heightOf_m(p_cam) < kNoise_m; });
+}
+
+bool lieWithinAnother(const std::vector<PlacedPoint>& points, const OtherBodies& others) {
+  constexpr double kMargin_m = 0.3;  // two standard deviations of a cuboid's face; others pass at half a meter and more
+  return isTrueOfNearlyAll(points,
+                           [&](const Eigen::Vector3d& p_cam) { return others.around(p_cam, kMargin_m) != nullptr; });
 }
 
 /// Points around which the image moved with the body, and around which it rested.
@@ -71,19 +76,16 @@ struct Votes {
   int moved = 0, rested = 0;
 };
 
-Votes votesOf(const std::vector<PointMeasurement>& points, const LevelDisparities& disparities, const ObjectView& view,
-              const StereoCamera& camera) {
+Votes votesOf(const std::vector<PlacedPoint>& points, const LevelDisparities& disparities, const ObjectView& view,
+              const OtherBodies& others, const StereoCamera& camera) {
   constexpr int kLeast = kLeastTold_gray * MotionEvidence::kPixels;
-  const std::vector<AgainstOther> against = againstOthers(view);
+  constexpr double kMargin_m = 0.5;  // of another's cuboid, on which the point may lie
   Votes votes;
-  for (const PointMeasurement& point : points) {
-    const Eigen::Vector3d uvd_px = point.uvd_px.cast<double>() + Eigen::Vector3d(0, 0, view.disparity_offset_px);
-    if (uvd_px.z() <= 0) continue;
-    const Eigen::Vector3d p_cam = camera.triangulate(uvd_px);
-    const ObjectView::Before* other = againstOther(p_cam, against);
+  for (const PlacedPoint& point : points) {
+    const ObjectView::Before* other = others.around(point.p_cam, kMargin_m);
     const MotionEvidence rests_rather(disparities, view, other ? *other : *view.well_before, camera, kSlack);
     int moved = 0, rested = 0;
-    for (const int rests : rests_rather(cellsAround(point, disparities, p_cam.z(), camera)))
+    for (const int rests : rests_rather(cellsAround(*point.measured, disparities, point.p_cam.z(), camera)))
       moved += -rests > kLeast, rested += rests > kLeast;
     votes.moved += moved >= rested + kLeastAhead;
     votes.rested += rested >= moved + kLeastAhead;
@@ -91,17 +93,25 @@ Votes votesOf(const std::vector<PointMeasurement>& points, const LevelDisparitie
   return votes;
 }
 
+MotionVerdict verdictOf(const Votes& votes, bool well_apart) {
+  const double all = votes.moved + votes.rested;
+  if (all == 0) return well_apart ? MotionVerdict::kNothing : MotionVerdict::kUntold;
+  if (votes.moved >= kNearlyAll * all) return votes.moved >= kEnough ? MotionVerdict::kMoved : MotionVerdict::kHardly;
+  return votes.rested >= kNearlyAll * all ? MotionVerdict::kRested : MotionVerdict::kMixed;
+}
+
 }  // namespace
 
 MotionVerdict motionVerdict(const ObjectObservation* observed, const LevelDisparities* disparities,
                             const ObjectView& view, const StereoCamera& camera) {
   if (!view.well_before) return MotionVerdict::kUntold;
-  const Votes votes = observed && disparities ? votesOf(observed->measured, *disparities, view, camera) : Votes{};
-  const double all = votes.moved + votes.rested;
-  if (all == 0)
-    return view.well_before->apart > ObjectView::kWellApart ? MotionVerdict::kNothing : MotionVerdict::kUntold;
-  if (votes.moved >= kNearlyAll * all) return MotionVerdict::kMoved;
-  return votes.rested >= kNearlyAll * all ? MotionVerdict::kRested : MotionVerdict::kMixed;
+  const bool well_apart = view.well_before->apart > ObjectView::kWellApart;
+  if (!observed) return verdictOf({}, well_apart);
+  const std::vector<PlacedPoint> points = placed(observed->measured, view, camera);
+  const OtherBodies others(view, camera);
+  if (lieOnRoad(points, view.ground)) return MotionVerdict::kOnRoad;
+  if (lieWithinAnother(points, others)) return MotionVerdict::kWithin;
+  return verdictOf(disparities ? votesOf(points, *disparities, view, others, camera) : Votes{}, well_apart);
 }
 
 }  // namespace motorcade

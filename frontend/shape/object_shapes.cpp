@@ -8,6 +8,7 @@
 #include "core/elementary.hpp"
 #include "frontend/motion/shared_velocity_error.hpp"
 #include "frontend/shape/face_measurement.hpp"
+#include "frontend/shape/in_view.hpp"
 #include "frontend/shape/kind_belief.hpp"
 #include "frontend/shape/motion_verdict.hpp"
 #include "frontend/shape/outline_completion.hpp"
@@ -60,12 +61,6 @@ std::optional<Eigen::AlignedBox3d> extentOf(const std::vector<PointMeasurement>&
   return Eigen::AlignedBox3d(least, most);
 }
 
-/// Does the image's border cut an object off? At the left, so does the border of what the right camera sees.
-bool isCutOff(const Box& points, double disparity_px, const StereoCamera& camera) {
-  constexpr double kBorder_px = 40;
-  return points.left_px < disparity_px + kBorder_px || points.right_px > camera.width_px - kBorder_px;
-}
-
 /// The points that an object is found by mostly lie on the face of which the camera sees most.
 FaceInformation nearFaceAtPoints(const ObjectView& view) {
   constexpr double kSigma_m = 0.6;
@@ -79,30 +74,6 @@ FaceInformation nearFaceAtPoints(const ObjectView& view) {
   else
     near.add(Vector6d::Unit(2 * axis + 1), view.points->max()[axis], kSigma_m);
   return near;
-}
-
-/// How much of a cuboid's width is where both cameras see it.
-double shareInImages(const ObjectBox& box, const SE3& T_cam_body, const StereoCamera& camera) {
-  constexpr double kNear_m = 1;
-  const Eigen::Vector3d least = box.center_body - 0.5 * box.size_m, most = box.center_body + 0.5 * box.size_m;
-  double left_px = 1e9, right_px = -1e9, hidden_px = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d p_cam = T_cam_body * cornerOf(least, most, corner);
-    if (p_cam.z() < kNear_m) return 0;
-    const double u_px = camera.cx_px + camera.fx_px * p_cam.x() / p_cam.z();
-    if (u_px < left_px) left_px = u_px, hidden_px = camera.fx_px * camera.baseline_m / p_cam.z();
-    right_px = std::max(right_px, u_px);
-  }
-  return (std::min(right_px, camera.width_px - 1.0) - std::max(left_px, hidden_px)) / (right_px - left_px);
-}
-
-/// Drops rows that but predict what has left the images, for the most part.
-void dropLeft(FrameEstimate& frame, const StereoCamera& camera) {
-  constexpr double kMostly = 0.5;
-  std::erase_if(frame.objects, [&](const ObjectEstimate& object) {
-    return object.state == ObjectState::kPredicted && object.cuboid &&
-           shareInImages(*object.cuboid, frame.T_world_cam.inverse() * object.T_world_body, camera) < kMostly;
-  });
 }
 
 /// What the frame's earlier stages measured of an object; null where it was not seen.
@@ -119,14 +90,14 @@ void dropUnlikely(FrameEstimate& frame, double min_existence) {
 }
 
 /// An object that was known before another one may have the other's points on it: how it moved since `before` tells.
-std::vector<ObjectView::Other> cuboidsBeside(TrackId track, const FrameEstimate& frame,
-                                             const std::optional<ObjectView::Before>& before,
+std::vector<ObjectView::Other> cuboidsBeside(TrackId track, const std::vector<ObjectEstimate>& objects,
+                                             const SE3& T_world_cam, const std::optional<ObjectView::Before>& before,
                                              const EarlierViews& earlier) {
   std::vector<ObjectView::Other> others;
-  for (const ObjectEstimate& object : frame.objects) {
+  for (const ObjectEstimate& object : objects) {
     if (object.track == track || !object.cuboid) continue;
     const ObjectBox& box = *object.cuboid;
-    const SE3 T_body_cam = (frame.T_world_cam.inverse() * object.T_world_body).inverse();
+    const SE3 T_body_cam = object.T_world_body.inverse() * T_world_cam;
     others.push_back({T_body_cam, box.center_body - 0.5 * box.size_m, box.center_body + 0.5 * box.size_m});
     const SE3* place = before && object.track < track ? earlier.place(object.track, before->frame) : nullptr;
     if (place) others.back().T_before_cam = *place * T_body_cam;
@@ -161,8 +132,12 @@ EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& 
     if (const auto known = shapes_.find(object.track); known != shapes_.end())
       setBox(object, estimateBox(known->second.evidence, known->second.speed_mps).box(),
              T_cam_world * object.T_world_body);
+  predicted_ = lost_.predictedIn(shaped->online);
+  for (const ObjectEstimate& lost : predicted_)
+    earlier_.addPlace(lost.track, shaped->online.frame, T_cam_world * lost.T_world_body);
   for (ObjectEstimate& object : shaped->online.objects) lookAt(object, inputs, shaped->online, shaped->masks);
   dropLeft(shaped->online, camera_);
+  lost_.remember(shaped->online);
   dropUnlikely(shaped->online, params_.min_existence);
   std::erase_if(shaped->masks, [&](const ObjectMask& mask) {
     return std::ranges::find(shaped->online.objects, mask.track, &ObjectEstimate::track) ==
@@ -187,7 +162,8 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
     const auto* observed = observationOf(object.track, *inputs.measurements);
     shape.existence.addSpeed(object.velocity_world_mps.norm(),
                              speedSigma_mps(object, frame.T_world_cam, camera_, camera_speed_mps_));
-    shape.existence.addVerdict(motionVerdict(observed, seen ? &seen->disparities : nullptr, view, camera_));
+    shape.existence.addVerdict(frame.frame,
+                               motionVerdict(observed, seen ? &seen->disparities : nullptr, view, camera_));
   }
   if (seen) {
     if (predicted && movesWithBody(seen->outline, seen->disparities, view, camera_))
@@ -230,16 +206,30 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
   const auto* observed = observationOf(object.track, *inputs.measurements);
   if (observed) view.points = extentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
   if (is_new && view.points) {
-    const double disparity_px = camera_.fx_px * camera_.baseline_m / T_cam_body.translation().z();
-    if (!isCutOff(observed->box, disparity_px, camera_)) shape.evidence = shape.first = nearFaceAtPoints(view);
+    if (!isCutOff(observed->box, T_cam_body, camera_)) shape.evidence = shape.first = nearFaceAtPoints(view);
     view.box = estimateBox(shape.evidence, shape.speed_mps);
   }
+  if (const auto small = smallKindOf(view, observed, shape); small != ObjectKind::kUnknown)
+    view.box = estimateBox(shape.evidence, shape.speed_mps, small);
   view.level = sight_.levelOf(view, static_cast<int>(inputs.features->right.levels.size()));
   if (!is_new) view.before = earlier_.last(object.track, view, *inputs.features);
   view.well_before = earlier_.wellApart(object.track, view, *inputs.features);
-  view.others = cuboidsBeside(object.track, frame, view.well_before, earlier_);
+  view.others = cuboidsBeside(object.track, frame.objects, frame.T_world_cam, view.well_before, earlier_);
+  view.lost = cuboidsBeside(object.track, predicted_, frame.T_world_cam, view.well_before, earlier_);
   earlier_.addPlace(object.track, frame.frame, T_cam_body);
   return view;
+}
+
+/// Pedestrian or two-wheeler, where the object may well be one. It is looked for in a small volume then: an outline
+/// that outgrows it tells of a car soon enough, while that of a person in a car's volume takes in what is beside.
+ObjectKind ObjectShapes::smallKindOf(const ObjectView& view, const ObjectObservation* observed,
+                                     const Shape& shape) const {
+  constexpr double kFastest_mps = 8, kLongest_m = 1.8;
+  constexpr double kMayWellBe = 0.2, kRather = 0.6;  // what is cut off looks small
+  if (shape.speed_mps > kFastest_mps) return ObjectKind::kUnknown;
+  if (view.points && view.points->sizes().head<2>().norm() > kLongest_m) return ObjectKind::kUnknown;
+  const bool cut_off = observed && isCutOff(observed->box, view.T_cam_body, camera_);
+  return smallKind(shape.evidence, shape.speed_mps, cut_off ? kRather : kMayWellBe);
 }
 
 /// What the outline says of the faces, and `view.box` with it; empty, and the box as it was, where that makes no sense.
@@ -302,7 +292,7 @@ void ObjectShapes::gatherShapes(FrameEstimate& frame) const {
       markSeen(object, dense->second);
     const SE3 T_cam_body = frame.T_world_cam.inverse() * object.T_world_body;
     setBox(object, believedBox(evidenceAround(shape->second, frame.frame), shape->second.speed_mps), T_cam_body);
-    object.existence_probability = shape->second.existence.settledProbability();
+    object.existence_probability = shape->second.existence.settledProbability(frame.frame);
   }
   dropLeft(frame, camera_);
   dropUnlikely(frame, params_.min_existence);

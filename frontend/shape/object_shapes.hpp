@@ -11,6 +11,7 @@
 #include "frontend/shape/box_belief.hpp"
 #include "frontend/shape/earlier_views.hpp"
 #include "frontend/shape/existence.hpp"
+#include "frontend/shape/lost_objects.hpp"
 #include "frontend/shape/object_sight.hpp"
 #include "frontend/shape/outline.hpp"
 
@@ -62,6 +63,7 @@ class ObjectShapes {
   };
   void lookAt(ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame, std::vector<ObjectMask>& masks);
   ObjectView viewOf(const ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame, Shape& shape);
+  ObjectKind smallKindOf(const ObjectView& view, const ObjectObservation* observed, const Shape& shape) const;
   std::optional<FaceInformation> measured(const Sight& seen, ObjectView& view, const Shape& shape) const;
   void complete(std::vector<FrameEstimate>& finals);
   void settleMotion(const FrameEstimate& frame);
@@ -76,7 +78,9 @@ class ObjectShapes {
   StereoCamera camera_;
   ObjectSight sight_;
   EarlierViews earlier_;
-  double camera_speed_mps_ = 0;  // in the newest frame
+  LostObjects lost_;
+  std::vector<ObjectEstimate> predicted_;  // lost ones in the newest frame
+  double camera_speed_mps_ = 0;            // in the newest frame
   std::map<TrackId, Shape> shapes_;
 };
 

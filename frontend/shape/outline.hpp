@@ -43,6 +43,7 @@ struct ObjectView {
   std::optional<Before> before{};       // the frame before, where the object was reported in it
   std::optional<Before> well_before{};  // a recent one in which the body and what rests are well apart, if there is one
   std::vector<Other> others{};          // cuboids of other objects, where the object cannot be
+  std::vector<Other> lost{};            // those of objects that were lost, where they would be: it may be one of them
 };
 
 /// Disparities of a window at some level of the image pyramid.

@@ -25,7 +25,21 @@ bool isWithin(const TrackedObject& one, const SE3& T_other_one, const TrackedObj
   return static_cast<double>(inside) > kMost * static_cast<double>(one.points.size());
 }
 
-bool areDuplicates(const TrackedObject& older, const TrackedObject& younger) {
+/// What moves alike behind the front of a lorry or a bus, as the camera sees it, and in its track is its flank: a car
+/// that follows it is hidden, or stands out with a gap between them. What is nearer than the front may be a car before
+/// it.
+bool isFlank(const TrackedObject& older, const TrackedObject& younger, const SE3& T_older_younger, double slack_m,
+             const SeeThrough& see_through) {
+  constexpr double kHigherThanAVan_m = 2.3;
+  const Eigen::AlignedBox3d own = older.core(SE3{});
+  if (own.sizes().z() < kHigherThanAVan_m) return false;
+  const Eigen::Vector3d front_cam = older.T_cam_body * own.center();
+  return (younger.T_cam_body * younger.middle()).norm() > front_cam.norm() &&
+         kLongestVehicle.holds(own.merged(younger.core(T_older_younger)), slack_m) &&
+         !see_through.isGapBetween(older, younger);
+}
+
+bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, const SeeThrough& see_through) {
   // A younger one that was observed for longer than the older one is lost is another vehicle.
   if (older.life.missed() > 0 && younger.life.observations() > 1) return false;
   const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
@@ -39,6 +53,8 @@ bool areDuplicates(const TrackedObject& older, const TrackedObject& younger) {
   // Not where the younger is tall: a car before a lorry would end in it.
   const VehicleSize& size = isTall(own) ? kTallVehicle : kOrdinaryVehicle;
   if (size.holds(own.merged(other), slack_m)) return true;
+  if (difference_mps < kMaxSpeedDifference_mps && isFlank(older, younger, T_older_younger, slack_m, see_through))
+    return true;
   return difference_mps < kMaxSpeedDifference_mps &&
          (isWithin(younger, T_older_younger, older) || isWithin(older, T_older_younger.inverse(), younger));
 }
@@ -60,7 +76,7 @@ void mergeDuplicates(std::vector<TrackedObject>& objects, const SeeThrough& see_
   for (std::size_t i = 0; i < objects.size(); ++i) {
     for (std::size_t j = i + 1; j < objects.size(); ++j) {
       TrackedObject &older = objects[i], &younger = objects[j];
-      if (ended(older) || ended(younger) || !areDuplicates(older, younger)) continue;
+      if (ended(older) || ended(younger) || !areDuplicates(older, younger, see_through)) continue;
       if (see_through.areApart(older, younger)) continue;
       if (younger.life.reported() && !older.life.reported())
         merge(younger, older);

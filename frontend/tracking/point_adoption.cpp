@@ -45,6 +45,13 @@ bool isWithinReachOfSmall(const Eigen::AlignedBox3d& core, const BodyPoint& cand
          hypotenuse(grown_m.x(), grown_m.y()) < kLongest_m + slack_m;
 }
 
+/// The region of a body beside another one, of which but a point is known, if it is as high as the other.
+PointRegion asHigh(PointRegion beside, const PointRegion& other) {
+  beside.box.top_px = std::min(beside.box.top_px, other.box.top_px);
+  beside.box.bottom_px = std::max(beside.box.bottom_px, other.box.bottom_px);
+  return beside;
+}
+
 bool mayMove(const ScenePoint& point) {
   return point.flow && point.flow->static_chi2 - point.flow->moving_chi2 > kNotStaticChi2;
 }
@@ -67,7 +74,7 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
     const bool within =
         small ? isWithinReachOfSmall(known, candidate) : isWithinReach(known, candidate, segment != nullptr);
     if (!within || object.velocityChi2(*p.flow, T_world_cam) >= kFitsChi2) return;
-    if (own && isSeenThrough(scene, *own, *regionOf(std::array{&p}), camera_)) return;
+    if (own && isSeenThrough(scene, *own, asHigh(*regionOf(std::array{&p}), *own), camera_)) return;
     taken[i] = true;
     adopted.push_back(candidate);
   };

@@ -35,12 +35,13 @@ bool isSeenThrough(const SceneMotion& scene, const PointRegion& a, const PointRe
   const auto& [right, right_px] = a.box.left_px < b.box.left_px ? b : a;
   const double gap_px = right.left_px - left.right_px, fb = camera.fx_px * camera.baseline_m;
   if (gap_px < kLeastGap_px) return false;
-  const double top_px = std::min(left.top_px, right.top_px), bottom_px = std::max(left.bottom_px, right.bottom_px);
   int behind = 0, between = 0;
   for (const ScenePoint& p : scene.points) {
-    const double u_px = p.uvd_px.x(), v_px = p.uvd_px.y();
-    if (u_px <= left.right_px || u_px >= right.left_px || v_px < top_px || v_px > bottom_px) continue;
-    const double line_px = left_px + (u_px - left.right_px) / gap_px * (right_px - left_px);
+    const double u_px = p.uvd_px.x(), v_px = p.uvd_px.y(), share = (u_px - left.right_px) / gap_px;
+    if (share <= 0 || share >= 1) continue;
+    const auto at = [share](double at_left, double at_right) { return at_left + share * (at_right - at_left); };
+    if (v_px < at(left.top_px, right.top_px) || v_px > at(left.bottom_px, right.bottom_px)) continue;
+    const double line_px = at(left_px, right_px);
     if (fb / p.uvd_px.z() > fb / line_px + kBehind_m)
       ++behind;
     else if (p.label != PointLabel::kGround)
@@ -50,7 +51,10 @@ bool isSeenThrough(const SceneMotion& scene, const PointRegion& a, const PointRe
 }
 
 std::optional<PointRegion> SeeThrough::regionOf(const TrackedObject& object) const {
-  if (!mayBeSmall(object)) return std::nullopt;
+  return mayBeSmall(object) ? seenRegionOf(object) : std::nullopt;
+}
+
+std::optional<PointRegion> SeeThrough::seenRegionOf(const TrackedObject& object) const {
   std::vector<const ScenePoint*> points;
   for (const BodyPoint& p : object.points)
     if (const ScenePoint* seen = findPoint(scene_, p.point)) points.push_back(seen);
@@ -59,6 +63,11 @@ std::optional<PointRegion> SeeThrough::regionOf(const TrackedObject& object) con
 
 bool SeeThrough::areApart(const TrackedObject& a, const TrackedObject& b) const {
   const auto of_a = regionOf(a), of_b = of_a ? regionOf(b) : std::nullopt;
+  return of_b && isSeenThrough(scene_, *of_a, *of_b, camera_);
+}
+
+bool SeeThrough::isGapBetween(const TrackedObject& a, const TrackedObject& b) const {
+  const auto of_a = seenRegionOf(a), of_b = of_a ? seenRegionOf(b) : std::nullopt;
   return of_b && isSeenThrough(scene_, *of_a, *of_b, camera_);
 }
 

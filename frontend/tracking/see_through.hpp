@@ -33,8 +33,12 @@ class SeeThrough {
   std::optional<PointRegion> regionOf(const TrackedObject& object) const;
   bool areApart(const TrackedObject& a, const TrackedObject& b) const;
   bool isApart(const TrackedObject& object, const Segment& segment) const;
+  /// Is the background seen between two objects of any size?
+  bool isGapBetween(const TrackedObject& a, const TrackedObject& b) const;
 
  private:
+  std::optional<PointRegion> seenRegionOf(const TrackedObject& object) const;
+
   const SceneMotion& scene_;
   const StereoCamera& camera_;
 };

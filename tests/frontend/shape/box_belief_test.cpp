@@ -77,6 +77,13 @@ TEST(BoxBelief, ThePossibleVolumeHoldsWhatIsNotRuledOut) {
   EXPECT_TRUE((unknown.possible_most.array() >= unknown.usual_most.array()).all());
 }
 
+TEST(BoxBelief, TheVolumeOfWhatIsKnownToWalkIsAPersons) {
+  const BoxEstimate any = estimateBox({}, 1.4), person = estimateBox({}, 1.4, ObjectKind::kPedestrian);
+  EXPECT_GT((any.usual_most - any.usual_least).x(), 4);
+  EXPECT_LT((person.usual_most - person.usual_least).x(), 1);
+  EXPECT_LT((person.possible_most - person.possible_least).y(), (any.possible_most - any.possible_least).y() - 0.8);
+}
+
 TEST(FaceInformation, MovesWithTheBodyFrame) {
   const Eigen::Vector3d shift(0.5, -0.2, 0.1), size_m(4, 1.7, 1.5);
   const FaceInformation moved = seen(size_m, 0.2).shifted(shift);

@@ -7,6 +7,12 @@
 namespace motorcade {
 namespace {
 
+constexpr FrameId kFirst{0};
+
+void addVerdicts(Existence& existence, int first, int frames, MotionVerdict verdict) {
+  for (int frame = first; frame < first + frames; ++frame) existence.addVerdict(FrameId{frame}, verdict);
+}
+
 TEST(Existence, IsUndecidedBeforeAnythingIsSeen) {
   Existence existence;
   existence.addSpeed(0, 1e3);
@@ -60,7 +66,7 @@ TEST(Existence, StaysWithWhatStoppedAfterItsMotionSettled) {
   existence.addSettledSpeed(6, 0.5);
   for (int frame = 0; frame < 40; ++frame) existence.addSpeed(0, 0.3);
   EXPECT_GT(existence.probability(), 0.8);
-  EXPECT_GT(existence.settledProbability(), 0.8);
+  EXPECT_GT(existence.settledProbability(kFirst), 0.8);
 }
 
 /// By hindsight the first estimate was wrong.
@@ -69,23 +75,32 @@ TEST(Existence, IsSettledByWhatIsSettledAlone) {
   existence.addSpeed(6, 0.5);
   existence.addSettledSpeed(0.5, 0.5);
   EXPECT_GT(existence.probability(), 0.8);
-  EXPECT_LT(existence.settledProbability(), 0.2);
+  EXPECT_LT(existence.settledProbability(kFirst), 0.2);
 }
 
 TEST(Existence, GrowsWithWhatMovesAndFallsWithWhatRestsOrIsNotThere) {
-  for (const MotionVerdict against : {MotionVerdict::kRested, MotionVerdict::kNothing}) {
+  for (const MotionVerdict against :
+       {MotionVerdict::kRested, MotionVerdict::kOnRoad, MotionVerdict::kWithin, MotionVerdict::kNothing}) {
     Existence existence;
     existence.addSpeed(6, 1);
-    const double before = existence.probability();
-    for (int frame = 0; frame < 5; ++frame) existence.addVerdict(MotionVerdict::kMoved);
+    addVerdicts(existence, 0, 5, MotionVerdict::kMoved);
     const double moved = existence.probability();
     EXPECT_GT(moved, 0.95);
-    for (int frame = 0; frame < 3; ++frame) existence.addVerdict(MotionVerdict::kUntold);
+    addVerdicts(existence, 5, 3, MotionVerdict::kUntold);
     EXPECT_EQ(existence.probability(), moved);
-    for (int frame = 0; frame < 30; ++frame) existence.addVerdict(against);
+    addVerdicts(existence, 8, 30, against);
     EXPECT_LT(existence.probability(), moved);
-    EXPECT_GT(moved, before);
   }
+}
+
+/// A wrong match or two may seem to move.
+TEST(Existence, GrowsLessWithAPointOrTwo) {
+  Existence many, few;
+  many.addSpeed(3, 1), few.addSpeed(3, 1);
+  const double before = few.probability();
+  many.addVerdict(kFirst, MotionVerdict::kMoved), few.addVerdict(kFirst, MotionVerdict::kHardly);
+  EXPECT_GT(few.probability(), before);
+  EXPECT_GT(many.probability(), few.probability() + 0.03);
 }
 
 TEST(Existence, CountsSuccessiveFramesOfOneVerdictLessAndLess) {
@@ -93,10 +108,30 @@ TEST(Existence, CountsSuccessiveFramesOfOneVerdictLessAndLess) {
   existence.addSpeed(3, 1);
   const auto logOdds = [&] { return std::log(existence.probability() / (1 - existence.probability())); };
   const double none = logOdds();
-  existence.addVerdict(MotionVerdict::kRested);
+  existence.addVerdict(FrameId{0}, MotionVerdict::kRested);
   const double one = logOdds();
-  existence.addVerdict(MotionVerdict::kRested);
+  existence.addVerdict(FrameId{1}, MotionVerdict::kRested);
   EXPECT_NEAR(logOdds() - one, (one - none) / 2, 1e-9);
+}
+
+/// A track may slip off a person to what is behind.
+TEST(Existence, OfWhatWasSurelySeenHoldsBeforeTheTrackSlippedOff) {
+  Existence existence;
+  existence.addSettledSpeed(1.4, 0.1);
+  addVerdicts(existence, 0, 10, MotionVerdict::kMoved);
+  addVerdicts(existence, 10, 50, MotionVerdict::kRested);
+  EXPECT_GT(existence.settledProbability(FrameId{9}), 0.95);
+  EXPECT_EQ(existence.settledProbability(FrameId{0}), existence.settledProbability(FrameId{9}));
+  EXPECT_LT(existence.settledProbability(FrameId{59}), 0.5);
+}
+
+TEST(Existence, OfWhatWasNeverSurelySeenIsOneForAllItsFrames) {
+  Existence existence;
+  existence.addSettledSpeed(6, 1);
+  addVerdicts(existence, 0, 1, MotionVerdict::kHardly);
+  addVerdicts(existence, 1, 20, MotionVerdict::kRested);
+  EXPECT_LT(existence.settledProbability(FrameId{0}), 0.2);
+  EXPECT_EQ(existence.settledProbability(FrameId{0}), existence.settledProbability(FrameId{20}));
 }
 
 }  // namespace

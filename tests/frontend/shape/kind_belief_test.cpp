@@ -38,6 +38,15 @@ TEST(KindBelief, SpeedTellsWalkersFromRiders) {
   EXPECT_EQ(believedBox(person, 5).kind, ObjectKind::kTwoWheeler);
 }
 
+TEST(KindBelief, SaysWhatMayBeSmall) {
+  const FaceInformation unseen, car = seenFaces({4.3, 1.8, 1.5}, kFine_m);
+  EXPECT_EQ(smallKind(unseen, 1.4, 0.6), ObjectKind::kPedestrian);
+  EXPECT_EQ(smallKind(unseen, 4.5, 0.2), ObjectKind::kTwoWheeler);
+  EXPECT_EQ(smallKind(unseen, 4.5, 0.6), ObjectKind::kUnknown) << "cars are as likely that slow";
+  EXPECT_EQ(smallKind(unseen, 15, 0.2), ObjectKind::kUnknown);
+  EXPECT_EQ(smallKind(car, 4.5, 0.2), ObjectKind::kUnknown);
+}
+
 TEST(KindBelief, NamesNoKindWhileNoneIsLikelyEnough) {
   const ObjectBox unseen = believedBox({}, 3);  // too fast for most walkers, and as good as any speed for a vehicle
   EXPECT_EQ(unseen.kind, ObjectKind::kUnknown);

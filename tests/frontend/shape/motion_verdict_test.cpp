@@ -30,6 +30,7 @@ class Surface {
         PointMeasurement& point = observed_.measured.emplace_back();
         point.uvd_px = Eigen::Vector3d(580 + 20 * column, 140 + 20 * row, disparity_px()).cast<float>();
       }
+    view_.ground.height_m = 5;
     view_.T_cam_body = SE3(Eigen::Matrix3d::Identity(), {0, 0, kDepth_m});
     now_ = pictureOf([](double, double) { return 0.0; });
   }
@@ -41,17 +42,24 @@ class Surface {
     view_.well_before = {&now_, &before_, T_before_body, SE3{}, FrameId{1}, apart_};
     return motionVerdict(points_seen_ ? &observed_ : nullptr, outline_found_ ? &seen_ : nullptr, view_, kRig);
   }
-  /// An object that was known before, around the surface, which goes along with the body.
-  void addOther() {
-    const Eigen::Vector3d reach_m(4, 4, 1);
-    view_.others.push_back({view_.T_cam_body.inverse(), -reach_m, reach_m});
-    view_.others.back().T_before_cam = SE3(Eigen::Matrix3d::Identity(), {-kAside_m, 0, 0});
-  }
+  /// An object that was known before, around the surface or so far before it, which goes along with the body.
+  void addOther(double nearer_m = 0) { view_.others.push_back(along(nearer_m, -kAside_m)); }
+  /// One that was lost, which goes another way or along with the body.
+  void addLost(bool goes_along) { view_.lost.push_back(along(0, goes_along ? -kAside_m : 0)); }
+  void lowerTo(double camera_height_m) { view_.ground.height_m = camera_height_m; }
+  /// Forgets all points but so many of the lowest.
+  void keep(int points) { observed_.measured.erase(observed_.measured.begin(), observed_.measured.end() - points); }
 
   bool points_seen_ = true, outline_found_ = true;
   double apart_ = kShift_px;
 
  private:
+  ObjectView::Other along(double nearer_m, double came_m) const {
+    const Eigen::Vector3d reach_m(4, 4, 1), middle_m(0, 0, -nearer_m);
+    ObjectView::Other other{view_.T_cam_body.inverse(), middle_m - reach_m, middle_m + reach_m};
+    other.T_before_cam = SE3(Eigen::Matrix3d::Identity(), {came_m, 0, 0});
+    return other;
+  }
   static double disparity_px() { return kRig.fx_px * kRig.baseline_m / kDepth_m; }
   ImagePyramid pictureOf(const std::function<double(double, double)>& came_px) const {
     ImagePyramid images;
@@ -78,6 +86,15 @@ TEST(MotionVerdict, TellsWhatMovedFromWhatRested) {
   EXPECT_EQ(surface.verdict([](double, double v) { return v < 90 ? kShift_px : 0; }), MotionVerdict::kMixed);
 }
 
+TEST(MotionVerdict, IsHardlyOneOfAPointOrTwo) {
+  Surface surface;
+  surface.keep(3);
+  EXPECT_EQ(surface.verdict(moved), MotionVerdict::kMoved);
+  surface.keep(2);
+  EXPECT_EQ(surface.verdict(moved), MotionVerdict::kHardly);
+  EXPECT_EQ(surface.verdict(rested), MotionVerdict::kRested);
+}
+
 TEST(MotionVerdict, HoldsWhereEstimatesAreOffByACell) {
   Surface surface;
   EXPECT_EQ(surface.verdict([](double, double) { return kShift_px + 1; }), MotionVerdict::kMoved);
@@ -102,11 +119,35 @@ TEST(MotionVerdict, IsUntoldWhereMotionAndRestAreHardlyApart) {
   EXPECT_EQ(surface.verdict(moved), MotionVerdict::kUntold);
 }
 
-/// What moved with another object as well says nothing of this one.
+/// What moved with another object as well says nothing of this one, although it is not within the other.
 TEST(MotionVerdict, ComparesWithTheObjectThatAPointMayBeOf) {
   Surface surface;
-  surface.addOther();
+  surface.addOther(1.4);
   EXPECT_EQ(surface.verdict(moved), MotionVerdict::kNothing);
+}
+
+TEST(MotionVerdict, TellsWhatLiesWithinAnObjectThatWasKnownBefore) {
+  Surface surface;
+  surface.addOther(1.2);
+  EXPECT_EQ(surface.verdict(moved), MotionVerdict::kWithin);
+}
+
+TEST(MotionVerdict, IsOfWhatWasLostUnlessItIsFoundAgain) {
+  Surface part, found_again;
+  part.addLost(false), found_again.addLost(true);
+  EXPECT_EQ(part.verdict(moved), MotionVerdict::kWithin);
+  EXPECT_EQ(found_again.verdict(moved), MotionVerdict::kMoved);
+}
+
+TEST(MotionVerdict, TellsAShadowOnTheRoad) {
+  constexpr double kLowest_m = 0.54;  // below the camera
+  Surface surface;
+  surface.lowerTo(kLowest_m + 0.1);
+  EXPECT_EQ(surface.verdict(moved), MotionVerdict::kMoved) << "one of five rows of points is on the road";
+  surface.keep(5);
+  EXPECT_EQ(surface.verdict(moved), MotionVerdict::kOnRoad);
+  surface.lowerTo(kLowest_m + 0.3);
+  EXPECT_EQ(surface.verdict(moved), MotionVerdict::kMoved);
 }
 
 }  // namespace

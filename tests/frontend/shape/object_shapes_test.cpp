@@ -262,6 +262,16 @@ TEST(ObjectShapes, APredictionThatHasLeftTheImageIsDropped) {
   EXPECT_TRUE(crossing.finish()[7].objects.empty());
 }
 
+/// Points that still go along with it are those of another vehicle.
+TEST(ObjectShapes, WhatHasLeftTheImageWhollyIsDroppedEvenIfItSeemsToBeSeen) {
+  Crossing crossing(7.2);
+  for (int frame = 0; frame < 4; ++frame) ASSERT_EQ(crossing.look(ObjectState::kMoving).objects.size(), 1U);
+  std::size_t rows = 1;
+  for (int frame = 4; frame < 14; ++frame) rows = crossing.look(ObjectState::kMoving).objects.size();
+  EXPECT_EQ(rows, 0U);
+  EXPECT_TRUE(crossing.finish()[13].objects.empty());
+}
+
 /// An estimate of a car that crosses, where the street is empty: what is seen densely contradicts it.
 TEST(ObjectShapes, BelieveInWhatMovesInTheImages) {
   Crossing crossing(-6), imagined(-6);

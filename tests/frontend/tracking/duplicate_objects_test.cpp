@@ -66,9 +66,18 @@ TEST(DuplicateObjects, TheOneThatWasReportedStays) {
 }
 
 TEST(DuplicateObjects, WhatIsHigherThanACarMayBeLonger) {
+  constexpr double kVan_m = 2.2;
   EXPECT_FALSE(areOne({1, 10, 12}, {2, 17, 18}));
-  EXPECT_TRUE(areOne({.track = 1, .begin_m = 10, .end_m = 12, .height_m = 2.5}, {2, 17, 18}));
-  EXPECT_FALSE(areOne({.track = 1, .begin_m = 10, .end_m = 12, .height_m = 2.5}, {2, 18.5, 20}));
+  EXPECT_TRUE(areOne({.track = 1, .begin_m = 10, .end_m = 12, .height_m = kVan_m}, {2, 17, 18}));
+  EXPECT_FALSE(areOne({.track = 1, .begin_m = 10, .end_m = 12, .height_m = kVan_m}, {2, 18.5, 20}));
+}
+
+TEST(DuplicateObjects, WhatMovesAlikeBehindTheFrontOfALorryIsItsFlank) {
+  const Seen lorry{.track = 1, .begin_m = 10, .end_m = 12, .height_m = 2.8};
+  EXPECT_TRUE(areOne(lorry, {2, 21, 23}));
+  EXPECT_FALSE(areOne(lorry, {2, 23, 25})) << "longer than any lorry";
+  EXPECT_FALSE(areOne({.track = 1, .begin_m = 21, .end_m = 23, .height_m = 2.8}, {2, 10, 12})) << "a car before it";
+  EXPECT_FALSE(areOne(lorry, {.track = 2, .begin_m = 21, .end_m = 23, .speed_mps = 11}));
 }
 
 TEST(DuplicateObjects, VehiclesSideBySideOrOfAnotherSpeedAreTwo) {

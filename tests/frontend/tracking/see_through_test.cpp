@@ -27,6 +27,7 @@ class Gap {
     }
   }
   bool areApart() const { return SeeThrough(scene, kRig).areApart(objects[0], objects[1]); }
+  bool isGapBetween() const { return SeeThrough(scene, kRig).isGapBetween(objects[0], objects[1]); }
   bool isApart() const { return SeeThrough(scene, kRig).isApart(objects[0], segment_); }
 
   SceneMotion scene;
@@ -84,6 +85,21 @@ TEST(SeeThrough, TheRoadBeneathTellsNothing) {
   EXPECT_TRUE(gap.areApart());
 }
 
+/// The second body as a flank that runs away from the camera: above its far end the house behind is seen, although a
+/// body as high as its front would hide it.
+TEST(SeeThrough, WhatIsSeenAboveTheFarEndIsNotBetween) {
+  Gap gap;
+  for (ScenePoint& point : gap.scene.points)
+    if (gap.objects[1].find(point.point)) point.uvd_px.y() = kRig.cy_px + 0.2 * (point.uvd_px.y() - kRig.cy_px);
+  gap.see(5, 15);
+  for (ScenePoint& point : gap.scene.points)
+    if (point.uvd_px.z() < 0.8 * gap.scene.points.front().uvd_px.z()) point.uvd_px.y() = kRig.cy_px - 33;
+  EXPECT_FALSE(gap.isGapBetween());
+  for (ScenePoint& point : gap.scene.points)
+    if (point.uvd_px.z() < 0.8 * gap.scene.points.front().uvd_px.z()) point.uvd_px.y() = kRig.cy_px;
+  EXPECT_TRUE(gap.isGapBetween());
+}
+
 TEST(SeeThrough, FewPointsMayHaveWrongDisparities) {
   Gap gap;
   gap.see(2, 15);
@@ -98,6 +114,7 @@ TEST(SeeThrough, OneSeesThroughTheWindowsOfCars) {
   gap.objects[0].kinematics = ObjectKinematics(gap.objects[0].T_cam_body, twist, 0.01 * Matrix12d::Identity());
   EXPECT_FALSE(gap.areApart());
   EXPECT_FALSE(gap.isApart());
+  EXPECT_TRUE(gap.isGapBetween()) << "whatever they are";
 }
 
 }  // namespace
