@@ -117,7 +117,10 @@ float RayCaster::surroundings(const RayHit& hit, const Vec3& normal, const Ray& 
   const Vec3 from_middle = hit.position_body - middle;
   const Vec3 lean{from_middle.x / half.x, from_middle.y / half.y, from_middle.z / half.z};
   const Vec3 bulged = normalized(normal + hit.placed->rotation * (lean * kBulge));
-  return mirrored(ray, hit.t, dot(bulged, ray.direction) < 0 ? bulged : normal);
+  const Vec3& facing = dot(bulged, ray.direction) < 0 ? bulged : normal;
+  constexpr float kDustySlope = 0.04F;
+  return hit.part->material == Material::kBonnet ? smeared(ray, hit.t, facing, kDustySlope)
+                                                 : mirrored(ray, hit.t, facing);
 }
 
 /// Light that a mirror with this normal sends along the ray from t on.
@@ -130,20 +133,23 @@ float RayCaster::mirrored(const Ray& ray, float t, const Vec3& normal) const {
   return sampleOf(next, tree_->firstHit(next.origin, next.direction, t_max), {}).light;
 }
 
-/// Water makes the ground darker, and mirrors more the flatter it is looked at. Rough ground smears what it mirrors
-/// along the direction of view.
+/// A rough mirror: smears along the direction of view what it shows.
+float RayCaster::smeared(const Ray& ray, float t, const Vec3& normal, float roughness) const {
+  const Vec3 view = normalized(ray.direction);
+  float light = 0;
+  for (const float spread : kWaterSpread)
+    light += mirrored(ray, t, normalized(normal + Vec3{view.x, view.y, 0} * (spread * roughness)));
+  return light / static_cast<float>(kWaterSpread.size());
+}
+
+/// Water makes the ground darker, and mirrors more the flatter it is looked at.
 float RayCaster::wet(const Ground::Hit& hit, const Ray& ray, const Lit& dry) const {
   const WaterFilm film = waterFilm(hit, ray.width_m(hit.t), frame_.scene(), frame_.frame());
   const float dark = dry.reflectance * dry.light * film.darkening;
   if (film.mirror <= 0 || ray.mirrored) return dark;
   const Vec3 view = normalized(ray.direction);
   const float fresnel = film.mirror * waterReflectance(-dot(view, hit.normal));
-  float light = 0;
-  for (const float spread : kWaterSpread) {
-    const Vec3 normal = normalized(film.normal + Vec3{view.x, view.y, 0} * (spread * film.roughness));
-    light += mirrored(ray, hit.t, normal);
-  }
-  return lerp(dark, light / static_cast<float>(kWaterSpread.size()), fresnel);
+  return lerp(dark, smeared(ray, hit.t, film.normal, film.roughness), fresnel);
 }
 
 }  // namespace motorcade::synth

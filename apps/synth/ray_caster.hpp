@@ -50,6 +50,7 @@ class RayCaster {
   float shade(const RayHit& hit, const Vec3& normal, const Ray& ray, const Exposure& exposure) const;
   float wet(const Ground::Hit& hit, const Ray& ray, const Lit& dry) const;
   float surroundings(const RayHit& hit, const Vec3& normal, const Ray& ray) const;
+  float smeared(const Ray& ray, float t, const Vec3& normal, float roughness) const;
   float mirrored(const Ray& ray, float t, const Vec3& normal) const;
 
   const FrameScene& frame_;
