@@ -63,7 +63,7 @@ void buildBrick(SceneBuilder& b) {
   b.setRoads({{path, kHalf_m, {{0, 0.12, true}}}});
   const double v = vary(b.random, 8, 0.03);
   b.setEgo(drive(path, kApproach_m, v, -0.5 * kLane_m));
-  if (b.random.chance(0.5F))
+  if (b.scene.seed % 2 == 0)
     b.addMover(VehicleKind::kCar, drive(path, kApproach_m + 16, Profile({{0, v + 0.5}, {9, v - 0.3}}), -0.5 * kLane_m));
   else
     b.addMover(VehicleKind::kCar, drive(path, kApproach_m + 95, vary(b.random, 7, 0.05), 0.5 * kLane_m, true));

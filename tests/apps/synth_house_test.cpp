@@ -55,7 +55,11 @@ TEST(SynthHouses, SlatsAreLevelLinesThatRepeat) {
 
 TEST(SynthHouses, NothingMovesAtTheCornerAndOneCarBetweenTheBricks) {
   EXPECT_EQ(makeScene("corner", 1).objectCount(), 0);
-  for (const std::uint32_t seed : {1U, 2U, 3U, 4U}) EXPECT_EQ(makeScene("brick", seed).movers.size(), 1U);
+  for (const std::uint32_t seed : {1U, 2U}) {
+    const Scene scene = makeScene("brick", seed);
+    ASSERT_EQ(scene.movers.size(), 1U);
+    EXPECT_EQ(scene.movers[0].trajectory.backwards, seed % 2 == 1);
+  }
   const Trajectory ego = makeScene("brick", 1).ego.trajectory;
   EXPECT_NEAR(ego.speedAt_mps(0), 8, 0.3);
   EXPECT_EQ(ego.speedAt_mps(0), ego.speedAt_mps(8));
