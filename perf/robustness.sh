@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
 # Measures what faults do to the results, and writes perf/robustness.md: every fault of `run --inject` on real and rendered drives, with the
-# drift of the camera and the recall of moving objects against the same drive without faults; scenes with little at rest in view; and the tests
-# of all other faults, from a build by tests/run.sh. Needs jq.
-#   perf/robustness.sh [--gaps N] [--drives "NAME ..."] [DATA_FOLDER] [OUT_FOLDER]
+# drift of the camera and the recall of moving objects against the same drive without faults; scenes that mislead; and the tests of all other
+# faults, from a build by tests/run.sh. Needs jq.
+#   perf/robustness.sh [--gaps N] [--seeds N] [--drives "NAME ..."] [DATA_FOLDER] [OUT_FOLDER]
 # --gaps    gaps of random place and length on rendered_street whose error is held against what the run says of it (default 100)
+# --seeds   of the rendered scenes, from 1 to N (default 10)
 # --drives  only these
 set -euo pipefail
 cd "$(dirname "$0")/.."
-gaps=100 drives="rendered_street kitti_tracking_0003" folders=()
+gaps=100 seeds=10 drives="rendered_street kitti_tracking_0003" folders=()
 while (($#)); do
   case $1 in
     --gaps) gaps=$2 && shift 2 ;;
+    --seeds) seeds=$2 && shift 2 ;;
     --drives) drives=$2 && shift 2 ;;
-    -*) sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+    -*) sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
     *) folders+=("$1") && shift ;;
   esac
 done
@@ -60,19 +62,6 @@ checked() {  # NAME FAULTS FINDING: on how many clips of the drives `check` name
     done
   done
   echo "| $1 | \`$2\` | ${3:-nothing} | $named of $clips |"
-}
-
-crowded() {  # SCENE MEANING: camera and recall where little is at rest in view, of seeds 1 to 3
-  local ates="" recalls="" lost="" seed
-  for seed in 1 2 3; do
-    [[ -f $out/$1-$seed/times.txt ]] || "$motorcade" synth "$out/$1-$seed" --scene "$1" --seed $seed >/dev/null 2>&1
-    "$motorcade" run "$out/$1-$seed" --out "$out/run" --force >/dev/null 2>&1
-    "$motorcade" evaluate "$out/run" --sequence "$out/$1-$seed" --json "$out/measures.json" >/dev/null
-    ates+=" $(jq '.final.camera.ate_m.rmse * 1000 | round / 1000' "$out/measures.json")"
-    recalls+=" $(jq '.final.detection.within_30m.recall * 100 | round' "$out/measures.json")"
-    lost+=" $(jq '.frames.lost' "$out/run/summary.json")"
-  done
-  echo "| \`$1\`: $2 |$ates |$recalls |$lost | $(jq ".peak_memory_bytes / 1e6 | round" "$out/run/summary.json") |"
 }
 
 tested() {  # FAULT TESTS: whether the tests whose names match pass
@@ -144,15 +133,11 @@ done
   echo
   perf/gaps.sh "$gaps" rendered_street "$data" "$out"  # its truth is exact
   echo
-  echo "## Little at rest in view"
+  echo "## Scenes that mislead"
   echo
-  echo "Rendered scenes with exact truth, seeds 1, 2 and 3."
+  echo "Rendered scenes with exact truth (\`perf/scenes.sh --seeds $seeds\`): patterns that repeat, leaves that sway, rows of parked cars, little at rest in view."
   echo
-  echo "| scene | ATE m | recall to 30 m % | lost frames | peak memory MB |"
-  echo "| --- | --- | --- | --- | --- |"
-  crowded walled_in "buses on all sides, two thirds of the view move"
-  crowded truck "waits while trailers pass right ahead, up to 99 % of the view"
-  crowded crowd "fifty vehicles"
+  MOTORCADE=$motorcade perf/scenes.sh --seeds "$seeds" --out "$out/scenes" || echo "One of them is farther from the true path than it may be."
   echo
   echo "## All other faults"
   echo

@@ -23,6 +23,9 @@ void addSynth(CLI::App& app, Action& action) {
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", options->seed, "changes textures, colors, placement and, slightly, speeds")
       ->capture_default_str();
+  command->add_option("--style", options->style, "how the scene is pictured; its truth is the same")
+      ->check(CLI::IsMember(synthStyleNames()))
+      ->capture_default_str();
   command->add_option("--size", options->size, "image size as WIDTHxHEIGHT; 1242x375 when absent");
   command->add_option("--threads", options->threads, "rendering threads; all processors when absent")
       ->check(CLI::PositiveNumber);

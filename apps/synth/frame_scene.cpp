@@ -18,8 +18,11 @@ FrameScene::FrameScene(const Scene& scene, int frame, bool with_movers) : scene_
   T_map_cam_ = scene.ego.T_map_cam(t_s);
   for (const auto& fixture : scene.fixtures) {
     const double distance_m = (fixture.T_map_body.translation() - T_map_cam_.translation()).norm();
-    if (distance_m < 260) place({.model = fixture.model, .T_map_body = fixture.T_map_body, .id = fixture.id}, 0);
+    if (distance_m < 260)
+      place({.model = fixture.model, .T_map_body = fixture.T_map_body, .id = fixture.id},
+            fixture.model->sways ? t_s : 0);
   }
+  if (scene.ego.bonnet) place({.model = scene.ego.bonnet, .T_map_body = scene.ego.T_map_bonnet(t_s)}, 0);
   if (with_movers)
     for (const auto& mover : scene.movers) {
       const auto& trajectory = mover.trajectory;

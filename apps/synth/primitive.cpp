@@ -70,7 +70,8 @@ std::optional<SurfaceHit> intersectEllipsoid(const Primitive& part, const Vec3& 
   for (const float t : {-b / a - half, -b / a + half}) {
     if (t <= t_min || t >= t_max) continue;
     const Vec3 p = o + d * t;
-    if (part.material == Material::kLeaves && !leafAt(p, so + sd * t, sd, part.seed)) continue;
+    const float twigs = part.material == Material::kLeaves ? 1.0F : part.material == Material::kFoliage ? 1.9F : 0;
+    if (twigs > 0 && !leafAt(p * twigs, so + sd * t, sd, part.seed)) continue;
     const Vec3 normal = normalized((p - center) * scale * scale);
     return SurfaceHit{t, dot(normal, d) > 0 ? normal * -1 : normal};
   }

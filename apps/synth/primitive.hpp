@@ -34,7 +34,13 @@ enum class Material : std::uint8_t {
   kSign,
   kBark,
   kLeaves,
-  kHedge,  // street
+  kHedge,
+  kBrickwork,
+  kTiles,
+  kSlats,
+  kPane,
+  kFoliage,
+  kBonnet,  // street
   kCloth,
   kSkin,  // people
 };
@@ -62,7 +68,8 @@ struct Primitive {
 
 struct Model;
 
-/// Something rigid that turns on a thing as the thing moves on: a leg, a crank, a wheel with spokes.
+/// Something rigid that turns on a thing as the thing moves on: a leg, a crank, a wheel with spokes. The branches of a
+/// tree in wind are given the time in place of the way.
 struct Limb {
   /// Where its origin, the joint, is, and how far it has turned about the y axis, from z towards x.
   struct Pose {
@@ -83,6 +90,7 @@ struct Model {
   std::vector<Limb> limbs;
   float length_m = 0, width_m = 0, height_m = 0;
   std::string kitti_type;     // as in KITTI's labels, or Bus or Trailer; empty for what is not an object
+  bool sways = false;         // limbs move with the time [s], not with the way driven
   bool smooth_paint = false;  // without texture; shows the surroundings as in a mirror
 
   Primitive& add(Material material, const Vec3& lo, const Vec3& hi, float tone, std::uint32_t seed = 0);

@@ -1,8 +1,8 @@
 #include "apps/synth/ray_caster.hpp"
 
+#include "apps/synth/film.hpp"
 #include "apps/synth/noise.hpp"
 #include "apps/synth/sky.hpp"
-#include "apps/synth/texture.hpp"
 #include "apps/synth/wet_ground.hpp"
 
 namespace motorcade::synth {
@@ -32,8 +32,9 @@ bool anythingMirrors(const FrameScene& frame) {
 
 bool isLevelGround(std::uint32_t surface) { return surface == kRoadSurface || surface == kBesideSurface; }
 
-RayCaster::RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side)
+RayCaster::RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side, Style style)
     : frame_(frame),
+      style_(style),
       ground_(frame),
       rays_(frame, camera, side),
       to_sun_(frame, frame.scene().sun),
@@ -56,7 +57,7 @@ Sample RayCaster::sampleOf(const Ray& ray, const std::optional<RayHit>& hit,
   const auto ground = ground_.hit(ray.origin, d, hit ? hit->t : kFar_m);
   if (ground) {
     const Exposure exposure = known ? *known : exposureOf(*ground, ray.origin + d * ground->t);
-    const float dry = ground_.reflectance(*ground, d, ray.width_m(ground->t)), light = lit(ground->normal, exposure);
+    const float dry = dryGround(*ground, ray), light = lit(ground->normal, exposure);
     const float seen =
         frame_.scene().rain ? haze(wet(*ground, ray, {dry, light}), ground->t) : haze(dry * light, ground->t);
     return {seen, ground->t, surfaceOf(*ground), -1, exposure};
@@ -69,6 +70,23 @@ Sample RayCaster::sampleOf(const Ray& ray, const std::optional<RayHit>& hit,
   }
   const Scene& scene = frame_.scene();
   return {skyRadiance(normalized(d), ray.pixel, scene.seed, scene.rain), 0, kSkySurface, -1, {}};
+}
+
+float RayCaster::dryGround(const Ground::Hit& hit, const Ray& ray) const {
+  constexpr float kVeins = 0.6F;
+  const float width_m = ray.width_m(hit.t), plain = ground_.reflectance(hit, ray.direction, width_m);
+  if (style_ == Style::kPlain) return plain;
+  const float slant = std::fmax(std::abs(dot(normalized(ray.direction), hit.normal)), 1e-3F);
+  return veined(plain, hit.position_map, width_m / slant, frame_.scene().seed, kVeins);
+}
+
+Reflectance RayCaster::styled(const SurfacePoint& point) const {
+  constexpr float kVeins = 0.7F, kVeinsOfPaint = 0.3F;
+  Reflectance r = reflectanceOf(point);
+  if (style_ == Style::kPlain || point.model->smooth_paint) return r;
+  const bool made = point.part->material < Material::kBrick || point.part->material >= Material::kCloth;
+  r.diffuse = veined(r.diffuse, point.position, point.footprint_m, point.part->seed, made ? kVeinsOfPaint : kVeins);
+  return r;
 }
 
 bool RayCaster::sunny(const Vec3& position, const Vec3& normal) const {
@@ -99,7 +117,7 @@ float RayCaster::shade(const RayHit& hit, const Vec3& normal, const Ray& ray, co
                            hit.normal_body,
                            ray.width_m(hit.t) / std::sqrt(slant),
                            placed.wheel_angle_rad};
-  const Reflectance r = reflectanceOf(point);
+  const Reflectance r = styled(point);
   float light = r.diffuse * lit(normal, exposure) + r.glow;
   if (r.mirror > 0) {
     const float fresnel = r.mirror + (1 - r.mirror) * 0.6F * std::pow(1 - slant, 5.0F);
@@ -117,7 +135,10 @@ float RayCaster::surroundings(const RayHit& hit, const Vec3& normal, const Ray& 
   const Vec3 from_middle = hit.position_body - middle;
   const Vec3 lean{from_middle.x / half.x, from_middle.y / half.y, from_middle.z / half.z};
   const Vec3 bulged = normalized(normal + hit.placed->rotation * (lean * kBulge));
-  return mirrored(ray, hit.t, dot(bulged, ray.direction) < 0 ? bulged : normal);
+  const Vec3& facing = dot(bulged, ray.direction) < 0 ? bulged : normal;
+  constexpr float kDustySlope = 0.04F;
+  return hit.part->material == Material::kBonnet ? smeared(ray, hit.t, facing, kDustySlope)
+                                                 : mirrored(ray, hit.t, facing);
 }
 
 /// Light that a mirror with this normal sends along the ray from t on.
@@ -130,20 +151,23 @@ float RayCaster::mirrored(const Ray& ray, float t, const Vec3& normal) const {
   return sampleOf(next, tree_->firstHit(next.origin, next.direction, t_max), {}).light;
 }
 
-/// Water makes the ground darker, and mirrors more the flatter it is looked at. Rough ground smears what it mirrors
-/// along the direction of view.
+/// A rough mirror: smears along the direction of view what it shows.
+float RayCaster::smeared(const Ray& ray, float t, const Vec3& normal, float roughness) const {
+  const Vec3 view = normalized(ray.direction);
+  float light = 0;
+  for (const float spread : kWaterSpread)
+    light += mirrored(ray, t, normalized(normal + Vec3{view.x, view.y, 0} * (spread * roughness)));
+  return light / static_cast<float>(kWaterSpread.size());
+}
+
+/// Water makes the ground darker, and mirrors more the flatter it is looked at.
 float RayCaster::wet(const Ground::Hit& hit, const Ray& ray, const Lit& dry) const {
   const WaterFilm film = waterFilm(hit, ray.width_m(hit.t), frame_.scene(), frame_.frame());
   const float dark = dry.reflectance * dry.light * film.darkening;
   if (film.mirror <= 0 || ray.mirrored) return dark;
   const Vec3 view = normalized(ray.direction);
   const float fresnel = film.mirror * waterReflectance(-dot(view, hit.normal));
-  float light = 0;
-  for (const float spread : kWaterSpread) {
-    const Vec3 normal = normalized(film.normal + Vec3{view.x, view.y, 0} * (spread * film.roughness));
-    light += mirrored(ray, hit.t, normal);
-  }
-  return lerp(dark, light / static_cast<float>(kWaterSpread.size()), fresnel);
+  return lerp(dark, smeared(ray, hit.t, film.normal, film.roughness), fresnel);
 }
 
 }  // namespace motorcade::synth

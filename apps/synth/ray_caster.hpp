@@ -3,6 +3,8 @@
 #include "apps/synth/ground.hpp"
 #include "apps/synth/ray_tree.hpp"
 #include "apps/synth/rays.hpp"
+#include "apps/synth/style.hpp"
+#include "apps/synth/texture.hpp"
 
 namespace motorcade::synth {
 
@@ -26,7 +28,7 @@ bool isLevelGround(std::uint32_t surface);
 /// Casts rays of one camera of the stereo pair into one frame.
 class RayCaster {
  public:
-  RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side);
+  RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side, Style style);
 
   /// `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel. An exposure that is known
   /// already, from the pixel and its neighbors, saves the rays towards the light.
@@ -50,9 +52,15 @@ class RayCaster {
   float shade(const RayHit& hit, const Vec3& normal, const Ray& ray, const Exposure& exposure) const;
   float wet(const Ground::Hit& hit, const Ray& ray, const Lit& dry) const;
   float surroundings(const RayHit& hit, const Vec3& normal, const Ray& ray) const;
+  float smeared(const Ray& ray, float t, const Vec3& normal, float roughness) const;
   float mirrored(const Ray& ray, float t, const Vec3& normal) const;
 
+  /// Reflectances in the style: every texture passes here.
+  float dryGround(const Ground::Hit& hit, const Ray& ray) const;
+  Reflectance styled(const SurfacePoint& point) const;
+
   const FrameScene& frame_;
+  Style style_;
   Ground ground_;
   CameraRays rays_;
   ParallelRays to_sun_, upwards_;

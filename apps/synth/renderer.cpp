@@ -5,6 +5,7 @@
 #include <functional>
 #include <thread>
 
+#include "apps/synth/film.hpp"
 #include "apps/synth/noise.hpp"
 #include "apps/synth/ray_caster.hpp"
 
@@ -50,11 +51,27 @@ struct Sensor {
   }
 };
 
-Sensor sensorOf(const FrameScene& frame, StereoSide side, const RenderOptions& options) {
+/// Differs from image to image; laps repeat exactly.
+std::uint32_t imageSeed(const FrameScene& frame, StereoSide side, std::uint32_t salt) {
   const Scene& scene = frame.scene();
-  const bool right = side == StereoSide::kRight;
   const int moment = scene.lap_frames > 0 ? frame.frame() % scene.lap_frames : frame.frame();
-  const std::uint32_t seed = hashOf(moment, right ? 1 : 0, scene.seed + 31);
+  return hashOf(moment, side == StereoSide::kRight ? 1 : 0, scene.seed + salt);
+}
+
+FilmShot filmShot(const FrameScene& frame, const StereoCamera& camera, StereoSide side) {
+  const Scene& scene = frame.scene();
+  return {.width = camera.width_px,
+          .height = camera.height_px,
+          .right = side == StereoSide::kRight,
+          .time_s = scene.time_s(frame.frame()),
+          .period_s = scene.frame_s * scene.lap_frames,
+          .scene_seed = scene.seed,
+          .grain_seed = imageSeed(frame, side, 57)};
+}
+
+Sensor sensorOf(const FrameScene& frame, StereoSide side, const RenderOptions& options) {
+  const bool right = side == StereoSide::kRight;
+  const std::uint32_t seed = imageSeed(frame, side, 31);
   const bool different = right && !options.equal_gains;
   return {different ? 1.02F : 1.0F, different ? -1.5F : 0.0F, options.noise_levels, seed};
 }
@@ -109,7 +126,7 @@ float lightOf(const RayCaster& caster, const Sample& center, const Refinement& r
 Rendering render(const FrameScene& frame, const StereoCamera& camera, StereoSide side, const RenderOptions& options) {
   const int width = camera.width_px, height = camera.height_px;
   const auto index = [width](int x, int y) { return y * width + x; };
-  const RayCaster caster(frame, camera, side);
+  const RayCaster caster(frame, camera, side, options.style);
   std::vector<Sample> samples(index(0, height));
   parallelRows(height, options.threads, [&](int y) {
     for (int x = 0; x < width; ++x)
@@ -117,15 +134,19 @@ Rendering render(const FrameScene& frame, const StereoCamera& camera, StereoSide
   });
   Rendering out{ImagePool().acquire(width, height), std::vector<float>(samples.size()),
                 std::vector<std::int16_t>(samples.size())};
-  const Sensor sensor = sensorOf(frame, side, options);
+  std::vector<float> levels(samples.size());
   parallelRows(height, options.threads, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const Sample& center = samples[index(x, y)];
-      const float light = lightOf(caster, center, refinementOf(samples, width, height, x, y), x, y);
-      out.image.mutableRow(y)[x] = sensor.read(response(light), x, y);
+      levels[index(x, y)] = response(lightOf(caster, center, refinementOf(samples, width, height, x, y), x, y));
       out.depth_m[index(x, y)] = center.depth_m;
       out.object[index(x, y)] = center.object;
     }
+  });
+  if (options.style == Style::kFilm) develop(levels, filmShot(frame, camera, side));
+  const Sensor sensor = sensorOf(frame, side, options);
+  parallelRows(height, options.threads, [&](int y) {
+    for (int x = 0; x < width; ++x) out.image.mutableRow(y)[x] = sensor.read(levels[index(x, y)], x, y);
   });
   return out;
 }

@@ -37,12 +37,14 @@ class SceneBuilder {
   void addPedestrian(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Profile speed_mps);
   void addParked(VehicleKind kind, int road, double along_m, double left_m, bool backwards,
                  Finish finish = Finish::kAny);
+  /// Places a thing beside a road, unless it would stand nearer than the margin to any road. Above a margin of 1 m its
+  /// whole footprint counts, below its middle alone.
+  void place(Model model, int road, double along_m, double left_m, double turn_rad, double margin_m);
   /// Houses, trees, poles, fences and parked cars along both sides of a road, clear of every other road and of where
   /// people cross.
   void dress(int road, const Dressing& dressing);
 
  private:
-  void place(Model model, int road, double along_m, double left_m, double turn_rad, double margin_m);
   void placeWall(int road, const Dressing& dressing, double side);
   void placePavement(int road, const Dressing& dressing, double side);
   void parkCars(int road, const Dressing& dressing, double side);

@@ -3,7 +3,10 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "apps/synth/bonnet_scene.hpp"
 #include "apps/synth/crowded_scenes.hpp"
+#include "apps/synth/garden_scenes.hpp"
+#include "apps/synth/house_scenes.hpp"
 #include "apps/synth/mixed_scenes.hpp"
 #include "apps/synth/scene_parts.hpp"
 
@@ -194,21 +197,14 @@ struct Entry {
   const char* name;
   void (*build)(SceneBuilder&);
 };
-constexpr std::array<Entry, 15> kScenes{{{"overtake", buildOvertake},
-                                         {"highway", buildHighway},
-                                         {"urban", buildUrban},
-                                         {"static", buildStatic},
-                                         {"crossing", buildCrossing},
-                                         {"lead", buildLead},
-                                         {"stop_and_go", buildStopAndGo},
-                                         {"convoy", buildConvoy},
-                                         {"circuit", buildCircuit},
-                                         {"traffic", buildTraffic},
-                                         {"rain", buildRain},
-                                         {"people", buildPeople},
-                                         {"crowd", buildCrowd},
-                                         {"truck", buildTruck},
-                                         {"walled_in", buildWalledIn}}};
+constexpr std::array kScenes =
+    std::to_array<Entry>({{"overtake", buildOvertake},     {"highway", buildHighway},   {"urban", buildUrban},
+                          {"static", buildStatic},         {"crossing", buildCrossing}, {"lead", buildLead},
+                          {"stop_and_go", buildStopAndGo}, {"convoy", buildConvoy},     {"circuit", buildCircuit},
+                          {"traffic", buildTraffic},       {"rain", buildRain},         {"people", buildPeople},
+                          {"crowd", buildCrowd},           {"truck", buildTruck},       {"walled_in", buildWalledIn},
+                          {"corner", buildCorner},         {"brick", buildBrick},       {"hedges", buildHedges},
+                          {"windy", buildWindy},           {"parked", buildParked},     {"bonnet", buildBonnet}});
 
 }  // namespace
 

@@ -40,6 +40,8 @@ void reportProgress(int done, int frames, std::chrono::steady_clock::time_point&
 
 std::vector<std::string> synthSceneNames() { return synth::sceneNames(); }
 
+std::vector<std::string> synthStyleNames() { return synth::styleNames(); }
+
 int synthSceneFrames(const std::string& scene, std::uint32_t seed) { return synth::makeScene(scene, seed).frames; }
 
 int runSynth(const SynthOptions& options) {
@@ -50,6 +52,7 @@ int runSynth(const SynthOptions& options) {
   writing.with_movers = !options.without_movers;
   writing.camera = camera;
   writing.rig_error = options.rig_error;
+  writing.render.style = synth::styleOf(options.style);
   writing.render.threads =
       options.threads > 0 ? options.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const auto start = std::chrono::steady_clock::now();

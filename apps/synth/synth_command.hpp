@@ -12,12 +12,15 @@ struct SynthOptions {
   std::string out, scene, size;  // WIDTHxHEIGHT; empty for KITTI's
   int frames = 0, threads = 0;   // 0: the scene's own length, all processors
   std::uint32_t seed = 1;
+  std::string style = "plain";
   bool without_movers = false;
   synth::RigError rig_error;
 };
 
 /// The scenes that there are.
 std::vector<std::string> synthSceneNames();
+/// The styles that there are.
+std::vector<std::string> synthStyleNames();
 /// A scene's own length. The name is one of those above.
 int synthSceneFrames(const std::string& scene, std::uint32_t seed);
 

@@ -24,6 +24,8 @@ Reflectance vehicleReflectance(const SurfacePoint& point);
 /// The body of a bus.
 Reflectance coachReflectance(const SurfacePoint& point);
 Reflectance personReflectance(const SurfacePoint& point);
+/// Masonry, tiles and slats that repeat, and window panes.
+Reflectance houseReflectance(const SurfacePoint& point);
 Reflectance streetReflectance(const SurfacePoint& point);
 /// Chooses by material.
 Reflectance reflectanceOf(const SurfacePoint& point);

@@ -71,7 +71,8 @@ Reflectance facade(const SurfacePoint& s) {
 /// Leaves as light and dark clumps at all sizes; the inside of a crown is darker.
 float leaves(const SurfacePoint& s) {
   const Vec3& p = s.position;
-  const float clumps = fractal3(p.x, p.y, p.z, {0.42F, 4, 0.9F}, s.footprint_m, s.part->seed + 17);
+  const float size_m = s.part->material == Material::kFoliage ? 0.13F : 0.42F;
+  const float clumps = fractal3(p.x, p.y, p.z, {size_m, 4, 0.9F}, s.footprint_m, s.part->seed + 17);
   const float bright = saturate(0.5F + 0.85F * clumps);
   return lerp(0.02F, 2.6F * s.part->tone, bright * bright);
 }
@@ -90,6 +91,16 @@ Reflectance sign(const SurfacePoint& s) {
                          : 0;
   const float ground = s.part->tone, letters = ground > 0.4F ? 0.06F : 0.85F;
   return {lerp(lerp(ground, letters, mark), letters, border), 0, 0};
+}
+
+/// Dark paint under dust, with two creases.
+Reflectance bonnet(const SurfacePoint& s) {
+  constexpr float kCrease_m = 0.52F;
+  const Vec3& p = s.position;
+  const float f = s.footprint_m, middle = 0.5F * (s.part->lo.y + s.part->hi.y);
+  const float dust = fractal3(p.x, p.y, p.z, {0.03F, 4, 0.8F}, f, s.part->seed);
+  const float crease = inside(std::abs(p.y - middle), kCrease_m, kCrease_m + 0.012F, f);
+  return {s.part->tone * (1 + 0.35F * dust) * (1 - 0.6F * crease), 0.06F * (1 - 0.5F * crease), 0};
 }
 
 float planks(const SurfacePoint& s) {
@@ -112,9 +123,17 @@ Reflectance streetReflectance(const SurfacePoint& s) {
       return facade(s);
     case Material::kLeaves:
     case Material::kHedge:
+    case Material::kFoliage:
       return {leaves(s), 0, 0};
     case Material::kSign:
       return sign(s);
+    case Material::kBrickwork:
+    case Material::kTiles:
+    case Material::kSlats:
+    case Material::kPane:
+      return houseReflectance(s);
+    case Material::kBonnet:
+      return bonnet(s);
     case Material::kWood:
       return {planks(s), 0, 0};
     case Material::kRoof:

@@ -24,6 +24,12 @@ double shake(const std::array<Wave, N>& waves, double t_s, double period_s) {
   return sum;
 }
 
+Eigen::Matrix3d bodyFromCamera() {
+  Eigen::Matrix3d R;
+  R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return R;
+}
+
 constexpr std::array<Wave, 3> kPitch_rad{{{0.23, 0.0016, 0.3}, {0.71, 0.0012, 1.9}, {1.37, 0.0008, 4.0}}};
 constexpr std::array<Wave, 2> kRoll_rad{{{0.31, 0.0014, 2.2}, {0.93, 0.0010, 0.7}}};
 constexpr std::array<Wave, 2> kYaw_rad{{{0.17, 0.0012, 1.1}, {0.61, 0.0006, 3.3}}};
@@ -51,13 +57,15 @@ SE3 Trajectory::T_map_body(double t_s) const {
 }
 
 SE3 Ego::T_map_cam(double t_s) const {
-  Eigen::Matrix3d body_from_camera;
-  body_from_camera << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   const SE3 T_map_body = trajectory.T_map_body(t_s);
   const Eigen::Vector3d tilt(shake(kRoll_rad, t_s, shake_period_s), shake(kPitch_rad, t_s, shake_period_s),
                              shake(kYaw_rad, t_s, shake_period_s));
   const Eigen::Vector3d mount(0, 0, camera_height_m + shake(kHeave_m, t_s, shake_period_s));
-  return (T_map_body * SE3(expSO3(tilt) * body_from_camera, mount)).normalized();
+  return (T_map_body * SE3(expSO3(tilt) * bodyFromCamera(), mount)).normalized();
+}
+
+SE3 Ego::T_map_bonnet(double t_s) const {
+  return T_map_cam(t_s) * SE3(bodyFromCamera().transpose(), Eigen::Vector3d::Zero());
 }
 
 }  // namespace motorcade::synth

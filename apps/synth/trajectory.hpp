@@ -7,6 +7,8 @@
 
 namespace motorcade::synth {
 
+struct Model;
+
 /// How something moves: along a path, at a speed and a lateral offset that ease between knots. Twice continuously
 /// differentiable. The frame `map` is the scene's: z up, ground at z = 0.
 struct Trajectory {
@@ -31,9 +33,12 @@ struct Trajectory {
 struct Ego {
   Trajectory trajectory;
   double camera_height_m = 1.65;
+  /// What both cameras see of their own car: x ahead, y left, z up from the left camera, and fixed to it. No object.
+  std::shared_ptr<const Model> bonnet;
   double shake_period_s = 0;  // 0: never repeats; else every shake frequency fits this period
   /// Camera x right, y down, z ahead.
   SE3 T_map_cam(double t_s) const;
+  SE3 T_map_bonnet(double t_s) const;
 };
 
 }  // namespace motorcade::synth
