@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "frontend/shape/motion_evidence.hpp"
@@ -16,6 +17,7 @@ constexpr double kDepth_m = 0.5, kSlack_px = 1;  // by which its surface may lea
 constexpr int kLeastTold_gray = 2;               // per pixel: three standard deviations of the images' noise
 constexpr double kNearlyAll = 0.75;              // of the points
 constexpr int kEnough = 3;                       // points that moved, so that they are no chance
+constexpr double kTold = 0.5;                    // of a person's patches: those beside it tell nothing
 constexpr int kSlack = 1;                        // cells by which an estimate may misplace the surface
 constexpr int kLeastAhead = 3;                   // samples by which one side wins
 
@@ -107,11 +109,16 @@ MotionVerdict motionVerdict(const ObjectObservation* observed, const LevelDispar
   if (!view.well_before) return MotionVerdict::kUntold;
   const bool well_apart = view.well_before->apart > ObjectView::kWellApart;
   if (!observed) return verdictOf({}, well_apart);
-  const std::vector<PlacedPoint> points = placed(observed->measured, view, camera);
+  std::vector<PlacedPoint> points = placed(observed->measured, view, camera);
   const OtherBodies others(view, camera);
   if (lieOnRoad(points, view.ground)) return MotionVerdict::kOnRoad;
   if (lieWithinAnother(points, others)) return MotionVerdict::kWithin;
-  return verdictOf(disparities ? votesOf(points, *disparities, view, others, camera) : Votes{}, well_apart);
+  if (!disparities) return verdictOf({}, well_apart);
+  const bool few = view.small && std::ssize(points) < kEnough;
+  if (few) std::ranges::move(placed(observed->patches, view, camera), std::back_inserter(points));
+  const Votes votes = votesOf(points, *disparities, view, others, camera);
+  const bool told = !few || kTold * std::ssize(points) <= votes.moved + votes.rested;
+  return verdictOf(told ? votes : Votes{}, well_apart);
 }
 
 }  // namespace motorcade

@@ -209,8 +209,9 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
     if (!isCutOff(observed->box, T_cam_body, camera_)) shape.evidence = shape.first = nearFaceAtPoints(view);
     view.box = estimateBox(shape.evidence, shape.speed_mps);
   }
-  if (const auto small = smallKindOf(view, observed, shape); small != ObjectKind::kUnknown)
-    view.box = estimateBox(shape.evidence, shape.speed_mps, small);
+  const ObjectKind small = smallKindOf(view, observed, shape);
+  view.small = small != ObjectKind::kUnknown;
+  if (view.small) view.box = estimateBox(shape.evidence, shape.speed_mps, small);
   view.level = sight_.levelOf(view, static_cast<int>(inputs.features->right.levels.size()));
   if (!is_new) view.before = earlier_.last(object.track, view, *inputs.features);
   view.well_before = earlier_.wellApart(object.track, view, *inputs.features);

@@ -22,7 +22,8 @@ struct ObjectView {
   static constexpr double kWellApart = 6;
   SE3 T_cam_body;
   BoxEstimate box;
-  int level = 1;  // of the pyramid, at which its surroundings are looked at
+  bool small = false;  // looked for in the volume of a person or a two-wheeler
+  int level = 1;       // of the pyramid, at which its surroundings are looked at
   GroundPlane ground;
   double disparity_offset_px = 0;
   struct Other {

@@ -1,6 +1,7 @@
 #include "frontend/shape/motion_verdict.hpp"
 
 #include <functional>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -47,6 +48,11 @@ class Surface {
   /// One that was lost, which goes another way or along with the body.
   void addLost(bool goes_along) { view_.lost.push_back(along(0, goes_along ? -kAside_m : 0)); }
   void lowerTo(double camera_height_m) { view_.ground.height_m = camera_height_m; }
+  /// Follows none of the points of what may be a person any more, but finds them as patches.
+  void followByPatches() {
+    view_.small = true;
+    std::swap(observed_.measured, observed_.patches);
+  }
   /// Forgets all points but so many of the lowest.
   void keep(int points) { observed_.measured.erase(observed_.measured.begin(), observed_.measured.end() - points); }
 
@@ -93,6 +99,15 @@ TEST(MotionVerdict, IsHardlyOneOfAPointOrTwo) {
   surface.keep(2);
   EXPECT_EQ(surface.verdict(moved), MotionVerdict::kHardly);
   EXPECT_EQ(surface.verdict(rested), MotionVerdict::kRested);
+}
+
+TEST(MotionVerdict, AsksThePatchesOfAPerson) {
+  Surface surface;
+  surface.followByPatches();
+  EXPECT_EQ(surface.verdict(moved), MotionVerdict::kMoved);
+  EXPECT_EQ(surface.verdict(rested), MotionVerdict::kRested);
+  const auto at_the_top = [](double u, double v) { return v < 75 ? kShift_px : -u; };  // and stripes below
+  EXPECT_EQ(surface.verdict(at_the_top), MotionVerdict::kNothing) << "few of them tell";
 }
 
 TEST(MotionVerdict, HoldsWhereEstimatesAreOffByACell) {
