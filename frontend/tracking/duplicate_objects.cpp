@@ -28,15 +28,11 @@ bool isWithin(const TrackedObject& one, const SE3& T_other_one, const TrackedObj
 /// What moves alike behind the front of a lorry or a bus, as the camera sees it, and in its track is its flank: a car
 /// that follows it is hidden, or stands out with a gap between them. What is nearer than the front may be a car before
 /// it.
-bool isFlank(const TrackedObject& older, const TrackedObject& younger, const SE3& T_older_younger, double slack_m,
-             const SeeThrough& see_through) {
+bool isFlank(const TrackedObject& older, const Eigen::AlignedBox3d& own, const TrackedObject& younger,
+             const Eigen::AlignedBox3d& other, double slack_m) {
   constexpr double kHigherThanAVan_m = 2.3;
-  const Eigen::AlignedBox3d own = older.core(SE3{});
-  if (own.sizes().z() < kHigherThanAVan_m) return false;
-  const Eigen::Vector3d front_cam = older.T_cam_body * own.center();
-  return (younger.T_cam_body * younger.middle()).norm() > front_cam.norm() &&
-         kLongestVehicle.holds(own.merged(younger.core(T_older_younger)), slack_m) &&
-         !see_through.isGapBetween(older, younger);
+  if (own.sizes().z() < kHigherThanAVan_m || !kLongestVehicle.holds(own.merged(other), slack_m)) return false;
+  return (younger.T_cam_body * younger.middle()).norm() > (older.T_cam_body * own.center()).norm();
 }
 
 bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, const SeeThrough& see_through) {
@@ -53,10 +49,9 @@ bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, con
   // Not where the younger is tall: a car before a lorry would end in it.
   const VehicleSize& size = isTall(own) ? kTallVehicle : kOrdinaryVehicle;
   if (size.holds(own.merged(other), slack_m)) return true;
-  if (difference_mps < kMaxSpeedDifference_mps && isFlank(older, younger, T_older_younger, slack_m, see_through))
-    return true;
-  return difference_mps < kMaxSpeedDifference_mps &&
-         (isWithin(younger, T_older_younger, older) || isWithin(older, T_older_younger.inverse(), younger));
+  if (difference_mps >= kMaxSpeedDifference_mps) return false;
+  if (isFlank(older, own, younger, other, slack_m)) return !see_through.isGapBetween(older, younger);
+  return (isWithin(younger, T_older_younger, older) || isWithin(older, T_older_younger.inverse(), younger));
 }
 
 void merge(TrackedObject& stays, TrackedObject& ends) {

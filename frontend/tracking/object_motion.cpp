@@ -235,9 +235,11 @@ ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& o
   const auto fit = fitPose(camera_, PoseObservations(observations), T_cam_body, params_.fit, &weak);
   ObjectObservation observation;
   observation.points = static_cast<int>(inliers.size());
+  const bool walks = mayBeWalking(object, camera_);
   for (const ScenePoint* p : visible)
-    (isFollowed(p->point) ? observation.measured : observation.patches)
-        .push_back(measurementOf(*p, disparity_offset_px));
+    if (isFollowed(p->point) || walks)
+      (isFollowed(p->point) ? observation.measured : observation.patches)
+          .push_back(measurementOf(*p, disparity_offset_px));
   std::ranges::sort(observation.measured, {}, &PointMeasurement::point);
   observation.box = imageBox(visible);
   observation.T_cam_body = fit ? fit->T_cam_ref : T_cam_body;
