@@ -40,8 +40,8 @@ class Surface {
   MotionVerdict verdict(const std::function<double(double, double)>& came_px) {
     before_ = pictureOf(came_px);
     const SE3 T_before_body(Eigen::Matrix3d::Identity(), {-kAside_m, 0, kDepth_m});
-    view_.well_before = {&now_, &before_, T_before_body, SE3{}, FrameId{1}, apart_};
-    return motionVerdict(points_seen_ ? &observed_ : nullptr, outline_found_ ? &seen_ : nullptr, view_, kRig);
+    view_.well_before = {&now_, &before_, T_before_body, SE3{}, FrameId{1}, apart};
+    return motionVerdict(points_seen ? &observed_ : nullptr, outline_found ? &seen_ : nullptr, view_, kRig);
   }
   /// An object that was known before, around the surface or so far before it, which goes along with the body.
   void addOther(double nearer_m = 0) { view_.others.push_back(along(nearer_m, -kAside_m)); }
@@ -56,8 +56,8 @@ class Surface {
   /// Forgets all points but so many of the lowest.
   void keep(int points) { observed_.measured.erase(observed_.measured.begin(), observed_.measured.end() - points); }
 
-  bool points_seen_ = true, outline_found_ = true;
-  double apart_ = kShift_px;
+  bool points_seen = true, outline_found = true;
+  double apart = kShift_px;
 
  private:
   ObjectView::Other along(double nearer_m, double came_m) const {
@@ -120,17 +120,17 @@ TEST(MotionVerdict, IsNothingWhereNoPointHasASurfaceThatTells) {
   Surface surface;
   EXPECT_EQ(surface.verdict([](double u, double) { return -u; }), MotionVerdict::kNothing)
       << "stripes along the motion";
-  surface.points_seen_ = false;
+  surface.points_seen = false;
   EXPECT_EQ(surface.verdict(moved), MotionVerdict::kNothing);
-  surface.points_seen_ = true;
-  surface.outline_found_ = false;
+  surface.points_seen = true;
+  surface.outline_found = false;
   EXPECT_EQ(surface.verdict(moved), MotionVerdict::kNothing);
 }
 
 TEST(MotionVerdict, IsUntoldWhereMotionAndRestAreHardlyApart) {
   Surface surface;
-  surface.points_seen_ = false;
-  surface.apart_ = 0.9 * ObjectView::kWellApart;
+  surface.points_seen = false;
+  surface.apart = 0.9 * ObjectView::kWellApart;
   EXPECT_EQ(surface.verdict(moved), MotionVerdict::kUntold);
 }
 
