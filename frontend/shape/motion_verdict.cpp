@@ -57,8 +57,8 @@ std::vector<PlacedPoint> placed(const std::vector<PointMeasurement>& points, con
   return placed;
 }
 
-bool isTrueOfNearlyAll(const std::vector<PlacedPoint>& points, const auto& isTrue) {
-  const auto of = std::ranges::count_if(points, isTrue, &PlacedPoint::p_cam);
+bool isTrueOfNearlyAll(const std::vector<PlacedPoint>& points, const auto& is_true) {
+  const auto of = std::ranges::count_if(points, is_true, &PlacedPoint::p_cam);
   return !points.empty() && static_cast<double>(of) >= kNearlyAll * static_cast<double>(points.size());
 }
 
