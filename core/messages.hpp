@@ -116,7 +116,7 @@ struct ObjectObservation {
   /// Velocity of the body's origin relative to the world, in the camera's axes [m/s], as the front-end sees it.
   Eigen::Vector3d velocity_cam_mps = Eigen::Vector3d::Zero();
   std::vector<PointMeasurement> measured;  // the body's points that agree with its motion, ordered by point
-  std::vector<PointMeasurement> patches;  // on who may be walking: places that are found by how they look, the same way
+  std::vector<PointMeasurement> patches;   // the same of patches, which cover a body that may be a walking person
 };
 
 /// What the front-end measured in one frame: all that the back-end needs.

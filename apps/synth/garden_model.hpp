@@ -3,7 +3,7 @@
 #include "apps/synth/noise.hpp"
 #include "apps/synth/primitive.hpp"
 
-/// What stands before gardens, and trees in wind. Origins are on the ground; x runs along the street.
+/// Fences of gardens, and trees in wind. Origins are on the ground; x runs along the street.
 namespace motorcade::synth {
 
 /// Thin pickets on two rails; what is behind shows through the gaps.

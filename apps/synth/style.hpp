@@ -6,7 +6,7 @@
 
 namespace motorcade::synth {
 
-/// How a scene is pictured. Geometry and truth are the same in all styles.
+/// Textures, lens and sensor with which a scene is pictured. Geometry and truth are the same in all styles.
 enum class Style : std::uint8_t {
   kPlain,
   kFilm,  // veined textures of less contrast, a soft lens with vignette, wandering exposure, grain

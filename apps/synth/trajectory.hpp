@@ -33,7 +33,7 @@ struct Trajectory {
 struct Ego {
   Trajectory trajectory;
   double camera_height_m = 1.65;
-  /// What both cameras see of their own car: x ahead, y left, z up from the left camera, and fixed to it. No object.
+  /// Parts of the own car that both cameras see, fixed to the left one: x ahead, y left, z up. They are no object.
   std::shared_ptr<const Model> bonnet;
   double shake_period_s = 0;  // 0: never repeats; else every shake frequency fits this period
   /// Camera x right, y down, z ahead.

@@ -19,12 +19,12 @@ constexpr double kSure = 2.5;           // sum of verdicts from which on a body 
 constexpr double kSlip = 1.5;           // log odds against a track's slipping off its body: one in five does
 constexpr std::size_t kMostSums = 100;  // that are kept: more than an object has frames in the back-end's window
 
-/// How often tracks of bodies, and tracks of nothing, get a verdict for a while, as counted over drives: those whose
-/// online rows match what moves, and those whose rows match nothing.
+/// Shares of a verdict among those that tracks get, counted once while it lasts: of tracks whose rows match labels that
+/// move, and of tracks whose rows match none.
 struct VerdictShare {
   double of_body, of_nothing;
 };
-/// In the order of MotionVerdict.
+/// One for each MotionVerdict, in its order.
 constexpr std::array<VerdictShare, 7> kShares{
     {{0.5, 0.04}, {0.2, 0.1}, {0.06, 0.07}, {0.03, 0.17}, {0.01, 0.06}, {0.01, 0.07}, {0.17, 0.4}}};
 

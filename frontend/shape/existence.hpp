@@ -33,14 +33,14 @@ class Existence {
 
   /// Uses all that was seen up to now.
   double probability() const;
-  /// That it was there in a frame, by all verdicts, as far as known before and after it. Uses what is settled of the
-  /// motion alone: online estimates may have been wrong. What was surely seen later on was there before, even where
-  /// the track has slipped off it since.
+  /// The probability that it was there in a frame, by the verdicts of all frames. It takes the settled motion alone, as
+  /// online estimates may have been wrong. A body that is surely seen in a later frame was there before, even if the
+  /// track has slipped off it since.
   double settledProbability(FrameId frame) const;
 
  private:
   double recent_speed_, settled_speed_;  // log likelihood ratios
-  /// The sum of verdicts after a frame, where no later one is larger.
+  /// The sum of verdicts up to a frame. It is kept while no later one is larger.
   struct Sum {
     FrameId frame;
     double verdicts;

@@ -9,11 +9,11 @@ namespace motorcade {
 /// camera sees.
 bool isCutOff(const Box& points, const SE3& T_cam_body, const StereoCamera& camera);
 
-/// How much of a cuboid's width is where both cameras see it.
+/// Share of a cuboid's width that both cameras see.
 double shareInImages(const ObjectBox& box, const SE3& T_cam_body, const StereoCamera& camera);
 
-/// Drops rows of what has left the images: for the most part, where it is but predicted; wholly, where points still go
-/// along with it, which are those of another vehicle then.
+/// Drops rows of objects that have left the images. A predicted one has left when less than half of it is seen. One
+/// that still has points has left when nothing of its cuboid is seen: the points are those of another vehicle then.
 void dropLeft(FrameEstimate& frame, const StereoCamera& camera);
 
 }  // namespace motorcade

@@ -68,7 +68,7 @@ bool lieOnRoad(const std::vector<PlacedPoint>& points, const GroundPlane& ground
 }
 
 bool lieWithinAnother(const std::vector<PlacedPoint>& points, const OtherBodies& others) {
-  constexpr double kMargin_m = 0.3;  // two standard deviations of a cuboid's face; others pass at half a meter and more
+  constexpr double kMargin_m = 0.3;  // sides of cuboids are off by 0.2 m; others pass at half a meter and more
   return isTrueOfNearlyAll(points,
                            [&](const Eigen::Vector3d& p_cam) { return others.around(p_cam, kMargin_m) != nullptr; });
 }

@@ -9,15 +9,15 @@
 
 namespace motorcade {
 
-/// The objects that were known before the one that is viewed, on which its points may lie instead: those beside it, and
-/// those that were lost and would be here by now, unless they go the same way, as it may be one of them.
+/// Objects that were known before the viewed one, on which its points may lie instead. Some are beside it; others were
+/// lost and would be here by now. A lost one that goes the same way does not count: the viewed object may be it.
 class OtherBodies {
  public:
   /// `view.well_before` is known and outlives this.
   OtherBodies(const ObjectView& view, const StereoCamera& camera);
 
-  /// What goes along with the object within whose cuboid, grown by `margin_m`, a point lies, in place of what rests;
-  /// null where it lies within none.
+  /// The earlier view for points on the object whose cuboid, grown by `margin_m`, holds a point; null if none does. Its
+  /// `T_before_cam` carries the point along with that object instead of leaving it at rest.
   const ObjectView::Before* around(const Eigen::Vector3d& p_cam, double margin_m) const;
 
  private:

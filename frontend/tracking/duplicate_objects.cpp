@@ -25,9 +25,8 @@ bool isWithin(const TrackedObject& one, const SE3& T_other_one, const TrackedObj
   return static_cast<double>(inside) > kMost * static_cast<double>(one.points.size());
 }
 
-/// What moves alike behind the front of a lorry or a bus, as the camera sees it, and in its track is its flank: a car
-/// that follows it is hidden, or stands out with a gap between them. What is nearer than the front may be a car before
-/// it.
+/// Points behind the front of a lorry or a bus, as the camera sees it, lie on its flank if they move alike and in its
+/// track. A car that follows is hidden, or a gap shows between the two. A nearer object may be a car before the lorry.
 bool isFlank(const TrackedObject& older, const Eigen::AlignedBox3d& own, const TrackedObject& younger,
              const Eigen::AlignedBox3d& other, double slack_m) {
   constexpr double kHigherThanAVan_m = 2.3;
@@ -51,7 +50,7 @@ bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, con
   if (size.holds(own.merged(other), slack_m)) return true;
   if (difference_mps >= kMaxSpeedDifference_mps) return false;
   if (isFlank(older, own, younger, other, slack_m)) return !see_through.isGapBetween(older, younger);
-  return (isWithin(younger, T_older_younger, older) || isWithin(older, T_older_younger.inverse(), younger));
+  return isWithin(younger, T_older_younger, older) || isWithin(older, T_older_younger.inverse(), younger);
 }
 
 void merge(TrackedObject& stays, TrackedObject& ends) {

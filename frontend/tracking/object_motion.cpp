@@ -236,10 +236,12 @@ ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& o
   ObjectObservation observation;
   observation.points = static_cast<int>(inliers.size());
   const bool walks = mayBeWalking(object, camera_);
-  for (const ScenePoint* p : visible)
-    if (isFollowed(p->point) || walks)
-      (isFollowed(p->point) ? observation.measured : observation.patches)
-          .push_back(measurementOf(*p, disparity_offset_px));
+  for (const ScenePoint* p : visible) {
+    if (isFollowed(p->point))
+      observation.measured.push_back(measurementOf(*p, disparity_offset_px));
+    else if (walks)
+      observation.patches.push_back(measurementOf(*p, disparity_offset_px));
+  }
   std::ranges::sort(observation.measured, {}, &PointMeasurement::point);
   observation.box = imageBox(visible);
   observation.T_cam_body = fit ? fit->T_cam_ref : T_cam_body;

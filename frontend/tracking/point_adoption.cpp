@@ -45,7 +45,7 @@ bool isWithinReachOfSmall(const Eigen::AlignedBox3d& core, const BodyPoint& cand
          hypotenuse(grown_m.x(), grown_m.y()) < kLongest_m + slack_m;
 }
 
-/// The region of a body beside another one, of which but a point is known, if it is as high as the other.
+/// A region as high as another one: of a body beside it only a point is known.
 PointRegion asHigh(PointRegion beside, const PointRegion& other) {
   beside.box.top_px = std::min(beside.box.top_px, other.box.top_px);
   beside.box.bottom_px = std::max(beside.box.bottom_px, other.box.bottom_px);

@@ -92,7 +92,7 @@ TEST(SynthRenderer, DepthsLieOnTheRoadAndInsideTheVehicles) {
   EXPECT_GT(vehicle, 200);
 }
 
-/// How the right image differs from the left one where both see the same surface.
+/// Difference between the right image and the left one where both see the same surface.
 struct EyeDifference {
   std::size_t pixels = 0;
   double median_levels = 0, shift_px = 0;

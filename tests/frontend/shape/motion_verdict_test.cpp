@@ -134,7 +134,7 @@ TEST(MotionVerdict, IsUntoldWhereMotionAndRestAreHardlyApart) {
   EXPECT_EQ(surface.verdict(moved), MotionVerdict::kUntold);
 }
 
-/// What moved with another object as well says nothing of this one, although it is not within the other.
+/// A surface that moved with another object as well says nothing of this one, although it is not within the other.
 TEST(MotionVerdict, ComparesWithTheObjectThatAPointMayBeOf) {
   Surface surface;
   surface.addOther(1.4);
