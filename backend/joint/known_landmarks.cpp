@@ -10,7 +10,7 @@ namespace motorcade {
 namespace {
 
 /// Columns of the system: displacements of both poses, the offset, and the right-hand side.
-constexpr int kColumns = 14;
+constexpr int kSystemColumns = 14;
 
 /// A view's residual and how it changes with the motion, whitened by the noise of view and landmark.
 struct Alignment {
@@ -71,11 +71,12 @@ EliminatedLandmarks alignToKnown(const StereoCamera& camera, const LandmarkNoise
   Eigen::Matrix<double, 6, 12> by_both;
   by_both << Matrix6d::Identity(), -Matrix6d::Identity();
   by_both.topRightCorner<3, 3>() = hat(T_cam_world[0].inverse().translation() - T_cam_world[1].inverse().translation());
-  Eigen::Matrix<double, kColumns, kColumns> system = Eigen::Matrix<double, kColumns, kColumns>::Zero();
+  Eigen::Matrix<double, kSystemColumns, kSystemColumns> system =
+      Eigen::Matrix<double, kSystemColumns, kSystemColumns>::Zero();
   const Eigen::Matrix<double, 12, 6> by_both_T = by_both.transpose();
   system.topLeftCorner<12, 12>() = propagated(by_both_T, H);
   system.bottomLeftCorner<1, 12>() = g.transpose() * by_both;
-  system(kColumns - 1, kColumns - 1) = c;
+  system(kSystemColumns - 1, kSystemColumns - 1) = c;
   pack(system, result.system);
   return result;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <optional>
 #include <random>
 
@@ -10,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "core/elementary.hpp"
-#include "frontend/geometry/double_lanes.hpp"
+#include "frontend/motion/plane_support.hpp"
 
 namespace motorcade {
 namespace {
@@ -23,12 +22,7 @@ constexpr int kHypotheses = 60;                      // find a road that carries
 constexpr int kMinInliers = 15;                      // fewer are a curb or a car's roof as well
 constexpr double kMemory = 0.7;  // weight of the plane before: two thirds of a new pitch show within three frames
 constexpr double kMinTriangle_m2 = 0.5;  // twice its area: thinner and smaller ones carry no plane
-
-// Distances from a plane, in tolerances.
-constexpr double kSupport = 3;         // nearer points speak for the plane, those on it most
-constexpr double kBelow = 4;           // points this far below speak against it: one cannot look through a road
-constexpr double kBelowPenalty = 0.5;  // of a point below, in points on the plane
-constexpr double kFit = 2.5;           // nearer points are fitted
+constexpr double kFit = 2.5;             // in tolerances: points nearer to a plane are fitted
 
 std::optional<GroundPlane> planeThrough(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   Eigen::Vector3d normal = (b - a).cross(c - a);
@@ -36,39 +30,6 @@ std::optional<GroundPlane> planeThrough(const Eigen::Vector3d& a, const Eigen::V
   if (length < kMinTriangle_m2) return std::nullopt;
   normal /= normal.y() < 0 ? -length : length;
   return GroundPlane{normal, normal.dot(a)};
-}
-
-/// Four planes.
-struct PlaneLanes {
-  Doubles3 normal_cam;
-  Doubles height_m;
-};
-
-/// Truncated quadratic score: the larger the better.
-Doubles support(const std::vector<LowPoint>& points, const PlaneLanes& planes) {
-  Doubles sum{};
-  for (const auto& c : points) {
-    const Doubles x = (planes.height_m - dot(planes.normal_cam, allDoubles(c.p_cam))) / allDoubles(c.tolerance_m);
-    const Doubles against = x < -kBelow ? allDoubles(-kBelowPenalty) : Doubles{};
-    sum += x > -kSupport && x < kSupport ? 1 - x * x / (kSupport * kSupport) : against;
-  }
-  return sum;
-}
-
-/// The first of those with most support.
-GroundPlane bestOf(const std::vector<GroundPlane>& planes, const std::vector<LowPoint>& points) {
-  std::vector<double> supports;
-  for (std::size_t first = 0; first < planes.size(); first += kDoubleLanes) {
-    PlaneLanes four{};
-    const std::size_t count = std::min(kDoubleLanes, planes.size() - first);
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      setLane(four.normal_cam, lane, planes[first + lane].normal_cam);
-      four.height_m[lane] = planes[first + lane].height_m;
-    }
-    const Doubles sums = support(points, four);
-    for (std::size_t lane = 0; lane < count; ++lane) supports.push_back(sums[lane]);
-  }
-  return planes[static_cast<std::size_t>(std::ranges::max_element(supports) - supports.begin())];
 }
 
 /// Weighted least squares of y = (height - n_x x - n_z z) / n_y over the points near a plane.
@@ -126,7 +87,7 @@ GroundPlane GroundPlaneEstimator::bestHypothesis(const std::vector<LowPoint>& po
     const auto plane = planeThrough(points[pick(random)].p_cam, points[pick(random)].p_cam, points[pick(random)].p_cam);
     if (plane && plausible(*plane)) planes.push_back(*plane);
   }
-  return bestOf(planes, points);
+  return planes[mostSupported(planes, points)];
 }
 
 bool GroundPlaneEstimator::isOnGround(const GroundCandidate& point) const {

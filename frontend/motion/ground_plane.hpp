@@ -9,6 +9,7 @@
 #include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
+#include "frontend/motion/plane_support.hpp"
 
 namespace motorcade {
 
@@ -16,12 +17,6 @@ namespace motorcade {
 struct GroundCandidate {
   Eigen::Vector3d p_cam;
   double height_sigma_m;  // standard deviation of its height that its disparity leaves
-};
-
-/// A point that may lie on the road.
-struct LowPoint {
-  Eigen::Vector3d p_cam;
-  double tolerance_m;  // of its height above the plane
 };
 
 /// Finds the road's plane by RANSAC over near, low points and a weighted fit, steadied by the previous frame's plane.
