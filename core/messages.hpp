@@ -117,6 +117,7 @@ struct ObjectObservation {
   Eigen::Vector3d velocity_cam_mps = Eigen::Vector3d::Zero();
   std::vector<PointMeasurement> measured;  // the body's points that agree with its motion, ordered by point
   std::vector<PointMeasurement> patches;   // the same of patches, which cover a body that may be a walking person
+  bool born_slow = false;                  // the object was as slow and small as a person when it was spawned
 };
 
 /// What the front-end measured in one frame: all that the back-end needs.

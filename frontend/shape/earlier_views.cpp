@@ -1,5 +1,7 @@
 #include "frontend/shape/earlier_views.hpp"
 
+#include <algorithm>
+
 namespace motorcade {
 
 void EarlierViews::move(const SE3& T_previous_now) {
@@ -37,7 +39,7 @@ std::optional<ObjectView::Before> EarlierViews::wellApart(TrackId track, const O
   for (auto then = frames_.rbegin(); then != frames_.rend(); ++then) {
     const auto before = viewIn(*then, track, view, now);
     if (before && (!farthest || before->apart > farthest->apart)) farthest = before;
-    if (farthest && farthest->apart > ObjectView::kWellApart) break;
+    if (farthest && farthest->apart > std::max(ObjectView::kWellApart, view.width)) break;
   }
   return farthest;
 }

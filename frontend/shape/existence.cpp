@@ -15,6 +15,7 @@ constexpr double kMostBySpeed = 2, kLeastBySpeed = -4;
 constexpr double kMostPerSpeed = 0.5;  // per m/s: most wrong matches seem to move slowly
 constexpr double kForgetting = 0.1;    // of the best recent speed, a frame
 constexpr double kMostByVerdicts = 6;
+constexpr double kDoubt = 2.2;          // log odds against a slow birth: one in nine is a person
 constexpr double kSure = 2.5;           // sum of verdicts from which on a body was surely seen: one clear verdict
 constexpr double kSlip = 1.5;           // log odds against a track's slipping off its body: one in five does
 constexpr std::size_t kMostSums = 100;  // that are kept: more than an object has frames in the back-end's window
@@ -41,6 +42,8 @@ double probabilityOf(double log_odds) { return 1 / (1 + exponential(-log_odds));
 }  // namespace
 
 Existence::Existence() : recent_speed_(kLeastBySpeed), settled_speed_(kLeastBySpeed) {}
+
+void Existence::doubtSlowBirth() { verdicts_ -= kDoubt; }
 
 void Existence::addSpeed(double speed_mps, double sigma_mps) {
   recent_speed_ = std::max(recent_speed_ - kForgetting, speedEvidence(speed_mps, sigma_mps));

@@ -23,6 +23,8 @@ enum class MotionVerdict {
 class Existence {
  public:
   Existence();
+  /// Call first for a track that was as slow and small as a person when it was spawned: most of these are nothing.
+  void doubtSlowBirth();
   /// An online estimate of the speed. `sigma_mps` holds the errors that all points share. Each estimate gathers what
   /// was seen before it, so that they are not added up: an object that stops is the one that moved for some time yet.
   void addSpeed(double speed_mps, double sigma_mps);

@@ -113,10 +113,12 @@ MotionVerdict motionVerdict(const ObjectObservation* observed, const LevelDispar
   const OtherBodies others(view, camera);
   if (lieOnRoad(points, view.ground)) return MotionVerdict::kOnRoad;
   if (lieWithinAnother(points, others)) return MotionVerdict::kWithin;
+  if (view.small && points.empty() && observed->patches.empty()) return MotionVerdict::kUntold;
   if (!disparities) return verdictOf({}, well_apart);
   const bool few = view.small && std::ssize(points) < kEnough;
   if (few) std::ranges::move(placed(observed->patches, view, camera), std::back_inserter(points));
   const Votes votes = votesOf(points, *disparities, view, others, camera);
+  if (votes.rested > 0 && view.well_before->apart < view.width) return MotionVerdict::kUntold;
   const bool told = !few || kTold * std::ssize(points) <= votes.moved + votes.rested;
   return verdictOf(told ? votes : Votes{}, well_apart);
 }

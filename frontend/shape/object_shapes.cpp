@@ -24,6 +24,7 @@ constexpr std::int64_t kMemory_frames = 120;            // beyond which looks no
 constexpr double kLeastSize_m = 0.2, kMostSize_m = 25;  // of an object that is believed, along each axis
 constexpr double kWhole = 0.85;                         // of a cuboid where both cameras see it: the look at it counts
 constexpr int kFewLooks = 5;                            // so few are too few to do without one
+constexpr double kTrunk_m = 0.4;                        // across
 constexpr int kIterations = 2;  // of the faces, as what is seen of them depends on where they are
 
 double fading(std::int64_t frames) { return power(kFading, static_cast<double>(std::abs(frames))); }
@@ -197,13 +198,14 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
     faded.add(shape.evidence, fading(frame.frame.value - shape.last.value));
     shape.evidence = faded;
   }
+  const auto* observed = observationOf(object.track, *inputs.measurements);
+  if (is_new && observed && observed->born_slow) shape.existence.doubtSlowBirth();
   shape.last = frame.frame;
   shape.speed_mps = object.velocity_world_mps.norm();
   ObjectView view{.T_cam_body = T_cam_body,
                   .box = estimateBox(shape.evidence, shape.speed_mps),
                   .ground = scene.ground,
                   .disparity_offset_px = scene.disparity_offset_px};
-  const auto* observed = observationOf(object.track, *inputs.measurements);
   if (observed) view.points = extentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
   if (is_new && view.points) {
     if (!isCutOff(observed->box, T_cam_body, camera_)) shape.evidence = shape.first = nearFaceAtPoints(view);
@@ -213,6 +215,7 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
   view.small = small != ObjectKind::kUnknown;
   if (view.small) view.box = estimateBox(shape.evidence, shape.speed_mps, small);
   view.level = sight_.levelOf(view, static_cast<int>(inputs.features->right.levels.size()));
+  if (view.small) view.width = kTrunk_m * camera_.fx_px / T_cam_body.translation().z() / (1 << view.level);
   if (!is_new) view.before = earlier_.last(object.track, view, *inputs.features);
   view.well_before = earlier_.wellApart(object.track, view, *inputs.features);
   view.others = cuboidsBeside(object.track, frame.objects, frame.T_world_cam, view.well_before, earlier_);

@@ -185,12 +185,13 @@ void ObjectMotionEstimator::addNearby(const SceneMotion& scene, const SE3& T_cam
 
 void ObjectMotionEstimator::addPatches(const SceneMotion& scene, const SE3& T_cam_body, TrackedObject& object,
                                        MeasuredPoints& measured) const {
-  constexpr double kMargin_m = 0.4;  // from the points on a person to the ends of the body
-  const double margin_px = mayBeWalking(object, camera_) ? kMargin_m * camera_.fx_px / T_cam_body.translation().z() : 0;
   MeasuredPoints followed = measured;
   std::erase_if(followed.points, [](const ScenePoint& p) { return !isFollowed(p.point); });
+  const auto trunk = mayBeWalking(object, camera_) ? trunkOf(object, T_cam_body, scene.ground, camera_) : std::nullopt;
+  const double offset_px = scene.disparity_offset_px;
   const std::vector<ScenePoint> patches =
-      samplePatches(followed.points.empty() ? measured : followed, scene.disparity_offset_px, margin_px);
+      trunk && scene.features ? samplePatches(*scene.features, trunk->box, trunk->disparity_px, offset_px)
+                              : samplePatches(followed.points.empty() ? measured : followed, offset_px);
   measured = std::move(followed);
   std::erase_if(object.points, [](const BodyPoint& p) { return !isFollowed(p.point); });
   std::vector<const ScenePoint*> points;

@@ -61,7 +61,7 @@ class ObjectMotionEstimator {
   /// to its `measured` points.
   void addNearby(const SceneMotion& scene, const SE3& T_cam_body, TrackedObject& object,
                  MeasuredPoints& measured) const;
-  /// The same of patches between its points, and around them on who may be walking, in place of those it has.
+  /// The same of patches between its points, and on the trunk of who may be walking, in place of those it has.
   void addPatches(const SceneMotion& scene, const SE3& T_cam_body, TrackedObject& object,
                   MeasuredPoints& measured) const;
 

@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include <Eigen/LU>
+
+#include "frontend/motion/shared_velocity_error.hpp"
 #include "frontend/segmentation/vehicles_abreast.hpp"
 #include "frontend/tracking/body_axes.hpp"
 #include "frontend/tracking/small_body.hpp"
@@ -11,6 +14,7 @@ namespace motorcade {
 namespace {
 
 constexpr double kTurnRate_radps = 0.05;  // standard deviation of an object's turn rate, of which nothing is known
+constexpr double kSure = 4.5;             // standard deviations of a velocity, as of moving segments
 constexpr double kSpeedModel_mps = 0.5;   // that of its velocity beyond the segment's own: not all points are its own
 
 /// The segment's velocity, without turning, about the pose that the first observation measured.
@@ -28,6 +32,10 @@ ObjectKinematics firstKinematics(const SE3& T_world_body, const Segment& vehicle
   return {T_world_body, twist, P};
 }
 
+bool isSure(const Eigen::Vector3d& velocity_mps, const Eigen::Matrix3d& covariance) {
+  return velocity_mps.dot(covariance.inverse() * velocity_mps) > kSure * kSure;
+}
+
 }  // namespace
 
 std::vector<TrackedObject> ObjectSpawner::operator()(const SceneMotion& scene, const Segment& segment,
@@ -39,14 +47,47 @@ std::vector<TrackedObject> ObjectSpawner::operator()(const SceneMotion& scene, c
   for (const Segment& vehicle : splitAbreast(segment, free, scene, kOrdinaryVehicle.width_m)) {
     if (static_cast<int>(vehicle.points.size()) < min_points_) continue;
     for (const int i : vehicle.points) taken[i] = true;
-    spawned.push_back(spawn(scene, vehicle, T_world_cam));
+    spawned.push_back(objectOf(scene, vehicle, T_world_cam));
+    spawned.back().track = TrackId{next_track_++};
   }
   return spawned;
 }
 
-TrackedObject ObjectSpawner::spawn(const SceneMotion& scene, const Segment& vehicle, const SE3& T_world_cam) {
-  TrackedObject object;
+std::optional<TrackedObject> ObjectSpawner::walker(const SceneMotion& scene, const SceneMotion& before,
+                                                   const Segment& segment, const SE3& T_world_cam) {
+  if (!isSure(segment.velocity_mps, segment.velocity_covariance)) return std::nullopt;
+  TrackedObject object = objectOf(scene, segment, T_world_cam);
+  if (!object.born_slow || !haveMoved(object, scene, before)) return std::nullopt;
   object.track = TrackId{next_track_++};
+  return object;
+}
+
+/// Finds the patches in the frame before where the velocity takes them from. One pose of the body must agree with most
+/// of them; how far it lies from that of now is measured, not assumed.
+bool ObjectSpawner::haveMoved(const TrackedObject& object, const SceneMotion& scene, const SceneMotion& before) const {
+  constexpr double kMostAgree = 0.5;
+  constexpr std::size_t kLeast = 8;  // patches, each of which shares half of its pixels with its neighbors
+  constexpr double kPosition_m = 0.3, kRotation_rad = 0.05;  // by which the prediction may be wrong
+  const double dt_s = secondsBetween(before.stamp, scene.stamp);
+  Vector6d sigma;
+  sigma << Eigen::Vector3d::Constant(kPosition_m), Eigen::Vector3d::Constant(kRotation_rad);
+  const PosePrior predicted{scene.T_previous_now * object.T_cam_body * SE3::exp(-dt_s * object.kinematics.twist()),
+                            sigma.cwiseAbs2().cwiseInverse().asDiagonal()};
+  const auto then = motion_.lookBack(object, before, object.measured, predicted);
+  const std::size_t agree = then ? then->points.points.size() : 0, all = object.measured.points.size();
+  if (agree < kLeast || static_cast<double>(agree) < kMostAgree * static_cast<double>(all)) return false;
+  const SE3 T_then_now = then->fit.T_cam_ref.inverse() * scene.T_previous_now * object.T_cam_body;
+  const Eigen::Vector3d velocity_mps = T_then_now.translation() / dt_s;
+  const Eigen::Matrix3d R_cam_body = object.T_cam_body.rotation();
+  const Eigen::Matrix3d shared =
+      sharedVelocityCovariance(camera_, object.T_cam_body.translation(), scene.camera_speed_mps);
+  const Eigen::Matrix3d C = then->fit.covariance.topLeftCorner<3, 3>() / (dt_s * dt_s);
+  return velocity_mps.norm() < kFastestWalk_mps &&
+         isSure(velocity_mps, C + R_cam_body.transpose() * shared * R_cam_body);
+}
+
+TrackedObject ObjectSpawner::objectOf(const SceneMotion& scene, const Segment& vehicle, const SE3& T_world_cam) const {
+  TrackedObject object;
   object.spawned_at_world = T_world_cam * vehicle.centroid_cam;
   const SE3 T_world_body(travelAxes(T_world_cam.rotation() * vehicle.velocity_mps, upInWorld(scene, T_world_cam)),
                          object.spawned_at_world);
@@ -57,7 +98,8 @@ TrackedObject ObjectSpawner::spawn(const SceneMotion& scene, const Segment& vehi
   first.velocity_cam_mps = vehicle.velocity_mps;
   object.kinematics = firstKinematics(T_world_body, vehicle, T_world_cam, first.encounter_covariance);
   object.observed_before = scene.frame;
-  if (mayBeWalking(object, camera_)) {
+  object.born_slow = mayBeWalking(object, camera_);
+  if (object.born_slow) {
     object.measured = motion_.measuredPoints(object, scene);
     motion_.addPatches(scene, object.T_cam_body, object, object.measured);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/stereo_camera.hpp"
@@ -20,8 +21,14 @@ class ObjectSpawner {
   std::vector<TrackedObject> operator()(const SceneMotion& scene, const Segment& segment, const SE3& T_world_cam,
                                         std::vector<bool>& taken);
 
+  /// A person on foot of whom a point or two move surely, as corners are few on clothes and most of them on limbs: the
+  /// patches around these points have moved together since the frame before, and surely.
+  std::optional<TrackedObject> walker(const SceneMotion& scene, const SceneMotion& before, const Segment& segment,
+                                      const SE3& T_world_cam);
+
  private:
-  TrackedObject spawn(const SceneMotion& scene, const Segment& vehicle, const SE3& T_world_cam);
+  TrackedObject objectOf(const SceneMotion& scene, const Segment& segment, const SE3& T_world_cam) const;
+  bool haveMoved(const TrackedObject& object, const SceneMotion& scene, const SceneMotion& before) const;
 
   int min_points_;
   StereoCamera camera_;

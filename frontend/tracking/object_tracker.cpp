@@ -8,6 +8,7 @@
 #include "frontend/tracking/body_axes.hpp"
 #include "frontend/tracking/duplicate_objects.hpp"
 #include "frontend/tracking/object_association.hpp"
+#include "frontend/tracking/small_body.hpp"
 
 namespace motorcade {
 namespace {
@@ -19,6 +20,12 @@ constexpr double kInsideImage_px = 10;   // unless the middle of its points is p
 constexpr double kReappearanceSpread_m = 1.0;  // standard deviation of the middle of an object's points when it is seen
                                                // again, about that of those seen last
 constexpr int kStopFrames = 3;                 // in a row below the stop speed, as the speed's noise may fall below it
+
+/// Does a point lie on what is known of an object, or hardly beside it?
+bool isAt(const TrackedObject& object, const Eigen::Vector3d& p_cam) {
+  constexpr double kBeside_m = 0.4;
+  return object.extent(kBeside_m).contains(object.T_cam_body.inverse() * p_cam);
+}
 
 }  // namespace
 
@@ -62,7 +69,7 @@ void ObjectTracker::advance(const SceneMotion& scene) {
   if (!previous_scene_) return;
   const double dt_s = secondsBetween(previous_scene_->stamp, scene.stamp);
   for (TrackedObject& object : objects_) {
-    object.kinematics.predict(dt_s, params_.kinematics);
+    object.kinematics.predict(dt_s, kinematicsOf(object, params_.kinematics));
     object.T_cam_body_before = object.T_cam_body;
     object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
   }
@@ -79,7 +86,7 @@ void ObjectTracker::follow(TrackedObject& object, const SceneMotion& scene, Fram
   auto observation = motion_.follow(object, scene, previous_scene_.get(), T_world_cam_);
   if (!observation) return coast(object, scene, measurements);
   object.life.observe();
-  object.kinematics.fuseVehicleModel(upInWorld(scene, T_world_cam_), params_.kinematics);
+  object.kinematics.fuseVehicleModel(upInWorld(scene, T_world_cam_), kinematicsOf(object, params_.kinematics));
   object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
   object.last_middle_body = object.middle();
   updateState(object);
@@ -145,6 +152,7 @@ void ObjectTracker::updateState(TrackedObject& object) const {
 /// Reports an observation, or keeps it until the object is confirmed.
 void ObjectTracker::record(TrackedObject& object, ObjectObservation observation, FrameMeasurements& measurements) {
   observation.track = object.track;
+  observation.born_slow = object.born_slow;
   observation.velocity_cam_mps = T_world_cam_.rotation().transpose() * object.kinematics.velocityWorld_mps();
   if (object.life.reported()) {
     measurements.objects.push_back(std::move(observation));
@@ -171,6 +179,7 @@ void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measuremen
   look_back_(object, measurements.stamp, params_.kinematics);
   for (ObjectObservation& o : object.backlog) {
     o.track = object.track;
+    o.born_slow = object.born_slow;
     measurements.objects.push_back(std::move(o));
   }
   object.backlog.clear();
@@ -197,7 +206,23 @@ void ObjectTracker::matchSegments(const SceneMotion& scene) {
     if (object_of[s] >= 0 || scene.segments[s].label != PointLabel::kMoving) continue;
     std::ranges::move(spawn_(scene, scene.segments[s], T_world_cam_, taken), std::back_inserter(objects_));
   }
+  spawnWalkers(scene, object_of, taken);
   dropFarthest();
+}
+
+/// People of whom too few points are followed for a moving segment.
+void ObjectTracker::spawnWalkers(const SceneMotion& scene, const std::vector<int>& object_of,
+                                 const std::vector<bool>& taken) {
+  if (!previous_scene_ || !previous_scene_->features) return;
+  for (std::size_t s = 0; s < scene.segments.size(); ++s) {
+    const Segment& segment = scene.segments[s];
+    const auto is_taken = [&](int i) { return bool{taken[i]}; };
+    const auto holds = [&](const TrackedObject& object) { return isAt(object, segment.centroid_cam); };
+    if (object_of[s] >= 0 || std::ranges::any_of(segment.points, is_taken) || std::ranges::any_of(objects_, holds))
+      continue;
+    if (auto walker = spawn_.walker(scene, *previous_scene_, segment, T_world_cam_))
+      objects_.push_back(std::move(*walker));
+  }
 }
 
 /// Of the objects that are not confirmed yet, where more are followed than may be.

@@ -47,6 +47,7 @@ class ObjectTracker {
   void confirmSure(const SceneMotion& scene, FrameMeasurements& measurements);
   void confirm(TrackedObject& object, FrameMeasurements& measurements);
   void matchSegments(const SceneMotion& scene);
+  void spawnWalkers(const SceneMotion& scene, const std::vector<int>& object_of, const std::vector<bool>& taken);
   void dropFarthest();
   void reappear(TrackedObject& object, const Segment& segment) const;
   bool isOutOfReach(const TrackedObject& object) const;

@@ -52,17 +52,14 @@ double medianDisparity_px(const std::vector<ScenePoint>& points) {
 
 }  // namespace
 
-std::vector<ScenePoint> samplePatches(const MeasuredPoints& measured, double disparity_offset_px, double margin_px) {
-  if (!measured.features || measured.points.empty()) return {};
-  Eigen::AlignedBox2d box;
-  for (const ScenePoint& p : measured.points) box.extend(Eigen::Vector2d(p.uvd_px.head<2>()));
-  box.min().array() -= margin_px, box.max().array() += margin_px;
-  const double disparity_px = medianDisparity_px(measured.points);
-  const int step_px = std::max(kStep_px, static_cast<int>(std::sqrt(box.volume() / kMostPatches)));
-  const Image &left = measured.features->left.levels.front(), &right = measured.features->right.levels.front();
+std::vector<ScenePoint> samplePatches(const Features& features, const Box& box, double disparity_px,
+                                      double disparity_offset_px) {
+  const double area_px2 = (box.right_px - box.left_px) * (box.bottom_px - box.top_px);
+  const int step_px = std::max(kStep_px, static_cast<int>(std::sqrt(area_px2 / kMostPatches)));
+  const Image &left = features.left.levels.front(), &right = features.right.levels.front();
   std::vector<ScenePoint> patches;
-  for (double v = box.min().y(); v <= box.max().y(); v += step_px) {
-    for (double u = box.min().x(); u <= box.max().x(); u += step_px) {
+  for (double v = box.top_px; v <= box.bottom_px; v += step_px) {
+    for (double u = box.left_px; u <= box.right_px; u += step_px) {
       const auto match = refineDisparity(left, right, u, v, disparity_px - disparity_offset_px,
                                          {.search_radius_px = kDisparitySearch_px});
       if (!match || std::abs(match->disparity_px + disparity_offset_px - disparity_px) > kSameDepth_px) continue;
@@ -74,6 +71,14 @@ std::vector<ScenePoint> samplePatches(const MeasuredPoints& measured, double dis
     }
   }
   return patches;
+}
+
+std::vector<ScenePoint> samplePatches(const MeasuredPoints& measured, double disparity_offset_px) {
+  if (!measured.features || measured.points.empty()) return {};
+  Eigen::AlignedBox2d box;
+  for (const ScenePoint& p : measured.points) box.extend(Eigen::Vector2d(p.uvd_px.head<2>()));
+  return samplePatches(*measured.features, {box.min().x(), box.min().y(), box.max().x(), box.max().y()},
+                       medianDisparity_px(measured.points), disparity_offset_px);
 }
 
 std::vector<ScenePoint> searchByProjection(const TrackedObject& body, const MeasuredPoints& measured,

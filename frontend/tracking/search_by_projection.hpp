@@ -20,8 +20,12 @@ std::vector<ScenePoint> searchByProjection(const TrackedObject& body, const Meas
 /// Whether it is a followed point, rather than a patch that `samplePatches` placed.
 inline bool isFollowed(PointId point) { return point.value >= 0; }
 
-/// Patches between the measured points of a body, and up to a margin beyond them, that lie at about their depth:
-/// evidence of a body on which corners are few. Numbered -1, -2, ...
-std::vector<ScenePoint> samplePatches(const MeasuredPoints& measured, double disparity_offset_px, double margin_px = 0);
+/// Patches of a part of the image that lie at about a disparity: evidence of a body on which corners are few. Numbered
+/// -1, -2, ...
+std::vector<ScenePoint> samplePatches(const Features& features, const Box& box, double disparity_px,
+                                      double disparity_offset_px);
+
+/// The same between the measured points of a body, at about their disparity.
+std::vector<ScenePoint> samplePatches(const MeasuredPoints& measured, double disparity_offset_px);
 
 }  // namespace motorcade

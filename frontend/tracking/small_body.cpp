@@ -13,11 +13,33 @@ bool mayBeSmall(const TrackedObject& object) {
 }
 
 bool mayBeWalking(const TrackedObject& object, const StereoCamera& camera) {
-  constexpr double kSlowest_mps = 0.5, kFastest_mps = 3;  // who runs for a bus
-  constexpr double kBehind_m = 0.5, kSigma_px = 0.3;      // of a patch's disparity
+  constexpr double kSlowest_mps = 0.5;
+  constexpr double kBehind_m = 0.5, kSigma_px = 0.3;  // of a patch's disparity
   const double speed_mps = object.kinematics.speed_mps(), z_m = object.T_cam_body.translation().z();
-  if (speed_mps < kSlowest_mps || speed_mps > kFastest_mps) return false;
+  if (speed_mps < kSlowest_mps || speed_mps > kFastestWalk_mps) return false;
   return camera.fx_px * camera.baseline_m * kBehind_m > kSigma_px * z_m * z_m && mayBeSmall(object);
+}
+
+ObjectKinematics::Params kinematicsOf(const TrackedObject& object, const ObjectKinematics::Params& vehicle) {
+  constexpr double kAcceleration_mps2 = 0.5;  // a walk's speed is constant to a third
+  constexpr double kAside_mps = 1;            // of a velocity whose direction few points told
+  if (object.kinematics.speed_mps() > kFastestWalk_mps || !mayBeSmall(object)) return vehicle;
+  ObjectKinematics::Params walk = vehicle;
+  walk.acceleration.along_mps2 = walk.acceleration.sideways_mps2 = kAcceleration_mps2;
+  walk.slip_mps = kAside_mps;
+  return walk;
+}
+
+std::optional<Trunk> trunkOf(const TrackedObject& object, const SE3& T_cam_body, const GroundPlane& ground,
+                             const StereoCamera& camera) {
+  constexpr double kHip_m = 0.8, kHead_m = 1.8, kHalfWidth_m = 0.3;
+  const Eigen::Vector3d middle = T_cam_body * object.middle();
+  const double height_m = ground.heightOf_m(middle);
+  const auto at_height = [&](double h_m) { return camera.project(middle + (height_m - h_m) * ground.normal_cam); };
+  const auto head = at_height(kHead_m), hip = at_height(kHip_m), uvd_px = camera.project(middle);
+  if (!head || !hip || !uvd_px) return std::nullopt;
+  const double half_px = kHalfWidth_m * camera.fx_px / middle.z();
+  return Trunk{{uvd_px->x() - half_px, head->y(), uvd_px->x() + half_px, hip->y()}, uvd_px->z()};
 }
 
 }  // namespace motorcade

@@ -36,6 +36,7 @@ struct MeasuredPoints {
 /// to the vehicle from then on.
 struct TrackedObject {
   TrackId track;
+  bool born_slow = false;  // it was as slow and small as a person when it was spawned
   LifeCycle life;
   ObjectKinematics kinematics;  // in the front-end's own odometry world
   SE3 T_cam_body;               // of the newest frame, and of the one before
