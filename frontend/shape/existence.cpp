@@ -29,6 +29,11 @@ struct VerdictShare {
 constexpr std::array<VerdictShare, 7> kShares{
     {{0.5, 0.04}, {0.2, 0.1}, {0.06, 0.07}, {0.03, 0.17}, {0.01, 0.06}, {0.01, 0.07}, {0.17, 0.4}}};
 
+/// Three points agree with some motion, whatever they do: a track that never has more is never put to the test.
+constexpr std::size_t kUntested = 3;
+/// Shares of such tracks. Of others they are .98 and .66, which says little and is left out.
+constexpr VerdictShare kUntestedShare{0.02, 0.34};
+
 /// How much likelier a speed is among those of traffic than as an error of something at rest: both are Gaussian.
 double speedEvidence(double speed_mps, double sigma_mps) {
   const double misfit_at_rest = speed_mps / sigma_mps, spread = kTrafficSpeed_mps / sigma_mps;
@@ -66,13 +71,22 @@ void Existence::addVerdict(FrameId frame, MotionVerdict verdict) {
   if (largest_.size() > kMostSums) largest_.pop_front();
 }
 
-double Existence::probability() const { return probabilityOf(std::max(recent_speed_, settled_speed_) + verdicts_); }
+void Existence::addFollowed(std::size_t points) { most_followed_ = std::max(most_followed_.value_or(0), points); }
+
+double Existence::followedEvidence() const {
+  if (!most_followed_ || *most_followed_ > kUntested) return 0;
+  return logarithm(kUntestedShare.of_body / kUntestedShare.of_nothing);
+}
+
+double Existence::probability() const {
+  return probabilityOf(std::max(recent_speed_, settled_speed_) + verdicts_ + followedEvidence());
+}
 
 double Existence::settledProbability(FrameId frame) const {
   const auto later = std::ranges::lower_bound(largest_, frame, {}, &Sum::frame);
   const bool surely_seen = later != largest_.end() && later->verdicts >= kSure;
   const double before_slip = surely_seen ? later->verdicts - kSlip : verdicts_;
-  return probabilityOf(settled_speed_ + std::max(verdicts_, before_slip));
+  return probabilityOf(settled_speed_ + std::max(verdicts_, before_slip) + followedEvidence());
 }
 
 }  // namespace motorcade

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <deque>
+#include <optional>
 
 #include "core/messages.hpp"
 
@@ -33,6 +35,9 @@ class Existence {
   /// Call in frame order.
   void addVerdict(FrameId frame, MotionVerdict verdict);
 
+  /// The points and patches by which it was followed in a frame in which it was.
+  void addFollowed(std::size_t points);
+
   /// Uses all that was seen up to now.
   double probability() const;
   /// The probability that it was there in a frame, by the verdicts of all frames. It takes the settled motion alone, as
@@ -41,6 +46,8 @@ class Existence {
   double settledProbability(FrameId frame) const;
 
  private:
+  double followedEvidence() const;
+
   double recent_speed_, settled_speed_;  // log likelihood ratios
   /// The sum of verdicts up to a frame. It is kept while no later one is larger.
   struct Sum {
@@ -48,7 +55,8 @@ class Existence {
     double verdicts;
   };
   double verdicts_ = 0;
-  std::deque<Sum> largest_;  // oldest first, and so the largest
+  std::optional<std::size_t> most_followed_;  // of all frames
+  std::deque<Sum> largest_;                   // oldest first, and so the largest
   MotionVerdict last_ = MotionVerdict::kUntold;
   int repeated_ = 0;
 };

@@ -24,7 +24,25 @@ constexpr double kSharp_m = 0.35;    // noise in depth of surface points that te
 constexpr double kOutermost = 0.05;  // share of them, at each side, that may be of something else
 constexpr double kExtentSigma_m = 0.1;
 constexpr std::size_t kLeastSharp = 30;
-constexpr int kEdge = 3;  // cells from the window's edge, where the window cuts the outline
+constexpr double kGoesOnSigmas = 2;  // by which a side goes on beyond the sharp part of it
+constexpr int kEdge = 3;             // cells from the window's edge, where the window cuts the outline
+
+/// Toward the greater coordinates or the lesser.
+double outward(int face) { return face % 2 == 1 ? 1 : -1; }
+
+/// A point of the surface, with its noise along the ray.
+struct Sample {
+  Eigen::Vector3d p_body;
+  double noise_m;
+};
+
+/// The last sample toward a face, but for a share of outliers.
+Sample outermost(std::vector<Sample>& samples, int face) {
+  const double share = outward(face) > 0 ? 1 - kOutermost : kOutermost;
+  const auto nth = samples.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(samples.size() - 1));
+  std::ranges::nth_element(samples, nth, {}, [axis = face / 2](const Sample& sample) { return sample.p_body[axis]; });
+  return *nth;
+}
 
 class FaceMeasurement {
  public:
@@ -55,7 +73,7 @@ class FaceMeasurement {
   };
   void addSurfacePoint(const SurfacePoint& point, std::array<Surface, 6>& surfaces);
   void addExtent();
-  void reachOver(int axis, double least, double most, double sigma_m);
+  void reachTo(int face, double at, double sigma_m);
   void addBounds();
   bool isCut(int column, int step) const;
   /// One side of the outline; where it is cut, the object reaches at least so far.
@@ -72,7 +90,7 @@ class FaceMeasurement {
   const StereoCamera& camera_;
   Eigen::Vector3d origin_;  // of the camera, in the body frame
   FaceInformation information_;
-  std::vector<Eigen::Vector3d> sharp_;  // points of the surface that are known sharply, in the body frame
+  std::vector<Sample> sampled_, sharp_;  // the surface, and what is known sharply of it
 };
 
 /// The middle of the bottom face lies on the road.
@@ -87,14 +105,15 @@ void FaceMeasurement::addRoad() {
 /// The cuboid holds the points by which the object is followed.
 void FaceMeasurement::addPoints() {
   if (!view_.points) return;
-  for (int axis = 0; axis < 3; ++axis)
-    reachOver(axis, view_.points->min()[axis], view_.points->max()[axis], kPointSigma_m);
+  for (int axis = 0; axis < 3; ++axis) {
+    reachTo(2 * axis, view_.points->min()[axis], kPointSigma_m);
+    reachTo(2 * axis + 1, view_.points->max()[axis], kPointSigma_m);
+  }
 }
 
-/// The cuboid reaches at least from `least` to `most`.
-void FaceMeasurement::reachOver(int axis, double least, double most, double sigma_m) {
-  if (view_.box.faces[2 * axis] > least) information_.add(Vector6d::Unit(2 * axis), least, sigma_m);
-  if (view_.box.faces[2 * axis + 1] < most) information_.add(Vector6d::Unit(2 * axis + 1), most, sigma_m);
+/// A face lies at `at` or beyond.
+void FaceMeasurement::reachTo(int face, double at, double sigma_m) {
+  if (outward(face) * (at - view_.box.faces[face]) > 0) information_.add(Vector6d::Unit(face), at, sigma_m);
 }
 
 void FaceMeasurement::addSurfaces() {
@@ -110,16 +129,19 @@ void FaceMeasurement::addSurfaces() {
   addExtent();
 }
 
-/// The cuboid holds the surface, all but its outermost parts, where that is known sharply.
+/// The cuboid holds the surface, all but its outermost parts, where that is known sharply. The flank of a lorry that
+/// goes on where it no longer is ends farther ahead or behind: its sharp part would keep the cuboid as short as itself.
 void FaceMeasurement::addExtent() {
   if (sharp_.size() < kLeastSharp) return;
-  for (int axis = 0; axis < 2; ++axis) {
-    const auto at = [&](double share) {
-      const auto nth = sharp_.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sharp_.size() - 1));
-      std::ranges::nth_element(sharp_, nth, {}, [axis](const Eigen::Vector3d& p) { return p[axis]; });
-      return (*nth)[axis];
-    };
-    reachOver(axis, at(kOutermost), at(1 - kOutermost), kExtentSigma_m);
+  for (const int face : {kRear, kFront, kRight, kLeft}) {
+    const int axis = face / 2;
+    const Sample sharp = outermost(sharp_, face), any = outermost(sampled_, face);
+    const bool goes_on =
+        axis == 0 && outward(face) * (any.p_body[axis] - sharp.p_body[axis]) > kGoesOnSigmas * any.noise_m;
+    if (goes_on)
+      reachTo(face, any.p_body[axis], any.noise_m);
+    else
+      reachTo(face, sharp.p_body[axis], kExtentSigma_m);
   }
 }
 
@@ -139,7 +161,9 @@ void FaceMeasurement::addSurfacePoint(const SurfacePoint& point, std::array<Surf
   }
   if (face < 0) return;
   const double along = direction[face / 2];
-  if (noise_m < kSharp_m) sharp_.push_back(origin_ + z * direction);
+  const Sample sample{origin_ + z * direction, noise_m * direction.norm()};
+  sampled_.push_back(sample);
+  if (noise_m < kSharp_m) sharp_.push_back(sample);
   const double sigma_z = hypotenuse(noise_m, kUneven_m / std::abs(along));
   const double chi = (z - entry) / sigma_z, weight = 1 / (1 + chi * chi / (kGrossChi * kGrossChi));
   if (chi < -kGrossChi) return;  // before the cuboid: of another face, which reaches farther than is believed

@@ -163,6 +163,7 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
     const auto* observed = observationOf(object.track, *inputs.measurements);
     shape.existence.addSpeed(object.velocity_world_mps.norm(),
                              speedSigma_mps(object, frame.T_world_cam, camera_, camera_speed_mps_));
+    if (observed) shape.existence.addFollowed(observed->measured.size() + (view.small ? observed->patches.size() : 0));
     shape.existence.addVerdict(frame.frame,
                                motionVerdict(observed, seen ? &seen->disparities : nullptr, view, camera_));
   }

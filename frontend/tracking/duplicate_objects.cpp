@@ -53,6 +53,17 @@ bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, con
   return isWithin(younger, T_older_younger, older) || isWithin(older, T_older_younger.inverse(), younger);
 }
 
+bool isInView(const TrackedObject& object, const StereoCamera& camera) {
+  const auto uvd_px = camera.project(object.T_cam_body.translation());
+  return uvd_px && camera.inLeftImage(uvd_px->x(), uvd_px->y());
+}
+
+/// What has left the view is not what is still seen in it: the last points of a trailer that we pass are on its truck.
+bool youngerStays(const TrackedObject& older, const TrackedObject& younger, const StereoCamera& camera) {
+  if (!younger.life.reported()) return false;
+  return !older.life.reported() || (!isInView(older, camera) && isInView(younger, camera));
+}
+
 void merge(TrackedObject& stays, TrackedObject& ends) {
   const SE3 T_stays_ends = stays.T_cam_body.inverse() * ends.T_cam_body;
   for (BodyPoint& p : ends.points) {
@@ -65,14 +76,14 @@ void merge(TrackedObject& stays, TrackedObject& ends) {
 
 }  // namespace
 
-void mergeDuplicates(std::vector<TrackedObject>& objects, const SeeThrough& see_through) {
+void mergeDuplicates(std::vector<TrackedObject>& objects, const SeeThrough& see_through, const StereoCamera& camera) {
   const auto ended = [](const TrackedObject& object) { return object.life.phase() == Phase::kEnded; };
   for (std::size_t i = 0; i < objects.size(); ++i) {
     for (std::size_t j = i + 1; j < objects.size(); ++j) {
       TrackedObject &older = objects[i], &younger = objects[j];
       if (ended(older) || ended(younger) || !areDuplicates(older, younger, see_through)) continue;
       if (see_through.areApart(older, younger)) continue;
-      if (younger.life.reported() && !older.life.reported())
+      if (youngerStays(older, younger, camera))
         merge(younger, older);
       else
         merge(older, younger);

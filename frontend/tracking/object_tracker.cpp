@@ -52,7 +52,7 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   if (scene->cause == FrameCause::kUnlinked) endAll(*measurements);
   for (TrackedObject& object : objects_) follow(object, *scene, *measurements);
   matchSegments(*scene);
-  mergeDuplicates(objects_, SeeThrough(*scene, camera_));
+  mergeDuplicates(objects_, SeeThrough(*scene, camera_), camera_);
   confirmSure(*scene, *measurements);
   look_back_.remember(scene, T_world_cam_, measurements->objects, objects_);
   removeEnded(*measurements);

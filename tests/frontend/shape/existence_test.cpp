@@ -103,6 +103,21 @@ TEST(Existence, GrowsLessWithAPointOrTwo) {
   EXPECT_GT(many.probability(), few.probability() + 0.03);
 }
 
+/// Three points agree with some motion, whatever they do.
+TEST(Existence, AsksForMoreThanThreeFollowedPointsInSomeFrame) {
+  Existence few, more;
+  for (Existence* existence : {&few, &more}) {
+    existence->addSpeed(8, 0.5), existence->addSettledSpeed(8, 0.5);
+    existence->addVerdict(kFirst, MotionVerdict::kHardly);
+    for (const std::size_t points : {3, 0, 3}) existence->addFollowed(points);
+  }
+  EXPECT_LT(few.probability(), 0.5);
+  EXPECT_LT(few.settledProbability(kFirst), 0.5);
+  more.addFollowed(4), more.addFollowed(0);
+  EXPECT_GT(more.probability(), 0.8);
+  EXPECT_GT(more.settledProbability(kFirst), 0.8);
+}
+
 TEST(Existence, CountsSuccessiveFramesOfOneVerdictLessAndLess) {
   Existence existence;
   existence.addSpeed(3, 1);

@@ -94,5 +94,23 @@ TEST(FaceMeasurement, AWrongBeliefOfTheRearGivesWayToTheSideThatIsSeenBehindIt) 
   EXPECT_NEAR(view.box.least().x(), -0.5 * kMeasuredCar_m.x(), 0.3);
 }
 
+TEST(FaceMeasurement, AFlankThatGoesOnWhereItIsNoLongerSharpIsLonger) {
+  // A trailer beside us: its rear is out of view, its front twelve meters ahead; distances are sharp up to six.
+  const Eigen::Vector3d trailer_m(11, 2.5, 3.2);
+  const SE3 T_cam_body = StreetByHand::standingAt(3.5, 6.5);
+  const StreetByHand street({{T_cam_body, StreetByHand::faces(trailer_m)}});
+  const LevelDisparities seen = street.disparities({.u0 = 80, .v0 = 0, .width = 74, .height = 46}, 3);
+  FaceInformation evidence;
+  ObjectView view{.T_cam_body = T_cam_body * SE3(Eigen::Matrix3d::Identity(), {-3, 1.25, 1}),
+                  .box = estimateBox(evidence, 6),
+                  .ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m},
+                  .disparity_offset_px = 0};
+  for (int i = 0; i < 15; ++i) {
+    evidence.add(measuredFaces(seen, outlineOf(seen, view), view), 0.15);
+    view.box = estimateBox(evidence, 6);
+  }
+  EXPECT_NEAR(view.box.most().x() - 3, 0.5 * trailer_m.x(), 2);
+}
+
 }  // namespace
 }  // namespace motorcade

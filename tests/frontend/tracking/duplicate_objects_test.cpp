@@ -35,7 +35,7 @@ TrackedObject objectOn(const Seen& seen) {
 /// Whether the younger of two objects, one behind the other, is taken for a part of the older.
 bool areOne(const Seen& older, const Seen& younger) {
   std::vector<TrackedObject> objects{objectOn(older), objectOn(younger)};
-  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig));
+  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig), test::kRig);
   EXPECT_NE(objects[0].life.phase(), Phase::kEnded);
   return objects[1].life.phase() == Phase::kEnded;
 }
@@ -43,7 +43,7 @@ bool areOne(const Seen& older, const Seen& younger) {
 TEST(DuplicateObjects, TwoOnOneVehicleBecomeOneWithThePointsOfBoth) {
   std::vector<TrackedObject> objects{objectOn({1, 10, 12}), objectOn({2, 13, 15})};
   const Eigen::Vector3d p_world = objects[1].T_cam_body * objects[1].points.front().p_body;
-  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig));
+  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig), test::kRig);
   EXPECT_EQ(objects[0].life.phase(), Phase::kTentative);
   EXPECT_EQ(objects[1].life.phase(), Phase::kEnded);
   ASSERT_EQ(objects[0].points.size(), 16U);
@@ -55,14 +55,28 @@ TEST(DuplicateObjects, TwoOnOneVehicleBecomeOneWithThePointsOfBoth) {
 TEST(DuplicateObjects, TheOneThatWasReportedStays) {
   std::vector<TrackedObject> objects{objectOn({1, 10, 12}), objectOn({2, 13, 15})};
   objects[1].life.confirm();
-  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig));
+  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig), test::kRig);
   EXPECT_EQ(objects[0].life.phase(), Phase::kEnded);
   EXPECT_EQ(objects[1].life.phase(), Phase::kConfirmed);
   EXPECT_EQ(objects[1].points.size(), 16U);
   for (TrackedObject& object : objects = {objectOn({1, 10, 12}), objectOn({2, 13, 15})}) object.life.confirm();
-  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig));
+  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig), test::kRig);
   EXPECT_EQ(objects[0].life.phase(), Phase::kConfirmed);
   EXPECT_EQ(objects[1].life.phase(), Phase::kEnded);
+}
+
+/// The older one's points are ahead of it by now, on what the younger one follows.
+TEST(DuplicateObjects, TheYoungerStaysWhereTheOlderHasLeftTheView) {
+  const auto endedOne = [](double right_m) {
+    std::vector<TrackedObject> objects{objectOn({1, 10, 12}), objectOn({2, 10, 12})};
+    objects[0].T_cam_body = SE3(Eigen::Matrix3d::Identity(), {right_m, 0, 6});
+    objects[1].T_cam_body = SE3(Eigen::Matrix3d::Identity(), {-4, 0, 6});
+    for (TrackedObject& object : objects) object.life.confirm();
+    mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig), test::kRig);
+    return objects[0].life.phase() == Phase::kEnded ? 1 : 2;
+  };
+  EXPECT_EQ(endedOne(-5), 2);
+  EXPECT_EQ(endedOne(-6), 1);
 }
 
 TEST(DuplicateObjects, WhatIsHigherThanACarMayBeLonger) {
