@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/elementary.hpp"
+#include "frontend/tracking/small_body.hpp"
 #include "frontend/tracking/vehicle_size.hpp"
 
 namespace motorcade {
@@ -11,7 +12,8 @@ namespace {
 
 constexpr double kMaxSpeedDifference_mps = 1.5;  // of two objects on one vehicle, where their frames' origins are
 constexpr double kMaxSlack_m =
-    2;                         // by which they may exceed one vehicle at most, however uncertain their positions are
+    2;  // by which they may exceed one vehicle at most, however uncertain their positions are
+constexpr double kMaxSlackOfPeople_m = 0.5;
 constexpr double kSigmas = 2;  // that slack, and what uncertain speeds add, in standard deviations
 
 /// Vehicles do not overlap: most points of the one lie within the other.
@@ -46,6 +48,8 @@ bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, con
   const double slack_m = std::min(
       kMaxSlack_m, kSigmas * hypotenuse(older.kinematics.positionSigma_m(), younger.kinematics.positionSigma_m()));
   // Not where the younger is tall: a car before a lorry would end in it.
+  if (mayBeWalking(older, see_through.camera()) && mayBeWalking(younger, see_through.camera()))
+    return kPerson.holds(own.merged(other), std::min(kMaxSlackOfPeople_m, slack_m));
   const VehicleSize& size = isTall(own) ? kTallVehicle : kOrdinaryVehicle;
   if (size.holds(own.merged(other), slack_m)) return true;
   if (difference_mps >= kMaxSpeedDifference_mps) return false;

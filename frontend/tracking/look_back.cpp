@@ -40,7 +40,7 @@ void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKine
     then.predict(secondsBetween(now, earlier->scene->stamp), kinematics);
     now = earlier->scene->stamp;
     auto observation = observe(*earlier, body, then, later);
-    if (!observation || isTaken(*earlier, observation->T_cam_body)) return;
+    if (!observation || isTaken(*earlier, observation->T_cam_body, object.born_slow)) return;
     // What was only near the object then is evidence of it, but surely a point of it only if it was followed later.
     std::erase_if(observation->measured, [&](const PointMeasurement& p) { return !followed.find(p.point); });
     object.backlog.insert(object.backlog.begin(), std::move(*observation));
@@ -66,12 +66,14 @@ std::optional<ObjectObservation> LookBack::observe(const PastScene& earlier, Tra
   return observation;
 }
 
-/// Was a vehicle reported there, so that one would be reported twice? A tall one reaches far from its body's origin.
-bool LookBack::isTaken(const PastScene& scene, const SE3& T_cam_body) {
-  constexpr double kAlong_m = 2.5, kAside_m = 1.2;  // between the origins of two bodies on one vehicle
+/// Was a body reported there, so that one would be reported twice? A tall one reaches far from its body's origin.
+bool LookBack::isTaken(const PastScene& scene, const SE3& T_cam_body, bool small) {
+  // Between the origins of two bodies on one vehicle, and on one person.
+  constexpr double kOnVehicle_m = 2.5, kAside_m = 1.2, kOnPerson_m = 0.8;
+  const double along_m = small ? kOnPerson_m : kOnVehicle_m, aside_m = small ? kOnPerson_m : kAside_m;
   return std::ranges::any_of(scene.reported, [&](const Body& other) {
     const Eigen::Vector3d apart = (T_cam_body.inverse() * other.T_cam_body).translation().cwiseAbs();
-    if (apart.x() < kAlong_m && apart.y() < kAside_m) return true;
+    if (apart.x() < along_m && apart.y() < aside_m) return true;
     Eigen::AlignedBox3d both = other.core;
     both.extend((other.T_cam_body.inverse() * T_cam_body).translation());
     return isTall(other.core) && kTallVehicle.holds(both, 0);

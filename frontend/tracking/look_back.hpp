@@ -42,7 +42,7 @@ class LookBack {
   std::optional<ObjectObservation> observe(const PastScene& earlier, TrackedObject& object, ObjectKinematics& then,
                                            MeasuredPoints& later) const;
 
-  static bool isTaken(const PastScene& scene, const SE3& T_cam_body);
+  static bool isTaken(const PastScene& scene, const SE3& T_cam_body, bool small);
 
   int frames_, kept_;
   ObjectMotionEstimator motion_;

@@ -35,14 +35,15 @@ bool isWithinReach(const Eigen::AlignedBox3d& known, const BodyPoint& candidate,
 }
 
 /// Is a candidate close to the points of what may be a person or a two-wheeler? Others walk and ride beside it.
-bool isWithinReachOfSmall(const Eigen::AlignedBox3d& core, const BodyPoint& candidate) {
-  constexpr double kReach_m = 0.4, kReachUp_m = 0.6, kMostNoise_m = 0.5, kLongest_m = 2;
-  const double slack_m = kDepthNoiseSigmas * std::sqrt(candidate.covariance.trace());
+bool isWithinReachOfSmall(const Eigen::AlignedBox3d& core, const BodyPoint& candidate, bool walks) {
+  constexpr double kReach_m = 0.4, kReachUp_m = 0.6, kMostNoise_m = 0.5, kLongestTwoWheeler_m = 2;
+  const double longest_m = walks ? kPerson.length_m : kLongestTwoWheeler_m;
+  const double slack_m = std::min(kMostNoise_m, kDepthNoiseSigmas * std::sqrt(candidate.covariance.trace()));
   const Eigen::Vector3d reach_m(kReach_m, kReach_m, kReachUp_m);
   const Eigen::AlignedBox3d near(core.min() - reach_m, core.max() + reach_m);
   const Eigen::Vector3d grown_m = Eigen::AlignedBox3d(core).extend(candidate.p_body).sizes();
-  return near.exteriorDistance(candidate.p_body) < std::min(slack_m, kMostNoise_m) &&
-         hypotenuse(grown_m.x(), grown_m.y()) < kLongest_m + slack_m;
+  return near.exteriorDistance(candidate.p_body) < slack_m &&
+         hypotenuse(grown_m.x(), grown_m.y()) < longest_m + slack_m;
 }
 
 /// A region as high as another one: of a body beside it only a point is known.
@@ -64,6 +65,7 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
   if (object.kinematics.speed_mps() < kMinSpeed_mps) return;
   constexpr int kKnownFrames = 2;  // from which on an object's points tell how large it is
   const bool small = object.life.observations() >= kKnownFrames && mayBeSmall(object);
+  const bool walks = object.kinematics.speed_mps() < kFastestWalk_mps;
   const Eigen::AlignedBox3d known = small ? object.core(SE3{}) : object.extent(0);
   const std::optional<PointRegion> own = SeeThrough(scene, camera_).regionOf(object);
   std::vector<BodyPoint> adopted;
@@ -72,7 +74,7 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
     if (taken[i] || p.ambiguous || p.label == PointLabel::kGround || !mayMove(p)) return;
     const BodyPoint candidate = toBody(p, object.T_cam_body, camera_);
     const bool within =
-        small ? isWithinReachOfSmall(known, candidate) : isWithinReach(known, candidate, segment != nullptr);
+        small ? isWithinReachOfSmall(known, candidate, walks) : isWithinReach(known, candidate, segment != nullptr);
     if (!within || object.velocityChi2(*p.flow, T_world_cam) >= kFitsChi2) return;
     if (own && isSeenThrough(scene, *own, asHigh(*regionOf(std::array{&p}), *own), camera_)) return;
     taken[i] = true;

@@ -13,6 +13,9 @@ struct VehicleSize {
   }
 };
 
+/// Who walks, with arms and legs: two who walk side by side are farther apart.
+constexpr VehicleSize kPerson{.length_m = 1.2, .width_m = 1.2, .height_m = 2.2};
+
 /// A car or a van with some margin: what may be one body without further evidence.
 constexpr VehicleSize kOrdinaryVehicle{.length_m = 6.0, .width_m = 2.8, .height_m = 3.2};
 
