@@ -53,9 +53,15 @@ std::vector<TrackedObject> ObjectSpawner::operator()(const SceneMotion& scene, c
   return spawned;
 }
 
+bool ObjectSpawner::mayBeWalker(const Segment& segment, const GroundPlane& ground) const {
+  constexpr double kHighest_m = 2;
+  return isWalk(segment.velocity_mps.norm(), segment.centroid_cam.z(), camera_) &&
+         ground.heightOf_m(segment.centroid_cam) < kHighest_m &&
+         isSure(segment.velocity_mps, segment.velocity_covariance);
+}
+
 std::optional<TrackedObject> ObjectSpawner::walker(const SceneMotion& scene, const SceneMotion& before,
                                                    const Segment& segment, const SE3& T_world_cam) {
-  if (!isSure(segment.velocity_mps, segment.velocity_covariance)) return std::nullopt;
   TrackedObject object = objectOf(scene, segment, T_world_cam);
   if (!object.born_slow || !haveMoved(object, scene, before)) return std::nullopt;
   object.track = TrackId{next_track_++};

@@ -21,8 +21,9 @@ class ObjectSpawner {
   std::vector<TrackedObject> operator()(const SceneMotion& scene, const Segment& segment, const SE3& T_world_cam,
                                         std::vector<bool>& taken);
 
-  /// A person on foot of whom a point or two move surely, as corners are few on clothes and most of them on limbs: the
-  /// patches around these points have moved together since the frame before, and surely.
+  /// May a segment be a point or two of a person on foot? Corners are few on clothes, and most of them on limbs.
+  bool mayBeWalker(const Segment& segment, const GroundPlane& ground) const;
+  /// The person, where the patches around such points have moved together since the frame before, and surely.
   std::optional<TrackedObject> walker(const SceneMotion& scene, const SceneMotion& before, const Segment& segment,
                                       const SE3& T_world_cam);
 

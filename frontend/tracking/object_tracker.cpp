@@ -218,8 +218,8 @@ void ObjectTracker::spawnWalkers(const SceneMotion& scene, const std::vector<int
     const Segment& segment = scene.segments[s];
     const auto is_taken = [&](int i) { return bool{taken[i]}; };
     const auto holds = [&](const TrackedObject& object) { return isAt(object, segment.centroid_cam); };
-    if (object_of[s] >= 0 || std::ranges::any_of(segment.points, is_taken) || std::ranges::any_of(objects_, holds))
-      continue;
+    if (object_of[s] >= 0 || !spawn_.mayBeWalker(segment, scene.ground)) continue;
+    if (std::ranges::any_of(segment.points, is_taken) || std::ranges::any_of(objects_, holds)) continue;
     if (auto walker = spawn_.walker(scene, *previous_scene_, segment, T_world_cam_))
       objects_.push_back(std::move(*walker));
   }

@@ -12,12 +12,15 @@ bool mayBeSmall(const TrackedObject& object) {
   return hypotenuse(size_m.x(), size_m.y()) < kLongest_m;
 }
 
-bool mayBeWalking(const TrackedObject& object, const StereoCamera& camera) {
+bool isWalk(double speed_mps, double z_m, const StereoCamera& camera) {
   constexpr double kSlowest_mps = 0.5;
   constexpr double kBehind_m = 0.5, kSigma_px = 0.3;  // of a patch's disparity
-  const double speed_mps = object.kinematics.speed_mps(), z_m = object.T_cam_body.translation().z();
   if (speed_mps < kSlowest_mps || speed_mps > kFastestWalk_mps) return false;
-  return camera.fx_px * camera.baseline_m * kBehind_m > kSigma_px * z_m * z_m && mayBeSmall(object);
+  return camera.fx_px * camera.baseline_m * kBehind_m > kSigma_px * z_m * z_m;
+}
+
+bool mayBeWalking(const TrackedObject& object, const StereoCamera& camera) {
+  return isWalk(object.kinematics.speed_mps(), object.T_cam_body.translation().z(), camera) && mayBeSmall(object);
 }
 
 ObjectKinematics::Params kinematicsOf(const TrackedObject& object, const ObjectKinematics::Params& vehicle) {

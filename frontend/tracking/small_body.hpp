@@ -14,6 +14,9 @@ inline constexpr double kFastestWalk_mps = 3;  // who runs for a bus
 /// within what one takes up of the road. A vehicle of which little was seen yet may pass as well.
 bool mayBeSmall(const TrackedObject& object);
 
+/// Is a speed that of a walk, at a depth at which patches are followed?
+bool isWalk(double speed_mps, double z_m, const StereoCamera& camera);
+
 /// May an object be a person on foot, who is followed by patches all over the body, as corners are few on clothes and
 /// most of them on limbs? It is so near that the disparity tells a patch on the body from what lies half a meter
 /// behind, and it moves: what stands cannot be told from what it stands before.
