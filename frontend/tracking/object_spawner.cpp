@@ -14,7 +14,7 @@ namespace motorcade {
 namespace {
 
 constexpr double kTurnRate_radps = 0.05;  // standard deviation of an object's turn rate, of which nothing is known
-constexpr double kSure = 4.5;             // standard deviations of a velocity, as of moving segments
+constexpr double kSure = 3;               // standard deviations of a walk, which is confirmed by as many
 constexpr double kSpeedModel_mps = 0.5;   // that of its velocity beyond the segment's own: not all points are its own
 
 /// The segment's velocity, without turning, about the pose that the first observation measured.
