@@ -1,6 +1,7 @@
 #include "frontend/shape/earlier_views.hpp"
 
 #include <algorithm>
+#include <ranges>
 
 namespace motorcade {
 
@@ -36,8 +37,8 @@ std::optional<ObjectView::Before> EarlierViews::last(TrackId track, const Object
 std::optional<ObjectView::Before> EarlierViews::wellApart(TrackId track, const ObjectView& view,
                                                           const Features& now) const {
   std::optional<ObjectView::Before> farthest;
-  for (auto then = frames_.rbegin(); then != frames_.rend(); ++then) {
-    const auto before = viewIn(*then, track, view, now);
+  for (const Frame& then : std::views::reverse(frames_)) {
+    const auto before = viewIn(then, track, view, now);
     if (before && (!farthest || before->apart > farthest->apart)) farthest = before;
     if (farthest && farthest->apart > std::max(ObjectView::kWellApart, view.width)) break;
   }

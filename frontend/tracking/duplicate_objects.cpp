@@ -11,9 +11,8 @@ namespace motorcade {
 namespace {
 
 constexpr double kMaxSpeedDifference_mps = 1.5;  // of two objects on one vehicle, where their frames' origins are
-constexpr double kMaxSlack_m =
-    2;  // by which they may exceed one vehicle at most, however uncertain their positions are
-constexpr double kMaxSlackOfPeople_m = 0.5;
+// By which they may exceed one vehicle or one person at most, however uncertain their positions are.
+constexpr double kMaxSlack_m = 2, kMaxSlackOfPerson_m = 0.5;
 constexpr double kSigmas = 2;  // that slack, and what uncertain speeds add, in standard deviations
 
 /// Vehicles do not overlap: most points of the one lie within the other.
@@ -36,7 +35,8 @@ bool isFlank(const TrackedObject& older, const Eigen::AlignedBox3d& own, const T
   return (younger.T_cam_body * younger.middle()).norm() > (older.T_cam_body * own.center()).norm();
 }
 
-bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, const SeeThrough& see_through) {
+bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, const SeeThrough& see_through,
+                   const StereoCamera& camera) {
   // A younger one that was observed for longer than the older one is lost is another vehicle.
   if (older.life.missed() > 0 && younger.life.observations() > 1) return false;
   const SE3 T_older_younger = older.T_cam_body.inverse() * younger.T_cam_body;
@@ -48,8 +48,8 @@ bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, con
   const double slack_m = std::min(
       kMaxSlack_m, kSigmas * hypotenuse(older.kinematics.positionSigma_m(), younger.kinematics.positionSigma_m()));
   // Not where the younger is tall: a car before a lorry would end in it.
-  if (mayBeWalking(older, see_through.camera()) && mayBeWalking(younger, see_through.camera()))
-    return kPerson.holds(own.merged(other), std::min(kMaxSlackOfPeople_m, slack_m));
+  if (mayBeWalking(older, camera) && mayBeWalking(younger, camera))
+    return kPerson.holds(own.merged(other), std::min(kMaxSlackOfPerson_m, slack_m));
   const VehicleSize& size = isTall(own) ? kTallVehicle : kOrdinaryVehicle;
   if (size.holds(own.merged(other), slack_m)) return true;
   if (difference_mps >= kMaxSpeedDifference_mps) return false;
@@ -85,7 +85,7 @@ void mergeDuplicates(std::vector<TrackedObject>& objects, const SeeThrough& see_
   for (std::size_t i = 0; i < objects.size(); ++i) {
     for (std::size_t j = i + 1; j < objects.size(); ++j) {
       TrackedObject &older = objects[i], &younger = objects[j];
-      if (ended(older) || ended(younger) || !areDuplicates(older, younger, see_through)) continue;
+      if (ended(older) || ended(younger) || !areDuplicates(older, younger, see_through, camera)) continue;
       if (see_through.areApart(older, younger)) continue;
       if (youngerStays(older, younger, camera))
         merge(younger, older);

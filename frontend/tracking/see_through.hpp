@@ -29,8 +29,6 @@ class SeeThrough {
   /// Both outlive it.
   SeeThrough(const SceneMotion& scene, const StereoCamera& camera) : scene_(scene), camera_(camera) {}
 
-  const StereoCamera& camera() const { return camera_; }
-
   /// The region of an object's points in the scene; empty where it is no small body or none of them is seen.
   std::optional<PointRegion> regionOf(const TrackedObject& object) const;
   bool areApart(const TrackedObject& a, const TrackedObject& b) const;
