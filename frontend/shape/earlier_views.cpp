@@ -1,7 +1,6 @@
 #include "frontend/shape/earlier_views.hpp"
 
 #include <algorithm>
-#include <ranges>
 
 namespace motorcade {
 
@@ -37,8 +36,8 @@ std::optional<ObjectView::Before> EarlierViews::last(TrackId track, const Object
 std::optional<ObjectView::Before> EarlierViews::wellApart(TrackId track, const ObjectView& view,
                                                           const Features& now) const {
   std::optional<ObjectView::Before> farthest;
-  for (const Frame& then : std::views::reverse(frames_)) {
-    const auto before = viewIn(then, track, view, now);
+  for (std::size_t then = frames_.size(); then-- > 0;) {
+    const auto before = viewIn(frames_[then], track, view, now);
     if (before && (!farthest || before->apart > farthest->apart)) farthest = before;
     if (farthest && farthest->apart > std::max(ObjectView::kWellApart, view.width)) break;
   }
