@@ -55,6 +55,18 @@ TEST(EarlierViews, GiveTheNewestInWhichBodyAndRestAreWellApart) {
   EXPECT_EQ(well->T_before_body.translation(), placeIn(3).translation());
 }
 
+TEST(EarlierViews, GoBackUntilASmallBodyHasGoneByItsWidth) {
+  const EarlierViews earlier = walkOf(5);
+  ObjectView view = viewIn(5);
+  const auto frame = [&](double width) {
+    view.width = width;
+    return earlier.wellApart(kWalker, view, framed(5))->frame;
+  };
+  EXPECT_EQ(frame(2), FrameId{3}) << "narrower than what is well apart";
+  EXPECT_EQ(frame(13), FrameId{1}) << "14.4 cells";
+  EXPECT_EQ(frame(30), FrameId{0}) << "the farthest where none is far enough";
+}
+
 TEST(EarlierViews, GiveTheFarthestWhereNoneIsWellApart) {
   const EarlierViews earlier = walkOf(1);
   const auto well = earlier.wellApart(kWalker, viewIn(1), framed(1));

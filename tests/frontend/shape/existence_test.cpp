@@ -129,6 +129,19 @@ TEST(Existence, CountsSuccessiveFramesOfOneVerdictLessAndLess) {
   EXPECT_NEAR(logOdds() - one, (one - none) / 2, 1e-9);
 }
 
+/// One of nine tracks that begin as slow and small as a person is one.
+TEST(Existence, BeginsWithADoubtOfWhatWasBornSlow) {
+  Existence existence;
+  existence.addSpeed(0, 1e3);  // says nothing
+  existence.doubtSlowBirth();
+  const auto odds = [&] { return existence.probability() / (1 - existence.probability()); };
+  EXPECT_NEAR(odds(), 1.0 / 9, 1e-3);
+  existence.addSettledSpeed(1.4, 0.1);
+  EXPECT_LT(existence.settledProbability(kFirst), 0.5) << "a sure speed does not lift it";
+  addVerdicts(existence, 0, 1, MotionVerdict::kMoved);
+  EXPECT_GT(existence.settledProbability(kFirst), 0.5) << "an image that moved does";
+}
+
 /// A track may slip off a person to what is behind.
 TEST(Existence, OfWhatWasSurelySeenHoldsBeforeTheTrackSlippedOff) {
   Existence existence;

@@ -53,6 +53,13 @@ class Surface {
     view_.small = true;
     std::swap(observed_.measured, observed_.patches);
   }
+  /// Neither points nor patches of what may be a person are followed any more.
+  void followNothing(bool small) {
+    view_.small = small;
+    observed_.measured.clear(), observed_.patches.clear();
+  }
+  /// The body has the width of a person [cells].
+  void widenTo(double width) { view_.small = true, view_.width = width; }
   /// Forgets all points but so many of the lowest.
   void keep(int points) { observed_.measured.erase(observed_.measured.begin(), observed_.measured.end() - points); }
 
@@ -108,6 +115,24 @@ TEST(MotionVerdict, AsksThePatchesOfAPerson) {
   EXPECT_EQ(surface.verdict(rested), MotionVerdict::kRested);
   const auto at_the_top = [](double u, double v) { return v < 75 ? kShift_px : -u; };  // and stripes below
   EXPECT_EQ(surface.verdict(at_the_top), MotionVerdict::kNothing) << "few of them tell";
+}
+
+TEST(MotionVerdict, IsUntoldOfAPersonOfWhomNothingIsFollowed) {
+  Surface person, car;
+  person.followNothing(true), car.followNothing(false);
+  EXPECT_EQ(person.verdict(moved), MotionVerdict::kUntold);
+  EXPECT_EQ(car.verdict(moved), MotionVerdict::kNothing);
+}
+
+/// Who is evenly dressed looks the same after half a step.
+TEST(MotionVerdict, IsUntoldOfAPersonWhoRestedUntilItWentByItsWidth) {
+  Surface person;
+  person.widenTo(kShift_px + 1);
+  EXPECT_EQ(person.verdict(rested), MotionVerdict::kUntold);
+  EXPECT_EQ(person.verdict([](double, double v) { return v < 90 ? kShift_px : 0; }), MotionVerdict::kUntold);
+  EXPECT_EQ(person.verdict(moved), MotionVerdict::kMoved) << "what moved tells at once";
+  person.widenTo(kShift_px - 1);
+  EXPECT_EQ(person.verdict(rested), MotionVerdict::kRested);
 }
 
 TEST(MotionVerdict, HoldsWhereEstimatesAreOffByACell) {

@@ -115,8 +115,10 @@ class Crossing {
     motion->ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m};
     auto measurements = std::make_shared<FrameMeasurements>();
     measurements->frame = frame;
-    if (state != ObjectState::kPredicted)
+    if (state != ObjectState::kPredicted) {
       measurements->objects.push_back(observation(frame, T_cam_body, speed_mps_ > 0 ? -1 : 1));
+      measurements->objects.back().born_slow = born_slow;
+    }
     auto estimates = std::make_shared<Estimates>();
     ObjectEstimate object;
     object.track = kTrack, object.state = state;
@@ -130,6 +132,7 @@ class Crossing {
     return shaped_->online;
   }
   FrameEstimate look(ObjectState state) { return look(state, Scene(T_cam_car(next_))); }
+  bool born_slow = false;
   const std::vector<ObjectMask>& masks() const { return shaped_->masks; }
   /// Final estimates; their body frames are where the online ones were, moved by `shift_m` along the body's axes.
   std::vector<FrameEstimate> finish(const Eigen::Vector3d& shift_m = Eigen::Vector3d::Zero()) {
@@ -283,6 +286,19 @@ TEST(ObjectShapes, BelieveInWhatMovesInTheImages) {
   EXPECT_GT(there, 0.95);
   EXPECT_LT(not_there, 0.7);
   for (const FrameEstimate& final : crossing.finish()) EXPECT_GT(final.objects[0].existence_probability, 0.95);
+}
+
+TEST(ObjectShapes, DoubtOnceWhatWasBornSlow) {
+  Crossing crossing(-6), slow(-6);
+  slow.born_slow = true;
+  const auto odds = [](const FrameEstimate& frame) {
+    const double p = frame.objects[0].existence_probability;
+    return p / (1 - p);
+  };
+  for (int frame = 0; frame < 3; ++frame) {
+    const double sure = odds(crossing.look(ObjectState::kMoving)), doubted = odds(slow.look(ObjectState::kMoving));
+    EXPECT_NEAR(sure / doubted, 9, 0.1) << frame;
+  }
 }
 
 TEST(ObjectShapes, LeaveOutRowsThatAreUnlikely) {

@@ -13,14 +13,14 @@ namespace {
 struct Seen {
   std::int64_t track;
   double begin_m, end_m;
-  double height_m = 1.5, speed_mps = 8, left_m = 0;
+  double height_m = 1.5, speed_mps = 8, left_m = 0, width_m = 1.8;
 };
 
 TrackedObject objectOn(const Seen& seen) {
   TrackedObject object;
   object.track = {seen.track};
   object.T_cam_body = SE3(Eigen::Matrix3d::Identity(), {0.5 * (seen.begin_m + seen.end_m), seen.left_m, 0});
-  const Eigen::Vector3d half(0.5 * (seen.end_m - seen.begin_m), 0.9, 0.5 * seen.height_m);
+  const Eigen::Vector3d half(0.5 * (seen.end_m - seen.begin_m), 0.5 * seen.width_m, 0.5 * seen.height_m);
   std::int64_t id = 100 * seen.track;
   for (const double x : {-1, 1})
     for (const double y : {-1, 1})
@@ -77,6 +77,18 @@ TEST(DuplicateObjects, TheYoungerStaysWhereTheOlderHasLeftTheView) {
   };
   EXPECT_EQ(endedOne(-5), 2);
   EXPECT_EQ(endedOne(-6), 1);
+}
+
+TEST(DuplicateObjects, TwoWhoWalkAreOneWithinThePlaceOfAPerson) {
+  const Seen person{.track = 1, .begin_m = 10, .end_m = 10.4, .speed_mps = 1.4, .width_m = 0.4};
+  const auto piece = [](double begin_m, double speed_mps) {
+    return Seen{.track = 2, .begin_m = begin_m, .end_m = begin_m + 0.4, .speed_mps = speed_mps, .width_m = 0.4};
+  };
+  EXPECT_TRUE(areOne(person, piece(10.6, 1.4)));
+  EXPECT_FALSE(areOne(person, piece(11.5, 1.4)));
+  Seen vehicle = person;
+  vehicle.speed_mps = 8;
+  EXPECT_TRUE(areOne(vehicle, piece(11.5, 8)));
 }
 
 TEST(DuplicateObjects, WhatIsHigherThanACarMayBeLonger) {

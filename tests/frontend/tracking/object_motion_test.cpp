@@ -201,6 +201,27 @@ TEST(ObjectMotion, PatchesCoverAPersonBeyondThePointsFollowed) {
   EXPECT_EQ(std::ranges::count_if(pedestrian.object.points, [](const auto& p) { return isFollowed(p.point); }), 4);
 }
 
+/// Points on a leg, which swings, say where the rest of a person is.
+TEST(ObjectMotion, PatchesLieOnTheTrunkAndHeadOfAPerson) {
+  constexpr double kBelow_m = 0.7;  // the board's middle, where the leg is
+  Pedestrian pedestrian(1.4);
+  for (BodyPoint& p : pedestrian.object.points) p.p_body.z() -= kBelow_m;
+  for (ScenePoint& p : pedestrian.scene.points) p.uvd_px.y() += kRig.fy_px * kBelow_m / 14;
+  pedestrian.cover();
+  const double middle_m = pedestrian.object.T_cam_body.translation().x();
+  int patches = 0;
+  for (const ScenePoint& p : pedestrian.object.measured.points) {
+    if (isFollowed(p.point)) continue;
+    ++patches;
+    const Eigen::Vector3d p_cam = kRig.triangulate(p.uvd_px);
+    constexpr double kSlack_m = 0.05;  // patches' depths are off by a percent or two
+    EXPECT_GT(pedestrian.scene.ground.heightOf_m(p_cam), 0.8 - kSlack_m);
+    EXPECT_LT(pedestrian.scene.ground.heightOf_m(p_cam), 1.8 + kSlack_m);
+    EXPECT_LT(std::abs(p_cam.x() - middle_m), 0.3 + 0.25) << "points reach .2 m to each side of their middle";
+  }
+  EXPECT_GT(patches, 30);
+}
+
 TEST(ObjectMotion, PatchesFollowPatchesWhereNoPointIsLeft) {
   Pedestrian pedestrian(1.4);
   pedestrian.cover();

@@ -62,5 +62,41 @@ TEST(SamplePatches, LieBetweenThePointsAtTheirDepth) {
   }
 }
 
+/// A part of the image that holds the board and some of the wall to its left.
+const Box kPart{500, 190, 600, 240};
+const double kBoard_px = kRig.fx_px * kRig.baseline_m / kKnown.translation().z();
+
+TEST(SamplePatches, OfAPartOfTheImageLieInItAtTheDisparityAskedFor) {
+  const double left_edge_px = kRig.project(kKnown * Eigen::Vector3d(0, TexturedBoard::kHalfWidth_m, 0))->x();
+  ASSERT_GT(left_edge_px, kPart.left_px - 40);
+  const FeaturesPtr features = TexturedBoard::seenAt(kKnown);
+  const auto patches = samplePatches(*features, kPart, kBoard_px, 0);
+  ASSERT_GE(patches.size(), 40U);
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    EXPECT_EQ(patches[i].point.value, -1 - static_cast<std::int64_t>(i));
+    EXPECT_NEAR(patches[i].uvd_px.z(), kBoard_px, 0.8);
+    EXPECT_GE(patches[i].uvd_px.x(), kPart.left_px);
+    EXPECT_LE(patches[i].uvd_px.x(), kPart.right_px);
+    EXPECT_GE(patches[i].uvd_px.y(), kPart.top_px);
+    EXPECT_LE(patches[i].uvd_px.y(), kPart.bottom_px);
+  }
+  EXPECT_LE(samplePatches(*features, kPart, kBoard_px + 3, 0).size(), 2U) << "nothing is so near";
+}
+
+TEST(SamplePatches, OfALargePartAreFartherApart) {
+  const FeaturesPtr features = TexturedBoard::seenAt(kKnown);
+  const Box whole{490, 175, 644, 257};
+  const auto patches = samplePatches(*features, whole, kBoard_px, 0);
+  EXPECT_GE(patches.size(), 40U);
+  EXPECT_LE(patches.size(), 96U) << "64 and those on two edges";
+}
+
+TEST(SamplePatches, ContainTheOffsetOfTheDisparity) {
+  constexpr double kOffset_px = 8;  // more than the search reaches
+  const auto patches = samplePatches(*TexturedBoard::seenAt(kKnown), kPart, kBoard_px + kOffset_px, kOffset_px);
+  ASSERT_GE(patches.size(), 40U);
+  for (const ScenePoint& p : patches) EXPECT_NEAR(p.uvd_px.z(), kBoard_px + kOffset_px, 0.8);
+}
+
 }  // namespace
 }  // namespace motorcade

@@ -45,5 +45,65 @@ TEST(SmallBody, OfAWalkerNeitherStandsNorRides) {
   EXPECT_FALSE(mayBeWalking(objectOf(4, 1.7, 1.4), kRig));
 }
 
+TEST(SmallBody, OfAWalkerKeepsItsSpeedAndGoesToAnySide) {
+  const ObjectKinematics::Params vehicle;
+  for (const double speed_mps : {0.0, 1.4, kFastestWalk_mps - 0.1}) {
+    const auto walk = kinematicsOf(objectOf(0.8, 0.6, speed_mps), vehicle);
+    EXPECT_EQ(walk.acceleration.along_mps2, 0.5);
+    EXPECT_EQ(walk.acceleration.sideways_mps2, 0.5);
+    EXPECT_EQ(walk.slip_mps, 1);
+    EXPECT_EQ(walk.acceleration.yaw_radps2, vehicle.acceleration.yaw_radps2) << "the rest is a vehicle's";
+    EXPECT_EQ(walk.tilt_rad, vehicle.tilt_rad);
+  }
+}
+
+TEST(SmallBody, OfWhoRidesMovesLikeAVehicle) {
+  const ObjectKinematics::Params vehicle;
+  for (const auto& object : {objectOf(0.8, 0.6, kFastestWalk_mps + 0.1), objectOf(4, 1.7, 1.4)}) {
+    const auto kinematics = kinematicsOf(object, vehicle);
+    EXPECT_EQ(kinematics.acceleration.along_mps2, vehicle.acceleration.along_mps2);
+    EXPECT_EQ(kinematics.acceleration.sideways_mps2, vehicle.acceleration.sideways_mps2);
+    EXPECT_EQ(kinematics.slip_mps, vehicle.slip_mps);
+  }
+}
+
+/// Who is known by one point, so far below the camera.
+TrackedObject knownBy(double right_m, double below_m) {
+  TrackedObject object;
+  object.points.push_back({{0}, {right_m, below_m, 0.1}, Eigen::Matrix3d::Identity()});
+  return object;
+}
+
+TEST(SmallBody, HasATrunkAndAHeadAboveTheRoadAroundItsPoints) {
+  const GroundPlane ground;
+  const SE3 T_cam_body(Eigen::Matrix3d::Identity(), {0.5, 0.2, 12});
+  for (const double below_m : {0.2, 1.3}) {  // a shoulder, a foot
+    const auto trunk = trunkOf(knownBy(0.2, below_m), T_cam_body, ground, kRig);
+    ASSERT_TRUE(trunk);
+    const double z_m = 12.1;
+    const Eigen::Vector3d head_left = *kRig.project({0.7 - 0.3, ground.height_m - 1.8, z_m}),
+                          hip_right = *kRig.project({0.7 + 0.3, ground.height_m - 0.8, z_m});
+    EXPECT_NEAR(trunk->box.left_px, head_left.x(), 1e-9);
+    EXPECT_NEAR(trunk->box.top_px, head_left.y(), 1e-9);
+    EXPECT_NEAR(trunk->box.right_px, hip_right.x(), 1e-9);
+    EXPECT_NEAR(trunk->box.bottom_px, hip_right.y(), 1e-9);
+    EXPECT_NEAR(trunk->disparity_px, head_left.z(), 1e-9);
+  }
+}
+
+TEST(SmallBody, StandsUprightOnARoadThatTilts) {
+  GroundPlane ground;
+  ground.normal_cam = Eigen::Vector3d(0, 1, 0.1).normalized();
+  const auto trunk = trunkOf(knownBy(0, 0.5), SE3(Eigen::Matrix3d::Identity(), {0, 0, 12}), ground, kRig);
+  ASSERT_TRUE(trunk);
+  const Eigen::Vector3d foot = Eigen::Vector3d(0, 0.5, 12.1) + ground.heightOf_m({0, 0.5, 12.1}) * ground.normal_cam;
+  EXPECT_NEAR(trunk->box.top_px, kRig.project(foot - 1.8 * ground.normal_cam)->y(), 1e-9);
+  EXPECT_NEAR(trunk->box.bottom_px, kRig.project(foot - 0.8 * ground.normal_cam)->y(), 1e-9);
+}
+
+TEST(SmallBody, HasNoTrunkBehindTheCamera) {
+  EXPECT_FALSE(trunkOf(knownBy(0, 0.5), SE3(Eigen::Matrix3d::Identity(), {0, 0, -1}), {}, kRig));
+}
+
 }  // namespace
 }  // namespace motorcade

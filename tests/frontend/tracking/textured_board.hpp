@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "frontend/tracking/tracked_object.hpp"
 #include "tests/frontend/texture.hpp"
@@ -23,10 +26,33 @@ class TexturedBoard {
     return {upright, {x_m, 0.5, z_m}};
   }
   static FeaturesPtr seenAt(const SE3& T_cam_body, bool there = true) {
+    return there ? seen({{T_cam_body, paint}}) : seen({});
+  }
+  /// Gray level at so many meters to the right of and below the middle of a board; empty beside the board.
+  using Paint = std::function<std::optional<double>(double right_m, double down_m)>;
+  static std::optional<double> paint(double right_m, double down_m) {
+    if (std::abs(right_m) > kHalfWidth_m || std::abs(down_m) > kHalfHeight_m) return std::nullopt;
+    return texture(right_m, down_m);
+  }
+  /// A board with the size of a person.
+  static std::optional<double> person(double right_m, double down_m) {
+    if (std::abs(right_m) > 0.3 || std::abs(down_m) > 0.9) return std::nullopt;
+    return texture(right_m, down_m);
+  }
+  static double texture(double right_m, double down_m) {
+    constexpr double kPixelsPerMeter = 60;
+    return kTexture(kPixelsPerMeter * right_m, kPixelsPerMeter * down_m);
+  }
+  /// Boards before the wall, of which the first hides those behind it.
+  struct Painted {
+    SE3 T_cam_body;
+    Paint paint;
+  };
+  static FeaturesPtr seen(const std::vector<Painted>& boards) {
     auto features = std::make_shared<Features>();
     features->frame = std::make_shared<const StereoFrame>();
-    features->left.levels.push_back(view(T_cam_body, 0, there));
-    features->right.levels.push_back(view(T_cam_body, kRig.baseline_m, there));
+    features->left.levels.push_back(view(boards, 0));
+    features->right.levels.push_back(view(boards, kRig.baseline_m));
     return features;
   }
   /// `count` points on the board, as they are measured without error, numbered from `first` on.
@@ -44,15 +70,16 @@ class TexturedBoard {
   }
 
  private:
-  static Image view(const SE3& T_cam_body, double camera_x_m, bool there) {
-    const Texture board(1);
-    const Eigen::Vector3d& middle = T_cam_body.translation();
-    return render(kRig.width_px, kRig.height_px, [&, there](double u, double v) {
+  inline static const Texture kTexture{1};
+
+  static Image view(const std::vector<Painted>& boards, double camera_x_m) {
+    return render(kRig.width_px, kRig.height_px, [&](double u, double v) {
       const double x = (u - kRig.cx_px) / kRig.fx_px, y = (v - kRig.cy_px) / kRig.fy_px;
-      const double right_m = x * middle.z() + camera_x_m - middle.x(), down_m = y * middle.z() - middle.y();
-      constexpr double kPixelsPerMeter = 60;
-      if (there && std::abs(right_m) < kHalfWidth_m && std::abs(down_m) < kHalfHeight_m)
-        return board(kPixelsPerMeter * right_m, kPixelsPerMeter * down_m);
+      for (const Painted& board : boards) {
+        const Eigen::Vector3d& middle = board.T_cam_body.translation();
+        if (const auto gray = board.paint(x * middle.z() + camera_x_m - middle.x(), y * middle.z() - middle.y()))
+          return *gray;
+      }
       return 128 + 40 * std::sin(0.9 * (u + kRig.fx_px * camera_x_m / kWall_m)) * std::sin(0.7 * v);
     });
   }

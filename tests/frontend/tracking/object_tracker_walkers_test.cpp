@@ -1,0 +1,128 @@
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "frontend/tracking/object_tracker.hpp"
+#include "tests/frontend/tracking/textured_board.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::kRig;
+using test::TexturedBoard;
+
+/// Two people who walk to the right before a camera at rest, in images; the second one 5 m farther off. Patches follow
+/// whom a segment of one point spawned.
+class Sidewalk {
+ public:
+  struct Seen {
+    std::int64_t point;
+    int person;
+    PointLabel label = PointLabel::kUnknown;
+  };
+  /// One frame, in which each of these points makes a segment.
+  void walk(const std::vector<Seen>& segments) {
+    auto scene = std::make_shared<SceneMotion>();
+    const int frame = next_++;
+    scene->frame = {frame};
+    scene->stamp = {static_cast<std::int64_t>(1e9 * kDt_s) * frame};
+    scene->features = seen(frame);
+    for (const Seen& point : segments) {
+      Segment& segment = scene->segments.emplace_back();
+      segment.points = {static_cast<int>(scene->points.size())};
+      segment.label = point.label;
+      segment.centroid_cam = add(point, frame, *scene);
+      segment.velocity_mps = {kWalk_mps, 0, 0};
+      segment.velocity_covariance = 0.01 * Eigen::Matrix3d::Identity();
+    }
+    const auto measured = tracker_(scene);
+    for (const ObjectObservation& o : measured->objects) reported_[o.track].push_back(o);
+  }
+  void walkOn(int frames) {
+    for (int i = 0; i < frames; ++i) walk({});
+  }
+  /// All observations by track.
+  const std::map<TrackId, std::vector<ObjectObservation>>& reported() const { return reported_; }
+  static SE3 placeOf(int person, std::int64_t frame) {
+    const double way_m = kDt_s * kWalk_mps * static_cast<double>(frame);
+    return person == 0 ? TexturedBoard::standingAt(-3 + way_m, 9) : TexturedBoard::standingAt(-1 + way_m, 14);
+  }
+
+ private:
+  static constexpr double kDt_s = 0.1, kWalk_mps = 1.4;
+
+  static Eigen::Vector3d add(const Seen& seen, int frame, SceneMotion& scene) {
+    const Eigen::Vector3d p_cam = placeOf(seen.person, frame) * Eigen::Vector3d(0, 0.05, -0.2);
+    scene.points.push_back(
+        {.point = {seen.point}, .uvd_px = *kRig.project(p_cam), .sigma_px = test::kObservationSigma_px, .flow = {}});
+    return p_cam;
+  }
+  static FeaturesPtr seen(int frame) {
+    FeaturesPtr& features = features_[frame];
+    if (!features)
+      features =
+          TexturedBoard::seen({{placeOf(0, frame), TexturedBoard::person}, {placeOf(1, frame), TexturedBoard::person}});
+    return features;
+  }
+  inline static std::map<int, FeaturesPtr> features_;  // the same in all tests, as rendering takes longest
+  int next_ = 0;
+  ObjectTracker tracker_{{}, kRig};
+  std::map<TrackId, std::vector<ObjectObservation>> reported_;
+};
+
+TEST(ObjectTracker, APersonOfWhomOnePointWasFollowedOnceIsFollowedByPatches) {
+  Sidewalk sidewalk;
+  sidewalk.walkOn(1);
+  sidewalk.walk({{.point = 0, .person = 0}});
+  sidewalk.walkOn(8);
+  ASSERT_EQ(sidewalk.reported().size(), 1U);
+  const auto& all = sidewalk.reported().begin()->second;
+  EXPECT_GE(all.size(), 9U);
+  for (const ObjectObservation& o : all) {
+    EXPECT_TRUE(o.born_slow) << o.frame.value;
+    const Eigen::Vector3d off_m = o.T_cam_body.translation() - Sidewalk::placeOf(0, o.frame.value).translation();
+    EXPECT_LT(off_m.norm(), 0.5) << o.frame.value;
+  }
+}
+
+TEST(ObjectTracker, NobodyIsSpawnedWithoutTheFrameBefore) {
+  Sidewalk sidewalk;
+  sidewalk.walk({{.point = 0, .person = 0}});
+  sidewalk.walkOn(8);
+  EXPECT_TRUE(sidewalk.reported().empty());
+}
+
+/// How many people are reported of whom the second appears in one frame, as this segment of a point says.
+std::size_t peopleWith(const Sidewalk::Seen& second) {
+  Sidewalk sidewalk;
+  sidewalk.walkOn(1);
+  sidewalk.walk({{.point = 0, .person = 0}});
+  sidewalk.walkOn(1);
+  sidewalk.walk({second});
+  sidewalk.walkOn(7);
+  return sidewalk.reported().size();
+}
+
+TEST(ObjectTracker, ASegmentThatAnObjectClaimsIsNoOtherPerson) {
+  EXPECT_EQ(peopleWith({.point = 1, .person = 1}), 2U);
+  EXPECT_EQ(peopleWith({.point = 1, .person = 1, .label = PointLabel::kMoving}), 1U);
+}
+
+/// A point that was followed from one person to the other by mistake.
+TEST(ObjectTracker, APointOfAnObjectIsNoOtherPerson) { EXPECT_EQ(peopleWith({.point = 0, .person = 1}), 1U); }
+
+TEST(ObjectTracker, AnotherPointOnAPersonIsNoOtherPerson) {
+  Sidewalk sidewalk;
+  sidewalk.walkOn(1);
+  sidewalk.walk({{.point = 0, .person = 0}, {.point = 1, .person = 0}});
+  sidewalk.walk({{.point = 2, .person = 0}});
+  sidewalk.walk({{.point = 3, .person = 1}});
+  sidewalk.walkOn(7);
+  ASSERT_EQ(sidewalk.reported().size(), 2U);
+  EXPECT_EQ(sidewalk.reported().rbegin()->first, TrackId{1}) << "no track was spent in between";
+}
+
+}  // namespace
+}  // namespace motorcade
