@@ -98,6 +98,20 @@ TEST(ObjectSpawner, AsksForAWalkersPatchesWhereALowPointWalksSurely) {
   EXPECT_FALSE(may_be(4, 0.4, 1.2)) << "rides";
 }
 
+TEST(ObjectSpawner, SpawnsNoWalkerAsLargeAsACar) {
+  Stride frames(TexturedBoard::paint, kStride_m, kWalk_mps);
+  frames.now.points.clear(), frames.segment.points.clear();
+  for (int i = 0; i < 12; ++i) {  // all over the board, and followed since the frame before
+    const Eigen::Vector3d p_cam = Stride::kNow * Eigen::Vector3d(0, -1.4 + 2.8 / 11 * i, 0.2);
+    ScenePoint point{.point = {i}, .uvd_px = *kRig.project(p_cam), .sigma_px = test::kObservationSigma_px, .flow = {}};
+    frames.now.points.push_back(point);
+    point.uvd_px = *kRig.project(toTheRight(-kStride_m) * p_cam);
+    frames.before.points.push_back(point);
+    frames.segment.points.push_back(i);
+  }
+  EXPECT_FALSE(frames.walker());
+}
+
 /// A badge on a plain wall moved: less than a trunk shows.
 TEST(ObjectSpawner, SpawnsNoWalkerOfTooFewPatches) {
   const auto badge = [](double half_m) {
@@ -109,7 +123,7 @@ TEST(ObjectSpawner, SpawnsNoWalkerOfTooFewPatches) {
         kStride_m, kWalk_mps);
   };
   EXPECT_FALSE(badge(0).walker());
-  EXPECT_FALSE(badge(0.06).walker());
+  EXPECT_FALSE(badge(0.08).walker()) << "seven patches";
   EXPECT_TRUE(badge(0.2).walker());
 }
 

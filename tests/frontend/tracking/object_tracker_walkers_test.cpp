@@ -1,5 +1,7 @@
+#include <cmath>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -21,6 +23,7 @@ class Sidewalk {
     std::int64_t point;
     int person;
     PointLabel label = PointLabel::kUnknown;
+    double wrong_mps = 0;  // of the segment's velocity, away from the camera
   };
   /// One frame, in which each of these points makes a segment.
   void walk(const std::vector<Seen>& segments) {
@@ -34,7 +37,7 @@ class Sidewalk {
       segment.points = {static_cast<int>(scene->points.size())};
       segment.label = point.label;
       segment.centroid_cam = add(point, frame, *scene);
-      segment.velocity_mps = {kWalk_mps, 0, 0};
+      segment.velocity_mps = {kWalk_mps, 0, point.wrong_mps};
       segment.velocity_covariance = 0.01 * Eigen::Matrix3d::Identity();
     }
     const auto measured = tracker_(scene);
@@ -54,19 +57,19 @@ class Sidewalk {
   static constexpr double kDt_s = 0.1, kWalk_mps = 1.4;
 
   static Eigen::Vector3d add(const Seen& seen, int frame, SceneMotion& scene) {
-    const Eigen::Vector3d p_cam = placeOf(seen.person, frame) * Eigen::Vector3d(0, 0.05, -0.2);
+    Eigen::Vector3d p_cam = placeOf(seen.person, frame) * Eigen::Vector3d(0, 0.05, -0.2);
     scene.points.push_back(
         {.point = {seen.point}, .uvd_px = *kRig.project(p_cam), .sigma_px = test::kObservationSigma_px, .flow = {}});
     return p_cam;
   }
   static FeaturesPtr seen(int frame) {
-    FeaturesPtr& features = features_[frame];
+    static std::map<int, FeaturesPtr> rendered;  // the same in all tests, as rendering takes longest
+    FeaturesPtr& features = rendered[frame];
     if (!features)
       features =
           TexturedBoard::seen({{placeOf(0, frame), TexturedBoard::person}, {placeOf(1, frame), TexturedBoard::person}});
     return features;
   }
-  inline static std::map<int, FeaturesPtr> features_;  // the same in all tests, as rendering takes longest
   int next_ = 0;
   ObjectTracker tracker_{{}, kRig};
   std::map<TrackId, std::vector<ObjectObservation>> reported_;
@@ -122,6 +125,21 @@ TEST(ObjectTracker, AnotherPointOnAPersonIsNoOtherPerson) {
   sidewalk.walkOn(7);
   ASSERT_EQ(sidewalk.reported().size(), 2U);
   EXPECT_EQ(sidewalk.reported().rbegin()->first, TrackId{1}) << "no track was spent in between";
+}
+
+/// A walk's direction is that of the patches soon, whatever the first point told.
+TEST(ObjectTracker, APersonGoesToASideOfTheDirectionFirstTold) {
+  Sidewalk sidewalk;
+  sidewalk.walkOn(1);
+  sidewalk.walk({{.point = 0, .person = 0, .wrong_mps = 1.2}});
+  sidewalk.walkOn(9);
+  ASSERT_EQ(sidewalk.reported().size(), 1U);
+  // Two frames of patches tell. With a vehicle's slip, .2 m/s of the first direction are left by then.
+  constexpr double kLeft_mps = 0.15;
+  for (const ObjectObservation& o : sidewalk.reported().begin()->second) {
+    if (o.frame.value < 3) continue;
+    EXPECT_LT(std::abs(o.velocity_cam_mps.z()), kLeft_mps) << o.frame.value;
+  }
 }
 
 }  // namespace
