@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/elementary.hpp"
+#include "frontend/tracking/search_by_projection.hpp"
 #include "frontend/tracking/small_body.hpp"
 #include "frontend/tracking/vehicle_size.hpp"
 
@@ -70,6 +71,7 @@ bool youngerStays(const TrackedObject& older, const TrackedObject& younger, cons
 
 void merge(TrackedObject& stays, TrackedObject& ends) {
   const SE3 T_stays_ends = stays.T_cam_body.inverse() * ends.T_cam_body;
+  std::erase_if(ends.points, [](const BodyPoint& p) { return !isFollowed(p.point); });  // patches are numbered anew
   for (BodyPoint& p : ends.points) {
     p.moveTo(T_stays_ends);
     p.misfits = 0;

@@ -52,6 +52,14 @@ TEST(DuplicateObjects, TwoOnOneVehicleBecomeOneWithThePointsOfBoth) {
   EXPECT_LT((objects[0].T_cam_body * taken->p_body - p_world).norm(), 1e-9);
 }
 
+TEST(DuplicateObjects, PatchesOfTheOneThatEndsAreNotTakenForThoseOfTheOther) {
+  std::vector<TrackedObject> objects{objectOn({1, 10, 12}), objectOn({2, 13, 15})};
+  objects[1].adopt({{{-1}, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity()}});
+  mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig), test::kRig);
+  EXPECT_EQ(objects[0].points.size(), 16U);
+  EXPECT_EQ(objects[0].find({-1}), nullptr);
+}
+
 TEST(DuplicateObjects, TheOneThatWasReportedStays) {
   std::vector<TrackedObject> objects{objectOn({1, 10, 12}), objectOn({2, 13, 15})};
   objects[1].life.confirm();
