@@ -24,7 +24,7 @@ constexpr std::int64_t kMemory_frames = 120;            // beyond which looks no
 constexpr double kLeastSize_m = 0.2, kMostSize_m = 25;  // of an object that is believed, along each axis
 constexpr double kWhole = 0.85;                         // of a cuboid where both cameras see it: the look at it counts
 constexpr int kFewLooks = 5;                            // so few are too few to do without one
-constexpr double kTrunk_m = 0.4;                        // across
+constexpr double kTrunk_m = 0.4;                        // across a person
 constexpr int kIterations = 2;  // of the faces, as what is seen of them depends on where they are
 
 double fading(std::int64_t frames) { return power(kFading, static_cast<double>(std::abs(frames))); }

@@ -20,7 +20,7 @@ struct ObjectView {
   /// Cells between a body that moved and what rests, in the image of an earlier frame: the two can be told apart
   /// although each estimate may be off by a cell.
   static constexpr double kWellApart = 6;
-  /// Cells by which who is evenly dressed must have gone to leave what was seen before: the width of a small body.
+  /// Width of a small body in cells. Someone evenly dressed looks the same until gone by it. 0 of other bodies.
   double width = 0;
   SE3 T_cam_body;
   BoxEstimate box;

@@ -63,7 +63,7 @@ bool isInView(const TrackedObject& object, const StereoCamera& camera) {
   return uvd_px && camera.inLeftImage(uvd_px->x(), uvd_px->y());
 }
 
-/// What has left the view is not what is still seen in it: the last points of a trailer that we pass are on its truck.
+/// An object that has left the view gives way to one in it: the last points of a trailer that we pass are on its truck.
 bool youngerStays(const TrackedObject& older, const TrackedObject& younger, const StereoCamera& camera) {
   if (!younger.life.reported()) return false;
   return !older.life.reported() || (!isInView(older, camera) && isInView(younger, camera));

@@ -21,9 +21,9 @@ class ObjectSpawner {
   std::vector<TrackedObject> operator()(const SceneMotion& scene, const Segment& segment, const SE3& T_world_cam,
                                         std::vector<bool>& taken);
 
-  /// May a segment be a point or two of a person on foot? Corners are few on clothes, and most of them on limbs.
+  /// May a segment be a person on foot? Corners are few on clothes, so that a point or two may be all there is.
   bool mayBeWalker(const Segment& segment, const GroundPlane& ground) const;
-  /// The person, where the patches around such points have moved together since the frame before, and surely.
+  /// The person. Empty unless the patches around the points moved together since the frame before, and surely.
   std::optional<TrackedObject> walker(const SceneMotion& scene, const SceneMotion& before, const Segment& segment,
                                       const SE3& T_world_cam);
 

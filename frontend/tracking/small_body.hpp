@@ -17,22 +17,21 @@ bool mayBeSmall(const TrackedObject& object);
 /// Is a speed that of a walk, at a depth at which patches are followed?
 bool isWalk(double speed_mps, double z_m, const StereoCamera& camera);
 
-/// May an object be a person on foot, who is followed by patches all over the body, as corners are few on clothes and
-/// most of them on limbs? It is so near that the disparity tells a patch on the body from what lies half a meter
-/// behind, and it moves: what stands cannot be told from what it stands before.
+/// May an object be a person on foot, who is followed by patches on the trunk, as corners are few on clothes and most
+/// of them on limbs? It is so near that the disparity tells a patch on the body from what lies half a meter behind, and
+/// it moves: what stands cannot be told from what it stands before.
 bool mayBeWalking(const TrackedObject& object, const StereoCamera& camera);
 
-/// How an object moves that may be a person on foot: people walk steadily, and as well to a side of the body's axes,
-/// which few points laid out. Of other objects, the kinematics of vehicles.
+/// The kinematics of a walk for what may be a person on foot, else those of a vehicle. People walk steadily. They may
+/// go to a side of the body's axes, as few points laid these out.
 ObjectKinematics::Params kinematicsOf(const TrackedObject& object, const ObjectKinematics::Params& vehicle);
 
-/// Where the image shows the trunk and head of who walks upright, and at about which disparity. Arms and legs swing,
-/// and a foot on the ground rests.
+/// Trunk and head of a person in the image. Arms and legs are left out: they swing, and a foot on the ground rests.
 struct Trunk {
   Box box;
   double disparity_px;
 };
-/// With the object's points around the middle of the body; empty where that is too near.
+/// The trunk of an object whose points lie around the middle of the body. Empty if that is too near to be projected.
 std::optional<Trunk> trunkOf(const TrackedObject& object, const SE3& T_cam_body, const GroundPlane& ground,
                              const StereoCamera& camera);
 

@@ -97,7 +97,7 @@ TEST(ObjectTracker, NobodyIsSpawnedWithoutTheFrameBefore) {
   EXPECT_TRUE(sidewalk.reported().empty());
 }
 
-/// How many people are reported of whom the second appears in one frame, as this segment of a point says.
+/// The number of people reported where a second one appears in one frame, by this segment of a point.
 std::size_t peopleWith(const Sidewalk::Seen& second) {
   Sidewalk sidewalk;
   sidewalk.walkOn(1);
