@@ -19,14 +19,21 @@ std::string wordOf(const toml::node& node) {
   return text.str();
 }
 
-TomlPosition positionOf(const toml::node& node, const std::filesystem::path& file) {
-  return {file.string(), node.source().begin.line};
+/// The place of a key, or of an element of a list. A table has none of its own where dotted keys made it.
+TomlPosition positionOf(const auto& key_or_element, const std::filesystem::path& file) {
+  return {file.string(), key_or_element.source().begin.line};
 }
 
-std::string stringOf(const toml::node& node, const std::string& key, const std::filesystem::path& file) {
+std::string stringOf(const toml::node& node, const toml::key& key, const std::filesystem::path& file) {
   const auto text = node.value_exact<std::string>();
-  if (!text) failAt(positionOf(node, file), "'" + key + "' must be a text in quotes");
+  if (!text) failAt(positionOf(key, file), "'" + std::string(key.str()) + "' must be a text in quotes");
   return *text;
+}
+
+const toml::array& listOf(const toml::node& node, const toml::key& key, const std::filesystem::path& file) {
+  const toml::array* const list = node.as_array();
+  if (list == nullptr) failAt(positionOf(key, file), "'" + std::string(key.str()) + "' is no list" + kForm);
+  return *list;
 }
 
 /// Adds the keys of a table, each with its values as words.
@@ -34,7 +41,7 @@ void addFields(ManifestFields& fields, const toml::table& table, const std::file
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
     if (node.is_table())
-      failAt(positionOf(node, file), "'" + printable(name) + "' is a table; parameters stand in [sets.NAME]");
+      failAt(positionOf(key, file), "'" + printable(name) + "' is a table; parameters stand in [sets.NAME]");
     auto& words = fields.words[name];
     words.clear();
     if (const toml::array* const values = node.as_array())
@@ -56,25 +63,23 @@ void addAssignments(ParameterSet& set, const toml::table& table, const std::stri
 
 /// In the order of the file: a TOML table forgets it.
 std::vector<ParameterSet> setsOf(const toml::table& table, const std::filesystem::path& file) {
-  std::map<toml::source_index, ParameterSet> by_line;
+  std::map<std::pair<toml::source_index, toml::source_index>, ParameterSet> by_place;
   for (const auto& [key, node] : table) {
-    const TomlPosition position = positionOf(node, file);
+    const TomlPosition position = positionOf(key, file);
     const toml::table* const parameters = node.as_table();
     if (parameters == nullptr) failAt(position, "a set of parameters is a table: [sets.NAME]");
     ParameterSet set{.name = std::string(key.str())};
     requireName(set.name, position.text());
     addAssignments(set, *parameters, "");
-    by_line[key.source().begin.line] = std::move(set);
+    by_place[{key.source().begin.line, key.source().begin.column}] = std::move(set);
   }
   std::vector<ParameterSet> sets;
-  for (auto& [line, set] : by_line) sets.push_back(std::move(set));
+  for (auto& [place, set] : by_place) sets.push_back(std::move(set));
   return sets;
 }
 
-void addEntries(Manifest& manifest, const toml::node& drives, const toml::table& defaults) {
-  const toml::array* const list = drives.as_array();
-  if (list == nullptr) failAt(positionOf(drives, manifest.file), std::string("'drives' is no list") + kForm);
-  for (const auto& node : *list) {
+void addEntries(Manifest& manifest, const toml::array& drives, const toml::table& defaults) {
+  for (const auto& node : drives) {
     const TomlPosition position = positionOf(node, manifest.file);
     const toml::table* const table = node.as_table();
     if (table == nullptr) failAt(position, std::string("a drive is a table") + kForm);
@@ -91,26 +96,26 @@ Manifest readManifestToml(const std::filesystem::path& file, const std::string& 
   const toml::table document = parseToml(text, file.string());
   Manifest manifest{.file = file};
   toml::table defaults;
-  const toml::node* drives = nullptr;
+  const toml::array* drives = nullptr;
   for (const auto& [key, node] : document) {
     const std::string name(key.str());
     const toml::table* const table = node.as_table();
     if (name == "root")
-      manifest.root = stringOf(node, name, file);
+      manifest.root = stringOf(node, key, file);
     else if (name == "baseline_set")
-      manifest.baseline_set = stringOf(node, name, file);
+      manifest.baseline_set = stringOf(node, key, file);
     else if (name == "dataset")
-      manifest.dataset = stringOf(node, name, file);
+      manifest.dataset = stringOf(node, key, file);
     else if (name == "published")
-      manifest.published = file.parent_path() / expandedPath(stringOf(node, name, file));
+      manifest.published = file.parent_path() / expandedPath(stringOf(node, key, file));
     else if (name == "drives")
-      drives = &node;
+      drives = &listOf(node, key, file);
     else if (name == "defaults" && table != nullptr)
       defaults = *table;
     else if (name == "sets" && table != nullptr)
       manifest.sets = setsOf(*table, file);
     else
-      failAt(positionOf(node, file), "unknown key '" + printable(name) + "'" + kForm);
+      failAt(positionOf(key, file), "unknown key '" + printable(name) + "'" + kForm);
   }
   if (drives != nullptr) addEntries(manifest, *drives, defaults);
   return manifest;

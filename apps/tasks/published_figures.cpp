@@ -33,7 +33,7 @@ std::map<std::string, int> frameCounts(const toml::table& document, const std::s
   for (const auto& [drive, node] : *table) {
     const auto count = node.value_exact<std::int64_t>();
     if (!count || *count < 1)
-      failAt({file.string(), node.source().begin.line},
+      failAt({file.string(), drive.source().begin.line},
              fmt::format("'{}' must be a number of frames", printable(drive.str())));
     counts[std::string(drive.str())] = static_cast<int>(*count);
   }

@@ -110,6 +110,9 @@ TEST_F(ManifestFile, FaultsAreNamedWithTheirLineAndHowToMendThem) {
   EXPECT_THAT(complaintAbout("[[drives]]\npath = \"a\"\nsets = [\"x\"]\n"), HasSubstr("there is no [sets.x]"));
   EXPECT_THAT(complaintAbout("[[drives]]\npath = \"a\"\nmasks = \"yes\"\n"), HasSubstr("true or false"));
   EXPECT_THAT(complaintAbout("drives = 3\n"), HasSubstr("[[drives]]"));
+  EXPECT_THAT(complaintAbout("\n[[drives]]\nckend.kind = \"joint\"\n"),
+              testing::AllOf(HasSubstr("m.toml, line 3"), HasSubstr("[sets.NAME]")));
+  EXPECT_THAT(complaintAbout("\ndirve.path = \"a\"\n"), HasSubstr("m.toml, line 2: unknown key 'dirve'"));
   EXPECT_THAT(complaintAbout("root = \"a\"\n"), HasSubstr("has no drives"));
   EXPECT_THAT(complaintAbout("[[drives]\n"), HasSubstr("is no TOML"));
   EXPECT_THAT(complaintAbout("path,name\na\n", "m.csv"), HasSubstr("m.csv, line 2: has 1 fields"));
@@ -117,6 +120,14 @@ TEST_F(ManifestFile, FaultsAreNamedWithTheirLineAndHowToMendThem) {
   EXPECT_THAT(complaintAbout("path,set,a.b\nx,s,1\ny,s,2\n", "m.csv"), HasSubstr("line 3: set 's' has other"));
   EXPECT_THAT(complaintAbout("[[drives]]\npath = \"a\"\nname = \"a/b\"\n"), HasSubstr("is no name"));
   EXPECT_THAT(complaintAbout("[[drives]]\nscene = \"lead\"\nseeds = \"5-2\"\n"), HasSubstr("as 1-5"));
+}
+
+TEST_F(ManifestFile, SetsOfOneLineAreKeptInTheirOrder) {
+  const Manifest manifest =
+      read("sets = { b = {}, a = { backend = { kind = \"joint\" } } }\n[[drives]]\npath = \"x\"\n");
+  ASSERT_EQ(manifest.sets.size(), 2U);
+  EXPECT_EQ(manifest.sets[0].name, "b");
+  EXPECT_THAT(manifest.sets[1].assignments, ElementsAre("backend.kind=joint"));
 }
 
 TEST_F(ManifestFile, ADriveMayBeOneOfSeveralPlacesAndStandForMany) {
