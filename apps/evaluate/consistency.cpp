@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "apps/evaluate/object_positions.hpp"
 #include "core/decompositions.hpp"
@@ -23,8 +23,8 @@ NormalizedErrors normalizedErrors(const std::vector<double>& nees, double region
                   : 0};
 }
 
-double neesOf(const Eigen::VectorXd& xi, const Eigen::MatrixXd& covariance) {
-  return xi.dot(covariance.llt().solve(xi));
+double neesOf(const Eigen::Vector3d& xi, const Eigen::Matrix3d& covariance) {
+  return xi.dot(covariance.inverse() * xi);
 }
 
 ErrorSample errorOf(const SeenTwice& seen, const SE3& Y) {
@@ -66,8 +66,9 @@ SE3 fitOffset(const std::vector<SeenTwice>& frames) {
 CovarianceErrors consistencyOf(const std::vector<ErrorSample>& samples) {
   std::vector<double> pose, position, rotation;
   for (const auto& sample : samples) {
-    if (Eigen::LLT<Matrix6d>(sample.covariance).info() != Eigen::Success) continue;
-    pose.push_back(neesOf(sample.xi, sample.covariance));
+    const Eigen::LLT<Matrix6d> cholesky(sample.covariance);
+    if (cholesky.info() != Eigen::Success) continue;
+    pose.push_back(sample.xi.dot(cholesky.solve(sample.xi)));
     position.push_back(neesOf(sample.xi.head<3>(), sample.covariance.topLeftCorner<3, 3>()));
     rotation.push_back(neesOf(sample.xi.tail<3>(), sample.covariance.bottomRightCorner<3, 3>()));
   }

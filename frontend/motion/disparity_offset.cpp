@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "core/decompositions.hpp"
 #include "core/robust_loss.hpp"
 
 namespace motorcade {
@@ -22,14 +22,44 @@ constexpr double kMaxStep = 10;       // (m, rad, px): a longer one diverges
 constexpr double kFarOff_px = 0.5;    // a rig that is off so far hides more of the scene than moving depths do,
 constexpr double kFastRate_px = 0.1;  // and is followed fast
 
-using Vector7d = Eigen::Matrix<double, 7, 1>;
-using Matrix7d = Eigen::Matrix<double, 7, 7>;
-
-/// Unknowns of one window: (motion by right perturbation of T_now_then, offset).
+/// A point's residual; the unknowns of a window are its motion, by a right perturbation of T_now_then, and the offset.
 struct Linearized {
-  Eigen::Vector3d residual_px;    // observed - predicted
-  Eigen::Matrix<double, 3, 7> J;  // of predicted - observed
+  Eigen::Vector3d residual_px;           // observed - predicted
+  Eigen::Matrix<double, 3, 6> J_motion;  // of predicted - observed
+  Eigen::Vector3d J_offset;
   Eigen::Matrix3d information;
+};
+
+/// The normal equations of a window.
+struct NormalEquations {
+  void add(const Linearized& l, double weight) {
+    const Eigen::Matrix<double, 6, 3> JtW = weight * l.J_motion.transpose() * l.information;
+    const Eigen::Vector3d W_J_offset = weight * l.information * l.J_offset;
+    H_motion.noalias() += JtW * l.J_motion;
+    H_mixed.noalias() += JtW * l.J_offset;
+    H_offset += W_J_offset.dot(l.J_offset);
+    b_motion.noalias() += JtW * l.residual_px;
+    b_offset += W_J_offset.dot(l.residual_px);
+  }
+
+  struct Step {
+    Vector6d motion;
+    double offset_px, offset_variance_px2;
+  };
+  /// The motion is eliminated: what the Schur complement keeps is the information about the offset alone.
+  std::optional<Step> solve() const {
+    const Eigen::LLT<Matrix6d> llt(H_motion);
+    if (llt.info() != Eigen::Success) return std::nullopt;
+    const Vector6d motion_per_offset = llt.solve(H_mixed);
+    const double information = H_offset - H_mixed.dot(motion_per_offset);
+    if (!(information > 0)) return std::nullopt;
+    const double offset_px = (b_offset - motion_per_offset.dot(b_motion)) / information;
+    return Step{llt.solve(b_motion) - motion_per_offset * offset_px, offset_px, 1 / information};
+  }
+
+  Matrix6d H_motion = Matrix6d::Zero();
+  Vector6d H_mixed = Vector6d::Zero(), b_motion = Vector6d::Zero();
+  double H_offset = 0, b_offset = 0;
 };
 
 std::optional<Linearized> linearize(const StereoCamera& camera, const StereoCorrespondence& c, const SE3& T_now_then,
@@ -43,7 +73,8 @@ std::optional<Linearized> linearize(const StereoCamera& camera, const StereoCorr
   const Eigen::Matrix3d J_uvd_then = J_p_then * camera.triangulationJacobian(uvd_then);
   Linearized l;
   l.residual_px = c.uvd_now_px + offset - *predicted;
-  l.J << J_p_then, -J_p_then * hat(p_then), J_uvd_then.col(2) - Eigen::Vector3d::UnitZ();
+  l.J_motion << J_p_then, -J_p_then * hat(p_then);
+  l.J_offset = J_uvd_then.col(2) - Eigen::Vector3d::UnitZ();
   Eigen::Matrix3d S = J_uvd_then * c.sigma_then_px.cwiseAbs2().asDiagonal() * J_uvd_then.transpose();
   S.diagonal() += c.sigma_now_px.cwiseAbs2();
   l.information = S.inverse();
@@ -60,30 +91,26 @@ double DisparityOffsetEstimator::sigma_px() const { return std::sqrt(variance_px
 std::optional<DisparityOffsetEstimator::Measurement> DisparityOffsetEstimator::measure(
     std::span<const StereoCorrespondence> points, const SE3& T_now_then) const {
   SE3 T = T_now_then;
-  double offset_px = 0;
-  Matrix7d H;
+  Measurement measurement{.correction_px = 0, .variance_px2 = 0};
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    H.setZero();
-    Vector7d b = Vector7d::Zero();
+    NormalEquations equations;
     int inliers = 0;
     for (const auto& c : points) {
-      const auto l = linearize(camera_, c, T, offset_px);
+      const auto l = linearize(camera_, c, T, measurement.correction_px);
       if (!l) continue;
       const double chi2 = l->residual_px.dot(l->information * l->residual_px);
       if (iteration > 0 && chi2 > kInlierChi2) continue;
-      const Eigen::Matrix<double, 7, 3> JtW =
-          robustWeight(RobustLoss::kHuber, std::sqrt(chi2), kHuberSigmas) * l->J.transpose() * l->information;
-      H.noalias() += JtW * l->J;
-      b.noalias() += JtW * l->residual_px;
+      equations.add(*l, robustWeight(RobustLoss::kHuber, std::sqrt(chi2), kHuberSigmas));
       ++inliers;
     }
     if (inliers < kMinPoints) return std::nullopt;
-    const Vector7d step = H.ldlt().solve(b);
-    if (!step.allFinite() || step.norm() > kMaxStep) return std::nullopt;
-    T = T * SE3::exp(step.head<6>());
-    offset_px += step[6];
+    const auto step = equations.solve();
+    if (!step || !(std::hypot(step->motion.norm(), step->offset_px) < kMaxStep)) return std::nullopt;
+    T = T * SE3::exp(step->motion);
+    measurement.correction_px += step->offset_px;
+    measurement.variance_px2 = step->offset_variance_px2;
   }
-  return Measurement{offset_px, H.inverse()(6, 6)};
+  return measurement;
 }
 
 std::optional<std::int64_t> DisparityOffsetEstimator::windowStart(std::int64_t now) const {
