@@ -2,18 +2,21 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "core/fixed_product.hpp"
+#include "frontend/geometry/cholesky.hpp"
 
 namespace motorcade {
 namespace {
 
-/// Covariances of up to six dimensions, and columns of that many: their decomposition is compiled once for all sizes.
-using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-using Columns = Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::ColMajor, 6, 12>;
-
-Columns solve(const Covariance& S, const Columns& B) { return Eigen::LDLT<Covariance>(S).solve(B); }
+/// S^-1 B for a positive definite S.
+template <int N, int Columns>
+Eigen::Matrix<double, N, Columns> solve(const Eigen::Matrix<double, N, N>& S,
+                                        const Eigen::Matrix<double, N, Columns>& B) {
+  const Cholesky<N> cholesky(S);
+  Eigen::Matrix<double, N, Columns> solution;
+  for (int c = 0; c < Columns; ++c) solution.col(c) = cholesky.solve(B.col(c));
+  return solution;
+}
 
 /// Kalman update of the state by a linear measurement of its error, residual = J * error + noise of this `sigma`.
 template <int N>
@@ -22,7 +25,7 @@ void correct(ConstantTwistState& state, const Eigen::Matrix<double, N, 1>& resid
   const Eigen::Matrix<double, N, 12> JP = fixedProduct(J, state.covariance);
   Eigen::Matrix<double, N, N> S = JP.lazyProduct(J.transpose());
   S.diagonal() += sigma.cwiseAbs2();
-  const Eigen::Matrix<double, N, 12> K_transposed = solve(S, JP);
+  const Eigen::Matrix<double, N, 12> K_transposed = solve<N, 12>(S, JP);
   const Eigen::Matrix<double, 12, N> K = K_transposed.transpose();
   const Eigen::Matrix<double, 12, 1> step = K * residual;
   state.T_world_body = (state.T_world_body * SE3::exp(step.template head<6>())).normalized();
@@ -48,7 +51,7 @@ double ObjectKinematics::positionSigma_m() const { return std::sqrt(poseCovarian
 void ObjectKinematics::acceptPose(const SE3& T_world_body, const Matrix6d& covariance) {
   Matrix12d& joint = state_.covariance;
   const Matrix6d P = poseCovariance(), cross = joint.bottomLeftCorner<6, 6>();
-  const Matrix6d gain = Eigen::LDLT<Covariance>(P).solve(cross.transpose()).transpose();  // twist per pose
+  const Matrix6d gain = solve<6, 6>(P, cross.transpose()).transpose();  // twist per pose
   state_.twist += gain * (state_.T_world_body.inverse() * T_world_body).log();
   state_.T_world_body = T_world_body;
   joint.topLeftCorner<6, 6>() = covariance;
