@@ -42,7 +42,12 @@ double speedEvidence(double speed_mps, double sigma_mps) {
   return std::clamp(evidence, kLeastBySpeed, std::min(kMostBySpeed, kMostPerSpeed * speed_mps));
 }
 
-double probabilityOf(double log_odds) { return 1 / (1 + exponential(-log_odds)); }
+/// The shares above take verdicts for independent of each other and of speeds. What they sum up to was held against
+/// labels: one in six tracks that all speaks against is real, and what is likely real is so more often than they say.
+double probabilityOf(double log_odds) {
+  constexpr double kLeast = -1.6, kPerLogOdds = 1.4;
+  return 1 / (1 + exponential(log_odds > 0 ? -kPerLogOdds * log_odds : -std::max(log_odds, kLeast)));
+}
 
 }  // namespace
 
@@ -55,7 +60,13 @@ void Existence::addSpeed(double speed_mps, double sigma_mps) {
 }
 
 void Existence::addSettledSpeed(double speed_mps, double sigma_mps) {
-  settled_speed_ = std::max(settled_speed_, speedEvidence(speed_mps, sigma_mps));
+  const double evidence = speedEvidence(speed_mps, sigma_mps);
+  if (evidence > 0) {
+    settled_speed_ = std::max(settled_speed_, evidence);
+  } else if (settled_speed_ <= 0 && sigma_mps < surest_mps_) {
+    settled_speed_ = evidence;
+    surest_mps_ = sigma_mps;
+  }
 }
 
 /// Successive frames show much the same: the n-th with one verdict counts as a part of 1 / n.

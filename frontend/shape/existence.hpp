@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <limits>
 #include <optional>
 
 #include "core/messages.hpp"
@@ -30,7 +31,8 @@ class Existence {
   /// An online estimate of the speed. `sigma_mps` holds the errors that all points share. Each estimate gathers what
   /// was seen before it, so that they are not added up: an object that stops is the one that moved for some time yet.
   void addSpeed(double speed_mps, double sigma_mps);
-  /// The same of a settled or final estimate: what moved then has moved for good.
+  /// The same of a settled or final estimate: what moved then has moved for good. Of estimates of rest the surest
+  /// counts.
   void addSettledSpeed(double speed_mps, double sigma_mps);
   /// Call in frame order.
   void addVerdict(FrameId frame, MotionVerdict verdict);
@@ -48,7 +50,8 @@ class Existence {
  private:
   double followedEvidence() const;
 
-  double recent_speed_, settled_speed_;  // log likelihood ratios
+  double recent_speed_, settled_speed_;                          // log likelihood ratios
+  double surest_mps_ = std::numeric_limits<double>::infinity();  // standard deviation of a speed that is none
   /// The sum of verdicts up to a frame. It is kept while no later one is larger.
   struct Sum {
     FrameId frame;

@@ -13,6 +13,12 @@ void addVerdicts(Existence& existence, int first, int frames, MotionVerdict verd
   for (int frame = first; frame < first + frames; ++frame) existence.addVerdict(FrameId{frame}, verdict);
 }
 
+/// The log odds that the evidence sums up to, before they are calibrated.
+double summed(double probability) {
+  const double log_odds = std::log(probability / (1 - probability));
+  return log_odds > 0 ? log_odds / 1.4 : log_odds;
+}
+
 TEST(Existence, IsUndecidedBeforeAnythingIsSeen) {
   Existence existence;
   existence.addSpeed(0, 1e3);
@@ -24,7 +30,7 @@ TEST(Existence, OfASpeedIsItsLikelihoodInTrafficAgainstRest) {
   Existence existence;
   existence.addSpeed(6, 3);
   const double in_traffic = std::exp(-0.5 * 36 / (100 + 9)) / std::sqrt(100 + 9), at_rest = std::exp(-0.5 * 36 / 9) / 3;
-  EXPECT_NEAR(existence.probability(), in_traffic / (in_traffic + at_rest), 1e-9);
+  EXPECT_NEAR(summed(existence.probability()), std::log(in_traffic / at_rest), 1e-9);
 }
 
 TEST(Existence, AsksForTwoStandardDeviationsOfSpeed) {
@@ -38,8 +44,33 @@ TEST(Existence, AsksForTwoStandardDeviationsOfSpeed) {
 TEST(Existence, OfASureSpeedAloneIsNotSure) {
   Existence existence;
   existence.addSpeed(15, 0.2);
-  EXPECT_GT(existence.probability(), 0.8);
-  EXPECT_LT(existence.probability(), 0.9);
+  EXPECT_GT(existence.probability(), 0.9);
+  EXPECT_LT(existence.probability(), 0.95);
+}
+
+/// One in six tracks is real although all speaks against it.
+TEST(Existence, IsNeverSureThatThereIsNothing) {
+  Existence existence;
+  existence.addSettledSpeed(0.1, 0.1);
+  EXPECT_NEAR(existence.settledProbability(kFirst), 1.0 / 6, 0.01);
+  addVerdicts(existence, 0, 9, MotionVerdict::kRested);
+  EXPECT_NEAR(existence.settledProbability(kFirst), 1.0 / 6, 0.01);
+}
+
+TEST(Existence, OfSettledEstimatesOfRestTheSurestCounts) {
+  Existence existence;
+  existence.addSettledSpeed(0.2, 8);
+  const double unsure = existence.settledProbability(kFirst);
+  existence.addSettledSpeed(0.2, 2);
+  const double surer = existence.settledProbability(kFirst);
+  EXPECT_LT(surer, unsure - 0.1);
+  existence.addSettledSpeed(0.2, 8);
+  EXPECT_EQ(existence.settledProbability(kFirst), surer);
+  existence.addSettledSpeed(6, 1);
+  const double moved = existence.settledProbability(kFirst);
+  EXPECT_GT(moved, 0.9);
+  existence.addSettledSpeed(0.1, 0.1);
+  EXPECT_EQ(existence.settledProbability(kFirst), moved) << "it has stopped";
 }
 
 /// Most wrong matches seem to move slowly.
@@ -120,22 +151,21 @@ TEST(Existence, AsksForMoreThanThreeFollowedPointsInSomeFrame) {
 
 TEST(Existence, CountsSuccessiveFramesOfOneVerdictLessAndLess) {
   Existence existence;
-  existence.addSpeed(3, 1);
-  const auto logOdds = [&] { return std::log(existence.probability() / (1 - existence.probability())); };
-  const double none = logOdds();
+  existence.addSpeed(15, 0.1);
+  const double none = summed(existence.probability());
   existence.addVerdict(FrameId{0}, MotionVerdict::kRested);
-  const double one = logOdds();
+  const double one = summed(existence.probability());
   existence.addVerdict(FrameId{1}, MotionVerdict::kRested);
-  EXPECT_NEAR(logOdds() - one, (one - none) / 2, 1e-9);
+  EXPECT_NEAR(summed(existence.probability()) - one, (one - none) / 2, 1e-9);
 }
 
 /// One of nine tracks that begin as slow and small as a person is one.
 TEST(Existence, BeginsWithADoubtOfWhatWasBornSlow) {
   Existence existence;
-  existence.addSpeed(0, 1e3);  // says nothing
+  existence.addSpeed(15, 0.1);
+  const double before = summed(existence.probability());
   existence.doubtSlowBirth();
-  const auto odds = [&] { return existence.probability() / (1 - existence.probability()); };
-  EXPECT_NEAR(odds(), 1.0 / 9, 1e-3);
+  EXPECT_NEAR(before - summed(existence.probability()), std::log(9), 0.01);
   existence.addSettledSpeed(1.4, 0.1);
   EXPECT_LT(existence.settledProbability(kFirst), 0.5) << "a sure speed does not lift it";
   addVerdicts(existence, 0, 1, MotionVerdict::kMoved);
