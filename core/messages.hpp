@@ -106,7 +106,8 @@ struct ObjectObservation {
   /// The object's pose seen from the camera (encounter), right perturbation; prediction only when state is kPredicted.
   SE3 T_cam_body;
   Matrix6d encounter_covariance = Matrix6d::Identity();
-  /// Motion since the object's previous observation, z_{i-1}^-1 * z_i, from points that the encounter did not use.
+  /// Motion since the object's previous observation, z_{i-1}^-1 * z_i, from points that the encounter did not use. A
+  /// back-end measures it; the front-end leaves it out.
   struct Motion {
     FrameId since;
     SE3 T_before_now;

@@ -11,10 +11,6 @@
 namespace motorcade {
 namespace {
 
-/// Points measure either the encounter or the motion, by their id and so in all frames alike: the two factors then
-/// share no measurement and may be counted as independent.
-bool measuresEncounter(PointId point) { return point.value % 2 == 0; }
-
 Box imageBox(const std::vector<const ScenePoint*>& points) {
   Box box{1e9, 1e9, -1e9, -1e9};
   for (const auto* p : points) {
@@ -95,7 +91,6 @@ std::optional<ObjectMotionEstimator::Agreement> ObjectMotionEstimator::agree(con
 }
 
 std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& object, const SceneMotion& scene,
-                                                               const SceneMotion* previous_scene,
                                                                const SE3& T_world_cam) const {
   const PosePrior prior{T_world_cam.inverse() * object.kinematics.pose(), inverse(object.kinematics.poseCovariance())};
   std::vector<Observation> seen = observations(object, scene);
@@ -114,7 +109,6 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
   object.kinematics.acceptPose((T_world_cam * object.T_cam_body).normalized(), agreement->fit.covariance);
   ObjectObservation observation =
       measureEncounter(object, agreement->inliers, object.T_cam_body, scene.disparity_offset_px);
-  if (previous_scene) measureMotion(object, agreement->inliers, scene, *previous_scene, observation);
   object.measured = measuredIn(scene, agreement->inliers);
   refinePoints(object, agreement->inliers);
   dropMisfits(object, agreement->seen, agreement->chi2);
@@ -225,12 +219,11 @@ void ObjectMotionEstimator::dropMisfits(TrackedObject& object, const std::vector
 ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& object,
                                                           const std::vector<Observation>& inliers,
                                                           const SE3& T_cam_body, double disparity_offset_px) const {
-  const bool split = static_cast<int>(inliers.size()) >= params_.split_points;
   std::vector<PoseObservation> observations;
   std::vector<const ScenePoint*> visible;
   for (const auto& s : inliers) {
     visible.push_back(s.now);
-    if (!split || measuresEncounter(s.now->point)) observations.push_back(observe(object.points[s.body_point], *s.now));
+    observations.push_back(observe(object.points[s.body_point], *s.now));
   }
   const PosePrior weak = weakPrior(T_cam_body);
   const auto fit = fitPose(camera_, PoseObservations(observations), T_cam_body, params_.fit, &weak);
@@ -248,36 +241,6 @@ ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& o
   observation.T_cam_body = fit ? fit->T_cam_ref : T_cam_body;
   observation.encounter_covariance = fit ? fit->covariance : inverse(weak.information);
   return observation;
-}
-
-/// The motion since the frame before, from points that the encounter did not use. With b the body as it stood then and
-/// X = T_cam_b its pose as these points' motion carries it into the camera of now: z_{i-1}^-1 z_i =
-/// T_cam_body(before)^-1 * T_previous_now * X.
-void ObjectMotionEstimator::measureMotion(const TrackedObject& object, const std::vector<Observation>& inliers,
-                                          const SceneMotion& scene, const SceneMotion& previous_scene,
-                                          ObjectObservation& observation) const {
-  if (!object.observed_before.valid() || object.observed_before != previous_scene.frame) return;
-  const SE3 T_body_cam_before = object.T_cam_body_before.inverse();
-  std::vector<PoseObservation> observations;
-  for (const auto& s : inliers) {
-    const auto* before = measuresEncounter(s.now->point) ? nullptr : findPoint(previous_scene, s.now->point);
-    if (!before) continue;
-    const Eigen::Matrix3d J = T_body_cam_before.rotation() * camera_.triangulationJacobian(before->uvd_px);
-    observations.push_back({T_body_cam_before * camera_.triangulate(before->uvd_px),
-                            J * before->sigma_px.cwiseAbs2().asDiagonal() * J.transpose(), s.now->uvd_px,
-                            s.now->sigma_px});
-  }
-  if (static_cast<int>(inliers.size()) < params_.split_points ||
-      static_cast<int>(observations.size()) < params_.min_points)
-    return;
-  const PosePrior weak = weakPrior(object.T_cam_body);
-  const auto fit = fitPose(camera_, PoseObservations(observations), object.T_cam_body, params_.fit, &weak);
-  if (!fit) return;
-  // Carries the odometry's perturbation to the end of the product.
-  const Matrix6d A = fit->T_cam_ref.inverse().adjoint();
-  observation.motion = ObjectObservation::Motion{
-      previous_scene.frame, (T_body_cam_before * scene.T_previous_now * fit->T_cam_ref).normalized(),
-      fit->covariance + A * scene.odometry_covariance * A.transpose()};
 }
 
 /// One Kalman step per point, the pose taken as known.

@@ -17,7 +17,6 @@ class ObjectMotionEstimator {
     int min_points = 3;            // that agree on a pose
     double inlier_chi2 = 12.0;     // 3 degrees of freedom
     int max_misfits = 2;           // frames in a row, after which a point is no longer counted to the body
-    int split_points = 12;         // from here on, half of the points measure the encounter and half the motion
     double weak_position_m = 2.0;  // prior that only closes directions which the points leave open
     double weak_yaw_rad = 0.15, weak_tilt_rad = 0.03;
     double evidence_margin_m = 0.8;  // by which visible evidence may lie beyond the points that are known
@@ -34,7 +33,7 @@ class ObjectMotionEstimator {
   /// unchanged but for misfits) when too few points agree. The result's frame, track and state are filled by the
   /// caller.
   std::optional<ObjectObservation> follow(TrackedObject& object, const SceneMotion& scene,
-                                          const SceneMotion* previous_scene, const SE3& T_world_cam) const;
+                                          const SE3& T_world_cam) const;
 
   /// What was found of an object in another frame, with its pose there and the points that agree on it.
   struct Found {
@@ -96,8 +95,6 @@ class ObjectMotionEstimator {
   void dropMisfits(TrackedObject& object, const std::vector<Observation>& seen, const std::vector<double>& chi2) const;
   ObjectObservation measureEncounter(const TrackedObject& object, const std::vector<Observation>& inliers,
                                      const SE3& T_cam_body, double disparity_offset_px) const;
-  void measureMotion(const TrackedObject& object, const std::vector<Observation>& inliers, const SceneMotion& scene,
-                     const SceneMotion& previous_scene, ObjectObservation& observation) const;
   void refinePoints(TrackedObject& object, const std::vector<Observation>& inliers) const;
 
   Params params_;

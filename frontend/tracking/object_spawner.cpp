@@ -97,13 +97,12 @@ TrackedObject ObjectSpawner::objectOf(const SceneMotion& scene, const Segment& v
   object.spawned_at_world = T_world_cam * vehicle.centroid_cam;
   const SE3 T_world_body(travelAxes(T_world_cam.rotation() * vehicle.velocity_mps, upInWorld(scene, T_world_cam)),
                          object.spawned_at_world);
-  object.T_cam_body = object.T_cam_body_before = T_world_cam.inverse() * T_world_body;
+  object.T_cam_body = T_world_cam.inverse() * T_world_body;
   for (const int i : vehicle.points) object.points.push_back(toBody(scene.points[i], object.T_cam_body, camera_));
   ObjectObservation first = motion_.firstObservation(object, scene);
   first.frame = scene.frame;
   first.velocity_cam_mps = vehicle.velocity_mps;
   object.kinematics = firstKinematics(T_world_body, vehicle, T_world_cam, first.encounter_covariance);
-  object.observed_before = scene.frame;
   object.born_slow = mayBeWalking(object, camera_);
   if (object.born_slow) {
     object.measured = motion_.measuredPoints(object, scene);

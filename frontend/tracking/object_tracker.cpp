@@ -70,7 +70,6 @@ void ObjectTracker::advance(const SceneMotion& scene) {
   const double dt_s = secondsBetween(previous_scene_->stamp, scene.stamp);
   for (TrackedObject& object : objects_) {
     object.kinematics.predict(dt_s, kinematicsOf(object, params_.kinematics));
-    object.T_cam_body_before = object.T_cam_body;
     object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
   }
 }
@@ -83,7 +82,7 @@ void ObjectTracker::endAll(FrameMeasurements& measurements) {
 }
 
 void ObjectTracker::follow(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements) {
-  auto observation = motion_.follow(object, scene, previous_scene_.get(), T_world_cam_);
+  auto observation = motion_.follow(object, scene, T_world_cam_);
   if (!observation) return coast(object, scene, measurements);
   object.life.observe();
   object.kinematics.fuseVehicleModel(upInWorld(scene, T_world_cam_), kinematicsOf(object, params_.kinematics));
@@ -93,13 +92,11 @@ void ObjectTracker::follow(TrackedObject& object, const SceneMotion& scene, Fram
   observation->frame = scene.frame;
   observation->state = object.state;
   record(object, std::move(*observation), measurements);
-  object.observed_before = scene.frame;
 }
 
 /// A frame without a measurement of the object.
 void ObjectTracker::coast(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements) {
   object.life.miss();
-  object.observed_before = FrameId{};
   if (isOutOfReach(object)) return object.life.end();
   if (object.life.phase() == Phase::kTentative) return;
   if (auto observation = withoutMeasurement(object, scene)) record(object, std::move(*observation), measurements);
@@ -164,7 +161,7 @@ void ObjectTracker::record(TrackedObject& object, ObjectObservation observation,
 /// Tentative objects that were observed in this frame and are no part of others.
 void ObjectTracker::confirmSure(const SceneMotion& scene, FrameMeasurements& measurements) {
   for (TrackedObject& object : objects_) {
-    const bool observed = object.life.phase() == Phase::kTentative && object.observed_before == measurements.frame;
+    const bool observed = object.life.phase() == Phase::kTentative && object.life.missed() == 0;
     if (observed && is_confirmed_(object, measurements.objects, scene.ground)) confirm(object, measurements);
   }
 }

@@ -77,14 +77,10 @@ void TrackedObject::changeBodyFrame(const SE3& T_body_new) {
   const Matrix6d A = T_new_body.adjoint();
   kinematics.changeBodyFrame(T_body_new);
   T_cam_body = T_cam_body * T_body_new;
-  T_cam_body_before = T_cam_body_before * T_body_new;
   for (BodyPoint& p : points) p.moveTo(T_new_body);
   for (auto& o : backlog) {
     o.T_cam_body = o.T_cam_body * T_body_new;
     o.encounter_covariance = A * o.encounter_covariance * A.transpose();
-    if (!o.motion) continue;
-    o.motion->T_before_now = T_new_body * o.motion->T_before_now * T_body_new;
-    o.motion->covariance = A * o.motion->covariance * A.transpose();
   }
 }
 

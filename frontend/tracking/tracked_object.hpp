@@ -38,10 +38,8 @@ struct TrackedObject {
   TrackId track;
   bool born_slow = false;  // it was as slow and small as a person when it was spawned
   LifeCycle life;
-  ObjectKinematics kinematics;  // in the front-end's own odometry world
-  SE3 T_cam_body;               // of the newest frame, and of the one before
-  SE3 T_cam_body_before;
-  FrameId observed_before;        // frame of T_cam_body_before's measurement; invalid while there is none
+  ObjectKinematics kinematics;    // in the front-end's own odometry world
+  SE3 T_cam_body;                 // of the newest frame
   std::vector<BodyPoint> points;  // ordered by point
   MeasuredPoints measured;        // those of the frame in which it was measured last
   ObjectState state = ObjectState::kMoving;

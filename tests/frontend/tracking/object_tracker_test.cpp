@@ -268,9 +268,9 @@ TEST(ObjectTracker, TheBodysXAxisLiesAlongTheTravel) {
   }
 }
 
-TEST(ObjectTracker, EncounterAndMotionErrorsAreWithinTheirCovariances) {
-  double encounter = 0, motion = 0;
-  int encounters = 0, motions = 0;
+TEST(ObjectTracker, EncounterErrorsAreWithinTheirCovariances) {
+  double encounter = 0;
+  int encounters = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const TrackedDrive drive({{.x_m = -2, .z_m = 12, .speed_mps = 9, .points = 80}}, 8, 25, seed,
                              1e-5);  // the points' noise alone
@@ -287,20 +287,12 @@ TEST(ObjectTracker, EncounterAndMotionErrorsAreWithinTheirCovariances) {
       const SE3 truth = drive.traffic.carInCamera(0, frame) * T_car_body;
       encounter += test::nees((truth.inverse() * o.T_cam_body).log(), o.encounter_covariance);
       ++encounters;
-      if (!o.motion) continue;
-      const SE3 moved = (drive.traffic.car(0, static_cast<int>(o.motion->since.value)) * T_car_body).inverse() *
-                        drive.traffic.car(0, frame) * T_car_body;
-      motion += test::nees((moved.inverse() * o.motion->T_before_now).log(), o.motion->covariance);
-      ++motions;
     }
   }
-  EXPECT_GT(motions, encounters / 2);  // 80 points are enough for both
   // Generous: points keep their errors from frame to frame, which covariances of single frames leave out; half to twice
   // the variance.
   EXPECT_LT(encounter / encounters, 12);
   EXPECT_GT(encounter / encounters, 1);
-  EXPECT_LT(motion / motions, 12);
-  EXPECT_GT(motion / motions, 1);
 }
 
 TEST(ObjectTracker, EveryFrameGivesItsOutput) {
