@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "core/decompositions.hpp"
+#include "core/elementary.hpp"
 #include "core/robust_loss.hpp"
 
 namespace motorcade {
@@ -105,7 +106,7 @@ std::optional<DisparityOffsetEstimator::Measurement> DisparityOffsetEstimator::m
     }
     if (inliers < kMinPoints) return std::nullopt;
     const auto step = equations.solve();
-    if (!step || !(std::hypot(step->motion.norm(), step->offset_px) < kMaxStep)) return std::nullopt;
+    if (!step || !(hypotenuse(step->motion.norm(), step->offset_px) < kMaxStep)) return std::nullopt;
     T = T * SE3::exp(step->motion);
     measurement.correction_px += step->offset_px;
     measurement.variance_px2 = step->offset_variance_px2;
