@@ -47,7 +47,7 @@ struct NormalEquations {
     Vector6d motion;
     double offset_px, offset_variance_px2;
   };
-  /// The motion is eliminated: what the Schur complement keeps is the information about the offset alone.
+  /// Eliminates the motion: the Schur complement is the information about the offset alone.
   std::optional<Step> solve() const {
     const Eigen::LLT<Matrix6d> llt(H_motion);
     if (llt.info() != Eigen::Success) return std::nullopt;

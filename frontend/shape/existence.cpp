@@ -15,7 +15,7 @@ constexpr double kMostBySpeed = 2, kLeastBySpeed = -4;
 constexpr double kMostPerSpeed = 0.5;  // per m/s: most wrong matches seem to move slowly
 constexpr double kForgetting = 0.1;    // of the best recent speed, a frame
 constexpr double kMostByVerdicts = 6;
-constexpr double kDoubt = 2.2;          // log odds against a slow birth: one in nine is a person
+constexpr double kDoubt = 2.2;          // log odds against a slow birth, until the image tells more
 constexpr double kSure = 2.5;           // sum of verdicts from which on a body was surely seen: one clear verdict
 constexpr double kSlip = 1.5;           // log odds against a track's slipping off its body: one in five does
 constexpr std::size_t kMostSums = 100;  // that are kept: more than an object has frames in the back-end's window
@@ -42,8 +42,8 @@ double speedEvidence(double speed_mps, double sigma_mps) {
   return std::clamp(evidence, kLeastBySpeed, std::min(kMostBySpeed, kMostPerSpeed * speed_mps));
 }
 
-/// The shares above take verdicts for independent of each other and of speeds. What they sum up to was held against
-/// labels: one in six tracks that all speaks against is real, and what is likely real is so more often than they say.
+/// The sum takes verdicts as independent, which they are not. By labels, one in six tracks is real however low the sum
+/// is below `kLeast`, and the odds are higher than the sum says above 0.
 double probabilityOf(double log_odds) {
   constexpr double kLeast = -1.6, kPerLogOdds = 1.4;
   return 1 / (1 + exponential(log_odds > 0 ? -kPerLogOdds * log_odds : -std::max(log_odds, kLeast)));

@@ -159,7 +159,7 @@ TEST(Existence, CountsSuccessiveFramesOfOneVerdictLessAndLess) {
   EXPECT_NEAR(summed(existence.probability()) - one, (one - none) / 2, 1e-9);
 }
 
-/// One of nine tracks that begin as slow and small as a person is one.
+/// The odds of one in nine.
 TEST(Existence, BeginsWithADoubtOfWhatWasBornSlow) {
   Existence existence;
   existence.addSpeed(15, 0.1);
