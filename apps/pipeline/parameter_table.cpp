@@ -42,7 +42,8 @@ std::vector<ConfigurationKey> parameterTable(PipelineConfig& config) {
   add("frontend.tracking", parametersOf(config.tracking));
   add("frontend.shapes", parametersOf(config.shapes));
   add("backend", {backendKind(config.backend)});
-  add("backend", parametersOf(config.backend.smoother));
+  add("backend", parametersOf(config.backend.window));
+  add("backend", parametersOf(config.backend.pose_graph));
   add("backend.joint", parametersOf(config.backend.joint));
   return table;
 }

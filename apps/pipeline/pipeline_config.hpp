@@ -4,7 +4,8 @@
 #include "backend/filter/filter_backend.hpp"
 #include "backend/filter/map_filter_backend.hpp"
 #include "backend/joint/joint_backend.hpp"
-#include "backend/smoother/pose_graph_backend.hpp"
+#include "backend/pose_graph/pose_graph_backend.hpp"
+#include "backend/window/window_params.hpp"
 #include "frontend/features/feature_preparation.hpp"
 #include "frontend/matching/optical_flow.hpp"
 #include "frontend/matching/stereo_matcher.hpp"
@@ -24,8 +25,9 @@ enum class BackendKind {
 
 struct BackendParams {
   BackendKind kind = BackendKind::kJoint;
+  WindowParams window;  // of both smoothing back-ends
   JointBackend::Params joint;
-  PoseGraphBackend::Params smoother;
+  PoseGraphBackend::Params pose_graph;
   FilterBackend::Params filter;
 };
 

@@ -12,24 +12,11 @@
 namespace motorcade {
 namespace {
 
-/// With what the back-ends have in common, which has one key for all.
-JointParams jointParams(const BackendParams& params) {
-  JointParams joint = params.joint;
-  joint.window_frames = params.smoother.window_frames;
-  joint.settling_s = params.smoother.settling_s;
-  joint.budget_scalars = params.smoother.budget_scalars;
-  joint.budget_ms = params.smoother.budget_ms;
-  joint.online_correction_s = params.smoother.online_correction_s;
-  joint.compute_covariances = params.smoother.compute_covariances;
-  joint.use_smoothness = params.smoother.use_smoothness;
-  return joint;
-}
-
 std::unique_ptr<Backend> makeBackend(const BackendParams& params, const StereoCamera& camera) {
-  if (params.kind == BackendKind::kJoint) return std::make_unique<JointBackend>(jointParams(params), camera);
+  if (params.kind == BackendKind::kJoint) return std::make_unique<JointBackend>(params.joint, camera, params.window);
   if (params.kind == BackendKind::kFilter) return std::make_unique<FilterBackend>(params.filter, camera);
   if (params.kind == BackendKind::kFilterMap) return std::make_unique<MapFilterBackend>(params.filter);
-  return std::make_unique<PoseGraphBackend>(params.smoother, camera);
+  return std::make_unique<PoseGraphBackend>(params.pose_graph, camera, params.window);
 }
 
 std::shared_ptr<const FeaturePreparation> makePreparation(const FeaturePreparation::Params& params,

@@ -26,7 +26,7 @@ PipelineConfig configurationOf(const RunOptions& options) {
   if (!options.min_existence.empty()) applyAssignment(config, "frontend.shapes.min_existence=" + options.min_existence);
   if (options.threads) applyAssignment(config, "pipeline.threads=" + std::to_string(*options.threads));
   if (options.live) config.pipeline.policy = InputPolicy::kLive;
-  if (config.backend.smoother.budget_ms > 0 && config.pipeline.policy != InputPolicy::kLive)
+  if (config.backend.window.budget_ms > 0 && config.pipeline.policy != InputPolicy::kLive)
     throw UsageError(
         "backend.budget_ms: a budget in milliseconds would make replay irreproducible; use backend.budget_scalars, or "
         "--live");

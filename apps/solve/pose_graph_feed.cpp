@@ -5,9 +5,9 @@
 #include <memory>
 #include <utility>
 
+#include "backend/factors/pose_factors.hpp"
 #include "backend/graph/held_end_factor.hpp"
 #include "backend/graph/relative_pose_factor.hpp"
-#include "backend/smoother/factors.hpp"
 #include "backend/solver/problem_finder.hpp"
 #include "core/thread_clock.hpp"
 
@@ -31,14 +31,14 @@ std::vector<std::size_t> updateEnds(const PoseGraph& graph, const PoseGraphIndex
   return ends;
 }
 
-std::unique_ptr<Factor> gaugeOf(VariableId v, bool planar) {
+std::unique_ptr<JacobianFactor> gaugeOf(VariableId v, bool planar) {
   const double weight = 1 / kGaugeSigma;
   if (planar) return std::make_unique<PriorFactorSE2>(v, SE2{}, Eigen::Matrix3d::Identity() * weight * weight);
   return std::make_unique<PriorFactor>(std::array{v}, PriorModel{},
                                        PoseNoise{.sqrt_information = Matrix6d::Identity() * weight});
 }
 
-std::unique_ptr<Factor> factorOf(const PoseGraph::Edge& edge, VariableId from, VariableId to) {
+std::unique_ptr<JacobianFactor> factorOf(const PoseGraph::Edge& edge, VariableId from, VariableId to) {
   if (const auto* planar = std::get_if<SE2>(&edge.measured))
     return std::make_unique<RelativePoseFactorSE2>(from, to, *planar, edge.information);
   return std::make_unique<RelativePoseFactorSE3>(from, to, std::get<SE3>(edge.measured), edge.information);
@@ -158,7 +158,7 @@ Value PoseGraphFeed::valueOf(std::size_t pose) const {
 }
 
 /// Factor between a variable and its neighbor, which may be a constant.
-std::unique_ptr<Factor> PoseGraphFeed::factorTo(std::size_t pose, const Neighbor& neighbor) const {
+std::unique_ptr<JacobianFactor> PoseGraphFeed::factorTo(std::size_t pose, const Neighbor& neighbor) const {
   using Held = HeldEndFactor::Held;
   const auto& edge = graph_.edges[neighbor.edge];
   const bool forward = edge.to == index_.id(pose);

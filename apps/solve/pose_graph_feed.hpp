@@ -76,7 +76,7 @@ class PoseGraphFeed {
   Value moved(const Value& start, const Neighbor& from, std::size_t to) const;
   bool present(std::size_t pose) const { return variable_[pose].valid() || gauge_.isConstant(pose); }
   Value valueOf(std::size_t pose) const;
-  std::unique_ptr<Factor> factorTo(std::size_t pose, const Neighbor& neighbor) const;
+  std::unique_ptr<JacobianFactor> factorTo(std::size_t pose, const Neighbor& neighbor) const;
   void feedConstant(std::size_t pose, Update& update);
   PoseGraph::Pose moveOf(std::size_t part) const;
   std::vector<PoseGraph::Vertex> placedPart(std::size_t first, std::vector<char>& placed) const;

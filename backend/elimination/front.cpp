@@ -79,7 +79,7 @@ void Front::addFactor(const Clique& clique, FactorId id) {
     spans_.push_back({from, offset_[v.value], graph_.sizeOf(v)});
     from += graph_.sizeOf(v);
   }
-  if (factor.form() == Factor::Form::kInformation) {
+  if (!graph_.isJacobian(id)) {
     const auto information = graph_.information(id);
     addSymmetric(
         clique, [&](int j) { return information.H.column(j); }, spans_);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <memory>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,52 +12,62 @@
 
 namespace motorcade {
 
-/// A term of the least-squares problem over a few variables.
+/// A term of the least-squares problem over a few variables: a JacobianFactor or an InformationFactor, which say how
+/// the quadratic in the stacked deltas of the variables is stated.
 class Factor {
  public:
-  /// How `linearize` states the quadratic in the stacked deltas of the variables, in a matrix with a last column for
-  /// the right-hand side.
-  enum class Form {
-    kJacobian,     // [J | r], whitened: cost |J delta + r|^2
-    kInformation,  // lower triangle of symmetric [H g; g^T c]: cost delta^T H delta + 2 g^T delta + c, exact in its
-                   // vectors
-  };
-
-  /// `rows` of the matrix that `linearize` fills.
-  Factor(std::vector<VariableId> variables, Form form, int rows)
-      : variables_(std::move(variables)), form_(form), rows_(rows) {}
   Factor(const Factor&) = delete;
   Factor& operator=(const Factor&) = delete;
   virtual ~Factor() = default;
 
   std::span<const VariableId> variables() const { return variables_; }
-  Form form() const { return form_; }
+  /// Of the matrix that `linearize` fills.
   int rows() const { return rows_; }
 
-  /// At `values`, one per variable in their order: of Form::kJacobian under right perturbations, of Form::kInformation
-  /// by steps in the world's axes (see `displaced`). A robust loss weights the term (iteratively reweighted least
-  /// squares). Fills rows() x (sum of dimensions + 1), of information the lower triangle.
+  /// At `values`, one per variable in their order. A robust loss weights the term (iteratively reweighted least
+  /// squares). Fills rows() x (sum of dimensions + 1); the last column is the right-hand side.
   virtual void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const = 0;
 
-  /// Of Form::kJacobian only: the last column of `linearize`, the whitened and weighted residual, without the
-  /// Jacobian's cost.
-  virtual void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const = 0;
-
-  /// Of Form::kInformation only: g and c of `linearize`, stacked, where they can be had without H.
-  virtual void gradient(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> g_c) const {
-    Eigen::MatrixXd term(rows_, rows_);
-    linearize(values, term);
-    g_c = term.row(rows_ - 1);
-  }
-
-  /// Of Form::kInformation only: where `values` are those for which the factor was made, what it holds is what
-  /// `linearize` gives; null elsewhere. It lasts as long as the factor.
-  virtual const Quadratic* heldModel(std::span<const Value* const>) const { return nullptr; }
+ protected:
+  Factor(std::vector<VariableId> variables, int rows) : variables_(std::move(variables)), rows_(rows) {}
 
  private:
   std::vector<VariableId> variables_;
-  Form form_;
   int rows_;
 };
+
+/// Linearized as [J | r], whitened, under right perturbations: cost |J delta + r|^2.
+class JacobianFactor : public Factor {
+ public:
+  /// The last column of `linearize`, the whitened and weighted residual, without the Jacobian's cost.
+  virtual void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const = 0;
+
+ protected:
+  using Factor::Factor;
+};
+
+/// Linearized as the lower triangle of symmetric [H g; g^T c], by steps in the world's axes (see `displaced`): cost
+/// delta^T H delta + 2 g^T delta + c, exact in its vectors.
+class InformationFactor : public Factor {
+ public:
+  /// g and c of `linearize`, stacked, where they can be had without H.
+  virtual void gradient(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> g_c) const {
+    Eigen::MatrixXd term(rows(), rows());
+    linearize(values, term);
+    g_c = term.row(rows() - 1);
+  }
+
+  /// Where `values` are those for which the factor was made, what it holds is what `linearize` gives; null elsewhere.
+  /// It lasts as long as the factor.
+  virtual const Quadratic* heldModel(std::span<const Value* const>) const { return nullptr; }
+
+  /// What is left of the knowledge when variables go; null when nothing is.
+  virtual std::unique_ptr<InformationFactor> without(std::span<const VariableId>) const { return nullptr; }
+
+ protected:
+  using Factor::Factor;
+};
+
+using AnyFactor = std::variant<std::unique_ptr<const JacobianFactor>, std::unique_ptr<const InformationFactor>>;
 
 }  // namespace motorcade

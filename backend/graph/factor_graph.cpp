@@ -121,37 +121,40 @@ void FactorGraph::giveBack(LinearizedFactor& slot) {
   slot.lower_H = nullptr;
 }
 
-std::optional<FactorId> FactorGraph::addFactor(std::unique_ptr<const Factor> factor) {
+std::optional<FactorId> FactorGraph::addFactor(AnyFactor factor) {
   LinearizedFactor fresh;
+  if (auto* jacobian = std::get_if<std::unique_ptr<const JacobianFactor>>(&factor))
+    fresh.jacobian = std::move(*jacobian);
+  else
+    fresh.quadratic = std::move(std::get<std::unique_ptr<const InformationFactor>>(factor));
   fresh.columns = 1;
-  for (const VariableId v : factor->variables()) fresh.columns += sizeOf(v);
-  fresh.factor = std::move(factor);
+  for (const VariableId v : fresh.factor().variables()) fresh.columns += sizeOf(v);
   if (!linearize(fresh)) return std::nullopt;
   const FactorId id = takeSlot(free_factors_, factors_);
   LinearizedFactor& slot = factors_[id.value];
   slot = std::move(fresh);
   variables_of_.resize(factors_.size());
-  variables_of_[id.value] = slot.factor->variables();
-  const bool residual = slot.factor->form() == Factor::Form::kJacobian;
+  variables_of_[id.value] = slot.factor().variables();
   int at = 0;
-  for (const VariableId v : slot.factor->variables()) {
+  for (const VariableId v : slot.factor().variables()) {
     Variable& variable = (*this)[v];
     variable.factors.push_back(id);
     for (int i = 0; i < variable.size; ++i, ++at)
-      variable.information[i] += residual ? term(id).col(at).squaredNorm() : information(id).H.column(at)[at];
+      variable.information[i] += slot.jacobian ? term(id).col(at).squaredNorm() : information(id).H.column(at)[at];
   }
-  if (residual) ++residual_count_;
+  if (slot.jacobian) ++residual_count_;
   return id;
 }
 
 void FactorGraph::removeFactor(FactorId id) {
   auto& slot = factors_[id.value];
-  assert(slot.factor);
-  for (const VariableId v : slot.factor->variables()) std::erase((*this)[v].factors, id);
+  assert(slot.used());
+  for (const VariableId v : slot.factor().variables()) std::erase((*this)[v].factors, id);
   setCost(slot, 0);
-  if (slot.factor->form() == Factor::Form::kJacobian) --residual_count_;
+  if (slot.jacobian) --residual_count_;
   giveBack(slot);
-  slot.factor = nullptr;
+  slot.jacobian = nullptr;
+  slot.quadratic = nullptr;
   variables_of_[id.value] = {};
   free_factors_.push_back(id);
 }
@@ -159,7 +162,7 @@ void FactorGraph::removeFactor(FactorId id) {
 void FactorGraph::setCost(LinearizedFactor& slot, double cost) {
   if (!std::isfinite(cost)) return;  // it would never leave the sum again
   total_cost_ += cost - slot.cost;
-  if (slot.factor->form() == Factor::Form::kJacobian) residual_cost_ += cost - slot.cost;
+  if (slot.jacobian) residual_cost_ += cost - slot.cost;
   slot.cost = cost;
 }
 
@@ -173,7 +176,7 @@ bool FactorGraph::contains(VariableId id) const {
 }
 
 bool FactorGraph::contains(FactorId id) const {
-  return id.value >= 0 && static_cast<std::size_t>(id.value) < factors_.size() && slot(id).factor;
+  return id.value >= 0 && static_cast<std::size_t>(id.value) < factors_.size() && slot(id).used();
 }
 
 std::vector<VariableId> FactorGraph::variables() const {
@@ -186,7 +189,7 @@ std::vector<VariableId> FactorGraph::variables() const {
 std::vector<FactorId> FactorGraph::factors() const {
   std::vector<FactorId> ids;
   for (std::size_t i = 0; i < factors_.size(); ++i)
-    if (factors_[i].factor) ids.push_back({static_cast<std::int64_t>(i)});
+    if (factors_[i].used()) ids.push_back({static_cast<std::int64_t>(i)});
   return ids;
 }
 

@@ -56,7 +56,7 @@ class FactorGraph {
   void removeVariable(VariableId id);
 
   /// Empty, and nothing is added, when the factor is not finite at its variables' present values.
-  std::optional<FactorId> addFactor(std::unique_ptr<const Factor> factor);
+  std::optional<FactorId> addFactor(AnyFactor factor);
   void removeFactor(FactorId id);
 
   /// Lets the estimate follow x.
@@ -79,17 +79,22 @@ class FactorGraph {
   /// How far the linear model is off at the estimates, in standard deviations. The vector lasts until the next call.
   struct Mismatch {
     double norm = 0;
-    std::span<const double> r;  // true residual minus the model's; for Form::kInformation, of the gradient
+    std::span<const double> r;  // true residual minus the model's; of an InformationFactor, the gradient
   };
   Mismatch mismatch(FactorId id);
-  /// Shifts the model's residual (for Form::kInformation its gradient) by a mismatch; the Jacobian stays.
+  /// Shifts the model's residual (of an InformationFactor its gradient) by a mismatch; the Jacobian stays.
   void correctResidual(FactorId id, std::span<const double> r);
 
   const Variable& operator[](VariableId id) const { return variables_[id.value]; }
   Variable& operator[](VariableId id) { return variables_[id.value]; }
-  const Factor& factor(FactorId id) const { return *slot(id).factor; }
+  const Factor& factor(FactorId id) const { return slot(id).factor(); }
+  /// Of which kind a factor is.
+  bool isJacobian(FactorId id) const { return slot(id).jacobian != nullptr; }
+  /// Null where it is of the other kind.
+  const JacobianFactor* jacobianFactor(FactorId id) const { return slot(id).jacobian.get(); }
+  const InformationFactor* informationFactor(FactorId id) const { return slot(id).quadratic.get(); }
   std::span<const VariableId> variablesOf(FactorId id) const { return variables_of_[id.value]; }
-  /// The linear model of a factor of Form::kJacobian, and of Form::kInformation.
+  /// The linear model of a JacobianFactor, and of an InformationFactor.
   Term term(FactorId id) const;
   Information information(FactorId id) const;
 
@@ -122,12 +127,16 @@ class FactorGraph {
 
  private:
   struct LinearizedFactor {
-    std::unique_ptr<const Factor> factor;
+    std::unique_ptr<const JacobianFactor> jacobian;      // either this
+    std::unique_ptr<const InformationFactor> quadratic;  // or that
     int columns = 0;
     double *term = nullptr, *g_c = nullptr;  // [J | r], or the lower triangle of H and [g; c]
     const double* lower_H = nullptr;         // `term`, or of the factor itself where that has the same
     double drift = 0, cost = 0;
     bool provisional = false;
+
+    bool used() const { return jacobian || quadratic; }
+    const Factor& factor() const { return jacobian ? static_cast<const Factor&>(*jacobian) : *quadratic; }
   };
   const LinearizedFactor& slot(FactorId id) const { return factors_[id.value]; }
   void apply(const Factor& factor);

@@ -5,12 +5,9 @@
 
 namespace motorcade {
 
-HeldEndFactor::HeldEndFactor(std::unique_ptr<const Factor> factor, Held held, Value value, VariableId other)
-    : Factor({other}, Form::kJacobian, factor->rows()),
-      factor_(std::move(factor)),
-      held_(held),
-      value_(std::move(value)) {
-  assert(factor_->form() == Form::kJacobian && factor_->variables().size() == 2);
+HeldEndFactor::HeldEndFactor(std::unique_ptr<const JacobianFactor> factor, Held held, Value value, VariableId other)
+    : JacobianFactor({other}, factor->rows()), factor_(std::move(factor)), held_(held), value_(std::move(value)) {
+  assert(factor_->variables().size() == 2);
 }
 
 std::array<const Value*, 2> HeldEndFactor::both(std::span<const Value* const> values) const {

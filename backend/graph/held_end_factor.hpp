@@ -7,20 +7,20 @@
 
 namespace motorcade {
 
-/// A factor of Form::kJacobian on two variables of one kind, of which one is a constant: what is left is a factor on
+/// A factor on two variables of one kind, of which one is a constant: what is left is a factor on
 /// the other one.
-class HeldEndFactor final : public Factor {
+class HeldEndFactor final : public JacobianFactor {
  public:
   enum class Held { kFirst, kSecond };
   /// `other` is the variable that is left.
-  HeldEndFactor(std::unique_ptr<const Factor> factor, Held held, Value value, VariableId other);
+  HeldEndFactor(std::unique_ptr<const JacobianFactor> factor, Held held, Value value, VariableId other);
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
   void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const override;
 
  private:
   std::array<const Value*, 2> both(std::span<const Value* const> values) const;
 
-  std::unique_ptr<const Factor> factor_;
+  std::unique_ptr<const JacobianFactor> factor_;
   Held held_;
   Value value_;
 };

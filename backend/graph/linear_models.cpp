@@ -52,28 +52,27 @@ void FactorGraph::turnToWorldAxes(const Factor& factor, Term& term) const {
 }
 
 FactorGraph::Term FactorGraph::term(FactorId id) const {
-  assert(slot(id).factor->form() == Factor::Form::kJacobian);
-  return {slot(id).term, slot(id).factor->rows(), slot(id).columns};
+  assert(isJacobian(id));
+  return {slot(id).term, slot(id).factor().rows(), slot(id).columns};
 }
 
 FactorGraph::Information FactorGraph::information(FactorId id) const { return informationOf(slot(id)); }
 
 FactorGraph::Information FactorGraph::informationOf(const LinearizedFactor& slot) {
-  assert(slot.factor->form() == Factor::Form::kInformation);
+  assert(slot.quadratic);
   return {.H = {slot.lower_H, slot.columns - 1}, .g_c = {slot.g_c, slot.columns}};
 }
 
 /// The model and the cost at the applied estimates. False, and nothing changes, when they are not finite.
 bool FactorGraph::linearize(LinearizedFactor& slot) {
-  apply(*slot.factor);
-  const bool residual = slot.factor->form() == Factor::Form::kJacobian;
-  if (!(residual ? linearizeResidual(slot) : linearizeInformation(slot))) return false;
+  apply(slot.factor());
+  if (!(slot.jacobian ? linearizeResidual(slot) : linearizeInformation(slot))) return false;
   slot.drift = 0;
   return true;
 }
 
 bool FactorGraph::linearizeResidual(LinearizedFactor& slot) {
-  const Factor& factor = *slot.factor;
+  const JacobianFactor& factor = *slot.jacobian;
   matrix_.resize(std::size_t(factor.rows()) * slot.columns);
   Term fresh(matrix_.data(), factor.rows(), slot.columns);
   factor.linearize(valuesOf(factor, &Variable::linearization_point), fresh);
@@ -90,7 +89,7 @@ bool FactorGraph::linearizeResidual(LinearizedFactor& slot) {
 
 /// Where a factor still says what it was made of, its H serves as it is, whatever became of g and c.
 bool FactorGraph::linearizeInformation(LinearizedFactor& slot) {
-  const Factor& factor = *slot.factor;
+  const InformationFactor& factor = *slot.quadratic;
   const auto values = valuesOf(factor, &Variable::applied_estimate);
   const Quadratic* held = factor.heldModel(values);
   if (!held) {
@@ -127,8 +126,8 @@ bool FactorGraph::linearizeInformation(LinearizedFactor& slot) {
 void FactorGraph::linearize(FactorId id) { linearize(factors_[id.value]); }
 
 FactorGraph::Mismatch FactorGraph::mismatch(FactorId id) {
-  const Factor& factor = *slot(id).factor;
-  if (factor.form() == Factor::Form::kInformation) return informationMismatch(id);
+  if (!isJacobian(id)) return informationMismatch(id);
+  const JacobianFactor& factor = *slot(id).jacobian;
   const Term model = term(id);
   apply(factor);
   residual_.resize(factor.rows());
@@ -143,7 +142,7 @@ FactorGraph::Mismatch FactorGraph::mismatch(FactorId id) {
 
 /// Of the gradient, and by its entries over the square root of their information.
 FactorGraph::Mismatch FactorGraph::informationMismatch(FactorId id) {
-  const Factor& factor = *slot(id).factor;
+  const InformationFactor& factor = *slot(id).quadratic;
   const Information model = information(id);
   const Eigen::Index n = model.H.size;
   apply(factor);
@@ -169,7 +168,7 @@ FactorGraph::Mismatch FactorGraph::informationMismatch(FactorId id) {
 
 void FactorGraph::correctResidual(FactorId id, std::span<const double> r) {
   const Eigen::Map<const Eigen::VectorXd> shift(r.data(), static_cast<Eigen::Index>(r.size()));
-  if (slot(id).factor->form() == Factor::Form::kInformation)
+  if (!isJacobian(id))
     information(id).g_c.head(shift.size()) += shift;
   else
     term(id).rightCols<1>() += shift;

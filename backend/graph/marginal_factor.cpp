@@ -1,7 +1,6 @@
 #include "backend/graph/marginal_factor.hpp"
 
 #include <algorithm>
-#include <cassert>
 
 #include "core/decompositions.hpp"
 
@@ -29,14 +28,10 @@ Eigen::Matrix3d turnJacobian(const Eigen::Vector3d& turn_rad) {
 
 MarginalFactor::MarginalFactor(std::vector<VariableId> variables, std::vector<Value> values,
                                Eigen::MatrixXd information)
-    : Factor(std::move(variables), Form::kInformation, static_cast<int>(information.rows())),
+    : InformationFactor(std::move(variables), static_cast<int>(information.rows())),
       values_(std::move(values)),
       information_(std::move(information)) {
   information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
-}
-
-void MarginalFactor::residual(std::span<const Value* const>, Eigen::Ref<Eigen::VectorXd>) const {
-  assert(false && "a quadratic in information form has no residual");
 }
 
 void MarginalFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
@@ -64,7 +59,7 @@ void MarginalFactor::linearize(std::span<const Value* const> values, Eigen::Ref<
   }
 }
 
-std::unique_ptr<MarginalFactor> MarginalFactor::without(std::span<const VariableId> gone) const {
+std::unique_ptr<InformationFactor> MarginalFactor::without(std::span<const VariableId> gone) const {
   std::vector<Eigen::Index> kept, removed;
   std::vector<VariableId> variables_left;
   std::vector<Value> values_left;

@@ -80,7 +80,7 @@ struct RotationLog {
 }  // namespace
 
 RelativePoseFactorSE3::RelativePoseFactorSE3(VariableId i, VariableId j, const SE3& Z_i_j, const Matrix6d& information)
-    : Factor({i, j}, Form::kJacobian, 6), Rz_(Z_i_j.rotation()), tz_m_(Z_i_j.translation()) {
+    : JacobianFactor({i, j}, 6), Rz_(Z_i_j.rotation()), tz_m_(Z_i_j.translation()) {
   const Matrix6d S = upperRoot<6>(information);
   A_RzT_ = S.topLeftCorner<3, 3>() * Rz_.transpose();
   B_ = S.topRightCorner<3, 3>();
@@ -124,7 +124,7 @@ void RelativePoseFactorSE3::residual(std::span<const Value* const> values, Eigen
 
 RelativePoseFactorSE2::RelativePoseFactorSE2(VariableId i, VariableId j, const SE2& Z_i_j,
                                              const Eigen::Matrix3d& information)
-    : Factor({i, j}, Form::kJacobian, 3), tz_m_(Z_i_j.translation()), angle_z_rad_(Z_i_j.angle_rad()) {
+    : JacobianFactor({i, j}, 3), tz_m_(Z_i_j.translation()), angle_z_rad_(Z_i_j.angle_rad()) {
   const Eigen::Matrix3d S = upperRoot<3>(information);
   A_RzT_ = S.topLeftCorner<2, 2>() * Z_i_j.rotation().transpose();
   b_ = S.topRightCorner<2, 1>();
@@ -160,7 +160,7 @@ void RelativePoseFactorSE2::residual(std::span<const Value* const> values, Eigen
 }
 
 PriorFactorSE2::PriorFactorSE2(VariableId variable, const SE2& mean, const Eigen::Matrix3d& information)
-    : Factor({variable}, Form::kJacobian, 3), mean_(mean), root_(upperRoot<3>(information)) {}
+    : JacobianFactor({variable}, 3), mean_(mean), root_(upperRoot<3>(information)) {}
 
 void PriorFactorSE2::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
   const SE2 E = mean_.inverse() * std::get<SE2>(*values[0]);

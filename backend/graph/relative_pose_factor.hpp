@@ -8,7 +8,7 @@
 /// along a direction without information the factor says nothing.
 namespace motorcade {
 
-class RelativePoseFactorSE3 final : public Factor {
+class RelativePoseFactorSE3 final : public JacobianFactor {
  public:
   RelativePoseFactorSE3(VariableId i, VariableId j, const SE3& Z_i_j, const Matrix6d& information);
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
@@ -21,7 +21,7 @@ class RelativePoseFactorSE3 final : public Factor {
   Eigen::Vector3d tz_m_;
 };
 
-class RelativePoseFactorSE2 final : public Factor {
+class RelativePoseFactorSE2 final : public JacobianFactor {
  public:
   RelativePoseFactorSE2(VariableId i, VariableId j, const SE2& Z_i_j, const Eigen::Matrix3d& information);
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
@@ -36,7 +36,7 @@ class RelativePoseFactorSE2 final : public Factor {
 };
 
 /// Holds a pose in the plane at `mean`: e = [t(E); angle(E)], E = mean^-1 X. Its counterpart in space is PriorFactor.
-class PriorFactorSE2 final : public Factor {
+class PriorFactorSE2 final : public JacobianFactor {
  public:
   PriorFactorSE2(VariableId variable, const SE2& mean, const Eigen::Matrix3d& information);
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;

@@ -1,7 +1,6 @@
 #include "backend/joint/bundle_factor.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <numeric>
 
 #include <Eigen/Cholesky>
@@ -198,15 +197,11 @@ EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const Landmar
 }
 
 BundleFactor::BundleFactor(std::vector<VariableId> poses, VariableId offset, EliminatedLandmarks landmarks)
-    : Factor((poses.push_back(offset), poses), Form::kInformation, static_cast<int>(landmarks.system.g_c.size())),
+    : InformationFactor((poses.push_back(offset), poses), static_cast<int>(landmarks.system.g_c.size())),
       frames_(static_cast<int>(landmarks.T_cam_body.size())),
       landmarks_(std::move(landmarks)) {
   const SE3 last = landmarks_.T_cam_body.back().inverse();
   for (const SE3& T : landmarks_.T_cam_body) D_inverse_.push_back((T * last).inverse());
-}
-
-void BundleFactor::residual(std::span<const Value* const>, Eigen::Ref<Eigen::VectorXd>) const {
-  assert(false && "a quadratic in information form has no residual");
 }
 
 std::vector<SE3> BundleFactor::posesFromCamera(std::span<const Value* const> values) const {

@@ -49,12 +49,11 @@ EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const Landmar
 /// to the last frame, D_k = T_cam(k)_body T_cam(last)_body^-1, and so stays what it is where everything moves as one:
 ///   e_k = log(D_k D_k(linearized)^-1),  cost = [S e; offset; 1]' system [S e; offset; 1]
 /// where S makes steps of the poses of them.
-class BundleFactor final : public Factor {
+class BundleFactor final : public InformationFactor {
  public:
   BundleFactor(std::vector<VariableId> poses, VariableId offset, EliminatedLandmarks landmarks);
 
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
-  void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const override;
   const Quadratic* heldModel(std::span<const Value* const> values) const override;
   void gradient(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> g_c) const override;
 

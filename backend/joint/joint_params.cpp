@@ -13,4 +13,13 @@ std::vector<Parameter> parametersOf(JointParams& params) {
                           "1 and 2 use one half of the points each, to see how far both agree; 0 uses all")};
 }
 
+BodyPoints::Params pointParams(const JointParams& params, const StereoCamera& camera, int max_views,
+                               int max_landmarks) {
+  return {.max_views = max_views,
+          .max_landmarks = max_landmarks,
+          .half = params.point_half,
+          .image_width_px = camera.width_px,
+          .image_height_px = camera.height_px};
+}
+
 }  // namespace motorcade

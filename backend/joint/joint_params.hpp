@@ -2,8 +2,9 @@
 
 #include <vector>
 
+#include "backend/factors/twist_factors.hpp"
+#include "backend/joint/body_points.hpp"
 #include "backend/joint/landmark.hpp"
-#include "backend/joint/twist_factors.hpp"
 #include "core/constant_twist.hpp"
 #include "core/parameters.hpp"
 
@@ -17,7 +18,8 @@ struct JointParams {
   int max_static_landmarks = 400, max_object_landmarks = 30;  // followed at a time, of each object
   /// The landmarks at rest are eliminated in one of so many frames; the camera is aligned to them in the others.
   int frames_per_elimination = 2;
-  int point_half = 0;  // 1 and 2 use the points with odd and even ids only, to compare both; 0 uses all
+  int frames_per_factor = 5;  // tracks that ended in so many frames share a factor
+  int point_half = 0;         // 1 and 2 use the points with odd and even ids only, to compare both; 0 uses all
 
   /// Texture is matched with about the same bias in each frame: standard deviation of the error that all disparities of
   /// a landmark share. Points at rest are seen at the slanted edges of all kinds of things, those of a vehicle mostly
@@ -25,8 +27,6 @@ struct JointParams {
   LandmarkNoise static_noise{.shared_disparity_sigma_px = 0.5};
   LandmarkNoise object_noise{.shared_disparity_sigma_px = 0.2};
   double offset_sigma_px = 1.0;  // prior of the disparity offset of a rig that is found to be off; 0 trusts every rig
-
-  bool use_smoothness = true;
 
   double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
   /// Gauge of an object: its frame at birth.
@@ -40,11 +40,6 @@ struct JointParams {
       .along_mps2 = 1.0, .sideways_mps2 = 0.3, .vertical_mps2 = 0.1, .yaw_radps2 = 0.05, .tilt_radps2 = 0.01};
   RollingNoise rolling;
 
-  /// See SmootherParams: one key sets both.
-  int window_frames = 1000, budget_scalars = 0;
-  double budget_ms = 0, online_correction_s = 0.5, settling_s = 10;
-  bool compute_covariances = true;
-
   /// See IncrementalSolver::Params.
   double mismatch_tolerance = 0.05, jacobian_drift_sigmas = 0.5, substitution_tolerance = 0.05;
   /// Each frame tells a little more of how an object's axes lie along its travel, and with them its whole path turns.
@@ -56,5 +51,8 @@ struct JointParams {
 };
 
 std::vector<Parameter> parametersOf(JointParams& params);
+
+/// How landmarks of a body are chosen in this camera's images.
+BodyPoints::Params pointParams(const JointParams& params, const StereoCamera& camera, int max_views, int max_landmarks);
 
 }  // namespace motorcade

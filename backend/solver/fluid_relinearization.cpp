@@ -32,8 +32,8 @@ int firstRowOf(VariableId v, const Clique& clique, const FactorGraph& graph) {
 
 /// A quadratic's term in a vector stays right wherever the vector goes. It may be in very many of them, as an offset
 /// that all measurements share is.
-bool entersLinearly(VariableId v, const Factor& factor, const FactorGraph& graph) {
-  return graph.isVector(v) && factor.form() == Factor::Form::kInformation;
+bool entersLinearly(VariableId v, FactorId factor, const FactorGraph& graph) {
+  return graph.isVector(v) && !graph.isJacobian(factor);
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ void FluidRelinearization::lookAt(VariableId v) {
   if (far) graph_.markCompared(v);
   bool followed = true;
   for (const FactorId f : graph_[v].factors) {
-    if (graph_.isProvisional(f) || entersLinearly(v, graph_.factor(f), graph_)) continue;
+    if (graph_.isProvisional(f) || entersLinearly(v, f, graph_)) continue;
     if (outside_tree_.contains(f.value)) continue;
     if (!substitution_.hasFollowed(graph_.factor(f))) {
       followed = false;
@@ -181,9 +181,8 @@ void FluidRelinearization::clear() {
 void FluidRelinearization::markDrifted() {
   for (const OffModel& off : off_) {
     if (graph_.drift(off.factor) + off.mismatch <= params_.jacobian_drift_sigmas) continue;
-    const Factor& factor = graph_.factor(off.factor);
-    for (const VariableId v : factor.variables())
-      if (!entersLinearly(v, factor, graph_))
+    for (const VariableId v : graph_.variablesOf(off.factor))
+      if (!entersLinearly(v, off.factor, graph_))
         markStale(v, std::max(kDriftedShare * params_.relinearize_rad, graph_.turnSinceLinearization(v)));
   }
 }
@@ -310,7 +309,7 @@ void FluidRelinearization::correctResidual(FactorId id) {
   const int owner = tree_.ownerOf(factor);
   const std::span<double> change = work_.markShift(owner);
   if (change.empty()) return;  // the clique is eliminated anew
-  const bool gradient = factor.form() == Factor::Form::kInformation;
+  const bool gradient = !graph_.isJacobian(id);
   const Eigen::Map<const Eigen::VectorXd> r(mismatch.r.data(), static_cast<Eigen::Index>(mismatch.r.size()));
   int column = 0;
   for (const VariableId v : factor.variables()) {

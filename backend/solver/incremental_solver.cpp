@@ -33,8 +33,7 @@ VariableId IncrementalSolver::addVariable(const Value& initial) {
   return v;
 }
 
-bool IncrementalSolver::usable(const Factor& factor) {
-  const auto variables = factor.variables();
+bool IncrementalSolver::usable(std::span<const VariableId> variables) {
   for (const VariableId v : variables) {
     if (!graph_.contains(v))
       refused_.push_back(refusal(SolverProblem::Kind::kUnknownVariable, v, variables));
@@ -47,9 +46,10 @@ bool IncrementalSolver::usable(const Factor& factor) {
   return true;
 }
 
-std::optional<FactorId> IncrementalSolver::addFactor(std::unique_ptr<const Factor> factor, Lifetime lifetime) {
-  if (!usable(*factor)) return std::nullopt;
-  last_.assign(factor->variables().begin(), factor->variables().end());
+std::optional<FactorId> IncrementalSolver::addFactor(AnyFactor factor, Lifetime lifetime) {
+  const auto variables = std::visit([](const auto& any) { return any->variables(); }, factor);
+  if (!usable(variables)) return std::nullopt;
+  last_.assign(variables.begin(), variables.end());
   const auto id = graph_.addFactor(std::move(factor));
   if (!id) {
     refused_.push_back(refusal(SolverProblem::Kind::kNotFinite, last_.front(), last_));

@@ -70,7 +70,7 @@ class IncrementalSolver {
   /// not matter.
   enum class Lifetime : char { kLasting, kProvisional };
   /// Empty when the factor cannot be used; the next report says why.
-  std::optional<FactorId> addFactor(std::unique_ptr<const Factor> factor, Lifetime lifetime = Lifetime::kLasting);
+  std::optional<FactorId> addFactor(AnyFactor factor, Lifetime lifetime = Lifetime::kLasting);
   void removeFactor(FactorId id);
   /// Whether an update corrects the models that were found to be off, or leaves that to the next one: where factors are
   /// about to be replaced, their correction would be lost.
@@ -100,7 +100,7 @@ class IncrementalSolver {
  private:
   void beginReport();
   void endReport();
-  bool usable(const Factor& factor);
+  bool usable(std::span<const VariableId> variables);
   bool mayIterate() const;
   void touchNewFactors();
   void takeInFactorsOf(std::span<const VariableId> leaving);

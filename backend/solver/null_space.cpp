@@ -99,7 +99,7 @@ CostChange changeOf(const FactorGraph& graph, FactorId id, const std::unordered_
     if (const auto found = steps.find(v); found != steps.end()) x.segment(at, graph.sizeOf(v)) = found->second;
     at += graph.sizeOf(v);
   }
-  if (factor.form() == Factor::Form::kJacobian) {
+  if (graph.isJacobian(id)) {
     const auto J = graph.term(id).leftCols(n);
     return {(J * x).squaredNorm(), J.colwise().squaredNorm().dot(x.cwiseAbs2().transpose())};
   }
@@ -123,8 +123,7 @@ Constraint constraintAlong(const FactorGraph& graph, const std::vector<Step>& mo
   CostChange sum;
   for (const FactorId f : factors) {
     const CostChange change = changeOf(graph, f, steps);
-    const bool is_jacobian = graph.factor(f).form() == Factor::Form::kJacobian;
-    const double rounding = is_jacobian ? kRoundingOfJacobian : kRoundingOfInformation;
+    const double rounding = graph.isJacobian(f) ? kRoundingOfJacobian : kRoundingOfInformation;
     constrained |= change.cost > rounding * change.without_cancellation;
     sum.cost += change.cost;
     sum.without_cancellation += change.without_cancellation;

@@ -93,7 +93,7 @@ void Retirement::includeEarlierPriors(std::span<const VariableId> neighbors, std
   if (neighbors.size() != 1) return;
   for (const FactorId f : graph_[neighbors.front()].factors) {
     const Factor& factor = graph_.factor(f);
-    if (factor.variables().size() != 1 || !dynamic_cast<const MarginalFactor*>(&factor)) continue;
+    if (factor.variables().size() != 1 || graph_.isJacobian(f)) continue;
     if (tree_.cliqueOf(neighbors.front()) >= 0) tree_.removeFactor(tree_.ownerOf(factor), f);
     factors.push_back(f);
   }
@@ -134,8 +134,8 @@ std::span<const int> Retirement::drop(std::span<const VariableId> variables) {
 
   std::vector<FactorId> kept = removedFactorsWithout(factors);
   for (const FactorId f : factors) {
-    const auto* marginal = dynamic_cast<const MarginalFactor*>(&graph_.factor(f));
-    auto reduced = marginal ? marginal->without(variables) : nullptr;
+    const InformationFactor* information = graph_.informationFactor(f);
+    auto reduced = information ? information->without(variables) : nullptr;
     graph_.removeFactor(f);
     if (!reduced) continue;
     if (const auto id = graph_.addFactor(std::move(reduced))) kept.push_back(*id);

@@ -79,7 +79,7 @@ double WaitingFactors::chi2() const {
   std::vector<Value> values;
   std::vector<const Value*> pointers;
   for (const FactorId f : waiting_) {
-    const Factor& factor = graph_.factor(f);
+    const JacobianFactor& factor = *graph_.jacobianFactor(f);
     values.clear(), pointers.clear();
     for (const VariableId v : factor.variables()) values.push_back(graph_.estimate(v));
     for (const Value& value : values) pointers.push_back(&value);
@@ -108,9 +108,9 @@ std::int64_t WaitingFactors::costAbove(VariableId v) {
 
 /// A factor with a residual; others hold its new variables, if it has any.
 bool WaitingFactors::canWait(FactorId id) const {
-  const Factor& factor = graph_.factor(id);
-  return factor.form() == Factor::Form::kJacobian &&
-         std::ranges::all_of(factor.variables(), [&](VariableId v) { return !isNew(v) || held_.contains(v.value); });
+  return graph_.isJacobian(id) && std::ranges::all_of(graph_.variablesOf(id), [&](VariableId v) {
+           return !isNew(v) || held_.contains(v.value);
+         });
 }
 
 void WaitingFactors::accept(FactorId id, std::int64_t cost) {

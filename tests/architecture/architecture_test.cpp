@@ -31,7 +31,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
 /// folder itself (messages, the back-end's interface) comes before all rooms.
 const std::map<std::string, std::vector<std::string>> kRooms{
     {"frontend", {"image", "geometry", "features", "matching", "motion", "segmentation", "tracking", "shape"}},
-    {"backend", {"graph", "elimination", "solver", "motion", "smoother", "joint"}},
+    {"backend", {"graph", "elimination", "solver", "motion", "factors", "window", "pose_graph", "joint"}},
 };
 
 /// Rooms that stand beside the flow, with those of their folder that they may include besides themselves.

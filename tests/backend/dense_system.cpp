@@ -49,9 +49,9 @@ std::pair<Eigen::MatrixXd, Eigen::VectorXd> DenseSystem::linearized() const {
     const auto n = static_cast<Eigen::Index>(at.size());
     Eigen::MatrixXd quadratic(factor.rows(), n + 1);
     factor.linearize(values, quadratic);
-    if (factor.form() == Factor::Form::kJacobian) quadratic = (quadratic.transpose() * quadratic).eval();
+    if (graph_.isJacobian(f)) quadratic = (quadratic.transpose() * quadratic).eval();
     quadratic.triangularView<Eigen::StrictlyUpper>() = quadratic.transpose();
-    if (factor.form() == Factor::Form::kInformation) quadratic = turned(values, quadratic);
+    if (!graph_.isJacobian(f)) quadratic = turned(values, quadratic);
     H(at, at) += quadratic.topLeftCorner(n, n);
     g(at) += quadratic.col(n).head(n);
   }

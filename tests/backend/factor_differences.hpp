@@ -15,7 +15,7 @@ inline std::vector<const Value*> pointersTo(const std::vector<Value>& values) {
   return pointers;
 }
 
-inline Eigen::VectorXd residualAt(const Factor& factor, const std::vector<Value>& values) {
+inline Eigen::VectorXd residualAt(const JacobianFactor& factor, const std::vector<Value>& values) {
   Eigen::VectorXd r(factor.rows());
   factor.residual(pointersTo(values), r);
   return r;
@@ -23,7 +23,7 @@ inline Eigen::VectorXd residualAt(const Factor& factor, const std::vector<Value>
 
 /// Central differences of the whitened residual, variable by variable; `move` says what a step of a value is: in its
 /// own axes (retract) or in the world's (displaced).
-inline Eigen::MatrixXd numericJacobian(const Factor& factor, const std::vector<Value>& values,
+inline Eigen::MatrixXd numericJacobian(const JacobianFactor& factor, const std::vector<Value>& values,
                                        Value (*move)(const Value&, const SmallVector&) = retract) {
   constexpr double kStep = 1e-6;
   Eigen::MatrixXd J(factor.rows(), 0);

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "backend/factors/pose_factors.hpp"
 #include "backend/graph/relative_pose_factor.hpp"
-#include "backend/smoother/factors.hpp"
 #include "core/decompositions.hpp"
 #include "tests/support/noise.hpp"
 
@@ -13,10 +13,10 @@
 namespace motorcade::test {
 
 /// Holds a vector at a mean: r = (x - mean) / sigma
-class VectorPrior final : public Factor {
+class VectorPrior final : public JacobianFactor {
  public:
   VectorPrior(VariableId v, const SmallVector& mean, double sigma)
-      : Factor({v}, Form::kJacobian, static_cast<int>(mean.size())), mean_(mean), sigma_(sigma) {}
+      : JacobianFactor({v}, static_cast<int>(mean.size())), mean_(mean), sigma_(sigma) {}
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override {
     term.setIdentity();
     term /= sigma_;
@@ -54,10 +54,10 @@ inline SmallVector positionGradient(const Value& value, int i) {
 
 /// Difference of two positions in as many components as both have:
 ///   r = (position(b) - position(a) - measured) / sigma
-class PositionDifference final : public Factor {
+class PositionDifference final : public JacobianFactor {
  public:
   PositionDifference(VariableId a, VariableId b, const SmallVector& measured, double sigma)
-      : Factor({a, b}, Form::kJacobian, static_cast<int>(measured.size())), measured_(measured), sigma_(sigma) {}
+      : JacobianFactor({a, b}, static_cast<int>(measured.size())), measured_(measured), sigma_(sigma) {}
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override {
     const int size_a = dimension(*values[0]), size_b = dimension(*values[1]);
     for (int i = 0; i < rows(); ++i) {
@@ -76,10 +76,10 @@ class PositionDifference final : public Factor {
 };
 
 /// A pose sees a point, a vector of two or three numbers: r = (T^-1 p - measured) / sigma
-class PointObservation final : public Factor {
+class PointObservation final : public JacobianFactor {
  public:
   PointObservation(VariableId pose, VariableId point, const SmallVector& measured, double sigma)
-      : Factor({pose, point}, Form::kJacobian, static_cast<int>(measured.size())), measured_(measured), sigma_(sigma) {}
+      : JacobianFactor({pose, point}, static_cast<int>(measured.size())), measured_(measured), sigma_(sigma) {}
 
   static SmallVector seen(const Value& pose, const SmallVector& p) {
     if (const auto* space = std::get_if<SE3>(&pose)) return space->inverse() * Eigen::Vector3d(p);
@@ -131,7 +131,7 @@ class RandomWorld {
   const Value& truth(VariableId v) const { return truth_[v.value]; }
 
   /// `scale` multiplies the standard deviations.
-  std::unique_ptr<const Factor> prior(VariableId v, double scale = 1) {
+  std::unique_ptr<const JacobianFactor> prior(VariableId v, double scale = 1) {
     const Value mean = disturbed(truth(v), scale);
     if (const auto* space = std::get_if<SE3>(&mean))
       return std::make_unique<PriorFactor>(std::array{v}, PriorModel{*space}, poseNoise(scale));
@@ -152,7 +152,7 @@ class RandomWorld {
 
   /// A measurement that involves both: a relative pose, an observation, or a difference of positions. A `sure` one is
   /// no outlier and has no loss.
-  std::unique_ptr<const Factor> between(VariableId a, VariableId b, bool sure) {
+  std::unique_ptr<const JacobianFactor> between(VariableId a, VariableId b, bool sure) {
     const Value &from = truth(a), &to = truth(b);
     if (std::holds_alternative<SE3>(from) && std::holds_alternative<SE3>(to)) return betweenInSpace(a, b, sure);
     if (std::holds_alternative<SE2>(from) && std::holds_alternative<SE2>(to)) return betweenInPlane(a, b);
@@ -168,7 +168,7 @@ class RandomWorld {
   }
 
   /// Over three poses in space.
-  std::unique_ptr<const Factor> encounter(VariableId x, VariableId a, VariableId z) {
+  std::unique_ptr<const JacobianFactor> encounter(VariableId x, VariableId a, VariableId z) {
     const SE3 seen = space(x).inverse() * space(a) * space(z);
     return std::make_unique<CameraEncounterFactor>(std::array{x, a, z}, CameraEncounterModel{measured(seen, loss_)},
                                                    poseNoise(1, loss_));
@@ -224,7 +224,7 @@ class RandomWorld {
     return SmallVector(xi.head(1 + static_cast<Eigen::Index>(below(6))));
   }
 
-  std::unique_ptr<const Factor> betweenInSpace(VariableId a, VariableId b, bool sure) {
+  std::unique_ptr<const JacobianFactor> betweenInSpace(VariableId a, VariableId b, bool sure) {
     const SE3 T_a_b = space(a).inverse() * space(b);
     const RobustLoss loss = sure ? RobustLoss::kNone : loss_;
     if (below(2) == 0)
@@ -234,7 +234,7 @@ class RandomWorld {
                                                    inverse(covariance));
   }
 
-  std::unique_ptr<const Factor> betweenInPlane(VariableId a, VariableId b) {
+  std::unique_ptr<const JacobianFactor> betweenInPlane(VariableId a, VariableId b) {
     const SE2 T_a_b = std::get<SE2>(truth(a)).inverse() * std::get<SE2>(truth(b));
     const Eigen::Matrix3d covariance = correlatedNoise<3>(Eigen::Vector3d(sigmaOf(SE2{})));
     return std::make_unique<RelativePoseFactorSE2>(a, b, T_a_b * SE2::exp(noise_.correlated(covariance)),

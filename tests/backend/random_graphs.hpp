@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include "backend/smoother/factors.hpp"
+#include "backend/factors/pose_factors.hpp"
 #include "backend/solver/incremental_solver.hpp"
 
 namespace motorcade::test {

@@ -4,18 +4,18 @@
 
 #include <Eigen/Cholesky>
 
+#include "backend/factors/pose_factors.hpp"
 #include "backend/graph/relative_pose_factor.hpp"
-#include "backend/smoother/factors.hpp"
 #include "tests/backend/random_graphs.hpp"
 
 /// Graphs over each kind of variable, with the same words.
 namespace motorcade::test {
 
 /// Z = xj - xi, whitened.
-class RelativeVectorFactor final : public Factor {
+class RelativeVectorFactor final : public JacobianFactor {
  public:
   RelativeVectorFactor(VariableId i, VariableId j, const Eigen::Vector3d& Z, const Eigen::Matrix3d& root)
-      : Factor({i, j}, Form::kJacobian, 3), Z_(Z), root_(root) {}
+      : JacobianFactor({i, j}, 3), Z_(Z), root_(root) {}
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override {
     term.leftCols<3>() = -root_;
     term.middleCols<3>(3) = root_;
@@ -30,10 +30,10 @@ class RelativeVectorFactor final : public Factor {
   Eigen::Matrix3d root_;
 };
 
-class PriorVectorFactor final : public Factor {
+class PriorVectorFactor final : public JacobianFactor {
  public:
   PriorVectorFactor(VariableId v, const Eigen::Vector3d& mean, const Eigen::Matrix3d& root)
-      : Factor({v}, Form::kJacobian, 3), mean_(mean), root_(root) {}
+      : JacobianFactor({v}, 3), mean_(mean), root_(root) {}
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override {
     term.leftCols<3>() = root_;
     residual(values, term.col(3));
@@ -48,10 +48,10 @@ class PriorVectorFactor final : public Factor {
 };
 
 /// What is left of a factor when its residual is multiplied by A.
-class ProjectedFactor final : public Factor {
+class ProjectedFactor final : public JacobianFactor {
  public:
-  ProjectedFactor(std::unique_ptr<const Factor> whole, Eigen::MatrixXd A)
-      : Factor({whole->variables().begin(), whole->variables().end()}, Form::kJacobian, static_cast<int>(A.rows())),
+  ProjectedFactor(std::unique_ptr<const JacobianFactor> whole, Eigen::MatrixXd A)
+      : JacobianFactor({whole->variables().begin(), whole->variables().end()}, static_cast<int>(A.rows())),
         whole_(std::move(whole)),
         A_(std::move(A)) {}
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override {
@@ -66,7 +66,7 @@ class ProjectedFactor final : public Factor {
   }
 
  private:
-  std::unique_ptr<const Factor> whole_;
+  std::unique_ptr<const JacobianFactor> whole_;
   Eigen::MatrixXd A_;
 };
 
@@ -76,10 +76,10 @@ struct Space3 {
   static Value between(const Value& from, const Value& to) { return std::get<SE3>(from).inverse() * std::get<SE3>(to); }
   static Value moved(const Value& from, const SmallVector& xi) { return std::get<SE3>(from) * SE3::exp(xi); }
   static Value origin() { return SE3{}; }
-  static std::unique_ptr<Factor> relative(VariableId i, VariableId j, const Value& Z, double weight = 1) {
+  static std::unique_ptr<JacobianFactor> relative(VariableId i, VariableId j, const Value& Z, double weight = 1) {
     return std::make_unique<RelativePoseFactorSE3>(i, j, std::get<SE3>(Z), weight * Matrix6d::Identity());
   }
-  static std::unique_ptr<Factor> prior(VariableId v, const Value& mean, double weight = 1) {
+  static std::unique_ptr<JacobianFactor> prior(VariableId v, const Value& mean, double weight = 1) {
     return std::make_unique<PriorFactor>(std::array{v}, PriorModel{std::get<SE3>(mean)},
                                          PoseNoise{.sqrt_information = std::sqrt(weight) * Matrix6d::Identity()});
   }
@@ -91,10 +91,10 @@ struct Space2 {
   static Value between(const Value& from, const Value& to) { return std::get<SE2>(from).inverse() * std::get<SE2>(to); }
   static Value moved(const Value& from, const SmallVector& xi) { return std::get<SE2>(from) * SE2::exp(xi); }
   static Value origin() { return SE2{}; }
-  static std::unique_ptr<Factor> relative(VariableId i, VariableId j, const Value& Z, double weight = 1) {
+  static std::unique_ptr<JacobianFactor> relative(VariableId i, VariableId j, const Value& Z, double weight = 1) {
     return std::make_unique<RelativePoseFactorSE2>(i, j, std::get<SE2>(Z), weight * Eigen::Matrix3d::Identity());
   }
-  static std::unique_ptr<Factor> prior(VariableId v, const Value& mean, double weight = 1) {
+  static std::unique_ptr<JacobianFactor> prior(VariableId v, const Value& mean, double weight = 1) {
     return std::make_unique<PriorFactorSE2>(v, std::get<SE2>(mean), weight * Eigen::Matrix3d::Identity());
   }
 };
@@ -109,11 +109,11 @@ struct Vectors {
     return SmallVector(std::get<SmallVector>(from) + step);
   }
   static Value origin() { return SmallVector(SmallVector::Zero(3)); }
-  static std::unique_ptr<Factor> relative(VariableId i, VariableId j, const Value& Z, double weight = 1) {
+  static std::unique_ptr<JacobianFactor> relative(VariableId i, VariableId j, const Value& Z, double weight = 1) {
     return std::make_unique<RelativeVectorFactor>(i, j, std::get<SmallVector>(Z),
                                                   std::sqrt(weight) * Eigen::Matrix3d::Identity());
   }
-  static std::unique_ptr<Factor> prior(VariableId v, const Value& mean, double weight = 1) {
+  static std::unique_ptr<JacobianFactor> prior(VariableId v, const Value& mean, double weight = 1) {
     return std::make_unique<PriorVectorFactor>(v, std::get<SmallVector>(mean),
                                                std::sqrt(weight) * Eigen::Matrix3d::Identity());
   }

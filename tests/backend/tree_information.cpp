@@ -11,7 +11,7 @@ Eigen::MatrixXd informationOfFactors(const FactorGraph& graph, const DenseSystem
   for (const FactorId f : graph.factors()) {
     auto at = dense.entries(graph.variablesOf(f));
     at.push_back(dense.size());
-    if (graph.factor(f).form() == Factor::Form::kJacobian)
+    if (graph.isJacobian(f))
       system(at, at) += graph.term(f).transpose() * graph.term(f);
     else
       system(at, at) += unpacked(graph.information(f).H, graph.information(f).g_c);

@@ -12,7 +12,8 @@ std::vector<ConfigurationKey> motorcade::parameterTable(PipelineConfig& config) 
     for (const Parameter& parameter : parameters) table.push_back({section, parameter});
   };
   add("pipeline", parametersOf(config.pipeline));
-  add("backend", parametersOf(config.backend.smoother));
+  add("backend", parametersOf(config.backend.window));
+  add("backend", parametersOf(config.backend.pose_graph));
   add("backend.joint", parametersOf(config.backend.joint));
   return table;
 }
@@ -28,7 +29,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     applyToml(again, written, "written");
     fuzz::require(toToml(again) == written, "a configuration that changes when it is written and read");
     requireValid(config.pipeline);
-    requireValid(config.backend.smoother);
+    requireValid(config.backend.window);
+    requireValid(config.backend.pose_graph);
     requireValid(config.backend.joint);
   });
   return 0;

@@ -139,7 +139,7 @@ double costOf(const IncrementalSolver& solver) {
     Eigen::MatrixXd fresh(factor.rows(), columns);
     factor.linearize(pointers, fresh);
     const auto last = fresh.col(fresh.cols() - 1);
-    cost += factor.form() == Factor::Form::kJacobian ? last.squaredNorm() : last[last.size() - 1];
+    cost += graph.isJacobian(id) ? last.squaredNorm() : last[last.size() - 1];
   }
   return cost;
 }

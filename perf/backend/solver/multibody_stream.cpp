@@ -2,16 +2,12 @@
 
 #include <Eigen/Cholesky>
 
-#include "backend/smoother/optimizer.hpp"
+#include "backend/pose_graph/pose_graph_params.hpp"
 
 namespace motorcade::perf {
 namespace {
 
-PoseNoise noiseOf(const MotionSigma& sigma) {
-  Vector6d sigmas;
-  sigmas << Eigen::Vector3d::Constant(sigma.m), Eigen::Vector3d::Constant(sigma.rad);
-  return {.sqrt_information = sigmas.cwiseInverse().asDiagonal()};
-}
+PoseNoise noiseOf(const MotionSigma& sigma) { return independentNoise(poseSigmas(sigma.m, sigma.rad, sigma.rad)); }
 
 PoseNoise robust(PoseNoise noise, RobustLoss loss, double scale) {
   noise.loss = loss;
@@ -19,11 +15,11 @@ PoseNoise robust(PoseNoise noise, RobustLoss loss, double scale) {
   return noise;
 }
 
-PoseNoise smoothness(const Optimizer::Params& p) {
+PoseNoise smoothness(const PoseGraphParams& p) {
   return smoothMotionNoise(p.acceleration, MultibodyScene::kFrame_s, MultibodyScene::kFrame_s);
 }
 
-const Optimizer::Params kProduct;
+const PoseGraphParams kProduct;
 
 }  // namespace
 

@@ -3,7 +3,7 @@
 #include <deque>
 #include <vector>
 
-#include "backend/smoother/factors.hpp"
+#include "backend/factors/pose_factors.hpp"
 #include "backend/solver/incremental_solver.hpp"
 #include "perf/backend/solver/multibody_scene.hpp"
 

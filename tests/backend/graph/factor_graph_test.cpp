@@ -71,7 +71,7 @@ void forAllKinds(const Check& check) {
 TEST(FactorGraph, ANewModelIsTheFactorToFirstOrderInStepsOfTheWorldsAxes) {
   forAllKinds([](Scene& scene) {
     for (const FactorId f : scene.factors) {
-      const Factor& factor = scene.graph.factor(f);
+      const JacobianFactor& factor = *scene.graph.jacobianFactor(f);
       const auto values = scene.estimatesOf(factor);
       const auto term = scene.graph.term(f);
       EXPECT_THAT(term.leftCols(term.cols() - 1), IsNear(numericJacobian(factor, values, displaced), kNumeric));
@@ -86,7 +86,7 @@ TEST(FactorGraph, AModelThatIsLinearizedAfterAMoveIsTheFactorThere) {
     for (const VariableId v : scene.variables) scene.graph.moveLinearizationPoint(v);
     for (const FactorId f : scene.factors) {
       scene.graph.linearize(f);
-      const Factor& factor = scene.graph.factor(f);
+      const JacobianFactor& factor = *scene.graph.jacobianFactor(f);
       const auto values = scene.estimatesOf(factor);
       const auto term = scene.graph.term(f);
       EXPECT_THAT(term.leftCols(term.cols() - 1), IsNear(numericJacobian(factor, values, displaced), kNumeric));
@@ -102,7 +102,8 @@ TEST(FactorGraph, AFactorAddedAfterAMoveIsStatedInTheSameCoordinates) {
     for (const VariableId v : scene.variables) scene.graph.moveLinearizationPoint(v);
     const FactorId f = *scene.graph.addFactor(scene.world.between(scene.variables[0], scene.variables[2], true));
     EXPECT_THAT(scene.modeled(f),
-                IsNear(residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))), kResidualRounding));
+                IsNear(residualAt(*scene.graph.jacobianFactor(f), scene.estimatesOf(scene.graph.factor(f))),
+                       kResidualRounding));
     EXPECT_LT(scene.graph.mismatch(f).norm, kResidualRounding);
   });
 }
@@ -112,7 +113,7 @@ TEST(FactorGraph, TheMismatchIsWhatTheModelMissesOfTheFactor) {
     scene.move(0.1);
     for (const FactorId f : scene.factors) {
       const Eigen::VectorXd missed =
-          residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))) - scene.modeled(f);
+          residualAt(*scene.graph.jacobianFactor(f), scene.estimatesOf(scene.graph.factor(f))) - scene.modeled(f);
       const auto mismatch = scene.graph.mismatch(f);
       EXPECT_NEAR(mismatch.norm, missed.norm(), kResidualRounding);
       ASSERT_EQ(static_cast<Eigen::Index>(mismatch.r.size()), missed.size());
@@ -161,22 +162,22 @@ TEST(FactorGraph, RestartingTheCoordinatesKeepsTheEstimates) {
     }
     for (const FactorId f : scene.factors) {
       scene.graph.linearize(f);
-      EXPECT_THAT(scene.modeled(f), IsNear(residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))),
-                                           kResidualRounding));
+      EXPECT_THAT(scene.modeled(f),
+                  IsNear(residualAt(*scene.graph.jacobianFactor(f), scene.estimatesOf(scene.graph.factor(f))),
+                         kResidualRounding));
     }
   });
 }
 
 /// Holds a model at zero; elsewhere it is another one.
-class HoldingFactor final : public Factor {
+class HoldingFactor final : public InformationFactor {
  public:
-  explicit HoldingFactor(VariableId v) : Factor({v}, Form::kInformation, 4) {
+  explicit HoldingFactor(VariableId v) : InformationFactor({v}, 4) {
     pack((Eigen::Matrix4d() << 2, 0, 0, 0, 1, 3, 0, 0, 0, 1, 4, 0, 1, 2, 3, 5).finished(), held_);
   }
   void linearize(std::span<const Value* const>, Eigen::Ref<Eigen::MatrixXd> term) const override {
     term = 7 * Eigen::Matrix4d::Identity();
   }
-  void residual(std::span<const Value* const>, Eigen::Ref<Eigen::VectorXd>) const override {}
   const Quadratic* heldModel(std::span<const Value* const> values) const override {
     return std::get<SmallVector>(*values[0]).norm() == 0 ? &held_ : nullptr;
   }
@@ -189,7 +190,7 @@ TEST(FactorGraph, AModelThatAFactorHoldsIsNotCopied) {
   FactorGraph graph;
   const VariableId v = graph.addVariable(SmallVector(SmallVector::Zero(3)));
   const FactorId f = *graph.addFactor(std::make_unique<HoldingFactor>(v));
-  const auto heldBy = [&](const Value& value) { return graph.factor(f).heldModel(std::array{&value}); };
+  const auto heldBy = [&](const Value& value) { return graph.informationFactor(f)->heldModel(std::array{&value}); };
   const Quadratic& held = *heldBy(SmallVector(SmallVector::Zero(3)));
   const Eigen::VectorXd g_c = held.g_c;
   EXPECT_EQ(graph.information(f).H.data, held.lower_H.data());
@@ -263,7 +264,7 @@ TEST(FactorGraph, TheTotalCostIsTheSumOfTheSquaredResiduals) {
     double expected = 0;
     for (const FactorId f : scene.factors) {
       scene.graph.mismatch(f);
-      expected += residualAt(scene.graph.factor(f), scene.estimatesOf(scene.graph.factor(f))).squaredNorm();
+      expected += residualAt(*scene.graph.jacobianFactor(f), scene.estimatesOf(scene.graph.factor(f))).squaredNorm();
     }
     EXPECT_NEAR(scene.graph.totalCost(), expected, kResidualRounding * expected);
   });

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "backend/factors/twist_factors.hpp"
 #include "backend/graph/factor_graph.hpp"
-#include "backend/joint/twist_factors.hpp"
 #include "tests/backend/random_factors.hpp"
 
 namespace motorcade {

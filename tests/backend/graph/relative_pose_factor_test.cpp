@@ -23,7 +23,7 @@ constexpr double kTol = 1e-5;  // of central differences with a step of 1e-6, on
 constexpr double kFactorRounding = 1e-9;  // of some dozen operations on numbers of up to a thousand
 
 /// Jacobians against finite differences, both residuals against each other, the cost against e^T Omega e.
-void checkFactor(const Factor& factor, const std::vector<Value>& values, const Eigen::VectorXd& e,
+void checkFactor(const JacobianFactor& factor, const std::vector<Value>& values, const Eigen::VectorXd& e,
                  const Eigen::MatrixXd& information) {
   std::vector<const Value*> pointers;
   for (const Value& value : values) pointers.push_back(&value);

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "backend/filter/filter_backend.hpp"
-#include "backend/smoother/pose_graph_backend.hpp"
+#include "backend/pose_graph/pose_graph_backend.hpp"
 #include "tests/backend/point_drive.hpp"
 
 namespace motorcade {
@@ -46,8 +46,9 @@ Errors errorsOf(const Make& make, const PointDrive::Options& options) {
   return errors;
 }
 
-Errors errorsOf(const JointParams& params, const PointDrive::Options& options = kStreet) {
-  return errorsOf([&] { return std::make_unique<JointBackend>(params, kPointRig); }, options);
+Errors errorsOf(const JointParams& params, const PointDrive::Options& options = kStreet,
+                const WindowParams& window = {}) {
+  return errorsOf([&] { return std::make_unique<JointBackend>(params, kPointRig, window); }, options);
 }
 
 TEST(JointBackend, IsBetterThanBothBaselines) {
@@ -63,9 +64,8 @@ TEST(JointBackend, IsBetterThanBothBaselines) {
 }
 
 TEST(JointBackend, KnowledgeOfHowVehiclesMoveHelps) {
-  JointParams rough;
-  rough.use_smoothness = false;
-  EXPECT_LT(errorsOf(JointParams{}).step_m, 0.8 * errorsOf(rough).step_m);
+  const Errors rough = errorsOf(JointParams{}, kStreet, {.use_smoothness = false});
+  EXPECT_LT(errorsOf(JointParams{}).step_m, 0.8 * rough.step_m);
 }
 
 TEST(JointBackend, LongerTracksHelp) {
@@ -206,11 +206,9 @@ TEST(JointBackend, TrustsARigWhenToldTo) {
 TEST(JointBackend, FinalsOfAShortWindowAreThoseOfABatchSolution) {
   PointDrive once(4, kStreet), again(4, kStreet);
   JointParams sliding, batch;
-  sliding.window_frames = 30;
   sliding.final_iterations = 0;
-  batch.window_frames = 0;
   batch.final_iterations = 20;
-  JointBackend one(sliding, kPointRig), other(batch, kPointRig);
+  JointBackend one(sliding, kPointRig, {.window_frames = 30}), other(batch, kPointRig, {.window_frames = 0});
   const auto finals = test::runDrive(one, once).finals, best = test::runDrive(other, again).finals;
   ASSERT_EQ(finals.size(), best.size());
   for (std::size_t i = 1; i < finals.size(); ++i) {
@@ -226,9 +224,7 @@ TEST(JointBackend, ObjectsThatAreGoneLeaveTheWindow) {
   constexpr int kSeen = 25;
   PointDrive drive(2, kStreet);
   ASSERT_GT(drive.options().frames, 2 * kSeen);
-  JointParams params;
-  params.window_frames = kSeen;
-  JointBackend backend(params, kPointRig);
+  JointBackend backend(JointParams{}, kPointRig, {.window_frames = kSeen});
   std::size_t seen = 0, published = 0;
   for (int i = 0; i < drive.options().frames; ++i) {
     FrameMeasurements measured = *drive.measure(i);

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "backend/factors/pose_factors.hpp"
+#include "backend/factors/twist_factors.hpp"
 #include "backend/joint/bundle_factor.hpp"
-#include "backend/joint/twist_factors.hpp"
-#include "backend/smoother/factors.hpp"
 #include "backend/solver/incremental_solver.hpp"
 #include "tests/support/noise.hpp"
 

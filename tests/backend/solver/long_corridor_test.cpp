@@ -100,7 +100,7 @@ double chi2(const IncrementalSolver& solver) {
     std::vector<const Value*> pointers;
     for (const Value& value : values) pointers.push_back(&value);
     Eigen::VectorXd r(graph.factor(f).rows());
-    graph.factor(f).residual(pointers, r);
+    graph.jacobianFactor(f)->residual(pointers, r);
     sum += r.squaredNorm();
   }
   return sum;

@@ -58,9 +58,9 @@ TYPED_TEST(FactorLeftOut, AVariableTwiceInAFactorAndOneThatIsNotThereAreNamed) {
 }
 
 /// Not a number beyond 5.
-class RootFactor final : public Factor {
+class RootFactor final : public JacobianFactor {
  public:
-  explicit RootFactor(VariableId v) : Factor({v}, Form::kJacobian, 1) {}
+  explicit RootFactor(VariableId v) : JacobianFactor({v}, 1) {}
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override {
     residual(values, term.col(3));
     term.row(0).head(3) << -0.5 / term(0, 3), 0, 0;

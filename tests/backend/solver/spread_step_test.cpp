@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "backend/smoother/factors.hpp"
+#include "backend/factors/pose_factors.hpp"
 #include "backend/solver/incremental_solver.hpp"
 #include "tests/backend/random_graphs.hpp"
 

@@ -1,0 +1,98 @@
+#include "backend/joint/camera_chain.hpp"
+
+#include "backend/factors/pose_factors.hpp"
+#include "core/unknown_motion.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr int kFewStatic = 20;  // landmarks seen now and before: with fewer the front-end's odometry helps
+
+/// Longer before anything was seen than this, the camera may as well have stood.
+constexpr double kMaxPrediction_s = 1.0;
+
+}  // namespace
+
+bool showsPoints(const FrameMeasurements& measurements) {
+  return measurements.status == FrameStatus::kGood || measurements.cause == FrameCause::kUnlinked;
+}
+
+CameraRecord CameraChain::add(const FrameMeasurements& m, int seen_again) {
+  const SE3 T_previous_now = isFinite(m.T_previous_now) ? m.T_previous_now : SE3{};
+  CameraRecord camera{.stamp = m.stamp, .status = m.status, .x = {}, .gauge = 0, .weak = false, .covariance = {}};
+  if (frames_.empty()) {
+    camera.x = solver_.addVariable(SE3{});
+    start_.gauge = addGaugePrior(camera.x, SE3{});
+  } else {
+    const VariableId before = frames_.rbegin()->second.x;
+    camera.x = solver_.addVariable((solver_.pose(before) * T_previous_now).normalized());
+    last_seen_.T_seen_now = (last_seen_.T_seen_now * T_previous_now).normalized();
+    camera.weak = m.status != FrameStatus::kGood || seen_again < kFewStatic;
+    link(m, camera);
+  }
+  if (showsPoints(m)) last_seen_ = {m.frame, SE3{}};
+  return camera;
+}
+
+/// Where points hardly tell it, odometry says how the camera moved since points were seen last; unseen frames lie where
+/// a steady motion puts them. An unknown motion begins a new gauge: after a weak factor all that follows would float.
+void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
+  const auto& [frame_before, before] = *frames_.rbegin();
+  camera.gauge = before.gauge;
+  if (!last_seen_.frame.valid()) return linkUnseen(m, camera);
+  if (m.cause == FrameCause::kUnlinked) {
+    ++camera.gauge;
+    addGaugePrior(camera.x, solver_.pose(camera.x));
+    return;
+  }
+  const auto seen = frames_.find(last_seen_.frame);
+  if (!showsPoints(m) || seen == frames_.end()) {
+    const Matrix6d covariance = showsPoints(m) ? unknownMotionCovariance() : m.odometry_covariance;
+    addOdometry(m.T_previous_now, covariance, before.x, camera.x);
+    return;
+  }
+  if (seen->first != frame_before) {
+    const double dt_s = secondsBetween(before.stamp, m.stamp);
+    const SE3 steady = scaledMotion(last_seen_.T_seen_now, dt_s / secondsBetween(seen->second.stamp, m.stamp));
+    addOdometry(steady, unknownMotionCovariance(dt_s), before.x, camera.x);
+  }
+  if (camera.weak) addOdometry(last_seen_.T_seen_now, m.odometry_covariance, seen->second.x, camera.x);
+  if (m.status == FrameStatus::kGood) settleStart(m.stamp, seen->second.stamp);
+}
+
+/// The world is what was seen first: the gauge moves there.
+void CameraChain::linkUnseen(const FrameMeasurements& m, const CameraRecord& camera) {
+  const CameraRecord& before = frames_.rbegin()->second;
+  const std::optional<FactorId> link = addOdometry(m.T_previous_now, m.odometry_covariance, before.x, camera.x);
+  start_.links.push_back({link, before.x, camera.x, before.stamp, m.stamp});
+  if (!showsPoints(m)) return;
+  if (start_.gauge) solver_.removeFactor(*start_.gauge);
+  addGaugePrior(camera.x, solver_.pose(camera.x));
+}
+
+/// The first motion that is measured, up to `now`, went on like that before anything was seen.
+void CameraChain::settleStart(Timestamp now, Timestamp seen_first) {
+  for (const UnseenStart::Link& link : start_.links) {
+    if (secondsBetween(link.from, seen_first) > kMaxPrediction_s) continue;
+    const double dt_s = secondsBetween(link.from, link.to);
+    if (link.factor) solver_.removeFactor(*link.factor);
+    const SE3 steady = scaledMotion(last_seen_.T_seen_now, dt_s / secondsBetween(seen_first, now));
+    addOdometry(steady, unknownMotionCovariance(dt_s), link.before, link.now);
+  }
+  start_ = {};
+}
+
+std::optional<FactorId> CameraChain::addGaugePrior(VariableId x, const SE3& mean) {
+  return solver_.addFactor(priorFactor(
+      x, mean, poseSigmas(params_.first_pose_sigma_m, params_.first_pose_sigma_rad, params_.first_pose_sigma_rad)));
+}
+
+std::optional<FactorId> CameraChain::addOdometry(const SE3& T_before_now, const Matrix6d& covariance, VariableId before,
+                                                 VariableId now) {
+  auto root = squareRootInformation(covariance);
+  if (!root) root = squareRootInformation(unknownMotionCovariance());
+  const PoseNoise noise{.sqrt_information = *root};
+  return solver_.addFactor(std::make_unique<MotionFactor>(std::array{before, now}, MotionModel{T_before_now}, noise));
+}
+
+}  // namespace motorcade

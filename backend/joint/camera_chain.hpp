@@ -1,0 +1,58 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "backend/joint/joint_params.hpp"
+#include "backend/window/smoothing_window.hpp"
+
+namespace motorcade {
+
+/// Were points seen, whether or not they tell how the camera moved?
+bool showsPoints(const FrameMeasurements& measurements);
+
+/// The camera's poses as variables, and what links them where landmarks hardly do: the front-end's odometry, a steady
+/// motion over frames in which nothing was seen, and a new gauge where nobody knows how the camera moved.
+class CameraChain {
+ public:
+  /// `frames` are those of the window, before the newest one.
+  CameraChain(const JointParams& params, IncrementalSolver& solver, const std::map<FrameId, CameraRecord>& frames)
+      : params_(params), solver_(solver), frames_(frames) {}
+
+  /// The newest frame's camera, in which so many landmarks at rest are seen again.
+  CameraRecord add(const FrameMeasurements& measurements, int seen_again);
+  /// A frame leaves the window: what came before anything was seen stays as it is.
+  void forgetStart() { start_ = {}; }
+
+ private:
+  void link(const FrameMeasurements& measurements, CameraRecord& camera);
+  void linkUnseen(const FrameMeasurements& measurements, const CameraRecord& camera);
+  void settleStart(Timestamp now, Timestamp seen_first);
+  std::optional<FactorId> addGaugePrior(VariableId x, const SE3& mean);
+  std::optional<FactorId> addOdometry(const SE3& T_before_now, const Matrix6d& covariance, VariableId before,
+                                      VariableId now);
+
+  const JointParams& params_;
+  IncrementalSolver& solver_;
+  const std::map<FrameId, CameraRecord>& frames_;
+  /// The last camera in which points were seen, and the motion since then.
+  struct LastSeen {
+    FrameId frame;
+    SE3 T_seen_now;
+  };
+  LastSeen last_seen_;
+  /// Frames before the first in which points were seen: nothing tells how the camera moved in them.
+  struct UnseenStart {
+    struct Link {
+      std::optional<FactorId> factor;
+      VariableId before, now;
+      Timestamp from, to;
+    };
+    std::optional<FactorId> gauge;
+    std::vector<Link> links;
+  };
+  UnseenStart start_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "backend/joint/frame_index.hpp"
+#include "backend/joint/rig_offset.hpp"
+
+namespace motorcade {
+
+/// The landmarks of one body, and the factors that hold what their views say of the poses from which they were seen:
+/// one over the tracks that go on, made anew in each update, and lasting ones over the tracks that ended.
+class LandmarkBundles {
+ public:
+  struct Params {
+    FramePose pose = FramePose::kWorldCam;
+    LandmarkNoise noise;
+    BodyPoints::Params points;
+    IncrementalSolver::Lifetime newest = IncrementalSolver::Lifetime::kLasting;  // of the factor over the newest tracks
+    int closing_frames = 5;      // tracks that ended in so many frames share a factor
+    bool from_estimates = true;  // landmarks are fitted from where they were found before, not from the newest view
+  };
+  LandmarkBundles(const Params& params, const NoiseLevel& noise, const StereoCamera& camera, IncrementalSolver& solver,
+                  const RigOffset& offset);
+
+  BodyPoints& points() { return points_; }
+  const NoiseLevel& noise() const { return noise_; }
+  bool hasNewest() const { return newest_.has_value(); }
+
+  /// Makes the factor over the tracks that go on, and over those that ended lately, anew; in one of some frames those
+  /// that ended get a factor for good. `frame_count` counts the frames of the drive from zero.
+  void renew(std::int64_t frame_count, const PoseVariable& pose_variable);
+  /// The factors over ended tracks anew, as the offset has moved.
+  void relinearize(const PoseVariable& pose_variable);
+  /// Factors stay as they are from now on: of all tracks, and of those with views in a frame and before.
+  void fix() { closed_.clear(); }
+  void fixUpTo(FrameId oldest);
+  /// The body's poses have gone, and the factors with them.
+  void drop();
+
+ private:
+  /// Tracks that ended, and the factor that holds them.
+  struct Closed {
+    FactorId factor;
+    FrameId first;  // of their views
+    std::vector<LandmarkTrack> tracks;
+  };
+  struct Bundle {
+    FactorId factor;
+    ResidualLevels levels;
+  };
+  void closeEnded(const PoseVariable& pose_variable);
+  std::optional<Bundle> addBundle(std::span<LandmarkTrack* const> tracks, const PoseVariable& pose_variable,
+                                  IncrementalSolver::Lifetime lifetime);
+  EliminatedLandmarks eliminate(const LandmarkViews& landmarks, const FrameIndex& index) const;
+
+  Params params_;
+  const StereoCamera& camera_;
+  IncrementalSolver& solver_;
+  const RigOffset& offset_;
+  BodyPoints points_;
+  NoiseLevel noise_;
+  std::vector<LandmarkTrack> ended_;  // whose factor for good is still to be made
+  std::optional<FactorId> newest_;    // over these and the tracks that go on
+  std::vector<Closed> closed_;        // while the offset may still move
+};
+
+}  // namespace motorcade

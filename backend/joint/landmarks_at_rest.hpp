@@ -1,0 +1,49 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "backend/joint/joint_params.hpp"
+#include "backend/joint/known_landmarks.hpp"
+#include "backend/joint/landmark_bundles.hpp"
+#include "backend/window/smoothing_window.hpp"
+
+namespace motorcade {
+
+/// The landmarks of the world, which tell how the camera moves. They are many, and eliminated in one of some frames. In
+/// the others they stay where they were found to be, and the newest camera is aligned to them, until the next
+/// elimination takes that back.
+class LandmarksAtRest {
+ public:
+  using Frames = std::map<FrameId, CameraRecord>;  // of the window, with the newest
+
+  LandmarksAtRest(const JointParams& params, const StereoCamera& camera, IncrementalSolver& solver,
+                  const RigOffset& offset);
+
+  LandmarkBundles& bundles() { return bundles_; }
+  const NoiseLevel& noise() const { return bundles_.noise(); }
+  /// How many landmarks of the newest frame were seen before.
+  int seenAgain();
+
+  /// Links the newest camera; `frame_count` counts the frames of the drive from zero.
+  void add(std::int64_t frame_count, const Frames& frames);
+  /// Eliminates what the newest cameras are aligned to. False when there is nothing to do.
+  bool settle(std::int64_t frame_count, const Frames& frames);
+  void relinearize(const Frames& frames);
+
+ private:
+  void eliminate(std::int64_t frame_count, const Frames& frames);
+  std::optional<FactorId> alignNewest(const Frames& frames);
+  std::vector<ViewOfKnown> knownViews(std::span<LandmarkTrack* const> tracks, const FrameIndex& index,
+                                      std::span<const SE3> T_cam_world, FrameId before);
+
+  const JointParams& params_;
+  const StereoCamera& camera_;
+  IncrementalSolver& solver_;
+  const RigOffset& offset_;
+  LandmarkBundles bundles_;
+  std::vector<FactorId> alignments_;  // of cameras, since landmarks were eliminated
+};
+
+}  // namespace motorcade

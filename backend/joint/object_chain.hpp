@@ -1,0 +1,41 @@
+#pragma once
+
+#include <map>
+
+#include "backend/joint/joint_params.hpp"
+#include "backend/window/smoothing_window.hpp"
+
+namespace motorcade {
+
+/// How objects move from frame to frame, as factors on their poses c seen from the camera and their twists w: a
+/// constant twist but for white noise on acceleration, and rolling along the axes of travel, which are the variable
+/// that all frames of an object share.
+class ObjectChain {
+ public:
+  /// `frames` are those of the window.
+  ObjectChain(const JointParams& params, bool use_smoothness, IncrementalSolver& solver,
+              const std::map<FrameId, CameraRecord>& frames)
+      : params_(params), use_smoothness_(use_smoothness), solver_(solver), frames_(frames) {}
+
+  /// The track's first pose, which is its gauge.
+  void begin(ObjectTrack& track, ObjectRecord& record);
+  /// A further pose, where the motion of the record before puts it.
+  void extend(const ObjectTrack& track, const ObjectRecord& before, ObjectRecord& record);
+  /// The camera's motion is known better when its landmarks have ended: an object's motion is told from it anew.
+  void settle(ObjectTrack& track, FrameId newest);
+
+  /// Axes of travel in those of the body's variables.
+  Eigen::Matrix3d travelAxes(const ObjectTrack& track) const;
+
+ private:
+  SE3 cameraMotion(const ObjectRecord& before, const ObjectRecord& now) const;
+  void addMotion(const ObjectTrack& track, const ObjectRecord& before, ObjectRecord& now);
+  void addRolling(const ObjectTrack& track, const ObjectRecord& record);
+
+  const JointParams& params_;
+  bool use_smoothness_;
+  IncrementalSolver& solver_;
+  const std::map<FrameId, CameraRecord>& frames_;
+};
+
+}  // namespace motorcade

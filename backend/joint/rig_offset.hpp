@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+
+#include "backend/solver/incremental_solver.hpp"
+
+namespace motorcade {
+
+/// The disparity offset of the rig, a variable of the graph that is added to all disparities.
+///
+/// A rig is taken as calibrated until the landmarks of its first frames clearly say that it is not; only then does its
+/// offset move. Lens distortions alone look like an offset of 0.2 to 0.4 px on real rigs (it depends on where in the
+/// image the points are), and correcting that makes paths worse.
+class RigOffset {
+ public:
+  /// `sigma_px` of the offset's prior once it may move; 0: it never may.
+  RigOffset(IncrementalSolver& solver, double sigma_px);
+
+  VariableId variable() const { return variable_; }
+  double px() const;
+  double sigma_px() const;
+
+  /// Looks at what the landmarks say after each frame, and lets the offset move where they are clear. True when that
+  /// has just happened: the solver has a new prior.
+  bool release(FrameId newest);
+  /// The offset has moved so far that landmarks should be eliminated anew. Tells it once.
+  bool hasMoved();
+  /// The drive is so old that the offset stays where it is.
+  bool isSettled(FrameId newest) const;
+
+ private:
+  void setPrior(double sigma_px);
+  std::optional<double> observed_px() const;
+
+  IncrementalSolver& solver_;
+  double released_sigma_px_;
+  VariableId variable_;
+  std::optional<FactorId> prior_;
+  bool released_ = false;
+  double linearized_px_ = 0;
+  FrameId first_frame_;
+};
+
+}  // namespace motorcade

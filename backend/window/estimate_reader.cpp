@@ -1,0 +1,75 @@
+#include "backend/window/estimate_reader.hpp"
+
+#include <array>
+#include <iterator>
+
+#include "core/fixed_product.hpp"
+
+namespace motorcade {
+
+FrameCovariances EstimateReader::covariances(FrameId frame) const {
+  FrameCovariances covariances{.camera = cameraCovariance(frame), .objects = {}};
+  for (const auto& [id, track] : window_.tracks())
+    if (const auto object = window_.objectCovariances(track, frame)) covariances.objects.emplace(id, *object);
+  return covariances;
+}
+
+std::optional<Matrix6d> EstimateReader::cameraCovariance(FrameId frame) const {
+  const auto now = window_.frames().find(frame),
+             after = window_.frames().upper_bound(FrameId{frame.value - kCameraCovarianceFrames});
+  if (after == window_.frames().begin()) return std::nullopt;
+  const auto before = std::prev(after);
+  if (before->second.gauge != now->second.gauge) return std::nullopt;
+  const std::array variables{before->second.x, now->second.x};
+  const auto joint = window_.solver().jointCovariance(variables);
+  if (!joint) return std::nullopt;
+  // x_b^-1 x_n with both perturbed: exp(-Ad(T_n_b) xi_b + xi_n)
+  const SE3 T_before_now = window_.cameraPose(before->first).inverse() * window_.cameraPose(frame);
+  Eigen::Matrix<double, 6, 12> J;
+  J << -T_before_now.inverse().adjoint(), Matrix6d::Identity();
+  const Eigen::Matrix<double, 6, 12> scaled = window_.designEffect() * J;
+  const Eigen::Matrix<double, 12, 6> J_T = J.transpose();
+  return fixedProduct(fixedProduct(scaled, Eigen::Matrix<double, 12, 12>(*joint)), J_T);
+}
+
+FrameEstimate EstimateReader::read(FrameId frame) const {
+  const CameraRecord& camera = window_.frames().at(frame);
+  FrameEstimate estimate{.frame = frame,
+                         .stamp = camera.stamp,
+                         .status = camera.status,
+                         .T_world_cam = window_.cameraPose(frame).normalized(),
+                         .camera_covariance = camera.covariance,
+                         .objects = {}};
+  for (const auto& [id, track] : window_.tracks())
+    if (track.records.contains(frame)) estimate.objects.push_back(readObject(id, track, frame));
+  return estimate;
+}
+
+ObjectEstimate EstimateReader::readObject(TrackId id, const ObjectTrack& track, FrameId frame) const {
+  constexpr double kUnknownSpeedSigma_mps = 10.0, kUnknownYawRateSigma_radps = 0.3;  // of a single observation
+  const ObjectRecord& record = track.records.at(frame);
+  const ObjectMotionEstimate motion = window_.objectMotion(track, frame);
+  ObjectEstimate estimate{.track = id,
+                          .state = record.seen.state,
+                          .T_world_body = window_.objectPose(track, frame),
+                          .velocity_world_mps = motion.velocity_world_mps,
+                          .speed_sigma_mps = kUnknownSpeedSigma_mps,
+                          .velocity_covariance = {},
+                          .yaw_rate_radps = motion.yaw_rate_radps,
+                          .yaw_rate_sigma_radps = kUnknownYawRateSigma_radps,
+                          .points = record.seen.points,
+                          .box = record.seen.box,
+                          .covariance = {}};
+  if (!record.covariances) return estimate;
+  const ObjectCovariances& known = *record.covariances;
+  estimate.covariance = known.T_cam_body;
+  estimate.speed_sigma_mps = known.speed_sigma_mps.value_or(kUnknownSpeedSigma_mps);
+  estimate.yaw_rate_sigma_radps = known.yaw_rate_sigma_radps.value_or(kUnknownYawRateSigma_radps);
+  if (known.velocity_cam) {
+    const Eigen::Matrix3d R_world_cam = window_.cameraPose(frame).rotation();
+    estimate.velocity_covariance = R_world_cam * *known.velocity_cam * R_world_cam.transpose();
+  }
+  return estimate;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "backend/window/smoothing_window.hpp"
+
+namespace motorcade {
+
+/// Reads what a window tells of one of its frames. It changes nothing in the window, which must outlive it.
+class EstimateReader {
+ public:
+  explicit EstimateReader(const SmoothingWindow& window) : window_(window) {}
+
+  /// Covariances of a frame, computed from the graph as it is now.
+  FrameCovariances covariances(FrameId frame) const;
+  /// Poses and velocities as the graph is now, with the covariances that its records hold.
+  FrameEstimate read(FrameId frame) const;
+
+ private:
+  std::optional<Matrix6d> cameraCovariance(FrameId frame) const;
+  ObjectEstimate readObject(TrackId id, const ObjectTrack& track, FrameId frame) const;
+
+  const SmoothingWindow& window_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backend/solver/incremental_solver.hpp"
+#include "core/messages.hpp"
+
+namespace motorcade {
+
+/// The camera in one frame of the window.
+struct CameraRecord {
+  Timestamp stamp;
+  FrameStatus status = FrameStatus::kGood;
+  VariableId x;                        // T_world_cam
+  int gauge = 0;                       // frames of one number are linked by what was measured
+  bool weak = false;                   // measurements hardly tell how it moved since the frame before
+  std::optional<Matrix6d> covariance;  // of T_cam(before)_cam(now), kCameraCovarianceFrames apart, as last computed
+};
+
+/// Covariances of an object in one frame, as far as its graph determines them.
+struct ObjectCovariances {
+  Matrix6d T_cam_body;                                          // of the pose seen from the camera, right perturbation
+  std::optional<Eigen::Matrix3d> velocity_cam;                  // of the velocity over ground, in the camera's axes
+  std::optional<double> speed_sigma_mps, yaw_rate_sigma_radps;  // empty when the frame's pose is the object's only one
+};
+
+/// An object in one frame of the window.
+struct ObjectRecord {
+  ObjectObservation seen;  // without its points
+  Timestamp stamp;
+  VariableId pose, twist;          // invalid when the frame's pose is not in the graph, or where there are no twists
+  std::optional<FactorId> motion;  // since the record before, where it may be replaced
+  std::optional<SE3> frozen;       // T_world_body when the pose has left the window
+  std::optional<ObjectCovariances> covariances;  // as last computed
+};
+
+/// An object in the frames of the window, and in the last that left it.
+struct ObjectTrack {
+  VariableId shared;  // by all its poses, see the kinds of graph; invalid before the first observation and after a drop
+  std::map<FrameId, ObjectRecord> records;
+};
+
+struct FrameCovariances {
+  std::optional<Matrix6d> camera;  // as in CameraRecord
+  std::map<TrackId, ObjectCovariances> objects;
+};
+
+/// How an object moves over ground in one frame.
+struct ObjectMotionEstimate {
+  Eigen::Vector3d velocity_world_mps;
+  double yaw_rate_radps = 0;
+};
+
+/// The trajectories of camera and objects over the newest frames, as variables of an incremental solver: their life
+/// from the first observation to the frame that leaves the window. Which factors a frame's measurements become is up to
+/// the kind of graph that derives from this.
+class SmoothingWindow {
+ public:
+  virtual ~SmoothingWindow() = default;
+  SmoothingWindow(const SmoothingWindow&) = delete;
+  SmoothingWindow& operator=(const SmoothingWindow&) = delete;
+
+  /// Adds a frame with its objects, and updates the solver. Measurements that are no numbers are left out, and an
+  /// object that the system cannot determine is dropped: it starts anew with its next observation.
+  virtual void add(const FrameMeasurements& measurements) = 0;
+  /// What was left out or dropped in the last `add`, in sentences about camera and objects.
+  const std::vector<std::string>& problems() const { return problems_; }
+  /// Marginalizes the oldest frame. Poses of objects in it are kept as they are.
+  void retireOldest();
+  /// Iterates until the estimates stay where they are; call it when the drive has ended.
+  virtual void converge() = 0;
+  /// Keeps covariances in the records of their frame, in place of those that were kept before.
+  void keep(FrameId frame, const FrameCovariances& covariances);
+
+  const std::map<FrameId, CameraRecord>& frames() const { return frames_; }
+  const std::map<TrackId, ObjectTrack>& tracks() const { return tracks_; }
+  const IncrementalSolver& solver() const { return solver_; }
+  SE3 cameraPose(FrameId frame) const { return solver_.pose(frames_.at(frame).x); }
+  virtual SolverCounters counters() const { return solver_.counters(); }
+
+  /// T_world_body as it is estimated now.
+  virtual SE3 objectPose(const ObjectTrack& track, FrameId frame) const = 0;
+  virtual ObjectMotionEstimate objectMotion(const ObjectTrack& track, FrameId frame) const = 0;
+  /// From the graph as it is now; empty when the frame's pose is not in it.
+  virtual std::optional<ObjectCovariances> objectCovariances(const ObjectTrack& track, FrameId frame) const = 0;
+  /// By how much variances grow as measurements are not independent, at least 1.
+  virtual double designEffect() const { return 1; }
+
+ protected:
+  /// `shared_name` is what the variable is that an object's poses share.
+  SmoothingWindow(const IncrementalSolver::Params& params, std::string shared_name)
+      : solver_(params), shared_name_(std::move(shared_name)) {}
+
+  void clearProblems() { problems_.clear(); }
+  void tell(std::string problem) { problems_.push_back(std::move(problem)); }
+  /// The object's record of a frame that the window holds, as yet without variables.
+  ObjectRecord& addRecord(ObjectTrack& track, const ObjectObservation& seen);
+  void update(IncrementalSolver::Correction correction = IncrementalSolver::Correction::kNow);
+  void convergeWithin(int iterations, double tolerance);
+  /// For sentences about what is wrong.
+  virtual std::string nameOf(VariableId v) const;
+  /// The object's variables have gone.
+  virtual void dropped(TrackId) {}
+  /// The frame and what is older are about to leave.
+  virtual void retiring(FrameId) {}
+
+  IncrementalSolver solver_;
+  std::map<FrameId, CameraRecord> frames_;
+  std::map<TrackId, ObjectTrack> tracks_;
+
+ private:
+  void dropTroubled(const IncrementalSolver::Report& report);
+  std::optional<TrackId> objectOf(VariableId v) const;
+  void retireRecord(ObjectTrack& track, FrameId oldest, std::vector<VariableId>& retired);
+
+  std::string shared_name_;
+  std::vector<std::string> problems_;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "backend/solver/incremental_solver.hpp"
+#include "core/parameters.hpp"
+
+namespace motorcade {
+
+/// Parameters that every smoothing window has, whatever its factors are.
+struct WindowParams {
+  int window_frames = 1000;  // a frame is final when it leaves the window; 0 keeps everything
+  double settling_s = 10;    // a frame so old has settled
+
+  int budget_scalars = 0;  // see EliminationBudget; 0: the kind of graph decides
+  double budget_ms = 0;    // for live drives: replay would not be reproducible
+
+  bool compute_covariances = true;
+  /// A correction of an object's whole track would look like motion when published online. So the published pose moves
+  /// as the object does, and corrections come in over this time; 0 publishes each pose as it is estimated.
+  double online_correction_s = 0.5;
+
+  bool use_smoothness = true;  // factors that say how vehicles move
+};
+
+std::vector<Parameter> parametersOf(WindowParams& params);
+
+/// Solver parameters that all windows share: fluid relinearization that only the budget and the tolerances limit.
+IncrementalSolver::Params windowSolverParams(const WindowParams& params);
+
+}  // namespace motorcade

@@ -1,0 +1,95 @@
+/// How the camera's poses are linked where nothing is seen.
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "backend/joint/joint_backend.hpp"
+#include "core/unknown_motion.hpp"
+#include "tests/backend/point_drive.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::kPointRig;
+using test::PointDrive;
+
+struct Frames {
+  int begin, end;
+  bool contains(int frame) const { return frame >= begin && frame < end; }
+};
+
+/// Nothing is seen in the dark frames; the odometry of the first frame after them spans them all, but for a start in
+/// the dark, whose first frame has nothing to refer to.
+FrameMeasurementsPtr measureWithDark(PointDrive& drive, int frame, const Frames& dark) {
+  FrameMeasurements m = *drive.measure(frame);
+  if (dark.contains(frame)) {
+    m.status = FrameStatus::kLost;
+    m.cause = FrameCause::kNothingFound;
+    m.T_previous_now = SE3{};
+    m.odometry_covariance = unknownMotionCovariance(0.1);
+    m.at_rest.clear();
+    m.undecided.clear();
+    m.objects.clear();
+  }
+  if (frame == dark.end && dark.begin == 0) m.T_previous_now = SE3{};
+  if (frame == dark.end && dark.begin > 0)
+    m.T_previous_now = drive.truth().camera(dark.begin - 1).inverse() * drive.truth().camera(frame);
+  return std::make_shared<const FrameMeasurements>(std::move(m));
+}
+
+struct Path {
+  std::vector<FrameEstimate> online, finals;
+};
+
+Path follow(std::uint64_t seed, const Frames& dark) {
+  PointDrive drive(seed, {.static_points = 150, .drive = {.frames = 40}});
+  JointBackend backend(JointParams{}, kPointRig);
+  Path path;
+  for (int frame = 0; frame < drive.options().frames; ++frame) {
+    const auto estimates = backend(measureWithDark(drive, frame, dark));
+    EXPECT_TRUE(estimates->problems.empty());
+    path.online.push_back(estimates->online);
+    path.finals.insert(path.finals.end(), estimates->finals.begin(), estimates->finals.end());
+  }
+  for (FrameEstimate& estimate : backend.finish()) path.finals.push_back(std::move(estimate));
+  return path;
+}
+
+/// Of the motion from frame `from` to frame `to`.
+double motionError_m(const Path& path, int from, int to) {
+  const test::SimulatedDrive truth(1, {});
+  const SE3 found = path.finals[from].T_world_cam.inverse() * path.finals[to].T_world_cam;
+  return (found.translation() - (truth.camera(from).inverse() * truth.camera(to)).translation()).norm();
+}
+
+TEST(CameraChain, AStartInTheDarkIsNoMotionUntilOneIsMeasured) {
+  constexpr int kSeenFirst = 5;
+  const Path path = follow(1, {0, kSeenFirst});
+  ASSERT_EQ(path.finals.size(), 40u);
+  for (int frame = 0; frame <= kSeenFirst; ++frame)
+    EXPECT_LT(path.online[frame].T_world_cam.translation().norm(), 1e-6) << frame;
+  EXPECT_LT(path.finals[kSeenFirst].T_world_cam.translation().norm(), 1e-3);  // what follows stays where it was
+  EXPECT_GT(path.finals[0].T_world_cam.inverse().translation().norm(), 3);    // four meters, in truth
+  EXPECT_LT(motionError_m(path, 0, kSeenFirst), 0.1);
+}
+
+TEST(CameraChain, BeforeAStartInTheDarkTheCameraMayHaveStood) {
+  constexpr int kSeenFirst = 20;
+  const Path path = follow(1, {0, kSeenFirst});
+  EXPECT_LT(motionError_m(path, 11, kSeenFirst), 0.6);  // 7.2 m, ten times a motion that is known to 3 cm
+  const SE3 before = path.finals[0].T_world_cam.inverse() * path.finals[9].T_world_cam;
+  EXPECT_LT(before.translation().norm(), 0.1);
+}
+
+TEST(CameraChain, UnseenFramesLieOnASteadyMotion) {
+  const Path path = follow(2, {20, 28});
+  ASSERT_EQ(path.finals.size(), 40u);
+  EXPECT_LT(motionError_m(path, 19, 28), 0.05);
+  for (int frame = 20; frame < 28; ++frame) EXPECT_LT(motionError_m(path, 19, frame), 1.0) << frame;
+}
+
+}  // namespace
+}  // namespace motorcade

@@ -1,0 +1,98 @@
+#include <cmath>
+#include <iostream>
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+#include "backend/joint/joint_backend.hpp"
+#include "tests/backend/point_drive.hpp"
+
+namespace motorcade {
+namespace {
+
+using test::kPointRig;
+using test::kStreet;
+using test::PointDrive;
+
+/// Mean normalized error of the camera's motion over ten frames.
+double cameraNees(const PointDrive::Options& options) {
+  double nees = 0;
+  int count = 0;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    PointDrive drive(seed, options);
+    JointBackend backend(JointParams{}, kPointRig);
+    const auto finals = test::runDrive(backend, drive).finals;
+    for (std::size_t k = 19; k < finals.size(); k += 10) {
+      const int now = static_cast<int>(k), then = now - kCameraCovarianceFrames;
+      const SE3 truth = drive.truth().camera(then).inverse() * drive.truth().camera(now);
+      const SE3 motion = finals[then].T_world_cam.inverse() * finals[now].T_world_cam;
+      const Vector6d error = (truth.inverse() * motion).log();
+      if (!finals[now].camera_covariance) continue;
+      nees += error.dot(finals[now].camera_covariance->llt().solve(error));
+      ++count;
+    }
+  }
+  EXPECT_GE(count, 16);
+  std::cout << "mean normalized error " << nees / count << " of " << count << "\n";
+  return nees / count;
+}
+
+/// Six where the covariances are right, less where the noise that they allow for (an error that all disparities of a
+/// landmark share) is not there.
+TEST(JointEstimates, CovariancesOfTheCameraAreOfTheSizeOfItsErrors) {
+  const double nees = cameraNees(kStreet);
+  EXPECT_GT(nees, 1.5);
+  EXPECT_LT(nees, 9);
+}
+
+/// Errors that points in one half of an image share, as those of a rectification, do not average out.
+TEST(JointEstimates, CovariancesGrowByWhatErrorsHaveInCommon) {
+  PointDrive::Options common = kStreet;
+  common.common_sigma_px = 0.15;
+  const double nees = cameraNees(common);
+  EXPECT_GT(nees, 1.5);
+  EXPECT_LT(nees, 9);
+}
+
+/// Of a vehicle in a bend, from the frame on in which its twist is known.
+TEST(JointEstimates, YawRatesAreThoseOfTheBendWithinTheirSigmas) {
+  PointDrive::Options options = kStreet;
+  constexpr double kYawRate_radps = 0.2;
+  options.drive.vehicles = {{{-2, 1, 25}, 0, 8, kYawRate_radps, 0, 1000}};
+  PointDrive drive(1, options);
+  JointBackend backend(JointParams{}, kPointRig);
+  const auto run = test::runDrive(backend, drive);
+  double squares = 0;
+  int count = 0;
+  for (std::size_t k = 10; k + 10 < run.finals.size(); k += 5) {
+    const ObjectEstimate& object = run.online[k].objects.at(0);
+    EXPECT_GT(object.yaw_rate_sigma_radps, 0);
+    EXPECT_LT(object.yaw_rate_sigma_radps, 0.2);
+    squares += std::pow((object.yaw_rate_radps - kYawRate_radps) / object.yaw_rate_sigma_radps, 2);
+    EXPECT_NEAR(run.finals[k].objects.at(0).yaw_rate_radps, kYawRate_radps, 0.05);
+    ++count;
+  }
+  std::cout << "mean normalized error " << squares / count << " of " << count << "\n";
+  EXPECT_GE(count, 5);
+  EXPECT_LT(squares / count, 4);  // one where the sigmas are right
+}
+
+/// What the image tells of the noise holds for a vehicle that enters it.
+TEST(JointEstimates, ANewObjectHasTheNoiseOfTheImage) {
+  constexpr int kEnters = 40, kLook = kEnters + 5;
+  const auto sigmaOf = [](double claimed) {
+    PointDrive::Options options = kStreet;
+    options.claimed = claimed;
+    options.drive.vehicles = {{{2, 1, 45}, 0, 9, 0, kEnters, 1000}};
+    PointDrive drive(1, options);
+    JointBackend backend(JointParams{}, kPointRig);
+    const auto online = test::runDrive(backend, drive).online;
+    return online[kLook].objects.at(0).speed_sigma_mps;
+  };
+  const double honest_mps = sigmaOf(1), timid_mps = sigmaOf(3);
+  std::cout << honest_mps << " m/s, with three times the noise claimed " << timid_mps << " m/s\n";
+  EXPECT_LT(timid_mps, 1.15 * honest_mps);
+}
+
+}  // namespace
+}  // namespace motorcade
