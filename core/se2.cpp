@@ -8,8 +8,8 @@
 namespace motorcade {
 namespace {
 
-/// Below these angles a Taylor series is exact to double precision; the inverse loses more digits to cancellation.
-constexpr double kSmallTurn_rad = 1e-4, kSmallTurnOfInverse_rad = 1e-3;
+/// Below this angle a Taylor series is exact to double precision.
+constexpr double kSmallTurn_rad = 1e-4;
 
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2 * std::numbers::pi); }
 
@@ -55,16 +55,6 @@ Eigen::Matrix3d SE2::adjoint() const {
   Ad(0, 2) = translation_.y();
   Ad(1, 2) = -translation_.x();
   return Ad;
-}
-
-Eigen::Matrix3d rightJacobianInverseSE2(const Eigen::Vector3d& xi) {
-  // A power series in ad, with ad^3 = -phi^2 ad: Jr^-1 = I + ad / 2 + (1 - h) / phi^2 ad^2, h = (phi / 2) cot(phi / 2).
-  const double phi = xi[2], half = phi / 2;
-  const double s = std::abs(phi) < kSmallTurnOfInverse_rad ? 1.0 / 12 + phi * phi / 720
-                                                           : (1 - half * cosine(half) / sine(half)) / (phi * phi);
-  Eigen::Matrix3d ad;
-  ad << 0, -phi, xi[1], phi, 0, -xi[0], 0, 0, 0;
-  return Eigen::Matrix3d::Identity() + 0.5 * ad + s * ad * ad;
 }
 
 }  // namespace motorcade

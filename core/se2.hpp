@@ -31,7 +31,4 @@ class SE2 {
   Eigen::Vector2d translation_ = Eigen::Vector2d::Zero();
 };
 
-/// Jr^-1 with log(exp(xi) * exp(d)) ~ xi + Jr^-1 * d.
-Eigen::Matrix3d rightJacobianInverseSE2(const Eigen::Vector3d& xi);
-
 }  // namespace motorcade

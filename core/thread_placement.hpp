@@ -9,8 +9,6 @@ namespace motorcade {
 struct ThreadPlacement {
   std::vector<int> cpus{};    // processors that they may run on; empty: all
   int realtime_priority = 0;  // 1 to 99: SCHED_FIFO, ahead of all that is not; 0: as others
-
-  bool asItIs() const { return cpus.empty() && realtime_priority == 0; }
 };
 
 /// Places the calling thread while it lives, and puts it back as it was: workers go from one pipeline to another.

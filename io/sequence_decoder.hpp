@@ -43,7 +43,6 @@ class SequenceDecoder {
 
   FrameId first() const { return {static_cast<std::int64_t>(range_.begin)}; }
   Timestamp stampOf(FrameId frame) const { return sequence_.stamps[frame.value]; }
-  std::size_t frameCount() const { return range_.size(); }
   /// See PairReader.
   double shareOutside() const { return reader_.shareOutside(); }
   /// Most pairs ever waiting. Final once `next` has returned nothing.

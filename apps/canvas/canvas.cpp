@@ -214,12 +214,6 @@ void Canvas::fillRounded(const Rectangle& rectangle, double radius_px, const Fil
   fillPath(surface_->context, fill);
 }
 
-void Canvas::outlineRounded(const Rectangle& rectangle, double radius_px, const Pen& pen) {
-  if (!isDrawable(rectangle)) return;
-  addRounded(surface_->context, rectangle, radius_px);
-  stroke(surface_->context, pen);
-}
-
 void Canvas::text(const Vector2d& at, std::string_view text, const TextStyle& style) {
   if (!isDrawable(at)) return;
   cairo_t* const context = surface_->context;

@@ -62,7 +62,6 @@ class Canvas {
   void arrow(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Pen& pen);
   void dot(const Eigen::Vector2d& at, double radius_px, const Fill& fill);
   void fillRounded(const Rectangle& rectangle, double radius_px, const Fill& fill);
-  void outlineRounded(const Rectangle& rectangle, double radius_px, const Pen& pen);
   /// DejaVu Sans; `at` is the left end of the base line. What is no UTF-8 is shown as question marks.
   void text(const Eigen::Vector2d& at, std::string_view text, const TextStyle& style);
   static double textWidth(std::string_view text, const TextStyle& style);

@@ -137,15 +137,4 @@ Model makeStreetClutter(std::uint32_t seed) {
   return m;
 }
 
-Model makeGantry(float span_m, std::uint32_t seed) {
-  Model m;
-  const float y = 0.5F * span_m;
-  for (const float side : {-y, y})
-    m.add(Material::kMetal, {-0.2F, side - 0.2F, 0}, {0.2F, side + 0.2F, 7.2F}, 0.4F, seed);
-  m.add(Material::kMetal, {-0.15F, -y, 6.5F}, {0.15F, y, 7.1F}, 0.38F, seed);
-  for (float at = -y + 1.5F; at + 4 < y; at += 5.5F)
-    m.add(Material::kSign, {-0.3F, at, 5.3F}, {-0.2F, at + 4, 7.9F}, 0.14F, seed + 1);
-  return m;
-}
-
 }  // namespace motorcade::synth

@@ -17,7 +17,5 @@ Model makeTrafficSign(std::uint32_t seed);
 Model makeGuardRail(float length_m, std::uint32_t seed);
 /// Bins, boxes and posts: small things on the pavement.
 Model makeStreetClutter(std::uint32_t seed);
-/// A sign bridge across the road, `span_m` wide.
-Model makeGantry(float span_m, std::uint32_t seed);
 
 }  // namespace motorcade::synth

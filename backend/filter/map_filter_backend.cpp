@@ -13,7 +13,6 @@ struct MapFilterBackend::State {
   Params params;
   CameraPath path;
   std::map<TrackId, ObjectFilter> filters;
-  double innovations = 0;
   SolverCounters counters;
 
   void observe(const ObjectObservation& observation) {
@@ -30,7 +29,7 @@ struct MapFilterBackend::State {
     filter->second.predict(camera->stamp);
     if (observation.state == ObjectState::kPredicted) return;
     if (const auto normalized = filter->second.correct(T_world_body, observation.encounter_covariance)) {
-      innovations += *normalized;
+      counters.chi2 += 6 * *normalized;
       ++counters.factors;
     }
   }
@@ -55,16 +54,11 @@ EstimatesPtr MapFilterBackend::operator()(const FrameMeasurementsPtr& measuremen
   for (const TrackId track : m.ended) state_->filters.erase(track);
   ++state_->counters.updates;
   state_->counters.variables = static_cast<std::int64_t>(state_->filters.size());
-  state_->counters.chi2 = 6 * state_->innovations;
   estimates.counters = state_->counters;
   estimates.finals = {estimates.online};
   return std::make_shared<const Estimates>(std::move(estimates));
 }
 
 std::vector<FrameEstimate> MapFilterBackend::finish() { return {}; }
-
-double MapFilterBackend::meanNormalizedInnovation() const {
-  return state_->counters.factors > 0 ? state_->innovations / static_cast<double>(state_->counters.factors) : 0;
-}
 
 }  // namespace motorcade

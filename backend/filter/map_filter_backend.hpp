@@ -20,9 +20,6 @@ class MapFilterBackend final : public Backend {
   EstimatesPtr operator()(const FrameMeasurementsPtr& measurements) override;
   std::vector<FrameEstimate> finish() override;
 
-  /// Mean normalized innovation squared per dimension, over all objects so far: 1 when the noise is well tuned.
-  double meanNormalizedInnovation() const;
-
  private:
   struct State;
   std::unique_ptr<State> state_;

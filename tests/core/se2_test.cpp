@@ -32,18 +32,6 @@ TEST(SE2, AdjointMovesATwistThroughAPose) {
   EXPECT_THAT((T * SE2::exp(xi) * T.inverse()).log(), IsNear((T.adjoint() * xi).eval(), 1e-12));
 }
 
-TEST(SE2, RightJacobianInverseMatchesFiniteDifferences) {
-  for (const auto& xi : kTwists) {
-    Eigen::Matrix3d J;
-    for (int i = 0; i < 3; ++i) {
-      Eigen::Vector3d step = Eigen::Vector3d::Zero();
-      step[i] = 1e-6;
-      J.col(i) = ((SE2::exp(xi) * SE2::exp(step)).log() - (SE2::exp(xi) * SE2::exp(-step)).log()) / 2e-6;
-    }
-    EXPECT_THAT(rightJacobianInverseSE2(xi), IsNear(J, 1e-8));
-  }
-}
-
 TEST(SE2, WrapsItsAngle) { EXPECT_NEAR((SE2(3, {0, 0}) * SE2(3, {0, 0})).angle_rad(), 6 - 2 * M_PI, 1e-12); }
 
 }  // namespace
