@@ -21,11 +21,11 @@ class Factor {
   virtual ~Factor() = default;
 
   std::span<const VariableId> variables() const { return variables_; }
-  /// Of the matrix that `linearize` fills.
+  /// The matrix that `linearize` fills has so many rows.
   int rows() const { return rows_; }
 
-  /// At `values`, one per variable in their order. A robust loss weights the term (iteratively reweighted least
-  /// squares). Fills rows() x (sum of dimensions + 1); the last column is the right-hand side.
+  /// Linearizes at `values`, one per variable in their order. Fills rows() x (sum of dimensions + 1); the last column
+  /// is the right-hand side. A robust loss weights the term (iteratively reweighted least squares).
   virtual void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const = 0;
 
  protected:
@@ -39,7 +39,7 @@ class Factor {
 /// Linearized as [J | r], whitened, under right perturbations: cost |J delta + r|^2.
 class JacobianFactor : public Factor {
  public:
-  /// The last column of `linearize`, the whitened and weighted residual, without the Jacobian's cost.
+  /// Computes the last column of `linearize`, the whitened and weighted residual, without the Jacobian's cost.
   virtual void residual(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> r) const = 0;
 
  protected:
@@ -50,18 +50,18 @@ class JacobianFactor : public Factor {
 /// delta^T H delta + 2 g^T delta + c, exact in its vectors.
 class InformationFactor : public Factor {
  public:
-  /// g and c of `linearize`, stacked, where they can be had without H.
+  /// Computes g and c of `linearize`, stacked, without H where that is possible.
   virtual void gradient(std::span<const Value* const> values, Eigen::Ref<Eigen::VectorXd> g_c) const {
     Eigen::MatrixXd term(rows(), rows());
     linearize(values, term);
     g_c = term.row(rows() - 1);
   }
 
-  /// Where `values` are those for which the factor was made, what it holds is what `linearize` gives; null elsewhere.
-  /// It lasts as long as the factor.
+  /// The factor's own model, if it is what `linearize` gives at these `values`; null elsewhere. It lasts as long as the
+  /// factor.
   virtual const Quadratic* heldModel(std::span<const Value* const>) const { return nullptr; }
 
-  /// What is left of the knowledge when variables go; null when nothing is.
+  /// A factor with the knowledge that is left when variables go; null when nothing is.
   virtual std::unique_ptr<InformationFactor> without(std::span<const VariableId>) const { return nullptr; }
 
  protected:

@@ -88,9 +88,9 @@ class FactorGraph {
   const Variable& operator[](VariableId id) const { return variables_[id.value]; }
   Variable& operator[](VariableId id) { return variables_[id.value]; }
   const Factor& factor(FactorId id) const { return slot(id).factor(); }
-  /// Of which kind a factor is.
+  /// Tells a JacobianFactor from an InformationFactor.
   bool isJacobian(FactorId id) const { return slot(id).jacobian != nullptr; }
-  /// Null where it is of the other kind.
+  /// The factor as one of its kind; null when it is of the other.
   const JacobianFactor* jacobianFactor(FactorId id) const { return slot(id).jacobian.get(); }
   const InformationFactor* informationFactor(FactorId id) const { return slot(id).quadratic.get(); }
   std::span<const VariableId> variablesOf(FactorId id) const { return variables_of_[id.value]; }

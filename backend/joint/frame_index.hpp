@@ -16,7 +16,7 @@ using PoseVariable = std::function<VariableId(FrameId)>;
 /// the frames and variables of a factor.
 class FrameIndex {
  public:
-  /// Of one track and more.
+  /// There is at least one track.
   FrameIndex(std::span<LandmarkTrack* const> tracks, const PoseVariable& pose_variable);
 
   const std::vector<FrameId>& frames() const { return frames_; }

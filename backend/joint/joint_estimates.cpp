@@ -10,7 +10,7 @@
 namespace motorcade {
 namespace {
 
-/// Of the pose's axes after those of travel: exp(xi) R_z(yaw + dyaw) R_y(pitch + dpitch), right perturbation.
+/// The Jacobian of the pose with the axes of travel, exp(xi) R_z(yaw + dyaw) R_y(pitch + dpitch), right perturbation.
 Eigen::Matrix<double, 6, 15> byTravel(const Eigen::Matrix3d& R_body_travel) {
   Eigen::Matrix<double, 6, 15> J = Eigen::Matrix<double, 6, 15>::Zero();
   J.block<3, 3>(0, 0) = J.block<3, 3>(3, 3) = R_body_travel.transpose();
@@ -19,7 +19,7 @@ Eigen::Matrix<double, 6, 15> byTravel(const Eigen::Matrix3d& R_body_travel) {
   return J;
 }
 
-/// Of R_cam_body * v_body, both perturbed: R (dv - [v] x phi).
+/// The covariance of R_cam_body * v_body, both perturbed: R (dv - [v] x phi).
 Eigen::Matrix3d velocityCovariance(const SE3& T_cam_body, const Eigen::Vector3d& velocity_body_mps,
                                    const Eigen::Matrix<double, 12, 12>& joint) {
   Eigen::Matrix<double, 3, 12> J = Eigen::Matrix<double, 3, 12>::Zero();
@@ -48,8 +48,8 @@ ObjectMotionEstimate JointGraph::objectMotion(const ObjectTrack& track, FrameId 
           objects_.travelAxes(track).col(2).dot(twist.tail<3>())};
 }
 
-/// Of the pose seen from the camera, which is a variable, of the speed, the length of the twist's velocity, and of its
-/// turn about the upright axis of travel.
+/// The pose seen from the camera is a variable. The speed is the length of the twist's velocity, the yaw rate its turn
+/// about the upright axis of travel.
 std::optional<ObjectCovariances> JointGraph::objectCovariances(const ObjectTrack& track, FrameId frame) const {
   constexpr double kStanding_mps = 1e-9;  // slower, there is no direction
   const auto record = track.records.find(frame);

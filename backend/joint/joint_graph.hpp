@@ -27,12 +27,12 @@ class JointGraph final : public SmoothingWindow {
   void converge() override;
   SolverCounters counters() const override;
 
-  /// With the axes of travel.
+  /// The pose has the axes of travel.
   SE3 objectPose(const ObjectTrack& track, FrameId frame) const override;
   /// The turn is about the upright axis of travel.
   ObjectMotionEstimate objectMotion(const ObjectTrack& track, FrameId frame) const override;
   std::optional<ObjectCovariances> objectCovariances(const ObjectTrack& track, FrameId frame) const override;
-  /// See NoiseLevel: of the points at rest.
+  /// The points at rest tell it, see NoiseLevel.
   double designEffect() const override { return at_rest_.noise().designEffect(); }
 
  private:

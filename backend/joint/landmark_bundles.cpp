@@ -40,7 +40,7 @@ void LandmarkBundles::closeEnded(const PoseVariable& pose_variable) {
   ended_.clear();
 }
 
-/// Empty where no landmark has two views from poses that the graph holds.
+/// The result is empty when no landmark has two views from poses that the graph holds.
 std::optional<LandmarkBundles::Bundle> LandmarkBundles::addBundle(std::span<LandmarkTrack* const> tracks,
                                                                   const PoseVariable& pose_variable,
                                                                   IncrementalSolver::Lifetime lifetime) {

@@ -62,7 +62,7 @@ void LandmarksAtRest::eliminate(std::int64_t frame_count, const Frames& frames) 
 
 void LandmarksAtRest::relinearize(const Frames& frames) { bundles_.relinearize(camerasOf(frames)); }
 
-/// Empty where too few landmarks are known.
+/// The result is empty when too few landmarks are known.
 std::optional<FactorId> LandmarksAtRest::alignNewest(const Frames& frames) {
   const std::vector<LandmarkTrack*> tracks = bundles_.points().seenNow();
   if (tracks.empty()) return std::nullopt;

@@ -46,8 +46,8 @@ SE3 ObjectChain::cameraMotion(const ObjectRecord& before, const ObjectRecord& no
   return solver_.pose(frames_.at(before.seen.frame).x).inverse() * solver_.pose(frames_.at(now.seen.frame).x);
 }
 
-/// Where the points at rest tell how the camera moved, they tell it a thousand times as well as an object could, whose
-/// acceleration is unknown: the camera's motion enters as known, and objects remain independent of each other.
+/// The points at rest tell the camera's motion a thousand times as well as an object could, whose acceleration is
+/// unknown. So the camera's motion enters as known, and objects remain independent of each other.
 void ObjectChain::addMotion(const ObjectTrack& track, const ObjectRecord& before, ObjectRecord& now) {
   ConstantTwistFactor::Variables variables{
       .c_a = before.pose, .w_a = before.twist, .c_b = now.pose, .w_b = now.twist, .x_a = {}, .x_b = {}};

@@ -34,7 +34,7 @@ double RigOffset::sigma_px() const {
   return covariance ? std::sqrt((*covariance)(0, 0)) : kHeldSigma_px;
 }
 
-/// What the landmarks alone say of the offset: the posterior without its prior.
+/// The landmarks alone say this of the offset: the posterior without its prior.
 std::optional<double> RigOffset::observed_px() const {
   const auto covariance = solver_.jointCovariance(std::span(&variable_, 1));
   if (!covariance) return std::nullopt;

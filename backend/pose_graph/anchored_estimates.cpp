@@ -28,8 +28,8 @@ const ObjectRecord* neighborInTime(const ObjectTrack& track, FrameId frame) {
   return nullptr;
 }
 
-/// Of the speed |rho| / dt and the yaw rate phi_z / dt with (rho, phi) = log(z_other^-1 z_now), from the joint
-/// covariance of (z_now, z_other).
+/// Adds the deviations of the speed |rho| / dt and the yaw rate phi_z / dt with (rho, phi) = log(z_other^-1 z_now),
+/// from the joint covariance of (z_now, z_other).
 void addRateSigmas(ObjectCovariances& object, const SE3& T_other_now, const Eigen::Ref<const Matrix12d>& joint,
                    double dt_s) {
   if (!(dt_s > 0)) return;
@@ -61,7 +61,8 @@ ObjectMotionEstimate AnchoredPoseGraph::objectMotion(const ObjectTrack& track, F
   return {objectPose(track, frame).rotation() * twist->head<3>(), (*twist)[5]};
 }
 
-/// Of the body twists to the poses before and after, as far as there are any: exact on arcs of constant speed.
+/// The mean of the body twists to the poses before and after, as far as there are any. It is exact on arcs of constant
+/// speed.
 std::optional<Vector6d> AnchoredPoseGraph::meanTwist(const ObjectTrack& track, FrameId frame) const {
   const auto now = track.records.find(frame);
   Vector6d sum = Vector6d::Zero();

@@ -39,7 +39,7 @@ struct ObjectRecord {
 
 /// An object in the frames of the window, and in the last that left it.
 struct ObjectTrack {
-  VariableId shared;  // by all its poses, see the kinds of graph; invalid before the first observation and after a drop
+  VariableId shared;  // by all its poses, see the graphs; invalid before the first observation and after a drop
   std::map<FrameId, ObjectRecord> records;
 };
 
@@ -54,9 +54,9 @@ struct ObjectMotionEstimate {
   double yaw_rate_radps = 0;
 };
 
-/// The trajectories of camera and objects over the newest frames, as variables of an incremental solver: their life
-/// from the first observation to the frame that leaves the window. Which factors a frame's measurements become is up to
-/// the kind of graph that derives from this.
+/// The trajectories of camera and objects over the newest frames, as variables of an incremental solver. A variable
+/// lives from its first observation until its frame leaves the window. The kind of graph that derives from this decides
+/// which factors a frame's measurements become.
 class SmoothingWindow {
  public:
   virtual ~SmoothingWindow() = default;
@@ -66,7 +66,7 @@ class SmoothingWindow {
   /// Adds a frame with its objects, and updates the solver. Measurements that are no numbers are left out, and an
   /// object that the system cannot determine is dropped: it starts anew with its next observation.
   virtual void add(const FrameMeasurements& measurements) = 0;
-  /// What was left out or dropped in the last `add`, in sentences about camera and objects.
+  /// Sentences about what the last `add` left out or dropped.
   const std::vector<std::string>& problems() const { return problems_; }
   /// Marginalizes the oldest frame. Poses of objects in it are kept as they are.
   void retireOldest();
@@ -84,13 +84,13 @@ class SmoothingWindow {
   /// T_world_body as it is estimated now.
   virtual SE3 objectPose(const ObjectTrack& track, FrameId frame) const = 0;
   virtual ObjectMotionEstimate objectMotion(const ObjectTrack& track, FrameId frame) const = 0;
-  /// From the graph as it is now; empty when the frame's pose is not in it.
+  /// Computes them from the graph as it is now; empty when the frame's pose is not in it.
   virtual std::optional<ObjectCovariances> objectCovariances(const ObjectTrack& track, FrameId frame) const = 0;
-  /// By how much variances grow as measurements are not independent, at least 1.
+  /// Variances grow by this factor, at least 1, as measurements are not independent.
   virtual double designEffect() const { return 1; }
 
  protected:
-  /// `shared_name` is what the variable is that an object's poses share.
+  /// `shared_name` names the variable that an object's poses share.
   SmoothingWindow(const IncrementalSolver::Params& params, std::string shared_name)
       : solver_(params), shared_name_(std::move(shared_name)) {}
 
@@ -100,7 +100,7 @@ class SmoothingWindow {
   ObjectRecord& addRecord(ObjectTrack& track, const ObjectObservation& seen);
   void update(IncrementalSolver::Correction correction = IncrementalSolver::Correction::kNow);
   void convergeWithin(int iterations, double tolerance);
-  /// For sentences about what is wrong.
+  /// Names a variable in sentences about what is wrong.
   virtual std::string nameOf(VariableId v) const;
   /// The object's variables have gone.
   virtual void dropped(TrackId) {}
