@@ -11,6 +11,8 @@ namespace motorcade {
 namespace {
 
 constexpr int kColumns = 8, kRows = 4;  // of the grid over the image in which landmarks are spread
+/// Between the newest frames that a cut leaves; twice as many where they are more than four times as old, and so on.
+constexpr int kKeptSpacing_frames = 4;
 
 }  // namespace
 
@@ -45,12 +47,27 @@ void BodyPoints::observe(FrameId frame, std::span<const PointMeasurement> points
 void BodyPoints::extend(Candidate& candidate, const LandmarkTrack::View& view) {
   auto& views = candidate.track.views;
   if (static_cast<int>(views.size()) == params_.max_views) {
-    if (candidate.chosen)
-      end(candidate);
-    else
-      views.erase(views.begin());
+    if (candidate.chosen) cut(candidate);
+    if (static_cast<int>(views.size()) == params_.max_views) views.erase(views.begin());
   }
   views.push_back(view);
+}
+
+void BodyPoints::cut(Candidate& candidate) {
+  auto& views = candidate.track.views;
+  const auto kept =
+      std::ranges::stable_partition(views, [this](const LandmarkTrack::View& view) { return !isKept(view.frame); });
+  LandmarkTrack ended{candidate.track.point, {views.begin(), kept.begin()}, candidate.track.estimate};
+  views.erase(views.begin(), kept.begin());
+  if (ended.views.size() >= 2) ended_.push_back(std::move(ended));
+}
+
+bool BodyPoints::isKept(FrameId frame) const {
+  const std::int64_t age = newest_.value - frame.value;
+  if (age > params_.oldest_kept_frames) return false;
+  std::int64_t spacing = kKeptSpacing_frames;
+  while (age > 4 * spacing) spacing *= 2;
+  return frame.value % spacing == 0;
 }
 
 void BodyPoints::end(Candidate& candidate) {

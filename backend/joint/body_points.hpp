@@ -37,12 +37,15 @@ class TrackLife {
   FrameId oldest_{0};           // that a track which goes on may have been seen in last
 };
 
-/// Chooses the landmarks of a body and cuts their tracks: a track ends when its point is lost or when it has as many
-/// views as it may have, and the point's next view begins a new one. Nothing is counted twice.
+/// Chooses the landmarks of a body and cuts their tracks. A track ends when its point is lost. When it has as many
+/// views as it may have, most of them leave it as a track that ended; some may stay, so that the landmark remains the
+/// one that it was. Nothing is counted twice.
 class BodyPoints {
  public:
   struct Params {
-    int max_views = 10;       // of a track
+    int max_views = 10;  // of a track
+    /// A cut leaves a track views in few frames, the same for all tracks: the farther back, the fewer, up to so old.
+    int oldest_kept_frames = 0;
     int max_landmarks = 300;  // followed at a time
     int half = 0;             // 1 and 2 take the points with odd and even ids only
     int image_width_px = 0, image_height_px = 0;
@@ -70,6 +73,8 @@ class BodyPoints {
     bool chosen = false;
   };
   void extend(Candidate& candidate, const LandmarkTrack::View& view);
+  void cut(Candidate& candidate);
+  bool isKept(FrameId frame) const;
   void end(Candidate& candidate);
   void choose();
   int cellOf(const Candidate& candidate) const;

@@ -138,12 +138,15 @@ Matrix6d likeStepOfLast(FramePose pose, const SE3& T_cam_body, const SE3& D) {
   return J;
 }
 
-void addLevels(std::span<const LinearView> linear, ResidualLevels& levels) {
+void addLevels(const LandmarkFit& fit, ResidualLevels& levels) {
+  const auto linear = fit.views();
+  const double squared = 1 / fit.informationShare();  // residuals of full weight
   for (const LinearView& l : linear) {
-    levels.uv_sum += l.r().head<2>().squaredNorm();
-    levels.d_sum += l.r().z() * l.r().z();
+    levels.uv_sum += squared * l.r().head<2>().squaredNorm();
+    levels.d_sum += squared * l.r().z() * l.r().z();
   }
-  for (std::size_t i = 1; i < linear.size(); ++i) levels.successive_sum += linear[i - 1].r().dot(linear[i].r());
+  for (std::size_t i = 1; i < linear.size(); ++i)
+    levels.successive_sum += squared * linear[i - 1].r().dot(linear[i].r());
   levels.uv_count += 2.0 * static_cast<double>(linear.size() - 1);
   levels.d_count += static_cast<double>(linear.size() - 1);
 }
@@ -188,7 +191,7 @@ EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const Landmar
     if (!fit(landmarks.of(j), landmarks.before.empty() ? std::nullopt : landmarks.before[j])) continue;
     result.estimates[j] = fit.estimate();
     sum.add(landmarks.of(j), fit);
-    addLevels(fit.views(), result.levels);
+    addLevels(fit, result.levels);
     common.add(landmarks.of(j), fit.views());
   }
   result.levels.common_sum = common.squares();

@@ -24,9 +24,11 @@ IncrementalSolver::Params solverParams(const JointParams& params, const WindowPa
 }
 
 LandmarkBundles::Params objectBundles(const JointParams& params, const StereoCamera& camera) {
+  BodyPoints::Params points = pointParams(params, camera, params.object_track_frames, params.max_object_landmarks);
+  points.oldest_kept_frames = params.object_kept_frames;
   return {.pose = FramePose::kCamBody,
           .noise = params.object_noise,
-          .points = pointParams(params, camera, params.object_track_frames, params.max_object_landmarks),
+          .points = points,
           .newest = IncrementalSolver::Lifetime::kProvisional,
           .closing_frames = params.frames_per_factor,
           .from_estimates = false};  // a vehicle's points may slide
@@ -140,8 +142,8 @@ void JointGraph::dropped(TrackId id) { landmarksOf(id).drop(); }
 
 void JointGraph::retiring(FrameId oldest) {
   cameras_.forgetStart();
-  at_rest_.bundles().fixUpTo(oldest);
-  for (auto& [id, landmarks] : landmarks_) landmarks.fixUpTo(oldest);
+  at_rest_.bundles().retire(oldest);
+  for (auto& [id, landmarks] : landmarks_) landmarks.retire(oldest);
 }
 
 std::string JointGraph::nameOf(VariableId v) const {

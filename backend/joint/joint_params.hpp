@@ -12,20 +12,22 @@ namespace motorcade {
 
 /// Parameters of the joint estimate of camera, objects and points.
 struct JointParams {
-  /// Views of a landmark, after which its track is cut. Vehicles are followed by few points, and each that is followed
-  /// for long keeps the body's frame where it is.
-  int track_frames = 10, object_track_frames = 20;
+  /// Views of a landmark, after which its track is cut.
+  int track_frames = 10, object_track_frames = 14;
+  /// Vehicles are followed by few points, and each that is followed for long keeps the body's frame where it is: see
+  /// BodyPoints.
+  int object_kept_frames = 64;
   int max_static_landmarks = 400, max_object_landmarks = 30;  // followed at a time, of each object
   /// The landmarks at rest are eliminated in one of so many frames; the camera is aligned to them in the others.
   int frames_per_elimination = 2;
   int frames_per_factor = 5;  // tracks that ended in so many frames share a factor
   int point_half = 0;         // 1 and 2 use the points with odd and even ids only, to compare both; 0 uses all
 
-  /// Texture is matched with about the same bias in each frame: standard deviation of the error that all disparities of
-  /// a landmark share. Points at rest are seen at the slanted edges of all kinds of things, those of a vehicle mostly
-  /// on its upright sides.
+  /// Texture is matched with about the same bias in each frame: all disparities of a landmark share an error. Points at
+  /// rest are seen at the slanted edges of all kinds of things, and through a calibration that is not exact. The bias
+  /// of a vehicle's points is measured as half to .8 of the noise of one disparity, whether that is .04 or .3 px.
   LandmarkNoise static_noise{.shared_disparity_sigma_px = 0.5};
-  LandmarkNoise object_noise{.shared_disparity_sigma_px = 0.2};
+  LandmarkNoise object_noise{.shared_disparity_sigma_px = 0, .shared_disparity_share = 0.7};
   double offset_sigma_px = 1.0;  // prior of the disparity offset of a rig that is found to be off; 0 trusts every rig
 
   double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
@@ -37,7 +39,7 @@ struct JointParams {
   double lever_sigma_m = 2, travel_yaw_sigma_rad = 0.1, travel_pitch_sigma_rad = 0.03;
 
   AccelerationNoise acceleration{
-      .along_mps2 = 1.0, .sideways_mps2 = 0.3, .vertical_mps2 = 0.1, .yaw_radps2 = 0.05, .tilt_radps2 = 0.01};
+      .along_mps2 = 0.7, .sideways_mps2 = 0.3, .vertical_mps2 = 0.1, .yaw_radps2 = 0.05, .tilt_radps2 = 0.01};
   RollingNoise rolling;
 
   /// See IncrementalSolver::Params.

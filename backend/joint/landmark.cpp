@@ -16,6 +16,7 @@ using lanes::broadcast, lanes::kLanes, lanes::Vec;
 constexpr double kLeastDisparity_px = 0.3;  // a landmark with less is at infinity
 constexpr double kLeastSharedSigma_px = 1e-3;
 constexpr int kMostSteps = 3;
+constexpr int kPoint = 3;            // unknowns that the views of a landmark tell
 constexpr double kFittedCost = 0.1;  // what a step would take off the squared residuals when a landmark is fitted
 
 /// Four vectors.
@@ -128,6 +129,11 @@ void addNormalEquations(std::span<const LinearView> views, Matrix4d& V, Vector4d
 
 }  // namespace
 
+double LandmarkNoise::meanSquare() const {
+  constexpr double kOfCauchy = 0.3685;  // with the scale 1.5, from 3e5 samples
+  return loss == RobustLoss::kNone ? 1 : kOfCauchy;
+}
+
 LandmarkFit::LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise, FramePose pose,
                          std::span<const SE3> T_cam_body, double offset_px)
     : camera_(camera),
@@ -147,6 +153,7 @@ LandmarkFit::LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise,
 /// account.
 bool LandmarkFit::operator()(std::span<const LandmarkView> views, const std::optional<LandmarkEstimate>& before) {
   newest_frame_ = views.back().frame;
+  variance_ = information_share_ = 1;
   int steps = kMostSteps;
   if (!before || !beginFrom(*before)) {
     landmark_ << views.back().uvd_px + Eigen::Vector3d(0, 0, offset_px_), 0;
@@ -190,13 +197,35 @@ bool LandmarkFit::linearize(std::span<const LandmarkView> views) {
   linear_.resize((count_ + kLanes - 1) / kLanes * kLanes);
   V_.setZero();
   gradient_.setZero();
+  squares_ = 0;
   for (std::size_t i = 0; i < count_; i += kLanes)
     if (!linearize(views.subspan(i, std::min<std::size_t>(kLanes, count_ - i)), p_body, G, &linear_[i])) return false;
-  const double shared = 1 / std::max(noise_.shared_disparity_sigma_px, kLeastSharedSigma_px);
-  V_(3, 3) += shared * shared;
-  gradient_[3] += shared * shared * landmark_[3];
+  if (noise_.variance_freedom > 0) weighByOwnVariance();
+  addSharedError(views);
   llt_.compute(V_);
   return true;
+}
+
+/// The variance is the mean of its posterior's precision, inverted: (n + d) / (n + sum r'r).
+void LandmarkFit::weighByOwnVariance() {
+  const double prior = noise_.variance_freedom, freedom = prior + 3.0 * static_cast<double>(count_) - kPoint;
+  variance_ = (prior + squares_ / noise_.meanSquare()) / freedom;
+  information_share_ = freedom / (freedom + 2);
+  const double weight = information_share_ / variance_, root_weight = std::sqrt(weight);
+  V_ *= weight;
+  gradient_ *= weight;
+  for (LinearView& view : linear_) view.J *= root_weight, view.B *= root_weight;
+}
+
+void LandmarkFit::addSharedError(std::span<const LandmarkView> views) {
+  double sigma_sum_px = 0;
+  for (const LandmarkView& view : views) sigma_sum_px += 1 / view.inverse_sigma.z();
+  const double own_sigma_px = std::sqrt(variance_) * sigma_sum_px / static_cast<double>(views.size());
+  shared_sigma_px_ = std::max(
+      std::hypot(noise_.shared_disparity_sigma_px, noise_.shared_disparity_share * own_sigma_px), kLeastSharedSigma_px);
+  const double information = 1 / (shared_sigma_px_ * shared_sigma_px_);
+  V_(3, 3) += information;
+  gradient_[3] += information * landmark_[3];
 }
 
 /// View by view in the lanes of vectors; what lanes without a view hold is not used.
@@ -210,7 +239,9 @@ bool LandmarkFit::linearize(std::span<const LandmarkView> views, const Eigen::Ve
   Lanes3 r{view.uvd_px.x - (camera_.fx_px * x + camera_.cx_px), view.uvd_px.y - (camera_.fy_px * y + camera_.cy_px),
            view.uvd_px.z - fb * iz + (offset_px_ - landmark_[3])};
   r = r * view.inverse_sigma;
-  const Vec root_weight = rootWeights(noise_, (r.x * r.x + r.y * r.y) + r.z * r.z);
+  const Vec squared_norm = (r.x * r.x + r.y * r.y) + r.z * r.z;
+  const Vec root_weight = rootWeights(noise_, squared_norm * broadcast(1 / variance_));
+  for (std::size_t i = 0; i < views.size(); ++i) squares_ += squared_norm[i] * root_weight[i] * root_weight[i];
   const Lanes3 whiten{root_weight * view.inverse_sigma.x, root_weight * view.inverse_sigma.y,
                       root_weight * view.inverse_sigma.z};
   // J = -whiten d(u, v, d) / d(p_cam) has the rows (ux, 0, uz), (0, vy, vz), (0, 0, dz).

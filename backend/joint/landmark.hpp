@@ -28,8 +28,16 @@ struct LandmarkView {
 struct LandmarkNoise {
   RobustLoss loss = RobustLoss::kCauchy;
   double loss_scale = 1.5;  // of an observation's whitened norm: three dimensions
-  /// Of an error that all disparities of a landmark share.
-  double shared_disparity_sigma_px = 0.1;
+  /// Some landmarks are followed well, others slide along edges: each has a variance of its own. The prior of that
+  /// variance is a scaled inverse chi-squared distribution with so many degrees of freedom, so that the residuals of a
+  /// landmark follow a multivariate t distribution (Lange, Little and Taylor, JASA 1989). With 0, all are alike.
+  double variance_freedom = 4;
+  /// Of an error that all disparities of a landmark share: what does not depend on the landmark, and a share of the
+  /// noise of one of its disparities.
+  double shared_disparity_sigma_px = 0.1, shared_disparity_share = 0;
+
+  /// Mean square of a Gaussian residual under the weights of the loss, per dimension: E[w r^2] / 3.
+  double meanSquare() const;
 };
 
 /// A landmark's unknowns, where its last view is: (u, v, d) there and the error that its disparities share.
@@ -69,14 +77,20 @@ class LandmarkFit {
   /// camera or the landmark is at infinity.
   bool operator()(std::span<const LandmarkView> views, const std::optional<LandmarkEstimate>& before = std::nullopt);
 
+  /// Weighted by the landmark's own variance, too.
   std::span<const LinearView> views() const { return std::span(linear_).first(count_); }
+  /// The landmark's own variance, in units of the one that its views claim.
+  double variance() const { return variance_; }
+  /// Share of the information of `views` that is left as the variance is not known: (n + d) / (n + d + 2) with n
+  /// degrees of freedom of the prior and d of the residuals, the Fisher information of the t distribution.
+  double informationShare() const { return information_share_; }
   const Eigen::LLT<Matrix4d>& information() const { return llt_; }
   /// One step on from where the landmark was linearized; empty when that is at infinity.
   std::optional<LandmarkEstimate> estimate() const;
   /// The same with its covariance.
   std::optional<KnownLandmark> known() const;
   double sharedError_px() const { return landmark_[3]; }
-  double sharedErrorSigma_px() const { return noise_.shared_disparity_sigma_px; }
+  double sharedErrorSigma_px() const { return shared_sigma_px_; }
 
  private:
   bool beginFrom(const LandmarkEstimate& before);
@@ -84,6 +98,8 @@ class LandmarkFit {
   /// Up to four views. `G` = d(p_body) / d(u, v, d of the newest view).
   bool linearize(std::span<const LandmarkView> views, const Eigen::Vector3d& p_body, const Eigen::Matrix3d& G,
                  LinearView* linear);
+  void weighByOwnVariance();
+  void addSharedError(std::span<const LandmarkView> views);
 
   const StereoCamera& camera_;
   LandmarkNoise noise_;
@@ -95,7 +111,9 @@ class LandmarkFit {
   int newest_frame_ = 0;
   Vector4d landmark_, gradient_;
   Matrix4d V_;
-  Eigen::LLT<Matrix4d> llt_;        // of V
+  Eigen::LLT<Matrix4d> llt_;  // of V
+  double squares_ = 0;        // of the views' weighted residuals, before the own variance counts
+  double variance_ = 1, information_share_ = 1, shared_sigma_px_ = 0;
   std::size_t count_ = 0;           // of views
   std::vector<LinearView> linear_;  // theirs, and what fills up the last four
 };

@@ -20,22 +20,20 @@ LandmarkBundles::LandmarkBundles(const Params& params, const NoiseLevel& noise, 
     : params_(params), camera_(camera), solver_(solver), offset_(offset), points_(params.points), noise_(noise) {}
 
 void LandmarkBundles::renew(std::int64_t frame_count, const PoseVariable& pose_variable) {
-  if (newest_) solver_.removeFactor(*newest_);
+  if (newest_) solver_.removeFactor(newest_->factor);
   newest_.reset();
   std::ranges::move(points_.takeEnded(), std::back_inserter(ended_));
   if (frame_count % params_.closing_frames == 0) closeEnded(pose_variable);
   std::vector<LandmarkTrack*> tracks = points_.current();
   std::ranges::copy(pointersTo(ended_), std::back_inserter(tracks));
-  if (const auto bundle = addBundle(tracks, pose_variable, params_.newest)) newest_ = bundle->factor;
+  newest_ = addBundle(tracks, pose_variable, params_.newest);
 }
 
 /// Tracks that ended become a factor for good.
 void LandmarkBundles::closeEnded(const PoseVariable& pose_variable) {
   if (const auto bundle = addBundle(pointersTo(ended_), pose_variable, IncrementalSolver::Lifetime::kLasting)) {
     noise_.learn(bundle->levels);
-    FrameId first = ended_.front().views.front().frame;
-    for (const LandmarkTrack& track : ended_) first = std::min(first, track.views.front().frame);
-    closed_.push_back({bundle->factor, first, std::move(ended_)});
+    closed_.push_back({bundle->factor, bundle->first, std::move(ended_)});
   }
   ended_.clear();
 }
@@ -67,7 +65,7 @@ std::optional<LandmarkBundles::Bundle> LandmarkBundles::addBundle(std::span<Land
   const auto factor = solver_.addFactor(
       std::make_unique<BundleFactor>(index.variables(), offset_.variable(), std::move(eliminated)), lifetime);
   if (!factor) return std::nullopt;
-  return Bundle{*factor, levels};
+  return Bundle{*factor, index.frames().front(), levels};
 }
 
 EliminatedLandmarks LandmarkBundles::eliminate(const LandmarkViews& landmarks, const FrameIndex& index) const {
@@ -87,8 +85,11 @@ void LandmarkBundles::relinearize(const PoseVariable& pose_variable) {
   }
 }
 
-void LandmarkBundles::fixUpTo(FrameId oldest) {
+void LandmarkBundles::retire(FrameId oldest) {
   std::erase_if(closed_, [oldest](const Closed& closed) { return closed.first <= oldest; });
+  if (!newest_ || newest_->first > oldest) return;
+  solver_.removeFactor(newest_->factor);
+  newest_.reset();
 }
 
 void LandmarkBundles::drop() {

@@ -33,9 +33,11 @@ class LandmarkBundles {
   void renew(std::int64_t frame_count, const PoseVariable& pose_variable);
   /// The factors over ended tracks anew, as the offset has moved.
   void relinearize(const PoseVariable& pose_variable);
-  /// Factors stay as they are from now on: of all tracks, and of those with views in a frame and before.
+  /// Factors over ended tracks stay as they are from now on.
   void fix() { closed_.clear(); }
-  void fixUpTo(FrameId oldest);
+  /// Frames up to this one are about to leave the graph: what lasting factors say of them stays as it is, and the one
+  /// over the tracks that go on is made anew without them.
+  void retire(FrameId oldest);
   /// The body's poses have gone, and the factors with them.
   void drop();
 
@@ -48,6 +50,7 @@ class LandmarkBundles {
   };
   struct Bundle {
     FactorId factor;
+    FrameId first;
     ResidualLevels levels;
   };
   void closeEnded(const PoseVariable& pose_variable);
@@ -62,7 +65,7 @@ class LandmarkBundles {
   BodyPoints points_;
   NoiseLevel noise_;
   std::vector<LandmarkTrack> ended_;  // whose factor for good is still to be made
-  std::optional<FactorId> newest_;    // over these and the tracks that go on
+  std::optional<Bundle> newest_;      // over these and the tracks that go on
   std::vector<Closed> closed_;        // while the offset may still move
 };
 

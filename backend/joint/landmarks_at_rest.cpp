@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 
 namespace motorcade {
@@ -94,7 +95,8 @@ std::vector<ViewOfKnown> LandmarksAtRest::knownViews(std::span<LandmarkTrack* co
     const auto known = fit.known();
     newest.clear();
     index.append(std::span(track->views).last(1), noise(), newest);
-    if (known) views.push_back({*known, newest.back().uvd_px, newest.back().inverse_sigma});
+    const double sigmas = std::sqrt(fit.variance());
+    if (known) views.push_back({*known, newest.back().uvd_px, newest.back().inverse_sigma / sigmas});
   }
   return views;
 }

@@ -4,13 +4,6 @@
 #include <cmath>
 
 namespace motorcade {
-namespace {
-
-/// Mean square of a residual under the weights of LandmarkNoise, per dimension, where the noise is Gaussian and as
-/// claimed: E[w r^2] / 3 with w = 1 / (1 + r^2 / 1.5^2) over three dimensions, from 3e5 samples.
-constexpr double kGaussianLevel = 0.3685;
-
-}  // namespace
 
 NoiseLevel NoiseLevel::like(const NoiseLevel& known) {
   NoiseLevel level;
@@ -21,10 +14,11 @@ NoiseLevel NoiseLevel::like(const NoiseLevel& known) {
 
 void NoiseLevel::learn(const ResidualLevels& levels) {
   constexpr double kMemory = 4000;  // observations
-  const double keep = std::max(0.0, 1 - levels.d_count / kMemory), uv2 = uv() * uv(), d2 = d() * d();
-  sums_.uv_sum = keep * sums_.uv_sum + uv2 * levels.uv_sum / kGaussianLevel;
+  const double keep = std::max(0.0, 1 - levels.d_count / kMemory), mean_square = LandmarkNoise{}.meanSquare();
+  const double uv2 = uv() * uv() / mean_square, d2 = d() * d() / mean_square;
+  sums_.uv_sum = keep * sums_.uv_sum + uv2 * levels.uv_sum;
   sums_.uv_count = keep * sums_.uv_count + levels.uv_count;
-  sums_.d_sum = keep * sums_.d_sum + d2 * levels.d_sum / kGaussianLevel;
+  sums_.d_sum = keep * sums_.d_sum + d2 * levels.d_sum;
   sums_.d_count = keep * sums_.d_count + levels.d_count;
   sums_.common_sum = keep * sums_.common_sum + levels.common_sum;
   sums_.successive_sum = keep * sums_.successive_sum + levels.successive_sum;

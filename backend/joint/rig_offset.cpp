@@ -7,9 +7,11 @@
 namespace motorcade {
 namespace {
 
-constexpr double kHeldSigma_px = 1e-5;    // of a held offset: very long drives do not move it either
-constexpr double kClearSigma_px = 0.1;    // of an observed offset, from which on it is looked at
-constexpr double kDistortion_px = 0.5;    // what looks like an offset up to here may be distortion
+constexpr double kHeldSigma_px = 1e-5;  // of a held offset: very long drives do not move it either
+constexpr double kClearSigma_px = 0.1;  // of an observed offset, from which on it is looked at
+/// What looks like an offset up to here may be distortion. It is one of half a pixel: while the offset is held, the
+/// landmarks that show it best look noisy, and count so little that a fifth of it is missed.
+constexpr double kDistortion_px = 0.4;
 constexpr double kStep_px = 0.1;          // of the offset, after which landmarks are eliminated anew
 constexpr int kFirstLook_frames = 8;      // after which the offset is looked at
 constexpr int kCalibration_frames = 100;  // of the drive, in which the offset may be found

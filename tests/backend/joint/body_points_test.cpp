@@ -46,6 +46,33 @@ TEST(BodyPoints, CutsATrackThatOutlivesTheWindow) {
   EXPECT_EQ(ended[1].views.front().frame, FrameId{5});
 }
 
+/// A cut leaves views in few frames, the same for all points, however long they are followed.
+TEST(BodyPoints, ACutLeavesATrackSparseEarlierViews) {
+  constexpr int kFrames = 200, kOldest = 64, kMostViews = 14;
+  BodyPoints::Params params = kParams;
+  params.max_views = kMostViews;
+  params.oldest_kept_frames = kOldest;
+  BodyPoints points(params);
+  std::set<std::int64_t> frames;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    std::vector seen{point(7)};
+    if (frame >= 3) seen.push_back(point(8, 300));
+    points.observe({frame}, seen);
+    frames.clear();
+    for (const LandmarkTrack* track : points.current()) {
+      EXPECT_LE(static_cast<int>(track->views.size()), kMostViews);
+      for (const auto& view : track->views) frames.insert(view.frame.value);
+    }
+    EXPECT_LE(frames.size(), 20U) << frame;
+  }
+  EXPECT_LT(*frames.begin(), kFrames - kOldest / 2);
+  EXPECT_GE(*frames.begin(), kFrames - kOldest - kMostViews);
+  const auto all = counted(points);
+  for (int frame = kFrames - kMostViews; frame < kFrames; ++frame) EXPECT_EQ(all.count({7, frame}), 1U) << frame;
+  EXPECT_EQ(std::set(all.begin(), all.end()).size(), all.size());  // none is counted twice
+  EXPECT_GE(all.size(), std::size_t{2 * kFrames - 3 - 4});         // and hardly one is lost
+}
+
 TEST(BodyPoints, EndsATrackWhosePointIsLost) {
   BodyPoints points(kParams);
   for (int frame = 0; frame < 3; ++frame) points.observe({frame}, std::vector{point(7)});

@@ -17,7 +17,7 @@ using test::IsNear;
 using test::kRig;
 
 const Eigen::Vector3d kInverseSigma(4, 4, 3);
-const LandmarkNoise kNoise{.loss = RobustLoss::kNone, .shared_disparity_sigma_px = 0.5};
+const LandmarkNoise kNoise{.loss = RobustLoss::kNone, .variance_freedom = 0, .shared_disparity_sigma_px = 0.5};
 constexpr double kOffset_px = 0.3;
 
 /// Points at rest that a camera on its way sees twice, without noise.

@@ -38,7 +38,7 @@ TEST_F(RigOffsetTest, IsHeldAtZeroUntilLandmarksClearlySayOtherwise) {
 }
 
 TEST_F(RigOffsetTest, WhatMayBeDistortionOrIsNotClearReleasesNothing) {
-  landmarksSay(0.4, 0.01);
+  landmarksSay(0.35, 0.01);
   EXPECT_FALSE(offset_.release(kLook));
   RigOffset other(solver_, 1.0);
   solver_.addFactor(std::make_unique<VectorPriorFactor>(other.variable(), SmallVector::Constant(1, 1.2),

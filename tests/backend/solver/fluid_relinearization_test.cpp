@@ -35,7 +35,8 @@ EliminatedLandmarks landmarksAt(int k, test::Noise& noise) {
     }
     landmarks.first_view.push_back(static_cast<int>(landmarks.views.size()));
   }
-  return eliminateLandmarks(kCamera, {}, landmarks, FramePose::kWorldCam, std::move(T_cam_world), 0);
+  return eliminateLandmarks(kCamera, {.variance_freedom = 0}, landmarks, FramePose::kWorldCam, std::move(T_cam_world),
+                            0);
 }
 
 /// The models of a few quadratics are off; others share nothing with them but a vector, in which they are right.
