@@ -126,6 +126,7 @@ void JointGraph::calibrate(FrameId newest) {
 
 /// Landmarks were eliminated at another offset.
 void JointGraph::linearizeLandmarksAnew() {
+  offset_.holdAsEliminated();
   at_rest_.relinearize(frames_);
   for (const auto& [id, track] : tracks_) landmarksOf(id).relinearize(posesOf(track));
   update();

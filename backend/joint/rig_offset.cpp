@@ -55,11 +55,7 @@ bool RigOffset::release(FrameId newest) {
   return released_;
 }
 
-bool RigOffset::hasMoved() {
-  const bool moved = std::abs(px() - linearized_px_) > kStep_px;
-  if (moved) linearized_px_ = px();
-  return moved;
-}
+bool RigOffset::hasMoved() const { return std::abs(px() - eliminated_px_) > kStep_px; }
 
 bool RigOffset::isSettled(FrameId newest) const { return newest.value - first_frame_.value > kCalibration_frames; }
 

@@ -23,8 +23,10 @@ class RigOffset {
   /// Looks at what the landmarks say after each frame, and lets the offset move where they are clear. True when that
   /// has just happened: the solver has a new prior.
   bool release(FrameId newest);
-  /// The offset has moved so far that landmarks should be eliminated anew. Tells it once.
-  bool hasMoved();
+  /// The offset has moved so far from where landmarks were eliminated that they should be eliminated anew.
+  bool hasMoved() const;
+  /// Landmarks are eliminated at the present offset.
+  void holdAsEliminated() { eliminated_px_ = px(); }
   /// The drive is so old that the offset stays where it is.
   bool isSettled(FrameId newest) const;
 
@@ -37,7 +39,7 @@ class RigOffset {
   VariableId variable_;
   std::optional<FactorId> prior_;
   bool released_ = false;
-  double linearized_px_ = 0;
+  double eliminated_px_ = 0;  // at which landmarks were
   FrameId first_frame_;
 };
 
