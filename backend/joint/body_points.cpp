@@ -55,10 +55,10 @@ void BodyPoints::extend(Candidate& candidate, const LandmarkTrack::View& view) {
 
 void BodyPoints::cut(Candidate& candidate) {
   auto& views = candidate.track.views;
-  const auto kept =
-      std::ranges::stable_partition(views, [this](const LandmarkTrack::View& view) { return !isKept(view.frame); });
-  LandmarkTrack ended{candidate.track.point, {views.begin(), kept.begin()}, candidate.track.estimate};
-  views.erase(views.begin(), kept.begin());
+  const auto kept = std::stable_partition(views.begin(), views.end(),
+                                          [this](const LandmarkTrack::View& view) { return !isKept(view.frame); });
+  LandmarkTrack ended{candidate.track.point, {views.begin(), kept}, candidate.track.estimate};
+  views.erase(views.begin(), kept);
   if (ended.views.size() >= 2) ended_.push_back(std::move(ended));
 }
 
