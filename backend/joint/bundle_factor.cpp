@@ -1,6 +1,7 @@
 #include "backend/joint/bundle_factor.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <Eigen/Cholesky>
@@ -157,9 +158,10 @@ class CommonSums {
   CommonSums(double middle_px, std::size_t frames)
       : middle_px_(middle_px), sums_(2 * frames, Eigen::Vector3d::Zero()) {}
 
-  void add(std::span<const LandmarkView> views, std::span<const LinearView> linear) {
+  void add(std::span<const LandmarkView> views, const LandmarkFit& fit) {
+    const double full = std::sqrt(1 / fit.informationShare());
     for (std::size_t i = 0; i < views.size(); ++i)
-      sums_[2 * views[i].frame + (views[i].uvd_px.x() > middle_px_ ? 1 : 0)] += linear[i].r();
+      sums_[2 * views[i].frame + (views[i].uvd_px.x() > middle_px_ ? 1 : 0)] += full * fit.views()[i].r();
   }
   double squares() const {
     double squares = 0;
@@ -192,7 +194,7 @@ EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const Landmar
     result.estimates[j] = fit.estimate();
     sum.add(landmarks.of(j), fit);
     addLevels(fit, result.levels);
-    common.add(landmarks.of(j), fit.views());
+    common.add(landmarks.of(j), fit);
   }
   result.levels.common_sum = common.squares();
   result.system = sum.packed();

@@ -26,7 +26,9 @@ struct JointParams {
   /// Texture is matched with about the same bias in each frame: all disparities of a landmark share an error. Points at
   /// rest are seen at the slanted edges of all kinds of things, and through a calibration that is not exact. The bias
   /// of a vehicle's points is measured as half to .8 of the noise of one disparity, whether that is .04 or .3 px.
-  LandmarkNoise static_noise{.shared_disparity_sigma_px = 0.5};
+  /// Of landmarks at rest, variances may differ less: with 4 degrees of freedom the camera's path is hardly more exact,
+  /// but its covariances claim it.
+  LandmarkNoise static_noise{.variance_freedom = 8, .shared_disparity_sigma_px = 0.5};
   LandmarkNoise object_noise{.shared_disparity_sigma_px = 0, .shared_disparity_share = 0.7};
   double offset_sigma_px = 1.0;  // prior of the disparity offset of a rig that is found to be off; 0 trusts every rig
 
