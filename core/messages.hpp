@@ -149,6 +149,12 @@ struct FrameMeasurements {
 };
 using FrameMeasurementsPtr = std::shared_ptr<const FrameMeasurements>;
 
+/// How an object's speed and its yaw rate change.
+struct ObjectAcceleration {
+  double along_mps2 = 0, along_sigma_mps2 = 0;  // along its path: positive where it becomes faster
+  double yaw_radps2 = 0, yaw_sigma_radps2 = 0;  // about the body's z axis
+};
+
 /// An object's estimate in one frame.
 struct ObjectEstimate {
   TrackId track;
@@ -159,6 +165,8 @@ struct ObjectEstimate {
   /// Of the velocity, in the world's axes, as far as the camera tells: its own drift is not in it.
   std::optional<Eigen::Matrix3d> velocity_covariance{};
   double yaw_rate_radps = 0, yaw_rate_sigma_radps = 0;  // about the body's z axis
+  /// Empty where the object has no other frame, and from back-ends that cannot tell it.
+  std::optional<ObjectAcceleration> acceleration{};
   int points = 0;
   Box box;
   std::optional<Matrix6d> covariance;  // of T_cam_body of the same frame

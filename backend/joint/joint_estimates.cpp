@@ -4,11 +4,18 @@
 #include <cmath>
 
 #include "backend/joint/joint_graph.hpp"
+#include "backend/window/acceleration_span.hpp"
 #include "core/constant_twist.hpp"
 #include "core/fixed_product.hpp"
 
 namespace motorcade {
 namespace {
+
+/// The graph takes acceleration as white noise, which makes three quarters of a twist's variance at least and the
+/// measurements the rest: smoothed along positions of any noise, a velocity's error has the spectrum
+/// u^6 / (1 + u^4)^2 of the acceleration and u^2 / (1 + u^4)^2 of the positions, whose integrals are as 3 to 1, and
+/// the newest one of a filter has the same parts. A mean acceleration has the walk's variance in place of the former.
+constexpr double kMeasuredShare = 0.25;
 
 /// The Jacobian of the pose with the axes of travel, exp(xi) R_z(yaw + dyaw) R_y(pitch + dpitch), right perturbation.
 Eigen::Matrix<double, 6, 15> byTravel(const Eigen::Matrix3d& R_body_travel) {
@@ -68,7 +75,37 @@ std::optional<ObjectCovariances> JointGraph::objectCovariances(const ObjectTrack
       .T_cam_body = propagated(byTravel(R_body_travel), covariance),
       .velocity_cam = velocityCovariance(solver_.pose(pose), velocity, covariance.topLeftCorner<12, 12>()),
       .speed_sigma_mps = std::sqrt(std::max(0.0, variance)),
-      .yaw_rate_sigma_radps = std::sqrt(std::max(0.0, up.dot(covariance.block<3, 3>(9, 9) * up)))};
+      .yaw_rate_sigma_radps = std::sqrt(std::max(0.0, up.dot(covariance.block<3, 3>(9, 9) * up))),
+      .acceleration = objectAcceleration(track, frame)};
+}
+
+/// The mean change of speed and yaw rate around the frame.
+std::optional<ObjectAcceleration> JointGraph::objectAcceleration(const ObjectTrack& track, FrameId frame) const {
+  const auto of_speed = accelerationSpan(track, frame, kSpeedChange.reach_s);
+  const auto of_yaw_rate = accelerationSpan(track, frame, kYawRateChange.reach_s);
+  if (!of_speed || !of_yaw_rate) return std::nullopt;
+  const std::array twists{of_speed->from->twist, of_speed->to->twist, of_yaw_rate->from->twist, of_yaw_rate->to->twist};
+  const auto twist = [&](int k) { return Vector6d(std::get<SmallVector>(solver_.estimate(twists[k]))); };
+  const Eigen::Matrix3d R_body_travel = objects_.travelAxes(track);
+  const bool backwards = (twist(0) + twist(1)).head<3>().dot(R_body_travel.col(0)) < 0;
+  const Eigen::Vector3d along = (backwards ? -1.0 : 1.0) * R_body_travel.col(0) / of_speed->length_s();
+  const Eigen::Vector3d about = R_body_travel.col(2) / of_yaw_rate->length_s();
+
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(2, 24);
+  J.block<1, 3>(0, 0) = -along.transpose();
+  J.block<1, 3>(0, 6) = along.transpose();
+  J.block<1, 3>(1, 15) = -about.transpose();
+  J.block<1, 3>(1, 21) = about.transpose();
+  const auto covariance = solver_.jointCovariance(twists, J);
+  if (!covariance) return std::nullopt;
+  const auto sigma = [&](int k, const AccelerationSpan& span, const RateChange& change) {
+    const double measured = kMeasuredShare * designEffect() * (*covariance)(k, k);
+    return std::sqrt(std::max(0.0, measured) + span.walkVariance(change.density));
+  };
+  return ObjectAcceleration{.along_mps2 = along.dot((twist(1) - twist(0)).head<3>()),
+                            .along_sigma_mps2 = sigma(0, *of_speed, kSpeedChange),
+                            .yaw_radps2 = about.dot((twist(3) - twist(2)).tail<3>()),
+                            .yaw_sigma_radps2 = sigma(1, *of_yaw_rate, kYawRateChange)};
 }
 
 }  // namespace motorcade

@@ -36,6 +36,8 @@ class JointGraph final : public SmoothingWindow {
   double designEffect() const override { return at_rest_.noise().designEffect(); }
 
  private:
+  std::optional<ObjectAcceleration> objectAcceleration(const ObjectTrack& track, FrameId frame) const;
+
   std::string nameOf(VariableId v) const override;
   void dropped(TrackId id) override;
   void retiring(FrameId oldest) override;

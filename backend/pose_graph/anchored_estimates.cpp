@@ -97,7 +97,8 @@ std::optional<ObjectCovariances> AnchoredPoseGraph::objectCovariances(const Obje
   ObjectCovariances object{.T_cam_body = propagated(J, Matrix18d(joint->topLeftCorner<18, 18>())),
                            .velocity_cam = {},
                            .speed_sigma_mps = {},
-                           .yaw_rate_sigma_radps = {}};
+                           .yaw_rate_sigma_radps = {},
+                           .acceleration = {}};
   if (other)
     addRateSigmas(object, solver_.pose(other->pose).inverse() * z, joint->bottomRightCorner<12, 12>(),
                   std::abs(secondsBetween(other->stamp, record->second.stamp)));

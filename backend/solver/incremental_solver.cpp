@@ -255,6 +255,11 @@ std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(std::span<cons
   return motorcade::jointCovariance(graph_, tree_, variables);
 }
 
+std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(std::span<const VariableId> variables,
+                                                                  const Eigen::Ref<const Eigen::MatrixXd>& J) const {
+  return motorcade::jointCovariance(graph_, tree_, variables, J);
+}
+
 SolverCounters IncrementalSolver::counters() const {
   SolverCounters counters = counters_;
   counters.variables = static_cast<std::int64_t>(graph_.variableCount());

@@ -89,6 +89,8 @@ class IncrementalSolver {
   SE3 pose(VariableId v) const { return std::get<SE3>(estimate(v)); }
   /// See motorcade::jointCovariance.
   std::optional<Eigen::MatrixXd> jointCovariance(std::span<const VariableId> variables) const;
+  std::optional<Eigen::MatrixXd> jointCovariance(std::span<const VariableId> variables,
+                                                 const Eigen::Ref<const Eigen::MatrixXd>& J) const;
 
   /// In the counters, `relinearizations` are updates that relinearized anything; `reorderings` and `batch_solves`
   /// concern the whole system.

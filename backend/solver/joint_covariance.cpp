@@ -1,6 +1,7 @@
 #include "backend/solver/joint_covariance.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "backend/elimination/dense_substitution.hpp"
 
@@ -45,6 +46,18 @@ RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::
   int column = 0;
   for (const VariableId v : variables) {
     chosen.block(path.rowOf(v), column, graph.sizeOf(v), graph.sizeOf(v)).setIdentity();
+    column += graph.sizeOf(v);
+  }
+  return chosen;
+}
+
+/// The same of J^T, in place of the identity.
+RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables,
+                               const Eigen::Ref<const Eigen::MatrixXd>& J) {
+  RowMajorMatrixXd chosen = RowMajorMatrixXd::Zero(path.rows, J.rows());
+  Eigen::Index column = 0;
+  for (const VariableId v : variables) {
+    chosen.middleRows(path.rowOf(v), graph.sizeOf(v)) += J.middleCols(column, graph.sizeOf(v)).transpose();
     column += graph.sizeOf(v);
   }
   return chosen;
@@ -120,15 +133,31 @@ void turnToOwnAxes(const FactorGraph& graph, std::span<const VariableId> variabl
   }
 }
 
+bool allEliminated(const EliminationTree& tree, std::span<const VariableId> variables) {
+  return std::ranges::none_of(variables, [&](VariableId v) { return tree.cliqueOf(v) < 0; });
+}
+
 }  // namespace
 
 std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
                                                std::span<const VariableId> variables) {
-  if (std::ranges::any_of(variables, [&](VariableId v) { return tree.cliqueOf(v) < 0; })) return std::nullopt;
+  if (!allEliminated(tree, variables)) return std::nullopt;
   const Path path = pathFrom(graph, tree, variables);
   auto covariance = squareOfSolution(graph, tree, path, chosenColumns(graph, path, variables));
   if (!covariance || !covariance->allFinite()) return std::nullopt;
   turnToOwnAxes(graph, variables, *covariance);
+  return covariance;
+}
+
+std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
+                                               std::span<const VariableId> variables,
+                                               const Eigen::Ref<const Eigen::MatrixXd>& J) {
+  if (!allEliminated(tree, variables)) return std::nullopt;
+  assert(std::ranges::all_of(variables,
+                             [&](VariableId v) { return std::holds_alternative<SmallVector>(graph.estimate(v)); }));
+  const Path path = pathFrom(graph, tree, variables);
+  auto covariance = squareOfSolution(graph, tree, path, chosenColumns(graph, path, variables, J));
+  if (!covariance || !covariance->allFinite()) return std::nullopt;
   return covariance;
 }
 

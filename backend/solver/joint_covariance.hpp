@@ -13,5 +13,9 @@ namespace motorcade {
 /// Costs as much as the cliques from the variables up to the root.
 std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
                                                std::span<const VariableId> variables);
+/// Covariance of J x, where x are the variables, stacked, which are vectors: cheaper, as J has few rows.
+std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
+                                               std::span<const VariableId> variables,
+                                               const Eigen::Ref<const Eigen::MatrixXd>& J);
 
 }  // namespace motorcade

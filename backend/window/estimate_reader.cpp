@@ -57,6 +57,7 @@ ObjectEstimate EstimateReader::readObject(TrackId id, const ObjectTrack& track, 
                           .velocity_covariance = {},
                           .yaw_rate_radps = motion.yaw_rate_radps,
                           .yaw_rate_sigma_radps = kUnknownYawRateSigma_radps,
+                          .acceleration = {},
                           .points = record.seen.points,
                           .box = record.seen.box,
                           .covariance = {}};
@@ -65,6 +66,7 @@ ObjectEstimate EstimateReader::readObject(TrackId id, const ObjectTrack& track, 
   estimate.covariance = known.T_cam_body;
   estimate.speed_sigma_mps = known.speed_sigma_mps.value_or(kUnknownSpeedSigma_mps);
   estimate.yaw_rate_sigma_radps = known.yaw_rate_sigma_radps.value_or(kUnknownYawRateSigma_radps);
+  estimate.acceleration = known.acceleration;
   if (known.velocity_cam) {
     const Eigen::Matrix3d R_world_cam = window_.cameraPose(frame).rotation();
     estimate.velocity_covariance = R_world_cam * *known.velocity_cam * R_world_cam.transpose();

@@ -25,6 +25,7 @@ struct ObjectCovariances {
   Matrix6d T_cam_body;                                          // of the pose seen from the camera, right perturbation
   std::optional<Eigen::Matrix3d> velocity_cam;                  // of the velocity over ground, in the camera's axes
   std::optional<double> speed_sigma_mps, yaw_rate_sigma_radps;  // empty when the frame's pose is the object's only one
+  std::optional<ObjectAcceleration> acceleration;               // with its sigmas; empty also where there are no twists
 };
 
 /// An object in one frame of the window.

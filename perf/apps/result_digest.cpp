@@ -28,6 +28,12 @@ class Digest {
     add(std::int64_t{covariance.has_value()});
     if (covariance) add(*covariance);
   }
+  void add(const std::optional<ObjectAcceleration>& acceleration) {
+    add(std::int64_t{acceleration.has_value()});
+    if (!acceleration) return;
+    const auto& [along_mps2, along_sigma_mps2, yaw_radps2, yaw_sigma_radps2] = *acceleration;
+    for (const double value : {along_mps2, along_sigma_mps2, yaw_radps2, yaw_sigma_radps2}) add(value);
+  }
   std::uint64_t value() const { return value_; }
 
  private:
@@ -55,6 +61,7 @@ std::uint64_t digestOf(const FrameEstimate& estimate) {
     digest.add(object.T_world_body);
     digest.add(object.velocity_world_mps);
     digest.add(object.speed_sigma_mps);
+    digest.add(object.acceleration);
     digest.add(std::int64_t{object.points});
     for (const double edge_px : {object.box.left_px, object.box.top_px, object.box.right_px, object.box.bottom_px})
       digest.add(edge_px);

@@ -18,6 +18,7 @@ class SimulatedDrive {
     Eigen::Vector3d start_world;  // x right, y down, z ahead
     double heading_rad, speed_mps, turn_rate_radps;
     int first_frame, last_frame;
+    double acceleration_mps2 = 0;  // along its path, whose curvature stays
   };
   struct Options {
     int frames = 60;
@@ -45,8 +46,10 @@ class SimulatedDrive {
     upright << 0, -1, 0, 0, 0, -1, 1, 0, 0;
     Vector6d twist;
     twist << v.speed_mps, 0, 0, 0, 0, v.turn_rate_radps;
-    return SE3(expSO3({0, v.heading_rad, 0}) * upright, v.start_world) *
-           SE3::exp(options_.dt_s * (frame - v.first_frame) * twist);
+    const double t_s = options_.dt_s * (frame - v.first_frame);
+    const double at_this_speed_s =
+        v.acceleration_mps2 == 0 ? t_s : t_s * (1 + v.acceleration_mps2 * t_s / (2 * v.speed_mps));
+    return SE3(expSO3({0, v.heading_rad, 0}) * upright, v.start_world) * SE3::exp(at_this_speed_s * twist);
   }
   bool visible(std::size_t vehicle, int frame) const {
     return frame >= options_.vehicles[vehicle].first_frame && frame <= options_.vehicles[vehicle].last_frame;

@@ -77,6 +77,64 @@ TEST(JointEstimates, YawRatesAreThoseOfTheBendWithinTheirSigmas) {
   EXPECT_LT(squares / count, 4);  // one where the sigmas are right
 }
 
+/// A car that brakes in a bend, and with it turns ever more slowly.
+PointDrive::Options brakingInABend() {
+  PointDrive::Options options = kStreet;
+  options.drive.frames = 30;
+  options.drive.vehicles = {{{-2, 1, 20}, 0, 12, 0.3, 0, 1000, -3}};
+  return options;
+}
+constexpr double kBraking_mps2 = -3, kYaw_radps2 = -3 * 0.3 / 12;
+
+TEST(JointEstimates, AccelerationsAreThoseOfACarThatBrakesInABend) {
+  double along_squares = 0, yaw_squares = 0;
+  int count = 0;
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    PointDrive drive(seed, brakingInABend());
+    JointBackend backend(JointParams{}, kPointRig);
+    const auto run = test::runDrive(backend, drive);
+    for (const auto* frames : {&run.finals, &run.online}) {
+      for (std::size_t k = 12; k + 5 < frames->size(); k += 4, ++count) {
+        const auto& told = (*frames)[k].objects.at(0).acceleration;
+        ASSERT_TRUE(told) << k;
+        along_squares += std::pow((told->along_mps2 - kBraking_mps2) / told->along_sigma_mps2, 2);
+        yaw_squares += std::pow((told->yaw_radps2 - kYaw_radps2) / told->yaw_sigma_radps2, 2);
+        EXPECT_LT(told->along_sigma_mps2, 1);
+        EXPECT_LT(told->yaw_sigma_radps2, 0.3);
+      }
+      EXPECT_NEAR((*frames)[16].objects.at(0).acceleration->along_mps2, kBraking_mps2, 1) << "and not a share of it";
+    }
+  }
+  std::cout << "mean normalized errors " << along_squares / count << " and " << yaw_squares / count << " of " << count
+            << "\n";
+  EXPECT_GE(count, 20);
+  EXPECT_LT(along_squares / count, 1.5);  // at most one where the sigmas are right: the walk does not walk
+  EXPECT_LT(yaw_squares / count, 1.5);
+}
+
+TEST(JointEstimates, AccelerationsAreKnownFromTheSecondFrameOnAndBetterInThePast) {
+  PointDrive drive(1, brakingInABend());
+  JointBackend backend(JointParams{}, kPointRig);
+  const auto run = test::runDrive(backend, drive);
+  EXPECT_FALSE(run.online[0].objects.at(0).acceleration);
+  EXPECT_TRUE(run.finals[0].objects.at(0).acceleration) << "what came later tells it";
+  ASSERT_TRUE(run.online[1].objects.at(0).acceleration);
+  const auto sigma_mps2 = [](const FrameEstimate& frame) { return frame.objects.at(0).acceleration->along_sigma_mps2; };
+  EXPECT_GT(sigma_mps2(run.online[1]), sigma_mps2(run.online[15]));
+  EXPECT_GT(sigma_mps2(run.online[15]), 1.2 * sigma_mps2(run.finals[15])) << "frames on one side alone";
+}
+
+TEST(JointEstimates, AccelerationsAreLessSureWhereThePointsAre) {
+  const auto sigma_mps2 = [](double sigma_px) {
+    PointDrive::Options options = brakingInABend();
+    options.sigma_px = sigma_px;
+    PointDrive drive(1, options);
+    JointBackend backend(JointParams{}, kPointRig);
+    return test::runDrive(backend, drive).finals[15].objects.at(0).acceleration->along_sigma_mps2;
+  };
+  EXPECT_GT(sigma_mps2(1.0), 1.3 * sigma_mps2(0.1));
+}
+
 /// What the image tells of the noise holds for a vehicle that enters it.
 TEST(JointEstimates, ANewObjectHasTheNoiseOfTheImage) {
   constexpr int kEnters = 40, kLook = kEnters + 5;

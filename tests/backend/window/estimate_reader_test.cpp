@@ -210,7 +210,23 @@ TEST_F(EstimateReaderTest, CovariancesStandInTheEstimatesOnceTheGraphKeepsThem) 
     EXPECT_EQ(object.covariance, computed.T_cam_body);
     EXPECT_EQ(object.speed_sigma_mps, computed.speed_sigma_mps);
     EXPECT_EQ(object.yaw_rate_sigma_radps, computed.yaw_rate_sigma_radps);
+    EXPECT_FALSE(object.acceleration) << "a graph without twists tells none";
   }
+}
+
+TEST_F(EstimateReaderTest, AnAccelerationIsTheOneThatTheGraphKeeps) {
+  drive();
+  FrameCovariances covariances = reader_.covariances(kLast);
+  covariances.objects.at(SimulatedDrive::track(0)).acceleration = {
+      .along_mps2 = -2, .along_sigma_mps2 = 0.5, .yaw_radps2 = 0.1, .yaw_sigma_radps2 = 0.05};
+  graph_.keep(kLast, covariances);
+  const auto told = estimateOf(0, kLast).acceleration;
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->along_mps2, -2);
+  EXPECT_EQ(told->along_sigma_mps2, 0.5);
+  EXPECT_EQ(told->yaw_radps2, 0.1);
+  EXPECT_EQ(told->yaw_sigma_radps2, 0.05);
+  EXPECT_FALSE(estimateOf(1, kLast).acceleration);
 }
 
 TEST_F(EstimateReaderTest, AnObjectWhosePoseIsNotInTheGraphHasNoCovarianceAndThePoseThatWasSeen) {
