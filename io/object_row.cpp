@@ -1,5 +1,6 @@
 #include "io/object_row.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "core/object_place.hpp"
@@ -21,6 +22,17 @@ ObjectBox readBox(FieldReader& fields) {
   return box;
 }
 
+/// Four cells: all of them have a number, or none.
+std::optional<ObjectAcceleration> readAcceleration(FieldReader& fields) {
+  std::array<std::optional<double>, 4> cells;
+  for (auto& cell : cells) cell = fields.numberOrNone("acceleration");
+  const auto known = std::ranges::count_if(cells, [](const auto& cell) { return cell.has_value(); });
+  if (known == 0) return std::nullopt;
+  if (known < std::ssize(cells)) fields.fail("has only a part of an acceleration");
+  return ObjectAcceleration{
+      .along_mps2 = *cells[0], .along_sigma_mps2 = *cells[1], .yaw_radps2 = *cells[2], .yaw_sigma_radps2 = *cells[3]};
+}
+
 /// Columns that came later: how the object turns and how old it is, and between them what placeOf tells.
 void readMotion(FieldReader& fields, ObjectEstimate& object) {
   for (int column = 0; column < 2; ++column) fields.number("heading");
@@ -29,6 +41,7 @@ void readMotion(FieldReader& fields, ObjectEstimate& object) {
   for (int column = 0; column < 6; ++column) fields.number("center");
   object.age_s = fields.number("age_s");
   if (!fields.atEnd()) object.existence_probability = fields.number("existence_probability");
+  if (!fields.atEnd()) object.acceleration = readAcceleration(fields);
 }
 
 }  // namespace
@@ -63,7 +76,7 @@ std::string_view kindName(ObjectKind kind) {
 
 std::string objectLine(FrameId frame, const ObjectEstimate& object) {
   std::string line;
-  line.reserve(520);
+  line.reserve(560);
   appendInteger(line, frame.value);
   line += ',';
   appendInteger(line, object.track.value);
@@ -97,6 +110,14 @@ std::string objectLine(FrameId frame, const ObjectEstimate& object) {
     for (const double value_m : vector) add(value_m, 3);
   add(object.age_s, 3);
   add(object.existence_probability, 3);
+  if (const auto& acceleration = object.acceleration) {
+    add(acceleration->along_mps2, 4);
+    add(acceleration->along_sigma_mps2, 4);
+    add(acceleration->yaw_radps2, 6);
+    add(acceleration->yaw_sigma_radps2, 6);
+  } else {
+    line += ",,,,";
+  }
   return line;
 }
 

@@ -18,7 +18,8 @@ inline constexpr std::string_view kObjectsHeader =
     "bottom,box_x_m,box_y_m,box_z_m,length_m,width_m,height_m,box_x_sigma_m,box_y_sigma_m,box_z_sigma_m,length_sigma_m,"
     "width_sigma_m,height_sigma_m,kind,kind_probability,heading_rad,heading_sigma_rad,yaw_rate_radps,"
     "yaw_rate_sigma_radps,center_x_m,center_y_m,center_z_m,center_x_sigma_m,center_y_sigma_m,center_z_sigma_m,age_s,"
-    "existence_probability";
+    "existence_probability,acceleration_mps2,acceleration_sigma_mps2,yaw_acceleration_radps2,"
+    "yaw_acceleration_sigma_radps2";
 
 std::string_view stateName(ObjectState state);
 std::string_view kindName(ObjectKind kind);

@@ -113,6 +113,12 @@ double FieldReader::number(std::string_view what) {
   return value;
 }
 
+std::optional<double> FieldReader::numberOrNone(std::string_view what) {
+  if (atEnd() || !(rest_.empty() || rest_.front() == separator_)) return number(what);
+  word(what);
+  return std::nullopt;
+}
+
 std::int64_t FieldReader::integer(std::string_view what) {
   const std::string_view field = word(what);
   std::int64_t value = 0;

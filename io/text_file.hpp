@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,6 +57,8 @@ class FieldReader {
 
   std::string_view word(std::string_view what);
   double number(std::string_view what);
+  /// The same of a field that may be empty.
+  std::optional<double> numberOrNone(std::string_view what);
   std::int64_t integer(std::string_view what);
   /// The one of `values` that has this name.
   template <class Value, std::size_t N>

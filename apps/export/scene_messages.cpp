@@ -36,6 +36,10 @@ void addFacts(foxglove::SceneEntity& entity, const ObjectEstimate& object) {
   addFact(entity, "speed_mps", fmt::format("{:.4f}", object.velocity_world_mps.norm()));
   addFact(entity, "speed_sigma_mps", fmt::format("{:.4f}", object.speed_sigma_mps));
   addFact(entity, "yaw_rate_radps", fmt::format("{:.6f}", object.yaw_rate_radps));
+  if (object.acceleration) {
+    addFact(entity, "acceleration_mps2", fmt::format("{:.4f}", object.acceleration->along_mps2));
+    addFact(entity, "acceleration_sigma_mps2", fmt::format("{:.4f}", object.acceleration->along_sigma_mps2));
+  }
   addFact(entity, "points", std::to_string(object.points));
 }
 

@@ -1,6 +1,7 @@
 #include "apps/interface/c_interface_output.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace motorcade {
 namespace {
@@ -37,6 +38,15 @@ motorcade_frame frameOf(const Result& result) {
   return frame;
 }
 
+void setAcceleration(const std::optional<Result::Acceleration>& acceleration, motorcade_object& object) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const auto known = acceleration.value_or(Result::Acceleration{kUnknown, kUnknown, kUnknown, kUnknown});
+  object.acceleration_mps2 = known.along_mps2;
+  object.acceleration_sigma_mps2 = known.along_sigma_mps2;
+  object.yaw_acceleration_radps2 = known.yaw_radps2;
+  object.yaw_acceleration_sigma_radps2 = known.yaw_sigma_radps2;
+}
+
 motorcade_object objectOf(const Result::Object& object) {
   motorcade_object converted{};
   converted.id = object.id;
@@ -58,6 +68,7 @@ motorcade_object objectOf(const Result::Object& object) {
   converted.kind = static_cast<motorcade_kind>(object.kind);
   converted.kind_probability = object.kind_probability;
   converted.existence_probability = object.existence_probability;
+  setAcceleration(object.acceleration, converted);
   return converted;
 }
 

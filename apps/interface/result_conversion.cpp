@@ -193,6 +193,11 @@ Result::Object ResultConversion::object(const ObjectEstimate& object, const SE3&
   converted.points = object.points;
   converted.image_box_px = {object.box.left_px, object.box.top_px, object.box.right_px, object.box.bottom_px};
   if (object.cuboid) setCuboid(*object.cuboid, converted);
+  if (const auto& acceleration = object.acceleration)
+    converted.acceleration = {.along_mps2 = acceleration->along_mps2,
+                              .along_sigma_mps2 = acceleration->along_sigma_mps2,
+                              .yaw_radps2 = acceleration->yaw_radps2,
+                              .yaw_sigma_radps2 = acceleration->yaw_sigma_radps2};
   return converted;
 }
 

@@ -43,6 +43,13 @@ void addDistance(Json& json, const ObjectPlace& place, const Eigen::Vector3d& ca
   if (variance_m2 > 0) json["distance_sigma"] = rounded(std::sqrt(variance_m2));
 }
 
+void addAcceleration(Json& json, const ObjectAcceleration& acceleration) {
+  json["acceleration"] = rounded(acceleration.along_mps2);
+  json["acceleration_sigma"] = rounded(acceleration.along_sigma_mps2);
+  json["yaw_acceleration"] = rounded(acceleration.yaw_radps2, 1e4);
+  json["yaw_acceleration_sigma"] = rounded(acceleration.yaw_sigma_radps2, 1e4);
+}
+
 Json objectJson(const ObjectEstimate& object, const Eigen::Vector3d& camera_world) {
   const ObjectPlace place = placeOf(object);
   const Eigen::Matrix3d& C = place.center_covariance;
@@ -65,6 +72,7 @@ Json objectJson(const ObjectEstimate& object, const Eigen::Vector3d& camera_worl
   if (C.trace() > 0)
     json["center_covariance_xz"] = {rounded(C(0, 0), 1e5), rounded(C(0, 2), 1e5), rounded(C(2, 2), 1e5)};
   addDistance(json, place, camera_world);
+  if (object.acceleration) addAcceleration(json, *object.acceleration);
   if (object.cuboid)
     json["cuboid"] = {{"center", toJson(object.cuboid->center_body)},
                       {"size", toJson(object.cuboid->size_m)},

@@ -70,6 +70,17 @@ void addMotion(JsonLine& line, const VehicleMotion& motion) {
   line.add("ego_velocity", motion.velocity.values).add("ego_velocity_covariance", motion.covariance.values);
 }
 
+void addAcceleration(JsonLine& line, const std::optional<Result::Acceleration>& acceleration) {
+  if (!acceleration) {
+    line.addNull("acceleration_mps2");
+    return;
+  }
+  line.add("acceleration_mps2", acceleration->along_mps2);
+  line.add("acceleration_sigma_mps2", acceleration->along_sigma_mps2);
+  line.add("yaw_acceleration_radps2", acceleration->yaw_radps2);
+  line.add("yaw_acceleration_sigma_radps2", acceleration->yaw_sigma_radps2);
+}
+
 void addBox(JsonLine& line, const std::optional<VehicleObject::Box>& box) {
   if (!box) {
     line.addNull("box_center_m");
@@ -117,6 +128,7 @@ void ObjectPublisher::publishObject(const Result& result, const Result::Object& 
   addOrNull(line, "pose_covariance", seen.pose_covariance);
   line.add("velocity_mps", seen.velocity_mps.values).add("velocity_covariance", seen.velocity_covariance.values);
   line.add("yaw_rate_radps", object.yaw_rate_radps).add("yaw_rate_sigma_radps", object.yaw_rate_sigma_radps);
+  addAcceleration(line, object.acceleration);
   addBox(line, seen.box);
   publish_(line.text());
 }

@@ -94,6 +94,11 @@ struct Result {
     int left_px = 0, top_px = 0, cell_px = 1, width_cells = 0, height_cells = 0;
     std::vector<std::uint8_t> inside{};
   };
+  /// How an object's speed and its yaw rate change, with standard deviations.
+  struct Acceleration {
+    double along_mps2 = 0, along_sigma_mps2 = 0;  // along its path: positive where it becomes faster
+    double yaw_radps2 = 0, yaw_sigma_radps2 = 0;  // about the body's z axis
+  };
   struct Object {
     std::int64_t id = -1;  // never used twice by one tracker
     State state = State::kMoving;
@@ -110,7 +115,8 @@ struct Result {
     std::array<double, 3> box_center_body_m{}, box_size_m{}, box_size_sigma_m{};  // length, width, height
     Kind kind = Kind::kUnknown;
     double kind_probability = 0;
-    std::optional<Mask> mask{};  // with `Options::masks`, where the outline was found
+    std::optional<Mask> mask{};                  // with `Options::masks`, where the outline was found
+    std::optional<Acceleration> acceleration{};  // empty in its first frame
   };
   std::int64_t frame = -1, stamp_ns = 0;  // of the pair; where the clock was set back, stamps go on all the same
   Status status = Status::kGood;

@@ -121,6 +121,12 @@ class Object:
     yaw_rate_radps: float
     """About the body's z axis."""
     yaw_rate_sigma_radps: float
+    acceleration_mps2: float | None
+    """Along its path: positive where it becomes faster. None in its first frame."""
+    acceleration_sigma_mps2: float | None
+    yaw_acceleration_radps2: float | None
+    """About the body's z axis; None as above."""
+    yaw_acceleration_sigma_radps2: float | None
     age_s: float
     """Since it was first reported."""
     points: int

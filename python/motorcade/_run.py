@@ -35,6 +35,10 @@ OBJECT_DTYPE = np.dtype(
         ("velocity_covariance", "f8", (3, 3)),
         ("yaw_rate_radps", "f8"),
         ("yaw_rate_sigma_radps", "f8"),
+        ("acceleration_mps2", "f8"),
+        ("acceleration_sigma_mps2", "f8"),
+        ("yaw_acceleration_radps2", "f8"),
+        ("yaw_acceleration_sigma_radps2", "f8"),
         ("age_s", "f8"),
         ("points", "i8"),
         ("image_box_px", "f8", (4,)),
@@ -49,7 +53,7 @@ OBJECT_DTYPE = np.dtype(
 @dataclass(frozen=True, eq=False)
 class Run:
     """What is known of a drive: arrays with one row for each of n frames, and ``objects`` with one for each object in
-    each frame. Covariances are NaN where there is none. ``status``, ``cause``, ``state`` and ``kind`` are text, as the
+    each frame. Covariances and accelerations are NaN where there are none. ``status``, ``cause``, ``state`` and ``kind`` are text, as the
     enumerations of their names: ``run.status == motorcade.Status.GOOD``.
     """
 
@@ -97,8 +101,10 @@ class Run:
             table[f"{letter}_cam_m"] = self.objects["T_cam_body"][:, axis, 3]
             table[f"v{letter}_world_mps"] = self.objects["velocity_world_mps"][:, axis]
             table[f"v{letter}_sigma_mps"] = sigma_mps[:, axis]
-        table["yaw_rate_radps"] = self.objects["yaw_rate_radps"]
-        table["yaw_rate_sigma_radps"] = self.objects["yaw_rate_sigma_radps"]
+        for name in ("yaw_rate_radps", "yaw_rate_sigma_radps", "acceleration_mps2", "acceleration_sigma_mps2"):
+            table[name] = self.objects[name]
+        for name in ("yaw_acceleration_radps2", "yaw_acceleration_sigma_radps2"):
+            table[name] = self.objects[name]
         for side, name in enumerate(("left_px", "top_px", "right_px", "bottom_px")):
             table[name] = self.objects["image_box_px"][:, side]
         for axis, name in enumerate(("length", "width", "height")):

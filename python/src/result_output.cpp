@@ -72,17 +72,29 @@ py::object pythonOf(const std::optional<Result::Mask>& mask) {
                           "inside"_a = inside);
 }
 
+/// None where there is none.
+py::object memberOf(const std::optional<Result::Acceleration>& acceleration, double Result::Acceleration::*member) {
+  return acceleration ? py::object(py::float_((*acceleration).*member)) : py::none();
+}
+
 py::object pythonOf(const Result::Object& object) {
+  using Acceleration = Result::Acceleration;
+  const auto acceleration = [&](double Acceleration::*member) { return memberOf(object.acceleration, member); };
   return packaged("Object")(
       "id"_a = object.id, "state"_a = pythonOf(object.state), "T_world_body"_a = transformOf(object.T_world_body),
       "T_cam_body"_a = transformOf(object.T_cam_body), "covariance"_a = squareOf(object.covariance),
       "velocity_world_mps"_a = vectorOf(object.velocity_world_mps),
       "velocity_covariance"_a = squareOf(object.velocity_covariance), "yaw_rate_radps"_a = object.yaw_rate_radps,
-      "yaw_rate_sigma_radps"_a = object.yaw_rate_sigma_radps, "age_s"_a = object.age_s, "points"_a = object.points,
-      "image_box_px"_a = vectorOf(object.image_box_px), "box_center_body_m"_a = vectorOf(object.box_center_body_m),
-      "box_size_m"_a = vectorOf(object.box_size_m), "box_size_sigma_m"_a = vectorOf(object.box_size_sigma_m),
-      "kind"_a = pythonOf(object.kind), "kind_probability"_a = object.kind_probability,
-      "existence_probability"_a = object.existence_probability, "mask"_a = pythonOf(object.mask));
+      "yaw_rate_sigma_radps"_a = object.yaw_rate_sigma_radps,
+      "acceleration_mps2"_a = acceleration(&Acceleration::along_mps2),
+      "acceleration_sigma_mps2"_a = acceleration(&Acceleration::along_sigma_mps2),
+      "yaw_acceleration_radps2"_a = acceleration(&Acceleration::yaw_radps2),
+      "yaw_acceleration_sigma_radps2"_a = acceleration(&Acceleration::yaw_sigma_radps2), "age_s"_a = object.age_s,
+      "points"_a = object.points, "image_box_px"_a = vectorOf(object.image_box_px),
+      "box_center_body_m"_a = vectorOf(object.box_center_body_m), "box_size_m"_a = vectorOf(object.box_size_m),
+      "box_size_sigma_m"_a = vectorOf(object.box_size_sigma_m), "kind"_a = pythonOf(object.kind),
+      "kind_probability"_a = object.kind_probability, "existence_probability"_a = object.existence_probability,
+      "mask"_a = pythonOf(object.mask));
 }
 
 py::tuple pythonOf(const std::vector<Result::Object>& objects) {

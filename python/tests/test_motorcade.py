@@ -306,6 +306,8 @@ class FollowingADrive(unittest.TestCase):
         self.assertIsInstance(thing.kind, motorcade.Kind)
         self.assertGreaterEqual(thing.existence_probability, 0.5)
         self.assertLessEqual(thing.existence_probability, 1)
+        self.assertLess(abs(thing.acceleration_mps2), 3 * thing.acceleration_sigma_mps2)
+        self.assertLess(abs(thing.yaw_acceleration_radps2), 3 * thing.yaw_acceleration_sigma_radps2)
         shapes = {name: getattr(thing, name).shape for name in thing.__dataclass_fields__
                   if isinstance(getattr(thing, name), np.ndarray)}
         self.assertEqual(shapes, {
@@ -343,6 +345,9 @@ class FollowingADrive(unittest.TestCase):
                 first += 1
                 self.assertEqual(row["frame"], frame["frame"])
                 for name in motorcade.OBJECT_DTYPE.names[2:]:
+                    if thing[name] is None:
+                        self.assertTrue(np.isnan(row[name]).all(), name)
+                        continue
                     same = row[name].tobytes() if isinstance(thing[name], bytes) else row[name]
                     self.assertEqual(same, thing[name], name)
         self.assertIsNone(next(expected, None))
@@ -358,6 +363,8 @@ class FollowingADrive(unittest.TestCase):
         np.testing.assert_array_equal(columns["vz_sigma_mps"], np.sqrt(run.objects["velocity_covariance"][:, 2, 2]))
         self.assertTrue((columns["kind"] == motorcade.Kind.CAR).any())
         self.assertTrue((columns["existence_probability"] >= 0.5).all())
+        np.testing.assert_array_equal(columns["acceleration_mps2"], run.objects["acceleration_mps2"])
+        self.assertTrue(np.isfinite(columns["yaw_acceleration_sigma_radps2"]).any())
         self.assertEqual(len(run.masks), len(run.objects))
 
     def test_run_follows_the_frames_it_is_asked_for(self) -> None:

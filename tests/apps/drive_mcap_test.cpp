@@ -1,6 +1,8 @@
 #include "apps/export/drive_mcap.hpp"
 
 #include <algorithm>
+#include <map>
+#include <string>
 
 #include <Eigen/Geometry>
 #include <foxglove/CompressedImage.pb.h>
@@ -37,6 +39,7 @@ ExportedFrame frameAt(int index, bool with_car) {
   car.velocity_world_mps = {0, 0, 10};
   car.speed_sigma_mps = 0.25;
   car.existence_probability = 0.875;
+  if (index > 4) car.acceleration = {.along_mps2 = -2.5, .along_sigma_mps2 = 0.5};
   car.cuboid = ObjectBox{.center_body = {1, 0.5, 0.25}, .size_m = {4, 2, 1.5}};
   frame.estimate.objects = {car};
   frame.points.push_back({{4}, {-1, 0.5, 12}});
@@ -109,6 +112,18 @@ TEST_F(DriveMcapFile, AnObjectsMetadataTellHowLikelyItIsThere) {
   const auto fact = std::ranges::find(facts, "existence_probability", &foxglove::KeyValuePair::key);
   ASSERT_NE(fact, facts.end());
   EXPECT_EQ(fact->value(), "0.875");
+}
+
+TEST_F(DriveMcapFile, AnObjectsMetadataTellItsAccelerationOnceItIsKnown) {
+  const auto of_frame = [&](std::size_t i) {
+    const auto update = parsed<foxglove::SceneUpdate>(of("/objects")[i]);
+    std::map<std::string, std::string> facts;
+    for (const auto& fact : update.entities(0).metadata()) facts[fact.key()] = fact.value();
+    return facts;
+  };
+  EXPECT_FALSE(of_frame(4).contains("acceleration_mps2"));
+  EXPECT_EQ(of_frame(5)["acceleration_mps2"], "-2.5000");
+  EXPECT_EQ(of_frame(5)["acceleration_sigma_mps2"], "0.5000");
 }
 
 TEST_F(DriveMcapFile, AnObjectThatIsGoneIsDeletedOnce) {

@@ -113,6 +113,7 @@ ShownFrame frameWithACar() {
   car.velocity_world_mps = {0, 0, 6};
   car.speed_sigma_mps = 0.25;
   car.existence_probability = 0.875;
+  car.acceleration = {.along_mps2 = -2.5, .along_sigma_mps2 = 0.5, .yaw_radps2 = 0.25, .yaw_sigma_radps2 = 0.125};
   car.covariance = Matrix6d::Identity() * 0.01;
   car.cuboid = ObjectBox{};
   car.cuboid->size_m = {4, 2, 1.5};
@@ -137,6 +138,10 @@ TEST(FrameJson, HoldsWhatThePageShows) {
   EXPECT_EQ(car["speed"], 6);
   EXPECT_EQ(car["speed_sigma"], 0.25);
   EXPECT_EQ(car["existence"], 0.875);
+  EXPECT_EQ(car["acceleration"], -2.5);
+  EXPECT_EQ(car["acceleration_sigma"], 0.5);
+  EXPECT_EQ(car["yaw_acceleration"], 0.25);
+  EXPECT_EQ(car["yaw_acceleration_sigma"], 0.125);
   EXPECT_NEAR(car["distance"].get<double>(), std::hypot(0.75, 12), 1e-3);
   EXPECT_NEAR(car["distance_sigma"].get<double>(), 0.1, 1e-3);
   EXPECT_THAT(car["cuboid"]["size"], ElementsAre(4, 2, 1.5));

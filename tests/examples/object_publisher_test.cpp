@@ -25,6 +25,7 @@ Result::Object someObject(std::int64_t id) {
   object.box_size_m = {4, 2, 1.5};
   object.kind = Result::Kind::kCar;
   object.existence_probability = 0.875;
+  object.acceleration = {.along_mps2 = -2.5, .along_sigma_mps2 = 0.5, .yaw_radps2 = 0.25, .yaw_sigma_radps2 = 0.125};
   return object;
 }
 
@@ -60,6 +61,10 @@ TEST_F(ObjectPublisherTest, ALineTellsOfTheFrameAndOneOfEachObject) {
   EXPECT_EQ(lines_[1]["id"], 4);
   EXPECT_EQ(last()["kind"], "car");
   EXPECT_EQ(last()["existence_probability"], 0.875);
+  EXPECT_EQ(last()["acceleration_mps2"], -2.5);
+  EXPECT_EQ(last()["acceleration_sigma_mps2"], 0.5);
+  EXPECT_EQ(last()["yaw_acceleration_radps2"], 0.25);
+  EXPECT_EQ(last()["yaw_acceleration_sigma_radps2"], 0.125);
   EXPECT_EQ(last()["position_m"], json({12, 3, 0.5}));
   EXPECT_THAT(last()["pose_covariance"], SizeIs(36));
   EXPECT_NEAR(last()["orientation_xyzw"][2], std::sqrt(0.5), 1e-6);

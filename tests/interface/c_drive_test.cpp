@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstdint>
 #include <cstring>
@@ -123,6 +124,13 @@ void expectSame(const Result::Object& expected, const motorcade_object& object) 
   EXPECT_EQ(int{object.kind}, static_cast<int>(expected.kind));
   EXPECT_EQ(object.kind_probability, expected.kind_probability);
   EXPECT_EQ(object.existence_probability, expected.existence_probability);
+  EXPECT_EQ(std::isnan(object.acceleration_mps2), !expected.acceleration);
+  EXPECT_EQ(std::isnan(object.yaw_acceleration_sigma_radps2), !expected.acceleration);
+  if (!expected.acceleration) return;
+  EXPECT_EQ(object.acceleration_mps2, expected.acceleration->along_mps2);
+  EXPECT_EQ(object.acceleration_sigma_mps2, expected.acceleration->along_sigma_mps2);
+  EXPECT_EQ(object.yaw_acceleration_radps2, expected.acceleration->yaw_radps2);
+  EXPECT_EQ(object.yaw_acceleration_sigma_radps2, expected.acceleration->yaw_sigma_radps2);
 }
 
 /// All but the latency, which is of the clock.

@@ -121,6 +121,7 @@ class ResultBytes {
     add(o.yaw_rate_sigma_radps, o.age_s, o.points, o.image_box_px, o.box_center_body_m, o.box_size_m);
     add(o.box_size_sigma_m, o.kind, o.kind_probability, o.existence_probability, o.mask.has_value());
     addOptional(o.covariance);
+    addOptional(o.acceleration);
     if (!o.mask) return;
     add(o.mask->left_px, o.mask->top_px, o.mask->cell_px, o.mask->width_cells, o.mask->height_cells);
     text_.append(o.mask->inside.begin(), o.mask->inside.end());

@@ -62,6 +62,11 @@ TEST_F(CarAhead, MovesAsItDoes) {
     EXPECT_LT(std::abs(car.yaw_rate_radps), 0.1);  // it drives straight on
     EXPECT_GT(car.yaw_rate_sigma_radps, 0);
     EXPECT_LT(car.yaw_rate_sigma_radps, 0.2);
+    ASSERT_TRUE(car.acceleration);  // it keeps its speed and its course
+    EXPECT_LT(std::abs(car.acceleration->along_mps2), 3 * car.acceleration->along_sigma_mps2);
+    EXPECT_LT(car.acceleration->along_sigma_mps2, 5);
+    EXPECT_LT(std::abs(car.acceleration->yaw_radps2), 3 * car.acceleration->yaw_sigma_radps2);
+    EXPECT_LT(car.acceleration->yaw_sigma_radps2, 1);
     EXPECT_GE(car.points, 3);
   });
 }

@@ -45,6 +45,8 @@ FrameEstimate estimateOf(int i) {
   cuboid.kind_probability = 0.75;
   object.age_s = 0.1 * i;
   object.existence_probability = 0.875;
+  if (i != 1)
+    object.acceleration = {.along_mps2 = -2.5, .along_sigma_mps2 = 0.5, .yaw_radps2 = 0.25, .yaw_sigma_radps2 = 0.125};
   if (i != 2) object.cuboid = cuboid;
   estimate.objects.push_back(object);
   estimate.camera_covariance = Matrix6d::Identity() * 0.02;
@@ -96,6 +98,11 @@ TEST(RunFolder, ComesBackAsWritten) {
   EXPECT_DOUBLE_EQ(row.object.yaw_rate_sigma_radps, 0.03125);
   EXPECT_DOUBLE_EQ(row.object.age_s, 0.6);
   EXPECT_DOUBLE_EQ(row.object.existence_probability, 0.875);
+  ASSERT_TRUE(row.object.acceleration);
+  EXPECT_DOUBLE_EQ(row.object.acceleration->along_mps2, -2.5);
+  EXPECT_DOUBLE_EQ(row.object.acceleration->along_sigma_mps2, 0.5);
+  EXPECT_DOUBLE_EQ(row.object.acceleration->yaw_radps2, 0.25);
+  EXPECT_DOUBLE_EQ(row.object.acceleration->yaw_sigma_radps2, 0.125);
   ASSERT_EQ(run.covariances.size(), 6u);
   EXPECT_FALSE(run.covariances[0].track.valid());
   EXPECT_THAT(run.covariances[1].covariance, IsNear(Matrix6d::Identity() * 0.01, 1e-12));
@@ -132,7 +139,8 @@ TEST(RunFolder, HasTheDocumentedHeadersAndStamps) {
           "right,bottom,box_x_m,box_y_m,box_z_m,length_m,width_m,height_m,box_x_sigma_m,box_y_sigma_m,box_z_sigma_m,"
           "length_sigma_m,width_sigma_m,height_sigma_m,kind,kind_probability,heading_rad,heading_sigma_rad,"
           "yaw_rate_radps,yaw_rate_sigma_radps,center_x_m,center_y_m,center_z_m,center_x_sigma_m,center_y_sigma_m,"
-          "center_z_sigma_m,age_s,existence_probability\n"
+          "center_z_sigma_m,age_s,existence_probability,acceleration_mps2,acceleration_sigma_mps2,"
+          "yaw_acceleration_radps2,yaw_acceleration_sigma_radps2\n"
           "0,4,moving,"));
   EXPECT_THAT(folder.read("run/camera_online.tum"), testing::StartsWith("1317042651.174740992 0.000000000 "));
   EXPECT_THAT(folder.read("run/camera_final.txt"), testing::StartsWith("1.000000000e+00 0.000000000e+00 "));
@@ -151,7 +159,7 @@ TEST(RunFolder, RowsTellWhereTheCuboidStandsAndHeads) {
   EXPECT_THAT(
       folder.read("objects_online.csv"),
       testing::EndsWith(",two_wheeler,0.750,0.000000,0.100000,-0.125000,0.031250,3.750,1.125,21.500,0.181,0.182,"
-                        "0.104,0.000,0.875\n"));
+                        "0.104,0.000,0.875,-2.5000,0.5000,0.250000,0.125000\n"));
 }
 
 /// A table without its last columns, as earlier versions wrote it.
@@ -172,7 +180,11 @@ TEST(RunFolder, ReadsRowsOfEarlierVersionsToo) {
   writeRun(folder / "run", 1, 2);
   EXPECT_FALSE(readRunFolder(folder / "run").final.objects[1].object.cuboid);  // not known in that frame
   const std::string csv = folder.read("run/objects_final.csv");
-  constexpr int kExistence = 1, kPlaceAndMotion = kExistence + 11, kCuboid = 14;
+  EXPECT_FALSE(readRunFolder(folder / "run").final.objects[0].object.acceleration) << "its cells are empty";
+  constexpr int kAcceleration = 4, kExistence = kAcceleration + 1, kPlaceAndMotion = kExistence + 11, kCuboid = 14;
+  folder.write("run/objects_final.csv", withoutLast(csv, kAcceleration));
+  EXPECT_DOUBLE_EQ(readRunFolder(folder / "run").final.objects[1].object.existence_probability, 0.875);
+  EXPECT_FALSE(readRunFolder(folder / "run").final.objects[1].object.acceleration);
   folder.write("run/objects_final.csv", withoutLast(csv, kExistence));
   const auto without_existence = readRunFolder(folder / "run").final.objects;
   EXPECT_DOUBLE_EQ(without_existence[0].object.age_s, 0.1);
@@ -184,6 +196,16 @@ TEST(RunFolder, ReadsRowsOfEarlierVersionsToo) {
   ASSERT_EQ(run.final.objects.size(), 2U);
   EXPECT_FALSE(run.final.objects[0].object.cuboid);
   EXPECT_DOUBLE_EQ(run.final.objects[0].object.box.bottom_px, 90.25);
+}
+
+TEST(RunFolder, AnAccelerationIsWholeOrMissing) {
+  const test::TemporaryFolder folder;
+  writeRun(folder / "run", 2, 1);
+  std::string csv = folder.read("run/objects_final.csv");
+  csv.replace(csv.find("-2.5000"), std::string_view("-2.5000").size(), "");
+  folder.write("run/objects_final.csv", csv);
+  EXPECT_THAT(messageOf<InputError>([&] { readRunFolder(folder / "run"); }),
+              AllOf(HasSubstr("objects_final.csv, line 2"), HasSubstr("a part of an acceleration")));
 }
 
 TEST(RunFolder, RejectedStampsStayOutOfTheTumFiles) {

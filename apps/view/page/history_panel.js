@@ -1,9 +1,10 @@
-// Speed, yaw rate and distance of one object over time, each with the band of one standard deviation; while none is
-// chosen, those of the camera. A dot stands at the frame that is shown.
+// Speed, acceleration, yaw rate and distance of one object over time, each with the band of one standard deviation; while
+// none is chosen, those of the camera, whose acceleration is not told. A dot stands at the frame that is shown.
 
 const kDegrees = 180 / Math.PI;
 const kQuantities = {
   speed: { value: (o) => o.speed, sigma: (o) => o.speed_sigma, digits: 2, unit: "m/s" },
+  acceleration: { value: (o) => o.acceleration, sigma: (o) => o.acceleration_sigma, digits: 2, unit: "m/s\u00b2" },
   yaw: { value: (o) => o.yaw_rate * kDegrees, sigma: (o) => (o.yaw_rate_sigma == null ? null : o.yaw_rate_sigma * kDegrees), digits: 1, unit: "deg/s" },
   distance: { value: (o) => o.distance, sigma: (o) => o.distance_sigma, digits: 2, unit: "m" },
 };
@@ -76,6 +77,7 @@ export class HistoryPanel {
     if (!known) return;
     this.color = id === null ? css("--accent") : rows[rows.length - 1].object.color;
     this.of_camera = id === null;
+    this.element("acceleration").hidden = rows.every(({ object }) => object.acceleration == null);
     for (const [name, chart] of Object.entries(this.charts())) this.fill(name, chart, rows, now);
     this.paint();
   }
