@@ -71,6 +71,7 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
                       .mean_positions = {},
                       .motion = motionErrors(frames),
                       .followed_motion = followedMotion(frames),
+                      .acceleration = {},
                       .detection = detectionErrors(frames),
                       .existence = existenceErrors(frames),
                       .boxes_within_30m = boxErrors(frames, 0, kNear_m),
@@ -87,6 +88,12 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
     if (object.positions) positions.push_back(*object.positions);
   kind.mean_positions = meanOf(positions);
   return kind;
+}
+
+/// Labels of real drives jitter too much to be derived twice.
+std::optional<AccelerationErrors> accelerationsOf(const std::vector<ComparedFrame>& frames, const Sequence& sequence) {
+  if (!sequence.truth.exact()) return std::nullopt;
+  return accelerationErrors(frames, sequence.stamps);
 }
 
 CameraTruth neededTruth(const Sequence& sequence, OxtsTimes times) {
@@ -206,6 +213,8 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
     online[i].entered = run.frames[i].cause != FrameCause::kTooLate && run.frames[i].cause != FrameCause::kOutOfOrder;
   evaluation.online = evaluateFrames(online);
   evaluation.final = evaluateFrames(final);
+  evaluation.online.acceleration = accelerationsOf(online, sequence);
+  evaluation.final.acceleration = accelerationsOf(final, sequence);
   evaluation.worst = worstFrames(final);
   if (mayBeMountedWrongly(sequence)) removeMounting(evaluation, final, online);
   evaluateCovariances(evaluation, online, run.covariances);

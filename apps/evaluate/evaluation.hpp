@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/evaluate/acceleration_measures.hpp"
 #include "apps/evaluate/box_measures.hpp"
 #include "apps/evaluate/covariance_measures.hpp"
 #include "apps/evaluate/existence_measures.hpp"
@@ -46,6 +47,7 @@ struct KindEvaluation {
   MeanPositionErrors mean_positions;
   MotionErrors motion;
   FollowedMotion followed_motion;
+  std::optional<AccelerationErrors> acceleration;  // where the truth is exact
   DetectionErrors detection;
   Reliability existence;
   BoxErrors boxes_within_30m, boxes_from_30_to_50m;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <utility>
 
@@ -65,17 +64,13 @@ double KindRows::logLoss() const { return log_loss_sum / std::max(1, counts.tota
 double KindRows::shareSureWrong() const { return sure_wrong / std::max(1.0, static_cast<double>(counts.total())); }
 
 KindErrors kindErrors(const std::vector<ComparedFrame>& frames, double to_m) {
-  constexpr int kRowsBefore = 9;  // of a track, until its kind is held to account
-  std::map<const MatchedRow*, int> rows_before;
-  std::map<TrackId, int> rows_of_track;
-  for (const ComparedFrame& frame : frames)
-    for (const MatchedRow& row : frame.rows) rows_before[&row] = rows_of_track[row.row.object.track]++;
+  const auto rows_before = rowsBefore(frames);
   KindErrors errors;
   for (const auto& [frame, object, row] : askedPairs(frames, 0, to_m)) {
     const ObjectKind label = kindOfType(object->truth.type);
     if (label == ObjectKind::kUnknown) continue;
     const auto& cuboid = row->row.object.cuboid;
-    KindRows& rows = rows_before[row] >= kRowsBefore ? errors.from_tenth_row : errors.before;
+    KindRows& rows = rows_before.at(row) >= kEarlyRows ? errors.from_tenth_row : errors.before;
     rows.add(label, cuboid ? cuboid->kind : ObjectKind::kUnknown, cuboid ? cuboid->kind_probability : 0);
   }
   return errors;

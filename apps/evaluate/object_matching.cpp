@@ -110,6 +110,14 @@ std::vector<AskedPair> movingPairs(const std::vector<ComparedFrame>& frames) {
   return pairs;
 }
 
+std::map<const MatchedRow*, int> rowsBefore(const std::vector<ComparedFrame>& frames) {
+  std::map<const MatchedRow*, int> rows_before;
+  std::map<TrackId, int> rows_of_track;
+  for (const ComparedFrame& frame : frames)
+    for (const MatchedRow& row : frame.rows) rows_before[&row] = rows_of_track[row.row.object.track]++;
+  return rows_before;
+}
+
 std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths,
                                                            const std::vector<Timestamp>& stamps) {
   std::map<FrameId, std::vector<TrueObject>> frames;

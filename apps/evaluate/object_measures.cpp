@@ -9,8 +9,6 @@
 namespace motorcade {
 namespace {
 
-constexpr double kSigmas95 = 1.96;  // half the width of the 95 % interval of a Gaussian
-
 /// H is transferred from the estimated to the true camera.
 SE3 motionError(const AskedPair& before, const AskedPair& now) {
   const SE3 H_world = now.row->row.object.T_world_body * before.row->row.object.T_world_body.inverse();

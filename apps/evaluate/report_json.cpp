@@ -79,6 +79,16 @@ Json jsonOf(const MotionErrors& errors) {
           {"speed_coverage_95", errors.speed_coverage}};
 }
 
+Json jsonOf(const CoveredErrors& covered) {
+  return {{"error", jsonOf(covered.errors)}, {"coverage_95", covered.coverage}};
+}
+
+Json jsonOf(const std::optional<AccelerationErrors>& errors) {
+  if (!errors) return nullptr;
+  return {
+      {"rows", errors->rows}, {"along_mps2", jsonOf(errors->along_mps2)}, {"yaw_radps2", jsonOf(errors->yaw_radps2)}};
+}
+
 Json jsonOf(const DetectionCounts& counts) {
   return {{"labels", counts.labels}, {"found", counts.found}, {"recall", counts.recall()}};
 }
@@ -230,6 +240,7 @@ Json jsonOf(const KindEvaluation& kind, bool with_objects) {
   json["objects_mean"] = jsonOf(kind.mean_positions);
   json["motion"] = jsonOf(kind.motion);
   json["followed_motion"] = jsonOf(kind.followed_motion);
+  json["acceleration"] = jsonOf(kind.acceleration);
   json["detection"] = jsonOf(kind.detection);
   json["boxes_within_30m"] = jsonOf(kind.boxes_within_30m);
   json["boxes_from_30_to_50m"] = jsonOf(kind.boxes_from_30_to_50m);

@@ -49,6 +49,23 @@ void printFollowed(std::string& text, const Evaluation& e) {
   printLargest(text, "largest turn, online", online.largest_deg, "deg");
 }
 
+void printAccelerationLine(std::string& text, const char* what, const std::optional<AccelerationErrors>& errors) {
+  if (!errors || errors->rows == 0) return;
+  print(text, "  %-8s %6d", what, errors->rows);
+  for (const CoveredErrors* of : {&errors->along_mps2, &errors->yaw_radps2})
+    print(text, "  %7zu %7.3f %7.3f %5.1f %%", of->errors.count, of->errors.rmse, of->errors.max, 100 * of->coverage);
+  text += '\n';
+}
+
+void printAccelerations(std::string& text, const Evaluation& e) {
+  std::string lines;
+  printAccelerationLine(lines, "final", e.final.acceleration);
+  printAccelerationLine(lines, "online", e.online.acceleration);
+  if (lines.empty()) return;
+  text += "\nacceleration            along the path, m/s2             of the yaw rate, rad/s2\n";
+  text += "             rows     told    rmse     max  in 95 %     told    rmse     max  in 95 %\n" + lines;
+}
+
 }  // namespace
 
 void printMotions(std::string& text, const Evaluation& e) {
@@ -59,6 +76,7 @@ void printMotions(std::string& text, const Evaluation& e) {
   printMotion(text, "all rows, final", e.final.motion);
   printMotion(text, "all rows, online", e.online.motion);
   printFollowed(text, e);
+  printAccelerations(text, e);
 }
 
 }  // namespace motorcade

@@ -9,6 +9,8 @@
 /// How far an estimated trajectory is from the true one. Both have one pose per frame, in the same order.
 namespace motorcade {
 
+inline constexpr double kSigmas95 = 1.96;  // half the width of the 95 % interval of a Gaussian
+
 struct Statistics {
   double rmse = 0, mean = 0, median = 0, p95 = 0, max = 0;
   std::size_t count = 0;

@@ -12,16 +12,10 @@ namespace {
 using Entry = std::pair<std::string_view, std::string_view>;
 
 /// Endings of keys and the units that they stand for.
-constexpr std::array kUnits{Entry{"_deg_per_m", "deg/m"},
-                            Entry{"_percent", "%"},
-                            Entry{"_mps", "m/s"},
-                            Entry{"_deg", "deg"},
-                            Entry{"_px", "px"},
-                            Entry{"_ms", "ms"},
-                            Entry{"_hz", "Hz"},
-                            Entry{"_mb", "MB"},
-                            Entry{"_m", "m"},
-                            Entry{"_s", "s"},
+constexpr std::array kUnits{Entry{"_deg_per_m", "deg/m"}, Entry{"_percent", "%"}, Entry{"_radps2", "rad/s2"},
+                            Entry{"_mps2", "m/s2"},       Entry{"_mps", "m/s"},   Entry{"_deg", "deg"},
+                            Entry{"_px", "px"},           Entry{"_ms", "ms"},     Entry{"_hz", "Hz"},
+                            Entry{"_mb", "MB"},           Entry{"_m", "m"},       Entry{"_s", "s"},
                             Entry{"_frames", "frames"}};
 
 /// Parts of keys and their meanings; longer parts come first.

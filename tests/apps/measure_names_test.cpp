@@ -16,6 +16,7 @@ TEST(MeasureNames, AreWordsWithUnits) {
   EXPECT_EQ(readableName("camera_rpe_r_rmse_deg"), "camera RPE of rotation, RMSE [deg]");
   EXPECT_EQ(readableName("online_me_t_m"), "motion error of objects, translation, online [m]");
   EXPECT_EQ(readableName("recall_30_to_50m"), "recall, from 30 to 50 m");
+  EXPECT_EQ(readableName("online_yaw_acceleration_rmse_radps2"), "yaw acceleration, RMSE, online [rad/s2]");
   EXPECT_EQ(readableName("recall_30m"), "recall, to 30 m");
   EXPECT_EQ(readableName("latency_p99_ms"), "latency, 99th percentile [ms]");
   EXPECT_EQ(readableName("online_existence_brier"), "Brier score of existence, online");
