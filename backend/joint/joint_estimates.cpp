@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "backend/joint/joint_graph.hpp"
 #include "backend/window/acceleration_span.hpp"
@@ -17,12 +18,13 @@ namespace {
 /// the newest one of a filter has the same parts. A mean acceleration has the walk's variance in place of the former.
 constexpr double kMeasuredShare = 0.25;
 
-/// The Jacobian of the pose with the axes of travel, exp(xi) R_z(yaw + dyaw) R_y(pitch + dpitch), right perturbation.
-Eigen::Matrix<double, 6, 15> byTravel(const Eigen::Matrix3d& R_body_travel) {
-  Eigen::Matrix<double, 6, 15> J = Eigen::Matrix<double, 6, 15>::Zero();
+/// The Jacobian of the pose with the axes of travel, exp(xi) R_z(yaw + dyaw) R_y(pitch + dpitch), right perturbation,
+/// of pose, twist, yaw and pitch.
+Eigen::Matrix<double, 6, 14> byTravel(const Eigen::Matrix3d& R_body_travel) {
+  Eigen::Matrix<double, 6, 14> J = Eigen::Matrix<double, 6, 14>::Zero();
   J.block<3, 3>(0, 0) = J.block<3, 3>(3, 3) = R_body_travel.transpose();
-  J.block<3, 1>(3, 13) = R_body_travel.row(2).transpose();  // about the body's z axis
-  J(4, 14) = 1;                                             // about the turned y axis
+  J.block<3, 1>(3, 12) = R_body_travel.row(2).transpose();  // about the body's z axis
+  J(4, 13) = 1;                                             // about the turned y axis
   return J;
 }
 
@@ -55,6 +57,70 @@ ObjectMotionEstimate JointGraph::objectMotion(const ObjectTrack& track, FrameId 
           objects_.travelAxes(track).col(2).dot(twist.tail<3>())};
 }
 
+/// Mean changes of speed and yaw rate around a frame, as they follow from the twists at the ends of two spans.
+struct JointGraph::TwistChanges {
+  AccelerationSpan of_speed, of_yaw_rate;
+  Eigen::Vector3d along, about;  // body axes
+  std::array<Vector6d, 4> twists;
+
+  std::array<VariableId, 4> variables() const {
+    return {of_speed.from->twist, of_speed.to->twist, of_yaw_rate.from->twist, of_yaw_rate.to->twist};
+  }
+  /// Of the two changes by the four twists.
+  Eigen::Matrix<double, 2, 24> jacobian() const {
+    Eigen::Matrix<double, 2, 24> J = Eigen::Matrix<double, 2, 24>::Zero();
+    J.block<1, 3>(0, 0) = -along.transpose() / of_speed.length_s();
+    J.block<1, 3>(0, 6) = along.transpose() / of_speed.length_s();
+    J.block<1, 3>(1, 15) = -about.transpose() / of_yaw_rate.length_s();
+    J.block<1, 3>(1, 21) = about.transpose() / of_yaw_rate.length_s();
+    return J;
+  }
+  /// `covariance` is the graph's, of the two changes.
+  ObjectAcceleration acceleration(const Eigen::Matrix2d& covariance) const {
+    const auto sigma = [&](int k, const AccelerationSpan& span, const RateChange& change) {
+      return std::sqrt(kMeasuredShare * std::max(0.0, covariance(k, k)) + span.walkVariance(change.density));
+    };
+    return {.along_mps2 = along.dot((twists[1] - twists[0]).head<3>()) / of_speed.length_s(),
+            .along_sigma_mps2 = sigma(0, of_speed, kSpeedChange),
+            .yaw_radps2 = about.dot((twists[3] - twists[2]).tail<3>()) / of_yaw_rate.length_s(),
+            .yaw_sigma_radps2 = sigma(1, of_yaw_rate, kYawRateChange)};
+  }
+};
+
+std::optional<JointGraph::TwistChanges> JointGraph::twistChanges(const ObjectTrack& track, FrameId frame) const {
+  const auto of_speed = accelerationSpan(track, frame, kSpeedChange.reach_s);
+  const auto of_yaw_rate = accelerationSpan(track, frame, kYawRateChange.reach_s);
+  if (!of_speed || !of_yaw_rate) return std::nullopt;
+  const Eigen::Matrix3d R_body_travel = objects_.travelAxes(track);
+  TwistChanges changes{.of_speed = *of_speed,
+                       .of_yaw_rate = *of_yaw_rate,
+                       .along = R_body_travel.col(0),
+                       .about = R_body_travel.col(2),
+                       .twists = {}};
+  const auto variables = changes.variables();
+  for (std::size_t k = 0; k < variables.size(); ++k)
+    changes.twists[k] = std::get<SmallVector>(solver_.estimate(variables[k]));
+  const bool backwards = (changes.twists[0] + changes.twists[1]).head<3>().dot(changes.along) < 0;
+  if (backwards) changes.along = -changes.along;
+  return changes;
+}
+
+/// The covariance of pose, twist, yaw and pitch of the axes of travel and, where there are some, of the changes.
+std::optional<Eigen::MatrixXd> JointGraph::motionCovariance(const ObjectTrack& track, const ObjectRecord& record,
+                                                            const std::optional<TwistChanges>& changes) const {
+  std::vector<VariableId> variables{record.pose, record.twist, track.shared};
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(changes ? 16 : 14, changes ? 39 : 15);
+  J.topLeftCorner<12, 12>().setIdentity();
+  J(12, 13) = J(13, 14) = 1;
+  if (changes) {
+    for (const VariableId twist : changes->variables()) variables.push_back(twist);
+    J.bottomRightCorner<2, 24>() = changes->jacobian();
+  }
+  auto covariance = solver_.jointCovariance(variables, J);
+  if (covariance) *covariance *= designEffect();
+  return covariance;
+}
+
 /// The pose seen from the camera is a variable. The speed is the length of the twist's velocity, the yaw rate its turn
 /// about the upright axis of travel.
 std::optional<ObjectCovariances> JointGraph::objectCovariances(const ObjectTrack& track, FrameId frame) const {
@@ -62,50 +128,23 @@ std::optional<ObjectCovariances> JointGraph::objectCovariances(const ObjectTrack
   const auto record = track.records.find(frame);
   if (record == track.records.end() || !record->second.pose.valid()) return std::nullopt;
   const auto& [pose, twist] = std::pair(record->second.pose, record->second.twist);
-  const std::array variables{pose, twist, track.shared};
-  const auto joint = solver_.jointCovariance(variables);
+  const auto changes = twistChanges(track, frame);
+  const auto joint = motionCovariance(track, record->second, changes);
   if (!joint) return std::nullopt;
   const Eigen::Vector3d velocity = std::get<SmallVector>(solver_.estimate(twist)).head<3>();
   const Eigen::Vector3d direction = velocity.norm() > kStanding_mps ? velocity.normalized() : Eigen::Vector3d::UnitX();
-  const Eigen::Matrix<double, 15, 15> covariance = designEffect() * *joint;
+  const Eigen::Matrix<double, 14, 14> covariance = joint->topLeftCorner<14, 14>();
   const Eigen::Matrix3d R_body_travel = objects_.travelAxes(track);
   const Eigen::Vector3d up = R_body_travel.col(2);
   const double variance = direction.dot(covariance.block<3, 3>(6, 6) * direction);
-  return ObjectCovariances{
+  ObjectCovariances known{
       .T_cam_body = propagated(byTravel(R_body_travel), covariance),
       .velocity_cam = velocityCovariance(solver_.pose(pose), velocity, covariance.topLeftCorner<12, 12>()),
       .speed_sigma_mps = std::sqrt(std::max(0.0, variance)),
       .yaw_rate_sigma_radps = std::sqrt(std::max(0.0, up.dot(covariance.block<3, 3>(9, 9) * up))),
-      .acceleration = objectAcceleration(track, frame)};
-}
-
-/// The mean change of speed and yaw rate around the frame.
-std::optional<ObjectAcceleration> JointGraph::objectAcceleration(const ObjectTrack& track, FrameId frame) const {
-  const auto of_speed = accelerationSpan(track, frame, kSpeedChange.reach_s);
-  const auto of_yaw_rate = accelerationSpan(track, frame, kYawRateChange.reach_s);
-  if (!of_speed || !of_yaw_rate) return std::nullopt;
-  const std::array twists{of_speed->from->twist, of_speed->to->twist, of_yaw_rate->from->twist, of_yaw_rate->to->twist};
-  const auto twist = [&](int k) { return Vector6d(std::get<SmallVector>(solver_.estimate(twists[k]))); };
-  const Eigen::Matrix3d R_body_travel = objects_.travelAxes(track);
-  const bool backwards = (twist(0) + twist(1)).head<3>().dot(R_body_travel.col(0)) < 0;
-  const Eigen::Vector3d along = (backwards ? -1.0 : 1.0) * R_body_travel.col(0) / of_speed->length_s();
-  const Eigen::Vector3d about = R_body_travel.col(2) / of_yaw_rate->length_s();
-
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(2, 24);
-  J.block<1, 3>(0, 0) = -along.transpose();
-  J.block<1, 3>(0, 6) = along.transpose();
-  J.block<1, 3>(1, 15) = -about.transpose();
-  J.block<1, 3>(1, 21) = about.transpose();
-  const auto covariance = solver_.jointCovariance(twists, J);
-  if (!covariance) return std::nullopt;
-  const auto sigma = [&](int k, const AccelerationSpan& span, const RateChange& change) {
-    const double measured = kMeasuredShare * designEffect() * (*covariance)(k, k);
-    return std::sqrt(std::max(0.0, measured) + span.walkVariance(change.density));
-  };
-  return ObjectAcceleration{.along_mps2 = along.dot((twist(1) - twist(0)).head<3>()),
-                            .along_sigma_mps2 = sigma(0, *of_speed, kSpeedChange),
-                            .yaw_radps2 = about.dot((twist(3) - twist(2)).tail<3>()),
-                            .yaw_sigma_radps2 = sigma(1, *of_yaw_rate, kYawRateChange)};
+      .acceleration = {}};
+  if (changes) known.acceleration = changes->acceleration(joint->bottomRightCorner<2, 2>());
+  return known;
 }
 
 }  // namespace motorcade

@@ -36,7 +36,10 @@ class JointGraph final : public SmoothingWindow {
   double designEffect() const override { return at_rest_.noise().designEffect(); }
 
  private:
-  std::optional<ObjectAcceleration> objectAcceleration(const ObjectTrack& track, FrameId frame) const;
+  struct TwistChanges;
+  std::optional<TwistChanges> twistChanges(const ObjectTrack& track, FrameId frame) const;
+  std::optional<Eigen::MatrixXd> motionCovariance(const ObjectTrack& track, const ObjectRecord& record,
+                                                  const std::optional<TwistChanges>& changes) const;
 
   std::string nameOf(VariableId v) const override;
   void dropped(TrackId id) override;

@@ -1,7 +1,6 @@
 #include "backend/solver/joint_covariance.hpp"
 
 #include <algorithm>
-#include <cassert>
 
 #include "backend/elimination/dense_substitution.hpp"
 
@@ -38,6 +37,16 @@ Path pathFrom(const FactorGraph& graph, const EliminationTree& tree, std::span<c
 
 using RowMajorMatrixXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Turns the rows of right perturbations to those of steps in the world's axes.
+void turnToWorldAxes(const Value& value, RowMajorMatrixXd& rows) {
+  if (const auto* pose = std::get_if<SE3>(&value)) {
+    rows.topRows<3>() = (pose->rotation() * rows.topRows<3>()).eval();
+    rows.bottomRows<3>() = (pose->rotation() * rows.bottomRows<3>()).eval();
+  } else if (const auto* planar = std::get_if<SE2>(&value)) {
+    rows.topRows<2>() = (planar->rotation() * rows.topRows<2>()).eval();
+  }
+}
+
 /// The columns of the identity that belong to the variables, in the rows of the path.
 RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables) {
   int columns = 0;
@@ -51,13 +60,15 @@ RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::
   return chosen;
 }
 
-/// The same of J^T, in place of the identity.
+/// The same of J^T, in place of the identity; J acts on right perturbations.
 RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables,
                                const Eigen::Ref<const Eigen::MatrixXd>& J) {
   RowMajorMatrixXd chosen = RowMajorMatrixXd::Zero(path.rows, J.rows());
   Eigen::Index column = 0;
   for (const VariableId v : variables) {
-    chosen.middleRows(path.rowOf(v), graph.sizeOf(v)) += J.middleCols(column, graph.sizeOf(v)).transpose();
+    RowMajorMatrixXd of_variable = J.middleCols(column, graph.sizeOf(v)).transpose();
+    turnToWorldAxes(graph.estimate(v), of_variable);
+    chosen.middleRows(path.rowOf(v), graph.sizeOf(v)) += of_variable;
     column += graph.sizeOf(v);
   }
   return chosen;

@@ -13,7 +13,7 @@ namespace motorcade {
 /// Costs as much as the cliques from the variables up to the root.
 std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
                                                std::span<const VariableId> variables);
-/// Covariance of J x, where x are the variables, stacked, which are vectors: cheaper, as J has few rows.
+/// Covariance of J x, where x are those perturbations: of many variables it is cheaper, as J has fewer rows than they.
 std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
                                                std::span<const VariableId> variables,
                                                const Eigen::Ref<const Eigen::MatrixXd>& J);

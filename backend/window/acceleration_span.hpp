@@ -14,8 +14,8 @@ struct RateChange {
   /// 1970) has 2 s^2 / tau near by; on roads, tau is some 4 s.
   double density;
 };
-/// 0.8 m/s^2. In 0.8 s the walk and the error of two speeds are about as large as each other.
-inline constexpr RateChange kSpeedChange{.reach_s = 0.4, .density = 0.3};
+/// 1 m/s^2. Over 0.8 s the walk and the error of two speeds are about as large as each other.
+inline constexpr RateChange kSpeedChange{.reach_s = 0.4, .density = 0.5};
 /// 0.2 rad/s^2, as a turn into another street takes. A yaw rate is known better than that, so that the span is shorter.
 inline constexpr RateChange kYawRateChange{.reach_s = 0.2, .density = 0.02};
 

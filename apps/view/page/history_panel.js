@@ -77,8 +77,9 @@ export class HistoryPanel {
     if (!known) return;
     this.color = id === null ? css("--accent") : rows[rows.length - 1].object.color;
     this.of_camera = id === null;
+    const charts = this.charts();
     this.element("acceleration").hidden = rows.every(({ object }) => object.acceleration == null);
-    for (const [name, chart] of Object.entries(this.charts())) this.fill(name, chart, rows, now);
+    for (const [name, chart] of Object.entries(charts)) this.fill(name, chart, rows, now);
     this.paint();
   }
 
