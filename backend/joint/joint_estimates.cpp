@@ -75,10 +75,15 @@ struct JointGraph::TwistChanges {
     J.block<1, 3>(1, 21) = about.transpose() / of_yaw_rate.length_s();
     return J;
   }
-  /// `covariance` is the graph's, of the two changes.
-  ObjectAcceleration acceleration(const Eigen::Matrix2d& covariance) const {
+  /// `covariance` is the graph's, of the two changes, `density` that of its white noise on acceleration. Of a span that
+  /// ends with what is known of the object, the noise draws the mean change towards its own mean, zero, by the part
+  /// that is left of the variance it had before anything was measured, density / length.
+  ObjectAcceleration acceleration(const Eigen::Matrix2d& covariance, const Vector6d& density) const {
     const auto sigma = [&](int k, const AccelerationSpan& span, const RateChange& change) {
-      return std::sqrt(kMeasuredShare * std::max(0.0, covariance(k, k)) + span.walkVariance(change.density));
+      const double variance = std::max(0.0, covariance(k, k));
+      const double drawn = span.at_end ? std::min(1.0, variance * span.length_s() / density[k == 0 ? 0 : 5]) : 0;
+      return std::sqrt(kMeasuredShare * variance + span.walkVariance(change.density()) +
+                       std::pow(drawn * change.deviation, 2));
     };
     return {.along_mps2 = along.dot((twists[1] - twists[0]).head<3>()) / of_speed.length_s(),
             .along_sigma_mps2 = sigma(0, of_speed, kSpeedChange),
@@ -105,16 +110,17 @@ std::optional<JointGraph::TwistChanges> JointGraph::twistChanges(const ObjectTra
   return changes;
 }
 
-/// The covariance of pose, twist, yaw and pitch of the axes of travel and, where there are some, of the changes.
+/// The covariance of the changes, where there are some, and of pose, twist, yaw and pitch of the axes of travel.
 std::optional<Eigen::MatrixXd> JointGraph::motionCovariance(const ObjectTrack& track, const ObjectRecord& record,
                                                             const std::optional<TwistChanges>& changes) const {
   std::vector<VariableId> variables{record.pose, record.twist, track.shared};
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(changes ? 16 : 14, changes ? 39 : 15);
-  J.topLeftCorner<12, 12>().setIdentity();
-  J(12, 13) = J(13, 14) = 1;
+  auto J_motion = J.bottomRows<14>();
+  J_motion.topLeftCorner<12, 12>().setIdentity();
+  J_motion(12, 13) = J_motion(13, 14) = 1;
   if (changes) {
     for (const VariableId twist : changes->variables()) variables.push_back(twist);
-    J.bottomRightCorner<2, 24>() = changes->jacobian();
+    J.topRightCorner<2, 24>() = changes->jacobian();
   }
   auto covariance = solver_.jointCovariance(variables, J);
   if (covariance) *covariance *= designEffect();
@@ -133,7 +139,7 @@ std::optional<ObjectCovariances> JointGraph::objectCovariances(const ObjectTrack
   if (!joint) return std::nullopt;
   const Eigen::Vector3d velocity = std::get<SmallVector>(solver_.estimate(twist)).head<3>();
   const Eigen::Vector3d direction = velocity.norm() > kStanding_mps ? velocity.normalized() : Eigen::Vector3d::UnitX();
-  const Eigen::Matrix<double, 14, 14> covariance = joint->topLeftCorner<14, 14>();
+  const Eigen::Matrix<double, 14, 14> covariance = joint->bottomRightCorner<14, 14>();
   const Eigen::Matrix3d R_body_travel = objects_.travelAxes(track);
   const Eigen::Vector3d up = R_body_travel.col(2);
   const double variance = direction.dot(covariance.block<3, 3>(6, 6) * direction);
@@ -143,7 +149,7 @@ std::optional<ObjectCovariances> JointGraph::objectCovariances(const ObjectTrack
       .speed_sigma_mps = std::sqrt(std::max(0.0, variance)),
       .yaw_rate_sigma_radps = std::sqrt(std::max(0.0, up.dot(covariance.block<3, 3>(9, 9) * up))),
       .acceleration = {}};
-  if (changes) known.acceleration = changes->acceleration(joint->bottomRightCorner<2, 2>());
+  if (changes) known.acceleration = changes->acceleration(joint->topLeftCorner<2, 2>(), params_.acceleration.density());
   return known;
 }
 

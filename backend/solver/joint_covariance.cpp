@@ -94,29 +94,46 @@ Panel lowerRight(const Panel& panel, int from) {
           .columns = panel.columns - from};
 }
 
+/// For each column, one more than the first row in which it or a column after it is not zero. Above, its rows need not
+/// be looked at.
+std::vector<int> beginsOf(const RowMajorMatrixXd& chosen) {
+  std::vector<int> begins(chosen.cols());
+  int earliest = static_cast<int>(chosen.rows());
+  for (Eigen::Index column = chosen.cols() - 1; column >= 0; --column) {
+    int row = 0;
+    while (row < earliest && chosen(row, column) == 0) ++row;
+    begins[column] = earliest = std::min(earliest, row);
+  }
+  return begins;
+}
+
 /// With the information H = L L^T and E the chosen columns of the identity, E^T H^-1 E = Y^T Y, Y = L^-1 E. Forward
 /// substitution meets only the cliques from the chosen variables up to the root; no back-substitution is needed.
-/// `rest` holds E, and what is left of it after the cliques so far.
+/// `rest` holds E, and what is left of it after the cliques so far. Last columns that begin farther up are left out.
 std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const EliminationTree& tree, const Path& path,
                                                 RowMajorMatrixXd rest) {
+  const std::vector<int> begins = beginsOf(rest);
   const int columns = static_cast<int>(rest.cols()), stride = padded(columns);
   Eigen::MatrixXd minus_square = Eigen::MatrixXd::Zero(stride, stride);
   std::vector<int> rows;
-  int largest = 0;
+  int largest = 0, passed = 0, used = 0;
   for (const int c : path.cliques) largest = std::max(largest, tree[c].size);
-  RowMajorMatrixXd memory(largest, stride);
+  Eigen::VectorXd memory(Eigen::Index{largest} * stride);
   for (const int c : path.cliques) {
     const Clique& clique = tree[c];
     if (!clique.singular.empty()) return std::nullopt;
     findRows(graph, path, clique, rows);
-    auto y = memory.topRows(clique.size);
-    y.rightCols(stride - columns).setZero();
-    for (int i = 0; i < clique.size; ++i) y.row(i).head(columns) = rest.row(rows[i]);
+    passed += clique.frontal_size;
+    while (used < columns && begins[used] < passed) ++used;
+    const int width = padded(used);
+    Eigen::Map<RowMajorMatrixXd> y(memory.data(), clique.size, width);
+    y.rightCols(width - used).setZero();
+    for (int i = 0; i < clique.size; ++i) y.row(i).head(used) = rest.row(rows[i]).head(used);
     const int first = firstRowThatIsNotZero(y, clique.frontal_size), solved = clique.frontal_size - first;
-    double* const from = y.data() + std::ptrdiff_t{first} * stride;
-    forwardSubstitute(lowerRight(clique.panelView(), first), from, stride);
-    subtractOuterProduct(minus_square.data(), stride, from, stride, columns, solved);
-    for (int i = clique.frontal_size; i < clique.size; ++i) rest.row(rows[i]) = y.row(i).head(columns);
+    double* const from = y.data() + std::ptrdiff_t{first} * width;
+    forwardSubstitute(lowerRight(clique.panelView(), first), from, width);
+    subtractOuterProduct(minus_square.data(), stride, from, width, used, solved);
+    for (int i = clique.frontal_size; i < clique.size; ++i) rest.row(rows[i]).head(used) = y.row(i).head(used);
   }
   Eigen::MatrixXd square = -minus_square.topLeftCorner(columns, columns);
   square.triangularView<Eigen::StrictlyUpper>() = square.transpose();

@@ -36,7 +36,8 @@ std::optional<AccelerationSpan> accelerationSpan(const ObjectTrack& track, Frame
   const AccelerationSpan span{.from = &from->second,
                               .to = &to->second,
                               .before_s = secondsBetween(from->second.stamp, stamp),
-                              .after_s = secondsBetween(stamp, to->second.stamp)};
+                              .after_s = secondsBetween(stamp, to->second.stamp),
+                              .at_end = from == track.records.begin() || std::next(to) == track.records.end()};
   if (!(span.length_s() > 0)) return std::nullopt;
   return span;
 }

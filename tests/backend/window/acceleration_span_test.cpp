@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -37,6 +38,12 @@ TEST(AccelerationSpan, ReachesToBothSidesAsFarAsTheObjectsFramesGo) {
   expectSpan(track, 0, {0, 0.4});
   expectSpan(track, 2, {0.2, 0.4});
   expectSpan(track, 11, {0.4, 0});
+}
+
+TEST(AccelerationSpan, TellsWhetherAnythingComesBeforeAndAfter) {
+  const ObjectTrack track = trackOf(12, 0.1);
+  for (const auto& [frame, at_end] : {std::pair(4, true), std::pair(5, false), std::pair(6, false), std::pair(7, true)})
+    EXPECT_EQ(accelerationSpan(track, FrameId{10 + frame}, 0.4)->at_end, at_end) << frame;
 }
 
 TEST(AccelerationSpan, IsInSecondsWhateverTheRate) {
@@ -80,13 +87,14 @@ double simulatedVariance(double before_s, double after_s, double density) {
 TEST(AccelerationSpan, TheWalksVarianceIsThatOfWalksThatAreSimulated) {
   constexpr double kDensity = 0.7, kChance = 0.05;  // 3.5 standard deviations of a variance of ten thousand
   for (const auto& [before_s, after_s] : {std::array{0.4, 0.4}, std::array{0.5, 0.0}, std::array{0.1, 0.6}}) {
-    const AccelerationSpan span{.from = nullptr, .to = nullptr, .before_s = before_s, .after_s = after_s};
+    const AccelerationSpan span{
+        .from = nullptr, .to = nullptr, .before_s = before_s, .after_s = after_s, .at_end = false};
     const double expected = simulatedVariance(before_s, after_s, kDensity);
     EXPECT_NEAR(span.walkVariance(kDensity), expected, kChance * expected) << before_s << " " << after_s;
   }
-  const AccelerationSpan centered{.from = nullptr, .to = nullptr, .before_s = 0.4, .after_s = 0.4};
+  const AccelerationSpan centered{.from = nullptr, .to = nullptr, .before_s = 0.4, .after_s = 0.4, .at_end = false};
   EXPECT_DOUBLE_EQ(centered.walkVariance(3), 3 * 0.8 / 12);
-  const AccelerationSpan one_sided{.from = nullptr, .to = nullptr, .before_s = 0.8, .after_s = 0};
+  const AccelerationSpan one_sided{.from = nullptr, .to = nullptr, .before_s = 0.8, .after_s = 0, .at_end = true};
   EXPECT_DOUBLE_EQ(one_sided.walkVariance(3), 3 * 0.8 / 3);
 }
 
