@@ -68,20 +68,31 @@ void forwardSubstituteColumns(const Panel& panel, int first, double* g) {
     for (int c = 0; c < N; ++c) g[i] -= L[i + c * ld] * d[c];
 }
 
-/// N vectors of columns of several right-hand sides, from `y` on.
+/// Takes the part of the first `solved` rows out of R rows from `first` on, in N vectors of columns of several
+/// right-hand sides, from `y` on, and multiplies them.
+template <int N, int R>
+[[gnu::always_inline]] inline void reduceRows(const Panel& panel, int first, int solved, double multiplier, double* y,
+                                              int stride) {
+  Vec rest[R * N];
+#pragma GCC unroll 8
+  for (int e = 0; e < R * N; ++e) rest[e] = load(y + (first + e / N) * stride + e % N * kLanes);
+  for (int k = 0; k < solved; ++k) {
+    const double* const L = panel.data + first + k * panel.ld;
+#pragma GCC unroll 8
+    for (int e = 0; e < R * N; ++e) rest[e] -= broadcast(L[e / N]) * load(y + k * stride + e % N * kLanes);
+  }
+#pragma GCC unroll 8
+  for (int e = 0; e < R * N; ++e) store(y + (first + e / N) * stride + e % N * kLanes, rest[e] * broadcast(multiplier));
+}
+
+/// The same of all rows, those of the frontal scalars first.
 template <int N>
 void forwardSubstituteRows(const Panel& panel, double* y, int stride) {
-  for (int i = 0; i + 1 < panel.rows; ++i) {
-    Vec rest[N];
-    for (int c = 0; c < N; ++c) rest[c] = load(y + i * stride + c * kLanes);
-    for (int k = 0; k < std::min(i, panel.columns); ++k) {
-      const Vec factor = broadcast(panel.data[i + k * panel.ld]);
-#pragma GCC unroll 4
-      for (int c = 0; c < N; ++c) rest[c] -= factor * load(y + k * stride + c * kLanes);
-    }
-    const Vec inverse = broadcast(i < panel.columns ? 1 / panel.data[i + i * panel.ld] : 1);
-    for (int c = 0; c < N; ++c) store(y + i * stride + c * kLanes, rest[c] * inverse);
-  }
+  constexpr int kRows = 8 / N;  // as many sums as registers hold
+  for (int i = 0; i < panel.columns; ++i) reduceRows<N, 1>(panel, i, i, 1 / panel.data[i + i * panel.ld], y, stride);
+  int i = panel.columns;
+  for (; i + kRows < panel.rows; i += kRows) reduceRows<N, kRows>(panel, i, panel.columns, 1, y, stride);
+  for (; i + 1 < panel.rows; ++i) reduceRows<N, 1>(panel, i, panel.columns, 1, y, stride);
 }
 
 }  // namespace

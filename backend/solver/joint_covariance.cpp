@@ -47,11 +47,10 @@ void turnToWorldAxes(const Value& value, RowMajorMatrixXd& rows) {
   }
 }
 
-/// The columns of the identity that belong to the variables, in the rows of the path.
-RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables) {
-  int columns = 0;
-  for (const VariableId v : variables) columns += graph.sizeOf(v);
-  RowMajorMatrixXd chosen = RowMajorMatrixXd::Zero(path.rows, columns);
+/// The columns of the identity that belong to the variables, in the rows of the path, and zeros that pad the rows.
+RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables,
+                               int columns) {
+  RowMajorMatrixXd chosen = RowMajorMatrixXd::Zero(path.rows, padded(columns));
   int column = 0;
   for (const VariableId v : variables) {
     chosen.block(path.rowOf(v), column, graph.sizeOf(v), graph.sizeOf(v)).setIdentity();
@@ -63,12 +62,12 @@ RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::
 /// The same of J^T, in place of the identity; J acts on right perturbations.
 RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables,
                                const Eigen::Ref<const Eigen::MatrixXd>& J) {
-  RowMajorMatrixXd chosen = RowMajorMatrixXd::Zero(path.rows, J.rows());
+  RowMajorMatrixXd chosen = RowMajorMatrixXd::Zero(path.rows, padded(static_cast<int>(J.rows())));
   Eigen::Index column = 0;
   for (const VariableId v : variables) {
     RowMajorMatrixXd of_variable = J.middleCols(column, graph.sizeOf(v)).transpose();
     turnToWorldAxes(graph.estimate(v), of_variable);
-    chosen.middleRows(path.rowOf(v), graph.sizeOf(v)) += of_variable;
+    chosen.block(path.rowOf(v), 0, graph.sizeOf(v), J.rows()) += of_variable;
     column += graph.sizeOf(v);
   }
   return chosen;
@@ -94,8 +93,7 @@ Panel lowerRight(const Panel& panel, int from) {
           .columns = panel.columns - from};
 }
 
-/// For each column, one more than the first row in which it or a column after it is not zero. Above, its rows need not
-/// be looked at.
+/// For each column the first row in which it or a column after it is not zero, or the number of rows.
 std::vector<int> beginsOf(const RowMajorMatrixXd& chosen) {
   std::vector<int> begins(chosen.cols());
   int earliest = static_cast<int>(chosen.rows());
@@ -107,13 +105,17 @@ std::vector<int> beginsOf(const RowMajorMatrixXd& chosen) {
   return begins;
 }
 
+void copyFours(const double* from, double* to, int count) {
+  for (int i = 0; i < count; i += 4) std::copy_n(from + i, 4, to + i);
+}
+
 /// With the information H = L L^T and E the chosen columns of the identity, E^T H^-1 E = Y^T Y, Y = L^-1 E. Forward
 /// substitution meets only the cliques from the chosen variables up to the root; no back-substitution is needed.
 /// `rest` holds E, and what is left of it after the cliques so far. Last columns that begin farther up are left out.
 std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const EliminationTree& tree, const Path& path,
-                                                RowMajorMatrixXd rest) {
+                                                RowMajorMatrixXd rest, int columns) {
   const std::vector<int> begins = beginsOf(rest);
-  const int columns = static_cast<int>(rest.cols()), stride = padded(columns);
+  const int stride = static_cast<int>(rest.cols());
   Eigen::MatrixXd minus_square = Eigen::MatrixXd::Zero(stride, stride);
   std::vector<int> rows;
   int largest = 0, passed = 0, used = 0;
@@ -124,16 +126,15 @@ std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const 
     if (!clique.singular.empty()) return std::nullopt;
     findRows(graph, path, clique, rows);
     passed += clique.frontal_size;
-    while (used < columns && begins[used] < passed) ++used;
+    while (used < stride && begins[used] < passed) ++used;
     const int width = padded(used);
     Eigen::Map<RowMajorMatrixXd> y(memory.data(), clique.size, width);
-    y.rightCols(width - used).setZero();
-    for (int i = 0; i < clique.size; ++i) y.row(i).head(used) = rest.row(rows[i]).head(used);
+    for (int i = 0; i < clique.size; ++i) copyFours(&rest(rows[i], 0), &y(i, 0), width);
     const int first = firstRowThatIsNotZero(y, clique.frontal_size), solved = clique.frontal_size - first;
     double* const from = y.data() + std::ptrdiff_t{first} * width;
     forwardSubstitute(lowerRight(clique.panelView(), first), from, width);
     subtractOuterProduct(minus_square.data(), stride, from, width, used, solved);
-    for (int i = clique.frontal_size; i < clique.size; ++i) rest.row(rows[i]).head(used) = y.row(i).head(used);
+    for (int i = clique.frontal_size; i < clique.size; ++i) copyFours(&y(i, 0), &rest(rows[i], 0), width);
   }
   Eigen::MatrixXd square = -minus_square.topLeftCorner(columns, columns);
   square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
@@ -171,7 +172,9 @@ std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const E
                                                std::span<const VariableId> variables) {
   if (!allEliminated(tree, variables)) return std::nullopt;
   const Path path = pathFrom(graph, tree, variables);
-  auto covariance = squareOfSolution(graph, tree, path, chosenColumns(graph, path, variables));
+  int columns = 0;
+  for (const VariableId v : variables) columns += graph.sizeOf(v);
+  auto covariance = squareOfSolution(graph, tree, path, chosenColumns(graph, path, variables, columns), columns);
   if (!covariance || !covariance->allFinite()) return std::nullopt;
   turnToOwnAxes(graph, variables, *covariance);
   return covariance;
@@ -184,7 +187,8 @@ std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const E
   assert(std::ranges::all_of(variables,
                              [&](VariableId v) { return std::holds_alternative<SmallVector>(graph.estimate(v)); }));
   const Path path = pathFrom(graph, tree, variables);
-  auto covariance = squareOfSolution(graph, tree, path, chosenColumns(graph, path, variables, J));
+  auto covariance =
+      squareOfSolution(graph, tree, path, chosenColumns(graph, path, variables, J), static_cast<int>(J.rows()));
   if (!covariance || !covariance->allFinite()) return std::nullopt;
   return covariance;
 }
