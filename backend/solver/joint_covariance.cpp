@@ -47,30 +47,19 @@ void turnToWorldAxes(const Value& value, RowMajorMatrixXd& rows) {
   }
 }
 
-/// The columns of the identity that belong to the variables, in the rows of the path, and zeros that pad the rows.
-RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables,
-                               int columns) {
-  RowMajorMatrixXd chosen = RowMajorMatrixXd::Zero(path.rows, padded(columns));
-  int column = 0;
+/// The columns of J^T in the rows of the path, which hold steps in the world's axes, and zeros that pad the rows. J
+/// acts on right perturbations.
+RowMajorMatrixXd transposed(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables,
+                            const Eigen::Ref<const Eigen::MatrixXd>& J) {
+  RowMajorMatrixXd columns = RowMajorMatrixXd::Zero(path.rows, padded(static_cast<int>(J.rows())));
+  Eigen::Index from = 0;
   for (const VariableId v : variables) {
-    chosen.block(path.rowOf(v), column, graph.sizeOf(v), graph.sizeOf(v)).setIdentity();
-    column += graph.sizeOf(v);
-  }
-  return chosen;
-}
-
-/// The same of J^T, in place of the identity; J acts on right perturbations.
-RowMajorMatrixXd chosenColumns(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables,
-                               const Eigen::Ref<const Eigen::MatrixXd>& J) {
-  RowMajorMatrixXd chosen = RowMajorMatrixXd::Zero(path.rows, padded(static_cast<int>(J.rows())));
-  Eigen::Index column = 0;
-  for (const VariableId v : variables) {
-    RowMajorMatrixXd of_variable = J.middleCols(column, graph.sizeOf(v)).transpose();
+    RowMajorMatrixXd of_variable = J.middleCols(from, graph.sizeOf(v)).transpose();
     turnToWorldAxes(graph.estimate(v), of_variable);
-    chosen.block(path.rowOf(v), 0, graph.sizeOf(v), J.rows()) += of_variable;
-    column += graph.sizeOf(v);
+    columns.block(path.rowOf(v), 0, graph.sizeOf(v), J.rows()) += of_variable;
+    from += graph.sizeOf(v);
   }
-  return chosen;
+  return columns;
 }
 
 /// The rows of the path that a clique's scalars have, in the order of its factor.
@@ -94,12 +83,12 @@ Panel lowerRight(const Panel& panel, int from) {
 }
 
 /// For each column the first row in which it or a column after it is not zero, or the number of rows.
-std::vector<int> beginsOf(const RowMajorMatrixXd& chosen) {
-  std::vector<int> begins(chosen.cols());
-  int earliest = static_cast<int>(chosen.rows());
-  for (Eigen::Index column = chosen.cols() - 1; column >= 0; --column) {
+std::vector<int> beginsOf(const RowMajorMatrixXd& columns) {
+  std::vector<int> begins(columns.cols());
+  int earliest = static_cast<int>(columns.rows());
+  for (Eigen::Index column = columns.cols() - 1; column >= 0; --column) {
     int row = 0;
-    while (row < earliest && chosen(row, column) == 0) ++row;
+    while (row < earliest && columns(row, column) == 0) ++row;
     begins[column] = earliest = std::min(earliest, row);
   }
   return begins;
@@ -109,11 +98,11 @@ void copyFours(const double* from, double* to, int count) {
   for (int i = 0; i < count; i += 4) std::copy_n(from + i, 4, to + i);
 }
 
-/// With the information H = L L^T and E the chosen columns of the identity, E^T H^-1 E = Y^T Y, Y = L^-1 E. Forward
-/// substitution meets only the cliques from the chosen variables up to the root; no back-substitution is needed.
-/// `rest` holds E, and what is left of it after the cliques so far. Last columns that begin farther up are left out.
+/// With the information H = L L^T, J H^-1 J^T = Y^T Y, Y = L^-1 J^T. Forward substitution meets only the cliques from
+/// the variables of J up to the root; no back-substitution is needed. `rest` holds J^T, and what is left of it after
+/// the cliques so far. Last columns that begin farther up are left out.
 std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const EliminationTree& tree, const Path& path,
-                                                RowMajorMatrixXd rest, int columns) {
+                                                RowMajorMatrixXd rest) {
   const std::vector<int> begins = beginsOf(rest);
   const int stride = static_cast<int>(rest.cols());
   Eigen::MatrixXd minus_square = Eigen::MatrixXd::Zero(stride, stride);
@@ -136,61 +125,28 @@ std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const 
     subtractOuterProduct(minus_square.data(), stride, from, width, used, solved);
     for (int i = clique.frontal_size; i < clique.size; ++i) copyFours(&y(i, 0), &rest(rows[i], 0), width);
   }
-  Eigen::MatrixXd square = -minus_square.topLeftCorner(columns, columns);
+  Eigen::MatrixXd square = -minus_square;
   square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
   return square;
-}
-
-template <int N>
-void turnBlock(Eigen::MatrixXd& covariance, const Eigen::Matrix<double, N, N>& R, int at) {
-  covariance.middleRows<N>(at) = (R.transpose() * covariance.middleRows<N>(at)).eval();
-  covariance.middleCols<N>(at) = (covariance.middleCols<N>(at) * R).eval();
-}
-
-/// From steps in the world's axes to right perturbations.
-void turnToOwnAxes(const FactorGraph& graph, std::span<const VariableId> variables, Eigen::MatrixXd& covariance) {
-  int at = 0;
-  for (const VariableId v : variables) {
-    const Value value = graph.estimate(v);
-    if (const auto* pose = std::get_if<SE3>(&value)) {
-      turnBlock<3>(covariance, pose->rotation(), at);
-      turnBlock<3>(covariance, pose->rotation(), at + 3);
-    } else if (const auto* planar = std::get_if<SE2>(&value)) {
-      turnBlock<2>(covariance, planar->rotation(), at);
-    }
-    at += graph.sizeOf(v);
-  }
-}
-
-bool allEliminated(const EliminationTree& tree, std::span<const VariableId> variables) {
-  return std::ranges::none_of(variables, [&](VariableId v) { return tree.cliqueOf(v) < 0; });
 }
 
 }  // namespace
 
 std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
                                                std::span<const VariableId> variables) {
-  if (!allEliminated(tree, variables)) return std::nullopt;
-  const Path path = pathFrom(graph, tree, variables);
-  int columns = 0;
-  for (const VariableId v : variables) columns += graph.sizeOf(v);
-  auto covariance = squareOfSolution(graph, tree, path, chosenColumns(graph, path, variables, columns), columns);
-  if (!covariance || !covariance->allFinite()) return std::nullopt;
-  turnToOwnAxes(graph, variables, *covariance);
-  return covariance;
+  Eigen::Index scalars = 0;
+  for (const VariableId v : variables) scalars += graph.sizeOf(v);
+  return jointCovariance(graph, tree, variables, Eigen::MatrixXd::Identity(scalars, scalars));
 }
 
 std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
                                                std::span<const VariableId> variables,
                                                const Eigen::Ref<const Eigen::MatrixXd>& J) {
-  if (!allEliminated(tree, variables)) return std::nullopt;
-  assert(std::ranges::all_of(variables,
-                             [&](VariableId v) { return std::holds_alternative<SmallVector>(graph.estimate(v)); }));
+  if (std::ranges::any_of(variables, [&](VariableId v) { return tree.cliqueOf(v) < 0; })) return std::nullopt;
   const Path path = pathFrom(graph, tree, variables);
-  auto covariance =
-      squareOfSolution(graph, tree, path, chosenColumns(graph, path, variables, J), static_cast<int>(J.rows()));
+  auto covariance = squareOfSolution(graph, tree, path, transposed(graph, path, variables, J));
   if (!covariance || !covariance->allFinite()) return std::nullopt;
-  return covariance;
+  return covariance->topLeftCorner(J.rows(), J.rows());
 }
 
 }  // namespace motorcade

@@ -13,8 +13,8 @@ namespace motorcade {
 /// Costs as much as the cliques from the variables up to the root.
 std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
                                                std::span<const VariableId> variables);
-/// Covariance of J x, where x are those perturbations: of many variables it is cheaper, as J has fewer rows than they,
-/// most so where the rows of old variables come first.
+/// Covariance of J x, where x are those perturbations; cheaper where J has few rows and those of old variables come
+/// first.
 std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
                                                std::span<const VariableId> variables,
                                                const Eigen::Ref<const Eigen::MatrixXd>& J);
