@@ -20,14 +20,15 @@ enum class Stage {
   kIncrementalOptimization,
   kObjectShapes
 };
-inline constexpr std::size_t kStageCount = 7;
-inline constexpr std::array<std::string_view, kStageCount> kStageNames{
-    "prepare",  "stereo matching",          "optical flow", "scene flow segmentation",
-    "tracking", "incremental optimization", "object shapes"};
+inline constexpr std::size_t kStageCount = static_cast<std::size_t>(Stage::kObjectShapes) + 1;
+inline constexpr auto kStageNames =
+    std::to_array<std::string_view>({"prepare", "stereo matching", "optical flow", "scene flow segmentation",
+                                     "tracking", "incremental optimization", "object shapes"});
 /// The same as one word, for columns and keys of files.
-inline constexpr std::array<std::string_view, kStageCount> kStageKeys{
-    "prepare",  "stereo_matching",          "optical_flow", "scene_flow_segmentation",
-    "tracking", "incremental_optimization", "object_shapes"};
+inline constexpr auto kStageKeys =
+    std::to_array<std::string_view>({"prepare", "stereo_matching", "optical_flow", "scene_flow_segmentation",
+                                     "tracking", "incremental_optimization", "object_shapes"});
+static_assert(kStageNames.size() == kStageCount && kStageKeys.size() == kStageCount);
 
 inline std::string_view nameOf(Stage stage) { return kStageNames[static_cast<std::size_t>(stage)]; }
 
@@ -46,11 +47,7 @@ struct StageSpan {
 
 /// One frame's way through the pipeline.
 struct FrameTiming {
-  FrameId frame;
-  Timestamp stamp;
-  FrameStatus status = FrameStatus::kGood;
-  FrameCause cause = FrameCause::kNone;
-  int segment = 0;
+  FrameHead head;
   SteadyTime due;        // latency counts from here
   SteadyTime admitted;   // taken from the ring and put into the flow graph
   SteadyTime published;  // result ready for the reader

@@ -6,12 +6,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "core/ids.hpp"
 #include "core/image.hpp"
+#include "core/pixel_mask.hpp"
 #include "core/se3.hpp"
 #include "core/timestamp.hpp"
 
@@ -42,16 +44,42 @@ enum class FrameCause {
 };
 inline constexpr std::size_t kCauseCount = 9;
 
-/// A rectified stereo pair as it enters the pipeline.
-struct StereoFrame {
+/// Which frame a message is of, and what became of it so far. Each stage hands it on, with what it found out.
+struct FrameHead {
   FrameId frame;
   Timestamp stamp;
-  SteadyTime due;        // when the pair was due; latency counts from here
-  Image left, right;     // empty when rejected
-  std::string problem;   // why the pair is rejected, empty when it is good
+  FrameStatus status = FrameStatus::kGood;
+  FrameCause cause = FrameCause::kNone;
+  /// Counts up where the frames before and after are not linked by anything measured: poses of different segments lie
+  /// in one frame of reference by prediction alone.
+  int segment = 0;
+};
+
+/// What may come with a stereo pair beside its images.
+struct FrameInputs {
+  /// Pixels of the left image that are of no use, as those that show the own vehicle; null: none.
+  std::shared_ptr<const PixelMask> ignored;
+};
+
+/// A rectified stereo pair as it enters the pipeline.
+struct StereoFrame {
+  FrameHead head;
+  SteadyTime due;     // when the pair was due; latency counts from here
+  Image left, right;  // empty when rejected
+  FrameInputs inputs;
+  std::string problem;   // why the pair is rejected
   double decode_ms = 0;  // time spent on reading the images, before the pair was due
   SteadyTime decoded{};  // when they were read
-  bool rejected() const { return !problem.empty(); }
+
+  bool rejected() const { return head.status == FrameStatus::kRejected; }
+  /// Gives up the images, and what came with them.
+  void reject(FrameCause cause, std::string why) {
+    left = right = Image{};
+    inputs = {};
+    head.status = FrameStatus::kRejected;
+    head.cause = cause;
+    problem = std::move(why);
+  }
 };
 using StereoFramePtr = std::shared_ptr<const StereoFrame>;
 
@@ -121,19 +149,17 @@ struct ObjectObservation {
   bool born_slow = false;                  // the object was as slow and small as a person when it was spawned
 };
 
+/// The camera's motion since the frame before, identity in the first one; predicted, with a wide covariance, unless the
+/// frame's status is kGood.
+struct Odometry {
+  SE3 T_previous_now;
+  Matrix6d covariance = Matrix6d::Identity();  // right perturbation
+};
+
 /// What the front-end measured in one frame: all that the back-end needs.
 struct FrameMeasurements {
-  FrameId frame;
-  Timestamp stamp;
-  FrameStatus status = FrameStatus::kGood;
-  FrameCause cause = FrameCause::kNone;
-  /// Counts up where the frames before and after are not linked by anything measured: poses of different segments lie
-  /// in one frame of reference by prediction alone.
-  int segment = 0;
-  /// Ego-motion T_cam(previous)_cam(now), identity in the first frame; predicted, with a wide covariance, unless the
-  /// status is kGood.
-  SE3 T_previous_now;
-  Matrix6d odometry_covariance = Matrix6d::Identity();
+  FrameHead head;
+  Odometry odometry;
   /// Points at rest, and those of which it is not known yet to what they belong; both ordered by point, and none of an
   /// object's.
   std::vector<PointMeasurement> at_rest, undecided;
@@ -184,11 +210,7 @@ inline constexpr int kCameraCovarianceFrames = 10;
 /// The camera and the objects in one frame: *online* as published when it is the newest, *settled* when it is some
 /// seconds old, *final* when it leaves the window.
 struct FrameEstimate {
-  FrameId frame;
-  Timestamp stamp;
-  FrameStatus status = FrameStatus::kGood;
-  FrameCause cause = FrameCause::kNone;
-  int segment = 0;  // see FrameMeasurements
+  FrameHead head;
   SE3 T_world_cam;
   std::optional<Matrix6d> camera_covariance;  // of T_cam(before)_cam(now), kCameraCovarianceFrames apart
   std::vector<ObjectEstimate> objects;        // ordered by track

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace motorcade {
@@ -36,5 +38,10 @@ class PixelMask {
   int width_ = 0, height_ = 0;
   std::vector<std::uint8_t> inside_;  // row by row
 };
+
+/// Null where the mask holds no pixel.
+inline std::shared_ptr<const PixelMask> sharedMask(PixelMask mask) {
+  return mask.empty() ? nullptr : std::make_shared<const PixelMask>(std::move(mask));
+}
 
 }  // namespace motorcade

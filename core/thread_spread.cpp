@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-void ThreadSpread::settle(std::size_t index) {
+void ThreadSpread::occupy(std::size_t index) {
   assert(index < seats_.size());
   Seat& seat = seats_[index];
   const int cpu = sched_getcpu();

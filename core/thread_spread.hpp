@@ -20,12 +20,12 @@ class ThreadSpread {
 
   /// Called by the thread of each seat when it begins with something, before others rely on where it is. Costs a few
   /// nanoseconds where it has not moved.
-  void settle(std::size_t seat);
+  void occupy(std::size_t seat);
 
  private:
   struct Seat {
     std::atomic<int> cpu{-1};
-    pid_t thread = 0;  // 0: has not settled yet
+    pid_t thread = 0;  // 0: has not been occupied yet
     cpu_set_t allowed;
   };
   void keepOff(const Seat& seat) const;

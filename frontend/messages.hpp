@@ -101,7 +101,7 @@ struct GroundPlane {
 };
 
 /// A connected component of the cut Delaunay graph.
-struct Segment {
+struct MotionComponent {
   std::vector<int> points;  // indices into `SceneMotion::points`
   PointLabel label = PointLabel::kUnknown;
   Eigen::Vector3d centroid_cam = Eigen::Vector3d::Zero();
@@ -111,19 +111,14 @@ struct Segment {
 
 /// The camera's motion and the moving parts of the scene.
 struct SceneMotion {
-  FrameId frame;
-  Timestamp stamp;
-  FrameStatus status = FrameStatus::kGood;
-  FrameCause cause = FrameCause::kNone;
-  int segment = 0;  // see FrameMeasurements
-  SE3 T_previous_now;
-  Matrix6d odometry_covariance = Matrix6d::Identity();
+  FrameHead head;
+  Odometry odometry;
   double camera_speed_mps = 0;  // since the frame before; 0 where there is none
   int ego_inliers = 0;
   double disparity_offset_px = 0;  // true minus measured disparity; the points' disparities contain it
   GroundPlane ground;
   std::vector<ScenePoint> points;               // ordered by point id
-  std::vector<Segment> segments;                // moving and unknown ones; the static rest is not listed
+  std::vector<MotionComponent> components;      // moving and unknown ones; the static rest is not listed
   FeaturesPtr features;                         // the stereo pair
   std::optional<OwnVehicleView> own_vehicle{};  // as found up to this frame
 };

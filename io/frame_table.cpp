@@ -37,16 +37,16 @@ void readWaits(FieldReader& fields, FrameRow& row) {
 
 FrameRow readFrame(FieldReader& fields) {
   FrameRow row;
-  row.frame.value = fields.integer("frame");
-  row.status = fields.byName("status", kStatuses, writtenName).status;
-  row.stamp.ns = fields.integer("stamp_ns");
+  row.head.frame.value = fields.integer("frame");
+  row.head.status = fields.byName("status", kStatuses, writtenName).status;
+  row.head.stamp.ns = fields.integer("stamp_ns");
   row.latency_ms = fields.number("latency_ms");
   row.decode_ms = fields.number("decode_ms");
   for (std::size_t stage = 0; stage < kStageCount; ++stage)
     row.stages[stage].work_ms = fields.number(kStageKeys[stage]);
   if (fields.atEnd()) return row;  // files of the first versions end here
-  row.cause = fields.byName("cause", kCauses, causeName);
-  row.segment = static_cast<int>(fields.integer("segment"));
+  row.head.cause = fields.byName("cause", kCauses, causeName);
+  row.head.segment = static_cast<int>(fields.integer("segment"));
   if (!fields.atEnd()) readWaits(fields, row);
   return row;
 }
@@ -82,12 +82,12 @@ std::string framesHeader() {
 std::string frameLine(const FrameTiming& timing) {
   std::string line;
   line.reserve(256);
-  appendInteger(line, timing.frame.value);
+  appendInteger(line, timing.head.frame.value);
   line += ',';
-  const bool degraded = timing.status == FrameStatus::kGood && timing.cause != FrameCause::kNone;
-  line += writtenName({timing.status, degraded});
+  const bool degraded = timing.head.status == FrameStatus::kGood && timing.head.cause != FrameCause::kNone;
+  line += writtenName({timing.head.status, degraded});
   line += ',';
-  appendInteger(line, timing.stamp.ns);
+  appendInteger(line, timing.head.stamp.ns);
   const auto add = [&](double value_ms) {
     line += ',';
     appendFixed(line, value_ms, 3);
@@ -96,9 +96,9 @@ std::string frameLine(const FrameTiming& timing) {
   add(timing.decode_ms);
   for (const StageSpan& span : timing.stages) add(span.duration_ms());
   line += ',';
-  line += causeName(timing.cause);
+  line += causeName(timing.head.cause);
   line += ',';
-  appendInteger(line, timing.segment);
+  appendInteger(line, timing.head.segment);
   add(timing.entry_wait_ms());
   for (std::size_t stage = 0; stage < kStageCount; ++stage) add(timing.wait_ms(static_cast<Stage>(stage)));
   add(timing.publish_wait_ms());

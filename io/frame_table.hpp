@@ -20,11 +20,7 @@ struct FrameRow {
   struct StageTime {
     double work_ms = 0, wait_ms = 0, cpu_ms = 0;
   };
-  FrameId frame;
-  FrameStatus status = FrameStatus::kGood;  // also where `degraded` stands
-  FrameCause cause = FrameCause::kNone;
-  int segment = 0;
-  Timestamp stamp;
+  FrameHead head;  // good also where `degraded` stands
   double latency_ms = 0, decode_ms = 0;
   std::array<StageTime, kStageCount> stages{};
   double entry_wait_ms = 0, publish_wait_ms = 0;

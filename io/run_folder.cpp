@@ -123,8 +123,8 @@ void RunFolderWriter::Files::close() {
 }
 
 void RunFolderWriter::Files::write(const FrameEstimate& estimate) {
-  for (const auto& object : estimate.objects) objects.writeLine(objectLine(estimate.frame, object));
-  if (estimate.status != FrameStatus::kRejected) tum.writeLine(tumLine(estimate.stamp, estimate.T_world_cam));
+  for (const auto& object : estimate.objects) objects.writeLine(objectLine(estimate.head.frame, object));
+  if (estimate.head.status != FrameStatus::kRejected) tum.writeLine(tumLine(estimate.head.stamp, estimate.T_world_cam));
   kitti.writeLine(kittiLine(estimate.T_world_cam));  // last: a frame with a pose has all its objects
 }
 
@@ -151,9 +151,10 @@ void RunFolderWriter::writeConfig(std::string_view toml) { writeAtOnce(folder_ /
 
 void RunFolderWriter::writeOnline(const FrameEstimate& estimate) {
   if (estimate.camera_covariance)
-    covariances_.writeLine(covarianceLine(estimate.frame, {}, *estimate.camera_covariance));
+    covariances_.writeLine(covarianceLine(estimate.head.frame, {}, *estimate.camera_covariance));
   for (const auto& object : estimate.objects) {
-    if (object.covariance) covariances_.writeLine(covarianceLine(estimate.frame, object.track, *object.covariance));
+    if (object.covariance)
+      covariances_.writeLine(covarianceLine(estimate.head.frame, object.track, *object.covariance));
   }
   online_.write(estimate);
 }
@@ -184,7 +185,7 @@ RunFolder readRunFolder(const fs::path& folder) {
     throw InputError(folder.string() + ": is no run folder: neither camera_online.txt nor camera_final.txt is there");
   }
   run.frames = readFrames(folder / "frames.csv");
-  if (!run.frames.empty()) run.first_frame = run.frames.front().frame.value;
+  if (!run.frames.empty()) run.first_frame = run.frames.front().head.frame.value;
   run.online = {readCamera(folder / "camera_online.txt"), readObjects(folder / "objects_online.csv")};
   run.final = {readCamera(folder / "camera_final.txt"), readObjects(folder / "objects_final.csv")};
   run.covariances = readCovariances(folder / "covariances.csv");

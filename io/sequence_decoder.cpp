@@ -32,6 +32,7 @@ std::exception_ptr problemOf(const Work& work) {
 SequenceDecoder::SequenceDecoder(Sequence sequence, FrameRange range, const Params& params)
     : sequence_(std::move(sequence)),
       wanted_(params.wanted),
+      inputs_(params.inputs),
       range_(range.within(sequence_.frames.size())),
       reader_(sequence_, params.max_file_mb),
       right_(reader_, StereoSide::kRight, giveWay),
@@ -76,13 +77,12 @@ void SequenceDecoder::letThePairGoAhead() const {
 StereoFrame SequenceDecoder::decode(std::size_t index) {
   const auto start = std::chrono::steady_clock::now();
   StereoFrame frame;
-  frame.frame.value = static_cast<std::int64_t>(index);
-  frame.stamp = sequence_.stamps[index];
+  frame.head = {.frame = {static_cast<std::int64_t>(index)}, .stamp = sequence_.stamps[index]};
+  frame.inputs = inputs_;
   try {
     readInto(frame, sequence_.frames[index]);
   } catch (const std::exception& error) {  // nothing may leave the thread: also a lack of memory only costs the frame
-    frame.left = frame.right = Image();
-    frame.problem = error.what();
+    frame.reject(FrameCause::kUnusable, error.what());
   }
   frame.decoded = std::chrono::steady_clock::now();
   frame.decode_ms = std::chrono::duration<double, std::milli>(frame.decoded - start).count();

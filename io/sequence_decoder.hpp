@@ -27,6 +27,7 @@ class SequenceDecoder {
     /// comes.
     std::function<bool(Timestamp)> wanted{};
     int max_file_mb = kMaxImageFile_mb;
+    FrameInputs inputs{};  // come with each pair
   };
   SequenceDecoder(Sequence sequence, FrameRange range, const Params& params);
   SequenceDecoder(Sequence sequence, FrameRange range) : SequenceDecoder(std::move(sequence), range, Params{}) {}
@@ -59,6 +60,7 @@ class SequenceDecoder {
 
   Sequence sequence_;
   std::function<bool(Timestamp)> wanted_;
+  FrameInputs inputs_;
   FrameRange range_;
   PairReader reader_;
   SideReader right_;

@@ -21,7 +21,7 @@ SteadyTime middleOf(const StageSpan& span) { return span.start + (span.end - spa
 
 std::string inQuotes(std::string_view text) { return std::string("\"").append(text).append("\""); }
 
-bool entered(const FrameTiming& timing) { return timing.status != FrameStatus::kDropped; }
+bool entered(const FrameTiming& timing) { return timing.head.status != FrameStatus::kDropped; }
 
 std::string threadName(int thread) {
   if (thread == kDecoder) return "decoding ahead";
@@ -78,7 +78,7 @@ void TraceFile::addWork(const FrameTiming& timing) {
   const auto work = [&](std::string_view name, int thread, SteadyTime start, double duration_ms) {
     std::string text = event(name, 'X', thread, start) + R"(,"dur":)";
     appendFixed(text, 1e3 * duration_ms, 3);
-    add(text + R"(,"args":{"frame":)" + std::to_string(timing.frame.value) + "}");
+    add(text + R"(,"args":{"frame":)" + std::to_string(timing.head.frame.value) + "}");
   };
   if (timing.decoded != SteadyTime{}) {
     const auto taken = std::chrono::duration<double, std::milli>(timing.decode_ms);
@@ -94,7 +94,7 @@ void TraceFile::addWork(const FrameTiming& timing) {
 /// The whole way of a frame and its waits overlap with those of the next frame, which only the asynchronous kind of
 /// event can show.
 void TraceFile::addWaits(const FrameTiming& timing) {
-  const std::string id = R"(,"id":)" + std::to_string(timing.frame.value);
+  const std::string id = R"(,"id":)" + std::to_string(timing.head.frame.value);
   const auto from_to = [&](std::string_view category, std::string_view name, SteadyTime from, SteadyTime to) {
     const std::string tail = R"(,"cat":)" + inQuotes(category) + id;
     add(event(name, 'b', 0, from) + tail);
@@ -123,11 +123,11 @@ void TraceFile::addArrows(const FrameTiming& timing) {
                             Stage::kObjectShapes};
   for (const Stage stage : kWay) {
     const char phase = stage == kWay.front() ? 's' : stage == kWay.back() ? 'f' : 't';
-    if (timing.of(stage).ran()) arrow("way of a frame", phase, timing.of(stage), timing.frame);
+    if (timing.of(stage).ran()) arrow("way of a frame", phase, timing.of(stage), timing.head.frame);
   }
   if (!before_ || !timing.of(Stage::kOpticalFlow).ran() || !before_->of(Stage::kOpticalFlow).ran()) return;
-  arrow("frame to frame", 's', before_->of(Stage::kOpticalFlow), timing.frame);
-  arrow("frame to frame", 'f', timing.of(Stage::kOpticalFlow), timing.frame);
+  arrow("frame to frame", 's', before_->of(Stage::kOpticalFlow), timing.head.frame);
+  arrow("frame to frame", 'f', timing.of(Stage::kOpticalFlow), timing.head.frame);
 }
 
 /// As each frame finds it when it enters the graph.
@@ -139,9 +139,9 @@ void TraceFile::addInFlight(const FrameTiming& timing) {
 }
 
 void TraceFile::addMark(const FrameTiming& timing) {
-  if (timing.status == FrameStatus::kGood) return;
-  add(event(statusName(timing.status), 'i', kCamera, timing.due) + R"(,"s":"t","args":{"frame":)" +
-      std::to_string(timing.frame.value) + R"(,"cause":)" + inQuotes(causeName(timing.cause)) + "}");
+  if (timing.head.status == FrameStatus::kGood) return;
+  add(event(statusName(timing.head.status), 'i', kCamera, timing.due) + R"(,"s":"t","args":{"frame":)" +
+      std::to_string(timing.head.frame.value) + R"(,"cause":)" + inQuotes(causeName(timing.head.cause)) + "}");
 }
 
 void TraceFile::close() {

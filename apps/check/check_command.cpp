@@ -55,7 +55,7 @@ Seen look(InputCheck& check, const Sequence& sequence, const CheckOptions& optio
   FrameId passed_over;  // the last one; what comes of it or of one before is late, and a run ignores it
   const FaultInjector::Outlet outlet{.push =
                                          [&](const StereoFrame& pair) {
-                                           if (pair.frame <= passed_over) return true;
+                                           if (pair.head.frame <= passed_over) return true;
                                            seen.count(pair);
                                            const std::size_t before = check.pairs();
                                            check.observe(pair);
@@ -108,7 +108,7 @@ std::vector<Finding> findingsOf(const InputCheck& check, const Seen& seen, const
 std::vector<MatchedPair> worstPairs(const InputCheck& check, const std::vector<StereoFrame>& kept) {
   std::vector<MatchedPair> pairs;
   for (const LookedAt& look : check.looks()) {
-    const auto images = std::ranges::find(kept, look.frame, &StereoFrame::frame);
+    const auto images = std::ranges::find(kept, look.frame, [](const StereoFrame& frame) { return frame.head.frame; });
     if (images != kept.end() && !look.matches.empty())
       pairs.push_back({look.frame, images->left, images->right, look.matches});
   }

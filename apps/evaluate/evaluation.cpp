@@ -126,10 +126,10 @@ void countFrames(Evaluation& evaluation, const RunFolder& run) {
   evaluation.first_frame = run.first_frame;
   evaluation.frames_run = std::max(run.online.camera.size(), run.final.camera.size());
   for (const auto& frame : run.frames) {
-    evaluation.lost += frame.status == FrameStatus::kLost;
-    evaluation.rejected += frame.status == FrameStatus::kRejected;
-    evaluation.dropped += frame.status == FrameStatus::kDropped;
-    if (frame.status == FrameStatus::kGood || frame.status == FrameStatus::kLost)
+    evaluation.lost += frame.head.status == FrameStatus::kLost;
+    evaluation.rejected += frame.head.status == FrameStatus::kRejected;
+    evaluation.dropped += frame.head.status == FrameStatus::kDropped;
+    if (frame.head.status == FrameStatus::kGood || frame.head.status == FrameStatus::kLost)
       evaluation.latency_ms.push_back(frame.latency_ms);
   }
   std::ranges::sort(evaluation.latency_ms);
@@ -210,7 +210,8 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   auto online = compare(run.online, run.first_frame);
   const auto final = compare(run.final, run.first_frame);
   for (std::size_t i = 0; i < std::min(online.size(), run.frames.size()); ++i)
-    online[i].entered = run.frames[i].cause != FrameCause::kTooLate && run.frames[i].cause != FrameCause::kOutOfOrder;
+    online[i].entered =
+        run.frames[i].head.cause != FrameCause::kTooLate && run.frames[i].head.cause != FrameCause::kOutOfOrder;
   evaluation.online = evaluateFrames(online);
   evaluation.final = evaluateFrames(final);
   evaluation.online.acceleration = accelerationsOf(online, sequence);

@@ -41,14 +41,14 @@ DriveMcap::DriveMcap(const std::filesystem::path& file, const StereoCamera& came
 
 void DriveMcap::write(const ExportedFrame& frame) {
   const FrameEstimate& estimate = frame.estimate;
-  writer_.write(transforms_, estimate.stamp, transformsMessage(estimate));
-  writer_.write(calibration_, estimate.stamp, calibrationMessage(camera_, estimate.stamp));
-  if (!frame.jpeg.empty()) writer_.write(image_, estimate.stamp, imageMessage(frame));
-  writer_.write(pose_, estimate.stamp, poseMessage(estimate));
+  writer_.write(transforms_, estimate.head.stamp, transformsMessage(estimate));
+  writer_.write(calibration_, estimate.head.stamp, calibrationMessage(camera_, estimate.head.stamp));
+  if (!frame.jpeg.empty()) writer_.write(image_, estimate.head.stamp, imageMessage(frame));
+  writer_.write(pose_, estimate.head.stamp, poseMessage(estimate));
   writePath(estimate);
-  writer_.write(objects_, estimate.stamp, scene_(estimate));
-  writer_.write(points_, estimate.stamp, pointsMessage(frame));
-  writer_.write(diagnostics_, estimate.stamp, diagnosticsMessage(frame));
+  writer_.write(objects_, estimate.head.stamp, scene_(estimate));
+  writer_.write(points_, estimate.head.stamp, pointsMessage(frame));
+  writer_.write(diagnostics_, estimate.head.stamp, diagnosticsMessage(frame));
 }
 
 /// With the first frame of each second: the whole way with every frame would grow with the square of its length.
@@ -60,10 +60,10 @@ void DriveMcap::writePath(const FrameEstimate& estimate) {
     way_.resize((way_.size() + 1) / 2);
     stride_ *= 2;
   }
-  const std::int64_t second = estimate.stamp.ns / kSecond_ns;
+  const std::int64_t second = estimate.head.stamp.ns / kSecond_ns;
   if (second == path_second_) return;
   path_second_ = second;
-  writer_.write(path_, estimate.stamp, pathMessage(estimate.stamp, way_));
+  writer_.write(path_, estimate.head.stamp, pathMessage(estimate.head.stamp, way_));
 }
 
 }  // namespace motorcade

@@ -23,7 +23,7 @@ void tell(const std::string& line) {
 /// A frame whose image cannot be read is written without; that is told.
 void addImage(ExportedFrame& frame, const Sequence& sequence, PairReader& reader) {
   try {
-    const FramePaths& paths = sequence.frames[frame.estimate.frame.value];
+    const FramePaths& paths = sequence.frames[frame.estimate.head.frame.value];
     frame.jpeg = exportedImage(reader.read(paths, StereoSide::kLeft));
   } catch (const InputError& problem) {
     std::cerr << "left out: " << problem.what() << '\n';

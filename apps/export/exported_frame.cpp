@@ -16,8 +16,8 @@ void addPoint(std::vector<ExportedFrame::Point>& points, TrackId track, const Ei
 
 /// The row of a frame; rows are in the order of frames, and a killed run may lack the last ones.
 const FrameRow* rowOf(const RunFolder& run, FrameId frame) {
-  const auto row = std::ranges::lower_bound(run.frames, frame, {}, &FrameRow::frame);
-  return row != run.frames.end() && row->frame == frame ? &*row : nullptr;
+  const auto row = std::ranges::lower_bound(run.frames, frame, {}, [](const FrameRow& r) { return r.head.frame; });
+  return row != run.frames.end() && row->head.frame == frame ? &*row : nullptr;
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ std::vector<ExportedFrame::Point> exportedPoints(const FrameMeasurements& measur
   std::vector<ExportedFrame::Point> points;
   for (const PointMeasurement& point : measurements.at_rest) addPoint(points, {}, point.uvd_px.cast<double>(), camera);
   for (const ObjectObservation& seen : measurements.objects) {
-    if (seen.frame != measurements.frame) continue;  // from before it was confirmed
+    if (seen.frame != measurements.head.frame) continue;  // from before it was confirmed
     for (const PointMeasurement& point : seen.measured)
       addPoint(points, seen.track, point.uvd_px.cast<double>(), camera);
   }
@@ -44,15 +44,11 @@ ExportedFrame::StageTimes stageTimes(const FrameTiming& timing) {
 
 ExportedFrame exportedFrame(const RecordedDrive& drive, const RunFolder& run, std::size_t index) {
   ExportedFrame frame;
-  frame.estimate.frame = {drive.first_frame + static_cast<std::int64_t>(index)};
-  frame.estimate.stamp = drive.stamps[index];
+  frame.estimate.head = {.frame = {drive.first_frame + static_cast<std::int64_t>(index)}, .stamp = drive.stamps[index]};
   frame.estimate.T_world_cam = drive.T_world_cam[index];
   frame.estimate.objects = drive.objectsAt(index);
-  if (const FrameRow* const row = rowOf(run, frame.estimate.frame)) {
-    frame.estimate.stamp = row->stamp;
-    frame.estimate.status = row->status;
-    frame.estimate.cause = row->cause;
-    frame.estimate.segment = row->segment;
+  if (const FrameRow* const row = rowOf(run, frame.estimate.head.frame)) {
+    frame.estimate.head = row->head;
     frame.latency_ms = row->latency_ms;
     frame.decode_ms = row->decode_ms;
     frame.stages = row->stages;

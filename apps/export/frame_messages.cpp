@@ -70,7 +70,7 @@ int pointsOnObjects(const ExportedFrame& frame) {
 
 std::string imageMessage(const ExportedFrame& frame) {
   foxglove::CompressedImage image;
-  set(image.mutable_timestamp(), frame.estimate.stamp);
+  set(image.mutable_timestamp(), frame.estimate.head.stamp);
   image.set_frame_id(kCameraFrame);
   image.set_format("jpeg");
   image.set_data(frame.jpeg);
@@ -94,17 +94,17 @@ std::string calibrationMessage(const StereoCamera& camera, Timestamp stamp) {
 
 std::string transformsMessage(const FrameEstimate& estimate) {
   foxglove::FrameTransforms transforms;
-  addTransform(transforms, estimate.stamp, kMapFrame, kWorldFrame, mapFromWorld());
-  addTransform(transforms, estimate.stamp, kWorldFrame, kCameraFrame, estimate.T_world_cam);
+  addTransform(transforms, estimate.head.stamp, kMapFrame, kWorldFrame, mapFromWorld());
+  addTransform(transforms, estimate.head.stamp, kWorldFrame, kCameraFrame, estimate.T_world_cam);
   for (const ObjectEstimate& object : estimate.objects)
-    addTransform(transforms, estimate.stamp, kWorldFrame, "object_" + std::to_string(object.track.value),
+    addTransform(transforms, estimate.head.stamp, kWorldFrame, "object_" + std::to_string(object.track.value),
                  object.T_world_body);
   return transforms.SerializeAsString();
 }
 
 std::string poseMessage(const FrameEstimate& estimate) {
   foxglove::PoseInFrame pose;
-  set(pose.mutable_timestamp(), estimate.stamp);
+  set(pose.mutable_timestamp(), estimate.head.stamp);
   pose.set_frame_id(kWorldFrame);
   set(pose.mutable_pose(), estimate.T_world_cam);
   return pose.SerializeAsString();
@@ -121,7 +121,7 @@ std::string pathMessage(Timestamp stamp, const std::vector<SE3>& T_world_cam) {
 std::string pointsMessage(const ExportedFrame& frame) {
   using foxglove::PackedElementField;
   foxglove::PointCloud cloud;
-  set(cloud.mutable_timestamp(), frame.estimate.stamp);
+  set(cloud.mutable_timestamp(), frame.estimate.head.stamp);
   cloud.set_frame_id(kCameraFrame);
   set(cloud.mutable_pose(), SE3());
   cloud.set_point_stride(kPoint_bytes);
@@ -144,11 +144,11 @@ std::string pointsMessage(const ExportedFrame& frame) {
 
 std::string diagnosticsMessage(const ExportedFrame& frame) {
   FrameDiagnostics diagnostics;
-  set(diagnostics.mutable_timestamp(), frame.estimate.stamp);
-  diagnostics.set_frame(frame.estimate.frame.value);
-  diagnostics.set_status(std::string(statusName(frame.estimate.status)));
-  diagnostics.set_cause(std::string(causeName(frame.estimate.cause)));
-  diagnostics.set_segment(frame.estimate.segment);
+  set(diagnostics.mutable_timestamp(), frame.estimate.head.stamp);
+  diagnostics.set_frame(frame.estimate.head.frame.value);
+  diagnostics.set_status(std::string(statusName(frame.estimate.head.status)));
+  diagnostics.set_cause(std::string(causeName(frame.estimate.head.cause)));
+  diagnostics.set_segment(frame.estimate.head.segment);
   diagnostics.set_latency_ms(frame.latency_ms);
   diagnostics.set_decode_ms(frame.decode_ms);
   for (std::size_t i = 0; frame.stages && i < kStageCount; ++i) {

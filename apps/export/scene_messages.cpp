@@ -87,8 +87,8 @@ void SceneMessages::remember(const FrameEstimate& estimate) {
   std::map<TrackId, std::deque<Passed>> ways;
   for (const ObjectEstimate& object : estimate.objects) {
     std::deque<Passed> way = std::move(ways_[object.track]);
-    way.push_back({estimate.stamp, centerOf(object)});
-    while (secondsBetween(way.front().stamp, estimate.stamp) > kWay_s) way.pop_front();
+    way.push_back({estimate.head.stamp, centerOf(object)});
+    while (secondsBetween(way.front().stamp, estimate.head.stamp) > kWay_s) way.pop_front();
     ways[object.track] = std::move(way);
   }
   ways_ = std::move(ways);
@@ -99,14 +99,14 @@ std::string SceneMessages::operator()(const FrameEstimate& estimate) {
   for (const auto& [track, way] : ways_) {
     if (std::ranges::find(estimate.objects, track, &ObjectEstimate::track) != estimate.objects.end()) continue;
     foxglove::SceneEntityDeletion* const deletion = update.add_deletions();
-    set(deletion->mutable_timestamp(), estimate.stamp);
+    set(deletion->mutable_timestamp(), estimate.head.stamp);
     deletion->set_type(foxglove::SceneEntityDeletion::MATCHING_ID);
     deletion->set_id(entityId(track));
   }
   remember(estimate);
   for (const ObjectEstimate& object : estimate.objects) {
     foxglove::SceneEntity& entity = *update.add_entities();
-    set(entity.mutable_timestamp(), estimate.stamp);
+    set(entity.mutable_timestamp(), estimate.head.stamp);
     entity.set_frame_id(kWorldFrame);
     entity.set_id(entityId(object.track));
     addFacts(entity, object);

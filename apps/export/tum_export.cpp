@@ -26,9 +26,10 @@ void writeLines(const fs::path& file, const std::vector<std::string>& lines) {
 std::vector<std::string> cameraLines(const RunFolder& run, const std::vector<SE3>& T_world_cam, bool with_predicted) {
   std::vector<std::string> lines;
   for (const FrameRow& row : run.frames) {
-    const auto index = static_cast<std::size_t>(row.frame.value - run.first_frame);
-    const bool wanted = row.status == FrameStatus::kGood || (with_predicted && row.status != FrameStatus::kRejected);
-    if (wanted && index < T_world_cam.size()) lines.push_back(tumLine(row.stamp, T_world_cam[index]));
+    const auto index = static_cast<std::size_t>(row.head.frame.value - run.first_frame);
+    const bool wanted =
+        row.head.status == FrameStatus::kGood || (with_predicted && row.head.status != FrameStatus::kRejected);
+    if (wanted && index < T_world_cam.size()) lines.push_back(tumLine(row.head.stamp, T_world_cam[index]));
   }
   return lines;
 }
@@ -38,7 +39,7 @@ std::map<TrackId, std::vector<std::string>> objectLines(const RunFolder& run,
                                                         bool with_predicted) {
   std::map<FrameId, Timestamp> stamps;
   for (const FrameRow& row : run.frames)
-    if (row.status != FrameStatus::kRejected) stamps[row.frame] = row.stamp;
+    if (row.head.status != FrameStatus::kRejected) stamps[row.head.frame] = row.head.stamp;
   std::map<TrackId, std::vector<std::string>> lines;
   for (const auto& [frame, object] : rows) {
     const auto stamp = stamps.find(frame);

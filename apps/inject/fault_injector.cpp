@@ -35,19 +35,19 @@ bool FaultInjector::give(StereoFrame frame, const Outlet& outlet) {
   std::int64_t overtaken_by = 0;  // frames
   for (std::size_t k = 0; k < spec_.faults.size(); ++k) {
     const Fault& fault = spec_.faults[k];
-    if (!strikes(fault, k, frame.frame, spec_.seed)) continue;
+    if (!strikes(fault, k, frame.head.frame, spec_.seed)) continue;
     if (fault.kind == FaultKind::kDrop) dropped = true;
     if (fault.kind == FaultKind::kLate) overtaken_by = static_cast<std::int64_t>(fault.value);
     if (fault.kind == FaultKind::kStall) outlet.wait(std::chrono::duration<double>(fault.value));
-    applyTo(frame, fault, seedOf(spec_.seed, k, frame.frame));
+    applyTo(frame, fault, seedOf(spec_.seed, k, frame.head.frame));
   }
   left_before_ = frame.left;
   right_before_ = frame.right;
   rights_taken_.push_front(right);
   if (rights_taken_.size() > kept_) rights_taken_.pop_back();
-  frame.stamp = shifted(frame.stamp);
-  const std::int64_t id = frame.frame.value;
-  if (dropped || overtaken_by > 0) outlet.pass_over(frame.frame, frame.stamp);
+  frame.head.stamp = shifted(frame.head.stamp);
+  const std::int64_t id = frame.head.frame.value;
+  if (dropped || overtaken_by > 0) outlet.pass_over(frame.head.frame, frame.head.stamp);
   if (overtaken_by > 0)
     late_.push_back({std::move(frame), id + overtaken_by});
   else if (!dropped && !outlet.push(std::move(frame)))
@@ -85,13 +85,12 @@ void FaultInjector::applyTo(StereoFrame& frame, const Fault& fault, std::uint64_
       break;
   }
   if (frame.rejected()) return;
-  const FramePaths& files = sequence_.frames[static_cast<std::size_t>(frame.frame.value)];
+  const FramePaths& files = sequence_.frames[static_cast<std::size_t>(frame.head.frame.value)];
   try {
     if (fault.side != FaultSide::kRight) applyTo(frame.left, files, StereoSide::kLeft, fault, 2 * seed);
     if (fault.side != FaultSide::kLeft) applyTo(frame.right, files, StereoSide::kRight, fault, 2 * seed + 1);
   } catch (const std::exception& error) {
-    frame.left = frame.right = Image();
-    frame.problem = error.what();
+    frame.reject(FrameCause::kUnusable, error.what());
   }
 }
 

@@ -148,7 +148,7 @@ bool isImageSize(int width_px, int height_px) {
 
 CameraModel::CameraModel(const Camera& camera) {
   requireSize(camera);
-  ignored_ = ignoredOf(camera);
+  inputs_.ignored = sharedMask(ignoredOf(camera));
   if (!camera.rig) {
     requireIntrinsics("camera", camera, camera);
     rectified_ = checked(

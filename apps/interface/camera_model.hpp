@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/image.hpp"
-#include "core/pixel_mask.hpp"
+#include "core/messages.hpp"
 #include "core/stereo_camera.hpp"
 #include "io/rig/remap.hpp"
 #include "motorcade/motorcade.hpp"
@@ -21,7 +21,7 @@ class CameraModel {
 
   const StereoCamera& rectified() const { return rectified_; }
   /// The pixels of the rectified left image that are of no use.
-  const PixelMask& ignored() const { return ignored_; }
+  const FrameInputs& inputs() const { return inputs_; }
   /// From what was pushed, as gray, to what the stages take.
   Image leftOf(const Image& gray, ImagePool& pool) const { return remaps_ ? remaps_->left(gray, pool) : gray; }
   Image rightOf(const Image& gray, ImagePool& pool) const { return remaps_ ? remaps_->right(gray, pool) : gray; }
@@ -31,7 +31,7 @@ class CameraModel {
     Remap left, right;
   };
   StereoCamera rectified_;
-  PixelMask ignored_;
+  FrameInputs inputs_;
   std::optional<Remaps> remaps_;
 };
 

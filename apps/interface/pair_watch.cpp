@@ -18,7 +18,7 @@ Stages PairWatch::watched(Stages stages) {
 
 StereoFramePtr PairWatch::next(FrameId frame) {
   const std::scoped_lock lock(mutex_);
-  if (waiting_.empty() || frame < waiting_.front()->frame) return nullptr;
+  if (waiting_.empty() || frame < waiting_.front()->head.frame) return nullptr;
   StereoFramePtr pair = std::move(waiting_.front());
   waiting_.pop_front();
   return pair;

@@ -109,7 +109,7 @@ Eigen::Matrix3d axesFrom(Tracker::Axes axes) {
 
 /// Of a frame that the odometry passes over, the next one's motion is not since then.
 bool wasLookedAt(const FrameMeasurements& measured) {
-  return measured.cause != FrameCause::kNothingFound && measured.cause != FrameCause::kUnusable;
+  return measured.head.cause != FrameCause::kNothingFound && measured.head.cause != FrameCause::kUnusable;
 }
 
 }  // namespace
@@ -120,16 +120,16 @@ Result ResultConversion::operator()(const PipelineResult& result) {
   const FrameEstimate& online = result.online;
   const SE3 T_out_cam(R_out_cam_, Eigen::Vector3d::Zero());
   Result converted;
-  converted.frame = online.frame.value;
-  converted.stamp_ns = online.stamp.ns;
-  converted.status = statusOf(online.status);
-  converted.cause = causeOf(online.cause);
-  converted.segment = online.segment;
+  converted.frame = online.head.frame.value;
+  converted.stamp_ns = online.head.stamp.ns;
+  converted.status = statusOf(online.head.status);
+  converted.cause = causeOf(online.head.cause);
+  converted.segment = online.head.segment;
   converted.T_world_cam = rowsOf(T_out_cam * online.T_world_cam * T_out_cam.inverse());
   if (online.camera_covariance) converted.motion_covariance = rowsOf<6>(turned(*online.camera_covariance, R_out_cam_));
   if (result.measurements) setVelocity(*result.measurements, converted);
   const auto dropped =
-      std::ranges::count(result.dropped, FrameStatus::kDropped, [](const FrameEstimate& f) { return f.status; }) +
+      std::ranges::count(result.dropped, FrameStatus::kDropped, [](const FrameEstimate& f) { return f.head.status; }) +
       result.dropped_unnamed;
   converted.dropped_before = static_cast<int>(std::min<std::int64_t>(dropped, std::numeric_limits<int>::max()));
   converted.latency_ms = result.timing.latency_ms();
@@ -158,19 +158,19 @@ void ResultConversion::setObjects(const PipelineResult& result, Result& converte
 void ResultConversion::setVelocity(const FrameMeasurements& measured, Result& converted) {
   const bool seen = wasLookedAt(measured);
   const std::optional<Timestamp> since = seen ? seen_ : before_;
-  const double dt_s = since ? secondsBetween(*since, measured.stamp) : 0;
-  T_seen_before_ = (T_seen_before_ * measured.T_previous_now).normalized();
+  const double dt_s = since ? secondsBetween(*since, measured.head.stamp) : 0;
+  T_seen_before_ = (T_seen_before_ * measured.odometry.T_previous_now).normalized();
   Matrix6d covariance = unknownMotionCovariance(std::numeric_limits<double>::infinity());  // per second
   if (dt_s > 0) {
-    const Vector6d velocity = (seen ? T_seen_before_ : measured.T_previous_now).log() / dt_s;
+    const Vector6d velocity = (seen ? T_seen_before_ : measured.odometry.T_previous_now).log() / dt_s;
     Eigen::Map<Eigen::Vector3d>(converted.velocity.data()) = R_out_cam_ * velocity.head<3>();
     Eigen::Map<Eigen::Vector3d>(converted.velocity.data() + 3) = R_out_cam_ * velocity.tail<3>();
-    covariance = measured.odometry_covariance / (dt_s * dt_s);
+    covariance = measured.odometry.covariance / (dt_s * dt_s);
   }
   converted.velocity_covariance = rowsOf<6>(turned(covariance, R_out_cam_));
-  before_ = measured.stamp;
+  before_ = measured.head.stamp;
   if (!seen) return;
-  seen_ = measured.stamp;
+  seen_ = measured.head.stamp;
   T_seen_before_ = SE3{};
 }
 

@@ -124,7 +124,7 @@ Tracker::Impl::Impl(const Camera& camera, const Options& options, const Pipeline
       results_(options.policy),
       placement_(config.pipeline.placement),
       watch_(model_.rectified(), log_),
-      pipeline_(config.pipeline, watch_.watched(makeStages(config, model_.rectified(), model_.ignored())), log_) {
+      pipeline_(config.pipeline, watch_.watched(makeStages(config, model_.rectified())), log_) {
   if (!replay_) stock(pool_, camera);
   deliverer_ = std::jthread([this] { deliver(); });  // at last: it would wait for results if anything failed after it
 }
@@ -179,8 +179,8 @@ const char* Tracker::Impl::problemWith(const Pair& pair) const {
 
 Tracker::Push Tracker::Impl::enter(const Pair& pair) {
   StereoFrame frame;
-  frame.frame = {pair.frame};
-  frame.stamp = {pair.stamp_ns};
+  frame.head = {.frame = {pair.frame}, .stamp = {pair.stamp_ns}};
+  frame.inputs = model_.inputs();
   frame.due = std::chrono::steady_clock::now();
   const int sample_bits = sample_bits_.of(pair);
   frame.left = model_.leftOf(grayImage(pair.left, sample_bits, pool_), pool_);
@@ -232,7 +232,7 @@ void Tracker::Impl::deliver() {
       Result converted = convert_(*result);
       if (converted.problem.empty()) converted.problem = watch_.problem();
       results_.put(std::move(converted));
-      watch_.look(result->online.frame);
+      watch_.look(result->online.head.frame);
     }
     if (!closed_) pipeline_.finish();
   } catch (const std::exception& error) {

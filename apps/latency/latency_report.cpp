@@ -98,10 +98,10 @@ LatencyReport latencyReport(const std::vector<FrameRow>& rows, std::size_t slowe
   LatencyReport report;
   std::vector<FrameRow> entered;
   for (const FrameRow& row : rows) {
-    report.dropped += row.status == FrameStatus::kDropped;
-    report.rejected += row.status == FrameStatus::kRejected;
-    report.lost += row.status == FrameStatus::kLost;
-    if (row.status != FrameStatus::kDropped) entered.push_back(row);
+    report.dropped += row.head.status == FrameStatus::kDropped;
+    report.rejected += row.head.status == FrameStatus::kRejected;
+    report.lost += row.head.status == FrameStatus::kLost;
+    if (row.head.status != FrameStatus::kDropped) entered.push_back(row);
   }
   report.frames = entered.size();
   report.has_waits = std::ranges::any_of(entered, &FrameRow::has_waits);

@@ -32,7 +32,7 @@ std::string stageRow(const StageLatency& stage, bool has_waits) {
 }
 
 std::string slowRow(const SlowFrame& slow) {
-  std::string text = fmt::format("{:>8} {:>10.2f}   ", slow.row.frame.value, slow.row.latency_ms);
+  std::string text = fmt::format("{:>8} {:>10.2f}   ", slow.row.head.frame.value, slow.row.latency_ms);
   for (std::size_t part = 0; part < std::min(kToldParts, slow.above_median.size()); ++part)
     text += fmt::format("{}{:.2f} {}", part > 0 ? ", " : "", slow.above_median[part].ms, slow.above_median[part].name);
   return text + (slow.above_median.empty() ? "nothing in particular\n" : "\n");
@@ -70,7 +70,7 @@ std::string latencyJson(const LatencyReport& report) {
   for (const SlowFrame& slow : report.slowest) {
     Json parts = Json::array();
     for (const WayPart& part : slow.above_median) parts.push_back({{"part", part.name}, {"above_median_ms", part.ms}});
-    slowest.push_back({{"frame", slow.row.frame.value}, {"latency_ms", slow.row.latency_ms}, {"lost_in", parts}});
+    slowest.push_back({{"frame", slow.row.head.frame.value}, {"latency_ms", slow.row.latency_ms}, {"lost_in", parts}});
   }
   const Json json{{"frames", report.frames},
                   {"dropped", report.dropped},

@@ -77,7 +77,7 @@ void addLatestFrames(MergedBatch& batch, MergedTask& merged, const std::vector<F
                                                        : fmt::format("{} {:+.1f} ms", slow.above_median.front().name,
                                                                      slow.above_median.front().ms);
     addWorst(batch.latest_ms, merged.worst.latest_ms,
-             {merged.task.name, slow.row.frame.value, slow.row.latency_ms, most});
+             {merged.task.name, slow.row.head.frame.value, slow.row.latency_ms, most});
   }
 }
 

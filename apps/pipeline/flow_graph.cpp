@@ -14,7 +14,7 @@
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/task_arena.h>
 
-#include "apps/pipeline/edge_gauge.hpp"
+#include "apps/pipeline/edge_meter.hpp"
 #include "apps/pipeline/entrance.hpp"
 #include "apps/pipeline/publisher.hpp"
 #include "apps/pipeline/stage_runner.hpp"
@@ -43,15 +43,11 @@ enum Edge : std::size_t {
   kToPublish,
   kEdges
 };
-constexpr std::array<const char*, kEdges> kEdgeNames{"admit>prepare",
-                                                     "prepare>stereo_matching",
-                                                     "prepare>optical_flow",
-                                                     "stereo_matching>scene_flow_segmentation",
-                                                     "optical_flow>scene_flow_segmentation",
-                                                     "scene_flow_segmentation>tracking",
-                                                     "tracking>incremental_optimization",
-                                                     "incremental_optimization>object_shapes",
-                                                     "object_shapes>publish"};
+constexpr auto kEdgeNames = std::to_array<const char*>(
+    {"admit>prepare", "prepare>stereo_matching", "prepare>optical_flow", "stereo_matching>scene_flow_segmentation",
+     "optical_flow>scene_flow_segmentation", "scene_flow_segmentation>tracking", "tracking>incremental_optimization",
+     "incremental_optimization>object_shapes", "object_shapes>publish"});
+static_assert(kEdgeNames.size() == kEdges);
 
 /// Declared after the nodes: none of them ends while a task may use it, also when the wiring lacks memory.
 class Drained {
@@ -101,7 +97,7 @@ class FlowGraph::Impl {
   void publish(Job& job);
 
   Work work_;
-  std::array<EdgeGauge, kEdges> gauges_;
+  std::array<EdgeMeter, kEdges> meters_;
   int workers_;
   oneapi::tbb::task_arena arena_;
   WorkerTeam team_;
@@ -166,16 +162,16 @@ void FlowGraph::Impl::unlessGivenUp(const Act& act) {
 /// What a node does with a job: takes it off the edges that lead here, works, and leaves it on the edges that lead on.
 auto FlowGraph::Impl::stage(std::vector<Edge> in, void (StageRunner::*work)(Job&), std::vector<Edge> out) {
   return [this, in = std::move(in), work, out = std::move(out)](Job* job) {
-    team_.settle();
-    for (const Edge edge : in) gauges_[edge].leave();
+    team_.occupy();
+    for (const Edge edge : in) meters_[edge].leave();
     unlessGivenUp([this, job, work] { (work_.stages.*work)(*job); });
-    for (const Edge edge : out) gauges_[edge].enter();
+    for (const Edge edge : out) meters_[edge].enter();
     return job;
   };
 }
 
 void FlowGraph::Impl::publish(Job& job) {
-  gauges_[kToPublish].leave();
+  meters_[kToPublish].leave();
   unlessGivenUp([this, &job] { work_.publisher.publish(job); });
   team_.finish();
 }
@@ -239,7 +235,7 @@ void FlowGraph::Impl::await(flow::graph& graph, std::promise<void>& wired) {
 }
 
 void FlowGraph::Impl::put(Job& job) {
-  gauges_[kToPrepare].enter();
+  meters_[kToPrepare].enter();
   team_.expect();
   first_node_->try_put(&job);  // never refused: the node queues
   team_.call();
@@ -248,14 +244,14 @@ void FlowGraph::Impl::put(Job& job) {
 std::vector<QueueMark> FlowGraph::Impl::queues(std::int64_t bound) const {
   std::vector<QueueMark> marks;
   for (std::size_t edge = 0; edge < kEdges; ++edge)
-    marks.push_back({kEdgeNames[edge], gauges_[edge].highWater(), bound});
+    marks.push_back({kEdgeNames[edge], meters_[edge].highWater(), bound});
   return marks;
 }
 
 std::vector<QueueDepth> FlowGraph::Impl::depths(std::int64_t bound) const {
   std::vector<QueueDepth> depths;
   for (std::size_t edge = 0; edge < kEdges; ++edge)
-    depths.push_back({kEdgeNames[edge], gauges_[edge].waiting(), bound});
+    depths.push_back({kEdgeNames[edge], meters_[edge].waiting(), bound});
   return depths;
 }
 

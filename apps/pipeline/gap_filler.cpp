@@ -26,16 +26,13 @@ SE3 GapFiller::Trail::at(Timestamp stamp) const {
 
 SE3 GapFiller::predict(Timestamp stamp) const { return online_.at(stamp); }
 
-std::vector<FrameEstimate> GapFiller::fill(const std::vector<FrameHeader>& frames) {
+std::vector<FrameEstimate> GapFiller::fill(const std::vector<MissedFrame>& frames) {
   std::vector<FrameEstimate> estimates;
-  for (const FrameHeader& header : frames) {
+  for (const MissedFrame& missed : frames) {
     FrameEstimate estimate;
-    estimate.frame = header.frame;
-    estimate.stamp = header.stamp;
-    estimate.status = header.status;
-    estimate.cause = header.cause;
-    estimate.segment = segment_;
-    estimate.T_world_cam = predict(header.stamp);
+    estimate.head = missed.head;
+    estimate.head.segment = segment_;
+    estimate.T_world_cam = predict(missed.head.stamp);
     missing_.push_back(estimate);
     estimates.push_back(std::move(estimate));
   }
@@ -43,9 +40,9 @@ std::vector<FrameEstimate> GapFiller::fill(const std::vector<FrameHeader>& frame
 }
 
 void GapFiller::published(const FrameEstimate& online, bool seen_by_backend) {
-  online_.add({online.stamp, online.T_world_cam});
-  if (!first_.before) first_.add({online.stamp, online.T_world_cam});
-  segment_ = online.segment;
+  online_.add({online.head.stamp, online.T_world_cam});
+  if (!first_.before) first_.add({online.head.stamp, online.T_world_cam});
+  segment_ = online.head.segment;
   if (!seen_by_backend) missing_.push_back(online);
 }
 
@@ -53,12 +50,12 @@ std::vector<FrameEstimate> GapFiller::completed(const std::vector<FrameEstimate>
   std::vector<FrameEstimate> all;
   for (const FrameEstimate& estimate : finals) {
     const Trail gap =
-        final_.last ? Trail{.before = final_.last, .last = Moment{estimate.stamp, estimate.T_world_cam}} : first_;
-    for (; !missing_.empty() && missing_.front().frame < estimate.frame; missing_.pop_front()) {
+        final_.last ? Trail{.before = final_.last, .last = Moment{estimate.head.stamp, estimate.T_world_cam}} : first_;
+    for (; !missing_.empty() && missing_.front().head.frame < estimate.head.frame; missing_.pop_front()) {
       all.push_back(missing_.front());
-      all.back().T_world_cam = gap.at(all.back().stamp);
+      all.back().T_world_cam = gap.at(all.back().head.stamp);
     }
-    final_.add({estimate.stamp, estimate.T_world_cam});
+    final_.add({estimate.head.stamp, estimate.T_world_cam});
     all.push_back(estimate);
   }
   return all;
@@ -68,7 +65,7 @@ std::vector<FrameEstimate> GapFiller::rest() {
   std::vector<FrameEstimate> all;
   for (; !missing_.empty(); missing_.pop_front()) {
     all.push_back(missing_.front());
-    if (final_.last) all.back().T_world_cam = final_.at(all.back().stamp);
+    if (final_.last) all.back().T_world_cam = final_.at(all.back().head.stamp);
   }
   return all;
 }

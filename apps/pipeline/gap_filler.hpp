@@ -9,14 +9,15 @@
 
 namespace motorcade {
 
-/// An input frame of which only the header is known: it never entered the flow graph.
-struct FrameHeader {
-  FrameId frame;
-  Timestamp stamp;
-  FrameStatus status = FrameStatus::kDropped;
-  FrameCause cause = FrameCause::kTooLate;
+/// An input frame that never entered the flow graph.
+struct MissedFrame {
+  FrameHead head;
   std::int64_t step_ns = 0;  // of a frame out of order: from the frame before, as the camera stamped them
 };
+/// One that came too late.
+inline MissedFrame droppedFrame(FrameId frame, Timestamp stamp) {
+  return {.head = {.frame = frame, .stamp = stamp, .status = FrameStatus::kDropped, .cause = FrameCause::kTooLate}};
+}
 
 /// Gives a pose to the frames that the back-end never saw, so that every input frame has its line in the results:
 /// predicted at constant velocity when published, interpolated between its neighbors in the final trajectory; before
@@ -24,7 +25,7 @@ struct FrameHeader {
 class GapFiller {
  public:
   /// Estimates of frames that came after the last published one and were not processed.
-  std::vector<FrameEstimate> fill(const std::vector<FrameHeader>& frames);
+  std::vector<FrameEstimate> fill(const std::vector<MissedFrame>& frames);
   /// Notes a published estimate; `seen_by_backend` is false when the back-end gives no final estimate of the frame.
   void published(const FrameEstimate& online, bool seen_by_backend);
   /// The pose predicted for a moment after the last published frame.

@@ -13,7 +13,7 @@ namespace motorcade {
 namespace {
 
 /// Frames that may be lost between two others and still be named one by one; more are counted.
-constexpr std::size_t kHeaders = 4096;
+constexpr std::size_t kMostMissed = 4096;
 
 /// No camera takes pairs so close together; a burst of them that was stamped on arrival tells nothing of speeds either.
 constexpr std::int64_t kTooClose_ns = 500'000;
@@ -32,8 +32,7 @@ StereoFramePtr shared(StereoFrame frame) {
   try {
     return make();
   } catch (const std::bad_alloc&) {
-    frame.left = frame.right = Image{};
-    frame.problem = kNoMemoryLeft;
+    frame.reject(FrameCause::kUnusable, kNoMemoryLeft);
     return make();
   }
 }
@@ -46,7 +45,7 @@ Intake::Intake(const PipelineParams& params, FreeJobs& free_jobs, Entrance& entr
       entrance_(entrance),
       log_(std::move(log)),
       input_(ringCapacity(params)),
-      headers_(kHeaders) {}
+      missed_(kMostMissed) {}
 
 Admission Intake::push(StereoFrame frame) {
   entering_.store(true);
@@ -57,17 +56,18 @@ Admission Intake::push(StereoFrame frame) {
 }
 
 Admission Intake::judge(StereoFrame frame) {
-  if (!frame.frame.valid()) frame.frame = next_id_;
-  if (frame.frame < next_id_) {
+  if (!frame.head.frame.valid()) frame.head.frame = next_id_;
+  if (frame.head.frame < next_id_) {
     late_.fetch_add(1, std::memory_order_relaxed);
     return Admission::kLate;
   }
-  next_id_ = {frame.frame.value + 1};
-  const std::int64_t step_ns = frame.stamp.ns - std::exchange(stamped_, frame.stamp).value_or(frame.stamp).ns;
+  next_id_ = {frame.head.frame.value + 1};
+  const std::int64_t step_ns =
+      frame.head.stamp.ns - std::exchange(stamped_, frame.head.stamp).value_or(frame.head.stamp).ns;
   if (step_ns > 0 && step_ns < kTooClose_ns) return refuse(frame, step_ns, Admission::kTooClose);
-  const auto time = clock_.read(frame.stamp);
+  const auto time = clock_.read(frame.head.stamp);
   if (!time) return refuse(frame, step_ns, clock_.refusedFarAhead() ? Admission::kFarAhead : Admission::kOutOfOrder);
-  frame.stamp = *time;
+  frame.head.stamp = *time;
   clock_ahead_ns_.store(clock_.ahead_ns(), std::memory_order_relaxed);
   const Admission admission = enter(std::move(frame));
   if (isTaken(admission)) received_.fetch_add(1, std::memory_order_relaxed);
@@ -77,8 +77,12 @@ Admission Intake::judge(StereoFrame frame) {
 /// Such a frame's time is the one that was expected; one that is too close has its own.
 Admission Intake::refuse(const StereoFrame& frame, std::int64_t step_ns, Admission why) {
   const Timestamp time =
-      why == Admission::kTooClose ? Timestamp{frame.stamp.ns + clock_.ahead_ns()} : clock_.expected();
-  announce({frame.frame, time, FrameStatus::kRejected, FrameCause::kOutOfOrder, step_ns});
+      why == Admission::kTooClose ? Timestamp{frame.head.stamp.ns + clock_.ahead_ns()} : clock_.expected();
+  announce({.head = {.frame = frame.head.frame,
+                     .stamp = time,
+                     .status = FrameStatus::kRejected,
+                     .cause = FrameCause::kOutOfOrder},
+            .step_ns = step_ns});
   refused_.fetch_add(1, std::memory_order_relaxed);
   received_.fetch_add(1, std::memory_order_relaxed);
   return why;
@@ -87,23 +91,21 @@ Admission Intake::refuse(const StereoFrame& frame, std::int64_t step_ns, Admissi
 Admission Intake::enter(StereoFrame frame) {
   const std::int64_t turn = ++turns_;
   if (!live()) return input_.push({std::move(frame), turn}) ? Admission::kTaken : Admission::kClosed;
-  announce({frame.frame, frame.stamp});
+  announce(droppedFrame(frame.head.frame, frame.head.stamp));
   return newest_.put({std::move(frame), turn}) ? Admission::kReplacedOlder : Admission::kTaken;
 }
 
-void Intake::passOver(const FrameHeader& frame) {
-  assert(frame.frame >= next_id_);
+void Intake::passOver(FrameId frame, Timestamp stamp) {
+  assert(frame >= next_id_);
   if (closed_.load()) return;
-  next_id_ = {frame.frame.value + 1};
-  FrameHeader header = frame;
-  header.stamp.ns += clock_.ahead_ns();
+  next_id_ = {frame.value + 1};
   ++turns_;
-  announce(header);
+  announce(droppedFrame(frame, {stamp.ns + clock_.ahead_ns()}));
   passed_over_.fetch_add(1, std::memory_order_relaxed);
   received_.fetch_add(1, std::memory_order_relaxed);
 }
 
-void Intake::announce(FrameHeader header) { headers_.tryPush(header); }
+void Intake::announce(MissedFrame frame) { missed_.tryPush(frame); }
 
 void Intake::close() {
   closed_.store(true);
@@ -134,12 +136,11 @@ void Intake::admit(Job& job, Entering entering) {
   job.timing = FrameTiming{};
   job.timing.admitted = std::chrono::steady_clock::now();
   if (frame.due == SteadyTime{}) frame.due = job.timing.admitted;
-  job.timing.frame = frame.frame;
-  job.timing.stamp = frame.stamp;
+  job.timing.head = frame.head;
   job.timing.due = frame.due;
   job.timing.decode_ms = frame.decode_ms;
   job.timing.decoded = frame.decoded;
-  job.dropped = headersBefore(frame.frame);
+  job.dropped = missedBefore(frame.head.frame);
   job.dropped_unnamed = droppedUnnamed(job.dropped, entering.turn);
   tellOfLost(job);
   tellOfClock(frame);
@@ -150,16 +151,17 @@ void Intake::admit(Job& job, Entering entering) {
 }
 
 /// Of the frames between the last admitted one and that of `turn`.
-std::int64_t Intake::droppedUnnamed(const std::vector<FrameHeader>& named, std::int64_t turn) {
+std::int64_t Intake::droppedUnnamed(const std::vector<MissedFrame>& named, std::int64_t turn) {
   const std::int64_t between = turn - std::exchange(last_turn_, turn) - 1;
-  return between - std::ranges::count(named, FrameStatus::kDropped, &FrameHeader::status);
+  return between -
+         std::ranges::count(named, FrameStatus::kDropped, [](const MissedFrame& frame) { return frame.head.status; });
 }
 
 void Intake::tellOfLost(const Job& job) {
-  for (const FrameHeader& header : job.dropped)
-    if (header.status == FrameStatus::kRejected)
+  for (const MissedFrame& missed : job.dropped)
+    if (missed.head.status == FrameStatus::kRejected)
       tell(log_, LogLevel::kWarning, [&] {
-        return "frame " + std::to_string(header.frame.value) + " is rejected: " + whyOutOfOrder(header.step_ns);
+        return "frame " + std::to_string(missed.head.frame.value) + " is rejected: " + whyOutOfOrder(missed.step_ns);
       });
   if (job.dropped_unnamed > 0)
     tell(log_, LogLevel::kWarning, [&] {
@@ -173,25 +175,25 @@ void Intake::tellOfClock(const StereoFrame& frame) {
   const std::int64_t ahead_ns = clock_ahead_ns_.load(std::memory_order_relaxed);
   if (ahead_ns == std::exchange(told_ahead_ns_, ahead_ns)) return;
   tell(log_, LogLevel::kWarning, [&] {
-    return "frame " + std::to_string(frame.frame.value) +
+    return "frame " + std::to_string(frame.head.frame.value) +
            ": the clock of the camera was set back; from here on times are " +
            std::to_string(1e-9 * static_cast<double>(ahead_ns)) + " s later than its own";
   });
 }
 
-std::vector<FrameHeader> Intake::headersBefore(FrameId frame) {
-  std::vector<FrameHeader> before;
+std::vector<MissedFrame> Intake::missedBefore(FrameId frame) {
+  std::vector<MissedFrame> before;
   for (;;) {
-    if (!header_ahead_) header_ahead_ = headers_.tryPop();
-    if (!header_ahead_ || header_ahead_->frame > frame) return before;
-    if (header_ahead_->frame < frame) before.push_back(*header_ahead_);
-    header_ahead_.reset();
+    if (!missed_ahead_) missed_ahead_ = missed_.tryPop();
+    if (!missed_ahead_ || missed_ahead_->head.frame > frame) return before;
+    if (missed_ahead_->head.frame < frame) before.push_back(*missed_ahead_);
+    missed_ahead_.reset();
   }
 }
 
-std::vector<FrameHeader> Intake::headersLeft() {
+std::vector<MissedFrame> Intake::missedAtLast() {
   constexpr FrameId kNever{std::numeric_limits<std::int64_t>::max()};
-  return headersBefore(kNever);
+  return missedBefore(kNever);
 }
 
 }  // namespace motorcade

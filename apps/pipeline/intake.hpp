@@ -28,7 +28,7 @@ class Intake {
 
   /// Producer: see `Pipeline`.
   Admission push(StereoFrame frame);
-  void passOver(const FrameHeader& frame);
+  void passOver(FrameId frame, Timestamp stamp);
   /// Any thread: no further frame comes.
   void close();
 
@@ -42,7 +42,7 @@ class Intake {
   std::int64_t refused() const { return refused_.load(); }
   std::int64_t late() const { return late_.load(); }
   /// After the end: frames after the last admitted one that never entered.
-  std::vector<FrameHeader> headersLeft();
+  std::vector<MissedFrame> missedAtLast();
   /// Any thread: frames in the ring of replay; live keeps one frame at most.
   std::size_t waiting() const { return input_.size(); }
   std::size_t highWater() const { return input_.highWater(); }
@@ -58,23 +58,23 @@ class Intake {
   Admission enter(StereoFrame frame);
   Admission refuse(const StereoFrame& frame, std::int64_t step_ns, Admission why);
   std::optional<Entering> take();
-  void announce(FrameHeader header);
+  void announce(MissedFrame frame);
   void tellOfClock(const StereoFrame& frame);
   void tellOfLost(const Job& job);
   void admit(Job& job, Entering entering);
-  std::int64_t droppedUnnamed(const std::vector<FrameHeader>& named, std::int64_t turn);
-  std::vector<FrameHeader> headersBefore(FrameId frame);
+  std::int64_t droppedUnnamed(const std::vector<MissedFrame>& named, std::int64_t turn);
+  std::vector<MissedFrame> missedBefore(FrameId frame);
 
   InputPolicy policy_;
   FreeJobs& free_jobs_;
   Entrance& entrance_;
   LogCallback log_;
 
-  // The ring in replay, the mailbox in live. The headers are of frames that were passed over or refused; in live of all
+  // The ring in replay, the mailbox in live. Missed are frames that were passed over or refused; in live of all
   // frames, to know those that the mailbox lost. Where there are too many for the ring, the last of them are missing.
   SpscRing<Entering> input_;
   Mailbox<Entering> newest_;
-  SpscRing<FrameHeader> headers_;
+  SpscRing<MissedFrame> missed_;
   // The producer raises the one before it looks at the other: who has closed the input waits for a push that came
   // before.
   std::atomic<bool> entering_{false}, closed_{false};
@@ -86,7 +86,7 @@ class Intake {
   FrameClock clock_;                         // producer only
   std::optional<Timestamp> stamped_;         // producer only: of the frame before, as the camera has it
   std::int64_t told_ahead_ns_ = 0;           // pump only
-  std::optional<FrameHeader> header_ahead_;  // pump only: taken from `headers_`, later than the newest frame
+  std::optional<MissedFrame> missed_ahead_;  // pump only: taken from `missed_`, later than the newest frame
   std::size_t admitted_ = 0;                 // pump only
   std::int64_t last_turn_ = 0;               // pump only: of the last admitted frame
 };

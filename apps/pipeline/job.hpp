@@ -20,7 +20,7 @@ namespace motorcade {
 /// Each field has one writer; the graph's edges order writers before readers.
 struct Job {
   std::size_t sequence = 0;          // without gaps, unlike the frame's id
-  std::vector<FrameHeader> dropped;  // or refused, since the frame before
+  std::vector<MissedFrame> dropped;  // or refused, since the frame before
   std::int64_t dropped_unnamed = 0;  // more of them, of which nothing is known
   StereoFramePtr frame;
   FeaturesPtr features;
@@ -34,7 +34,7 @@ struct Job {
 
   std::string& problemOf(Stage stage) { return problems[static_cast<std::size_t>(stage)]; }
   /// `frame 12`, for messages.
-  std::string name() const { return "frame " + std::to_string(timing.frame.value); }
+  std::string name() const { return "frame " + std::to_string(timing.head.frame.value); }
   /// Lets go of the messages, with their images.
   void clear() {
     dropped.clear();

@@ -84,7 +84,7 @@ PipelineEnd Pipeline::Impl::finish() {
   while (auto result = publisher_.next()) end.results.push_back(std::move(*result));
   pump_thread_.join();
   graph_.join();
-  end.dropped = publisher_.lastDropped(intake_.headersLeft());
+  end.dropped = publisher_.lastDropped(intake_.missedAtLast());
   end.finals = publisher_.lastFinals(stages_.finish());
   end.summary = publisher_.summary();
   end.summary.received = intake_.received();
@@ -121,7 +121,7 @@ Pipeline::Pipeline(const PipelineParams& params, Stages stages, LogCallback log)
 Pipeline::~Pipeline() = default;
 
 Admission Pipeline::push(StereoFrame frame) { return impl_->intake().push(std::move(frame)); }
-void Pipeline::passOver(const FrameHeader& frame) { impl_->intake().passOver(frame); }
+void Pipeline::passOver(FrameId frame, Timestamp stamp) { impl_->intake().passOver(frame, stamp); }
 void Pipeline::abandon() { impl_->abandon(); }
 void Pipeline::close() { impl_->intake().close(); }
 std::optional<PipelineResult> Pipeline::next() { return impl_->publisher().next(); }

@@ -29,7 +29,7 @@ class Pipeline {
   /// it. Under the live policy it takes no lock and, with images from an ImagePool, asks nothing of the heap.
   Admission push(StereoFrame frame);
   /// Producer, between two pushes: this frame was there, but does not come. It counts as received and dropped.
-  void passOver(const FrameHeader& frame);
+  void passOver(FrameId frame, Timestamp stamp);
   /// Producer: no further frame comes.
   void close();
 

@@ -22,7 +22,7 @@ void countWhatWasSeen(const PipelineResult& result, FrameTiming& timing) {
   timing.inliers = static_cast<int>(seen.at_rest.size());
   timing.points = timing.inliers + static_cast<int>(seen.undecided.size());
   for (const ObjectObservation& object : seen.objects)
-    if (object.frame == seen.frame) timing.points += static_cast<int>(object.measured.size());
+    if (object.frame == seen.head.frame) timing.points += static_cast<int>(object.measured.size());
   timing.objects = static_cast<int>(result.online.objects.size());
 }
 
@@ -35,9 +35,7 @@ void Publisher::publish(Job& job) {
   PipelineResult result = resultOf(job);
   results_.waitForRoom();
   job.timing.published = std::chrono::steady_clock::now();
-  job.timing.status = result.online.status;
-  job.timing.cause = result.online.cause;
-  job.timing.segment = result.online.segment;
+  job.timing.head = result.online.head;
   countWhatWasSeen(result, job.timing);
   result.timing = job.timing;
   count(job, result);
@@ -53,13 +51,12 @@ PipelineResult Publisher::resultOf(Job& job) {
   settled_gaps_.fill(job.dropped);
   result.dropped_unnamed = job.dropped_unnamed;
   result.online = job.estimates->online;
-  tellWhy(job, result.online);
   online_ages_.fill(result.online);
-  if (!seen_by_backend) result.online.T_world_cam = gaps_.predict(job.timing.stamp);
+  if (!seen_by_backend) result.online.T_world_cam = gaps_.predict(job.timing.head.stamp);
   gaps_.published(result.online, seen_by_backend);
   settled_gaps_.published(result.online, seen_by_backend);
   result.finals = gaps_.completed(job.estimates->finals);
-  for (FrameEstimate& estimate : result.finals) complete(estimate);
+  for (FrameEstimate& estimate : result.finals) final_ages_.fill(estimate);
   result.settled = settledOf(*job.estimates);
   result.masks = job.estimates->masks;
   result.measurements = job.measurements;
@@ -71,22 +68,22 @@ PipelineResult Publisher::resultOf(Job& job) {
 /// A frame that leaves the window earlier is final by then.
 std::vector<FrameEstimate> Publisher::settledOf(const Estimates& estimates) {
   std::vector<FrameEstimate> settled = estimates.settled;
-  if (!settled.empty()) last_settled_ = settled.back().frame;
+  if (!settled.empty()) last_settled_ = settled.back().head.frame;
   std::ranges::copy_if(estimates.finals, std::back_inserter(settled),
-                       [this](const FrameEstimate& final) { return final.frame > last_settled_; });
-  if (!settled.empty()) last_settled_ = settled.back().frame;
+                       [this](const FrameEstimate& final) { return final.head.frame > last_settled_; });
+  if (!settled.empty()) last_settled_ = settled.back().head.frame;
   settled = settled_gaps_.completed(settled);
   for (FrameEstimate& estimate : settled) settled_ages_.fill(estimate);
   return settled;
 }
 
 void Publisher::count(const Job& job, const PipelineResult& result) {
-  const FrameStatus status = result.online.status;
+  const FrameStatus status = result.online.head.status;
   ++(status == FrameStatus::kRejected ? summary_.rejected : summary_.processed);
   if (status == FrameStatus::kLost) ++summary_.lost;
-  if (status == FrameStatus::kGood && result.online.cause != FrameCause::kNone) ++summary_.degraded;
-  ++summary_.causes[static_cast<std::size_t>(result.online.cause)];
-  summary_.segments = result.online.segment + 1;
+  if (status == FrameStatus::kGood && result.online.head.cause != FrameCause::kNone) ++summary_.degraded;
+  ++summary_.causes[static_cast<std::size_t>(result.online.head.cause)];
+  summary_.segments = result.online.head.segment + 1;
   summary_.latency.add(job.timing.latency_ms());
   summary_.latency_with_decoding.add(job.timing.latency_ms() + job.timing.decode_ms);
   summary_.entry_wait.add(job.timing.entry_wait_ms());
@@ -101,27 +98,8 @@ void Publisher::count(const Job& job, const PipelineResult& result) {
 std::vector<FrameEstimate> Publisher::lastFinals(const std::vector<FrameEstimate>& last) {
   std::vector<FrameEstimate> finals = gaps_.completed(last);
   for (FrameEstimate& estimate : gaps_.rest()) finals.push_back(std::move(estimate));
-  for (FrameEstimate& estimate : finals) complete(estimate);
+  for (FrameEstimate& estimate : finals) final_ages_.fill(estimate);
   return finals;
-}
-
-/// What the back-end does not look at, but hands on.
-void Publisher::tellWhy(Job& job, FrameEstimate& online) {
-  const bool failed = online.status != job.measurements->status;  // in the back-end, whose estimate then is none
-  online.cause = failed ? FrameCause::kFailed : job.measurements->cause;
-  if (online.status == FrameStatus::kRejected && !job.problemOf(Stage::kPrepare).empty())
-    online.cause = FrameCause::kFailed;
-  online.segment = job.measurements->segment;
-  reasons_.push_back({online.frame, online.cause, online.segment});
-}
-
-/// A final estimate says the same of its frame as the online one did.
-void Publisher::complete(FrameEstimate& final) {
-  final_ages_.fill(final);
-  while (!reasons_.empty() && reasons_.front().frame < final.frame) reasons_.pop_front();
-  if (reasons_.empty() || reasons_.front().frame != final.frame) return;  // it never entered
-  final.cause = reasons_.front().cause;
-  final.segment = reasons_.front().segment;
 }
 
 }  // namespace motorcade

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -30,7 +29,7 @@ class Publisher {
   std::optional<PipelineResult> poll() { return results_.tryPop(); }
 
   /// After the last `publish`: the estimates of frames that came after it and never entered.
-  std::vector<FrameEstimate> lastDropped(const std::vector<FrameHeader>& frames) { return gaps_.fill(frames); }
+  std::vector<FrameEstimate> lastDropped(const std::vector<MissedFrame>& frames) { return gaps_.fill(frames); }
   /// After `lastDropped`: all frames that are not final yet, oldest first. `last` are the back-end's.
   std::vector<FrameEstimate> lastFinals(const std::vector<FrameEstimate>& last);
   const PipelineSummary& summary() const { return summary_; }
@@ -40,21 +39,13 @@ class Publisher {
 
  private:
   PipelineResult resultOf(Job& job);
-  void tellWhy(Job& job, FrameEstimate& online);
-  void complete(FrameEstimate& final);
   std::vector<FrameEstimate> settledOf(const Estimates& estimates);
   void count(const Job& job, const PipelineResult& result);
 
   FreeJobs& free_jobs_;
   SpscRing<PipelineResult> results_;
-  struct Reason {
-    FrameId frame;
-    FrameCause cause;
-    int segment;
-  };
   GapFiller gaps_, settled_gaps_;
   FrameId last_settled_;
-  std::deque<Reason> reasons_;  // of the frames that are not final yet
   ObjectAges online_ages_, settled_ages_, final_ages_;
   PipelineSummary summary_;
 };

@@ -21,7 +21,7 @@ EstimatesPtr RestartingBackend::operator()(const FrameMeasurementsPtr& measureme
 EstimatesPtr RestartingBackend::estimate(const FrameMeasurementsPtr& measurements) {
   if (!backend_) {
     backend_ = make_();
-    T_world_start_ = (T_world_cam_ * measurements->T_previous_now).normalized();
+    T_world_start_ = (T_world_cam_ * measurements->odometry.T_previous_now).normalized();
     restarted_ = true;
   }
   EstimatesPtr estimates = (*backend_)(measurements);
@@ -71,7 +71,7 @@ void RestartingBackend::moveToWorld(FrameEstimate& estimate) const {
 
 void RestartingBackend::giveUp(const FrameMeasurements& measurements) noexcept {
   backend_.reset();
-  T_world_cam_ = (T_world_cam_ * measurements.T_previous_now).normalized();
+  T_world_cam_ = (T_world_cam_ * measurements.odometry.T_previous_now).normalized();
   if (left_.empty()) left_.swap(window_);  // the window of a back-end that fails with its first frame is empty
 }
 

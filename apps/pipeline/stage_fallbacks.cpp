@@ -13,14 +13,20 @@ std::shared_ptr<const Message> shared(Message message) {
   return std::make_shared<const Message>(std::move(message));
 }
 
+/// A stage failed that the frame's pose depends on.
+FrameHead lost(FrameHead head) {
+  head.status = FrameStatus::kLost;
+  head.cause = FrameCause::kFailed;
+  return head;
+}
+
 }  // namespace
 
 FeaturesPtr rejectedFeatures(const StereoFrame& frame, const std::string& problem) {
   StereoFrame rejected;
-  rejected.frame = frame.frame;
-  rejected.stamp = frame.stamp;
+  rejected.head = frame.head;
   rejected.due = frame.due;
-  rejected.problem = problem;
+  rejected.reject(FrameCause::kFailed, problem);
   Features features;
   features.frame = shared(std::move(rejected));
   return shared(std::move(features));
@@ -38,33 +44,22 @@ OpticalFlowPtr noFlow(const FeaturesPtr& features) {
 
 SceneMotionPtr predictedMotion(const StereoFrame& frame, const SE3& T_previous_now) {
   SceneMotion predicted;
-  predicted.frame = frame.frame;
-  predicted.stamp = frame.stamp;
-  predicted.status = frame.rejected() ? FrameStatus::kRejected : FrameStatus::kLost;
-  predicted.cause = frame.rejected() ? FrameCause::kUnusable : FrameCause::kFailed;
-  predicted.T_previous_now = T_previous_now;
-  predicted.odometry_covariance = unknownMotionCovariance();
+  predicted.head = frame.rejected() ? frame.head : lost(frame.head);
+  predicted.odometry = {T_previous_now, unknownMotionCovariance()};
   return shared(std::move(predicted));
 }
 
 FrameMeasurementsPtr cameraAlone(const SceneMotion& motion) {
   FrameMeasurements camera;
-  camera.frame = motion.frame;
-  camera.stamp = motion.stamp;
-  camera.status = motion.status == FrameStatus::kGood ? FrameStatus::kLost : motion.status;
-  camera.cause = motion.status == FrameStatus::kGood ? FrameCause::kFailed : motion.cause;
-  camera.segment = motion.segment;
-  camera.T_previous_now = motion.T_previous_now;
-  camera.odometry_covariance = motion.odometry_covariance;
+  camera.head = motion.head.status == FrameStatus::kGood ? lost(motion.head) : motion.head;
+  camera.odometry = motion.odometry;
   return shared(std::move(camera));
 }
 
 EstimatesPtr lostEstimates(const FrameMeasurements& measurements) {
-  Estimates lost;
-  lost.online.frame = measurements.frame;
-  lost.online.stamp = measurements.stamp;
-  lost.online.status = FrameStatus::kLost;
-  return shared(std::move(lost));
+  Estimates estimates;
+  estimates.online.head = lost(measurements.head);
+  return shared(std::move(estimates));
 }
 
 }  // namespace motorcade

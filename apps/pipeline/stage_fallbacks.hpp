@@ -13,7 +13,7 @@ namespace motorcade {
 FeaturesPtr rejectedFeatures(const StereoFrame& frame, const std::string& problem);
 StereoMatchesPtr noMatches(const FeaturesPtr& features);
 OpticalFlowPtr noFlow(const FeaturesPtr& features);
-/// No points and no segments; the camera moves as `T_previous_now` predicts.
+/// No points and no components; the camera moves as `T_previous_now` predicts.
 SceneMotionPtr predictedMotion(const StereoFrame& frame, const SE3& T_previous_now);
 /// The camera's motion without objects.
 FrameMeasurementsPtr cameraAlone(const SceneMotion& motion);

@@ -84,7 +84,7 @@ void StageRunner::segmentSceneFlow(Job& job) {
   job.motion = attempt(
       job, Stage::kSceneFlowSegmentation, [&] { return stages_.scene_flow_segmentation(job.matches, job.flow); },
       [&] { return predictedMotion(*job.features->frame, last_motion_); });
-  last_motion_ = job.motion->T_previous_now;
+  last_motion_ = job.motion->odometry.T_previous_now;
 }
 
 void StageRunner::trackObjects(Job& job) {

@@ -19,9 +19,8 @@ std::unique_ptr<Backend> makeBackend(const BackendParams& params, const StereoCa
   return std::make_unique<PoseGraphBackend>(params.pose_graph, camera, params.window);
 }
 
-std::shared_ptr<const FeaturePreparation> makePreparation(const FeaturePreparation::Params& params,
-                                                          const PixelMask& ignored) try {
-  return std::make_shared<const FeaturePreparation>(params, ignored);
+std::shared_ptr<const FeaturePreparation> makePreparation(const FeaturePreparation::Params& params) try {
+  return std::make_shared<const FeaturePreparation>(params);
 } catch (const ModuleError& error) {  // the detector's
   throw UsageError(error.what());
 }
@@ -42,11 +41,11 @@ void requireImages(const StereoFrame& frame, const StereoCamera& camera) {
 }  // namespace
 
 /// The stages live behind shared pointers, because a std::function copies what it holds.
-Stages makeStages(const PipelineConfig& config, const StereoCamera& camera, const PixelMask& ignored) {
-  const auto prepare = makePreparation(config.preparation, ignored);
+Stages makeStages(const PipelineConfig& config, const StereoCamera& camera) {
+  const auto prepare = makePreparation(config.preparation);
   const auto stereo = std::make_shared<StereoMatcher>(config.stereo);
   const auto flow = std::make_shared<OpticalFlowTracker>(config.optical_flow);
-  const auto motion = std::make_shared<SceneFlowSegmentation>(config.scene_flow_segmentation, camera, ignored);
+  const auto motion = std::make_shared<SceneFlowSegmentation>(config.scene_flow_segmentation, camera);
   const auto tracking = std::make_shared<ObjectTracker>(config.tracking, camera);
   const auto shapes = std::make_shared<ObjectShapes>(config.shapes, camera);
   const std::shared_ptr<Backend> backend =

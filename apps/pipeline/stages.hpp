@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/messages.hpp"
-#include "core/pixel_mask.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
 #include "frontend/shape/object_shapes.hpp"
@@ -27,8 +26,8 @@ struct Stages {
   std::function<std::vector<FrameEstimate>()> finish;
 };
 
-/// The real stages, for a camera whose images have the size that it says; `ignored` are pixels of its left image that
-/// are of no use. Throws std::invalid_argument on a bad parameter, UsageError where the detector's module is missing.
-Stages makeStages(const PipelineConfig& config, const StereoCamera& camera, const PixelMask& ignored = {});
+/// The real stages, for a camera whose images have the size that it says. Throws std::invalid_argument on a bad
+/// parameter, UsageError where the detector's module is missing.
+Stages makeStages(const PipelineConfig& config, const StereoCamera& camera);
 
 }  // namespace motorcade

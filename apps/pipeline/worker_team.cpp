@@ -79,7 +79,7 @@ void WorkerTeam::letGo(Seat& seat) {
 /// Of those who are not wanted any more, one stays until the last frame is finished: a thread that has just worked on
 /// a frame.
 void WorkerTeam::work() {
-  settle();
+  occupy();
   Seat& seat = *seats_[thisSeat()];
   seat.as_one_of_all.await();
   if (last_ == thisSeat()) seat.alone.await();

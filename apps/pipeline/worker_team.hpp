@@ -39,7 +39,7 @@ class WorkerTeam {
   /// Leader, in the arena: works on the graph until it is closed and all is done. Throws what a node threw.
   void lead(oneapi::tbb::flow::graph& graph);
   /// A thread of the team begins with something.
-  void settle() { spread_.settle(thisSeat()); }
+  void occupy() { spread_.occupy(thisSeat()); }
 
  private:
   /// What a worker waits for: a graph without nodes, which is held as long as it shall work.

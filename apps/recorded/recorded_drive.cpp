@@ -71,7 +71,7 @@ const RunFolder::Trajectories& fullerTrajectories(const RunFolder& run) {
 
 RecordedDrive recordedDrive(const RunFolder& run) {
   std::vector<Timestamp> stamps;
-  for (const FrameRow& row : run.frames) stamps.push_back(row.stamp);
+  for (const FrameRow& row : run.frames) stamps.push_back(row.head.stamp);
   return driveOf(run, std::move(stamps));
 }
 

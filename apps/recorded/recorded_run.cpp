@@ -60,7 +60,7 @@ double recordedRate_hz(const Json& summary) {
 std::int64_t endOf(const RunFolder& run) {
   const auto poses = std::max(run.online.camera.size(), run.final.camera.size());
   std::int64_t end = run.first_frame + static_cast<std::int64_t>(poses);
-  for (const auto& row : run.frames) end = std::max(end, row.frame.value + 1);
+  for (const auto& row : run.frames) end = std::max(end, row.head.frame.value + 1);
   return end;
 }
 
@@ -79,9 +79,9 @@ std::int64_t interval_ns(const Sequence& sequence, std::size_t frame) {
 bool timesFit(const RunFolder& run, const Sequence& sequence) {
   std::int64_t compared = 0, fitting = 0;
   for (const auto& row : run.frames) {
-    if (row.frame.value < 0 || row.cause == FrameCause::kOutOfOrder) continue;  // that has an expected time
-    const auto frame = static_cast<std::size_t>(row.frame.value);
-    const auto difference_ns = static_cast<double>(row.stamp.ns) - static_cast<double>(sequence.stamps[frame].ns);
+    if (row.head.frame.value < 0 || row.head.cause == FrameCause::kOutOfOrder) continue;  // that has an expected time
+    const auto frame = static_cast<std::size_t>(row.head.frame.value);
+    const auto difference_ns = static_cast<double>(row.head.stamp.ns) - static_cast<double>(sequence.stamps[frame].ns);
     ++compared;
     fitting += std::abs(difference_ns) <= 0.5 * static_cast<double>(interval_ns(sequence, frame));
   }

@@ -16,7 +16,7 @@ constexpr std::size_t kHistogramBars = 40, kTimelineBars = 150;
 
 std::vector<FrameRow> enteredRows(const RunFolder& run) {
   std::vector<FrameRow> rows = run.frames;
-  std::erase_if(rows, [](const FrameRow& row) { return row.status == FrameStatus::kDropped; });
+  std::erase_if(rows, [](const FrameRow& row) { return row.head.status == FrameStatus::kDropped; });
   return rows;
 }
 
@@ -66,8 +66,8 @@ std::string stageTimeline(const std::vector<FrameRow>& rows) {
     const auto slowest =
         std::ranges::max_element(rows.begin() + static_cast<std::ptrdiff_t>(begin),
                                  rows.begin() + static_cast<std::ptrdiff_t>(end), {}, &FrameRow::latency_ms);
-    ChartBar bar{static_cast<double>(rows[begin].frame.value), static_cast<double>(rows[end - 1].frame.value + 1),
-                 std::vector<double>(timeline.parts.size())};
+    ChartBar bar{static_cast<double>(rows[begin].head.frame.value),
+                 static_cast<double>(rows[end - 1].head.frame.value + 1), std::vector<double>(timeline.parts.size())};
     for (const WayPart& part : longestWay(*slowest)) bar.parts[timeline.partOf(part.name)] += part.ms;
     bars.push_back(std::move(bar));
   }

@@ -44,7 +44,7 @@ std::size_t objectCount(const RecordedDrive& drive) {
 
 std::string framesText(const ReportedRun& reported) {
   int unsure = 0;
-  for (const FrameRow& row : reported.run.frames) unsure += row.status != FrameStatus::kGood;
+  for (const FrameRow& row : reported.run.frames) unsure += row.head.status != FrameStatus::kGood;
   const std::size_t frames = reported.drive.T_world_cam.size();
   return unsure == 0 ? fmt::format("{} frames, all tracked", frames)
                      : fmt::format("{} frames, {} lost, rejected or dropped", frames, unsure);
@@ -57,7 +57,7 @@ std::string timeCard(const ReportedRun& reported, const Json& summary) {
     return card(fmt::format("{:.0f} ms", (*latency)["p99"].get<double>()), "latency, 99 of 100 frames");
   std::vector<double> work_ms;
   for (const FrameRow& row : reported.run.frames)
-    if (row.status != FrameStatus::kDropped) work_ms.push_back(processing_ms(row));
+    if (row.head.status != FrameStatus::kDropped) work_ms.push_back(processing_ms(row));
   if (work_ms.empty()) return "";
   return card(fmt::format("{:.0f} ms", percentilesOf(std::move(work_ms)).p99),
               "processing of a pair, without waiting, 99 of 100 frames");

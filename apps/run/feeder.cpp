@@ -44,8 +44,8 @@ void Feeder::feed(const std::stop_token& stopped) {
   while (auto frame = decoder_.next()) {
     passGate(stopped);
     if (clock_) {
-      if (!clock_->started()) clock_->start(frame->stamp, std::chrono::steady_clock::now());
-      frame->due = clock_->due(frame->stamp);
+      if (!clock_->started()) clock_->start(frame->head.stamp, std::chrono::steady_clock::now());
+      frame->due = clock_->due(frame->head.stamp);
       if (!sleepUntil(frame->due, stopped)) break;
     }
     if (stopped.stop_requested() || !enter(std::move(*frame), stopped)) break;
@@ -64,9 +64,9 @@ void Feeder::passGate(const std::stop_token& stopped) {
 
 /// Tells first of the pairs before it that the decoder left out.
 bool Feeder::enter(StereoFrame frame, const std::stop_token& stopped) {
-  for (; next_ < frame.frame; ++next_.value) {
+  for (; next_ < frame.head.frame; ++next_.value) {
     const Timestamp stamp = decoder_.stampOf(next_);
-    pipeline_.passOver({next_, faults_ ? faults_->shifted(stamp) : stamp});
+    pipeline_.passOver(next_, faults_ ? faults_->shifted(stamp) : stamp);
   }
   ++next_.value;
   return faults_ ? faults_->give(std::move(frame), pipelineAfterFaults(stopped)) : push(std::move(frame));
@@ -83,10 +83,7 @@ bool Feeder::push(StereoFrame frame) {
 
 FaultInjector::Outlet Feeder::pipelineAfterFaults(const std::stop_token& stopped) {
   return {.push = [this](StereoFrame frame) { return push(std::move(frame)); },
-          .pass_over =
-              [this](FrameId frame, Timestamp stamp) {
-                pipeline_.passOver({frame, stamp});
-              },
+          .pass_over = [this](FrameId frame, Timestamp stamp) { pipeline_.passOver(frame, stamp); },
           .wait =
               [stopped](std::chrono::duration<double> time) {
                 const auto ticks = std::chrono::duration_cast<SteadyTime::duration>(time);

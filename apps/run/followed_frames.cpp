@@ -31,8 +31,8 @@ const char* sentenceOn(FrameCause cause) {
 }  // namespace
 
 void FollowedFrames::observe(const PipelineResult& result) {
-  if (result.online.status == FrameStatus::kGood) ++count_;
-  std::string& first = first_problems_[static_cast<std::size_t>(result.online.cause)];
+  if (result.online.head.status == FrameStatus::kGood) ++count_;
+  std::string& first = first_problems_[static_cast<std::size_t>(result.online.head.cause)];
   if (first.empty()) first = result.problem;
 }
 

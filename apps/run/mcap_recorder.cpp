@@ -30,8 +30,8 @@ McapRecorder::~McapRecorder() {
 void McapRecorder::frameEntered(const StereoFrame& frame) {
   {
     const std::lock_guard lock(mutex_);
-    if (!frame.left.empty() && images_.size() < kMostImages) images_[frame.frame] = frame.left;
-    last_entered_ = frame.frame;
+    if (!frame.left.empty() && images_.size() < kMostImages) images_[frame.head.frame] = frame.left;
+    last_entered_ = frame.head.frame;
   }
   changed_.notify_all();
 }
@@ -115,10 +115,10 @@ ExportedFrame McapRecorder::exported(const Waiting& waiting) {
     frame.points_at_rest = static_cast<int>(waiting.measurements->at_rest.size());
     frame.points_undecided = static_cast<int>(waiting.measurements->undecided.size());
   }
-  const Image left = imageOf(waiting.estimate.frame);
+  const Image left = imageOf(waiting.estimate.head.frame);
   if (waiting.with_image && !left.empty()) frame.jpeg = exportedImage(left);
   const std::lock_guard lock(mutex_);
-  if (frame.jpeg.empty() && waiting.estimate.status != FrameStatus::kRejected) ++left_out_.images;
+  if (frame.jpeg.empty() && waiting.estimate.head.status != FrameStatus::kRejected) ++left_out_.images;
   return frame;
 }
 

@@ -45,10 +45,10 @@ ObjectViewWriter::ObjectViewWriter(const fs::path& run_folder, const StereoCamer
 void ObjectViewWriter::frameLeft(const PipelineResult& result) {
   const FrameEstimate& frame = result.online;
   const int width_px = camera_.width_px, height_px = camera_.height_px;
-  writeBytesAtOnce(maskFile(masks_, frame.frame), pack_(maskImage(frame, result.masks, width_px, height_px)));
+  writeBytesAtOnce(maskFile(masks_, frame.head.frame), pack_(maskImage(frame, result.masks, width_px, height_px)));
   std::vector<std::string> lines;
   for (const ObjectMask& mask : result.masks)
-    lines.push_back(outlineLine(frame.frame, mask.track, outlinePolygons(mask, width_px, height_px)));
+    lines.push_back(outlineLine(frame.head.frame, mask.track, outlinePolygons(mask, width_px, height_px)));
   outlines_.writeLines(lines);
   if (result.measurements) writePoints(*result.measurements);
 }
@@ -56,7 +56,7 @@ void ObjectViewWriter::frameLeft(const PipelineResult& result) {
 void ObjectViewWriter::writePoints(const FrameMeasurements& measurements) {
   std::vector<std::string> lines;
   for (const ObjectObservation& seen : measurements.objects) {
-    if (seen.frame != measurements.frame) continue;  // from before it was confirmed
+    if (seen.frame != measurements.head.frame) continue;  // from before it was confirmed
     for (const PointMeasurement& point : seen.measured)
       lines.push_back(objectPointLine(
           {.frame = seen.frame, .track = seen.track, .point = point.point, .uvd_px = point.uvd_px.cast<double>()}));

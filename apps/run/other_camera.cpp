@@ -32,8 +32,8 @@ void replaceOdometry(Stages& stages, std::vector<SE3> T_world_cam) {
                                      previous](const FrameMeasurementsPtr& measurements) {
     FrameMeasurements replaced = *measurements;
     const auto poseOf = [&](FrameId frame) { return T_world_cam.at(static_cast<std::size_t>(frame.value)); };
-    if (*previous) replaced.T_previous_now = poseOf(**previous).inverse() * poseOf(replaced.frame);
-    *previous = replaced.frame;
+    if (*previous) replaced.odometry.T_previous_now = poseOf(**previous).inverse() * poseOf(replaced.head.frame);
+    *previous = replaced.head.frame;
     return optimize(std::make_shared<const FrameMeasurements>(std::move(replaced)));
   };
 }

@@ -26,9 +26,9 @@ bool Plausibility::Persistent::observe(bool holds) {
 }
 
 std::optional<std::string> Plausibility::observe(const FrameEstimate& online) {
-  const auto before = std::exchange(before_, Seen{online.stamp, online.status, online.T_world_cam});
+  const auto before = std::exchange(before_, Seen{online.head.stamp, online.head.status, online.T_world_cam});
   if (!before) return std::nullopt;
-  const double period_s = secondsBetween(before->stamp, online.stamp);
+  const double period_s = secondsBetween(before->stamp, online.head.stamp);
   if (far_apart_.observe(period_s > kMostPeriod_s))
     return "pairs are " + text("%.4g", period_s) +
            " s apart: nothing that moves can be followed; times must be in seconds";
@@ -36,7 +36,7 @@ std::optional<std::string> Plausibility::observe(const FrameEstimate& online) {
     return "pairs are " + text("%.4g", period_s) + " s apart: speeds cannot be right; times must be in seconds";
   const double speed_mps =
       (before->T_world_cam.inverse() * online.T_world_cam).translation().norm() / std::max(period_s, 1e-9);
-  const bool measured = before->status == FrameStatus::kGood && online.status == FrameStatus::kGood;
+  const bool measured = before->status == FrameStatus::kGood && online.head.status == FrameStatus::kGood;
   if (too_fast_.observe(measured && speed_mps > kMostSpeed_mps))
     return "the camera would move at " + text("%.4g", speed_mps) +
            " m/s: are the times (or --fps) in seconds and the calibration in meters?";

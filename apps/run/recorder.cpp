@@ -29,11 +29,7 @@ void Recorder::record(const PipelineResult& result) {
 void Recorder::recordDropped(const std::vector<FrameEstimate>& dropped, SteadyTime due) {
   for (const FrameEstimate& estimate : dropped) {
     FrameTiming timing;
-    timing.frame = estimate.frame;
-    timing.stamp = estimate.stamp;
-    timing.status = estimate.status;
-    timing.cause = estimate.cause;
-    timing.segment = estimate.segment;
+    timing.head = estimate.head;
     timing.due = timing.published = due;
     folder_.writeTiming(timing);
     folder_.writeOnline(estimate);

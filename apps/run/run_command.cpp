@@ -117,6 +117,7 @@ void tellOutside(double share) {
 struct Replay {
   const Sequence& sequence;
   FrameRange range;
+  FrameInputs inputs;  // come with each pair
   FaultInjector* faults = nullptr;
   InputWatch* watch = nullptr;
   RunListeners listeners{};
@@ -175,7 +176,8 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   std::optional<CameraClock> clock;
   if (summary.rate_hz) clock.emplace(*summary.rate_hz / summary.capture_rate_hz, 1 / summary.capture_rate_hz);
   SequenceDecoder::Params decoding{.ahead = std::bit_floor(static_cast<std::size_t>(config.pipeline.frames_in_flight)),
-                                   .max_file_mb = config.input.max_file_mb};
+                                   .max_file_mb = config.input.max_file_mb,
+                                   .inputs = replay.inputs};
   // Where decoding is too slow for a live camera, pairs that a later one has overtaken are left out.
   if (clock && config.pipeline.policy == InputPolicy::kLive)
     decoding.wanted = [&](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };
@@ -272,7 +274,8 @@ int runSequence(const RunOptions& options) {
   requireBelievable(sequence, options.force);
   tellNotes(sequence, options.force);
   const FrameRange range = selectedFrames(options.frames, sequence);
-  Stages stages = makeStages(config, sequence.camera, ignoredPixels(options.ignored, sequence.camera));
+  const FrameInputs inputs{.ignored = sharedMask(ignoredPixels(options.ignored, sequence.camera))};
+  Stages stages = makeStages(config, sequence.camera);
   if (auto other_camera = otherCamera(options, config, sequence)) replaceOdometry(stages, *std::move(other_camera));
   announce(sequence, range, options.fps_hz);
   logDebug(fmt::format("{} threads, {} frames in flight; results go to {}", config.pipeline.threads,
@@ -289,7 +292,7 @@ int runSequence(const RunOptions& options) {
   Recorder recorder(folder, listeners, range.size());
   FaultInjector faults(fault_spec, sequence);
   InputWatch watch(sequence.camera, options.force);
-  follow({sequence, range, options.inject.empty() ? nullptr : &faults, &watch, listeners, view.get()}, config,
+  follow({sequence, range, inputs, options.inject.empty() ? nullptr : &faults, &watch, listeners, view.get()}, config,
          std::move(stages), recorder, summary, signals);
   extras.close(summary);
   summary.found = watch.found();

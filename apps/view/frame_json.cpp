@@ -178,12 +178,12 @@ std::string toJson(const ShownRun& run) {
 
 std::string toJson(const ShownFrame& frame, Timestamp first_stamp, FrameDetail detail) {
   const FrameEstimate& estimate = frame.estimate;
-  const bool degraded = estimate.status == FrameStatus::kGood && estimate.cause != FrameCause::kNone;
-  Json json{{"frame", estimate.frame.value},
-            {"time", rounded(secondsBetween(first_stamp, estimate.stamp))},
-            {"status", degraded ? "degraded" : std::string(statusName(estimate.status))},
-            {"cause", causeName(estimate.cause)},
-            {"segment", estimate.segment},
+  const bool degraded = estimate.head.status == FrameStatus::kGood && estimate.head.cause != FrameCause::kNone;
+  Json json{{"frame", estimate.head.frame.value},
+            {"time", rounded(secondsBetween(first_stamp, estimate.head.stamp))},
+            {"status", degraded ? "degraded" : std::string(statusName(estimate.head.status))},
+            {"cause", causeName(estimate.head.cause)},
+            {"segment", estimate.head.segment},
             {"T", toJson(estimate.T_world_cam)},
             {"objects", Json::array()}};
   for (const ObjectEstimate& object : estimate.objects)

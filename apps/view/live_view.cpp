@@ -23,7 +23,7 @@ std::vector<ShownPoint> pointsOf(const FrameMeasurements& measurements, const Fr
                                  const StereoCamera& camera) {
   std::vector<ShownPoint> points;
   for (const ObjectObservation& seen : measurements.objects) {
-    if (seen.frame != online.frame) continue;  // from before it was confirmed
+    if (seen.frame != online.head.frame) continue;  // from before it was confirmed
     for (const PointMeasurement& point : seen.measured) {
       Eigen::Vector3d uvd_px = point.uvd_px.cast<double>();
       const Eigen::Vector2d uv_px = uvd_px.head<2>();
@@ -77,7 +77,7 @@ LiveView::~LiveView() {
 
 void LiveView::frameEntered(const StereoFrame& frame) {
   if (viewers_.count() == 0 || frame.left.empty()) return;
-  Picture picture{frame.frame, frame.left};
+  Picture picture{frame.head.frame, frame.left};
   pictures_.tryPush(picture);
 }
 
@@ -107,9 +107,9 @@ void LiveView::work() {
       if (history_.size() > kKeptFrames) history_.pop_front();
     }
     while (auto picture = pictures_.tryPop()) entered_.push_back(*std::move(picture));
-    std::erase_if(entered_, [&](const Picture& picture) { return picture.frame < result->online.frame; });
+    std::erase_if(entered_, [&](const Picture& picture) { return picture.frame < result->online.head.frame; });
     if (viewers_.count() == 0 || results_.size() > 0) continue;  // a newer one is shown at once
-    encodePicture(result->online.frame);
+    encodePicture(result->online.head.frame);
     publish();
   }
 }
@@ -129,7 +129,7 @@ ShownFrame LiveView::shownOf(const Result& result) {
 std::optional<RoadPlane> LiveView::roadOf(const Result& result) {
   constexpr std::size_t kFewPoints = 12;
   const auto candidates = groundCandidates(*result.measurements, run_.camera);
-  const auto frame = static_cast<std::uint64_t>(result.online.frame.value);
+  const auto frame = static_cast<std::uint64_t>(result.online.head.frame.value);
   const GroundPlane plane = ground_(candidates, frame);
   const auto on_ground = std::ranges::count_if(
       candidates, [this](const GroundCandidate& candidate) { return ground_.isOnGround(candidate); });
@@ -176,8 +176,8 @@ std::string LiveView::framesJson(std::int64_t from, std::size_t count) const {
   std::vector<ShownFrame> frames;
   {
     const std::scoped_lock lock(mutex_);
-    for (auto frame =
-             std::ranges::lower_bound(history_, from, {}, [](const ShownFrame& f) { return f.estimate.frame.value; });
+    for (auto frame = std::ranges::lower_bound(history_, from, {},
+                                               [](const ShownFrame& f) { return f.estimate.head.frame.value; });
          frame != history_.end() && frames.size() < count; ++frame)
       frames.push_back({.estimate = frame->estimate, .road = frame->road, .timing = frame->timing});
   }
@@ -191,7 +191,8 @@ std::string LiveView::framesJson(std::int64_t from, std::size_t count) const {
 
 std::string LiveView::frameJson(std::int64_t frame) const {
   const std::scoped_lock lock(mutex_);
-  const auto found = std::ranges::find(history_, frame, [](const ShownFrame& f) { return f.estimate.frame.value; });
+  const auto found =
+      std::ranges::find(history_, frame, [](const ShownFrame& f) { return f.estimate.head.frame.value; });
   return found == history_.end() ? "" : toJson(*found, run_.first_stamp);
 }
 

@@ -86,9 +86,9 @@ void RecordedView::describe(const RunFolder& run, const Sequence& sequence) {
 
 void RecordedView::countFrames(const RunFolder& run) {
   for (const FrameRow& row : run.frames) {
-    rows_[row.frame.value] = row;
-    counts_.count(row.status);
-    if (row.status != FrameStatus::kDropped) counts_.countTimes(row.latency_ms, processing_ms(row));
+    rows_[row.head.frame.value] = row;
+    counts_.count(row.head.status);
+    if (row.head.status != FrameStatus::kDropped) counts_.countTimes(row.latency_ms, processing_ms(row));
   }
 }
 
@@ -113,14 +113,14 @@ ShownFrame RecordedView::shown(std::int64_t frame, FrameDetail detail) const {
   const auto index = static_cast<std::size_t>(frame - run_.first_frame);
   ShownFrame shown;
   FrameEstimate& estimate = shown.estimate;
-  estimate.frame = {frame};
-  estimate.stamp = drive_.stamps[index];
+  estimate.head.frame = {frame};
+  estimate.head.stamp = drive_.stamps[index];
   estimate.T_world_cam = drive_.T_world_cam[index];
   estimate.objects = drive_.objectsAt(index);
   if (const auto row = rows_.find(frame); row != rows_.end()) {
-    estimate.status = row->second.status;
-    estimate.cause = row->second.cause;
-    estimate.segment = row->second.segment;
+    estimate.head.status = row->second.head.status;
+    estimate.head.cause = row->second.head.cause;
+    estimate.head.segment = row->second.head.segment;
   }
   if (const auto timing = timings_.find(frame); timing != timings_.end()) shown.timing = timing->second;
   if (const auto road = roads_.find(frame); road != roads_.end()) shown.road = road->second;

@@ -73,7 +73,7 @@ DurationBuckets RunCounts::Buckets::read() const {
 
 void RunCounts::count(const PipelineResult& result) {
   increase(dropped_, static_cast<std::int64_t>(result.dropped.size()) + result.dropped_unnamed);
-  count(result.online.status);
+  count(result.online.head.status);
   std::array<double, kStageCount> work_ms{};
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     const StageSpan& span = result.timing.stages[stage];

@@ -37,15 +37,15 @@ Json spansJson(const std::vector<FrameSpan>& spans) {
 }
 
 std::string_view statusOf(const FrameRow& row) {
-  const bool degraded = row.status == FrameStatus::kGood && row.cause != FrameCause::kNone;
-  return degraded ? "degraded" : statusName(row.status);
+  const bool degraded = row.head.status == FrameStatus::kGood && row.head.cause != FrameCause::kNone;
+  return degraded ? "degraded" : statusName(row.head.status);
 }
 
 /// Frames that are not simply good, those with the same cause in one.
 Json marksJson(const RunOverview& overview) {
   Json marks = Json::array();
   for (const auto& [frame, row] : overview.rows) {
-    const std::string_view status = statusOf(row), cause = causeName(row.cause);
+    const std::string_view status = statusOf(row), cause = causeName(row.head.cause);
     if (status == "good") continue;
     if (!marks.empty() && marks.back()["to"] == frame - 1 && marks.back()["status"] == status &&
         marks.back()["cause"] == cause)
@@ -66,7 +66,7 @@ std::vector<std::pair<std::int64_t, double>> times_ms(const RunOverview& overvie
   std::vector<std::pair<std::int64_t, double>> times;
   for (const auto& [frame, timing] : overview.timings) {
     const auto row = overview.rows.find(frame);
-    if (row != overview.rows.end() && row->second.status == FrameStatus::kDropped) continue;
+    if (row != overview.rows.end() && row->second.head.status == FrameStatus::kDropped) continue;
     times.emplace_back(frame, timeOf_ms(timing, overview.paced));
   }
   return times;

@@ -75,9 +75,9 @@ std::pair<double, double> aheadAndBehind(std::span<const EpipolarMatch> matches)
 
 void InputCheck::observe(const StereoFrame& pair) {
   constexpr std::size_t kPoints = 150, kFewestOfPair = kFewestMatches / kPairs;
-  if (complete() || pair.frame <= last_) return;
-  last_ = pair.frame;
-  stamps_.push_back(pair.stamp);
+  if (complete() || pair.head.frame <= last_) return;
+  last_ = pair.head.frame;
+  stamps_.push_back(pair.head.stamp);
   if (!isWhole(pair)) return;
   PreparedPair now = preparePair(pair.left, pair.right, pool_);
   const auto matches = matchUnrectified(now.left, now.right, now.corners, kPoints);
@@ -89,7 +89,7 @@ void InputCheck::observe(const StereoFrame& pair) {
   observeLight(pair);
   compareWithNeighbors(now, matches);
   matches_.insert(matches_.end(), matches.begin(), matches.end());
-  looks_.emplace_back(pair.frame, matches_.size());
+  looks_.emplace_back(pair.head.frame, matches_.size());
   before_ = std::move(now);
 }
 

@@ -18,8 +18,8 @@ std::string placeOf(const OwnVehicleView& view) {
 std::optional<std::string> OwnVehicleNews::observe(const FrameMeasurements& frame) {
   if (!frame.own_vehicle) return std::nullopt;
   view_ = frame.own_vehicle;
-  if (!found_) found_ = frame.stamp;
-  if (secondsBetween(*found_, frame.stamp) < kGrowth_s) return std::nullopt;
+  if (!found_) found_ = frame.head.stamp;
+  if (secondsBetween(*found_, frame.head.stamp) < kGrowth_s) return std::nullopt;
   return finish();
 }
 

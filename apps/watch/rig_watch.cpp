@@ -46,10 +46,10 @@ void RigWatch::glance(const StereoFrame& pair) {
   if (worthless_) {
     worthless_ = agreeing_ < kAgreeingGlances;
   } else if (good) {
-    last_good_ = pair.frame;
+    last_good_ = pair.head.frame;
     until_glance_ = patience_ = kGlanceEvery;
   } else {
-    first_bad_ = pair.frame;
+    first_bad_ = pair.head.frame;
     check_.emplace(camera_, kVerifiedBy);
   }
 }

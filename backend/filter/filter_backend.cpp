@@ -86,7 +86,7 @@ EstimatesPtr FilterBackend::operator()(const FrameMeasurementsPtr& measurements)
   Estimates estimates{.online = cameraEstimate(m, state_->path), .finals = {}, .counters = {}};
   for (const ObjectObservation& seen : m.objects) {
     const auto filter = state_->observe(seen, m.disparity_offset_px);
-    if (filter && seen.frame == m.frame) estimates.online.objects.push_back(objectEstimate(seen, *filter));
+    if (filter && seen.frame == m.head.frame) estimates.online.objects.push_back(objectEstimate(seen, *filter));
   }
   std::ranges::sort(estimates.online.objects, {}, &ObjectEstimate::track);
   for (const TrackId track : m.ended) state_->objects.erase(track);

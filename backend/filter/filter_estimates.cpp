@@ -3,10 +3,8 @@
 namespace motorcade {
 
 FrameEstimate cameraEstimate(const FrameMeasurements& measurements, const CameraPath& path) {
-  const FrameId frame = measurements.frame;
-  return {.frame = frame,
-          .stamp = measurements.stamp,
-          .status = measurements.status,
+  const FrameId frame = measurements.head.frame;
+  return {.head = measurements.head,
           .T_world_cam = path.find(frame)->T_world_cam,
           .camera_covariance = path.covarianceSince(FrameId{frame.value - kCameraCovarianceFrames}, frame),
           .objects = {}};

@@ -47,7 +47,7 @@ EstimatesPtr MapFilterBackend::operator()(const FrameMeasurementsPtr& measuremen
   for (const ObjectObservation& observation : m.objects) {
     state_->observe(observation);
     const auto filter = state_->filters.find(observation.track);
-    if (observation.frame == m.frame && filter != state_->filters.end())
+    if (observation.frame == m.head.frame && filter != state_->filters.end())
       estimates.online.objects.push_back(objectEstimate(observation, filter->second));
   }
   std::ranges::sort(estimates.online.objects, {}, &ObjectEstimate::track);

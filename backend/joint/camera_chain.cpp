@@ -14,12 +14,12 @@ constexpr double kMaxPrediction_s = 1.0;
 }  // namespace
 
 bool showsPoints(const FrameMeasurements& measurements) {
-  return measurements.status == FrameStatus::kGood || measurements.cause == FrameCause::kUnlinked;
+  return measurements.head.status == FrameStatus::kGood || measurements.head.cause == FrameCause::kUnlinked;
 }
 
 CameraRecord CameraChain::add(const FrameMeasurements& m, int seen_again) {
-  const SE3 T_previous_now = isFinite(m.T_previous_now) ? m.T_previous_now : SE3{};
-  CameraRecord camera{.stamp = m.stamp, .status = m.status, .x = {}, .gauge = 0, .weak = false, .covariance = {}};
+  const SE3 T_previous_now = isFinite(m.odometry.T_previous_now) ? m.odometry.T_previous_now : SE3{};
+  CameraRecord camera{.head = m.head, .x = {}, .part = 0, .weak = false, .covariance = {}};
   if (frames_.empty()) {
     camera.x = solver_.addVariable(SE3{});
     start_.gauge = addGaugePrior(camera.x, SE3{});
@@ -27,51 +27,53 @@ CameraRecord CameraChain::add(const FrameMeasurements& m, int seen_again) {
     const VariableId before = frames_.rbegin()->second.x;
     camera.x = solver_.addVariable((solver_.pose(before) * T_previous_now).normalized());
     last_seen_.T_seen_now = (last_seen_.T_seen_now * T_previous_now).normalized();
-    camera.weak = m.status != FrameStatus::kGood || seen_again < kFewStatic;
+    camera.weak = m.head.status != FrameStatus::kGood || seen_again < kFewStatic;
     link(m, camera);
   }
-  if (showsPoints(m)) last_seen_ = {m.frame, SE3{}};
+  if (showsPoints(m)) last_seen_ = {m.head.frame, SE3{}};
   return camera;
 }
 
 /// Where points hardly tell it, odometry says how the camera moved since points were seen last; unseen frames lie where
-/// a steady motion puts them. An unknown motion begins a new gauge: after a weak factor all that follows would float.
+/// a steady motion puts them. An unknown motion begins a new part: after a weak factor all that follows would float.
 void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
   const auto& [frame_before, before] = *frames_.rbegin();
-  camera.gauge = before.gauge;
+  camera.part = before.part;
   if (!last_seen_.frame.valid()) return linkUnseen(m, camera);
-  if (m.cause == FrameCause::kUnlinked) {
-    ++camera.gauge;
+  if (m.head.cause == FrameCause::kUnlinked) {
+    ++camera.part;
     addGaugePrior(camera.x, solver_.pose(camera.x));
     return;
   }
   const auto seen = frames_.find(last_seen_.frame);
   if (!showsPoints(m) || seen == frames_.end()) {
-    const Matrix6d covariance = showsPoints(m) ? unknownMotionCovariance() : m.odometry_covariance;
-    addOdometry(m.T_previous_now, covariance, before.x, camera.x);
+    const Matrix6d covariance = showsPoints(m) ? unknownMotionCovariance() : m.odometry.covariance;
+    addOdometry(m.odometry.T_previous_now, covariance, before.x, camera.x);
     return;
   }
   if (seen->first != frame_before) {
-    const double dt_s = secondsBetween(before.stamp, m.stamp);
-    const SE3 steady = scaledMotion(last_seen_.T_seen_now, dt_s / secondsBetween(seen->second.stamp, m.stamp));
+    const double dt_s = secondsBetween(before.head.stamp, m.head.stamp);
+    const SE3 steady =
+        scaledMotion(last_seen_.T_seen_now, dt_s / secondsBetween(seen->second.head.stamp, m.head.stamp));
     addOdometry(steady, unknownMotionCovariance(dt_s), before.x, camera.x);
   }
-  if (camera.weak) addOdometry(last_seen_.T_seen_now, m.odometry_covariance, seen->second.x, camera.x);
-  if (m.status == FrameStatus::kGood) settleStart(m.stamp, seen->second.stamp);
+  if (camera.weak) addOdometry(last_seen_.T_seen_now, m.odometry.covariance, seen->second.x, camera.x);
+  if (m.head.status == FrameStatus::kGood) moveStart(m.head.stamp, seen->second.head.stamp);
 }
 
 /// The world is what was seen first: the gauge moves there.
 void CameraChain::linkUnseen(const FrameMeasurements& m, const CameraRecord& camera) {
   const CameraRecord& before = frames_.rbegin()->second;
-  const std::optional<FactorId> link = addOdometry(m.T_previous_now, m.odometry_covariance, before.x, camera.x);
-  start_.links.push_back({link, before.x, camera.x, before.stamp, m.stamp});
+  const std::optional<FactorId> link =
+      addOdometry(m.odometry.T_previous_now, m.odometry.covariance, before.x, camera.x);
+  start_.links.push_back({link, before.x, camera.x, before.head.stamp, m.head.stamp});
   if (!showsPoints(m)) return;
   if (start_.gauge) solver_.removeFactor(*start_.gauge);
   addGaugePrior(camera.x, solver_.pose(camera.x));
 }
 
 /// The first motion that is measured, up to `now`, went on like that before anything was seen.
-void CameraChain::settleStart(Timestamp now, Timestamp seen_first) {
+void CameraChain::moveStart(Timestamp now, Timestamp seen_first) {
   for (const UnseenStart::Link& link : start_.links) {
     if (secondsBetween(link.from, seen_first) > kMaxPrediction_s) continue;
     const double dt_s = secondsBetween(link.from, link.to);

@@ -13,7 +13,7 @@ namespace motorcade {
 bool showsPoints(const FrameMeasurements& measurements);
 
 /// The camera's poses as variables, and what links them where landmarks hardly do: the front-end's odometry, a steady
-/// motion over frames in which nothing was seen, and a new gauge where nobody knows how the camera moved.
+/// motion over frames in which nothing was seen, and a new part where nobody knows how the camera moved.
 class CameraChain {
  public:
   /// `frames` are those of the window, before the newest one.
@@ -28,7 +28,7 @@ class CameraChain {
  private:
   void link(const FrameMeasurements& measurements, CameraRecord& camera);
   void linkUnseen(const FrameMeasurements& measurements, const CameraRecord& camera);
-  void settleStart(Timestamp now, Timestamp seen_first);
+  void moveStart(Timestamp now, Timestamp seen_first);
   std::optional<FactorId> addGaugePrior(VariableId x, const SE3& mean);
   std::optional<FactorId> addOdometry(const SE3& T_before_now, const Matrix6d& covariance, VariableId before,
                                       VariableId now);

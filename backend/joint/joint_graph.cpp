@@ -63,8 +63,8 @@ void JointGraph::add(const FrameMeasurements& measurements) {
   const bool alone = tracks_.empty() && measurements.objects.empty();
   update(alone ? IncrementalSolver::Correction::kNow : IncrementalSolver::Correction::kLater);
   addObjects(measurements);
-  if (showsPoints(measurements)) undecided_.observe(measurements.frame, measurements.undecided);
-  calibrate(measurements.frame);
+  if (showsPoints(measurements)) undecided_.observe(measurements.head.frame, measurements.undecided);
+  calibrate(measurements.head.frame);
   ++frame_count_;
 }
 
@@ -72,8 +72,8 @@ void JointGraph::add(const FrameMeasurements& measurements) {
 void JointGraph::addCamera(const FrameMeasurements& m) {
   BodyPoints& at_rest = at_rest_.bundles().points();
   if (showsPoints(m))
-    at_rest.observe(m.frame, m.at_rest, [&](PointId point) { return undecided_.take(point, m.frame, 1); });
-  frames_.emplace(m.frame, cameras_.add(m, at_rest_.seenAgain()));
+    at_rest.observe(m.head.frame, m.at_rest, [&](PointId point) { return undecided_.take(point, m.head.frame, 1); });
+  frames_.emplace(m.head.frame, cameras_.add(m, at_rest_.seenAgain()));
   for (const ObjectObservation& seen : m.objects) at_rest.forget(seen.measured);
 }
 
@@ -83,9 +83,10 @@ void JointGraph::addObjects(const FrameMeasurements& measurements) {
   if (tracks_.empty()) return;
   for (auto& [id, track] : tracks_) {
     LandmarkBundles& landmarks = landmarksOf(id);
-    const bool seen_now = track.records.rbegin()->first == measurements.frame;
-    if (!seen_now && showsPoints(measurements)) landmarks.points().observe(measurements.frame, {});  // its tracks end
-    objects_.settle(track, measurements.frame);
+    const bool seen_now = track.records.rbegin()->first == measurements.head.frame;
+    if (!seen_now && showsPoints(measurements))
+      landmarks.points().observe(measurements.head.frame, {});  // its tracks end
+    objects_.renewMotion(track, measurements.head.frame);
     landmarks.renew(frame_count_, posesOf(track));
   }
   update();
@@ -119,7 +120,7 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
 void JointGraph::calibrate(FrameId newest) {
   if (offset_.release(newest)) update();
   if (offset_.hasMoved()) linearizeLandmarksAnew();
-  if (!offset_.isSettled(newest)) return;
+  if (!offset_.isDecided(newest)) return;
   at_rest_.bundles().fix();
   for (auto& [id, landmarks] : landmarks_) landmarks.fix();
 }
@@ -135,7 +136,7 @@ void JointGraph::linearizeLandmarksAnew() {
 void JointGraph::converge() {
   constexpr double kConverged = 1e-6;  // m or rad: far below what is published
   clearProblems();
-  if (at_rest_.settle(frame_count_ - 1, frames_)) update();
+  if (at_rest_.eliminateAligned(frame_count_ - 1, frames_)) update();
   convergeWithin(params_.final_iterations, kConverged);
 }
 

@@ -49,7 +49,7 @@ void LandmarksAtRest::add(std::int64_t frame_count, const Frames& frames) {
   eliminate(frame_count, frames);
 }
 
-bool LandmarksAtRest::settle(std::int64_t frame_count, const Frames& frames) {
+bool LandmarksAtRest::eliminateAligned(std::int64_t frame_count, const Frames& frames) {
   if (alignments_.empty()) return false;
   eliminate(frame_count, frames);
   return true;

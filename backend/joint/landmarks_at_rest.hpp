@@ -29,7 +29,7 @@ class LandmarksAtRest {
   /// Links the newest camera; `frame_count` counts the frames of the drive from zero.
   void add(std::int64_t frame_count, const Frames& frames);
   /// Eliminates what the newest cameras are aligned to. False when there is nothing to do.
-  bool settle(std::int64_t frame_count, const Frames& frames);
+  bool eliminateAligned(std::int64_t frame_count, const Frames& frames);
   void relinearize(const Frames& frames);
 
  private:

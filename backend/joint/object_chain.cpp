@@ -62,7 +62,7 @@ void ObjectChain::addRolling(const ObjectTrack& track, const ObjectRecord& recor
   if (use_smoothness_) solver_.addFactor(std::make_unique<RollingFactor>(record.twist, track.shared, params_.rolling));
 }
 
-void ObjectChain::settle(ObjectTrack& track, FrameId newest) {
+void ObjectChain::renewMotion(ObjectTrack& track, FrameId newest) {
   const auto now = track.records.find(FrameId{newest.value - params_.track_frames});
   if (now == track.records.end() || now == track.records.begin() || !now->second.motion) return;
   const ObjectRecord& before = std::prev(now)->second;

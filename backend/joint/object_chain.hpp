@@ -22,7 +22,7 @@ class ObjectChain {
   /// A further pose, where the motion of the record before puts it.
   void extend(const ObjectTrack& track, const ObjectRecord& before, ObjectRecord& record);
   /// The camera's motion is known better when its landmarks have ended: an object's motion is told from it anew.
-  void settle(ObjectTrack& track, FrameId newest);
+  void renewMotion(ObjectTrack& track, FrameId newest);
 
   /// Axes of travel in those of the body's variables.
   Eigen::Matrix3d travelAxes(const ObjectTrack& track) const;

@@ -48,7 +48,7 @@ std::optional<double> RigOffset::observed_px() const {
 bool RigOffset::release(FrameId newest) {
   if (!first_frame_.valid()) first_frame_ = newest;
   const std::int64_t age = newest.value - first_frame_.value;
-  if (released_ || released_sigma_px_ <= 0 || age < kFirstLook_frames || isSettled(newest)) return false;
+  if (released_ || released_sigma_px_ <= 0 || age < kFirstLook_frames || isDecided(newest)) return false;
   const auto observed = observed_px();
   released_ = observed && std::abs(*observed) > kDistortion_px;
   if (released_) setPrior(released_sigma_px_);
@@ -57,6 +57,6 @@ bool RigOffset::release(FrameId newest) {
 
 bool RigOffset::hasMoved() const { return std::abs(px() - eliminated_px_) > kStep_px; }
 
-bool RigOffset::isSettled(FrameId newest) const { return newest.value - first_frame_.value > kCalibration_frames; }
+bool RigOffset::isDecided(FrameId newest) const { return newest.value - first_frame_.value > kCalibration_frames; }
 
 }  // namespace motorcade

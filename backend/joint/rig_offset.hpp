@@ -28,7 +28,7 @@ class RigOffset {
   /// Landmarks are eliminated at the present offset.
   void holdAsEliminated() { eliminated_px_ = px(); }
   /// The drive is so old that the offset stays where it is.
-  bool isSettled(FrameId newest) const;
+  bool isDecided(FrameId newest) const;
 
  private:
   void setPrior(double sigma_px);

@@ -10,10 +10,12 @@ constexpr std::size_t kKeptFrames = 64;
 }  // namespace
 
 void CameraPath::add(const FrameMeasurements& measurements) {
-  const SE3 T_previous_now = isFinite(measurements.T_previous_now) ? measurements.T_previous_now : SE3{};
+  const SE3 T_previous_now =
+      isFinite(measurements.odometry.T_previous_now) ? measurements.odometry.T_previous_now : SE3{};
   const SE3 T_world_cam =
       cameras_.empty() ? SE3{} : (cameras_.rbegin()->second.T_world_cam * T_previous_now).normalized();
-  cameras_[measurements.frame] = {measurements.stamp, T_world_cam, T_previous_now, measurements.odometry_covariance};
+  cameras_[measurements.head.frame] = {measurements.head.stamp, T_world_cam, T_previous_now,
+                                       measurements.odometry.covariance};
   if (cameras_.size() > kKeptFrames) cameras_.erase(cameras_.begin());
 }
 

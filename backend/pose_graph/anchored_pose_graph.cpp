@@ -38,7 +38,7 @@ void AnchoredPoseGraph::add(const FrameMeasurements& measurements) {
 void AnchoredPoseGraph::addObjects(const FrameMeasurements& measurements) {
   std::vector<const ObjectObservation*> seen_now;
   for (const ObjectObservation& seen : measurements.objects)
-    if (seen.frame == measurements.frame && seen.state != ObjectState::kPredicted && isFinite(seen.T_cam_body))
+    if (seen.frame == measurements.head.frame && seen.state != ObjectState::kPredicted && isFinite(seen.T_cam_body))
       seen_now.push_back(&seen);
   std::vector<ObjectPair> pairs;
   if (params_.use_object_encounter && params_.use_camera_encounter)
@@ -52,7 +52,7 @@ void AnchoredPoseGraph::addObjects(const FrameMeasurements& measurements) {
       leftOut(seen, "its pose, which is not finite,");
       continue;
     }
-    const bool shares = seen.frame == measurements.frame && partners.contains(seen.track);
+    const bool shares = seen.frame == measurements.head.frame && partners.contains(seen.track);
     addObservation(seen, shares ? 1.0 - params_.object_encounter_share : 1.0);
   }
   for (const auto& [m, n] : pairs) {
@@ -66,26 +66,26 @@ void AnchoredPoseGraph::addPrior(VariableId v, const SE3& mean, double sigma_m, 
 }
 
 void AnchoredPoseGraph::addCamera(const FrameMeasurements& measurements) {
-  CameraRecord record{
-      .stamp = measurements.stamp, .status = measurements.status, .x = {}, .gauge = 0, .weak = false, .covariance = {}};
+  CameraRecord record{.head = measurements.head, .x = {}, .part = 0, .weak = false, .covariance = {}};
   if (frames_.empty()) {
     record.x = solver_.addVariable(SE3{});
     addPrior(record.x, SE3{}, params_.first_pose_sigma_m, params_.first_pose_sigma_rad);
   } else {
     const VariableId before = frames_.rbegin()->second.x;
-    const SE3 T_previous_now = isFinite(measurements.T_previous_now) ? measurements.T_previous_now : SE3{};
+    const SE3 T_previous_now =
+        isFinite(measurements.odometry.T_previous_now) ? measurements.odometry.T_previous_now : SE3{};
     record.x = solver_.addVariable(solver_.pose(before) * T_previous_now);
-    const auto root = squareRootInformation(measurements.odometry_covariance);
+    const auto root = squareRootInformation(measurements.odometry.covariance);
     PoseNoise noise = independentNoise(poseSigmas(kUnknownMotion_m, kUnknownMotion_rad, kUnknownMotion_rad));
-    if (root && isFinite(measurements.T_previous_now))
+    if (root && isFinite(measurements.odometry.T_previous_now))
       noise.sqrt_information = *root;
     else
       tell("the camera's motion or its covariance is unusable: taken as " +
-           std::string(isFinite(measurements.T_previous_now) ? "measured" : "standing still") +
+           std::string(isFinite(measurements.odometry.T_previous_now) ? "measured" : "standing still") +
            ", and next to unknown");
     solver_.addFactor(std::make_unique<MotionFactor>(std::array{before, record.x}, MotionModel{T_previous_now}, noise));
   }
-  frames_.emplace(measurements.frame, record);
+  frames_.emplace(measurements.head.frame, record);
 }
 
 void AnchoredPoseGraph::startTrack(ObjectTrack& track, const SE3& T_world_body) {

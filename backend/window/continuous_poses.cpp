@@ -22,8 +22,8 @@ void ContinuousPoses::operator()(FrameEstimate& online, const EarlierPoses& earl
     const auto then =
         last == last_.end() || !(correction_s_ > 0) ? std::nullopt : earlier.object(object.track, last->second.frame);
     const SE3 now = object.T_world_body, target = shift * now;
-    object.T_world_body = then ? continued(last->second, *then, now, target, online.stamp, correction_s_) : target;
-    published[object.track] = {online.frame, online.stamp, object.T_world_body};
+    object.T_world_body = then ? continued(last->second, *then, now, target, online.head.stamp, correction_s_) : target;
+    published[object.track] = {online.head.frame, online.head.stamp, object.T_world_body};
   }
   last_ = std::move(published);
 }
@@ -31,8 +31,9 @@ void ContinuousPoses::operator()(FrameEstimate& online, const EarlierPoses& earl
 void ContinuousPoses::continueCamera(FrameEstimate& online, const EarlierPoses& earlier) {
   const auto then = last_camera_ && correction_s_ > 0 ? earlier.camera(last_camera_->frame) : std::nullopt;
   const SE3 now = online.T_world_cam;
-  if (then) online.T_world_cam = continued(*last_camera_, *then, now, now, online.stamp, kCameraShare * correction_s_);
-  last_camera_ = {online.frame, online.stamp, online.T_world_cam};
+  if (then)
+    online.T_world_cam = continued(*last_camera_, *then, now, now, online.head.stamp, kCameraShare * correction_s_);
+  last_camera_ = {online.head.frame, online.head.stamp, online.T_world_cam};
 }
 
 /// The published pose, moved on from `then` to `now`, and a share of the way to `target`.

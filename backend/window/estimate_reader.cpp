@@ -19,7 +19,7 @@ std::optional<Matrix6d> EstimateReader::cameraCovariance(FrameId frame) const {
              after = window_.frames().upper_bound(FrameId{frame.value - kCameraCovarianceFrames});
   if (after == window_.frames().begin()) return std::nullopt;
   const auto before = std::prev(after);
-  if (before->second.gauge != now->second.gauge) return std::nullopt;
+  if (before->second.part != now->second.part) return std::nullopt;
   const std::array variables{before->second.x, now->second.x};
   const auto joint = window_.solver().jointCovariance(variables);
   if (!joint) return std::nullopt;
@@ -34,9 +34,7 @@ std::optional<Matrix6d> EstimateReader::cameraCovariance(FrameId frame) const {
 
 FrameEstimate EstimateReader::read(FrameId frame) const {
   const CameraRecord& camera = window_.frames().at(frame);
-  FrameEstimate estimate{.frame = frame,
-                         .stamp = camera.stamp,
-                         .status = camera.status,
+  FrameEstimate estimate{.head = camera.head,
                          .T_world_cam = window_.cameraPose(frame).normalized(),
                          .camera_covariance = camera.covariance,
                          .objects = {}};

@@ -19,7 +19,7 @@ class Settling {
   std::vector<FrameId> operator()(const std::map<FrameId, Frame>& frames) {
     std::vector<FrameId> settled;
     for (auto it = last_.valid() ? frames.upper_bound(last_) : frames.begin(); it != frames.end(); ++it) {
-      if (secondsBetween(it->second.stamp, frames.rbegin()->second.stamp) < after_s_) break;
+      if (secondsBetween(it->second.head.stamp, frames.rbegin()->second.head.stamp) < after_s_) break;
       settled.push_back(last_ = it->first);
     }
     return settled;

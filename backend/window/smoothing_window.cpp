@@ -31,7 +31,7 @@ ObjectRecord& SmoothingWindow::addRecord(ObjectTrack& track, const ObjectObserva
   ObjectRecord& record = track.records[seen.frame];
   record.seen = seen;
   record.seen.measured = record.seen.patches = {};
-  record.stamp = frames_.at(seen.frame).stamp;
+  record.stamp = frames_.at(seen.frame).head.stamp;
   return record;
 }
 

@@ -12,10 +12,9 @@ namespace motorcade {
 
 /// The camera in one frame of the window.
 struct CameraRecord {
-  Timestamp stamp;
-  FrameStatus status = FrameStatus::kGood;
+  FrameHead head;
   VariableId x;                        // T_world_cam
-  int gauge = 0;                       // frames of one number are linked by what was measured
+  int part = 0;                        // frames of one part are linked by what was measured
   bool weak = false;                   // measurements hardly tell how it moved since the frame before
   std::optional<Matrix6d> covariance;  // of T_cam(before)_cam(now), kCameraCovarianceFrames apart, as last computed
 };

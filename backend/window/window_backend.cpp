@@ -25,9 +25,9 @@ class WindowBackend::Publisher {
     Estimates estimates{.online = {}, .finals = {}, .counters = {}, .problems = window_->problems()};
     if (params_.compute_covariances) {
       if (const auto settled = lagged()) keepCovariances(*settled);
-      keepCovariances(measurements.frame);
+      keepCovariances(measurements.head.frame);
     }
-    estimates.online = reader_.read(measurements.frame);
+    estimates.online = reader_.read(measurements.head.frame);
     continuous_(estimates.online, {.camera = [this](FrameId frame) { return earlierPose(frame); },
                                    .object = [this](TrackId id, FrameId frame) { return earlierPose(id, frame); }});
     for (const FrameId frame : settling_(window_->frames())) estimates.settled.push_back(reader_.read(frame));

@@ -235,9 +235,10 @@ float cutOfRank(const std::vector<std::pair<int, Candidate>>& ranked, int rank, 
 
 CornerDetector::CornerDetector(const Params& params) : params_(requireValid(params)) {}
 
-std::vector<Corner> CornerDetector::operator()(const Image& image, double score_share, const PixelMask& ignored) const {
+std::vector<Corner> CornerDetector::operator()(const Image& image, double score_share, const PixelMask* ignored) const {
   std::vector<Candidate> candidates = findCandidates(image, score_share * params_.min_score);
-  std::erase_if(candidates, [&](const Candidate& c) { return ignored.holds(c.corner.u_px, c.corner.v_px); });
+  if (ignored)
+    std::erase_if(candidates, [&](const Candidate& c) { return ignored->holds(c.corner.u_px, c.corner.v_px); });
   std::ranges::sort(candidates, strongerInCell);
 
   std::vector<std::pair<int, Candidate>> ranked;  // with the rank in the cell

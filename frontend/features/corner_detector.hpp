@@ -25,7 +25,7 @@ class CornerDetector {
 
   /// Corners ordered by cell, row by row, the strongest of a cell first. Their coordinates are whole pixels. The least
   /// score is `score_share` of the parameter. None lies on a pixel that is ignored.
-  std::vector<Corner> operator()(const Image& image, double score_share = 1, const PixelMask& ignored = {}) const;
+  std::vector<Corner> operator()(const Image& image, double score_share = 1, const PixelMask* ignored = nullptr) const;
 
  private:
   Params params_;

@@ -18,8 +18,7 @@ double scoreShare(float grain_gray) {
 
 }  // namespace
 
-FeaturePreparation::FeaturePreparation(const Params& params, const PixelMask& ignored)
-    : ignored_(ignored), detect_corners_(params.corners) {
+FeaturePreparation::FeaturePreparation(const Params& params) : detect_corners_(params.corners) {
   requireValid(params.sift);
   if (params.detector == DetectorKind::kSift) detect_sift_.emplace(params.sift);
 }
@@ -37,7 +36,7 @@ FeaturesPtr FeaturePreparation::operator()(const StereoFramePtr& frame) const {
   features.left = buildPyramid(left, kPyramidLevels, pool_);
   features.right = buildPyramid(right, kPyramidLevels, pool_);
   if (!detect_sift_) {
-    features.corners = detect_corners_(left, scoreShare(left_grain), ignored_);
+    features.corners = detect_corners_(left, scoreShare(left_grain), frame->inputs.ignored.get());
   } else {
     SiftPoints in_left = (*detect_sift_)(left), in_right = (*detect_sift_)(right);
     features.corners = std::move(in_left.corners);

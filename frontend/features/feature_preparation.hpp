@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/parameters.hpp"
-#include "core/pixel_mask.hpp"
 #include "frontend/features/corner_detector.hpp"
 #include "frontend/features/sift_features.hpp"
 #include "frontend/messages.hpp"
@@ -24,12 +23,10 @@ class FeaturePreparation {
     SiftDetector::Params sift;
   };
   static constexpr int kPyramidLevels = 4;  // the coarsest, an eighth of full size, still shows the texture of vehicles
-  /// `ignored` are pixels of the left image where no corner is of use.
-  explicit FeaturePreparation(const Params& params, const PixelMask& ignored = {});
+  explicit FeaturePreparation(const Params& params);
   FeaturesPtr operator()(const StereoFramePtr& frame) const;
 
  private:
-  PixelMask ignored_;
   CornerDetector detect_corners_;
   std::optional<SiftDetector> detect_sift_;  // where it is the detector
   mutable ImagePool pool_;                   // itself safe for several threads

@@ -181,7 +181,7 @@ bool OpticalFlowTracker::State::follow(const Features& now) {
   if (isOfNoUse(now, found, intervals)) return false;
   if (const auto share = isUneven(intervals) ? std::nullopt : shareOf(found))
     usual_share = kUsualMemory * usual_share + (1 - kUsualMemory) * *share;
-  interval_s = secondsBetween(previous->frame->stamp, now.frame->stamp);
+  interval_s = secondsBetween(previous->frame->head.stamp, now.frame->head.stamp);
   forEachItem(order.size(), [&](std::size_t k) {
     const int i = order[k];
     const std::size_t next = std::min(k + 1, order.size() - 1);
@@ -196,11 +196,12 @@ bool OpticalFlowTracker::State::follow(const Features& now) {
 
 /// Since the points were seen last, in intervals of their last shift.
 double OpticalFlowTracker::State::intervalsSince(const Features& now) const {
-  return interval_s > 0 ? secondsBetween(previous->frame->stamp, now.frame->stamp) / interval_s : 1;
+  return interval_s > 0 ? secondsBetween(previous->frame->head.stamp, now.frame->head.stamp) / interval_s : 1;
 }
 
 bool OpticalFlowTracker::State::mayWait(Timestamp now) const {
-  return previous && waiting_frames < kMaxWaiting_frames && secondsBetween(previous->frame->stamp, now) < kMaxWaiting_s;
+  return previous && waiting_frames < kMaxWaiting_frames &&
+         secondsBetween(previous->frame->head.stamp, now) < kMaxWaiting_s;
 }
 
 /// Follows the points and starts new ones; false when the points wait for the next frame.
@@ -209,7 +210,7 @@ bool OpticalFlowTracker::State::advance(const FeaturesPtr& features) {
   const bool followed = previous && follow(now);
   if (previous && !followed) {
     const bool frames_are_missing = waiting_frames == 0 && intervalsSince(now) > kUnevenInterval;
-    if (!frames_are_missing && mayWait(now.frame->stamp)) return false;
+    if (!frames_are_missing && mayWait(now.frame->head.stamp)) return false;
     points.clear();
     interval_s = 0;
   }
@@ -286,7 +287,7 @@ OpticalFlowPtr OpticalFlowTracker::operator()(const FeaturesPtr& features) {
   const bool rejected = features->frame->rejected();
   const bool resized =
       !rejected && state.previous && !sameSize(state.previous->left.levels.front(), features->left.levels.front());
-  if (resized || (rejected && !state.mayWait(features->frame->stamp))) {
+  if (resized || (rejected && !state.mayWait(features->frame->head.stamp))) {
     state.points.clear();
     state.previous.reset();
     state.interval_s = 0;

@@ -34,11 +34,11 @@ constexpr double kFarthest_m = 1e5;
 /// A motion measured by fewer is as good as it can be, but not safe.
 constexpr int kFewInliers = 25;
 
-CameraMotion predictedMotion(FrameCause cause, const SE3& T_previous_now, std::size_t observations, double dt_s) {
+CameraMotion unlinked(const PredictedMotion& predicted, std::size_t observations) {
   return {.status = FrameStatus::kLost,
-          .cause = cause,
-          .T_previous_now = T_previous_now,
-          .covariance = unknownMotionCovariance(dt_s),
+          .cause = FrameCause::kUnlinked,
+          .T_seen_now = predicted.T_seen_now,
+          .covariance = unknownMotionCovariance(predicted.dt_s),
           .inliers = std::vector<bool>(observations, false)};
 }
 
@@ -56,7 +56,7 @@ PredictedMotion CameraOdometry::predict(Timestamp stamp) const {
   const double predicted_s = secondsBetween(measured_at_, stamp);  // of which dt_s are the last
   const double steps = std::clamp(kMaxPrediction_s - (predicted_s - dt_s), 0.0, dt_s) / last_dt_s_;
   if (steps == 0) predicted.steady_frames = 0;  // the motion that was steady is over: it may stand or go on
-  predicted.T_previous_now = scaledMotion(steps < kSteadySteps ? *last_motion_ : levelMotion(*last_motion_), steps);
+  predicted.T_seen_now = scaledMotion(steps < kSteadySteps ? *last_motion_ : levelMotion(*last_motion_), steps);
   return predicted;
 }
 
@@ -64,42 +64,38 @@ bool CameraOdometry::motionKnown(Timestamp stamp) const {
   return last_motion_ && secondsBetween(measured_at_, stamp) < kMaxPrediction_s;
 }
 
-void CameraOdometry::add(const StereoFrame& frame, CameraMotion& motion) {
+Odometry CameraOdometry::add(Timestamp stamp, const CameraMotion& motion) {
   if (!trail_.empty() && motion.status == FrameStatus::kGood) {
-    const PredictedMotion predicted = predict(frame.stamp);
+    const PredictedMotion predicted = predict(stamp);
     steady_frames_ =
-        last_motion_ && ego_motion_.follows(motion.T_previous_now.inverse(), predicted) ? steady_frames_ + 1 : 0;
-    if (drivesAhead(motion.T_previous_now, predicted.dt_s)) ++ahead_frames_;
-    if (slides(motion.T_previous_now, predicted.dt_s)) ahead_frames_ = 0;
-    last_motion_ = motion.T_previous_now;
+        last_motion_ && ego_motion_.follows(motion.T_seen_now.inverse(), predicted) ? steady_frames_ + 1 : 0;
+    if (drivesAhead(motion.T_seen_now, predicted.dt_s)) ++ahead_frames_;
+    if (slides(motion.T_seen_now, predicted.dt_s)) ahead_frames_ = 0;
+    last_motion_ = motion.T_seen_now;
     last_dt_s_ = predicted.dt_s;
-    measured_at_ = frame.stamp;
+    measured_at_ = stamp;
   }
   if (motion.status != FrameStatus::kGood)
     unlinked_ = true;
   else if (std::exchange(unlinked_, false))
     ++segment_;
-  trail_.add(frame.stamp, motion.T_previous_now);
-  motion.T_previous_now = T_seen_reported_.inverse() * motion.T_previous_now;
-  T_seen_reported_ = SE3{};
-  last_stamp_ = frame.stamp;
+  trail_.add(stamp, motion.T_seen_now);
+  last_stamp_ = stamp;
+  return {std::exchange(T_seen_before_, SE3{}).inverse() * motion.T_seen_now, motion.covariance};
 }
 
-CameraMotion CameraOdometry::passOver(const StereoFrame& frame) {
-  const SE3 T_seen_now = predict(frame.stamp).T_previous_now;
-  CameraMotion motion =
-      predictedMotion(FrameCause::kNothingFound, (T_seen_reported_.inverse() * T_seen_now).normalized(), 0,
-                      last_stamp_ ? secondsBetween(*last_stamp_, frame.stamp) : 0);
-  T_seen_reported_ = T_seen_now;
-  last_stamp_ = frame.stamp;
-  return motion;
+Odometry CameraOdometry::passOver(Timestamp stamp) {
+  const SE3 T_seen_now = predict(stamp).T_seen_now;
+  const SE3 T_seen_before = std::exchange(T_seen_before_, T_seen_now);
+  const Timestamp before = std::exchange(last_stamp_, stamp).value_or(stamp);
+  return {(T_seen_before.inverse() * T_seen_now).normalized(), unknownMotionCovariance(secondsBetween(before, stamp))};
 }
 
 CameraMotion CameraOdometry::measure(const StereoFrame& frame, const std::vector<std::optional<KnownPoint>>& known,
                                      const std::vector<std::optional<StereoObservation>>& observed,
                                      const PredictedMotion& predicted) const {
   assert(known.size() == observed.size());
-  CameraMotion motion{.T_previous_now = SE3{}, .inliers = std::vector<bool>(observed.size(), false)};
+  CameraMotion motion{.T_seen_now = SE3{}, .inliers = std::vector<bool>(observed.size(), false)};
   if (trail_.empty()) return motion;
   std::vector<PoseObservation> observations;
   std::vector<PointLabel> labels;
@@ -113,9 +109,9 @@ CameraMotion CameraOdometry::measure(const StereoFrame& frame, const std::vector
     labels.push_back(known[i]->label);
     of_observation.push_back(i);
   }
-  const auto ego = ego_motion_(observations, labels, predicted, static_cast<std::uint64_t>(frame.frame.value));
-  if (!ego) return predictedMotion(FrameCause::kUnlinked, predicted.T_previous_now, observed.size(), predicted.dt_s);
-  motion.T_previous_now = ego->T_previous_now;
+  const auto ego = ego_motion_(observations, labels, predicted, static_cast<std::uint64_t>(frame.head.frame.value));
+  if (!ego) return unlinked(predicted, observed.size());
+  motion.T_seen_now = ego->T_seen_now;
   motion.covariance = ego->covariance;
   motion.inlier_count = ego->inlier_count;
   if (ego->inlier_count < kFewInliers) motion.cause = FrameCause::kFewPoints;

@@ -12,13 +12,12 @@
 
 namespace motorcade {
 
-/// The camera's motion, measured or predicted: since the last frame that was seen while it is being measured, since the
-/// previous frame, seen or not, when it is reported.
+/// The camera's motion since the last frame that was seen, measured or predicted.
 struct CameraMotion {
   FrameStatus status = FrameStatus::kGood;  // kLost: predicted
   FrameCause cause = FrameCause::kNone;
-  SE3 T_previous_now;
-  Matrix6d covariance = Matrix6d::Identity();  // right perturbation of T_previous_now
+  SE3 T_seen_now;
+  Matrix6d covariance = Matrix6d::Identity();  // right perturbation of T_seen_now
   int inlier_count = 0, measured_count = 0;    // of so many points that were known before
   std::vector<bool> inliers;                   // one per observation: agrees with this motion over a static world
 };
@@ -36,23 +35,23 @@ class CameraOdometry {
   bool motionKnown(Timestamp stamp) const;
 
   /// May the camera have moved like this since the last frame that was seen?
-  bool believes(const SE3& T_previous_now, const PredictedMotion& predicted) const {
-    return !ego_motion_.breaks(T_previous_now.inverse(), predicted);
+  bool believes(const SE3& T_seen_now, const PredictedMotion& predicted) const {
+    return !ego_motion_.breaks(T_seen_now.inverse(), predicted);
   }
   /// The motion since the last frame that was seen. `known` tells where points were then, `observed` where they are
   /// now; both are parallel. The first frame that is seen does not move.
   CameraMotion measure(const StereoFrame& frame, const std::vector<std::optional<KnownPoint>>& known,
                        const std::vector<std::optional<StereoObservation>>& observed,
                        const PredictedMotion& predicted) const;
-  /// Adds a frame with its measured motion to the trail, and makes it one since the previous frame.
-  void add(const StereoFrame& frame, CameraMotion& motion);
-  /// A frame in which nothing is seen: its predicted motion since the previous frame.
-  CameraMotion passOver(const StereoFrame& frame);
+  /// Adds a frame with its measured motion to the trail; the motion since the frame before, seen or not.
+  Odometry add(Timestamp stamp, const CameraMotion& motion);
+  /// The same of a frame in which nothing is seen, whose motion is predicted.
+  Odometry passOver(Timestamp stamp);
 
   const CameraTrail& trail() const { return trail_; }
   /// As last measured; 0 while it is not known.
   double speed_mps() const { return last_motion_ ? last_motion_->translation().norm() / last_dt_s_ : 0; }
-  /// See FrameMeasurements: of the last frame.
+  /// See FrameHead: of the last frame.
   int segment() const { return segment_; }
 
  private:
@@ -62,8 +61,8 @@ class CameraOdometry {
   CameraTrail trail_;  // of frames that were seen
   int segment_ = 0;
   bool unlinked_ = false;                // since the last frame that was good
-  SE3 T_seen_reported_;                  // from the last one to the last frame that was reported
-  std::optional<Timestamp> last_stamp_;  // of the last frame that was reported
+  SE3 T_seen_before_;                    // from the last one to the last frame, seen or not
+  std::optional<Timestamp> last_stamp_;  // of the last frame, seen or not
   std::optional<SE3> last_motion_;       // as last measured, from frame to frame
   double last_dt_s_ = 0;
   Timestamp measured_at_;

@@ -2,11 +2,11 @@
 
 namespace motorcade {
 
-void CameraTrail::add(Timestamp stamp, const SE3& T_previous_now) {
+void CameraTrail::add(Timestamp stamp, const SE3& T_seen_now) {
   if (steps_.empty()) {
     steps_.push_back({0, stamp, SE3{}});
   } else {
-    steps_.push_back({steps_.back().step + 1, stamp, (steps_.back().T_world_cam * T_previous_now).normalized()});
+    steps_.push_back({steps_.back().step + 1, stamp, (steps_.back().T_world_cam * T_seen_now).normalized()});
   }
   if (steps_.size() > kCapacity) steps_.erase(steps_.begin());
   const Step& now = steps_.back();

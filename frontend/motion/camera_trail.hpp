@@ -20,7 +20,7 @@ class CameraTrail {
     SE3 T_world_cam;
   };
   /// Appends a frame and forgets the oldest one beyond the capacity.
-  void add(Timestamp stamp, const SE3& T_previous_now);
+  void add(Timestamp stamp, const SE3& T_seen_now);
   bool empty() const { return steps_.empty(); }
   const Step& newest() const { return steps_.back(); }
 

@@ -122,31 +122,31 @@ class Sampler {
 
 }  // namespace
 
-bool drivesAhead(const SE3& T_previous_now, double dt_s) {
-  return T_previous_now.translation().z() > kDriving_mps * dt_s && !slides(T_previous_now, dt_s);
+bool drivesAhead(const SE3& T_seen_now, double dt_s) {
+  return T_seen_now.translation().z() > kDriving_mps * dt_s && !slides(T_seen_now, dt_s);
 }
 
-bool slides(const SE3& T_previous_now, double dt_s) {
-  const Eigen::Vector3d& way = T_previous_now.translation();
+bool slides(const SE3& T_seen_now, double dt_s) {
+  const Eigen::Vector3d& way = T_seen_now.translation();
   const double chord = 0.5 * kYawRate_radps * dt_s;  // of a curve: its angle to the axis
-  const double turn = T_previous_now.log().tail<3>().norm();
+  const double turn = T_seen_now.log().tail<3>().norm();
   return way.head<2>().norm() > kSlide_mps * dt_s + (kSlideShare + chord) * std::abs(way.z()) ||
          turn > kSway_radps * dt_s + std::abs(way.z()) / kMinRadius_m;
 }
 
-bool EgoMotionEstimator::isBeyondBelief(const SE3& T_now_previous, const PredictedMotion& predicted) {
-  return predicted.ahead_frames >= kTrustedAheadFrames && slides(T_now_previous.inverse(), predicted.dt_s);
+bool EgoMotionEstimator::isBeyondBelief(const SE3& T_now_seen, const PredictedMotion& predicted) {
+  return predicted.ahead_frames >= kTrustedAheadFrames && slides(T_now_seen.inverse(), predicted.dt_s);
 }
 
 /// By how much the change from what was predicted is more than a vehicle can do; 1: just what it can.
-double EgoMotionEstimator::surprise(const SE3& T_now_previous, const PredictedMotion& predicted) const {
-  const double change_m = (T_now_previous.inverse().translation() - predicted.T_previous_now.translation()).norm();
+double EgoMotionEstimator::surprise(const SE3& T_now_seen, const PredictedMotion& predicted) const {
+  const double change_m = (T_now_seen.inverse().translation() - predicted.T_seen_now.translation()).norm();
   const double possible_m = params_.max_acceleration_mps2 * predicted.dt_s * predicted.dt_s;
   return possible_m > 0 ? change_m / possible_m : std::numeric_limits<double>::infinity();
 }
 
-bool EgoMotionEstimator::breaks(const SE3& T_now_previous, const PredictedMotion& predicted) const {
-  return predicted.steady_frames >= kTrustedSteadyFrames && !follows(T_now_previous, predicted);
+bool EgoMotionEstimator::breaks(const SE3& T_now_seen, const PredictedMotion& predicted) const {
+  return predicted.steady_frames >= kTrustedSteadyFrames && !follows(T_now_seen, predicted);
 }
 
 SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observations,
@@ -155,15 +155,15 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
   auto votes = votesOf(observations, labels);
   if (predicted.steady_frames < kTrustedSteadyFrames) hearTheRoad(observations, labels, votes);
   const Voters voters = chooseVoters(observations, votes, params_.inlier_chi2);
-  SE3 start = predicted.T_previous_now.inverse();
+  SE3 start = predicted.T_seen_now.inverse();
   Sampler sample(observations, votes, labels, seed);
   if (sample.empty()) return start;
   const double trust = std::min(1.0, static_cast<double>(predicted.steady_frames) / kTrustedSteadyFrames);
   const double penalty = kSurprisePenalty * trust * voters.worst_score;
 
   SE3 best = start;
-  const auto score = [&](const SE3& T_now_previous, double bound) {
-    return poseScore(camera_, voters.observations, T_now_previous, {voters.weights, params_.inlier_chi2}, bound);
+  const auto score = [&](const SE3& T_now_seen, double bound) {
+    return poseScore(camera_, voters.observations, T_now_seen, {voters.weights, params_.inlier_chi2}, bound);
   };
   double best_score = score(best, std::numeric_limits<double>::infinity());
   for (int k = 0; k < params_.max_hypotheses; ++k) {
@@ -204,9 +204,9 @@ std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObse
   if (!fit || isBeyondBelief(fit->T_cam_ref, predicted)) return std::nullopt;
 
   EgoMotion ego;
-  ego.T_previous_now = fit->T_cam_ref.inverse();
+  ego.T_seen_now = fit->T_cam_ref.inverse();
   // log((T exp(xi))^-1) moves the perturbation to the other side: the covariance follows by the adjoint of
-  // T_now_previous.
+  // T_now_seen.
   const Matrix6d A = fit->T_cam_ref.adjoint();
   ego.covariance = std::max(1.0, fit->inlier_chi2_per_dof) * A * fit->covariance * A.transpose();
   ego.inliers.reserve(observations.size());

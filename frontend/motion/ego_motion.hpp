@@ -15,24 +15,24 @@ namespace motorcade {
 
 /// The camera's motion between two frames from points that were triangulated before and are seen now.
 struct EgoMotion {
-  SE3 T_previous_now;
-  Matrix6d covariance;        // right perturbation of T_previous_now
+  SE3 T_seen_now;
+  Matrix6d covariance;        // right perturbation of T_seen_now
   std::vector<bool> inliers;  // one per observation
   int inlier_count = 0;
 };
 
 /// What the frames before tell of the camera's motion.
 struct PredictedMotion {
-  SE3 T_previous_now;
+  SE3 T_seen_now;
   double dt_s = 0;        // from the previous frame to now
   int steady_frames = 0;  // in a row that moved as the frame before them did; 0: no motion is known
   int ahead_frames = 0;   // that the camera drove along its optical axis, as on a car, and none in which it slid
 };
 
 /// Does a camera that moves like this go along its optical axis at the speed of a car?
-bool drivesAhead(const SE3& T_previous_now, double dt_s);
+bool drivesAhead(const SE3& T_seen_now, double dt_s);
 /// Does it go sideways, beyond bumps and the chord of a curve, or turn where it stands?
-bool slides(const SE3& T_previous_now, double dt_s);
+bool slides(const SE3& T_seen_now, double dt_s);
 
 /// RANSAC over three points, then covariance-weighted refinement over all inliers. Stateless.
 class EgoMotionEstimator {
@@ -54,17 +54,17 @@ class EgoMotionEstimator {
                                       std::uint64_t seed) const;
 
   /// Can a vehicle have moved like this after what was predicted?
-  bool follows(const SE3& T_now_previous, const PredictedMotion& predicted) const {
-    return surprise(T_now_previous, predicted) < 1;
+  bool follows(const SE3& T_now_seen, const PredictedMotion& predicted) const {
+    return surprise(T_now_seen, predicted) < 1;
   }
   /// A steady motion that went on in a way that no vehicle can.
-  bool breaks(const SE3& T_now_previous, const PredictedMotion& predicted) const;
+  bool breaks(const SE3& T_now_seen, const PredictedMotion& predicted) const;
 
  private:
-  double surprise(const SE3& T_now_previous, const PredictedMotion& predicted) const;
+  double surprise(const SE3& T_now_seen, const PredictedMotion& predicted) const;
   /// A car's camera, which has driven ahead all the time, cannot slide: then it is the points that move, as when a
   /// truck fills the view.
-  static bool isBeyondBelief(const SE3& T_now_previous, const PredictedMotion& predicted);
+  static bool isBeyondBelief(const SE3& T_now_seen, const PredictedMotion& predicted);
   SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<PointLabel>& labels,
                      const PredictedMotion& predicted, std::uint64_t seed) const;
   std::optional<PoseFit> refine(std::span<const PoseObservation> observations, const PoseObservations& all,

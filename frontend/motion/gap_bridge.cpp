@@ -91,10 +91,10 @@ std::optional<SE3> GapBridge::fit(const Gap& gap, const std::vector<FlowObservat
   }
   const PredictedMotion predicted{T_then_now, gap.duration_s, 0, gap.ahead_frames};
   const auto ego = ego_motion_(observations, std::vector<PointLabel>(observations.size(), PointLabel::kUnknown),
-                               predicted, static_cast<std::uint64_t>(gap.now.frame->frame.value));
+                               predicted, static_cast<std::uint64_t>(gap.now.frame->head.frame.value));
   if (!ego || ego->inlier_count < kMinAgreeing) return std::nullopt;
   if (ego->inlier_count < kMinAgreeingShare * static_cast<double>(observations.size())) return std::nullopt;
-  return ego->T_previous_now;
+  return ego->T_seen_now;
 }
 
 std::optional<SE3> GapBridge::locate(const Gap& gap, const SE3& predicted_T_then_now) const {

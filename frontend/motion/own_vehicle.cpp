@@ -52,19 +52,8 @@ bool hasCompany(const Eigen::Vector3d& p_cam, const Points& points) {
 
 }  // namespace
 
-OwnVehicle::OwnVehicle(const StereoCamera& camera, const PixelMask& ignored)
-    : camera_(camera),
-      ignored_(ignored),
-      ignores_(!ignored.empty()),
-      map_(camera),
-      left_m_(-kReachAside_m),
-      right_m_(kReachAside_m) {}
-
-/// Looks in the right image, too: what is fixed to the camera hides there what the left one sees.
-bool OwnVehicle::isIgnored(const StereoObservation& seen) const {
-  const float u_px = seen.uvd_px.x(), v_px = seen.uvd_px.y(), d_px = seen.uvd_px.z();
-  return ignored_.holds(u_px, v_px) || ignored_.holds(u_px - d_px, v_px);
-}
+OwnVehicle::OwnVehicle(const StereoCamera& camera)
+    : camera_(camera), map_(camera), left_m_(-kReachAside_m), right_m_(kReachAside_m) {}
 
 bool OwnVehicle::isNear(const StereoObservation& seen) const {
   return camera_.fx_px * camera_.baseline_m < kReachAhead_m * seen.uvd_px.z();
@@ -81,9 +70,6 @@ bool OwnVehicle::stays(const Watched& point, const StereoObservation& seen) cons
 }
 
 void OwnVehicle::leaveOut(const OpticalFlow& flow, std::vector<std::optional<StereoObservation>>& observed) const {
-  if (ignores_)
-    for (auto& seen : observed)
-      if (seen && isIgnored(*seen)) seen.reset();
   if (!map_.empty())
     for (auto& seen : observed)
       if (seen && map_.isMasked(seen->uvd_px.x(), seen->uvd_px.y())) seen.reset();

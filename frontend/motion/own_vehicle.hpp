@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 
 #include "core/messages.hpp"
-#include "core/pixel_mask.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/matching/circular_matching.hpp"
 #include "frontend/messages.hpp"
@@ -22,10 +21,9 @@ namespace motorcade {
 /// the image is masked from there to its border, as reflections move on a bonnet. Call `learn` in frame order.
 class OwnVehicle {
  public:
-  /// `ignored` are pixels of the left image that are to be left out from the start, and in the right image as well.
-  explicit OwnVehicle(const StereoCamera& camera, const PixelMask& ignored = {});
+  explicit OwnVehicle(const StereoCamera& camera);
 
-  /// Takes out the observations of the own vehicle, and those that lie in what is ignored.
+  /// Takes out the observations of the own vehicle.
   void leaveOut(const OpticalFlow& flow, std::vector<std::optional<StereoObservation>>& observed) const;
 
   /// Learns from a frame in which the camera's motion was measured, the newest of the trail. `seen` has one item per
@@ -37,7 +35,7 @@ class OwnVehicle {
   /// Adds to the disparities of all points that were seen.
   void shiftDisparities(double change_px);
 
-  /// What is masked, not counting what is ignored; empty while nothing is.
+  /// What is masked; empty while nothing is.
   const std::optional<OwnVehicleView>& view() const { return map_.view(); }
 
  private:
@@ -55,7 +53,6 @@ class OwnVehicle {
     Eigen::Vector3d p_cam;
   };
 
-  bool isIgnored(const StereoObservation& seen) const;
   bool isNear(const StereoObservation& seen) const;
   bool isOfInterest(const StereoObservation& seen) const;
   bool stays(const Watched& point, const StereoObservation& seen) const;
@@ -65,8 +62,6 @@ class OwnVehicle {
   bool isTimeToVote(const CameraTrail& trail);
 
   StereoCamera camera_;
-  PixelMask ignored_;
-  bool ignores_;
   OwnVehicleMap map_;
   double left_m_, right_m_;                  // how far aside the own vehicle reaches, as far as it is known
   std::vector<Watched> watched_;             // ordered by point

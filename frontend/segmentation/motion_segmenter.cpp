@@ -81,9 +81,9 @@ bool MotionSegmenter::belongTogether(const ScenePoint& a, const ScenePoint& b) c
   return distance < params_.max_gap_m + kNoiseSigmas * sigma_m;
 }
 
-std::vector<Segment> MotionSegmenter::operator()(std::vector<ScenePoint>& points,
-                                                 const std::vector<bool>& violates_geometry, const GroundPlane& ground,
-                                                 double camera_speed_mps) const {
+std::vector<MotionComponent> MotionSegmenter::operator()(std::vector<ScenePoint>& points,
+                                                         const std::vector<bool>& violates_geometry,
+                                                         const GroundPlane& ground, double camera_speed_mps) const {
   std::vector<int> vertices;
   std::vector<Eigen::Vector2d> pixels;
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
@@ -96,54 +96,54 @@ std::vector<Segment> MotionSegmenter::operator()(std::vector<ScenePoint>& points
     if (violates_geometry[i] != violates_geometry[j]) return false;
     return belongTogether(points[i], points[j]);
   };
-  std::vector<Segment> segments;
-  for (auto& component : cutDelaunayComponents(pixels, together)) {
-    for (int& i : component) i = vertices[i];
-    Segment segment = describe(std::move(component), points, camera_speed_mps);
-    segment.label = decide(segment, points, ground);
-    for (const int i : segment.points) points[i].label = segment.label;
-    if (segment.label != PointLabel::kStatic) segments.push_back(std::move(segment));
+  std::vector<MotionComponent> components;
+  for (auto& members : cutDelaunayComponents(pixels, together)) {
+    for (int& i : members) i = vertices[i];
+    MotionComponent component = describe(std::move(members), points, camera_speed_mps);
+    component.label = decide(component, points, ground);
+    for (const int i : component.points) points[i].label = component.label;
+    if (component.label != PointLabel::kStatic) components.push_back(std::move(component));
   }
-  return segments;
+  return components;
 }
 
-Segment MotionSegmenter::describe(std::vector<int> members, const std::vector<ScenePoint>& points,
-                                  double camera_speed_mps) const {
-  Segment segment;
-  segment.points = std::move(members);
-  for (const int i : segment.points)
-    segment.centroid_cam += points[i].flow->p_cam / static_cast<double>(segment.points.size());
-  const auto pooled = poolVelocities(segment.points, points, params_.max_flow_chi2);
-  segment.velocity_mps = pooled.velocity_mps;
-  segment.velocity_covariance =
-      pooled.covariance + sharedVelocityCovariance(camera_, segment.centroid_cam, camera_speed_mps);
-  return segment;
+MotionComponent MotionSegmenter::describe(std::vector<int> members, const std::vector<ScenePoint>& points,
+                                          double camera_speed_mps) const {
+  MotionComponent component;
+  component.points = std::move(members);
+  for (const int i : component.points)
+    component.centroid_cam += points[i].flow->p_cam / static_cast<double>(component.points.size());
+  const auto pooled = poolVelocities(component.points, points, params_.max_flow_chi2);
+  component.velocity_mps = pooled.velocity_mps;
+  component.velocity_covariance =
+      pooled.covariance + sharedVelocityCovariance(camera_, component.centroid_cam, camera_speed_mps);
+  return component;
 }
 
-PointLabel MotionSegmenter::decide(const Segment& segment, const std::vector<ScenePoint>& points,
+PointLabel MotionSegmenter::decide(const MotionComponent& component, const std::vector<ScenePoint>& points,
                                    const GroundPlane& ground) const {
-  if (static_cast<int>(segment.points.size()) < params_.min_points) return PointLabel::kUnknown;
-  const Eigen::Vector3d& v = segment.velocity_mps;
-  const double significance = std::sqrt(v.dot(segment.velocity_covariance.inverse() * v));
-  const double speed_sigma = std::sqrt(segment.velocity_covariance.trace());
+  if (static_cast<int>(component.points.size()) < params_.min_points) return PointLabel::kUnknown;
+  const Eigen::Vector3d& v = component.velocity_mps;
+  const double significance = std::sqrt(v.dot(component.velocity_covariance.inverse() * v));
+  const double speed_sigma = std::sqrt(component.velocity_covariance.trace());
   if (significance < params_.min_significance || v.norm() < params_.min_speed_mps)
     return speed_sigma < kStaticSigma_mps ? PointLabel::kStatic : PointLabel::kUnknown;
-  return isLikeAVehicle(segment, points, ground) ? PointLabel::kMoving : PointLabel::kUnknown;
+  return isLikeAVehicle(component, points, ground) ? PointLabel::kMoving : PointLabel::kUnknown;
 }
 
 /// Not too long, not up in the air, and not going up or down.
-bool MotionSegmenter::isLikeAVehicle(const Segment& segment, const std::vector<ScenePoint>& points,
+bool MotionSegmenter::isLikeAVehicle(const MotionComponent& component, const std::vector<ScenePoint>& points,
                                      const GroundPlane& ground) const {
   Eigen::AlignedBox3d box;
   double lowest_m = std::numeric_limits<double>::infinity();
-  for (const int i : segment.points) {
+  for (const int i : component.points) {
     box.extend(points[i].flow->p_cam);
     lowest_m = std::min(lowest_m, ground.heightOf_m(points[i].flow->p_cam));
   }
-  const Eigen::Vector3d& v = segment.velocity_mps;
-  const double depth_noise_m = kNoiseSigmas * std::sqrt(positionCovariance(points[segment.points.front()]).trace());
+  const Eigen::Vector3d& v = component.velocity_mps;
+  const double depth_noise_m = kNoiseSigmas * std::sqrt(positionCovariance(points[component.points.front()]).trace());
   const double vertical_mps = std::abs(v.dot(ground.normal_cam));
-  const double vertical_sigma = std::sqrt(ground.normal_cam.dot(segment.velocity_covariance * ground.normal_cam));
+  const double vertical_sigma = std::sqrt(ground.normal_cam.dot(component.velocity_covariance * ground.normal_cam));
   return box.diagonal().norm() < params_.max_extent_m + depth_noise_m && lowest_m < kMaxHeight_m &&
          vertical_mps < kMaxVerticalRatio * v.norm() + kNoiseSigmas * vertical_sigma;
 }

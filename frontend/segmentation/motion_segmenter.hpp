@@ -26,8 +26,8 @@ class MotionSegmenter {
   /// Labels the points that carry scene flow and lie off the ground, seen from a camera of this speed; returns the
   /// moving and the unknown components. `violates_geometry[i]` says that point i breaks the epipolar constraint or the
   /// flow-vector bound.
-  std::vector<Segment> operator()(std::vector<ScenePoint>& points, const std::vector<bool>& violates_geometry,
-                                  const GroundPlane& ground, double camera_speed_mps) const;
+  std::vector<MotionComponent> operator()(std::vector<ScenePoint>& points, const std::vector<bool>& violates_geometry,
+                                          const GroundPlane& ground, double camera_speed_mps) const;
 
   /// The edge predicate: may two points belong to one rigid body?
   bool belongTogether(const ScenePoint& a, const ScenePoint& b) const;
@@ -36,9 +36,12 @@ class MotionSegmenter {
   bool isVertex(const ScenePoint& point) const;
 
  private:
-  Segment describe(std::vector<int> members, const std::vector<ScenePoint>& points, double camera_speed_mps) const;
-  PointLabel decide(const Segment& segment, const std::vector<ScenePoint>& points, const GroundPlane& ground) const;
-  bool isLikeAVehicle(const Segment& segment, const std::vector<ScenePoint>& points, const GroundPlane& ground) const;
+  MotionComponent describe(std::vector<int> members, const std::vector<ScenePoint>& points,
+                           double camera_speed_mps) const;
+  PointLabel decide(const MotionComponent& component, const std::vector<ScenePoint>& points,
+                    const GroundPlane& ground) const;
+  bool isLikeAVehicle(const MotionComponent& component, const std::vector<ScenePoint>& points,
+                      const GroundPlane& ground) const;
 
   Params params_;
   StereoCamera camera_;

@@ -28,6 +28,15 @@ bool agree(const SE3& a, const SE3& b) {
   return apart.head<3>().norm() < kApart_m && apart.tail<3>().norm() < kApart_rad;
 }
 
+/// Looks in the right image, too: what is fixed to the camera hides there what the left one sees.
+void leaveOut(const PixelMask& ignored, std::vector<std::optional<StereoObservation>>& observed) {
+  for (auto& seen : observed) {
+    if (!seen) continue;
+    const float u_px = seen->uvd_px.x(), v_px = seen->uvd_px.y(), d_px = seen->uvd_px.z();
+    if (ignored.holds(u_px, v_px) || ignored.holds(u_px - d_px, v_px)) seen.reset();
+  }
+}
+
 /// Observations of both, ordered by point; where both have a point, that of the flow.
 OpticalFlow merged(const OpticalFlow& flow, const std::vector<FlowObservation>& found) {
   OpticalFlow all{.features = flow.features, .observations = {}};
@@ -38,59 +47,77 @@ OpticalFlow merged(const OpticalFlow& flow, const std::vector<FlowObservation>& 
 
 }  // namespace
 
-SceneFlowSegmentation::SceneFlowSegmentation(const Params& params, const StereoCamera& camera, const PixelMask& ignored)
+SceneFlowSegmentation::SceneFlowSegmentation(const Params& params, const StereoCamera& camera)
     : camera_(camera),
       circular_matching_(params.circular_matching, camera),
       odometry_(params.ego_motion, camera),
       gap_bridge_(params.ego_motion, camera),
-      own_vehicle_(camera, ignored),
+      own_vehicle_(camera),
       tracks_(params.point_tracks, camera),
       ground_plane_(params.ground_plane),
       segmenter_(params.segmenter, camera),
       disparity_offset_(params.disparity_offset, camera) {}
 
-/// `known`, `observed` and the inliers of the camera's motion have one item per flow observation; the points of the
-/// scene are those that are observed.
+/// Observations and the inliers of the camera's motion have one item per flow observation; the points of the scene are
+/// those that are observed and belong to the world.
 SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow) {
   const StereoFrame& frame = *stereo->features->frame;
   if (frame.rejected() || flow->observations.empty()) return passOver(frame);
 
-  Sight sight = look(*stereo, *flow, odometry_.predict(frame.stamp));
-  if (sight.camera.status != FrameStatus::kGood || isAfterGap(frame.stamp)) bridge(*stereo, sight);
-  odometry_.add(frame, sight.camera);
-  learnOwnVehicle(sight);
-  const auto& [seen_flow, seen, observed, camera] = sight;
-  tracks_.update(seen_flow, observed, odometry_.trail());
+  const MeasuredFrame measured = measure(*stereo, *flow);
+  const Odometry odometry = odometry_.add(frame.head.stamp, measured.camera);
+  const Observations of_world = learnOwnVehicle(measured);
+  tracks_.update(measured.flow, of_world, odometry_.trail());
 
-  auto motion = newMotion(frame, camera);
+  FrameHead head = frame.head;
+  head.status = measured.camera.status;
+  head.cause = measured.camera.cause;
+  auto motion = newMotion(head, odometry);
   motion->features = stereo->features;
-  addPoints(observed, camera.inliers, motion->points);
+  motion->ego_inliers = measured.camera.inlier_count;
+  motion->disparity_offset_px = disparity_offset_.offset_px();
+  addPoints(of_world, measured.camera.inliers, motion->points);
   const std::vector<bool> violates_geometry = testGeometry();
-  motion->ground = findGround(violates_geometry, frame.frame, motion->points);
-  motion->segments = segmenter_(motion->points, violates_geometry, motion->ground, motion->camera_speed_mps);
+  motion->ground = findGround(violates_geometry, head.frame, motion->points);
+  motion->components = segmenter_(motion->points, violates_geometry, motion->ground, motion->camera_speed_mps);
 
   tracks_.setLabels(motion->points);
-  motion->disparity_offset_px = disparity_offset_.offset_px();
   calibrateDisparity();
   return motion;
 }
 
-SceneFlowSegmentation::Sight SceneFlowSegmentation::look(const StereoMatches& stereo, const OpticalFlow& flow,
-                                                         const PredictedMotion& predicted) const {
-  const StereoFrame& frame = *stereo.features->frame;
-  const auto known = tracks_.known(flow, odometry_.trail());
-  auto seen = circular_matching_(stereo, flow, expectDisparities(known, frame.stamp, predicted.T_previous_now));
-  auto observed = seen;
-  own_vehicle_.leaveOut(flow, observed);
-  CameraMotion camera = odometry_.measure(frame, known, observed, predicted);
-  return {flow, std::move(seen), std::move(observed), std::move(camera)};
+SceneFlowSegmentation::MeasuredFrame SceneFlowSegmentation::measure(const StereoMatches& stereo,
+                                                                    const OpticalFlow& flow) const {
+  const Timestamp stamp = stereo.features->frame->head.stamp;
+  const PredictedMotion predicted = odometry_.predict(stamp);
+  MeasuredFrame measured = measure(stereo, flow, predicted);
+  if (measured.camera.status == FrameStatus::kGood && !isAfterGap(stamp)) return measured;
+  return bridged(stereo, std::move(measured), predicted);
 }
 
-/// What this frame shows of the own vehicle takes no further part in it.
-void SceneFlowSegmentation::learnOwnVehicle(Sight& sight) {
-  if (sight.camera.status != FrameStatus::kGood) return own_vehicle_.forgetPoints();
-  own_vehicle_.learn(sight.flow, sight.seen, odometry_.trail());
-  own_vehicle_.leaveOut(sight.flow, sight.observed);
+SceneFlowSegmentation::MeasuredFrame SceneFlowSegmentation::measure(const StereoMatches& stereo,
+                                                                    const OpticalFlow& flow,
+                                                                    const PredictedMotion& predicted) const {
+  const StereoFrame& frame = *stereo.features->frame;
+  const auto known = tracks_.known(flow, odometry_.trail());
+  auto all = circular_matching_(stereo, flow, expectDisparities(known, frame.head.stamp, predicted.T_seen_now));
+  auto of_world = all;
+  if (frame.inputs.ignored) leaveOut(*frame.inputs.ignored, of_world);
+  own_vehicle_.leaveOut(flow, of_world);
+  CameraMotion camera = odometry_.measure(frame, known, of_world, predicted);
+  return {flow, std::move(all), std::move(of_world), std::move(camera)};
+}
+
+/// What this frame shows of the own vehicle takes no further part in it: the observations that are left.
+SceneFlowSegmentation::Observations SceneFlowSegmentation::learnOwnVehicle(const MeasuredFrame& measured) {
+  Observations of_world = measured.of_world;
+  if (measured.camera.status != FrameStatus::kGood) {
+    own_vehicle_.forgetPoints();
+  } else {
+    own_vehicle_.learn(measured.flow, measured.all, odometry_.trail());
+    own_vehicle_.leaveOut(measured.flow, of_world);
+  }
+  return of_world;
 }
 
 /// Are frames missing before this one?
@@ -103,83 +130,78 @@ bool SceneFlowSegmentation::isAfterGap(Timestamp stamp) const {
 
 /// Finds the points of the last frame that was seen again, where optical flow lost them, and measures the motion anew.
 /// Where that fails, the motion is not known.
-void SceneFlowSegmentation::bridge(const StereoMatches& stereo, Sight& sight) const {
-  if (odometry_.trail().empty()) return;
+SceneFlowSegmentation::MeasuredFrame SceneFlowSegmentation::bridged(const StereoMatches& stereo, MeasuredFrame measured,
+                                                                    const PredictedMotion& predicted) const {
+  if (odometry_.trail().empty() || !tracks_.featuresOfLast()) return measured;
   const Features& now = *stereo.features;
-  const PredictedMotion predicted = odometry_.predict(now.frame->stamp);
   const std::vector<RestingPoint> points = tracks_.seenLast();
-  std::optional<SE3> T_then_now;
-  if (isSure(sight.camera)) T_then_now = sight.camera.T_previous_now;
-  if (!tracks_.featuresOfLast()) return;
   const GapBridge::Gap gap{.points = points,
                            .then = *tracks_.featuresOfLast(),
                            .now = now,
                            .disparity_offset_px = disparity_offset_.offset_px(),
                            .duration_s = predicted.dt_s,
                            .ahead_frames = predicted.ahead_frames};
-  if (!T_then_now && predicted.dt_s < GapBridge::kMaxGap_s)
-    T_then_now = gap_bridge_.locate(gap, predicted.T_previous_now);
+  std::optional<SE3> T_then_now;
+  if (isSure(measured.camera)) T_then_now = measured.camera.T_seen_now;
+  if (!T_then_now && predicted.dt_s < GapBridge::kMaxGap_s) T_then_now = gap_bridge_.locate(gap, predicted.T_seen_now);
   if (T_then_now && !odometry_.believes(*T_then_now, predicted)) T_then_now.reset();
   if (T_then_now)
-    sight = look(stereo, merged(sight.flow, gap_bridge_.find(gap, *T_then_now)),
-                 {*T_then_now, predicted.dt_s, 0, predicted.ahead_frames});
-  if (T_then_now && sight.camera.status == FrameStatus::kGood && agree(sight.camera.T_previous_now, *T_then_now)) {
-    sight.camera.cause = FrameCause::kAfterGap;
+    measured = measure(stereo, merged(measured.flow, gap_bridge_.find(gap, *T_then_now)),
+                       {*T_then_now, predicted.dt_s, 0, predicted.ahead_frames});
+  CameraMotion& camera = measured.camera;
+  if (T_then_now && camera.status == FrameStatus::kGood && agree(camera.T_seen_now, *T_then_now)) {
+    camera.cause = FrameCause::kAfterGap;
   } else {
-    sight.camera = odometry_.measure(*now.frame, {}, {}, predicted);
-    sight.camera.inliers.assign(sight.observed.size(), false);
+    camera = odometry_.measure(*now.frame, {}, {}, predicted);
+    camera.inliers.assign(measured.of_world.size(), false);
   }
+  return measured;
 }
 
 SceneMotionPtr SceneFlowSegmentation::passOver(const StereoFrame& unseen) {
-  CameraMotion camera = odometry_.passOver(unseen);
-  if (unseen.rejected()) camera.status = FrameStatus::kRejected, camera.cause = FrameCause::kUnusable;
-  return newMotion(unseen, camera);
+  FrameHead head = unseen.head;
+  if (!unseen.rejected()) head.status = FrameStatus::kLost, head.cause = FrameCause::kNothingFound;
+  return newMotion(head, odometry_.passOver(head.stamp));
 }
 
 /// In the memory of one that is no longer in use.
-std::shared_ptr<SceneMotion> SceneFlowSegmentation::newMotion(const StereoFrame& frame, const CameraMotion& camera) {
+std::shared_ptr<SceneMotion> SceneFlowSegmentation::newMotion(const FrameHead& head, const Odometry& odometry) {
   auto motion = motions_.acquire();
   auto points = std::move(motion->points);
   points.clear();
-  *motion = SceneMotion{.frame = frame.frame,
-                        .stamp = frame.stamp,
-                        .status = camera.status,
-                        .cause = camera.cause,
-                        .segment = odometry_.segment(),
-                        .T_previous_now = camera.T_previous_now,
-                        .odometry_covariance = camera.covariance,
+  *motion = SceneMotion{.head = head,
+                        .odometry = odometry,
                         .camera_speed_mps = odometry_.speed_mps(),
-                        .ego_inliers = camera.inlier_count,
                         .ground = {},
                         .points = std::move(points),
-                        .segments = {},
+                        .components = {},
                         .features = {},
                         .own_vehicle = own_vehicle_.view()};
+  motion->head.segment = odometry_.segment();
   return motion;
 }
 
 ExpectedDisparities SceneFlowSegmentation::expectDisparities(const std::vector<std::optional<KnownPoint>>& known,
-                                                             Timestamp stamp, const SE3& T_previous_now) const {
-  const SE3 T_now_previous = T_previous_now.inverse();
+                                                             Timestamp stamp, const SE3& T_seen_now) const {
+  const SE3 T_now_seen = T_seen_now.inverse();
   ExpectedDisparities expected{.of_point = std::vector<std::optional<ExpectedDisparity>>(known.size()),
                                .motion_known = odometry_.motionKnown(stamp),
                                .offset_px = disparity_offset_.offset_px()};
   for (std::size_t i = 0; i < known.size(); ++i) {
     if (!known[i]) continue;
     const double before_px = known[i]->disparity_px;
-    const auto at_rest = camera_.project(T_now_previous * known[i]->p_cam);
+    const auto at_rest = camera_.project(T_now_seen * known[i]->p_cam);
     expected.of_point[i] = {.before_px = before_px, .at_rest_px = at_rest ? at_rest->z() : before_px};
   }
   return expected;
 }
 
-void SceneFlowSegmentation::addPoints(const std::vector<std::optional<StereoObservation>>& observed,
-                                      const std::vector<bool>& inliers, std::vector<ScenePoint>& points) const {
-  points.reserve(observed.size());
+void SceneFlowSegmentation::addPoints(const Observations& of_world, const std::vector<bool>& inliers,
+                                      std::vector<ScenePoint>& points) const {
+  points.reserve(of_world.size());
   std::size_t next = 0;
   for (const PointTrack& track : tracks_.observedNow()) {
-    while (!observed[next]) ++next;
+    while (!of_world[next]) ++next;
     const std::size_t i = next++;
     ScenePoint& point = points.emplace_back();  // filled in its place: it is large
     point.point = track.point;

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/object_pool.hpp"
-#include "core/pixel_mask.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/matching/circular_matching.hpp"
 #include "frontend/messages.hpp"
@@ -32,30 +31,30 @@ class SceneFlowSegmentation {
     MotionSegmenter::Params segmenter;
     DisparityOffsetEstimator::Params disparity_offset;
   };
-  /// `ignored` are pixels of the left image that are of no use.
-  SceneFlowSegmentation(const Params& params, const StereoCamera& camera, const PixelMask& ignored = {});
+  SceneFlowSegmentation(const Params& params, const StereoCamera& camera);
 
   /// Both messages are of the same frame.
   SceneMotionPtr operator()(const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow);
 
  private:
-  /// What is seen of a frame: the points that are followed, where they are, and how the camera moved.
-  struct Sight {
+  using Observations = std::vector<std::optional<StereoObservation>>;  // one per flow observation
+  /// What a frame tells, given what was known before: the points that are followed, where they are, and how the camera
+  /// moved.
+  struct MeasuredFrame {
     OpticalFlow flow;
-    std::vector<std::optional<StereoObservation>> seen,
-        observed;  // one per flow observation: all, and those of the world
+    Observations all, of_world;
     CameraMotion camera;
   };
-  Sight look(const StereoMatches& stereo, const OpticalFlow& flow, const PredictedMotion& predicted) const;
+  MeasuredFrame measure(const StereoMatches& stereo, const OpticalFlow& flow) const;
+  MeasuredFrame measure(const StereoMatches& stereo, const OpticalFlow& flow, const PredictedMotion& predicted) const;
+  MeasuredFrame bridged(const StereoMatches& stereo, MeasuredFrame measured, const PredictedMotion& predicted) const;
   bool isAfterGap(Timestamp stamp) const;
-  void bridge(const StereoMatches& stereo, Sight& sight) const;
-  void learnOwnVehicle(Sight& sight);
+  Observations learnOwnVehicle(const MeasuredFrame& measured);
   SceneMotionPtr passOver(const StereoFrame& unseen);
-  std::shared_ptr<SceneMotion> newMotion(const StereoFrame& frame, const CameraMotion& camera);
+  std::shared_ptr<SceneMotion> newMotion(const FrameHead& head, const Odometry& odometry);
   ExpectedDisparities expectDisparities(const std::vector<std::optional<KnownPoint>>& known, Timestamp stamp,
-                                        const SE3& T_previous_now) const;
-  void addPoints(const std::vector<std::optional<StereoObservation>>& observed, const std::vector<bool>& inliers,
-                 std::vector<ScenePoint>& points) const;
+                                        const SE3& T_seen_now) const;
+  void addPoints(const Observations& of_world, const std::vector<bool>& inliers, std::vector<ScenePoint>& points) const;
   std::vector<bool> testGeometry() const;
   GroundPlane findGround(const std::vector<bool>& violates_geometry, FrameId frame, std::vector<ScenePoint>& points);
   void calibrateDisparity();

@@ -9,7 +9,7 @@
 namespace motorcade {
 namespace {
 
-/// A point of the segment and how far to the side of the travel it lies.
+/// A point of the component and how far to the side of the travel it lies.
 struct Abreast {
   int point;
   double aside_m;
@@ -20,8 +20,8 @@ constexpr double kDepthNoiseSigmas = 2;  // of room for noise in the width of a 
 
 const SceneFlow& flowOf(const SceneMotion& scene, int point) { return *scene.points[point].flow; }
 
-Segment piece(const Segment& segment, std::span<const Abreast> members, const SceneMotion& scene) {
-  Segment vehicle = segment;
+MotionComponent piece(const MotionComponent& component, std::span<const Abreast> members, const SceneMotion& scene) {
+  MotionComponent vehicle = component;
   vehicle.points.clear();
   vehicle.centroid_cam.setZero();
   for (const Abreast& member : members) {
@@ -48,9 +48,9 @@ std::size_t widestGap(std::span<const Abreast> members) {
 
 }  // namespace
 
-std::vector<Segment> splitAbreast(const Segment& segment, const std::vector<int>& members, const SceneMotion& scene,
-                                  double vehicle_width_m) {
-  const Eigen::Vector3d left = scene.ground.normal_cam.cross(segment.velocity_mps).normalized();
+std::vector<MotionComponent> splitAbreast(const MotionComponent& component, const std::vector<int>& members,
+                                          const SceneMotion& scene, double vehicle_width_m) {
+  const Eigen::Vector3d left = scene.ground.normal_cam.cross(component.velocity_mps).normalized();
   std::vector<Abreast> sorted;
   double depth_noise_m = 0;
   for (const int i : members) {
@@ -61,14 +61,14 @@ std::vector<Segment> splitAbreast(const Segment& segment, const std::vector<int>
   }
   std::ranges::stable_sort(sorted, {}, &Abreast::aside_m);
 
-  std::vector<Segment> vehicles;
+  std::vector<MotionComponent> vehicles;
   std::vector<std::span<const Abreast>> to_do;
   if (!sorted.empty()) to_do.emplace_back(sorted);
   while (!to_do.empty()) {
     const std::span<const Abreast> part = to_do.back();
     to_do.pop_back();
     if (width_m(part) <= vehicle_width_m + depth_noise_m) {
-      vehicles.push_back(piece(segment, part, scene));
+      vehicles.push_back(piece(component, part, scene));
       continue;
     }
     const std::size_t cut = widestGap(part);

@@ -10,7 +10,7 @@ void EarlierViews::move(const SE3& T_previous_now) {
 
 void EarlierViews::add(const Features& features) {
   if (features.left.levels.empty()) return;
-  Frame& added = frames_.emplace_back(Frame{features.frame->frame, features.left, SE3{}});
+  Frame& added = frames_.emplace_back(Frame{features.frame->head.frame, features.left, SE3{}});
   added.left.levels.front() = Image{};
   if (frames_.size() > kMost) frames_.pop_front();
   const FrameId oldest = frames_.front().frame;

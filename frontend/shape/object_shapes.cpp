@@ -80,7 +80,7 @@ FaceInformation nearFaceAtPoints(const ObjectView& view) {
 /// What the frame's earlier stages measured of an object; null where it was not seen.
 const ObjectObservation* observationOf(TrackId track, const FrameMeasurements& measurements) {
   const auto observed = std::ranges::find_if(measurements.objects, [&](const ObjectObservation& o) {
-    return o.track == track && o.frame == measurements.frame;
+    return o.track == track && o.frame == measurements.head.frame;
   });
   return observed != measurements.objects.end() ? &*observed : nullptr;
 }
@@ -125,7 +125,7 @@ ObjectMask maskOf(const Outline& outline, int level, TrackId track) {
 }  // namespace
 
 EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& estimates) {
-  earlier_.move(inputs.scene->T_previous_now);
+  earlier_.move(inputs.scene->odometry.T_previous_now);
   camera_speed_mps_ = inputs.scene->camera_speed_mps;
   auto shaped = std::make_shared<Estimates>(*estimates);
   const SE3 T_cam_world = shaped->online.T_world_cam.inverse();
@@ -135,7 +135,7 @@ EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& 
              T_cam_world * object.T_world_body);
   predicted_ = lost_.predictedIn(shaped->online);
   for (const ObjectEstimate& lost : predicted_)
-    earlier_.addPlace(lost.track, shaped->online.frame, T_cam_world * lost.T_world_body);
+    earlier_.addPlace(lost.track, shaped->online.head.frame, T_cam_world * lost.T_world_body);
   for (ObjectEstimate& object : shaped->online.objects) lookAt(object, inputs, shaped->online, shaped->masks);
   dropLeft(shaped->online, camera_);
   lost_.remember(shaped->online);
@@ -145,7 +145,7 @@ EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& 
            shaped->online.objects.end();
   });
   earlier_.add(*inputs.features);
-  for (const FrameEstimate& settled : shaped->settled) settleMotion(settled);
+  for (const FrameEstimate& settled : shaped->settled) addSettledSpeeds(settled);
   for (FrameEstimate& settled : shaped->settled) gatherShapes(settled);
   complete(shaped->finals);
   forgetGone(*shaped);
@@ -164,17 +164,17 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
     shape.existence.addSpeed(object.velocity_world_mps.norm(),
                              speedSigma_mps(object, frame.T_world_cam, camera_, camera_speed_mps_));
     if (observed) shape.existence.addFollowed(observed->measured.size() + (view.small ? observed->patches.size() : 0));
-    shape.existence.addVerdict(frame.frame,
+    shape.existence.addVerdict(frame.head.frame,
                                motionVerdict(observed, seen ? &seen->disparities : nullptr, view, camera_));
   }
   if (seen) {
     if (predicted && movesWithBody(seen->outline, seen->disparities, view, camera_))
-      markSeen(object, shape.only_dense[frame.frame] = {shape.state, seen->outline.count()});
+      markSeen(object, shape.only_dense[frame.head.frame] = {shape.state, seen->outline.count()});
     const bool whole =
         shareInImages(view.box.box(), view.T_cam_body, camera_) > kWhole || std::ssize(shape.looks) < kFewLooks;
     if (const auto look = whole && !predicted ? measured(*seen, view, shape) : std::nullopt) {
       shape.evidence.add(*look, kLookWeight);
-      shape.looks[frame.frame] = {*look, view.T_cam_body};
+      shape.looks[frame.head.frame] = {*look, view.T_cam_body};
     }
     if (object.state != ObjectState::kPredicted) {
       completeOutline(seen->outline, seen->disparities, view, camera_);
@@ -193,15 +193,15 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
   const bool is_new = !shape.last.valid();
   if (is_new) {  // the tracker knows where it was before it was reported
     for (const ObjectObservation& o : inputs.measurements->objects)
-      if (o.track == object.track && o.frame < frame.frame) earlier_.addPlace(o.track, o.frame, o.T_cam_body);
+      if (o.track == object.track && o.frame < frame.head.frame) earlier_.addPlace(o.track, o.frame, o.T_cam_body);
   } else {
     FaceInformation faded;
-    faded.add(shape.evidence, fading(frame.frame.value - shape.last.value));
+    faded.add(shape.evidence, fading(frame.head.frame.value - shape.last.value));
     shape.evidence = faded;
   }
   const auto* observed = observationOf(object.track, *inputs.measurements);
   if (is_new && observed && observed->born_slow) shape.existence.doubtSlowBirth();
-  shape.last = frame.frame;
+  shape.last = frame.head.frame;
   shape.speed_mps = object.velocity_world_mps.norm();
   ObjectView view{.T_cam_body = T_cam_body,
                   .box = estimateBox(shape.evidence, shape.speed_mps),
@@ -221,7 +221,7 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
   view.well_before = earlier_.wellApart(object.track, view, *inputs.features);
   view.others = cuboidsBeside(object.track, frame.objects, frame.T_world_cam, view.well_before, earlier_);
   view.lost = cuboidsBeside(object.track, predicted_, frame.T_world_cam, view.well_before, earlier_);
-  earlier_.addPlace(object.track, frame.frame, T_cam_body);
+  earlier_.addPlace(object.track, frame.head.frame, T_cam_body);
   return view;
 }
 
@@ -275,12 +275,12 @@ std::vector<FrameEstimate> ObjectShapes::finish(std::vector<FrameEstimate> final
 
 /// All looks of these frames first, as each frame's cuboid gathers what is around it.
 void ObjectShapes::complete(std::vector<FrameEstimate>& finals) {
-  for (const FrameEstimate& final : finals) settleMotion(final);
+  for (const FrameEstimate& final : finals) addSettledSpeeds(final);
   for (const FrameEstimate& final : finals) moveLooks(final);
   for (FrameEstimate& final : finals) gatherShapes(final);
 }
 
-void ObjectShapes::settleMotion(const FrameEstimate& frame) {
+void ObjectShapes::addSettledSpeeds(const FrameEstimate& frame) {
   for (const ObjectEstimate& object : frame.objects)
     if (const auto shape = shapes_.find(object.track); shape != shapes_.end())
       shape->second.existence.addSettledSpeed(object.velocity_world_mps.norm(),
@@ -292,12 +292,12 @@ void ObjectShapes::gatherShapes(FrameEstimate& frame) const {
   for (ObjectEstimate& object : frame.objects) {
     const auto shape = shapes_.find(object.track);
     if (shape == shapes_.end()) continue;
-    const auto dense = shape->second.only_dense.find(frame.frame);
+    const auto dense = shape->second.only_dense.find(frame.head.frame);
     if (dense != shape->second.only_dense.end() && object.state == ObjectState::kPredicted)
       markSeen(object, dense->second);
     const SE3 T_cam_body = frame.T_world_cam.inverse() * object.T_world_body;
-    setBox(object, believedBox(evidenceAround(shape->second, frame.frame), shape->second.speed_mps), T_cam_body);
-    object.existence_probability = shape->second.existence.settledProbability(frame.frame);
+    setBox(object, believedBox(evidenceAround(shape->second, frame.head.frame), shape->second.speed_mps), T_cam_body);
+    object.existence_probability = shape->second.existence.settledProbability(frame.head.frame);
   }
   dropLeft(frame, camera_);
   dropUnlikely(frame, params_.min_existence);
@@ -308,7 +308,7 @@ void ObjectShapes::moveLooks(const FrameEstimate& final) {
   for (const ObjectEstimate& object : final.objects) {
     const auto shape = shapes_.find(object.track);
     if (shape == shapes_.end()) continue;
-    const auto look = shape->second.looks.find(final.frame);
+    const auto look = shape->second.looks.find(final.head.frame);
     if (look == shape->second.looks.end()) continue;
     const SE3 T_cam_body = final.T_world_cam.inverse() * object.T_world_body;
     look->second.faces = look->second.faces.shifted((T_cam_body.inverse() * look->second.T_cam_body).translation());
@@ -328,7 +328,7 @@ FaceInformation ObjectShapes::evidenceAround(const Shape& shape, FrameId frame) 
 /// Looks that no final estimate will ask for any more.
 void ObjectShapes::forgetGone(const Estimates& estimates) {
   if (estimates.finals.empty()) return;
-  const FrameId oldest{estimates.finals.back().frame.value - kMemory_frames};
+  const FrameId oldest{estimates.finals.back().head.frame.value - kMemory_frames};
   for (auto it = shapes_.begin(); it != shapes_.end();) {
     auto& looks = it->second.looks;
     looks.erase(looks.begin(), looks.lower_bound(oldest));

@@ -66,7 +66,7 @@ class ObjectShapes {
   ObjectKind smallKindOf(const ObjectView& view, const ObjectObservation* observed, const Shape& shape) const;
   std::optional<FaceInformation> measured(const Sight& seen, ObjectView& view, const Shape& shape) const;
   void complete(std::vector<FrameEstimate>& finals);
-  void settleMotion(const FrameEstimate& frame);
+  void addSettledSpeeds(const FrameEstimate& frame);
   void moveLooks(const FrameEstimate& final);
   void gatherShapes(FrameEstimate& frame) const;
   FaceInformation evidenceAround(const Shape& shape, FrameId frame) const;

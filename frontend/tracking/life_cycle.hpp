@@ -6,7 +6,7 @@ namespace motorcade {
 
 /// Where an object stands: tentative -> confirmed <-> lost, and from each of them -> ended.
 enum class Phase {
-  kTentative,  // spawned from a moving segment; not reported yet
+  kTentative,  // spawned from a moving component; not reported yet
   kConfirmed,  // reported, and measured in the newest frame
   kLost,       // reported, but not measured in the newest frame
   kEnded,      // removed at the end of the frame

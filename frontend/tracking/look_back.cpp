@@ -22,13 +22,13 @@ void dropNew(TrackedObject& object) {
 
 void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKinematics::Params& kinematics) const {
   auto earlier = past_.rbegin();
-  while (earlier != past_.rend() && earlier->scene->frame > object.backlog.front().frame) ++earlier;
+  while (earlier != past_.rend() && earlier->scene->head.frame > object.backlog.front().frame) ++earlier;
   if (earlier == past_.rend()) return;
   TrackedObject body = object;
   dropNew(body);
   const TrackedObject followed = body;
   MeasuredPoints later;
-  if (earlier->scene->frame == object.backlog.front().frame) {
+  if (earlier->scene->head.frame == object.backlog.front().frame) {
     const SE3& T_cam_body = object.backlog.front().T_cam_body;
     later = motion_.measuredPoints(body, *earlier->scene);
     motion_.addPatches(*earlier->scene, T_cam_body, body, later);
@@ -37,8 +37,8 @@ void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKine
   }
   ObjectKinematics then = object.kinematics;
   for (int k = 0; k < frames_ && earlier != past_.rend(); ++k, ++earlier) {
-    then.predict(secondsBetween(now, earlier->scene->stamp), kinematics);
-    now = earlier->scene->stamp;
+    then.predict(secondsBetween(now, earlier->scene->head.stamp), kinematics);
+    now = earlier->scene->head.stamp;
     auto observation = observe(*earlier, body, then, later);
     if (!observation || isTaken(*earlier, observation->T_cam_body, object.born_slow)) return;
     // What was only near the object then is evidence of it, but surely a point of it only if it was followed later.
@@ -61,7 +61,7 @@ std::optional<ObjectObservation> LookBack::observe(const PastScene& earlier, Tra
     observation = motion_.visibleEvidence(object, *earlier.scene, prior);
   }
   if (!observation) return std::nullopt;
-  observation->frame = earlier.scene->frame;
+  observation->frame = earlier.scene->head.frame;
   observation->velocity_cam_mps = earlier.T_world_cam.rotation().transpose() * then.velocityWorld_mps();
   return observation;
 }
@@ -85,7 +85,7 @@ void LookBack::remember(const SceneMotionPtr& scene, const SE3& T_world_cam,
   past_.push_back({scene, T_world_cam, {}});
   for (const ObjectObservation& o : reported) {
     const auto object = std::ranges::find(objects, o.track, &TrackedObject::track);
-    if (o.frame == scene->frame && object != objects.end())
+    if (o.frame == scene->head.frame && object != objects.end())
       past_.back().reported.push_back({o.T_cam_body, object->core(SE3{})});
   }
   if (static_cast<int>(past_.size()) > kept_) past_.pop_front();

@@ -9,14 +9,14 @@
 
 namespace motorcade {
 
-/// Global nearest neighbor: which moving segment is which object, one to one at least total cost, in the world frame.
-/// For each segment of `scene` the index of its object, or -1: not moving, or new. Segments beyond the one-to-one match
-/// that consist of an object's points are given to it as well. None is given to an object from which the background
-/// parts it.
+/// Global nearest neighbor: which moving component is which object, one to one at least total cost, in the world frame.
+/// For each component of `scene` the index of its object, or -1: not moving, or new. Components beyond the one-to-one
+/// match that consist of an object's points are given to it as well. None is given to an object from which the
+/// background parts it.
 std::vector<int> associateObjects(const std::vector<TrackedObject>& objects, const SceneMotion& scene,
                                   const SE3& T_world_cam, const StereoCamera& camera);
 
-/// Share of a segment's points that an object holds.
-double sharedPoints(const TrackedObject& object, const SceneMotion& scene, const Segment& segment);
+/// Share of a component's points that an object holds.
+double sharedPoints(const TrackedObject& object, const SceneMotion& scene, const MotionComponent& component);
 
 }  // namespace motorcade

@@ -15,10 +15,10 @@ namespace {
 
 constexpr double kTurnRate_radps = 0.05;  // standard deviation of an object's turn rate, of which nothing is known
 constexpr double kSure = 3;               // standard deviations of a walk, which is confirmed by as many
-constexpr double kSpeedModel_mps = 0.5;   // that of its velocity beyond the segment's own: not all points are its own
+constexpr double kSpeedModel_mps = 0.5;   // that of its velocity beyond the component's own: not all points are its own
 
-/// The segment's velocity, without turning, about the pose that the first observation measured.
-ObjectKinematics firstKinematics(const SE3& T_world_body, const Segment& vehicle, const SE3& T_world_cam,
+/// The component's velocity, without turning, about the pose that the first observation measured.
+ObjectKinematics firstKinematics(const SE3& T_world_body, const MotionComponent& vehicle, const SE3& T_world_cam,
                                  const Matrix6d& pose_covariance) {
   const Eigen::Matrix3d R_body_cam = T_world_body.rotation().transpose() * T_world_cam.rotation();
   const Eigen::Vector3d v_body = R_body_cam * vehicle.velocity_mps;
@@ -38,13 +38,13 @@ bool isSure(const Eigen::Vector3d& velocity_mps, const Eigen::Matrix3d& covarian
 
 }  // namespace
 
-std::vector<TrackedObject> ObjectSpawner::operator()(const SceneMotion& scene, const Segment& segment,
+std::vector<TrackedObject> ObjectSpawner::operator()(const SceneMotion& scene, const MotionComponent& component,
                                                      const SE3& T_world_cam, std::vector<bool>& taken) {
   std::vector<int> free;
-  for (const int i : segment.points)
+  for (const int i : component.points)
     if (!taken[i]) free.push_back(i);
   std::vector<TrackedObject> spawned;
-  for (const Segment& vehicle : splitAbreast(segment, free, scene, kOrdinaryVehicle.width_m)) {
+  for (const MotionComponent& vehicle : splitAbreast(component, free, scene, kOrdinaryVehicle.width_m)) {
     if (static_cast<int>(vehicle.points.size()) < min_points_) continue;
     for (const int i : vehicle.points) taken[i] = true;
     spawned.push_back(objectOf(scene, vehicle, T_world_cam));
@@ -53,16 +53,16 @@ std::vector<TrackedObject> ObjectSpawner::operator()(const SceneMotion& scene, c
   return spawned;
 }
 
-bool ObjectSpawner::mayBeWalker(const Segment& segment, const GroundPlane& ground) const {
+bool ObjectSpawner::mayBeWalker(const MotionComponent& component, const GroundPlane& ground) const {
   constexpr double kHighest_m = 2;
-  return isWalk(segment.velocity_mps.norm(), segment.centroid_cam.z(), camera_) &&
-         ground.heightOf_m(segment.centroid_cam) < kHighest_m &&
-         isSure(segment.velocity_mps, segment.velocity_covariance);
+  return isWalk(component.velocity_mps.norm(), component.centroid_cam.z(), camera_) &&
+         ground.heightOf_m(component.centroid_cam) < kHighest_m &&
+         isSure(component.velocity_mps, component.velocity_covariance);
 }
 
 std::optional<TrackedObject> ObjectSpawner::walker(const SceneMotion& scene, const SceneMotion& before,
-                                                   const Segment& segment, const SE3& T_world_cam) {
-  TrackedObject object = objectOf(scene, segment, T_world_cam);
+                                                   const MotionComponent& component, const SE3& T_world_cam) {
+  TrackedObject object = objectOf(scene, component, T_world_cam);
   if (!object.born_slow || !haveMoved(object, scene, before)) return std::nullopt;
   object.track = TrackId{next_track_++};
   return object;
@@ -74,15 +74,16 @@ bool ObjectSpawner::haveMoved(const TrackedObject& object, const SceneMotion& sc
   constexpr double kMostAgree = 0.5;
   constexpr std::size_t kLeast = 8;  // patches, each of which shares half of its pixels with its neighbors
   constexpr double kPosition_m = 0.3, kRotation_rad = 0.05;  // by which the prediction may be wrong
-  const double dt_s = secondsBetween(before.stamp, scene.stamp);
+  const double dt_s = secondsBetween(before.head.stamp, scene.head.stamp);
   Vector6d sigma;
   sigma << Eigen::Vector3d::Constant(kPosition_m), Eigen::Vector3d::Constant(kRotation_rad);
-  const PosePrior predicted{scene.T_previous_now * object.T_cam_body * SE3::exp(-dt_s * object.kinematics.twist()),
-                            sigma.cwiseAbs2().cwiseInverse().asDiagonal()};
+  const PosePrior predicted{
+      scene.odometry.T_previous_now * object.T_cam_body * SE3::exp(-dt_s * object.kinematics.twist()),
+      sigma.cwiseAbs2().cwiseInverse().asDiagonal()};
   const auto then = motion_.lookBack(object, before, object.measured, predicted);
   const std::size_t agree = then ? then->points.points.size() : 0, all = object.measured.points.size();
   if (agree < kLeast || static_cast<double>(agree) < kMostAgree * static_cast<double>(all)) return false;
-  const SE3 T_then_now = then->fit.T_cam_ref.inverse() * scene.T_previous_now * object.T_cam_body;
+  const SE3 T_then_now = then->fit.T_cam_ref.inverse() * scene.odometry.T_previous_now * object.T_cam_body;
   const Eigen::Vector3d velocity_mps = T_then_now.translation() / dt_s;
   const Eigen::Matrix3d R_cam_body = object.T_cam_body.rotation();
   const Eigen::Matrix3d shared =
@@ -92,7 +93,8 @@ bool ObjectSpawner::haveMoved(const TrackedObject& object, const SceneMotion& sc
          isSure(velocity_mps, C + R_cam_body.transpose() * shared * R_cam_body);
 }
 
-TrackedObject ObjectSpawner::objectOf(const SceneMotion& scene, const Segment& vehicle, const SE3& T_world_cam) const {
+TrackedObject ObjectSpawner::objectOf(const SceneMotion& scene, const MotionComponent& vehicle,
+                                      const SE3& T_world_cam) const {
   TrackedObject object;
   object.spawned_at_world = T_world_cam * vehicle.centroid_cam;
   const SE3 T_world_body(travelAxes(T_world_cam.rotation() * vehicle.velocity_mps, upInWorld(scene, T_world_cam)),
@@ -100,7 +102,7 @@ TrackedObject ObjectSpawner::objectOf(const SceneMotion& scene, const Segment& v
   object.T_cam_body = T_world_cam.inverse() * T_world_body;
   for (const int i : vehicle.points) object.points.push_back(toBody(scene.points[i], object.T_cam_body, camera_));
   ObjectObservation first = motion_.firstObservation(object, scene);
-  first.frame = scene.frame;
+  first.frame = scene.head.frame;
   first.velocity_cam_mps = vehicle.velocity_mps;
   object.kinematics = firstKinematics(T_world_body, vehicle, T_world_cam, first.encounter_covariance);
   object.born_slow = mayBeWalking(object, camera_);

@@ -11,24 +11,24 @@
 
 namespace motorcade {
 
-/// Spawns tentative objects from moving segments that no object claims. Gives each its track id.
+/// Spawns tentative objects from moving components that no object claims. Gives each its track id.
 class ObjectSpawner {
  public:
   ObjectSpawner(const ObjectMotionEstimator::Params& params, const StereoCamera& camera)
       : min_points_(params.min_points), camera_(camera), motion_(params, camera) {}
 
-  /// Objects from those points of the segment that are not `taken`, one for each vehicle abreast; marks their points.
-  std::vector<TrackedObject> operator()(const SceneMotion& scene, const Segment& segment, const SE3& T_world_cam,
-                                        std::vector<bool>& taken);
+  /// Objects from those points of the component that are not `taken`, one for each vehicle abreast; marks their points.
+  std::vector<TrackedObject> operator()(const SceneMotion& scene, const MotionComponent& component,
+                                        const SE3& T_world_cam, std::vector<bool>& taken);
 
-  /// May a segment be a person on foot? Corners are few on clothes, so that a point or two may be all there is.
-  bool mayBeWalker(const Segment& segment, const GroundPlane& ground) const;
+  /// May a component be a person on foot? Corners are few on clothes, so that a point or two may be all there is.
+  bool mayBeWalker(const MotionComponent& component, const GroundPlane& ground) const;
   /// The person. Empty unless the patches around the points moved together since the frame before, and surely.
-  std::optional<TrackedObject> walker(const SceneMotion& scene, const SceneMotion& before, const Segment& segment,
-                                      const SE3& T_world_cam);
+  std::optional<TrackedObject> walker(const SceneMotion& scene, const SceneMotion& before,
+                                      const MotionComponent& component, const SE3& T_world_cam);
 
  private:
-  TrackedObject objectOf(const SceneMotion& scene, const Segment& segment, const SE3& T_world_cam) const;
+  TrackedObject objectOf(const SceneMotion& scene, const MotionComponent& component, const SE3& T_world_cam) const;
   bool haveMoved(const TrackedObject& object, const SceneMotion& scene, const SceneMotion& before) const;
 
   int min_points_;

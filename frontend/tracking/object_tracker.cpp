@@ -40,18 +40,12 @@ ObjectTracker::ObjectTracker(const Params& params, const StereoCamera& camera)
 
 FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   auto measurements = std::make_shared<FrameMeasurements>();
-  measurements->frame = scene->frame;
-  measurements->stamp = scene->stamp;
-  measurements->status = scene->status;
-  measurements->cause = scene->cause;
-  measurements->segment = scene->segment;
-  measurements->T_previous_now = scene->T_previous_now;
-  measurements->odometry_covariance = scene->odometry_covariance;
-
+  measurements->head = scene->head;
+  measurements->odometry = scene->odometry;
   advance(*scene);
-  if (scene->cause == FrameCause::kUnlinked) endAll(*measurements);
+  if (scene->head.cause == FrameCause::kUnlinked) endAll(*measurements);
   for (TrackedObject& object : objects_) follow(object, *scene, *measurements);
-  matchSegments(*scene);
+  matchComponents(*scene);
   mergeDuplicates(objects_, SeeThrough(*scene, camera_), camera_);
   confirmSure(*scene, *measurements);
   look_back_.remember(scene, T_world_cam_, measurements->objects, objects_);
@@ -65,9 +59,9 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
 }
 
 void ObjectTracker::advance(const SceneMotion& scene) {
-  T_world_cam_ = (T_world_cam_ * scene.T_previous_now).normalized();
+  T_world_cam_ = (T_world_cam_ * scene.odometry.T_previous_now).normalized();
   if (!previous_scene_) return;
-  const double dt_s = secondsBetween(previous_scene_->stamp, scene.stamp);
+  const double dt_s = secondsBetween(previous_scene_->head.stamp, scene.head.stamp);
   for (TrackedObject& object : objects_) {
     object.kinematics.predict(dt_s, kinematicsOf(object, params_.kinematics));
     object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
@@ -89,7 +83,7 @@ void ObjectTracker::follow(TrackedObject& object, const SceneMotion& scene, Fram
   object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
   object.last_middle_body = object.middle();
   updateState(object);
-  observation->frame = scene.frame;
+  observation->frame = scene.head.frame;
   observation->state = object.state;
   record(object, std::move(*observation), measurements);
 }
@@ -135,7 +129,7 @@ std::optional<ObjectObservation> ObjectTracker::withoutMeasurement(const Tracked
     if (const auto origin = camera_.project(object.T_cam_body.translation()))
       observation->box = {origin->x(), origin->y(), origin->x(), origin->y()};
   }
-  if (observation) observation->frame = scene.frame;
+  if (observation) observation->frame = scene.head.frame;
   return observation;
 }
 
@@ -173,7 +167,7 @@ void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measuremen
   const Eigen::Matrix3d R_travel = travelAxes(object.kinematics.velocityWorld_mps(), R.col(2));
   object.changeBodyFrame(SE3(R.transpose() * R_travel, object.middle()));
   object.life.confirm();
-  look_back_(object, measurements.stamp, params_.kinematics);
+  look_back_(object, measurements.head.stamp, params_.kinematics);
   for (ObjectObservation& o : object.backlog) {
     o.track = object.track;
     o.born_slow = object.born_slow;
@@ -183,41 +177,41 @@ void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measuremen
 }
 
 /// Segments give their points to the objects that they are matched with, and spawn new ones where they are left over.
-void ObjectTracker::matchSegments(const SceneMotion& scene) {
+void ObjectTracker::matchComponents(const SceneMotion& scene) {
   const std::vector<int> object_of = associateObjects(objects_, scene, T_world_cam_, camera_);
   std::vector<bool> taken(scene.points.size(), false);
   for (const TrackedObject& object : objects_)
     for (const BodyPoint& p : object.points)
       if (const ScenePoint* seen = findPoint(scene, p.point)) taken[seen - scene.points.data()] = true;
 
-  for (std::size_t s = 0; s < scene.segments.size(); ++s) {
+  for (std::size_t s = 0; s < scene.components.size(); ++s) {
     if (object_of[s] < 0) continue;
     TrackedObject& object = objects_[object_of[s]];
-    if (object.life.missed() > 0 && sharedPoints(object, scene, scene.segments[s]) == 0)
-      reappear(object, scene.segments[s]);
-    adopt_(object, scene, &scene.segments[s], T_world_cam_, taken);
+    if (object.life.missed() > 0 && sharedPoints(object, scene, scene.components[s]) == 0)
+      reappear(object, scene.components[s]);
+    adopt_(object, scene, &scene.components[s], T_world_cam_, taken);
   }
   for (TrackedObject& object : objects_)
     if (object.life.missed() == 0) adopt_(object, scene, nullptr, T_world_cam_, taken);
-  for (std::size_t s = 0; s < scene.segments.size(); ++s) {
-    if (object_of[s] >= 0 || scene.segments[s].label != PointLabel::kMoving) continue;
-    std::ranges::move(spawn_(scene, scene.segments[s], T_world_cam_, taken), std::back_inserter(objects_));
+  for (std::size_t s = 0; s < scene.components.size(); ++s) {
+    if (object_of[s] >= 0 || scene.components[s].label != PointLabel::kMoving) continue;
+    std::ranges::move(spawn_(scene, scene.components[s], T_world_cam_, taken), std::back_inserter(objects_));
   }
   spawnWalkers(scene, object_of, taken);
   dropFarthest();
 }
 
-/// People of whom too few points are followed for a moving segment.
+/// People of whom too few points are followed for a moving component.
 void ObjectTracker::spawnWalkers(const SceneMotion& scene, const std::vector<int>& object_of,
                                  const std::vector<bool>& taken) {
   if (!previous_scene_ || !previous_scene_->features) return;
-  for (std::size_t s = 0; s < scene.segments.size(); ++s) {
-    const Segment& segment = scene.segments[s];
+  for (std::size_t s = 0; s < scene.components.size(); ++s) {
+    const MotionComponent& component = scene.components[s];
     const auto is_taken = [&](int i) { return bool{taken[i]}; };
-    const auto holds = [&](const TrackedObject& object) { return isAt(object, segment.centroid_cam); };
-    if (object_of[s] >= 0 || !spawn_.mayBeWalker(segment, scene.ground)) continue;
-    if (std::ranges::any_of(segment.points, is_taken) || std::ranges::any_of(objects_, holds)) continue;
-    if (auto walker = spawn_.walker(scene, *previous_scene_, segment, T_world_cam_))
+    const auto holds = [&](const TrackedObject& object) { return isAt(object, component.centroid_cam); };
+    if (object_of[s] >= 0 || !spawn_.mayBeWalker(component, scene.ground)) continue;
+    if (std::ranges::any_of(component.points, is_taken) || std::ranges::any_of(objects_, holds)) continue;
+    if (auto walker = spawn_.walker(scene, *previous_scene_, component, T_world_cam_))
       objects_.push_back(std::move(*walker));
   }
 }
@@ -235,8 +229,8 @@ void ObjectTracker::dropFarthest() {
 }
 
 /// The position of an object that was not seen has drifted: what is seen again is taken for what was seen last.
-void ObjectTracker::reappear(TrackedObject& object, const Segment& segment) const {
-  object.kinematics.fusePosition(object.last_middle_body, T_world_cam_ * segment.centroid_cam, kReappearanceSpread_m);
+void ObjectTracker::reappear(TrackedObject& object, const MotionComponent& component) const {
+  object.kinematics.fusePosition(object.last_middle_body, T_world_cam_ * component.centroid_cam, kReappearanceSpread_m);
   object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
 }
 
@@ -244,7 +238,7 @@ void ObjectTracker::reappear(TrackedObject& object, const Segment& segment) cons
 void ObjectTracker::addOtherPoints(const SceneMotion& scene, FrameMeasurements& measurements) const {
   std::vector<PointId> of_objects;
   for (const ObjectObservation& seen : measurements.objects)
-    if (seen.frame == scene.frame)
+    if (seen.frame == scene.head.frame)
       for (const PointMeasurement& p : seen.measured) of_objects.push_back(p.point);
   std::vector<PointId> of_bodies;
   for (const TrackedObject& object : objects_)

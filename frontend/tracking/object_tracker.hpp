@@ -18,7 +18,7 @@ namespace motorcade {
 
 /// The stage `tracking`: follows the moving objects from frame to frame, in the world frame of the front-end's own
 /// odometry, and measures each (encounter, motion). An object's life cycle runs here: it is spawned from a moving
-/// segment, confirmed, lost and found again, and ends. Call in frame order: the stage remembers the objects.
+/// component, confirmed, lost and found again, and ends. Call in frame order: the stage remembers the objects.
 class ObjectTracker {
  public:
   struct Params {
@@ -46,10 +46,10 @@ class ObjectTracker {
   void record(TrackedObject& object, ObjectObservation observation, FrameMeasurements& measurements);
   void confirmSure(const SceneMotion& scene, FrameMeasurements& measurements);
   void confirm(TrackedObject& object, FrameMeasurements& measurements);
-  void matchSegments(const SceneMotion& scene);
+  void matchComponents(const SceneMotion& scene);
   void spawnWalkers(const SceneMotion& scene, const std::vector<int>& object_of, const std::vector<bool>& taken);
   void dropFarthest();
-  void reappear(TrackedObject& object, const Segment& segment) const;
+  void reappear(TrackedObject& object, const MotionComponent& component) const;
   bool isOutOfReach(const TrackedObject& object) const;
   bool mayBeInImage(const TrackedObject& object) const;
   void removeEnded(FrameMeasurements& measurements);

@@ -21,8 +21,8 @@ constexpr double kMinSpeed_mps = 1.0;    // slower objects cannot be told from t
 /// A point whose place is known less well may be on anything, and would stretch the object's extent without end.
 constexpr double kMostSlack_m = kLongestVehicle.length_m;
 
-/// Close to the points known so far: a long vehicle is found step by step. Points of a segment that was matched to the
-/// object need no neighbors within the size of an ordinary vehicle.
+/// Close to the points known so far: a long vehicle is found step by step. Points of a component that was matched to
+/// the object need no neighbors within the size of an ordinary vehicle.
 bool isWithinReach(const Eigen::AlignedBox3d& known, const BodyPoint& candidate, bool matched) {
   const double slack_m = kDepthNoiseSigmas * std::sqrt(candidate.covariance.trace());
   if (slack_m > kMostSlack_m) return false;
@@ -60,7 +60,7 @@ bool mayMove(const ScenePoint& point) {
 }  // namespace
 
 /// A point that moves, and with the body's velocity there. What is told by a glance is asked first.
-void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, const Segment* segment,
+void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, const MotionComponent* component,
                                const SE3& T_world_cam, std::vector<bool>& taken) const {
   if (object.kinematics.speed_mps() < kMinSpeed_mps) return;
   constexpr int kKnownFrames = 2;  // from which on an object's points tell how large it is
@@ -74,14 +74,14 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
     if (taken[i] || p.ambiguous || p.label == PointLabel::kGround || !mayMove(p)) return;
     const BodyPoint candidate = toBody(p, object.T_cam_body, camera_);
     const bool within =
-        small ? isWithinReachOfSmall(known, candidate, walks) : isWithinReach(known, candidate, segment != nullptr);
+        small ? isWithinReachOfSmall(known, candidate, walks) : isWithinReach(known, candidate, component != nullptr);
     if (!within || object.velocityChi2(*p.flow, T_world_cam) >= kFitsChi2) return;
     if (own && isSeenThrough(scene, *own, asHigh(*regionOf(std::array{&p}), *own), camera_)) return;
     taken[i] = true;
     adopted.push_back(candidate);
   };
-  if (segment) {
-    for (const int i : segment->points) consider(i);
+  if (component) {
+    for (const int i : component->points) consider(i);
   } else {
     for (int i = 0; i < static_cast<int>(scene.points.size()); ++i) consider(i);
   }

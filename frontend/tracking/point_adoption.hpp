@@ -11,10 +11,10 @@ class PointAdoption {
  public:
   explicit PointAdoption(const StereoCamera& camera) : camera_(camera) {}
 
-  /// Adds the points of `segment`, which was matched to the object, or without one those of the whole scene, that fit.
-  /// `taken[i]` marks points of some object, and is kept up to date.
-  void operator()(TrackedObject& object, const SceneMotion& scene, const Segment* segment, const SE3& T_world_cam,
-                  std::vector<bool>& taken) const;
+  /// Adds the points of `component`, which was matched to the object, or without one those of the whole scene, that
+  /// fit. `taken[i]` marks points of some object, and is kept up to date.
+  void operator()(TrackedObject& object, const SceneMotion& scene, const MotionComponent* component,
+                  const SE3& T_world_cam, std::vector<bool>& taken) const;
 
  private:
   StereoCamera camera_;

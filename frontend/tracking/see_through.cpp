@@ -71,11 +71,11 @@ bool SeeThrough::isGapBetween(const TrackedObject& a, const TrackedObject& b) co
   return of_b && isSeenThrough(scene_, *of_a, *of_b, camera_);
 }
 
-bool SeeThrough::isApart(const TrackedObject& object, const Segment& segment) const {
+bool SeeThrough::isApart(const TrackedObject& object, const MotionComponent& component) const {
   const auto own = regionOf(object);
   if (!own) return false;
   std::vector<const ScenePoint*> points;
-  for (const int i : segment.points) points.push_back(&scene_.points[i]);
+  for (const int i : component.points) points.push_back(&scene_.points[i]);
   const auto other = motorcade::regionOf(points);
   return other && isSeenThrough(scene_, *own, *other, camera_);
 }

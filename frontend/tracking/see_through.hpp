@@ -32,7 +32,7 @@ class SeeThrough {
   /// The region of an object's points in the scene; empty where it is no small body or none of them is seen.
   std::optional<PointRegion> regionOf(const TrackedObject& object) const;
   bool areApart(const TrackedObject& a, const TrackedObject& b) const;
-  bool isApart(const TrackedObject& object, const Segment& segment) const;
+  bool isApart(const TrackedObject& object, const MotionComponent& component) const;
   /// Is the background seen between two objects of any size?
   bool isGapBetween(const TrackedObject& a, const TrackedObject& b) const;
 

@@ -83,8 +83,8 @@ HeldDrive::HeldDrive(const Sequence& drive) {
 
   for (std::size_t index = 0; index < shown.size(); ++index) {
     frames_.push_back(decoded[shown[index]]);
-    frames_.back().frame.value = static_cast<std::int64_t>(index);
-    frames_.back().stamp = drive.stamps[index];
+    frames_.back().head.frame.value = static_cast<std::int64_t>(index);
+    frames_.back().head.stamp = drive.stamps[index];
     frames_.back().decode_ms = 0;
   }
 }

@@ -59,7 +59,7 @@ HeldDrive seenFaster(const OverloadOptions& options, std::size_t frames, std::si
 Stages withStall(Stages stages, FrameId frame, std::chrono::duration<double> pause) {
   stages.scene_flow_segmentation = [segment = std::move(stages.scene_flow_segmentation), frame, pause, done = false](
                                        const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow) mutable {
-    if (!done && flow->features->frame->frame >= frame) {
+    if (!done && flow->features->frame->head.frame >= frame) {
       done = true;
       std::this_thread::sleep_for(pause);
     }
@@ -125,7 +125,7 @@ class OverloadBench {
 
     std::vector<double> latencies_ms;  // from the stall on
     const auto observer = [&](const PipelineResult& result) {
-      if (result.online.frame < stalled) return;
+      if (result.online.head.frame < stalled) return;
       if (stalling == Stalling::kConsumer && latencies_ms.empty()) std::this_thread::sleep_for(pause);
       latencies_ms.push_back(result.timing.latency_ms());
     };

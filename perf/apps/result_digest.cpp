@@ -50,9 +50,9 @@ std::size_t firstMismatch(const std::vector<std::uint64_t>& a, const std::vector
 
 std::uint64_t digestOf(const FrameEstimate& estimate) {
   Digest digest;
-  digest.add(estimate.frame.value);
-  digest.add(estimate.stamp.ns);
-  digest.add(static_cast<std::int64_t>(estimate.status));
+  digest.add(estimate.head.frame.value);
+  digest.add(estimate.head.stamp.ns);
+  digest.add(static_cast<std::int64_t>(estimate.head.status));
   digest.add(estimate.T_world_cam);
   digest.add(estimate.camera_covariance);
   for (const ObjectEstimate& object : estimate.objects) {

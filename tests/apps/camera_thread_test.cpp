@@ -87,7 +87,7 @@ TEST(CameraThread, NeitherLocksNorAsksTheHeapHoweverManyPairsAreDropped) {
   for (int i = 0; i < 10; ++i) shoot();  // warms the pool
   counted([&] {
     for (int i = 0; i < 1000; ++i) shoot();
-    pipeline.passOver({{pairs}, {pairs * kPeriod_ns}});
+    pipeline.passOver({pairs}, {pairs * kPeriod_ns});
   });
   ++pairs;
   EXPECT_EQ(heap_calls, 0);

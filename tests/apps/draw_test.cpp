@@ -26,7 +26,7 @@ class DrawnDrive : public testing::Test {
     RunFolderWriter writer(folder_ / "run");
     for (int i = 2; i < 8; ++i) {
       FrameEstimate estimate;
-      estimate.frame = {i};
+      estimate.head.frame = {i};
       estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, i - 2.0});
       ObjectEstimate object;
       object.track = {1};
@@ -35,8 +35,8 @@ class DrawnDrive : public testing::Test {
       object.box = {180, 50, 230, 90};
       estimate.objects.push_back(object);
       FrameTiming timing;
-      timing.frame = estimate.frame;
-      timing.stamp = {i * 100'000'000LL};
+      timing.head.frame = estimate.head.frame;
+      timing.head.stamp = {i * 100'000'000LL};
       writer.writeOnline(estimate);
       writer.writeTiming(timing);
       writer.writeFinal(estimate);

@@ -27,8 +27,8 @@ ExportedFrame frameAt(int index, bool with_car) {
   Eigen::Matrix3d world_body;
   world_body << 0, -1, 0, 0, 0, -1, 1, 0, 0;
   ExportedFrame frame;
-  frame.estimate.frame = {index};
-  frame.estimate.stamp = {std::int64_t{100'000'000} * index + 7};
+  frame.estimate.head.frame = {index};
+  frame.estimate.head.stamp = {std::int64_t{100'000'000} * index + 7};
   frame.estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, 1.0 * index});
   frame.jpeg = "image " + std::to_string(index);
   frame.points = {{{}, {1, 2, 3}}};

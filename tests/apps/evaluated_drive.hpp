@@ -65,8 +65,8 @@ class EvaluateDrive : public testing::Test {
     RunFolderWriter writer(folder_ / name);
     for (int i = first; i < end; ++i) {
       FrameEstimate estimate;
-      estimate.frame = {i};
-      estimate.stamp = {i * 100'000'000LL};
+      estimate.head.frame = {i};
+      estimate.head.stamp = {i * 100'000'000LL};
       const SE3 T_first = camera(first).inverse();
       estimate.T_world_cam = T_first * camera(i);
       estimate.objects.push_back(lead(i, 3));
@@ -74,8 +74,8 @@ class EvaluateDrive : public testing::Test {
       change(i, estimate);
       for (auto& object : estimate.objects) object.T_world_body = T_first * object.T_world_body;
       FrameTiming timing;
-      timing.frame = estimate.frame;
-      timing.stamp = estimate.stamp;
+      timing.head.frame = estimate.head.frame;
+      timing.head.stamp = estimate.head.stamp;
       writer.writeOnline(estimate);
       writer.writeTiming(timing);
       writer.writeFinal(estimate);

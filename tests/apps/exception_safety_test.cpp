@@ -87,14 +87,14 @@ void expectOneLostFrameAtMost(const Trial& trial, const Drive& drive) {
   for (std::size_t i = 0; i < trial.results.size(); ++i) {
     const PipelineResult& result = trial.results[i];
     finals += result.finals.size();
-    EXPECT_EQ(result.online.frame.value, static_cast<std::int64_t>(i));
+    EXPECT_EQ(result.online.head.frame.value, static_cast<std::int64_t>(i));
     EXPECT_TRUE(result.online.T_world_cam.translation().allFinite());
     EXPECT_TRUE(i == kBroken || result.problem.empty()) << i << ": " << result.problem;
-    EXPECT_TRUE(i == kBroken || i == kBroken + 1 || result.online.status == FrameStatus::kGood) << i;
+    EXPECT_TRUE(i == kBroken || i == kBroken + 1 || result.online.head.status == FrameStatus::kGood) << i;
   }
   EXPECT_EQ(finals, drive.frames.size());
   const PipelineResult& broken = trial.results[kBroken];
-  EXPECT_TRUE(broken.online.status == FrameStatus::kGood || !broken.problem.empty());
+  EXPECT_TRUE(broken.online.head.status == FrameStatus::kGood || !broken.problem.empty());
 }
 
 class ExceptionSafety : public testing::TestWithParam<Sample> {

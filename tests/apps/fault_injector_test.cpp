@@ -38,7 +38,7 @@ Outcome inject(const std::string& spec, int frames) {
   const FaultInjector::Outlet outlet{
       .push =
           [&](StereoFrame frame) {
-            outcome.order.append("+").append(std::to_string(frame.frame.value));
+            outcome.order.append("+").append(std::to_string(frame.head.frame.value));
             outcome.frames.push_back(std::move(frame));
             return true;
           },
@@ -46,8 +46,8 @@ Outcome inject(const std::string& spec, int frames) {
       .wait = [&](std::chrono::duration<double> time) { outcome.waited_s += time.count(); }};
   for (int i = 0; i < frames; ++i) {
     StereoFrame frame;
-    frame.frame = {i};
-    frame.stamp = {i * 100};
+    frame.head.frame = {i};
+    frame.head.stamp = {i * 100};
     frame.left = picture(static_cast<unsigned>(i));
     frame.right = picture(static_cast<unsigned>(100 + i));
     EXPECT_TRUE(injector.give(std::move(frame), outlet));
@@ -67,7 +67,7 @@ TEST(FaultInjector, TakesTheRightImageOfSoManyPairsBefore) {
 TEST(FaultInjector, LeavesPairsAsTheyAreWhereNothingStrikes) {
   const Outcome outcome = inject("black@7", 3);
   EXPECT_EQ(outcome.order, "+0+1+2");
-  for (const StereoFrame& frame : outcome.frames) EXPECT_TRUE(same(frame.left, picture(frame.frame.value)));
+  for (const StereoFrame& frame : outcome.frames) EXPECT_TRUE(same(frame.left, picture(frame.head.frame.value)));
 }
 
 TEST(FaultInjector, DropsDelaysAndReordersPairs) {
@@ -80,9 +80,9 @@ TEST(FaultInjector, DropsDelaysAndReordersPairs) {
 
 TEST(FaultInjector, TimesStayLaterAfterAJump) {
   const Outcome outcome = inject("jump=1@1", 3);
-  EXPECT_EQ(outcome.frames[0].stamp.ns, 0);
-  EXPECT_EQ(outcome.frames[1].stamp.ns, 1'000'000'100);
-  EXPECT_EQ(outcome.frames[2].stamp.ns, 1'000'000'200);
+  EXPECT_EQ(outcome.frames[0].head.stamp.ns, 0);
+  EXPECT_EQ(outcome.frames[1].head.stamp.ns, 1'000'000'100);
+  EXPECT_EQ(outcome.frames[2].head.stamp.ns, 1'000'000'200);
 }
 
 TEST(FaultInjector, ChangesTheImagesOfTheSideThatIsNamed) {

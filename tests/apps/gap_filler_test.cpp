@@ -10,8 +10,8 @@ constexpr std::int64_t kGapSecond_ns = 1'000'000'000, kHour_ns = 3600 * kGapSeco
 /// A camera that goes forward by ten meters a second, ten frames a second.
 FrameEstimate estimateAt(std::int64_t frame) {
   FrameEstimate estimate;
-  estimate.frame = {frame};
-  estimate.stamp = {frame * kGapSecond_ns / 10};
+  estimate.head.frame = {frame};
+  estimate.head.stamp = {frame * kGapSecond_ns / 10};
   estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, static_cast<double>(frame)});
   return estimate;
 }
@@ -31,7 +31,7 @@ TEST(GapFiller, PredictsASteadyMotionForASecond) {
 TEST(GapFiller, InterpolatesBetweenFinalPoses) {
   GapFiller filler;
   filler.published(estimateAt(0), true);
-  filler.fill({{{1}, {kGapSecond_ns / 10}}});
+  filler.fill({droppedFrame({1}, {kGapSecond_ns / 10})});
   filler.published(estimateAt(2), true);
   const auto finals = filler.completed({estimateAt(0), estimateAt(2)});
   ASSERT_EQ(finals.size(), 3u);
@@ -40,7 +40,7 @@ TEST(GapFiller, InterpolatesBetweenFinalPoses) {
 
 TEST(GapFiller, TakesTheFirstMotionToHaveGoneOnBefore) {
   GapFiller filler;
-  filler.fill({{{0}, {0}}, {{1}, {kGapSecond_ns / 10}}});
+  filler.fill({droppedFrame({0}, {0}), droppedFrame({1}, {kGapSecond_ns / 10})});
   for (const std::int64_t frame : {2, 3, 4}) filler.published(estimateAt(frame), true);
   const auto finals = filler.completed({estimateAt(2)});
   ASSERT_EQ(finals.size(), 3u);

@@ -13,7 +13,7 @@ namespace {
 StereoFrame stampedFrame(std::int64_t index) {
   constexpr std::int64_t kPeriod_ns = 100'000'000;
   StereoFrame frame;
-  frame.stamp = {index * kPeriod_ns};
+  frame.head.stamp = {index * kPeriod_ns};
   return frame;
 }
 
@@ -63,7 +63,7 @@ class LiveIntake : public testing::Test {
   std::tuple<std::int64_t, std::size_t, std::int64_t> admitted() {
     Job* const job = intake_.next([] { return false; });
     const auto named = job->dropped.size();
-    const std::tuple seen{job->timing.frame.value, named, static_cast<std::int64_t>(named) + job->dropped_unnamed};
+    const std::tuple seen{job->timing.head.frame.value, named, static_cast<std::int64_t>(named) + job->dropped_unnamed};
     job->clear();
     free_jobs_.giveBack(*job);
     entrance_.pass();

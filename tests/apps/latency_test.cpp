@@ -27,7 +27,7 @@ double sumOf(const std::vector<WayPart>& way) {
 /// Every stage takes a millisecond.
 FrameRow frame(int number) {
   FrameRow row;
-  row.frame = {number};
+  row.head.frame = {number};
   row.has_waits = true;
   for (auto& stage : row.stages) stage.work_ms = stage.cpu_ms = 1;
   row.latency_ms = sumOf(longestWay(row));
@@ -77,18 +77,18 @@ TEST(LatencyReport, TellsWhereTheSlowestFramesLostTheirTime) {
   for (int i = 0; i < 20; ++i) rows.push_back(frame(i));
   rows[4] = slowFrame(4, 3, 8);
   rows[11] = slowFrame(11, 5, 0);
-  rows[12].status = FrameStatus::kDropped;
-  rows[13].status = FrameStatus::kLost;
+  rows[12].head.status = FrameStatus::kDropped;
+  rows[13].head.status = FrameStatus::kLost;
   const LatencyReport report = latencyReport(rows, 2);
   EXPECT_EQ(report.frames, 19u);
   EXPECT_EQ(report.dropped, 1u);
   EXPECT_EQ(report.lost, 1u);
   ASSERT_EQ(report.slowest.size(), 2u);
-  EXPECT_EQ(report.slowest[0].row.frame.value, 4);
+  EXPECT_EQ(report.slowest[0].row.head.frame.value, 4);
   EXPECT_THAT(report.slowest[0].above_median,
               ElementsAre(Field(&WayPart::name, "waiting for tracking"), Field(&WayPart::name, "optical flow")));
   EXPECT_DOUBLE_EQ(report.slowest[0].above_median[0].ms, 8);
-  EXPECT_EQ(report.slowest[1].row.frame.value, 11);
+  EXPECT_EQ(report.slowest[1].row.head.frame.value, 11);
 }
 
 TEST(LatencyTable, FitsAHundredColumnsAndNamesEveryStage) {

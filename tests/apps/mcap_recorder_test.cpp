@@ -21,8 +21,8 @@ class McapRecorderFile : public testing::Test {
  protected:
   StereoFrame pair(int index) {
     StereoFrame frame;
-    frame.frame = {index};
-    frame.stamp = stampOf(index);
+    frame.head.frame = {index};
+    frame.head.stamp = stampOf(index);
     frame.left = pool_.acquire(kCamera.width_px, kCamera.height_px);
     for (int y = 0; y < kCamera.height_px; ++y)
       std::fill_n(frame.left.mutableRow(y), kCamera.width_px, std::uint8_t{9});
@@ -30,8 +30,8 @@ class McapRecorderFile : public testing::Test {
   }
   static PipelineResult result(int index) {
     PipelineResult result;
-    result.online.frame = {index};
-    result.online.stamp = stampOf(index);
+    result.online.head.frame = {index};
+    result.online.head.stamp = stampOf(index);
     return result;
   }
   std::size_t count(const char* topic) {

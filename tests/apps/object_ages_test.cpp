@@ -9,7 +9,7 @@ constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 FrameEstimate estimateOfTracks(std::int64_t s, std::initializer_list<std::int64_t> tracks) {
   FrameEstimate estimate;
-  estimate.stamp = {s * kSecond_ns};
+  estimate.head.stamp = {s * kSecond_ns};
   for (const std::int64_t track : tracks) {
     ObjectEstimate object;
     object.track = {track};

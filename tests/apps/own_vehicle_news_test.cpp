@@ -13,7 +13,7 @@ std::vector<std::string> said(OwnVehicleNews& news, int frames) {
   std::vector<std::string> said;
   for (int i = 0; i < frames; ++i) {
     FrameMeasurements frame;
-    frame.stamp = {i * 100'000'000};
+    frame.head.stamp = {i * 100'000'000};
     const double top_px = i < 15 ? 300 : 280;
     if (i >= 5) frame.own_vehicle = OwnVehicleView{(375 - top_px) / 375, {0, top_px, 1241, 374}};
     if (auto sentence = news.observe(frame)) said.push_back(*sentence);

@@ -55,7 +55,7 @@ std::size_t objectRows(const Outcome& run) {
 
 std::size_t goodFrames(const Outcome& run) {
   return std::ranges::count(run.results, FrameStatus::kGood,
-                            [](const PipelineResult& result) { return result.online.status; });
+                            [](const PipelineResult& result) { return result.online.head.status; });
 }
 
 class ParameterRange : public testing::TestWithParam<std::string> {

@@ -66,7 +66,7 @@ TEST_P(LiveOverload, ProcessesTheNewestPairEachTime) {
 
   ASSERT_EQ(results.size(), static_cast<std::size_t>(kProcessed));
   for (std::int64_t index = 0; index < kProcessed; ++index) {
-    EXPECT_EQ(results[index].online.frame.value, index * factor);
+    EXPECT_EQ(results[index].online.head.frame.value, index * factor);
     EXPECT_EQ(results[index].dropped.size(), static_cast<std::size_t>(index == 0 ? 0 : factor - 1));
   }
   EXPECT_EQ(end.summary.received, (kProcessed - 1) * factor + 1);
@@ -115,7 +115,7 @@ TEST(PipelineLive, IsFreshWithinThreeFramesAfterAStallOfTheBackEnd) {
   const Outcome run = runThroughAStall(Stage::kIncrementalOptimization, {.threads = 4, .frames_in_flight = 2}, 200);
   ASSERT_GE(run.results.size(), 2u);
   ASSERT_LE(run.results.size(), 3u);
-  EXPECT_EQ(run.results.back().online.frame.value, 199);
+  EXPECT_EQ(run.results.back().online.head.frame.value, 199);
   EXPECT_EQ(missing(run.summary), 0);
 }
 
@@ -129,7 +129,7 @@ TEST(PipelineLive, NeitherBlocksTheCameraNorPilesUpWhenNoResultIsTaken) {
   for (std::int64_t index = 0; index < kFrames; ++index) pipeline.push(frameAt(index));
   const Outcome run = drain(pipeline);
   EXPECT_LE(run.results.size(), static_cast<std::size_t>(kInFlight + 2 + 1));  // waiting, in flight, and the newest
-  EXPECT_EQ(run.results.back().online.frame.value, kFrames - 1);
+  EXPECT_EQ(run.results.back().online.head.frame.value, kFrames - 1);
   EXPECT_EQ(idsOf(run.finals), numbersTo(kFrames));
   EXPECT_EQ(run.summary.received, kFrames);
   EXPECT_EQ(missing(run.summary), 0);
@@ -139,8 +139,9 @@ TEST(PipelineLive, AccountsForRejectedPairsToo) {
   ToyStages toys;
   Pipeline pipeline({.threads = 2, .policy = InputPolicy::kLive}, toys.stages());
   auto frames = framesFrom0To(300);
-  for (std::size_t index = 0; index < frames.size(); index += 3) frames[index].problem = "unreadable";
-  frames.back().problem = "unreadable";  // never dropped
+  for (std::size_t index = 0; index < frames.size(); index += 3)
+    frames[index].reject(FrameCause::kUnusable, "unreadable");
+  frames.back().reject(FrameCause::kUnusable, "unreadable");  // never dropped
   const Outcome run = runThrough(pipeline, std::move(frames));
   EXPECT_EQ(run.summary.received, 300);
   EXPECT_GE(run.summary.rejected, 1);
@@ -156,7 +157,7 @@ TEST(PipelineLive, CountsPairsThatWerePassedOverAndGivesThemALine) {
       if (index % 10 == 0)
         pipeline.push(frameAt(index));
       else
-        pipeline.passOver({{index}, {index * kPeriod_ns}});
+        pipeline.passOver({index}, {index * kPeriod_ns});
     }
     pipeline.close();
   });

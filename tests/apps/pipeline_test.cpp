@@ -136,10 +136,10 @@ TEST(Pipeline, GivesOneResultForARejectedFrame) {
   ToyStages toys;
   Pipeline pipeline({}, toys.stages());
   auto frames = framesFrom0To(6);
-  frames[2].problem = "left/000002.png: cut off";
+  frames[2].reject(FrameCause::kUnusable, "left/000002.png: cut off");
   const Outcome run = runThrough(pipeline, std::move(frames));
   ASSERT_EQ(run.results.size(), 6u);
-  EXPECT_EQ(run.results[2].online.status, FrameStatus::kRejected);
+  EXPECT_EQ(run.results[2].online.head.status, FrameStatus::kRejected);
   EXPECT_EQ(run.results[2].problem, "left/000002.png: cut off");
   EXPECT_EQ(run.summary.rejected, 1);
   EXPECT_EQ(run.summary.processed, 5);
@@ -149,7 +149,7 @@ TEST(Pipeline, NumbersFramesThatHaveNoId) {
   ToyStages toys;
   Pipeline pipeline({}, toys.stages());
   auto frames = framesFrom0To(4);
-  for (StereoFrame& frame : frames) frame.frame = FrameId{};
+  for (StereoFrame& frame : frames) frame.head.frame = FrameId{};
   EXPECT_EQ(idsOf(runThrough(pipeline, std::move(frames)).results), numbersTo(4));
 }
 
@@ -161,7 +161,7 @@ TEST(Pipeline, DropsOldFramesWhenLiveAndAccountsForAll) {
   }};
   Pipeline pipeline({.policy = InputPolicy::kLive}, toys.stages());
   auto frames = framesFrom0To(kFrames);
-  frames[kFrames - 1].problem = "unreadable";  // the last one is never dropped
+  frames[kFrames - 1].reject(FrameCause::kUnusable, "unreadable");  // the last one is never dropped
   const Outcome run = runThrough(pipeline, std::move(frames), milliseconds(1));
   EXPECT_EQ(run.summary.received, kFrames);
   EXPECT_EQ(run.summary.received, run.summary.processed + run.summary.dropped + run.summary.rejected);
@@ -172,8 +172,8 @@ TEST(Pipeline, DropsOldFramesWhenLiveAndAccountsForAll) {
   std::vector<FrameEstimate> online;
   for (const PipelineResult& result : run.results) {
     for (const FrameEstimate& dropped : result.dropped) {
-      EXPECT_EQ(dropped.status, FrameStatus::kDropped);
-      EXPECT_EQ(dropped.stamp.ns, dropped.frame.value * kPeriod_ns);
+      EXPECT_EQ(dropped.head.status, FrameStatus::kDropped);
+      EXPECT_EQ(dropped.head.stamp.ns, dropped.head.frame.value * kPeriod_ns);
       online.push_back(dropped);
     }
     online.push_back(result.online);

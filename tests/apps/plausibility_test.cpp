@@ -16,10 +16,10 @@ std::vector<std::string> saidOf(double speed_mps, double period_s, double stamp_
   std::vector<std::string> said;
   for (int frame = 0; frame < 20; ++frame) {
     FrameEstimate estimate;
-    estimate.frame.value = frame;
-    estimate.stamp.ns = std::llround(1e9 * frame * period_s / stamp_unit_s);
+    estimate.head.frame.value = frame;
+    estimate.head.stamp.ns = std::llround(1e9 * frame * period_s / stamp_unit_s);
     estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, speed_mps * period_s * frame});
-    if (frame % lost_every == lost_every - 1) estimate.status = FrameStatus::kLost;
+    if (frame % lost_every == lost_every - 1) estimate.head.status = FrameStatus::kLost;
     if (const auto sentence = plausibility.observe(estimate)) {
       EXPECT_LE(frame, 10);
       said.push_back(*sentence);

@@ -29,7 +29,7 @@ Sequence sequenceOf(std::size_t frames, std::int64_t period_ns = kPeriod_ns) {
 RunFolder runOf(std::int64_t first, std::int64_t end) {
   RunFolder run{.folder = "run", .first_frame = first, .summary_json = R"({"complete": true, "inject": ""})"};
   for (std::int64_t frame = first; frame < end; ++frame) {
-    run.frames.push_back({.frame = {frame}, .stamp = {frame * kPeriod_ns}});
+    run.frames.push_back({.head = {.frame = {frame}, .stamp = {frame * kPeriod_ns}}});
     run.online.camera.emplace_back();
   }
   return run;
@@ -59,16 +59,16 @@ TEST(RequireSameDrive, RefusesOtherTimes) {
 
 TEST(RequireSameDrive, AcceptsTimesThatAreOffByLessThanHalfAPeriodOrInFewFrames) {
   RunFolder run = runOf(0, 20);
-  for (auto& row : run.frames) row.stamp.ns += 49 * kPeriod_ns / 100;
-  for (std::size_t frame = 0; frame < 9; ++frame) run.frames[frame].stamp.ns += 5 * kPeriod_ns;
+  for (auto& row : run.frames) row.head.stamp.ns += 49 * kPeriod_ns / 100;
+  for (std::size_t frame = 0; frame < 9; ++frame) run.frames[frame].head.stamp.ns += 5 * kPeriod_ns;
   requireSameDrive(run, sequenceOf(20));
-  for (auto& row : run.frames) row.stamp.ns += 2 * kPeriod_ns / 100;
+  for (auto& row : run.frames) row.head.stamp.ns += 2 * kPeriod_ns / 100;
   EXPECT_THROW(requireSameDrive(run, sequenceOf(20)), InputError);
 }
 
 TEST(RequireSameDrive, BelievesNoTimesThatFaultsChangedOrThatNoSummaryTellsOf) {
   RunFolder run = runOf(0, 20);
-  for (auto& row : run.frames) row.stamp.ns += 60 * kPeriod_ns;
+  for (auto& row : run.frames) row.head.stamp.ns += 60 * kPeriod_ns;
   EXPECT_THROW(requireSameDrive(run, sequenceOf(20)), InputError);
   run.summary_json = R"({"inject": "black@3,jump=6@0"})";
   requireSameDrive(run, sequenceOf(20));
@@ -95,7 +95,7 @@ class OpenSequenceOf : public testing::Test {
 };
 
 TEST_F(OpenSequenceOf, TakesFolderAndRateFromTheSummary) {
-  for (auto& row : run_.frames) row.stamp.ns /= 2;
+  for (auto& row : run_.frames) row.head.stamp.ns /= 2;
   run_.summary_json = R"({"capture_rate_hz": 20.0, "sequence": ")" + (folder_ / "drive").string() + "\"}";
   const Sequence sequence = openSequenceOf(run_, {});
   EXPECT_EQ(sequence.folder, folder_ / "drive");

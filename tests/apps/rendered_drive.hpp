@@ -22,8 +22,8 @@ inline Drive readDrive(const std::filesystem::path& folder) {
   ImagePool pool;
   for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
     StereoFrame frame;
-    frame.frame = {static_cast<std::int64_t>(i)};
-    frame.stamp = sequence.stamps[i];
+    frame.head.frame = {static_cast<std::int64_t>(i)};
+    frame.head.stamp = sequence.stamps[i];
     frame.left = readImage(sequence.frames[i].left, pool);
     frame.right = readImage(sequence.frames[i].right, pool);
     drive.frames.push_back(std::move(frame));

@@ -20,10 +20,10 @@ class ToyBackend final : public Backend {
   explicit ToyBackend(std::set<std::int64_t> fails) : fails_(std::move(fails)) {}
 
   EstimatesPtr operator()(const FrameMeasurementsPtr& measurements) override {
-    if (fails_.contains(measurements->frame.value)) throw std::runtime_error("toy trouble");
+    if (fails_.contains(measurements->head.frame.value)) throw std::runtime_error("toy trouble");
     Estimates result;
-    result.online.frame = measurements->frame;
-    if (begun_) T_world_cam_ = T_world_cam_ * measurements->T_previous_now;
+    result.online.head.frame = measurements->head.frame;
+    if (begun_) T_world_cam_ = T_world_cam_ * measurements->odometry.T_previous_now;
     begun_ = true;
     result.online.T_world_cam = T_world_cam_;
     result.online.objects.resize(1);
@@ -48,8 +48,8 @@ class ToyBackend final : public Backend {
 /// A circle: each frame turns, so that a world that is not that of the first frame shows.
 FrameMeasurementsPtr measurementsOf(std::int64_t frame) {
   FrameMeasurements measurements;
-  measurements.frame = {frame};
-  measurements.T_previous_now = SE3(expSO3({0, 0.1, 0}), {0, 0, 1});
+  measurements.head.frame = {frame};
+  measurements.odometry.T_previous_now = SE3(expSO3({0, 0.1, 0}), {0, 0, 1});
   return std::make_shared<const FrameMeasurements>(measurements);
 }
 
@@ -76,9 +76,9 @@ ToyRun driveFailing(const std::set<std::int64_t>& fails) {
 
 void expectOnTheSameCircle(const std::vector<FrameEstimate>& estimates, const ToyRun& undisturbed) {
   for (const FrameEstimate& estimate : estimates) {
-    const FrameEstimate& expected = undisturbed.online[static_cast<std::size_t>(estimate.frame.value)];
+    const FrameEstimate& expected = undisturbed.online[static_cast<std::size_t>(estimate.head.frame.value)];
     EXPECT_TRUE(estimate.T_world_cam.translation().isApprox(expected.T_world_cam.translation(), 1e-9) ||
-                estimate.frame.value == 0);
+                estimate.head.frame.value == 0);
     EXPECT_TRUE(estimate.T_world_cam.rotation().isApprox(expected.T_world_cam.rotation(), 1e-9));
     EXPECT_TRUE(estimate.objects[0].T_world_body.rotation().isApprox(expected.T_world_cam.rotation(), 1e-9));
     EXPECT_TRUE(estimate.objects[0].velocity_world_mps.isApprox(expected.objects[0].velocity_world_mps, 1e-9));

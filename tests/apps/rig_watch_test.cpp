@@ -79,8 +79,8 @@ class Drive {
   StereoFrame pair(int frame) {
     constexpr double kDisparity_px = 24;
     StereoFrame pair;
-    pair.frame = {frame};
-    pair.stamp = {frame * std::int64_t{100'000'000}};
+    pair.head.frame = {frame};
+    pair.head.stamp = {frame * std::int64_t{100'000'000}};
     pair.left = wall_.seen(frame, 0, pool_);
     pair.right = wall_.seen(frame, kDisparity_px, pool_);
     return pair;
@@ -105,7 +105,9 @@ class Drive {
   Image right_before_, right_taken_;
 };
 
-bool within(const StereoFrame& pair, int begin, int end) { return pair.frame.value >= begin && pair.frame.value < end; }
+bool within(const StereoFrame& pair, int begin, int end) {
+  return pair.head.frame.value >= begin && pair.head.frame.value < end;
+}
 
 TEST(RigWatch, IsQuietWhereTheRigStaysAsItIs) {
   Drive drive;
@@ -218,7 +220,7 @@ TEST(InputCheck, NamesImagesThatLieHalfAFrameApart) {
   for (int frame = 0; frame < 19; ++frame) {
     StereoFrame pair = drive.pair(2 * frame);
     pair.right = drive.pair(2 * frame + 1).right;
-    pair.frame = {frame};
+    pair.head.frame = {frame};
     check.observe(pair);
   }
   const auto findings = check.rigFindings();
@@ -233,7 +235,7 @@ TEST(InputCheck, NamesRowsThatDifferBeforeAWallToo) {
   InputCheck check(kWallCamera);
   for (int frame = 0; frame < 20; ++frame) {
     StereoFrame pair;
-    pair.frame = {frame};
+    pair.head.frame = {frame};
     pair.left = wall.seen(frame, 0, pool, 0);
     pair.right = lowered(wall.seen(frame, 24, pool, 0), 2.5, pool);
     check.observe(pair);

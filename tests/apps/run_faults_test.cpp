@@ -21,7 +21,7 @@ TEST_F(Run, RejectsADamagedImageAndGoesOn) {
   ASSERT_EQ(run("out", "", damaged), 0) << contentOf(errors());
   const RunFolder folder = readRunFolder(out("out"));
   ASSERT_EQ(folder.frames.size(), kFrames);
-  EXPECT_EQ(folder.frames[3].status, FrameStatus::kRejected);
+  EXPECT_EQ(folder.frames[3].head.status, FrameStatus::kRejected);
   EXPECT_EQ(folder.final.camera.size(), kFrames);
   EXPECT_EQ(summary("out")["frames"]["rejected"], 1);
   EXPECT_THAT(contentOf(errors()), HasSubstr("000003"));

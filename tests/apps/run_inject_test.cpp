@@ -22,8 +22,8 @@ class Inject : public Run {
   }
   double drift_m(const std::string& name) { return evaluate(name)["final"]["camera"]["ate_m"]["rmse"].get<double>(); }
   static void expectFrame(const RunFolder& run, std::size_t frame, FrameStatus status, FrameCause cause) {
-    EXPECT_EQ(statusName(run.frames[frame].status), statusName(status)) << frame;
-    EXPECT_EQ(causeName(run.frames[frame].cause), causeName(cause)) << frame;
+    EXPECT_EQ(statusName(run.frames[frame].head.status), statusName(status)) << frame;
+    EXPECT_EQ(causeName(run.frames[frame].head.cause), causeName(cause)) << frame;
   }
 };
 
@@ -44,7 +44,7 @@ TEST_F(Inject, BridgesMissingDarkFrozenAndDamagedFrames) {
     for (std::size_t frame = 6; frame < 9; ++frame) expectFrame(folder, frame, status, cause);
     expectFrame(folder, 9, FrameStatus::kGood, FrameCause::kAfterGap);
     expectFrame(folder, 10, FrameStatus::kGood, FrameCause::kNone);
-    EXPECT_EQ(folder.frames.back().segment, 0) << faults;
+    EXPECT_EQ(folder.frames.back().head.segment, 0) << faults;
     EXPECT_LT(drift_m("faults"), 1.5 * clean_m + 0.01) << faults;
   }
   EXPECT_EQ(summary("faults")["frames"]["by_cause"]["failed"], 3);
@@ -64,8 +64,8 @@ TEST_F(Inject, AJumpOfTheClockBeginsANewSegment) {
   expectFrame(folder, 7, FrameStatus::kRejected, FrameCause::kOutOfOrder);  // it might have been one wrong time
   expectFrame(folder, 8, FrameStatus::kLost, FrameCause::kUnlinked);
   expectFrame(folder, 10, FrameStatus::kGood, FrameCause::kNone);
-  EXPECT_EQ(folder.frames[7].segment, 0);
-  EXPECT_EQ(folder.frames[10].segment, 1);
+  EXPECT_EQ(folder.frames[7].head.segment, 0);
+  EXPECT_EQ(folder.frames[10].head.segment, 1);
   EXPECT_LT((folder.final.camera[9].translation() - folder.final.camera[6].translation()).norm(), 40);
   EXPECT_EQ(summary("jump")["frames"]["segments"], 2);
   EXPECT_EQ(summary("jump")["inject"], "jump=3600@7");

@@ -17,8 +17,7 @@ inline constexpr std::int64_t kPeriod_ns = 100'000'000;
 
 inline StereoFrame frameAt(std::int64_t index) {
   StereoFrame frame;
-  frame.frame = {index};
-  frame.stamp = {index * kPeriod_ns};
+  frame.head = {.frame = {index}, .stamp = {index * kPeriod_ns}};
   return frame;
 }
 
@@ -45,53 +44,47 @@ struct ToyStages {
   }
 
   EstimatesPtr shape(const SceneMotionPtr& motion, const EstimatesPtr& estimates) {
-    work(Stage::kObjectShapes, motion->frame);
+    work(Stage::kObjectShapes, motion->head.frame);
     return estimates;
   }
   FeaturesPtr prepare(const StereoFramePtr& frame) {
-    work(Stage::kPrepare, frame->frame);
+    work(Stage::kPrepare, frame->head.frame);
     Features features;
     features.frame = frame;
     return std::make_shared<const Features>(features);
   }
   StereoMatchesPtr stereo(const FeaturesPtr& features) {
-    work(Stage::kStereoMatching, features->frame->frame);
+    work(Stage::kStereoMatching, features->frame->head.frame);
     return std::make_shared<const StereoMatches>(StereoMatches{features, {}});
   }
   OpticalFlowPtr flow(const FeaturesPtr& features) {
-    work(Stage::kOpticalFlow, features->frame->frame);
-    order_of_flow.push_back(features->frame->frame.value);
+    work(Stage::kOpticalFlow, features->frame->head.frame);
+    order_of_flow.push_back(features->frame->head.frame.value);
     return std::make_shared<const OpticalFlow>(OpticalFlow{features, {}});
   }
   SceneMotionPtr motion(const StereoMatchesPtr& matches, const OpticalFlowPtr& flow) {
     const StereoFrame& frame = *flow->features->frame;
-    work(Stage::kSceneFlowSegmentation, frame.frame);
+    work(Stage::kSceneFlowSegmentation, frame.head.frame);
     if (matches->features != flow->features) branches_met_wrongly = true;
-    order_of_motion.push_back(frame.frame.value);
+    order_of_motion.push_back(frame.head.frame.value);
     SceneMotion result;
-    result.frame = frame.frame;
-    result.stamp = frame.stamp;
-    result.status = frame.rejected() ? FrameStatus::kRejected : FrameStatus::kGood;
-    result.T_previous_now = SE3(Eigen::Matrix3d::Identity(), {0, 0, order_of_motion.size() > 1 ? 1.0 : 0.0});
+    result.head = frame.head;
+    result.odometry.T_previous_now = SE3(Eigen::Matrix3d::Identity(), {0, 0, order_of_motion.size() > 1 ? 1.0 : 0.0});
     return std::make_shared<const SceneMotion>(result);
   }
   FrameMeasurementsPtr tracking(const SceneMotionPtr& motion) {
-    work(Stage::kTracking, motion->frame);
+    work(Stage::kTracking, motion->head.frame);
     FrameMeasurements result;
-    result.frame = motion->frame;
-    result.stamp = motion->stamp;
-    result.status = motion->status;
-    result.T_previous_now = motion->T_previous_now;
+    result.head = motion->head;
+    result.odometry = motion->odometry;
     return std::make_shared<const FrameMeasurements>(result);
   }
   EstimatesPtr optimize(const FrameMeasurementsPtr& measurements) {
-    work(Stage::kIncrementalOptimization, measurements->frame);
-    order_of_backend.push_back(measurements->frame.value);
-    traveled_m += measurements->T_previous_now.translation().z();
+    work(Stage::kIncrementalOptimization, measurements->head.frame);
+    order_of_backend.push_back(measurements->head.frame.value);
+    traveled_m += measurements->odometry.T_previous_now.translation().z();
     Estimates result;
-    result.online.frame = measurements->frame;
-    result.online.stamp = measurements->stamp;
-    result.online.status = measurements->status;
+    result.online.head = measurements->head;
     result.online.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, traveled_m});
     window.push_back(result.online);
     if (settles && window.size() > 1) result.settled = {window[window.size() - 2]};
@@ -147,13 +140,13 @@ inline std::vector<std::int64_t> numbersTo(std::int64_t count) {
 
 inline std::vector<std::int64_t> idsOf(const std::vector<FrameEstimate>& estimates) {
   std::vector<std::int64_t> ids;
-  for (const FrameEstimate& estimate : estimates) ids.push_back(estimate.frame.value);
+  for (const FrameEstimate& estimate : estimates) ids.push_back(estimate.head.frame.value);
   return ids;
 }
 
 inline std::vector<std::int64_t> idsOf(const std::vector<PipelineResult>& results) {
   std::vector<std::int64_t> ids;
-  for (const PipelineResult& result : results) ids.push_back(result.online.frame.value);
+  for (const PipelineResult& result : results) ids.push_back(result.online.head.frame.value);
   return ids;
 }
 

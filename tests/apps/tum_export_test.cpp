@@ -11,9 +11,9 @@ namespace {
 RunFolder runByHand() {
   RunFolder run{.first_frame = 10};
   for (int i = 0; i < 5; ++i) {
-    run.frames.push_back({.frame = {10 + i},
-                          .status = i == 2 ? FrameStatus::kLost : FrameStatus::kGood,
-                          .stamp = {1'700'000'000'000'000'001 + std::int64_t{100'000'000} * i}});
+    run.frames.push_back({.head = {.frame = {10 + i},
+                                   .stamp = {1'700'000'000'000'000'001 + std::int64_t{100'000'000} * i},
+                                   .status = i == 2 ? FrameStatus::kLost : FrameStatus::kGood}});
     run.final.camera.emplace_back(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0, 0, i));
     ObjectEstimate object;
     object.track = {7};

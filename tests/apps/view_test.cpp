@@ -118,8 +118,8 @@ ShownFrame frameWithACar() {
   car.cuboid = ObjectBox{};
   car.cuboid->size_m = {4, 2, 1.5};
   ShownFrame frame;
-  frame.estimate.frame = {5};
-  frame.estimate.stamp = {1'500'000'000};
+  frame.estimate.head.frame = {5};
+  frame.estimate.head.stamp = {1'500'000'000};
   frame.estimate.objects = {car};
   frame.outlines = {{{1}, {{{1, 2}, {3, 4}, {5, 6}}}}};
   frame.points = {{{1}, {10, 20}, {1, 2, 3}}};
@@ -213,7 +213,7 @@ TEST(FrameJson, AnEventHoldsCountsAndFrame) {
 
 PipelineResult resultAfter(double latency_ms, FrameStatus status) {
   PipelineResult result;
-  result.online.status = status;
+  result.online.head.status = status;
   const auto after =
       std::chrono::duration_cast<SteadyTime::duration>(std::chrono::duration<double, std::milli>(latency_ms));
   result.timing.published = result.timing.due + after;

@@ -57,12 +57,12 @@ class SimulatedDrive {
 
   FrameMeasurementsPtr measure(int frame) {
     FrameMeasurements m;
-    m.frame = {frame};
-    m.stamp = stamp(frame);
-    m.odometry_covariance = covariance(options_.odometry_sigma_m, options_.odometry_sigma_rad);
+    m.head.frame = {frame};
+    m.head.stamp = stamp(frame);
+    m.odometry.covariance = covariance(options_.odometry_sigma_m, options_.odometry_sigma_rad);
     if (frame > 0)
-      m.T_previous_now = camera(frame - 1).inverse() * camera(frame) *
-                         random_.pose(options_.odometry_sigma_m, options_.odometry_sigma_rad);
+      m.odometry.T_previous_now = camera(frame - 1).inverse() * camera(frame) *
+                                  random_.pose(options_.odometry_sigma_m, options_.odometry_sigma_rad);
     for (std::size_t v = 0; v < options_.vehicles.size(); ++v) {
       const int age = frame - options_.vehicles[v].first_frame;
       if (age == static_cast<int>(options_.vehicles[v].last_frame) - options_.vehicles[v].first_frame + 1)
@@ -134,9 +134,9 @@ inline double objectError_m(const std::vector<FrameEstimate>& estimates, const S
   for (const auto& frame : estimates)
     for (const auto& object : frame.objects) {
       const auto vehicle = static_cast<std::size_t>(object.track.value - 100);
-      sum +=
-          (object.T_world_body.translation() - drive.object(vehicle, static_cast<int>(frame.frame.value)).translation())
-              .squaredNorm();
+      sum += (object.T_world_body.translation() -
+              drive.object(vehicle, static_cast<int>(frame.head.frame.value)).translation())
+                 .squaredNorm();
       ++count;
     }
   return count > 0 ? std::sqrt(sum / count) : 0;

@@ -31,7 +31,7 @@ std::vector<std::vector<int>> cpusAfterSettling(std::size_t threads) {
     running.emplace_back([&, seat] {
       together.arrive_and_wait();
       for (std::size_t turn = 0; turn < threads; ++turn) {
-        if (turn == seat) spread.settle(seat);
+        if (turn == seat) spread.occupy(seat);
         together.arrive_and_wait();
       }
       cpus[seat] = cpusOfThisThread();

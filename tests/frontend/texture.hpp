@@ -67,7 +67,7 @@ inline Image render(int width, int height, const std::function<double(double, do
 
 inline StereoFramePtr stereoFrame(int number, const Image& left, const Image& right) {
   auto frame = std::make_shared<StereoFrame>();
-  frame->frame = {number};
+  frame->head.frame = {number};
   frame->left = left;
   frame->right = right;
   return frame;
@@ -75,8 +75,8 @@ inline StereoFramePtr stereoFrame(int number, const Image& left, const Image& ri
 
 inline StereoFramePtr rejectedFrame(int number) {
   auto frame = std::make_shared<StereoFrame>();
-  frame->frame = {number};
-  frame->problem = "no image";
+  frame->head.frame = {number};
+  frame->reject(FrameCause::kUnusable, "no image");
   return frame;
 }
 

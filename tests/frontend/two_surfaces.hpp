@@ -23,11 +23,11 @@ class TwoSurfaces {
   explicit TwoSurfaces(double car_step_m, double car_m = kCar_m) : car_step_m_(car_step_m), car_m_(car_m) {}
 
   /// The disparity of each corner; corner and point have the same number.
-  StereoMatchesPtr stereo(int frame) const {
+  StereoMatchesPtr stereo(int frame, const FrameInputs& inputs = {}) const {
     auto features = std::make_shared<Features>();
     auto pair = std::make_shared<StereoFrame>();
-    pair->frame = {frame};
-    pair->stamp = {frame * 100'000'000};
+    pair->head = {.frame = {frame}, .stamp = {frame * 100'000'000}};
+    pair->inputs = inputs;
     features->frame = pair;
     features->left.levels.push_back(image(frame, 0));
     features->right.levels.push_back(image(frame, kSmallRig.baseline_m));

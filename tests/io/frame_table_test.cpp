@@ -15,14 +15,14 @@ using test::timingOf;
 TEST(FrameTable, ARowComesBackAsWritten) {
   const test::TemporaryFolder folder;
   FrameTiming late = timingOf(7);
-  late.cause = FrameCause::kFewPoints;
+  late.head.cause = FrameCause::kFewPoints;
   const auto file = folder.write("frames.csv", framesHeader() + "\n" + frameLine(late) + "\n");
   const auto rows = readFrames(file);
   ASSERT_EQ(rows.size(), 1u);
   const FrameRow& row = rows.front();
   EXPECT_TRUE(row.has_waits);
-  EXPECT_EQ(row.frame.value, 7);
-  EXPECT_EQ(row.cause, FrameCause::kFewPoints);
+  EXPECT_EQ(row.head.frame.value, 7);
+  EXPECT_EQ(row.head.cause, FrameCause::kFewPoints);
   EXPECT_DOUBLE_EQ(row.latency_ms, late.latency_ms());
   EXPECT_DOUBLE_EQ(row.decode_ms, 8);
   EXPECT_DOUBLE_EQ(row.entry_wait_ms, 2);
@@ -51,7 +51,7 @@ TEST(FrameTable, FilesOfEarlierVersionsHaveNoWaits) {
   const auto rows = readFrames(file);
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_FALSE(rows[0].has_waits);
-  EXPECT_EQ(rows[0].segment, 1);
+  EXPECT_EQ(rows[0].head.segment, 1);
   EXPECT_DOUBLE_EQ(rows[1].stages.back().work_ms, 7);
 }
 

@@ -23,8 +23,8 @@ using testing::HasSubstr;
 
 FrameEstimate estimateOf(int i) {
   FrameEstimate estimate;
-  estimate.frame = {i};
-  estimate.stamp = {1'317'042'651'174'740'992 + i * 100'000'000LL};
+  estimate.head.frame = {i};
+  estimate.head.stamp = {1'317'042'651'174'740'992 + i * 100'000'000LL};
   estimate.T_world_cam = SE3::exp((Vector6d() << 0.1 * i, 0.02, 1.2 * i, 0.001 * i, 0.01 * i, 0).finished());
   ObjectEstimate object;
   object.track = {4};
@@ -55,8 +55,8 @@ FrameEstimate estimateOf(int i) {
 
 FrameTiming timingOfEstimate(int i) {
   FrameTiming timing;
-  timing.frame = {i};
-  timing.stamp = estimateOf(i).stamp;
+  timing.head.frame = {i};
+  timing.head.stamp = estimateOf(i).head.stamp;
   timing.due = SteadyTime(std::chrono::milliseconds(1000 + 100 * i));
   timing.published = timing.due + std::chrono::microseconds(30500);
   timing.stages[0] = {timing.due, timing.due + std::chrono::milliseconds(3), 1};
@@ -212,7 +212,7 @@ TEST(RunFolder, RejectedStampsStayOutOfTheTumFiles) {
   const test::TemporaryFolder folder;
   RunFolderWriter writer(folder.path());
   FrameEstimate rejected = estimateOf(0);
-  rejected.status = FrameStatus::kRejected;
+  rejected.head.status = FrameStatus::kRejected;
   writer.writeOnline(rejected);
   EXPECT_EQ(folder.read("camera_online.tum"), "");
   EXPECT_NE(folder.read("camera_online.txt"), "");

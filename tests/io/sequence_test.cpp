@@ -165,7 +165,7 @@ TEST_F(SequenceTest, AnImageWithoutPartnerCostsItsFrameAlone) {
   SequenceDecoder decoder(sequence, {});
   for (int i = 0; i < 6; ++i) {
     const auto frame = decoder.next();
-    EXPECT_EQ(frame->frame.value, i);
+    EXPECT_EQ(frame->head.frame.value, i);
     EXPECT_EQ(frame->problem.empty(), i != 2 && i != 4) << frame->problem;
     if (i == 5) {
       EXPECT_EQ(frame->left.at(5, 5), 5);
@@ -240,7 +240,7 @@ TEST_F(SequenceTest, DecoderGivesTheFramesInOrderAndKeepsItsBound) {
   for (int i = 2; i < 18; ++i) {
     const auto frame = decoder.next();
     ASSERT_TRUE(frame);
-    EXPECT_EQ(frame->frame.value, i);
+    EXPECT_EQ(frame->head.frame.value, i);
     EXPECT_FALSE(frame->rejected());
     EXPECT_EQ(frame->left.at(5, 5), i);
   }
@@ -280,8 +280,8 @@ TEST_F(SequenceTest, DecoderLeavesOutUnwantedPairsButNeverTheLast) {
   const Sequence sequence = openSequence(folder_.path());
   const auto third = [&](Timestamp stamp) { return stamp == sequence.stamps[3]; };
   SequenceDecoder decoder(sequence, {1, 8}, {.ahead = 4, .wanted = third});
-  EXPECT_EQ(decoder.next()->frame.value, 3);
-  EXPECT_EQ(decoder.next()->frame.value, 7);
+  EXPECT_EQ(decoder.next()->head.frame.value, 3);
+  EXPECT_EQ(decoder.next()->head.frame.value, 7);
   EXPECT_FALSE(decoder.next());
   EXPECT_EQ(decoder.stampOf({7}), sequence.stamps[7]);
 }

@@ -9,8 +9,8 @@ namespace motorcade::test {
 /// Of the i-th frame at ten frames a second, in which each stage takes 3 ms.
 inline FrameTiming timingOf(int i) {
   FrameTiming timing;
-  timing.frame = {i};
-  timing.stamp = {i * 100'000'000LL};
+  timing.head.frame = {i};
+  timing.head.stamp = {i * 100'000'000LL};
   timing.due = SteadyTime(std::chrono::milliseconds(1000 + 100 * i));
   timing.admitted = timing.due + std::chrono::milliseconds(2);
   timing.decode_ms = 8;

@@ -72,10 +72,10 @@ TEST(TraceFile, AnArrowLeadsFromEachFrameToTheNext) {
 TEST(TraceFile, CountsFramesInFlightAndMarksThoseThatWereDropped) {
   FrameTiming second = timingOf(1), dropped;
   second.due = second.admitted = timingOf(0).admitted + std::chrono::milliseconds(5);  // while the first is under way
-  dropped.frame = {2};
+  dropped.head.frame = {2};
   dropped.due = dropped.published = timingOf(2).due;
-  dropped.status = FrameStatus::kDropped;
-  dropped.cause = FrameCause::kTooLate;
+  dropped.head.status = FrameStatus::kDropped;
+  dropped.head.cause = FrameCause::kTooLate;
   const Json events = eventsOf({timingOf(0), second, dropped, timingOf(3)});
   const auto in_flight = select(events, "C", "frames in flight");
   ASSERT_EQ(in_flight.size(), 3u);

@@ -26,7 +26,7 @@ struct SimulatedCar {
 };
 
 /// A camera driving straight ahead among cars and points at rest: exact truth, noisy observations, and scene flow and
-/// segments made of them by the stages themselves. Call `next` once per frame.
+/// components made of them by the stages themselves. Call `next` once per frame.
 class SimulatedTraffic {
  public:
   static constexpr double kDt_s = 0.1, kRoad_m = 1.65;
@@ -49,16 +49,17 @@ class SimulatedTraffic {
   SceneMotionPtr next() {
     const int frame = frame_++;
     auto scene = std::make_shared<SceneMotion>();
-    scene->frame = {frame};
-    scene->stamp = {static_cast<std::int64_t>(frame * kDt_s * 1e9)};
+    scene->head.frame = {frame};
+    scene->head.stamp = {static_cast<std::int64_t>(frame * kDt_s * 1e9)};
     if (frame > 0) driveOn(frame);
     const SE3 truth = frame > 0 ? SE3(Eigen::Matrix3d::Identity(), {0, 0, kDt_s * camera_speed_mps_}) : SE3{};
-    scene->odometry_covariance.setZero();
-    scene->odometry_covariance.diagonal().head<3>().setConstant(odometry_sigma_m_ * odometry_sigma_m_);
-    scene->odometry_covariance.diagonal().tail<3>().setConstant(1e-3 * odometry_sigma_m_ *
+    scene->odometry.covariance.setZero();
+    scene->odometry.covariance.diagonal().head<3>().setConstant(odometry_sigma_m_ * odometry_sigma_m_);
+    scene->odometry.covariance.diagonal().tail<3>().setConstant(1e-3 * odometry_sigma_m_ *
                                                                 odometry_sigma_m_);  // 0.03 rad per meter
-    scene->T_previous_now = frame > 0 ? truth * SE3::exp(noise_.correlated(scene->odometry_covariance)) : SE3{};
-    trail_.add(scene->stamp, scene->T_previous_now);
+    scene->odometry.T_previous_now =
+        frame > 0 ? truth * SE3::exp(noise_.correlated(scene->odometry.covariance)) : SE3{};
+    trail_.add(scene->head.stamp, scene->odometry.T_previous_now);
     for (std::size_t c = 0; c < cars_.size(); ++c) seeCar(c, frame);
     for (std::size_t i = 0; i < street_.size(); ++i)
       see({-1, static_cast<int>(i)}, camera(frame).inverse() * street_[i], true);
@@ -145,9 +146,9 @@ class SimulatedTraffic {
       if (const auto fits = flow.fit(track, trail_); fits.at_rest) p.flow = fits.moving;
       scene.points.push_back(p);
     }
-    const MotionSegmenter segment({}, kRig);
-    scene.segments =
-        segment(scene.points, std::vector<bool>(scene.points.size(), false), scene.ground, camera_speed_mps_);
+    const MotionSegmenter segmenter({}, kRig);
+    scene.components =
+        segmenter(scene.points, std::vector<bool>(scene.points.size(), false), scene.ground, camera_speed_mps_);
   }
 
   std::vector<SimulatedCar> cars_;

@@ -50,16 +50,15 @@ BENCHMARK(BM_CutDelaunayComponents)->Arg(250)->Arg(1000)->Arg(4000)->Unit(benchm
 void BM_EgoMotion(benchmark::State& state) {
   const std::size_t count = state.range(0);
   const double moving = static_cast<double>(state.range(1)) / 100;
-  const SE3 T_previous_now = SE3::exp((Vector6d() << 0.01, 0, 1.2, 0, 0.01, 0).finished());
-  const SE3 T_now_previous = T_previous_now.inverse();
+  const SE3 T_seen_now = SE3::exp((Vector6d() << 0.01, 0, 1.2, 0, 0.01, 0).finished());
+  const SE3 T_now_seen = T_seen_now.inverse();
   std::vector<std::vector<PoseObservation>> frames(kVariants);
   for (unsigned seed = 0; seed < kVariants; ++seed) {
     test::Noise noise(seed + 1);
     while (frames[seed].size() < count) {
       const Eigen::Vector3d before = test::streetPoint(noise, 5, 50);
       const Eigen::Vector3d own = noise.uniform(0, 1) < moving ? Eigen::Vector3d(0.8, 0, 0) : Eigen::Vector3d(0, 0, 0);
-      if (const auto seen = test::lookTwice(before, T_now_previous * (before + own), noise))
-        frames[seed].push_back(*seen);
+      if (const auto seen = test::lookTwice(before, T_now_seen * (before + own), noise)) frames[seed].push_back(*seen);
     }
   }
   const EgoMotionEstimator estimate(EgoMotionEstimator::Params{}, test::kRig);
@@ -67,7 +66,7 @@ void BM_EgoMotion(benchmark::State& state) {
   std::uint64_t number = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(estimate(frames[number % kVariants], labels,
-                                      {.T_previous_now = T_previous_now, .dt_s = 0.1, .steady_frames = 5}, number));
+                                      {.T_seen_now = T_seen_now, .dt_s = 0.1, .steady_frames = 5}, number));
     ++number;
   }
   state.SetItemsProcessed(state.iterations() * state.range(0));

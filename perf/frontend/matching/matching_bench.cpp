@@ -42,8 +42,8 @@ BENCHMARK(BM_MatchStereo)->Arg(621)->Arg(1242)->Unit(benchmark::kMicrosecond);
 /// The same features under the next number, as if the camera went to and fro between two positions.
 FeaturesPtr renumbered(const Features& features, std::int64_t number) {
   auto frame = std::make_shared<StereoFrame>(*features.frame);
-  frame->frame = {number};
-  frame->stamp = {number * 100'000'000};
+  frame->head.frame = {number};
+  frame->head.stamp = {number * 100'000'000};
   auto copy = std::make_shared<Features>(features);
   copy->frame = std::move(frame);
   return copy;

@@ -26,17 +26,17 @@ struct Frames {
 FrameMeasurementsPtr measureWithDark(PointDrive& drive, int frame, const Frames& dark) {
   FrameMeasurements m = *drive.measure(frame);
   if (dark.contains(frame)) {
-    m.status = FrameStatus::kLost;
-    m.cause = FrameCause::kNothingFound;
-    m.T_previous_now = SE3{};
-    m.odometry_covariance = unknownMotionCovariance(0.1);
+    m.head.status = FrameStatus::kLost;
+    m.head.cause = FrameCause::kNothingFound;
+    m.odometry.T_previous_now = SE3{};
+    m.odometry.covariance = unknownMotionCovariance(0.1);
     m.at_rest.clear();
     m.undecided.clear();
     m.objects.clear();
   }
-  if (frame == dark.end && dark.begin == 0) m.T_previous_now = SE3{};
+  if (frame == dark.end && dark.begin == 0) m.odometry.T_previous_now = SE3{};
   if (frame == dark.end && dark.begin > 0)
-    m.T_previous_now = drive.truth().camera(dark.begin - 1).inverse() * drive.truth().camera(frame);
+    m.odometry.T_previous_now = drive.truth().camera(dark.begin - 1).inverse() * drive.truth().camera(frame);
   return std::make_shared<const FrameMeasurements>(std::move(m));
 }
 

@@ -21,7 +21,7 @@ using test::PointDrive;
 double cameraError_m(const std::vector<FrameEstimate>& finals, const test::SimulatedDrive& truth) {
   double sum = 0;
   for (const FrameEstimate& f : finals)
-    sum += (f.T_world_cam.translation() - truth.camera(static_cast<int>(f.frame.value)).translation()).norm();
+    sum += (f.T_world_cam.translation() - truth.camera(static_cast<int>(f.head.frame.value)).translation()).norm();
   return sum / static_cast<double>(finals.size());
 }
 
@@ -173,7 +173,7 @@ TEST(JointBackend, AxesComeToLieAlongTheTravel) {
   int count = 0;
   for (const FrameEstimate& frame : backend.finish())
     for (const ObjectEstimate& object : frame.objects) {
-      const SE3 truth = drive.truth().object(object.track.value - 100, static_cast<int>(frame.frame.value));
+      const SE3 truth = drive.truth().object(object.track.value - 100, static_cast<int>(frame.head.frame.value));
       squared += logSO3(truth.rotation().transpose() * object.T_world_body.rotation()).squaredNorm();
       ++count;
     }

@@ -50,8 +50,8 @@ TEST_F(RigOffsetTest, WhatMayBeDistortionOrIsNotClearReleasesNothing) {
 
 TEST_F(RigOffsetTest, NothingMovesItAfterTheFirstFramesOfADrive) {
   landmarksSay(1.2, 0.01);
-  EXPECT_FALSE(offset_.isSettled(kLook));
-  EXPECT_TRUE(offset_.isSettled(kLate));
+  EXPECT_FALSE(offset_.isDecided(kLook));
+  EXPECT_TRUE(offset_.isDecided(kLate));
   EXPECT_FALSE(offset_.release(kLate));
 }
 

@@ -91,10 +91,10 @@ TEST(Triangulate, AddsTheDisparityOffset) {
 TEST(CameraPath, AddsUpPosesAndCovariances) {
   CameraPath path;
   FrameMeasurements m;
-  m.odometry_covariance = 0.01 * Matrix6d::Identity();
+  m.odometry.covariance = 0.01 * Matrix6d::Identity();
   for (int frame = 0; frame < 4; ++frame) {
-    m.frame = {frame};
-    m.T_previous_now = SE3(Eigen::Matrix3d::Identity(), {0, 0, frame > 0 ? 1.0 : 0.0});
+    m.head.frame = {frame};
+    m.odometry.T_previous_now = SE3(Eigen::Matrix3d::Identity(), {0, 0, frame > 0 ? 1.0 : 0.0});
     path.add(m);
   }
   EXPECT_THAT(path.find(FrameId{3})->T_world_cam.translation(), IsNear(Eigen::Vector3d(0, 0, 3), 1e-12));

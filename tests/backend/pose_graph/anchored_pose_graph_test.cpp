@@ -116,8 +116,8 @@ TEST(AnchoredPoseGraph, EveryMeasurementThatIsNoNumberIsNamed) {
     if (frame == 6) seen.encounter_covariance.setZero();
     if (frame == 7) seen.motion->covariance.setConstant(kNan);
     if (frame == 8) seen.motion->T_before_now = kNoPose;
-    if (frame == 9) m.T_previous_now = kNoPose;
-    if (frame == 10) m.odometry_covariance.setZero();
+    if (frame == 9) m.odometry.T_previous_now = kNoPose;
+    if (frame == 10) m.odometry.covariance.setZero();
     // Numbers, if not good ones: the losses and the conditions cope with them.
     if (frame == 11) seen.T_cam_body = SE3(Eigen::Matrix3d::Identity(), {1e200, 0, 0});
     if (frame == 12) seen.encounter_covariance *= 1e-300;

@@ -34,9 +34,8 @@ TEST(PoseGraphSmoother, ObjectsAreBetterThanRawAndThanTheFilter) {
     std::vector<FrameEstimate> seen;
     for (int i = 0; i < again.options().frames; ++i) {
       const auto m = again.measure(i);
-      T_world_cam = T_world_cam * m->T_previous_now;
-      seen.push_back(
-          {.frame = m->frame, .stamp = {}, .T_world_cam = T_world_cam, .camera_covariance = {}, .objects = {}});
+      T_world_cam = T_world_cam * m->odometry.T_previous_now;
+      seen.push_back({.head = m->head, .T_world_cam = T_world_cam, .camera_covariance = {}, .objects = {}});
       for (const auto& o : m->objects)
         seen.back().objects.push_back(
             {.track = o.track, .T_world_body = T_world_cam * o.T_cam_body, .box = {}, .covariance = {}});
@@ -54,7 +53,7 @@ TEST(PoseGraphSmoother, EveryFrameBecomesFinalOnceAndInOrder) {
     const auto result = smooth(3, {.window_frames = window});
     ASSERT_EQ(result.finals.size(), 60u);
     for (std::size_t i = 0; i < result.finals.size(); ++i) {
-      EXPECT_EQ(result.finals[i].frame.value, static_cast<std::int64_t>(i));
+      EXPECT_EQ(result.finals[i].head.frame.value, static_cast<std::int64_t>(i));
       EXPECT_TRUE(result.finals[i].T_world_cam.translation().allFinite());
     }
   }
@@ -65,7 +64,7 @@ double objectNees(const std::vector<FrameEstimate>& estimates, const SimulatedDr
   double sum = 0;
   int count = 0;
   for (const auto& frame : estimates) {
-    const int i = static_cast<int>(frame.frame.value);
+    const int i = static_cast<int>(frame.head.frame.value);
     if (i % 5 != 0) continue;
     for (const auto& object : frame.objects) {
       if (!object.covariance) continue;
@@ -211,15 +210,15 @@ TEST(PoseGraphSmoother, LostFramesKeepTheirPredictedPose) {
   for (int i = 0; i < 30; ++i) {
     FrameMeasurements m = *drive.measure(i);
     if (i == 15) {
-      m.status = FrameStatus::kLost;
-      m.odometry_covariance = SimulatedDrive::covariance(0.5, 0.05);
+      m.head.status = FrameStatus::kLost;
+      m.odometry.covariance = SimulatedDrive::covariance(0.5, 0.05);
       m.objects.clear();
     }
     smoother(std::make_shared<const FrameMeasurements>(m));
   }
   const auto finals = smoother.finish();
   ASSERT_EQ(finals.size(), 30u);
-  EXPECT_EQ(finals[15].status, FrameStatus::kLost);
+  EXPECT_EQ(finals[15].head.status, FrameStatus::kLost);
   EXPECT_THAT(finals[16].T_world_cam, test::IsNearPose(drive.camera(16), 0.5));
 }
 
@@ -234,7 +233,7 @@ TEST(PoseGraphSmoother, ABrokenObjectDoesNotStopTheCamera) {
       if (i == 7 && seen.motion) seen.motion->covariance.setConstant(std::nan(""));
       if (i == 8 && seen.motion) seen.motion->T_before_now = SE3(Eigen::Matrix3d::Identity(), {std::nan(""), 0, 0});
     }
-    if (i == 9) m.T_previous_now = SE3(Eigen::Matrix3d::Identity(), {std::nan(""), 0, 0});
+    if (i == 9) m.odometry.T_previous_now = SE3(Eigen::Matrix3d::Identity(), {std::nan(""), 0, 0});
     const auto estimates = smoother(std::make_shared<const FrameMeasurements>(m));
     EXPECT_TRUE(estimates->online.T_world_cam.translation().allFinite());
     for (const auto& object : estimates->online.objects) EXPECT_TRUE(object.T_world_body.translation().allFinite());

@@ -23,9 +23,7 @@ struct Drive {
     ContinuousPoses continuous(correction_s);
     std::vector<FrameEstimate> all;
     for (int now = 0; now < 40; ++now) {
-      FrameEstimate online{.frame = FrameId{now},
-                           .stamp = Timestamp{100'000'000 * static_cast<std::int64_t>(now)},
-                           .status = FrameStatus::kGood,
+      FrameEstimate online{.head = {.frame = {now}, .stamp = {100'000'000 * static_cast<std::int64_t>(now)}},
                            .T_world_cam = camera(now, now),
                            .camera_covariance = {},
                            .objects = {}};
@@ -68,7 +66,7 @@ TEST(ContinuousPoses, ObjectsComeToWhereTheyAreSeenFromTheCamera) {
 TEST(ContinuousPoses, WithoutATimeAreThoseEstimated) {
   const auto published = Drive{}.published(0);
   for (const FrameEstimate& estimate : published) {
-    const int now = static_cast<int>(estimate.frame.value);
+    const int now = static_cast<int>(estimate.head.frame.value);
     EXPECT_THAT(estimate.T_world_cam.translation(), IsNear(Drive{}.camera(now, now).translation(), 1e-12));
     EXPECT_THAT(estimate.objects[0].T_world_body.translation(), IsNear(Drive{}.object(now, now).translation(), 1e-12));
   }

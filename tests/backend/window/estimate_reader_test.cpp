@@ -59,14 +59,16 @@ class EstimateReaderTest : public testing::Test {
 };
 
 TEST_F(EstimateReaderTest, ReadsPosesAsTheyAreInTheGraph) {
-  change_ = [](int frame, FrameMeasurements& m) { m.status = frame == 3 ? FrameStatus::kLost : FrameStatus::kGood; };
+  change_ = [](int frame, FrameMeasurements& m) {
+    m.head.status = frame == 3 ? FrameStatus::kLost : FrameStatus::kGood;
+  };
   drive();
   constexpr double kSame = 1e-12;  // but for the rounding of a rotation that is put back onto SO(3)
   for (const auto& [frame, record] : graph_.frames()) {
     const FrameEstimate estimate = reader_.read(frame);
-    EXPECT_EQ(estimate.frame, frame);
-    EXPECT_EQ(estimate.stamp, record.stamp);
-    EXPECT_EQ(estimate.status, frame.value == 3 ? FrameStatus::kLost : FrameStatus::kGood);
+    EXPECT_EQ(estimate.head.frame, frame);
+    EXPECT_EQ(estimate.head.stamp, record.head.stamp);
+    EXPECT_EQ(estimate.head.status, frame.value == 3 ? FrameStatus::kLost : FrameStatus::kGood);
     EXPECT_THAT(estimate.T_world_cam, IsNearPose(camera(frame), kSame));
     EXPECT_TRUE(std::ranges::is_sorted(estimate.objects, {}, &ObjectEstimate::track));
     for (const ObjectEstimate& object : estimate.objects) {
@@ -136,7 +138,8 @@ TEST_F(EstimateReaderTest, SigmasOfSpeedAndYawRateFollowFromTheTwoPosesTheyAreMa
   drive();
   for (const auto& [frame, other] : {std::pair(kLast, FrameId{kLast.value - 1}), std::pair(FrameId{0}, FrameId{1})}) {
     const SE3 z_now = poseInTrack(0, frame), z_other = poseInTrack(0, other);
-    const double dt_s = std::abs(secondsBetween(graph_.frames().at(other).stamp, graph_.frames().at(frame).stamp));
+    const double dt_s =
+        std::abs(secondsBetween(graph_.frames().at(other).head.stamp, graph_.frames().at(frame).head.stamp));
     const auto speed = [&](const SE3& from, const SE3& to) {
       return Eigen::Matrix<double, 1, 1>((from.inverse() * to).log().head<3>().norm() / dt_s);
     };

@@ -62,14 +62,16 @@ TEST(FeaturePreparation, SpendsNoCornersOnIgnoredPixels) {
   ignored.add(0, 100, 320, 200);
   FeaturePreparation::Params params;
   params.corners.max_corners = 100;
-  const auto features = FeaturePreparation(params, ignored)(test::stereoFrame(0, image, image));
+  StereoFrame frame = *test::stereoFrame(0, image, image);
+  frame.inputs.ignored = sharedMask(ignored);
+  const auto features = FeaturePreparation(params)(std::make_shared<const StereoFrame>(frame));
   EXPECT_EQ(features->corners.size(), 100U);  // as many as there may be, all of the upper half
   for (const Corner& corner : features->corners) EXPECT_LT(corner.v_px, 100);
 }
 
 TEST(FeaturePreparation, GivesNoImagesForARejectedFrame) {
   const auto features = FeaturePreparation({})(test::rejectedFrame(7));
-  EXPECT_EQ(features->frame->frame, FrameId{7});
+  EXPECT_EQ(features->frame->head.frame, FrameId{7});
   EXPECT_TRUE(features->left.levels.empty());
   EXPECT_TRUE(features->corners.empty());
 }

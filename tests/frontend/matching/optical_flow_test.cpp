@@ -150,8 +150,8 @@ TEST(OpticalFlowTracker, KeepsPointsApartAndSpread) {
 
 FeaturesPtr at(const FeaturesPtr& features, int frame) {
   auto stamped = std::make_shared<StereoFrame>(*features->frame);
-  stamped->frame = {frame};
-  stamped->stamp = {frame * 100'000'000};
+  stamped->head.frame = {frame};
+  stamped->head.stamp = {frame * 100'000'000};
   auto copy = std::make_shared<Features>(*features);
   copy->frame = stamped;
   return copy;

@@ -31,12 +31,12 @@ std::vector<PointLabel> nothingKnown(const Street& s) {
 SE3 trueMotion() {
   Vector6d xi;
   xi << 0.02, 0, 1.0, 0, 0.015, 0;
-  return SE3::exp(xi);  // T_previous_now
+  return SE3::exp(xi);  // T_seen_now
 }
 
 enum class Movers { kTruckBesideUs, kEverywhere };
 
-Street street(int at_rest, int moving, std::uint64_t seed, const SE3& T_previous_now = trueMotion(),
+Street street(int at_rest, int moving, std::uint64_t seed, const SE3& T_seen_now = trueMotion(),
               Movers movers = Movers::kTruckBesideUs) {
   const Eigen::Vector3d step_m(0.15, 0, 0.9);  // of the movers: about our own way, as in traffic
   Noise noise(seed);
@@ -45,7 +45,7 @@ Street street(int at_rest, int moving, std::uint64_t seed, const SE3& T_previous
     const bool moves = static_cast<int>(s.observations.size()) >= at_rest;
     const bool of_truck = moves && movers == Movers::kTruckBesideUs;
     const Eigen::Vector3d before = of_truck ? noise.inBox({1, -1.5, 9}, {5, 1.2, 16}) : test::streetPoint(noise, 6, 35);
-    const Eigen::Vector3d now = T_previous_now.inverse() * (moves ? Eigen::Vector3d(before + step_m) : before);
+    const Eigen::Vector3d now = T_seen_now.inverse() * (moves ? Eigen::Vector3d(before + step_m) : before);
     const auto o = test::lookTwice(before, now, noise);
     if (!o) continue;
     s.observations.push_back(*o);
@@ -57,7 +57,7 @@ Street street(int at_rest, int moving, std::uint64_t seed, const SE3& T_previous
 /// The right motion up to its own covariance, and the right inliers.
 void expectTrueMotion(const std::optional<EgoMotion>& ego, const Street& s, std::uint64_t seed) {
   ASSERT_TRUE(ego) << "seed " << seed;
-  const Vector6d error = (trueMotion().inverse() * ego->T_previous_now).log();
+  const Vector6d error = (trueMotion().inverse() * ego->T_seen_now).log();
   EXPECT_LT(test::nees(error, ego->covariance), 30) << "seed " << seed;  // chi2(6) is below it but for 4 in 100,000
   int right = 0;
   for (std::size_t i = 0; i < s.moves.size(); ++i) right += ego->inliers[i] != s.moves[i];
@@ -86,14 +86,14 @@ TEST(EgoMotion, CovarianceIsThatOfTheErrors) {
   Vector6d xi;
   xi << 1.5, 0, 3, 0, 0,
       1;  // a camera that rolls by a radian: with little rotation, perturbing either side of the motion is the same
-  const SE3 T_previous_now = SE3::exp(xi);
+  const SE3 T_seen_now = SE3::exp(xi);
   const EgoMotionEstimator estimate({}, kRig);
   double mean = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {
-    const Street s = street(100, 0, 200 + static_cast<std::uint64_t>(seed), T_previous_now);
-    const auto ego = estimate(s.observations, s.labels(), {T_previous_now}, static_cast<std::uint64_t>(seed));
+    const Street s = street(100, 0, 200 + static_cast<std::uint64_t>(seed), T_seen_now);
+    const auto ego = estimate(s.observations, s.labels(), {T_seen_now}, static_cast<std::uint64_t>(seed));
     ASSERT_TRUE(ego);
-    const Vector6d error = (T_previous_now.inverse() * ego->T_previous_now).log();
+    const Vector6d error = (T_seen_now.inverse() * ego->T_seen_now).log();
     mean += test::nees(error, ego->covariance) / kSeeds;
   }
   EXPECT_NEAR(mean, 6, test::meanChi2Spread(6, kSeeds));
@@ -116,8 +116,8 @@ TEST(EgoMotion, EqualSeedsGiveEqualResults) {
   const auto first = estimate(s.observations, nothingKnown(s), {SE3{}}, 9);
   const auto second = estimate(s.observations, nothingKnown(s), {SE3{}}, 9);
   ASSERT_TRUE(first && second);
-  EXPECT_EQ(first->T_previous_now.translation(), second->T_previous_now.translation());  // to the last bit
-  EXPECT_EQ(first->T_previous_now.rotation(), second->T_previous_now.rotation());
+  EXPECT_EQ(first->T_seen_now.translation(), second->T_seen_now.translation());  // to the last bit
+  EXPECT_EQ(first->T_seen_now.rotation(), second->T_seen_now.rotation());
   EXPECT_EQ(first->inliers, second->inliers);
 }
 
@@ -136,8 +136,8 @@ TEST(EgoMotion, ASteadyMotionIsNotGivenUpForOneThatNoVehicleCanMake) {
     const Street s = street(100, 150, seed, expected, Movers::kEverywhere);
     const auto ego = estimate(s.observations, nothingKnown(s), {expected, 0.1, 10}, seed);
     ASSERT_TRUE(ego) << "seed " << seed;
-    EXPECT_TRUE(estimate.follows(ego->T_previous_now.inverse(), {expected, 0.1, 10}));
-    EXPECT_LT((ego->T_previous_now.translation() - expected.translation()).norm(), 0.1) << "seed " << seed;
+    EXPECT_TRUE(estimate.follows(ego->T_seen_now.inverse(), {expected, 0.1, 10}));
+    EXPECT_LT((ego->T_seen_now.translation() - expected.translation()).norm(), 0.1) << "seed " << seed;
   }
 }
 
@@ -152,12 +152,12 @@ TEST(EgoMotion, ACarDoesNotSlideWhereATruckFillsTheView) {
   PredictedMotion predicted{standing, 0.1, 0, 50};
   const auto of_car = estimate(s.observations, nothingKnown(s), predicted, 1);
   ASSERT_TRUE(of_car);
-  EXPECT_LT(of_car->T_previous_now.translation().norm(), 0.05);
+  EXPECT_LT(of_car->T_seen_now.translation().norm(), 0.05);
   EXPECT_FALSE(estimate(truck.observations, nothingKnown(truck), predicted, 1));
   predicted.ahead_frames = 0;  // whatever the camera is mounted on
   const auto of_any = estimate(s.observations, nothingKnown(s), predicted, 1);
   ASSERT_TRUE(of_any);
-  EXPECT_LT((of_any->T_previous_now.translation() - sliding.translation()).norm(), 0.05);
+  EXPECT_LT((of_any->T_seen_now.translation() - sliding.translation()).norm(), 0.05);
 }
 
 TEST(EgoMotion, ASteadyMotionDoesNotBreakOff) {

@@ -221,24 +221,5 @@ TEST(OwnVehicle, AChangeOfTheDisparityOffsetIsNoMotion) {
   EXPECT_GT(drive.leftOf(drive.fixedIds(), drive.advance(kStep_m)), 50);  // as the drive's disparities stay
 }
 
-TEST(OwnVehicle, IgnoredPixelsHideWhatEitherImageShowsThere) {
-  PixelMask ignored(kKittiRig.width_px, kKittiRig.height_px);
-  ignored.add(0, 300, kKittiRig.width_px, kKittiRig.height_px);
-  ignored.add(100, 0, 110, kKittiRig.height_px);
-  const OwnVehicle own_vehicle(kKittiRig, ignored);
-  OpticalFlow flow;
-  Drive::Observed observed;
-  for (const Eigen::Vector3f& uvd_px : {Eigen::Vector3f(500, 299, 20), Eigen::Vector3f(500, 300, 20),
-                                        Eigen::Vector3f(105, 100, 20), Eigen::Vector3f(125, 100, 20)}) {
-    flow.observations.push_back({{std::ssize(observed)}, uvd_px.x(), uvd_px.y(), 0.25F, 1, -1});
-    observed.push_back(StereoObservation{uvd_px, Eigen::Vector3f::Constant(0.25F)});
-  }
-  own_vehicle.leaveOut(flow, observed);
-  EXPECT_TRUE(observed[0]);
-  EXPECT_FALSE(observed[1]);
-  EXPECT_FALSE(observed[2]);
-  EXPECT_FALSE(observed[3]) << "the right image shows it at column 105";
-}
-
 }  // namespace
 }  // namespace motorcade

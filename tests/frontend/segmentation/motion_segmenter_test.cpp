@@ -43,7 +43,7 @@ struct Street {
     }
     return bodies++;
   }
-  std::vector<Segment> segments() {
+  std::vector<MotionComponent> components() {
     return MotionSegmenter({}, kRig)(points, std::vector<bool>(points.size(), false), GroundPlane{}, kSpeed_mps);
   }
   /// Share of a body's points with a label.
@@ -55,12 +55,12 @@ struct Street {
     }
     return static_cast<double>(labeled) / all;
   }
-  /// The body most of a segment's points belong to, and whether they all do.
-  std::pair<int, bool> ownerOf(const Segment& segment) const {
+  /// The body most of a component's points belong to, and whether they all do.
+  std::pair<int, bool> ownerOf(const MotionComponent& component) const {
     std::vector<int> votes(static_cast<std::size_t>(bodies), 0);
-    for (const int i : segment.points) ++votes[body[i]];
+    for (const int i : component.points) ++votes[body[i]];
     const auto best = std::ranges::max_element(votes);
-    return {static_cast<int>(best - votes.begin()), *best == static_cast<int>(segment.points.size())};
+    return {static_cast<int>(best - votes.begin()), *best == static_cast<int>(component.points.size())};
   }
 };
 
@@ -73,7 +73,7 @@ TEST(MotionSegmenter, NeighborsOfDifferentSpeedAParkedCarAndTheWallAreToldApart)
               slow = street.add({1.5, 0.8, 14}, kCar, {0, 0, 6}, 15);
     const int parked = street.add({5, 0.8, 16}, kCar, {0, 0, 0}, 15),
               wall = street.add({0, -1, 24}, {12, 2, 0.5}, {0, 0, 0}, 80);
-    const auto segments = street.segments();
+    const auto components = street.components();
     // One point in a hundred has a velocity that its neighbors do not share, by the gate, and stays alone and unknown.
     EXPECT_GT(street.share(fast, PointLabel::kMoving), 0.9);
     EXPECT_GT(street.share(slow, PointLabel::kMoving), 0.9);
@@ -81,7 +81,7 @@ TEST(MotionSegmenter, NeighborsOfDifferentSpeedAParkedCarAndTheWallAreToldApart)
     EXPECT_EQ(street.share(wall, PointLabel::kMoving), 0);
     EXPECT_GT(street.share(parked, PointLabel::kStatic), 0.8);
     int moving = 0;
-    for (const auto& s : segments) {
+    for (const auto& s : components) {
       if (s.label != PointLabel::kMoving) continue;
       ++moving;
       const auto [owner, pure] = street.ownerOf(s);
@@ -95,15 +95,15 @@ TEST(MotionSegmenter, NeighborsOfDifferentSpeedAParkedCarAndTheWallAreToldApart)
 TEST(MotionSegmenter, AFarClusterOfUncertainVelocityIsUnknown) {
   Street street(1);
   const int far = street.add({2, 0.5, 60}, kCar, {0, 0, 8}, 8, 3.5);
-  const auto segments = street.segments();
+  const auto components = street.components();
   EXPECT_EQ(street.share(far, PointLabel::kUnknown), 1);
-  for (const auto& s : segments) EXPECT_EQ(s.label, PointLabel::kUnknown);
+  for (const auto& s : components) EXPECT_EQ(s.label, PointLabel::kUnknown);
 }
 
 TEST(MotionSegmenter, PointsOfHopelessUncertaintyAreNoVertices) {
   Street street(1);
   street.add({2, 0.5, 60}, kCar, {0, 0, 8}, 8, 12);
-  EXPECT_TRUE(street.segments().empty());
+  EXPECT_TRUE(street.components().empty());
 }
 
 TEST(MotionSegmenter, GroundPointsAreInNoSegment) {
@@ -112,9 +112,9 @@ TEST(MotionSegmenter, GroundPointsAreInNoSegment) {
   const int ground = street.add({0, 1.6, 13}, {1, 0.02, 1}, {0, 0, 12}, 15);  // a shadow travels with the car
   for (std::size_t i = 0; i < street.points.size(); ++i)
     if (street.body[i] == ground) street.points[i].label = PointLabel::kGround;
-  const auto segments = street.segments();
-  ASSERT_FALSE(segments.empty());
-  for (const auto& s : segments)
+  const auto components = street.components();
+  ASSERT_FALSE(components.empty());
+  for (const auto& s : components)
     for (const int i : s.points) EXPECT_NE(street.body[i], ground);
   EXPECT_EQ(street.share(ground, PointLabel::kGround), 1);
 }
@@ -124,7 +124,7 @@ TEST(MotionSegmenter, CarsOfEqualVelocityFiveMetersApartAreTwo) {
   const int left = street.add({-3.4, 0.8, 14}, kCar, {0, 0, 10}, 15),
             right = street.add({3.4, 0.8, 14}, kCar, {0, 0, 10}, 15);
   int moving = 0;
-  for (const auto& s : street.segments()) {
+  for (const auto& s : street.components()) {
     moving += s.label == PointLabel::kMoving;
     EXPECT_TRUE(street.ownerOf(s).second);
   }
@@ -137,7 +137,7 @@ TEST(MotionSegmenter, WhatFliesOrRisesIsNoVehicle) {
   Street street(4);
   const int bird = street.add({0, -5, 14}, {0.3, 0.2, 0.3}, {3, 0, 5}, 8),
             leaf = street.add({6, 0.5, 14}, {0.3, 0.2, 0.3}, {0, -6, 1}, 8);
-  street.segments();
+  street.components();
   EXPECT_EQ(street.share(bird, PointLabel::kMoving), 0);
   EXPECT_EQ(street.share(leaf, PointLabel::kMoving), 0);
 }
@@ -147,9 +147,9 @@ TEST(MotionSegmenter, AnEndThatBreaksTheGeometryIsCutFromOneThatKeepsIt) {
   street.add({0, 0.8, 14}, kCar, {0, 0, 10}, 20);
   std::vector<bool> violates(street.points.size(), false);
   std::fill(violates.begin(), violates.begin() + 10, true);
-  const auto segments = MotionSegmenter({}, kRig)(street.points, violates, GroundPlane{}, kSpeed_mps);
-  EXPECT_GE(segments.size(), 2U);
-  for (const auto& s : segments)
+  const auto components = MotionSegmenter({}, kRig)(street.points, violates, GroundPlane{}, kSpeed_mps);
+  EXPECT_GE(components.size(), 2U);
+  for (const auto& s : components)
     for (const int i : s.points) EXPECT_EQ(violates[i], violates[s.points.front()]);
 }
 

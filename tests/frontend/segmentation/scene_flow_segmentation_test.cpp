@@ -17,9 +17,9 @@ namespace {
 /// Messages of a frame without a single point.
 SceneMotionPtr runEmpty(SceneFlowSegmentation& estimate, int frame, const std::string& problem) {
   auto pair = std::make_shared<StereoFrame>();
-  pair->frame = {frame};
-  pair->stamp = {frame * 100'000'000};
-  pair->problem = problem;
+  pair->head.frame = {frame};
+  pair->head.stamp = {frame * 100'000'000};
+  if (!problem.empty()) pair->reject(FrameCause::kUnusable, problem);
   auto features = std::make_shared<Features>();
   features->frame = pair;
   auto stereo = std::make_shared<StereoMatches>();
@@ -35,11 +35,11 @@ TEST(SceneFlowSegmentation, EveryInputGivesOneOutputOfItsFrameAlsoWhenRejectedOr
     const bool rejected = frame == 2 || frame == 3;
     const auto motion = runEmpty(estimate, frame, rejected ? "unreadable" : "");
     ASSERT_TRUE(motion);
-    EXPECT_EQ(motion->frame, FrameId{frame});
-    EXPECT_EQ(motion->stamp, Timestamp{frame * 100'000'000});
-    EXPECT_EQ(motion->status, rejected ? FrameStatus::kRejected : FrameStatus::kLost);
+    EXPECT_EQ(motion->head.frame, FrameId{frame});
+    EXPECT_EQ(motion->head.stamp, Timestamp{frame * 100'000'000});
+    EXPECT_EQ(motion->head.status, rejected ? FrameStatus::kRejected : FrameStatus::kLost);
     EXPECT_TRUE(motion->points.empty());
-    EXPECT_THAT(motion->T_previous_now,
+    EXPECT_THAT(motion->odometry.T_previous_now,
                 test::IsNearPose(SE3{}, 0.0));  // no motion was ever seen: standing still is predicted
   }
 }
@@ -63,7 +63,7 @@ TEST(SceneFlowSegmentation, FindsTheDisparityOfANearVehicleWhateverItsSpeed) {
     for (int frame = 0; frame < 3; ++frame) {
       const auto stereo = scene.stereo(frame);
       const auto motion = estimate(stereo, scene.flow(*stereo, frame));
-      ASSERT_EQ(motion->status, FrameStatus::kGood);
+      ASSERT_EQ(motion->head.status, FrameStatus::kGood);
       int found = 0;
       for (const ScenePoint& p : motion->points)
         found += scene.onCar(p.point) && std::abs(p.uvd_px.z() - scene.uvd_px(p.point, frame).z()) < 0.5;
@@ -82,8 +82,9 @@ TEST(SceneFlowSegmentation, PointsThatAreFixedToTheCameraTakePartInNothing) {
     const auto on_car =
         std::ranges::count_if(motion->points, [&](const ScenePoint& p) { return scene.onCar(p.point); });
     EXPECT_EQ(on_car > 0, frame == 0) << "frame " << frame;
-    EXPECT_NEAR(motion->T_previous_now.translation().z(), frame == 0 ? 0 : test::TwoSurfaces::kCameraStep_m, 0.05);
-    EXPECT_TRUE(motion->segments.empty());
+    EXPECT_NEAR(motion->odometry.T_previous_now.translation().z(), frame == 0 ? 0 : test::TwoSurfaces::kCameraStep_m,
+                0.05);
+    EXPECT_TRUE(motion->components.empty());
   }
 }
 
@@ -91,8 +92,8 @@ TEST(SceneFlowSegmentation, PointsOnIgnoredPixelsTakePartInNothing) {
   const test::TwoSurfaces scene(0.5);
   PixelMask ignored(test::kSmallRig.width_px, test::kSmallRig.height_px);
   ignored.add(0, 0, 300, test::kSmallRig.height_px);
-  SceneFlowSegmentation estimate({}, test::kSmallRig, ignored);
-  const auto stereo = scene.stereo(0);
+  SceneFlowSegmentation estimate({}, test::kSmallRig);
+  const auto stereo = scene.stereo(0, {.ignored = sharedMask(ignored)});
   const auto motion = estimate(stereo, scene.flow(*stereo, 0));
   EXPECT_GT(motion->points.size(), 20U);
   for (const ScenePoint& p : motion->points) EXPECT_GE(p.uvd_px.x() - p.uvd_px.z(), 299);  // in the right image, too

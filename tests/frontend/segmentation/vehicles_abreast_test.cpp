@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kWidth_m = 2.8;
 
-/// A segment that drives ahead, of points around some positions.
+/// A component that drives ahead, of points around some positions.
 struct Traffic {
   SceneMotion scene;
-  Segment segment;
+  MotionComponent component;
   test::Noise noise{1};
 
   void add(const Eigen::Vector3d& middle_cam, int count, double position_sigma_m = 0.05) {
@@ -25,15 +25,15 @@ struct Traffic {
       flow.velocity_mps = {0, 0, 12};
       flow.covariance.setIdentity();
       flow.covariance.topLeftCorner<3, 3>() *= position_sigma_m * position_sigma_m;
-      segment.points.push_back(static_cast<int>(scene.points.size()));
+      component.points.push_back(static_cast<int>(scene.points.size()));
       scene.points.push_back({.point = {static_cast<std::int64_t>(scene.points.size())},
                               .uvd_px = Eigen::Vector3d::Zero(),
                               .sigma_px = Eigen::Vector3d::Ones(),
                               .flow = flow});
     }
-    segment.velocity_mps = {0.5, 0, 12};
+    component.velocity_mps = {0.5, 0, 12};
   }
-  std::vector<Segment> split() const { return splitAbreast(segment, segment.points, scene, kWidth_m); }
+  std::vector<MotionComponent> split() const { return splitAbreast(component, component.points, scene, kWidth_m); }
 };
 
 TEST(VehiclesAbreast, ThreeTrucksSideBySideAreThree) {
@@ -45,12 +45,12 @@ TEST(VehiclesAbreast, ThreeTrucksSideBySideAreThree) {
   std::size_t points = 0;
   for (const auto& vehicle : vehicles) {
     EXPECT_EQ(vehicle.points.size(), 60U);
-    EXPECT_EQ(vehicle.velocity_mps, traffic.segment.velocity_mps);
+    EXPECT_EQ(vehicle.velocity_mps, traffic.component.velocity_mps);
     EXPECT_TRUE(std::ranges::any_of(middles, [&](const auto& m) { return (m - vehicle.centroid_cam).norm() < 0.6; }))
         << vehicle.centroid_cam;
     points += vehicle.points.size();
   }
-  EXPECT_EQ(points, traffic.segment.points.size());
+  EXPECT_EQ(points, traffic.component.points.size());
 }
 
 TEST(VehiclesAbreast, ALongTruckIsOne) {
@@ -58,7 +58,7 @@ TEST(VehiclesAbreast, ALongTruckIsOne) {
   for (const double z_m : {8.0, 12.0, 16.0}) traffic.add({-3, 0, z_m}, 20);
   const auto vehicles = traffic.split();
   ASSERT_EQ(vehicles.size(), 1U);
-  EXPECT_EQ(vehicles[0].points, traffic.segment.points);
+  EXPECT_EQ(vehicles[0].points, traffic.component.points);
 }
 
 TEST(VehiclesAbreast, NoiseOfDistantPointsIsNoWidth) {

@@ -16,7 +16,7 @@ constexpr double kWay_m = 0.1, kDistance_m = 10;  // of a person in a frame: 7.2
 
 Features framed(int frame) {
   auto pair = std::make_shared<StereoFrame>();
-  pair->frame = FrameId{frame};
+  pair->head.frame = FrameId{frame};
   Features features;
   features.frame = pair;
   ImagePool pool;

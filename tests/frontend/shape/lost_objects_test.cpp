@@ -10,8 +10,8 @@ const Eigen::Vector3d kVelocity_mps(0, 0, -8);
 
 FrameEstimate frameWith(int frame, std::vector<ObjectEstimate> objects) {
   FrameEstimate estimate;
-  estimate.frame = FrameId{frame};
-  estimate.stamp.ns = 100'000'000LL * frame;
+  estimate.head.frame = FrameId{frame};
+  estimate.head.stamp.ns = 100'000'000LL * frame;
   estimate.objects = std::move(objects);
   return estimate;
 }
@@ -57,7 +57,7 @@ TEST(LostObjects, AreForgottenWhereTheCamerasPathBreaks) {
   LostObjects lost;
   lost.remember(frameWith(0, {seen(kBus, 30)}));
   FrameEstimate elsewhere = frameWith(1, {});
-  elsewhere.segment = 1;
+  elsewhere.head.segment = 1;
   EXPECT_TRUE(lost.predictedIn(elsewhere).empty());
   lost.remember(elsewhere);
   EXPECT_TRUE(lost.predictedIn(elsewhere).empty());

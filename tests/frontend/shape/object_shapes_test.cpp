@@ -51,7 +51,7 @@ class Scene {
 
   FeaturesPtr features(FrameId frame) const {
     auto pair = std::make_shared<StereoFrame>();
-    pair->frame = frame;
+    pair->head.frame = frame;
     auto features = std::make_shared<Features>();
     features->frame = pair;
     ImagePool pool;
@@ -111,10 +111,10 @@ class Crossing {
     const FrameId frame{next_++};
     const SE3 T_cam_body = T_cam_car(static_cast<int>(frame.value)) * shifted(kOrigin_m);
     auto motion = std::make_shared<SceneMotion>();
-    motion->frame = frame;
+    motion->head.frame = frame;
     motion->ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m};
     auto measurements = std::make_shared<FrameMeasurements>();
-    measurements->frame = frame;
+    measurements->head.frame = frame;
     if (state != ObjectState::kPredicted) {
       measurements->objects.push_back(observation(frame, T_cam_body, speed_mps_ > 0 ? -1 : 1));
       measurements->objects.back().born_slow = born_slow;
@@ -125,7 +125,7 @@ class Crossing {
     object.T_world_body = T_cam_body;
     object.velocity_world_mps = {speed_mps_, 0, 0};
     object.points = state == ObjectState::kPredicted ? 0 : 20;
-    estimates->online.frame = frame;
+    estimates->online.head.frame = frame;
     estimates->online.objects.push_back(object);
     finals_.push_back(estimates->online);
     shaped_ = shapes_({scene.features(frame), motion, measurements}, estimates);

@@ -61,8 +61,8 @@ struct BoardDrive {
   }
   static SceneMotionPtr scene(int frame, bool there) {
     auto scene = std::make_shared<SceneMotion>();
-    scene->frame = {frame};
-    scene->stamp = stampOf(frame);
+    scene->head.frame = {frame};
+    scene->head.stamp = stampOf(frame);
     scene->features = TexturedBoard::seenAt(boardIn(frame), there);
     if (frame >= kSpawned) scene->points = TexturedBoard::points(boardIn(frame), 6, 100);
     return scene;

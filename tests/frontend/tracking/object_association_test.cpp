@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kDepth_m = 15;
 
-/// Objects and segments side by side across the road, all driving straight ahead at 10 m/s.
+/// Objects and components side by side across the road, all driving straight ahead at 10 m/s.
 struct Road {
   std::vector<TrackedObject> objects;
   SceneMotion scene;
@@ -31,15 +31,15 @@ struct Road {
   }
   /// Of the next `points` ids of the scene.
   void addSegment(double x_m, int points, double speed_mps = 10, PointLabel label = PointLabel::kMoving) {
-    Segment segment{
+    MotionComponent component{
         .points = {}, .label = label, .centroid_cam = {x_m, 1, kDepth_m}, .velocity_mps = {0, 0, speed_mps}};
-    segment.velocity_covariance = 0.04 * Eigen::Matrix3d::Identity();
+    component.velocity_covariance = 0.04 * Eigen::Matrix3d::Identity();
     for (int i = 0; i < points; ++i) {
-      segment.points.push_back(static_cast<int>(scene.points.size()));
+      component.points.push_back(static_cast<int>(scene.points.size()));
       scene.points.push_back(
           {.point = {next_point++}, .uvd_px = {600, 200, 25}, .sigma_px = {0.3, 0.3, 0.3}, .flow = {}});
     }
-    scene.segments.push_back(segment);
+    scene.components.push_back(component);
   }
   std::vector<int> associate() const { return associateObjects(objects, scene, SE3{}, test::kRig); }
 };
@@ -70,7 +70,7 @@ TEST(ObjectAssociation, OnlyMovingSegmentsAreGiven) {
 
 TEST(ObjectAssociation, SegmentsOfAnObjectsPointsAreAllGivenToIt) {
   Road road;
-  road.addObject(0, 0, 10);  // holds the points of the first two segments
+  road.addObject(0, 0, 10);  // holds the points of the first two components
   road.addObject(9, 1000, 5);
   road.addSegment(-0.8, 5);
   road.addSegment(0.9, 5);
@@ -97,7 +97,7 @@ TEST(ObjectAssociation, SharedPointsAreAShareOfTheSegment) {
   Road road;
   road.addObject(0, 2, 10);
   road.addSegment(0, 8);  // points 0..7, of which the object holds 2..7
-  EXPECT_DOUBLE_EQ(sharedPoints(road.objects[0], road.scene, road.scene.segments[0]), 0.75);
+  EXPECT_DOUBLE_EQ(sharedPoints(road.objects[0], road.scene, road.scene.components[0]), 0.75);
 }
 
 }  // namespace

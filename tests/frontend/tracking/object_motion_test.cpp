@@ -24,7 +24,7 @@ struct CarAhead {
     T_cam_body = SE3(upright, {1, 1, 12});
     Vector6d twist;
     twist << 8, 0, 0, 0, 0, 0.1;
-    now.frame = {5};
+    now.head.frame = {5};
     test::Noise noise(1);
     for (std::int64_t id = 0; id < points; ++id) {
       const Eigen::Vector3d p = noise.inBox({-1, -0.9, -0.6}, {1, 0.9, 0.8});

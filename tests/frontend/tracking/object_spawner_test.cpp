@@ -21,27 +21,27 @@ SE3 toTheRight(double x_m) { return {Eigen::Matrix3d::Identity(), {x_m, 0, 0}}; 
 /// A board before the camera in two frames, to the right of the place where it was, and one point on it.
 struct Stride {
   SceneMotion before, now;
-  Segment segment;  // of the one point
+  MotionComponent component;  // of the one point
 
   /// `moved_m` to the right; the point seems to move at `speed_mps`, whatever the board does.
   Stride(const TexturedBoard::Paint& paint, double moved_m, double speed_mps) {
     show({{kNow, paint}}, {{toTheRight(-moved_m) * kNow, paint}});
-    before.frame = {4}, now.frame = {5};
-    now.stamp = {static_cast<std::int64_t>(1e9 * kStride_s)};
+    before.head.frame = {4}, now.head.frame = {5};
+    now.head.stamp = {static_cast<std::int64_t>(1e9 * kStride_s)};
     const Eigen::Vector3d p_cam = kNow * Eigen::Vector3d(0, 0.05, -0.3);
     now.points.push_back(
         {.point = {kFollowed}, .uvd_px = *kRig.project(p_cam), .sigma_px = test::kObservationSigma_px, .flow = {}});
-    segment.points = {0};
-    segment.centroid_cam = p_cam;
-    segment.velocity_mps = {speed_mps, 0, 0};
-    segment.velocity_covariance = 0.01 * Eigen::Matrix3d::Identity();
+    component.points = {0};
+    component.centroid_cam = p_cam;
+    component.velocity_mps = {speed_mps, 0, 0};
+    component.velocity_covariance = 0.01 * Eigen::Matrix3d::Identity();
   }
   void show(const std::vector<TexturedBoard::Painted>& boards_now,
             const std::vector<TexturedBoard::Painted>& boards_before) {
     now.features = TexturedBoard::seen(boards_now);
     before.features = TexturedBoard::seen(boards_before);
   }
-  std::optional<TrackedObject> walker() const { return ObjectSpawner({}, kRig).walker(now, before, segment, SE3{}); }
+  std::optional<TrackedObject> walker() const { return ObjectSpawner({}, kRig).walker(now, before, component, SE3{}); }
 
   static const SE3 kNow;
 };
@@ -63,7 +63,7 @@ TEST(ObjectSpawner, SpawnsAWalkerOfOnePointWherePatchesMovedWithIt) {
 TEST(ObjectSpawner, TakesTheCamerasMotionOffAWalk) {
   const SE3 T_previous_now(expSO3({0, 0.01, 0}), {0.1, 0, 0.4});
   Stride walks(TexturedBoard::person, 0, kWalk_mps), stands = walks;
-  walks.now.T_previous_now = stands.now.T_previous_now = T_previous_now;
+  walks.now.odometry.T_previous_now = stands.now.odometry.T_previous_now = T_previous_now;
   const TexturedBoard::Painted now{Stride::kNow, TexturedBoard::person};
   walks.show({now}, {{T_previous_now * toTheRight(-kStride_m) * Stride::kNow, TexturedBoard::person}});
   stands.show({now}, {{T_previous_now * Stride::kNow, TexturedBoard::person}});
@@ -87,10 +87,10 @@ TEST(ObjectSpawner, AsksForAWalkersPatchesWhereALowPointWalksSurely) {
   const Stride frames(TexturedBoard::person, kStride_m, kWalk_mps);
   const ObjectSpawner spawner({}, kRig);
   const auto may_be = [&](double speed_mps, double sigma_mps, double height_m) {
-    Segment segment = frames.segment;
-    segment.velocity_mps = {speed_mps, 0, 0};
-    segment.velocity_covariance = sigma_mps * sigma_mps * Eigen::Matrix3d::Identity();
-    return spawner.mayBeWalker(segment, {.normal_cam = {0, 1, 0}, .height_m = segment.centroid_cam.y() + height_m});
+    MotionComponent component = frames.component;
+    component.velocity_mps = {speed_mps, 0, 0};
+    component.velocity_covariance = sigma_mps * sigma_mps * Eigen::Matrix3d::Identity();
+    return spawner.mayBeWalker(component, {.normal_cam = {0, 1, 0}, .height_m = component.centroid_cam.y() + height_m});
   };
   EXPECT_TRUE(may_be(kWalk_mps, 0.4, 1.2));
   EXPECT_FALSE(may_be(kWalk_mps, 0.5, 1.2)) << "2.8 standard deviations";
@@ -100,14 +100,14 @@ TEST(ObjectSpawner, AsksForAWalkersPatchesWhereALowPointWalksSurely) {
 
 TEST(ObjectSpawner, SpawnsNoWalkerAsLargeAsACar) {
   Stride frames(TexturedBoard::paint, kStride_m, kWalk_mps);
-  frames.now.points.clear(), frames.segment.points.clear();
+  frames.now.points.clear(), frames.component.points.clear();
   for (int i = 0; i < 12; ++i) {  // all over the board, and followed since the frame before
     const Eigen::Vector3d p_cam = Stride::kNow * Eigen::Vector3d(0, -1.4 + 2.8 / 11 * i, 0.2);
     ScenePoint point{.point = {i}, .uvd_px = *kRig.project(p_cam), .sigma_px = test::kObservationSigma_px, .flow = {}};
     frames.now.points.push_back(point);
     point.uvd_px = *kRig.project(toTheRight(-kStride_m) * p_cam);
     frames.before.points.push_back(point);
-    frames.segment.points.push_back(i);
+    frames.component.points.push_back(i);
   }
   EXPECT_FALSE(frames.walker());
 }

@@ -70,7 +70,7 @@ TEST(ObjectTracker, HandsOverEachPointOnceAndThoseOfAVehicleBeforeItIsKnown) {
     EXPECT_TRUE(areNew(f->at_rest));
     EXPECT_TRUE(areNew(f->undecided));
     for (const auto& o : f->objects) {
-      EXPECT_TRUE(o.frame != f->frame || areNew(o.measured));
+      EXPECT_TRUE(o.frame != f->head.frame || areNew(o.measured));
       for (const auto& p : o.measured) of_vehicles.insert(p.point);
     }
     for (const auto& p : f->undecided) undecided.insert(p.point);
@@ -94,7 +94,7 @@ TEST(ObjectTracker, IsConfirmedWithinFiveFramesAndBringsItsBacklogAlong) {
   const auto confirmed = std::ranges::find_if(drive.frames, [](const auto& f) { return !f->objects.empty(); });
   ASSERT_NE(confirmed, drive.frames.end());
   const auto& objects = (*confirmed)->objects;
-  const std::int64_t now = (*confirmed)->frame.value;
+  const std::int64_t now = (*confirmed)->head.frame.value;
   EXPECT_LE(now, 2 + 5);  // scene flow begins in frame 2
   ASSERT_GE(objects.size(), 2U);
   for (std::size_t i = 0; i < objects.size(); ++i)
@@ -116,7 +116,7 @@ TEST(ObjectTracker, AnObjectThatVanishesIsPredictedFiveTimesAndThenEnds) {
   for (const auto& f : drive.frames) {
     ends += static_cast<int>(f->ended.size());
     // It may come back while its position is known.
-    EXPECT_TRUE(f->ended.empty() || f->frame.value > 25) << f->frame.value;
+    EXPECT_TRUE(f->ended.empty() || f->head.frame.value > 25) << f->head.frame.value;
   }
   EXPECT_EQ(ends, 1);
 }
@@ -298,11 +298,11 @@ TEST(ObjectTracker, EncounterErrorsAreWithinTheirCovariances) {
 TEST(ObjectTracker, EveryFrameGivesItsOutput) {
   ObjectTracker tracker({}, kRig);
   auto lost = std::make_shared<SceneMotion>();
-  lost->frame = {7};
-  lost->status = FrameStatus::kRejected;
+  lost->head.frame = {7};
+  lost->head.status = FrameStatus::kRejected;
   const auto answer = tracker(lost);
-  EXPECT_EQ(answer->frame, FrameId{7});
-  EXPECT_EQ(answer->status, FrameStatus::kRejected);
+  EXPECT_EQ(answer->head.frame, FrameId{7});
+  EXPECT_EQ(answer->head.status, FrameStatus::kRejected);
   EXPECT_TRUE(answer->objects.empty());
 }
 
@@ -318,7 +318,7 @@ TEST(ObjectTracker, FollowsNoMoreObjectsThanItMay) {
     std::size_t most_at_once = 0;
     for (int i = 0; i < 12; ++i) {
       const auto frame = tracker(traffic.next());
-      const auto now = [&](const ObjectObservation& o) { return o.frame == frame->frame; };
+      const auto now = [&](const ObjectObservation& o) { return o.frame == frame->head.frame; };
       most_at_once = std::max<std::size_t>(most_at_once, std::ranges::count_if(frame->objects, now));
     }
     if (most == 2) {

@@ -16,29 +16,29 @@ using test::kRig;
 using test::TexturedBoard;
 
 /// Two people who walk to the right before a camera at rest, in images; the second one 5 m farther off. Patches follow
-/// whom a segment of one point spawned.
+/// whom a component of one point spawned.
 class Sidewalk {
  public:
   struct Seen {
     std::int64_t point;
     int person;
     PointLabel label = PointLabel::kUnknown;
-    double wrong_mps = 0;  // of the segment's velocity, away from the camera
+    double wrong_mps = 0;  // of the component's velocity, away from the camera
   };
-  /// One frame, in which each of these points makes a segment.
-  void walk(const std::vector<Seen>& segments) {
+  /// One frame, in which each of these points makes a component.
+  void walk(const std::vector<Seen>& components) {
     auto scene = std::make_shared<SceneMotion>();
     const int frame = next_++;
-    scene->frame = {frame};
-    scene->stamp = {static_cast<std::int64_t>(1e9 * kDt_s) * frame};
+    scene->head.frame = {frame};
+    scene->head.stamp = {static_cast<std::int64_t>(1e9 * kDt_s) * frame};
     scene->features = seen(frame);
-    for (const Seen& point : segments) {
-      Segment& segment = scene->segments.emplace_back();
-      segment.points = {static_cast<int>(scene->points.size())};
-      segment.label = point.label;
-      segment.centroid_cam = add(point, frame, *scene);
-      segment.velocity_mps = {kWalk_mps, 0, point.wrong_mps};
-      segment.velocity_covariance = 0.01 * Eigen::Matrix3d::Identity();
+    for (const Seen& point : components) {
+      MotionComponent& component = scene->components.emplace_back();
+      component.points = {static_cast<int>(scene->points.size())};
+      component.label = point.label;
+      component.centroid_cam = add(point, frame, *scene);
+      component.velocity_mps = {kWalk_mps, 0, point.wrong_mps};
+      component.velocity_covariance = 0.01 * Eigen::Matrix3d::Identity();
     }
     const auto measured = tracker_(scene);
     for (const ObjectObservation& o : measured->objects) reported_[o.track].push_back(o);
@@ -97,7 +97,7 @@ TEST(ObjectTracker, NobodyIsSpawnedWithoutTheFrameBefore) {
   EXPECT_TRUE(sidewalk.reported().empty());
 }
 
-/// The number of people reported where a second one appears in one frame, by this segment of a point.
+/// The number of people reported where a second one appears in one frame, by this component of a point.
 std::size_t peopleWith(const Sidewalk::Seen& second) {
   Sidewalk sidewalk;
   sidewalk.walkOn(1);

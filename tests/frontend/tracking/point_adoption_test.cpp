@@ -45,12 +45,12 @@ struct CarWithPoints {
     taken.push_back(false);
     return scene.points.back();
   }
-  /// Whether the object takes the newest point, from the whole scene or from a segment of all its points.
+  /// Whether the object takes the newest point, from the whole scene or from a component of all its points.
   bool takes(bool from_segment = false) {
-    Segment segment;
-    for (int i = 0; i < static_cast<int>(scene.points.size()); ++i) segment.points.push_back(i);
+    MotionComponent component;
+    for (int i = 0; i < static_cast<int>(scene.points.size()); ++i) component.points.push_back(i);
     PointAdoption adopt(kRig);
-    adopt(object, scene, from_segment ? &segment : nullptr, SE3{}, taken);
+    adopt(object, scene, from_segment ? &component : nullptr, SE3{}, taken);
     return object.find(scene.points.back().point) != nullptr;
   }
 };

@@ -58,7 +58,7 @@ class Gap {
       if (object.find(scene.points[i].point)) points.push_back(static_cast<int>(i));
     return points;
   }
-  Segment segment_;
+  MotionComponent segment_;
 };
 
 TEST(SeeThrough, PeopleBetweenWhomAWallIsSeenAreTwo) {

@@ -6,7 +6,7 @@
 namespace motorcade {
 
 /// Counts the frames that wait on one edge of the flow graph. Safe to use from several threads.
-class EdgeGauge {
+class EdgeMeter {
  public:
   void enter() {
     const auto now = waiting_.fetch_add(1, std::memory_order_relaxed) + 1;
