@@ -60,9 +60,9 @@ void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
   for (std::size_t i = 0; i < queue_.size() && missing > 0; ++i) {
     const int distance = distance_[queue_[i].value];
     if (distance == kFarthest || distance > 2 * farthest + 1) break;
-    if (i + kAhead < queue_.size()) __builtin_prefetch(&graph_[queue_[i + kAhead]].factors);
-    if (graph_[queue_[i]].factors.size() > kShared) continue;
-    for (const FactorId f : graph_[queue_[i]].factors)
+    if (i + kAhead < queue_.size()) __builtin_prefetch(&graph_.factorsOf(queue_[i + kAhead]));
+    if (graph_.factorsOf(queue_[i]).size() > kShared) continue;
+    for (const FactorId f : graph_.factorsOf(queue_[i]))
       if (passed_.insert(f.value))
         for (const VariableId neighbor : graph_.variablesOf(f)) reach(neighbor, distance + 1);
   }
@@ -70,7 +70,7 @@ void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
 
 void AffectedOrder::putLast(std::span<const VariableId> touched, std::span<const VariableId> newest) {
   const int columns = static_cast<int>(variables_.size()), group = std::min(kBands + 1, columns - 1);
-  const auto isCommon = [&](VariableId v) { return graph_[v].factors.size() > kCommon; };
+  const auto isCommon = [&](VariableId v) { return graph_.factorsOf(v).size() > kCommon; };
   for (const VariableId v : newest) group_[column_of_[v.value]] = group;
   for (const VariableId v : touched)
     if (const int column = column_of_[v.value]; isCommon(v) && column < columns && variables_[column] == v)

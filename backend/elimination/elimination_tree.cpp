@@ -17,9 +17,8 @@ int EliminationTree::cliqueOf(VariableId v) const {
   return static_cast<std::size_t>(v.value) < clique_of_.size() ? clique_of_[v.value] : -1;
 }
 
-int EliminationTree::ownerOf(const Factor& factor) const {
-  const auto first = std::ranges::min_element(factor.variables(), {}, [&](VariableId v) { return sequence_[v.value]; });
-  return cliqueOf(*first);
+int EliminationTree::ownerOf(std::span<const VariableId> variables) const {
+  return cliqueOf(*std::ranges::min_element(variables, {}, [&](VariableId v) { return sequence_[v.value]; }));
 }
 
 std::int64_t EliminationTree::sequence(int clique) const {

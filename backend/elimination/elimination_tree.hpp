@@ -36,8 +36,8 @@ class EliminationTree {
   const Clique& operator[](int clique) const { return cliques_[clique]; }
   /// The clique that has the variable among its frontals, -1 if none.
   int cliqueOf(VariableId v) const;
-  /// The clique that a factor belongs to.
-  int ownerOf(const Factor& factor) const;
+  /// The clique that a factor over these variables belongs to.
+  int ownerOf(std::span<const VariableId> variables) const;
   /// Appends the cliques with the variable among their frontals or in their separator.
   void appendCliquesWith(VariableId v, std::vector<int>& found) const;
   /// Sorted: the cliques and all above them, up to the roots.

@@ -72,15 +72,15 @@ void Front::begin(const Clique& clique) {
 }
 
 void Front::addFactor(const Clique& clique, FactorId id) {
-  const Factor& factor = graph_.factor(id);
   spans_.clear();
   int from = 0;
-  for (const VariableId v : factor.variables()) {
+  for (const VariableId v : graph_.variablesOf(id)) {
     spans_.push_back({from, offset_[v.value], graph_.sizeOf(v)});
     from += graph_.sizeOf(v);
   }
-  if (!graph_.isJacobian(id)) {
-    const auto information = graph_.information(id);
+  const LinearModels& models = graph_.models();
+  if (!models.isJacobian(id)) {
+    const auto information = models.information(id);
     addSymmetric(
         clique, [&](int j) { return information.H.column(j); }, spans_);
     addRightHandSide(clique, information.g_c.data());
@@ -88,7 +88,7 @@ void Front::addFactor(const Clique& clique, FactorId id) {
     return;
   }
   spans_.push_back({from, clique.size, 1});
-  const auto term = graph_.term(id);
+  const auto term = models.term(id);
   const int columns = static_cast<int>(term.cols()), stride = padded(columns);
   product_.assign(columns * stride, 0.0);
   addJacobianProduct(term.data(), static_cast<int>(term.rows()), columns, product_.data(), stride);
@@ -178,7 +178,7 @@ void Front::holdSingular(Clique& clique, int column) {
   while (component >= graph_.sizeOf(clique.variables[v])) component -= graph_.sizeOf(clique.variables[v++]);
   const VariableId variable = clique.variables[v];
   singular_.push_back({variable, component});
-  clique.panel[column * clique.panelStride() + clique.size] = -graph_[variable].x[component];
+  clique.panel[column * clique.panelStride() + clique.size] = -graph_.states()[variable].x[component];
 }
 
 Eigen::MatrixXd Front::schurComplement() const {

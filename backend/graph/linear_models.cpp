@@ -1,21 +1,35 @@
-/// The part of FactorGraph that makes and corrects the factors' linear models.
+#include "backend/graph/linear_models.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
 
-#include "backend/graph/factor_graph.hpp"
 #include "backend/graph/symmetric_product.hpp"
 
 namespace motorcade {
 namespace {
 
+/// Of the residuals: without noise the tolerances that are relative to it do not vanish.
+constexpr double kLeastMeanSquare = 1e-8;
+
 /// Columns M <- M R^T.
 template <int N>
-void turnColumns(FactorGraph::Term& term, Eigen::Index column, const Eigen::Matrix<double, N, N>& R) {
+void turnColumns(LinearModels::Term& term, Eigen::Index column, const Eigen::Matrix<double, N, N>& R) {
   for (Eigen::Index i = 0; i < term.rows(); ++i)
     term.row(i).segment<N>(column) = (term.row(i).segment<N>(column) * R.transpose()).eval();
+}
+
+/// From right perturbations to steps in the world's axes: to first order rho = R^T dp, phi = R^T dphi.
+void turnToWorldAxes(const VariableStates& states, std::span<const VariableId> variables, LinearModels::Term& term) {
+  Eigen::Index at = 0;
+  for (const VariableId v : variables) {
+    const Value& value = states[v].linearization_point;
+    if (const auto* pose = std::get_if<SE3>(&value))
+      for (const Eigen::Index k : {at, at + 3}) turnColumns<3>(term, k, pose->rotation());
+    if (const auto* planar = std::get_if<SE2>(&value)) turnColumns<2>(term, at, planar->rotation());
+    at += states[v].size;
+  }
 }
 
 using Column = Eigen::Map<Eigen::VectorXd>;
@@ -29,55 +43,91 @@ bool canBeSquared(std::span<const double> numbers) {
 
 }  // namespace
 
+bool LinearModels::add(FactorId id, AnyFactor factor) {
+  slots_.resize(std::max(slots_.size(), static_cast<std::size_t>(id.value) + 1));
+  Slot& slot = slots_[id.value];
+  if (auto* jacobian = std::get_if<std::unique_ptr<const JacobianFactor>>(&factor))
+    slot.jacobian = std::move(*jacobian);
+  else
+    slot.quadratic = std::move(std::get<std::unique_ptr<const InformationFactor>>(factor));
+  slot.columns = 1;
+  for (const VariableId v : slot.factor().variables()) slot.columns += states_[v].size;
+  if (!linearize(id)) {
+    slot = {};
+    return false;
+  }
+  int at = 0;
+  for (const VariableId v : slot.factor().variables())
+    for (int i = 0; i < states_[v].size; ++i, ++at)
+      states_[v].information[i] += slot.jacobian ? term(id).col(at).squaredNorm() : information(id).H.column(at)[at];
+  if (slot.jacobian) ++residual_count_;
+  return true;
+}
+
+void LinearModels::remove(FactorId id) {
+  Slot& slot = slots_[id.value];
+  setCost(slot, 0);
+  if (slot.jacobian) --residual_count_;
+  terms_.give(slot.term);
+  terms_.give(slot.g_c);
+  slot = {};
+}
+
+void LinearModels::setCost(Slot& slot, double cost) {
+  if (!std::isfinite(cost)) return;  // it would never leave the sum again
+  total_cost_ += cost - slot.cost;
+  if (slot.jacobian) residual_cost_ += cost - slot.cost;
+  slot.cost = cost;
+}
+
+double LinearModels::rmsResidual() const {
+  const double mean_square = residual_count_ == 0 ? 0 : residual_cost_ / static_cast<double>(residual_count_);
+  return std::sqrt(std::max(mean_square, kLeastMeanSquare));
+}
+
+std::span<const Value* const> LinearModels::valuesOf(const Factor& factor, Value VariableState::*member) {
+  values_.clear();
+  for (const VariableId v : factor.variables()) values_.push_back(&(states_[v].*member));
+  return values_;
+}
+
 /// The stacked coordinates of the factor's variables where the estimates stand, in `coordinates_`.
-Column FactorGraph::appliedCoordinates(const Factor& factor) {
+Column LinearModels::appliedCoordinates(const Factor& factor) {
   coordinates_.clear();
   for (const VariableId v : factor.variables()) {
-    const Variable& variable = (*this)[v];
-    coordinates_.insert(coordinates_.end(), variable.x_applied.begin(), variable.x_applied.begin() + variable.size);
+    const VariableState& state = states_[v];
+    coordinates_.insert(coordinates_.end(), state.x_applied.begin(), state.x_applied.begin() + state.size);
   }
   return {coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size())};
 }
 
-/// From right perturbations to steps in the world's axes: to first order rho = R^T dp, phi = R^T dphi.
-void FactorGraph::turnToWorldAxes(const Factor& factor, Term& term) const {
-  Eigen::Index at = 0;
-  for (const VariableId v : factor.variables()) {
-    const Value& value = (*this)[v].linearization_point;
-    if (const auto* pose = std::get_if<SE3>(&value))
-      for (const Eigen::Index k : {at, at + 3}) turnColumns<3>(term, k, pose->rotation());
-    if (const auto* planar = std::get_if<SE2>(&value)) turnColumns<2>(term, at, planar->rotation());
-    at += sizeOf(v);
-  }
-}
-
-FactorGraph::Term FactorGraph::term(FactorId id) const {
+LinearModels::Term LinearModels::term(FactorId id) const {
   assert(isJacobian(id));
   return {slot(id).term, slot(id).factor().rows(), slot(id).columns};
 }
 
-FactorGraph::Information FactorGraph::information(FactorId id) const { return informationOf(slot(id)); }
-
-FactorGraph::Information FactorGraph::informationOf(const LinearizedFactor& slot) {
+LinearModels::Information LinearModels::information(FactorId id) const {
+  const Slot& slot = slots_[id.value];
   assert(slot.quadratic);
   return {.H = {slot.lower_H, slot.columns - 1}, .g_c = {slot.g_c, slot.columns}};
 }
 
-/// The model and the cost at the applied estimates. False, and nothing changes, when they are not finite.
-bool FactorGraph::linearize(LinearizedFactor& slot) {
-  apply(slot.factor());
-  if (!(slot.jacobian ? linearizeResidual(slot) : linearizeInformation(slot))) return false;
+bool LinearModels::linearize(FactorId id) {
+  Slot& slot = slots_[id.value];
+  states_.apply(slot.factor().variables());
+  if (!(slot.jacobian ? linearizeResidual(slot) : linearizeInformation(id))) return false;
   slot.drift = 0;
   return true;
 }
 
-bool FactorGraph::linearizeResidual(LinearizedFactor& slot) {
+/// The model and the cost at the applied estimates. False, and nothing changes, when they are not finite.
+bool LinearModels::linearizeResidual(Slot& slot) {
   const JacobianFactor& factor = *slot.jacobian;
   matrix_.resize(std::size_t(factor.rows()) * slot.columns);
   Term fresh(matrix_.data(), factor.rows(), slot.columns);
-  factor.linearize(valuesOf(factor, &Variable::linearization_point), fresh);
-  factor.residual(valuesOf(factor, &Variable::applied_estimate), fresh.rightCols<1>().col(0));
-  turnToWorldAxes(factor, fresh);
+  factor.linearize(valuesOf(factor, &VariableState::linearization_point), fresh);
+  factor.residual(valuesOf(factor, &VariableState::applied_estimate), fresh.rightCols<1>().col(0));
+  turnToWorldAxes(states_, factor.variables(), fresh);
   if (!canBeSquared(matrix_)) return false;
   setCost(slot, fresh.rightCols<1>().squaredNorm());
   const Column x = appliedCoordinates(factor);
@@ -88,9 +138,10 @@ bool FactorGraph::linearizeResidual(LinearizedFactor& slot) {
 }
 
 /// Where a factor still says what it was made of, its H serves as it is, whatever became of g and c.
-bool FactorGraph::linearizeInformation(LinearizedFactor& slot) {
+bool LinearModels::linearizeInformation(FactorId id) {
+  Slot& slot = slots_[id.value];
   const InformationFactor& factor = *slot.quadratic;
-  const auto values = valuesOf(factor, &Variable::applied_estimate);
+  const auto values = valuesOf(factor, &VariableState::applied_estimate);
   const Quadratic* held = factor.heldModel(values);
   if (!held) {
     matrix_.resize(std::size_t(factor.rows()) * factor.rows());
@@ -109,31 +160,29 @@ bool FactorGraph::linearizeInformation(LinearizedFactor& slot) {
     slot.lower_H = slot.term;
   }
   if (!slot.g_c) slot.g_c = terms_.take(slot.columns);
-  const Information information = informationOf(slot);
-  Eigen::Map<Eigen::VectorXd> g_c = information.g_c;
+  const Information fresh = information(id);
+  Eigen::Map<Eigen::VectorXd> g_c = fresh.g_c;
   g_c = model.g_c;
-  setCost(slot, information.c());
+  setCost(slot, fresh.c());
   // From steps to coordinates: the model at x = 0.
   const Column x = appliedCoordinates(factor);
   product_.assign(x.size(), 0.0);
-  addSymmetricProduct(information.H, x.data(), product_.data());
+  addSymmetricProduct(fresh.H, x.data(), product_.data());
   const Column Hx(product_.data(), x.size());
   g_c[x.size()] += x.dot(Hx) - 2 * x.dot(g_c.head(x.size()));
   g_c.head(x.size()) -= Hx;
   return true;
 }
 
-void FactorGraph::linearize(FactorId id) { linearize(factors_[id.value]); }
-
-FactorGraph::Mismatch FactorGraph::mismatch(FactorId id) {
+LinearModels::Mismatch LinearModels::mismatch(FactorId id) {
   if (!isJacobian(id)) return informationMismatch(id);
   const JacobianFactor& factor = *slot(id).jacobian;
   const Term model = term(id);
-  apply(factor);
+  states_.apply(factor.variables());
   residual_.resize(factor.rows());
   Column r(residual_.data(), factor.rows());
-  factor.residual(valuesOf(factor, &Variable::applied_estimate), r);
-  setCost(factors_[id.value], r.squaredNorm());
+  factor.residual(valuesOf(factor, &VariableState::applied_estimate), r);
+  setCost(slots_[id.value], r.squaredNorm());
   const Column x = appliedCoordinates(factor);
   r -= model.col(x.size());
   r.noalias() -= model.leftCols(x.size()) * x;
@@ -141,19 +190,19 @@ FactorGraph::Mismatch FactorGraph::mismatch(FactorId id) {
 }
 
 /// Of the gradient, and by its entries over the square root of their information.
-FactorGraph::Mismatch FactorGraph::informationMismatch(FactorId id) {
+LinearModels::Mismatch LinearModels::informationMismatch(FactorId id) {
   const InformationFactor& factor = *slot(id).quadratic;
   const Information model = information(id);
   const Eigen::Index n = model.H.size;
-  apply(factor);
+  states_.apply(factor.variables());
   residual_.assign(n + 1, 0.0);
   Column difference(residual_.data(), n + 1);
-  factor.gradient(valuesOf(factor, &Variable::applied_estimate), difference);
+  factor.gradient(valuesOf(factor, &VariableState::applied_estimate), difference);
   if (!std::isfinite(difference.squaredNorm())) {
     residual_.assign(n, 0.0);
     return {.norm = 0, .r = residual_};
   }
-  setCost(factors_[id.value], difference[n]);
+  setCost(slots_[id.value], difference[n]);
   residual_.resize(n);
   Column change(residual_.data(), n);
   change -= model.g();
@@ -166,12 +215,13 @@ FactorGraph::Mismatch FactorGraph::informationMismatch(FactorId id) {
   return {.norm = std::sqrt(squared), .r = residual_};
 }
 
-void FactorGraph::correctResidual(FactorId id, std::span<const double> r) {
-  const Eigen::Map<const Eigen::VectorXd> shift(r.data(), static_cast<Eigen::Index>(r.size()));
+void LinearModels::correctResidual(FactorId id, const Mismatch& mismatch) {
+  const Eigen::Map<const Eigen::VectorXd> shift(mismatch.r.data(), static_cast<Eigen::Index>(mismatch.r.size()));
   if (!isJacobian(id))
     information(id).g_c.head(shift.size()) += shift;
   else
     term(id).rightCols<1>() += shift;
+  slots_[id.value].drift += mismatch.norm;
 }
 
 }  // namespace motorcade

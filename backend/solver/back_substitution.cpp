@@ -58,7 +58,7 @@ void BackSubstitution::solve(const Clique& clique, Solution since, double thresh
   solved_.push_back(tree_.cliqueOf(clique.frontalVariables().front()));
   x_separator_.clear();
   for (const VariableId v : clique.separator()) {
-    const auto& x = graph_[v].x;
+    const auto& x = graph_.states()[v].x;
     x_separator_.insert(x_separator_.end(), x.begin(), x.begin() + graph_.sizeOf(v));
   }
   x_frontal_.resize(clique.frontal_size);
@@ -81,10 +81,10 @@ void BackSubstitution::putOff(const Clique& clique, Solution since) {
   }
 }
 
-bool BackSubstitution::hasFollowed(const Factor& factor) const {
-  const VariableId last = tree_[tree_.ownerOf(factor)].frontalVariables().front();
-  return std::ranges::all_of(factor.variables(),
-                             [&](VariableId v) { return moved_by_[v.value] <= solved_by_[last.value]; });
+bool BackSubstitution::hasFollowed(FactorId factor) const {
+  const auto variables = graph_.variablesOf(factor);
+  const VariableId last = tree_[tree_.ownerOf(variables)].frontalVariables().front();
+  return std::ranges::all_of(variables, [&](VariableId v) { return moved_by_[v.value] <= solved_by_[last.value]; });
 }
 
 std::int64_t BackSubstitution::waitingScalars() const {
@@ -98,7 +98,7 @@ std::int64_t BackSubstitution::waitingScalars() const {
 void BackSubstitution::moveVariables(const Clique& clique, double threshold_sigmas) {
   std::size_t at = 0;
   for (const VariableId v : clique.frontalVariables()) {
-    auto& variable = graph_[v];
+    auto& variable = graph_.states()[v];
     waiting_since_[v.value] = 0;
     solved_by_[v.value] = newest_;
     double change = 0, sigmas_squared = 0;

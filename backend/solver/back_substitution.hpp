@@ -31,7 +31,7 @@ class BackSubstitution {
   Result operator()(double threshold_sigmas, std::int64_t most_scalars);
   /// Have all variables of the factor followed the steps of those above them? Otherwise some of them are where they are
   /// now, and others where they were some updates ago.
-  bool hasFollowed(const Factor& factor) const;
+  bool hasFollowed(FactorId factor) const;
   /// Scalars of the cliques that wait for a later call.
   std::int64_t waitingScalars() const;
 

@@ -33,7 +33,7 @@ int firstRowOf(VariableId v, const Clique& clique, const FactorGraph& graph) {
 /// A quadratic's term in a vector stays right wherever the vector goes. It may be in very many of them, as an offset
 /// that all measurements share is.
 bool entersLinearly(VariableId v, FactorId factor, const FactorGraph& graph) {
-  return graph.isVector(v) && !graph.isJacobian(factor);
+  return graph.states().isVector(v) && !graph.models().isJacobian(factor);
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ void FluidRelinearization::compareModels(const BackSubstitution::Result& step) {
   compared_.reset(graph_.factorSlots());
   half_followed_.resize(graph_.factorSlots(), 0);
   staleness_rad_.resize(graph_.slots(), 0.0);
-  tolerance_ = params_.mismatch_tolerance * graph_.rmsResidual();
+  tolerance_ = params_.mismatch_tolerance * models_.rmsResidual();
   compareThoseThatFollowed(step.solved);
   to_look_at_.insert(to_look_at_.end(), step.moved.begin(), step.moved.end());
   std::size_t seen = 0;
@@ -57,26 +57,26 @@ void FluidRelinearization::compareModels(const BackSubstitution::Result& step) {
 void FluidRelinearization::compareThoseThatFollowed(std::span<const int> solved) {
   for (const int clique : solved)
     for (const FactorId f : tree_[clique].factors) {
-      const Factor& factor = graph_.factor(f);
-      if (!half_followed_[f.value] || !substitution_.hasFollowed(factor)) continue;
+      if (!half_followed_[f.value] || !substitution_.hasFollowed(f)) continue;
       half_followed_[f.value] = 0;
-      for (const VariableId v : factor.variables())
-        if (const double turn = graph_.turnSinceLinearization(v); turn > params_.leisurely_rad) markStale(v, turn);
+      for (const VariableId v : graph_.variablesOf(f))
+        if (const double turn = states_.turnSinceLinearization(v); turn > params_.leisurely_rad) markStale(v, turn);
       if (compared_.insert(f.value)) compare(f);
     }
 }
 
 /// Compares the models of a variable that moved, or leaves them until they have followed.
 void FluidRelinearization::lookAt(VariableId v) {
-  const double turn = graph_.turnSinceLinearization(v);
-  const bool stale = turn > params_.leisurely_rad, far = graph_.mismatchBound(v) >= params_.compared_share * tolerance_;
+  const double turn = states_.turnSinceLinearization(v);
+  const bool stale = turn > params_.leisurely_rad,
+             far = states_.mismatchBound(v) >= params_.compared_share * tolerance_;
   if (!stale && !far) return;
-  if (far) graph_.markCompared(v);
+  if (far) states_.markCompared(v);
   bool followed = true;
-  for (const FactorId f : graph_[v].factors) {
-    if (graph_.isProvisional(f) || entersLinearly(v, f, graph_)) continue;
+  for (const FactorId f : graph_.factorsOf(v)) {
+    if (models_.isProvisional(f) || entersLinearly(v, f, graph_)) continue;
     if (outside_tree_.contains(f.value)) continue;
-    if (!substitution_.hasFollowed(graph_.factor(f))) {
+    if (!substitution_.hasFollowed(f)) {
       followed = false;
       half_followed_[f.value] = 1;
     } else if (far && compared_.insert(f.value)) {
@@ -87,7 +87,7 @@ void FluidRelinearization::lookAt(VariableId v) {
 }
 
 void FluidRelinearization::compare(FactorId f) {
-  if (const double norm = graph_.mismatch(f).norm; norm > tolerance_) off_.push_back({f, norm});
+  if (const double norm = models_.mismatch(f).norm; norm > tolerance_) off_.push_back({f, norm});
 }
 
 /// The variable's factors want new Jacobians; `turn_rad` says how urgently.
@@ -118,7 +118,7 @@ FluidRelinearization::Corrections FluidRelinearization::correctModels() {
   staleness_rad_.resize(graph_.slots(), 0.0);
   markDrifted();
   relinearizeStale();
-  for (const FactorId f : relinearized_) graph_.linearize(f);
+  for (const FactorId f : relinearized_) models_.linearize(f);
   corrections_.relinearized_factors = static_cast<int>(relinearized_.size());
   correctResiduals();
   return corrections_;
@@ -133,7 +133,7 @@ void FluidRelinearization::correctResiduals() {
   for (; seen < off_.size() && put_off.size() < kMostPutOff; ++seen) {
     const OffModel& off = off_[seen];
     if (is_relinearized_.contains(off.factor.value) || corrected_.contains(off.factor.value)) continue;
-    if (!substitution_.hasFollowed(graph_.factor(off.factor))) {
+    if (!substitution_.hasFollowed(off.factor)) {
       half_followed_[off.factor.value] = 1;
       continue;
     }
@@ -154,14 +154,14 @@ void FluidRelinearization::correctResiduals() {
 /// Where the budget puts Jacobians off, steps by those that are off too far may overshoot, and corrections of what they
 /// did then grow without bound. The model stays as it was, and with it the problem has a solution.
 bool FluidRelinearization::waitsForJacobians(const OffModel& off) const {
-  return budget_.limited() && graph_.drift(off.factor) + off.mismatch > kTrustedDrifts * params_.jacobian_drift_sigmas;
+  return budget_.limited() && models_.drift(off.factor) + off.mismatch > kTrustedDrifts * params_.jacobian_drift_sigmas;
 }
 
 /// Spends what it takes to carry a new right-hand side from the model's clique to the root.
 bool FluidRelinearization::reachesResidual(FactorId id) {
   if (!budget_.limited()) return true;
   std::int64_t scalars = 0;
-  for (int c = tree_.ownerOf(graph_.factor(id)); c >= 0 && !work_.has(c); c = tree_[c].parent) {
+  for (int c = tree_.ownerOf(graph_.variablesOf(id)); c >= 0 && !work_.has(c); c = tree_[c].parent) {
     scalars += tree_[c].frontal_size;
     if (scalars > budget_.substitutionsLeft()) return false;
   }
@@ -180,10 +180,10 @@ void FluidRelinearization::clear() {
 /// The variables of the factors whose Jacobians drifted become stale.
 void FluidRelinearization::markDrifted() {
   for (const OffModel& off : off_) {
-    if (graph_.drift(off.factor) + off.mismatch <= params_.jacobian_drift_sigmas) continue;
+    if (models_.drift(off.factor) + off.mismatch <= params_.jacobian_drift_sigmas) continue;
     for (const VariableId v : graph_.variablesOf(off.factor))
       if (!entersLinearly(v, off.factor, graph_))
-        markStale(v, std::max(kDriftedShare * params_.relinearize_rad, graph_.turnSinceLinearization(v)));
+        markStale(v, std::max(kDriftedShare * params_.relinearize_rad, states_.turnSinceLinearization(v)));
   }
 }
 
@@ -238,7 +238,7 @@ void FluidRelinearization::relinearizeAtRest() {
     next_at_rest_ = next_at_rest_ + 1 < slots ? next_at_rest_ + 1 : 0;
     const VariableId v{next_at_rest_};
     if (!graph_.contains(v) || tree_.cliqueOf(v) < 0) continue;
-    if (const double turn = graph_.turnSinceLinearization(v); turn > params_.rest_share * params_.leisurely_rad)
+    if (const double turn = states_.turnSinceLinearization(v); turn > params_.rest_share * params_.leisurely_rad)
       relinearizeRegion(v, turn, rest_flops_left_);
   }
 }
@@ -253,9 +253,9 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeRegion(VariableId w
   in_region_.reset(graph_.slots());
   in_region_.insert(worst.value);
   for (std::size_t i = 0; i < region_.size() && i < kLargestRegion; ++i)
-    for (const FactorId f : graph_[region_[i]].factors)
+    for (const FactorId f : graph_.factorsOf(region_[i]))
       for (const VariableId v : graph_.variablesOf(f)) {
-        if (in_region_.contains(v.value) || graph_.turnSinceLinearization(v) <= turn_rad) continue;
+        if (in_region_.contains(v.value) || states_.turnSinceLinearization(v) <= turn_rad) continue;
         in_region_.insert(v.value);
         if (relinearizeWithin(v, flops_left) == Reach::kWithin) region_.push_back(v);
       }
@@ -276,9 +276,9 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeWithin(VariableId v
 FluidRelinearization::EliminationCost FluidRelinearization::costOfRelinearizing(VariableId v) {
   counted_.reset(tree_.slots());
   EliminationCost cost;
-  for (const FactorId f : graph_[v].factors) {
+  for (const FactorId f : graph_.factorsOf(v)) {
     if (new_factors_.contains(f.value)) continue;
-    for (int c = tree_.ownerOf(graph_.factor(f)); c >= 0 && !work_.isEliminated(c) && counted_.insert(c);
+    for (int c = tree_.ownerOf(graph_.variablesOf(f)); c >= 0 && !work_.isEliminated(c) && counted_.insert(c);
          c = tree_[c].parent) {
       cost.scalars += tree_[c].frontal_size;
       cost.flops += static_cast<double>(tree_[c].frontal_size) * tree_[c].size * tree_[c].size;
@@ -289,33 +289,31 @@ FluidRelinearization::EliminationCost FluidRelinearization::costOfRelinearizing(
 
 /// The variable's factors get their Jacobians when the linearization points of all variables have moved.
 void FluidRelinearization::relinearize(VariableId v) {
-  graph_.moveLinearizationPoint(v);
+  states_.moveLinearizationPoint(v);
   staleness_rad_[v.value] = 0;
   ++corrections_.relinearized_variables;
-  for (const FactorId f : graph_[v].factors) {
+  for (const FactorId f : graph_.factorsOf(v)) {
     if (!is_relinearized_.insert(f.value)) continue;
     relinearized_.push_back(f);
-    if (!new_factors_.contains(f.value)) work_.markRefresh(tree_.ownerOf(graph_.factor(f)));
+    if (!new_factors_.contains(f.value)) work_.markRefresh(tree_.ownerOf(graph_.variablesOf(f)));
   }
 }
 
 /// The model's new residual changes the right-hand side of its clique by J^T r.
 void FluidRelinearization::correctResidual(FactorId id) {
-  const auto mismatch = graph_.mismatch(id);
-  graph_.correctResidual(id, mismatch.r);
-  graph_.addDrift(id, mismatch.norm);
+  const auto mismatch = models_.mismatch(id);
+  models_.correctResidual(id, mismatch);
   ++corrections_.corrected_factors;
-  const Factor& factor = graph_.factor(id);
-  const int owner = tree_.ownerOf(factor);
+  const int owner = tree_.ownerOf(graph_.variablesOf(id));
   const std::span<double> change = work_.markShift(owner);
   if (change.empty()) return;  // the clique is eliminated anew
-  const bool gradient = !graph_.isJacobian(id);
+  const bool gradient = !models_.isJacobian(id);
   const Eigen::Map<const Eigen::VectorXd> r(mismatch.r.data(), static_cast<Eigen::Index>(mismatch.r.size()));
   int column = 0;
-  for (const VariableId v : factor.variables()) {
+  for (const VariableId v : graph_.variablesOf(id)) {
     const int row = firstRowOf(v, tree_[owner], graph_);
     for (int i = 0; i < graph_.sizeOf(v); ++i, ++column)
-      change[row + i] += gradient ? r[column] : graph_.term(id).col(column).dot(r);
+      change[row + i] += gradient ? r[column] : models_.term(id).col(column).dot(r);
   }
 }
 

@@ -55,7 +55,7 @@ std::optional<FactorId> IncrementalSolver::addFactor(AnyFactor factor, Lifetime 
     refused_.push_back(refusal(SolverProblem::Kind::kNotFinite, last_.front(), last_));
     return std::nullopt;
   }
-  if (lifetime == Lifetime::kProvisional) graph_.markProvisional(*id);
+  if (lifetime == Lifetime::kProvisional) graph_.models().markProvisional(*id);
   new_factors_.push_back(*id);
   return id;
 }
@@ -64,7 +64,7 @@ void IncrementalSolver::removeFactor(FactorId id) {
   const auto variables = graph_.variablesOf(id);
   if (std::erase(new_factors_, id) == 0 && !waiting_.remove(id)) {
     touched_.insert(touched_.end(), variables.begin(), variables.end());
-    tree_.removeFactor(tree_.ownerOf(graph_.factor(id)), id);
+    tree_.removeFactor(tree_.ownerOf(graph_.variablesOf(id)), id);
   }
   graph_.removeFactor(id);
 }
@@ -138,7 +138,7 @@ void IncrementalSolver::step(bool fold, Correction correction) {
     work_.apply();
     if (fold) rebuildTop();
   });
-  spread_sigmas_ = params_.substitution_tolerance * graph_.rmsResidual();
+  spread_sigmas_ = params_.substitution_tolerance * graph_.models().rmsResidual();
   substitute(params_.spread_scalars > 0 ? params_.spread_scalars : kNoLimit);
 }
 
@@ -190,7 +190,6 @@ void IncrementalSolver::substitute(std::int64_t most_scalars) {
 /// Relinearizes and reorders everything.
 void IncrementalSolver::batchStep() {
   work_.begin();
-  graph_.restartCoordinates();
   report_.relinearized_factors += static_cast<int>(graph_.factorCount());
   relinearization_.clear();
   waiting_.clear();
@@ -200,7 +199,8 @@ void IncrementalSolver::batchStep() {
   tree_.remove(tree_.cliques(), removed_);
   const std::vector<VariableId> variables = graph_.variables();
   const std::vector<FactorId> factors = graph_.factors();
-  for (const FactorId f : factors) graph_.linearize(f);
+  for (const VariableId v : variables) graph_.states().restartCoordinates(v);
+  for (const FactorId f : factors) graph_.models().linearize(f);
   if (variables.empty()) return;
   created_.clear();
   tree_.eliminate(
@@ -234,7 +234,7 @@ void IncrementalSolver::retire(std::span<const VariableId> variables) {
 void IncrementalSolver::takeInFactorsOf(std::span<const VariableId> leaving) {
   new_factors_ = waiting_.takeWith(leaving);
   if (new_factors_.empty()) return;
-  for (const FactorId f : new_factors_) graph_.linearize(f);
+  for (const FactorId f : new_factors_) graph_.models().linearize(f);
   step(true, Correction::kNow);
   touched_.clear();
   new_factors_.clear();
@@ -264,7 +264,7 @@ SolverCounters IncrementalSolver::counters() const {
   SolverCounters counters = counters_;
   counters.variables = static_cast<std::int64_t>(graph_.variableCount());
   counters.factors = static_cast<std::int64_t>(graph_.factorCount());
-  counters.chi2 = graph_.totalCost();
+  counters.chi2 = graph_.models().totalCost();
   return counters;
 }
 

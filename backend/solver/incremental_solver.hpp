@@ -85,7 +85,7 @@ class IncrementalSolver {
   /// Relinearizes everything until no x changes by more than `tolerance`.
   const Report& converge(int max_iterations, double tolerance);
 
-  Value estimate(VariableId v) const { return graph_.estimate(v); }
+  Value estimate(VariableId v) const { return graph_.states().estimate(v); }
   SE3 pose(VariableId v) const { return std::get<SE3>(estimate(v)); }
   /// See motorcade::jointCovariance.
   std::optional<Eigen::MatrixXd> jointCovariance(std::span<const VariableId> variables) const;
@@ -97,7 +97,7 @@ class IncrementalSolver {
   SolverCounters counters() const;
   const FactorGraph& graph() const { return graph_; }
   const EliminationTree& tree() const { return tree_; }
-  std::size_t heldBytes() const { return graph_.termBytes() + tree_.heldBytes(); }
+  std::size_t heldBytes() const { return graph_.models().heldBytes() + tree_.heldBytes(); }
 
  private:
   void beginReport();

@@ -55,7 +55,7 @@ RowMajorMatrixXd transposed(const FactorGraph& graph, const Path& path, std::spa
   Eigen::Index from = 0;
   for (const VariableId v : variables) {
     RowMajorMatrixXd of_variable = J.middleCols(from, graph.sizeOf(v)).transpose();
-    turnToWorldAxes(graph.estimate(v), of_variable);
+    turnToWorldAxes(graph.states().estimate(v), of_variable);
     columns.block(path.rowOf(v), 0, graph.sizeOf(v), J.rows()) += of_variable;
     from += graph.sizeOf(v);
   }

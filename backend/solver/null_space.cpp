@@ -90,20 +90,20 @@ struct CostChange {
 };
 
 CostChange changeOf(const FactorGraph& graph, FactorId id, const std::unordered_map<VariableId, SmallVector>& steps) {
-  const Factor& factor = graph.factor(id);
   Eigen::Index n = 0;
-  for (const VariableId v : factor.variables()) n += graph.sizeOf(v);
+  for (const VariableId v : graph.variablesOf(id)) n += graph.sizeOf(v);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
   Eigen::Index at = 0;
-  for (const VariableId v : factor.variables()) {
+  for (const VariableId v : graph.variablesOf(id)) {
     if (const auto found = steps.find(v); found != steps.end()) x.segment(at, graph.sizeOf(v)) = found->second;
     at += graph.sizeOf(v);
   }
-  if (graph.isJacobian(id)) {
-    const auto J = graph.term(id).leftCols(n);
+  const LinearModels& models = graph.models();
+  if (models.isJacobian(id)) {
+    const auto J = models.term(id).leftCols(n);
     return {(J * x).squaredNorm(), J.colwise().squaredNorm().dot(x.cwiseAbs2().transpose())};
   }
-  const PackedTriangle H = graph.information(id).H;
+  const PackedTriangle H = models.information(id).H;
   Eigen::VectorXd Hx = Eigen::VectorXd::Zero(n);
   addSymmetricProduct(H, x.data(), Hx.data());
   CostChange change{.cost = x.dot(Hx)};
@@ -116,14 +116,14 @@ Constraint constraintAlong(const FactorGraph& graph, const std::vector<Step>& mo
   std::vector<FactorId> factors;
   for (const auto& [v, step] : moving) {
     steps.emplace(v, step);
-    factors.insert(factors.end(), graph[v].factors.begin(), graph[v].factors.end());
+    factors.insert(factors.end(), graph.factorsOf(v).begin(), graph.factorsOf(v).end());
   }
   sortUnique(factors);
   bool constrained = false;
   CostChange sum;
   for (const FactorId f : factors) {
     const CostChange change = changeOf(graph, f, steps);
-    const double rounding = graph.isJacobian(f) ? kRoundingOfJacobian : kRoundingOfInformation;
+    const double rounding = graph.models().isJacobian(f) ? kRoundingOfJacobian : kRoundingOfInformation;
     constrained |= change.cost > rounding * change.without_cancellation;
     sum.cost += change.cost;
     sum.without_cancellation += change.without_cancellation;

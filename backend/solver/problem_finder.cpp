@@ -54,7 +54,7 @@ std::vector<SmallVector> sparseBasis(Eigen::MatrixXd columns) {
 
 /// From a step in the world's axes to the variable's own perturbation, where its Jacobians were taken.
 SmallVector toOwnAxes(const FactorGraph& graph, VariableId v, SmallVector step) {
-  const Value& value = graph[v].linearization_point;
+  const Value& value = graph.states()[v].linearization_point;
   if (const auto* pose = std::get_if<SE3>(&value)) {
     step.head<3>() = (pose->rotation().transpose() * step.head<3>()).eval();
     step.tail<3>() = (pose->rotation().transpose() * step.tail<3>()).eval();
@@ -76,7 +76,7 @@ VariableId mostHeld(const Directions& directions) {
 /// One problem of directions that belong together.
 SolverProblem merged(const FactorGraph& graph, Kind kind, const Directions& directions, std::int64_t part_variables) {
   const VariableId v = mostHeld(directions);
-  SolverProblem problem{.kind = kind, .variable = v, .factors = graph[v].factors};
+  SolverProblem problem{.kind = kind, .variable = v, .factors = graph.factorsOf(v)};
   problem.part_variables = part_variables;
   problem.freedoms = static_cast<std::int64_t>(directions.size());
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(graph.sizeOf(v), static_cast<Eigen::Index>(directions.size()));
@@ -129,7 +129,7 @@ class PartProblems {
   /// No factor constrains the direction, and more than a variable that has factors of its own moves along it.
   bool isJoint(const NullSpaceDirection& direction) const {
     return direction.constraint == Constraint::kNone &&
-           (direction.steps.size() > 1 || graph_[direction.held].factors.empty());
+           (direction.steps.size() > 1 || graph_.factorsOf(direction.held).empty());
   }
   bool movesPart(const NullSpaceDirection& direction) const {
     return isJoint(direction) && static_cast<std::int64_t>(direction.steps.size()) == part_variables_;

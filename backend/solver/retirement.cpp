@@ -32,9 +32,10 @@ std::unique_ptr<MarginalFactor> marginalPrior(FactorGraph& graph, const std::vec
   std::vector<Value> values;
   Eigen::Index at = 0;
   for (const VariableId v : neighbors) {
-    graph.apply(v);
-    values.push_back(graph[v].applied_estimate);
-    for (int i = 0; i < graph.sizeOf(v); ++i) x[at++] = graph[v].x_applied[i];
+    graph.states().apply(v);
+    const VariableState& state = graph.states()[v];
+    values.push_back(state.applied_estimate);
+    for (int i = 0; i < state.size; ++i) x[at++] = state.x_applied[i];
   }
   const Eigen::VectorXd Hx = knowledge.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * x;
   knowledge(n, n) += x.dot(Hx) + 2 * x.dot(knowledge.row(n).head(n));
@@ -83,7 +84,7 @@ void Retirement::retirePart(const Part& part, std::span<const VariableId> gone) 
     const auto prior = graph_.addFactor(marginalPrior(graph_, neighbors, std::move(knowledge)));
     const bool inside = std::ranges::any_of(neighbors, [&](VariableId v) { return contains(staying, v); });
     if (prior && inside) kept.push_back(*prior);
-    if (prior && !inside) tree_.addFactor(tree_.ownerOf(graph_.factor(*prior)), *prior);
+    if (prior && !inside) tree_.addFactor(tree_.ownerOf(graph_.variablesOf(*prior)), *prior);
   }
   eliminateAgain(part, staying, kept);
 }
@@ -91,10 +92,9 @@ void Retirement::retirePart(const Part& part, std::span<const VariableId> gone) 
 /// What was left on the same variable before: of something that all share, priors would grow without end.
 void Retirement::includeEarlierPriors(std::span<const VariableId> neighbors, std::vector<FactorId>& factors) {
   if (neighbors.size() != 1) return;
-  for (const FactorId f : graph_[neighbors.front()].factors) {
-    const Factor& factor = graph_.factor(f);
-    if (factor.variables().size() != 1 || graph_.isJacobian(f)) continue;
-    if (tree_.cliqueOf(neighbors.front()) >= 0) tree_.removeFactor(tree_.ownerOf(factor), f);
+  for (const FactorId f : graph_.factorsOf(neighbors.front())) {
+    if (graph_.variablesOf(f).size() != 1 || graph_.models().isJacobian(f)) continue;
+    if (tree_.cliqueOf(neighbors.front()) >= 0) tree_.removeFactor(tree_.ownerOf(graph_.variablesOf(f)), f);
     factors.push_back(f);
   }
   sortUnique(factors);
@@ -134,7 +134,7 @@ std::span<const int> Retirement::drop(std::span<const VariableId> variables) {
 
   std::vector<FactorId> kept = removedFactorsWithout(factors);
   for (const FactorId f : factors) {
-    const InformationFactor* information = graph_.informationFactor(f);
+    const InformationFactor* information = graph_.models().informationFactor(f);
     auto reduced = information ? information->without(variables) : nullptr;
     graph_.removeFactor(f);
     if (!reduced) continue;
@@ -152,7 +152,7 @@ std::span<const int> Retirement::drop(std::span<const VariableId> variables) {
 std::vector<FactorId> Retirement::factorsOf(std::span<const VariableId> variables) const {
   std::vector<FactorId> factors;
   for (const VariableId v : variables)
-    factors.insert(factors.end(), graph_[v].factors.begin(), graph_[v].factors.end());
+    factors.insert(factors.end(), graph_.factorsOf(v).begin(), graph_.factorsOf(v).end());
   sortUnique(factors);
   return factors;
 }

@@ -56,7 +56,7 @@ std::string nameOfDirection(const SmallVector& direction, const std::optional<Va
 /// "along x and rotation about z", "in any direction"
 std::string along(const SolverProblem& problem, const FactorGraph& graph) {
   std::optional<Value> value;
-  if (graph.contains(problem.variable)) value = graph.estimate(problem.variable);
+  if (graph.contains(problem.variable)) value = graph.states().estimate(problem.variable);
   if (problem.directions.empty()) return "somewhere";
   if (problem.directions.size() == static_cast<std::size_t>(problem.directions.front().size()))
     return "in any direction";

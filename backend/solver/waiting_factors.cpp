@@ -47,14 +47,14 @@ void WaitingFactors::admitWaiting(std::vector<FactorId>& fresh) {
     const std::int64_t cost = budget_.limited() ? costOf(f) : 0;
     if (cost > allowance_) return false;
     accept(f, cost);
-    graph_.linearize(f);  // at estimates that went on meanwhile
+    graph_.models().linearize(f);  // at estimates that went on meanwhile
     fresh.push_back(f);
     return true;
   });
   if (waiting_.empty()) return;
   if (!liftVariableOf(waiting_.front())) {  // there is nothing above to lift through
     fresh.push_back(waiting_.front());
-    graph_.linearize(waiting_.front());
+    graph_.models().linearize(waiting_.front());
     waiting_.erase(waiting_.begin());
     return;
   }
@@ -79,9 +79,9 @@ double WaitingFactors::chi2() const {
   std::vector<Value> values;
   std::vector<const Value*> pointers;
   for (const FactorId f : waiting_) {
-    const JacobianFactor& factor = *graph_.jacobianFactor(f);
+    const JacobianFactor& factor = *graph_.models().jacobianFactor(f);
     values.clear(), pointers.clear();
-    for (const VariableId v : factor.variables()) values.push_back(graph_.estimate(v));
+    for (const VariableId v : factor.variables()) values.push_back(graph_.states().estimate(v));
     for (const Value& value : values) pointers.push_back(&value);
     Eigen::VectorXd r(factor.rows());
     factor.residual(pointers, r);
@@ -108,17 +108,17 @@ std::int64_t WaitingFactors::costAbove(VariableId v) {
 
 /// A factor with a residual; others hold its new variables, if it has any.
 bool WaitingFactors::canWait(FactorId id) const {
-  return graph_.isJacobian(id) && std::ranges::all_of(graph_.variablesOf(id), [&](VariableId v) {
+  return graph_.models().isJacobian(id) && std::ranges::all_of(graph_.variablesOf(id), [&](VariableId v) {
            return !isNew(v) || held_.contains(v.value);
          });
 }
 
 void WaitingFactors::accept(FactorId id, std::int64_t cost) {
-  const Factor& factor = graph_.factor(id);
+  const int rows = graph_.models().factor(id).rows();
   allowance_ -= cost;
   if (cost > EliminationBudget::kLeast) budget_.spend(cost);
-  for (const VariableId v : factor.variables()) {
-    if (isNew(v) && factor.rows() >= graph_.sizeOf(v)) held_.insert(v.value);
+  for (const VariableId v : graph_.variablesOf(id)) {
+    if (isNew(v) && rows >= graph_.sizeOf(v)) held_.insert(v.value);
     for (int c = tree_.cliqueOf(v); c >= 0 && marked_.insert(c); c = tree_[c].parent) {
     }
   }

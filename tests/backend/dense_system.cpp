@@ -34,7 +34,7 @@ DenseSystem::DenseSystem(const FactorGraph& graph)
   for (const VariableId v : variables_) {
     offset_[v.value] = size_;
     size_ += graph.sizeOf(v);
-    values_[v.value] = graph.estimate(v);
+    values_[v.value] = graph.states().estimate(v);
   }
 }
 
@@ -42,16 +42,16 @@ std::pair<Eigen::MatrixXd, Eigen::VectorXd> DenseSystem::linearized() const {
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(size_, size_);
   Eigen::VectorXd g = Eigen::VectorXd::Zero(size_);
   for (const FactorId f : graph_.factors()) {
-    const Factor& factor = graph_.factor(f);
+    const Factor& factor = graph_.models().factor(f);
     std::vector<const Value*> values;
     for (const VariableId v : factor.variables()) values.push_back(&values_[v.value]);
     const auto at = entries(factor.variables());
     const auto n = static_cast<Eigen::Index>(at.size());
     Eigen::MatrixXd quadratic(factor.rows(), n + 1);
     factor.linearize(values, quadratic);
-    if (graph_.isJacobian(f)) quadratic = (quadratic.transpose() * quadratic).eval();
+    if (graph_.models().isJacobian(f)) quadratic = (quadratic.transpose() * quadratic).eval();
     quadratic.triangularView<Eigen::StrictlyUpper>() = quadratic.transpose();
-    if (!graph_.isJacobian(f)) quadratic = turned(values, quadratic);
+    if (!graph_.models().isJacobian(f)) quadratic = turned(values, quadratic);
     H(at, at) += quadratic.topLeftCorner(n, n);
     g(at) += quadratic.col(n).head(n);
   }

@@ -11,10 +11,10 @@ Eigen::MatrixXd informationOfFactors(const FactorGraph& graph, const DenseSystem
   for (const FactorId f : graph.factors()) {
     auto at = dense.entries(graph.variablesOf(f));
     at.push_back(dense.size());
-    if (graph.isJacobian(f))
-      system(at, at) += graph.term(f).transpose() * graph.term(f);
+    if (graph.models().isJacobian(f))
+      system(at, at) += graph.models().term(f).transpose() * graph.models().term(f);
     else
-      system(at, at) += unpacked(graph.information(f).H, graph.information(f).g_c);
+      system(at, at) += unpacked(graph.models().information(f).H, graph.models().information(f).g_c);
   }
   system(dense.size(), dense.size()) = 0;
   return system;

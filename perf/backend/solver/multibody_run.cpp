@@ -129,7 +129,7 @@ double costOf(const IncrementalSolver& solver) {
   const FactorGraph& graph = solver.graph();
   double cost = 0;
   for (const FactorId id : graph.factors()) {
-    const Factor& factor = graph.factor(id);
+    const Factor& factor = graph.models().factor(id);
     std::vector<Value> values;
     std::vector<const Value*> pointers;
     for (const VariableId v : factor.variables()) values.push_back(solver.estimate(v));
@@ -139,7 +139,7 @@ double costOf(const IncrementalSolver& solver) {
     Eigen::MatrixXd fresh(factor.rows(), columns);
     factor.linearize(pointers, fresh);
     const auto last = fresh.col(fresh.cols() - 1);
-    cost += graph.isJacobian(id) ? last.squaredNorm() : last[last.size() - 1];
+    cost += graph.models().isJacobian(id) ? last.squaredNorm() : last[last.size() - 1];
   }
   return cost;
 }

@@ -52,7 +52,7 @@ struct EliminatedGraph {
       for (int child = tree[all[i]].first_child; child >= 0; child = tree[child].next_sibling) all.push_back(child);
     return all;
   }
-  int ownerOf(FactorId f) const { return tree.ownerOf(graph.factor(f)); }
+  int ownerOf(FactorId f) const { return tree.ownerOf(graph.variablesOf(f)); }
   /// A clique and all above it, children first.
   std::vector<int> pathFrom(int clique) const {
     std::vector<int> path;
@@ -212,14 +212,14 @@ TEST(EliminationTree, APartInTheMiddleCanBeTakenOutAndHungBack) {
 TEST(EliminationTree, RefreshingAPathTakesUpNewLinearModels) {
   forRandomTrees([](EliminatedGraph& scene) {
     for (const VariableId v : scene.variables) {
-      for (int i = 0; i < scene.graph.sizeOf(v); ++i) scene.graph[v].x[i] += scene.world.noise().gaussian(0.1);
-      scene.graph.apply(v);
+      for (int i = 0; i < scene.graph.sizeOf(v); ++i) scene.graph.states()[v].x[i] += scene.world.noise().gaussian(0.1);
+      scene.graph.states().apply(v);
     }
     const VariableId moved = scene.variables[scene.world.below(scene.variables.size())];
-    scene.graph.moveLinearizationPoint(moved);
+    scene.graph.states().moveLinearizationPoint(moved);
     std::vector<int> stale;
-    for (const FactorId f : scene.graph[moved].factors) {
-      scene.graph.linearize(f);
+    for (const FactorId f : scene.graph.factorsOf(moved)) {
+      scene.graph.models().linearize(f);
       for (const int c : scene.pathFrom(scene.ownerOf(f))) stale.push_back(c);
     }
     std::ranges::sort(stale);
@@ -238,7 +238,7 @@ TEST(EliminationTree, RefreshingAPathTakesUpNewLinearModels) {
 /// Adds J^T r of a factor to the rows of a front.
 void addGradient(const EliminatedGraph& scene, FactorId f, const Eigen::VectorXd& r, const Clique& clique,
                  std::vector<double>& change) {
-  const auto term = scene.graph.term(f);
+  const auto term = scene.graph.models().term(f);
   const Eigen::VectorXd gradient = term.leftCols(term.cols() - 1).transpose() * r;
   Eigen::Index at = 0;
   for (const VariableId v : scene.graph.variablesOf(f)) {
@@ -253,12 +253,12 @@ TEST(EliminationTree, ShiftingTheRightHandSideTakesUpNewResiduals) {
     const auto factors = scene.graph.factors();
     for (int round = 0; round < 3; ++round) {
       const FactorId f = factors[scene.world.below(factors.size())];
-      Eigen::VectorXd r(scene.graph.factor(f).rows());
+      Eigen::VectorXd r(scene.graph.models().factor(f).rows());
       for (double& x : r) x = scene.world.noise().gaussian();
       const auto path = scene.pathFrom(scene.ownerOf(f));
       std::vector<double> change(static_cast<std::size_t>(scene.tree[path[0]].size), 0.0);
       addGradient(scene, f, r, scene.tree[path[0]], change);
-      scene.graph.correctResidual(f, {r.data(), static_cast<std::size_t>(r.size())});
+      scene.graph.models().correctResidual(f, {.r = {r.data(), static_cast<std::size_t>(r.size())}});
       for (std::size_t i = 0; i < path.size(); ++i) {
         std::vector<double> above(i + 1 < path.size() ? static_cast<std::size_t>(scene.tree[path[i + 1]].size) : 0,
                                   0.0);
@@ -290,17 +290,17 @@ TEST(EliminationTree, AMarginalIsTheSchurComplementOfItsFactors) {
   forRandomTrees([](EliminatedGraph& scene) {
     const VariableId gone = scene.variables[scene.world.below(scene.variables.size())];
     std::vector<VariableId> neighbors;
-    for (const FactorId f : scene.graph[gone].factors)
+    for (const FactorId f : scene.graph.factorsOf(gone))
       for (const VariableId v : scene.graph.variablesOf(f))
         if (v != gone && !contains<VariableId>(neighbors, v)) neighbors.push_back(v);
-    const Eigen::MatrixXd marginal = scene.tree.marginal(std::array{gone}, neighbors, scene.graph[gone].factors);
+    const Eigen::MatrixXd marginal = scene.tree.marginal(std::array{gone}, neighbors, scene.graph.factorsOf(gone));
 
     const DenseSystem dense(scene.graph);
     Eigen::MatrixXd system = Eigen::MatrixXd::Zero(dense.size() + 1, dense.size() + 1);
-    for (const FactorId f : scene.graph[gone].factors) {
+    for (const FactorId f : scene.graph.factorsOf(gone)) {
       auto at = dense.entries(scene.graph.variablesOf(f));
       at.push_back(dense.size());
-      system(at, at) += scene.graph.term(f).transpose() * scene.graph.term(f);
+      system(at, at) += scene.graph.models().term(f).transpose() * scene.graph.models().term(f);
     }
     const auto out = dense.entries(std::array{gone});
     auto stay = dense.entries(neighbors);

@@ -56,7 +56,7 @@ TEST(UpdateMatrices, MadeAgainTheyAreWhatTheyWere) {
     all.addFrame(), few.addFrame();
     cliques_without = std::max(cliques_without, Without(few.solver.tree()).cliques);
     for (const VariableId v : all.solver.graph().variables()) {
-      const auto &of_all = all.solver.graph()[v].x, &of_few = few.solver.graph()[v].x;
+      const auto &of_all = all.solver.graph().states()[v].x, &of_few = few.solver.graph().states()[v].x;
       for (std::size_t i = 0; i < of_all.size(); ++i) ASSERT_NEAR(of_all[i], of_few[i], 1e-9) << "frame " << frame;
     }
   }

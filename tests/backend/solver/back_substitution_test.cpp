@@ -32,7 +32,7 @@ struct PoseChain {
     for (double& c : change) c += 1;
     work.apply();
   }
-  bool hasFollowed(FactorId f) const { return substitution.hasFollowed(graph.factor(f)); }
+  bool hasFollowed(FactorId f) const { return substitution.hasFollowed(f); }
 
   test::RandomWorld world{1, test::RandomWorld::Kind::kSpace};
   FactorGraph graph;
@@ -63,7 +63,7 @@ TEST(BackSubstitution, ComesOutTheSameWhateverACallMayDo) {
   for (PoseChain* chain : {&at_once, &little_by_little}) chain->moveTheLast();
   at_once.substitution(kSmallStep_sigmas, kNoLimit);
   for (int calls = 0; calls < PoseChain::kPoses; ++calls) little_by_little.substitution(kSmallStep_sigmas, 6);
-  for (const VariableId v : at_once.poses) EXPECT_EQ(at_once.graph[v].x, little_by_little.graph[v].x);
+  for (const VariableId v : at_once.poses) EXPECT_EQ(at_once.graph.states()[v].x, little_by_little.graph.states()[v].x);
 }
 
 }  // namespace

@@ -311,10 +311,10 @@ TEST(IncrementalSolverEveryN, KeepsItsLinearModelsBetweenBatchSteps) {
   for (const FactorId f : solver.graph().factors()) {
     std::vector<double> x;
     for (const VariableId v : solver.graph().variablesOf(f)) {
-      const auto& coordinates = solver.graph()[v].x;
+      const auto& coordinates = solver.graph().states()[v].x;
       x.insert(x.end(), coordinates.begin(), coordinates.begin() + solver.graph().sizeOf(v));
     }
-    const auto term = solver.graph().term(f);
+    const auto term = solver.graph().models().term(f);
     const auto n = static_cast<Eigen::Index>(x.size());
     const auto at = dense.entries(solver.graph().variablesOf(f));
     const Eigen::VectorXd r = term.leftCols(n) * Eigen::Map<Eigen::VectorXd>(x.data(), n) + term.col(n);

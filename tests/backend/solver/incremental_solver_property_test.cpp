@@ -153,9 +153,9 @@ TEST(IncrementalSolverProperty, RandomEditsOfVectorsEndAtTheBatchSolution) {
 /// Encounters and smooth motion may go at any time: an object's motions and its other encounters hold it.
 void removeSomeFactors(IncrementalSolver& solver, MultibodyGraph& graph) {
   for (const FactorId f : solver.graph().factors()) {
-    const Factor& factor = solver.graph().factor(f);
+    const Factor& factor = solver.graph().models().factor(f);
     const auto* seen = dynamic_cast<const CameraEncounterFactor*>(&factor);
-    const bool one_of_many = seen && solver.graph()[factor.variables()[1]].factors.size() > 6;  // of its anchor's
+    const bool one_of_many = seen && solver.graph().factorsOf(factor.variables()[1]).size() > 6;  // of its anchor's
     if (!one_of_many && !dynamic_cast<const ObjectEncounterFactor*>(&factor) &&
         !dynamic_cast<const SmoothMotionFactor*>(&factor))
       continue;

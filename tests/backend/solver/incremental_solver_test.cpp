@@ -33,7 +33,7 @@ TEST(IncrementalSolver, ConvergesToTheBatchSolutionOfRandomMultibodyGraphs) {
 void removeSomeObjectEncounters(IncrementalSolver& solver, MultibodyGraph& graph) {
   for (const FactorId f : solver.graph().factors()) {
     if (solver.graph().variablesOf(f).size() != 4 || graph.random().below(3) != 0) continue;
-    if (dynamic_cast<const ObjectEncounterFactor*>(&solver.graph().factor(f))) solver.removeFactor(f);
+    if (dynamic_cast<const ObjectEncounterFactor*>(&solver.graph().models().factor(f))) solver.removeFactor(f);
   }
 }
 

@@ -99,8 +99,8 @@ double chi2(const IncrementalSolver& solver) {
     for (const VariableId v : graph.variablesOf(f)) values.push_back(solver.estimate(v));
     std::vector<const Value*> pointers;
     for (const Value& value : values) pointers.push_back(&value);
-    Eigen::VectorXd r(graph.factor(f).rows());
-    graph.jacobianFactor(f)->residual(pointers, r);
+    Eigen::VectorXd r(graph.models().factor(f).rows());
+    graph.models().jacobianFactor(f)->residual(pointers, r);
     sum += r.squaredNorm();
   }
   return sum;

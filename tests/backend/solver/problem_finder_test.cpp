@@ -33,7 +33,7 @@ TYPED_TEST(ProblemFinder, AMissingPriorIsNamedWithThePartThatIsFree) {
     EXPECT_EQ(problem.moving_variables, 8);
     EXPECT_EQ(problem.part_variables, 8);
     EXPECT_THAT(problem.directions, testing::ElementsAreArray(this->allDirections()));
-    EXPECT_THAT(problem.factors, UnorderedElementsAreArray(this->solver().graph()[problem.variable].factors));
+    EXPECT_THAT(problem.factors, UnorderedElementsAreArray(this->solver().graph().factorsOf(problem.variable)));
     EXPECT_THAT(describe(problem, this->solver().graph(), test::nameOf),
                 AllOf(HasSubstr("nothing holds the 8 variables connected with " + test::nameOf(problem.variable)),
                       HasSubstr("add a prior on one of them")));
@@ -131,7 +131,7 @@ TYPED_TEST(ProblemFinder, AFactorThatSaysNextToNothingMakesABadCondition) {
     ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kBadlyConditioned)) << weight;
     EXPECT_EQ(problems[0].freedoms, this->kSize);
     EXPECT_EQ(problems[0].moving_variables, 2);
-    EXPECT_THAT(problems[0].factors, UnorderedElementsAreArray(this->solver().graph()[problems[0].variable].factors));
+    EXPECT_THAT(problems[0].factors, UnorderedElementsAreArray(this->solver().graph().factorsOf(problems[0].variable)));
     EXPECT_THAT(describe(problems[0], this->solver().graph(), test::nameOf),
                 HasSubstr("badly conditioned in any direction"));
   }

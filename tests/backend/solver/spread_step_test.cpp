@@ -56,7 +56,7 @@ TEST(SpreadStep, ModelsAreComparedWhenAllTheirVariablesHaveFollowedAStep) {
   params.relinearization.relinearize_rad = params.relinearization.leisurely_rad = 10;  // residuals alone
   LongPath path(params);
   path.solver.update();
-  const auto hasMoved = [&](VariableId v) { return path.solver.graph()[v].x[1] > 1e-6; };
+  const auto hasMoved = [&](VariableId v) { return path.solver.graph().states()[v].x[1] > 1e-6; };
   std::vector<FactorId> half_followed;
   for (const FactorId f : path.solver.graph().factors()) {
     const auto variables = path.solver.graph().variablesOf(f);
@@ -64,7 +64,7 @@ TEST(SpreadStep, ModelsAreComparedWhenAllTheirVariablesHaveFollowedAStep) {
   }
   ASSERT_EQ(half_followed.size(), 1U);
   path.solver.update();
-  EXPECT_EQ(path.solver.graph().drift(half_followed[0]), 0) << "corrected where the estimate was bent";
+  EXPECT_EQ(path.solver.graph().models().drift(half_followed[0]), 0) << "corrected where the estimate was bent";
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ TEST(WaitingFactors, LiftingKeepsTheOrderOfTheTree) {
     EXPECT_LT(tree.sequence(c), tree.sequence(tree[c].parent));
   }
   for (const FactorId f : solver.graph().factors()) {
-    const auto& owned = tree[tree.ownerOf(solver.graph().factor(f))].factors;
+    const auto& owned = tree[tree.ownerOf(solver.graph().variablesOf(f))].factors;
     EXPECT_EQ(std::ranges::count(owned, f), f == closure ? 0 : 1);
   }
 }

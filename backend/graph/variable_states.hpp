@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "backend/graph/variable.hpp"
+
+namespace motorcade {
+
+/// Where a variable stands: its coordinates x in all linear models, and the values that they were stated around.
+struct VariableState {
+  static constexpr int kMaxDimension = 6;
+  using Coordinates = std::array<double, kMaxDimension>;
+
+  int size = 0;
+  Coordinates x{};         // the solution of the linear system
+  Coordinates x_spread{};  // the one that the cliques below were solved with
+  /// Diagonal of J^T J of its factors as they came: what a step means in standard deviations.
+  Coordinates information{};
+  Coordinates x_compared{};    // where its factors' models were last compared with the factors
+  Coordinates x_linearized{};  // at the linearization point
+  Coordinates x_applied{};     // at the applied estimate
+  Value applied_estimate;      // moves up to x before it is used
+  Value linearization_point;   // where the Jacobians of all its factors are taken
+};
+
+/// The estimates of the variables of a FactorGraph, and the coordinates that move them.
+///
+/// Where the solver moves x, the estimate follows by the same step in the world's axes: x adds up the steps of a
+/// variable since it was added. No origin has to move when something is relinearized, so that it touches only the
+/// factors concerned, and a model whose residual alone is off can be corrected by a new right-hand side.
+class VariableStates {
+ public:
+  const VariableState& operator[](VariableId id) const { return states_[id.value]; }
+  VariableState& operator[](VariableId id) { return states_[id.value]; }
+
+  /// Begins a variable at x = 0. Ids come without gaps, or are those of variables that are gone.
+  void begin(VariableId id, const Value& initial);
+  Value estimate(VariableId id) const;
+  bool isVector(VariableId id) const { return std::holds_alternative<SmallVector>((*this)[id].applied_estimate); }
+
+  /// Lets the estimate follow x.
+  void apply(VariableId id);
+  void apply(std::span<const VariableId> ids);
+  /// Applies x, and begins it at zero again: all models of the variable must be linearized anew.
+  void restartCoordinates(VariableId id);
+  /// The Jacobians of the variable's factors are to be taken where its estimate stands: linearize them after that.
+  void moveLinearizationPoint(VariableId id);
+  /// How far the estimate has turned since [rad].
+  double turnSinceLinearization(VariableId id) const;
+
+  /// A bound, in standard deviations, of how far the linear models of the variable's factors went off by its steps
+  /// since they were last compared: mismatch comes from turning and grows with turn times step. For vectors, whose
+  /// factors are bilinear at most, a guess: a fixed share of the step.
+  double mismatchBound(VariableId id) const;
+  void markCompared(VariableId id) { (*this)[id].x_compared = (*this)[id].x; }
+
+ private:
+  std::vector<VariableState> states_;
+};
+
+}  // namespace motorcade
