@@ -1,7 +1,6 @@
 #include "backend/elimination/elimination_pattern.hpp"
 
 #include <algorithm>
-#include <cassert>
 
 namespace motorcade {
 namespace {
@@ -23,14 +22,15 @@ void EliminationPattern::begin(int count, int boundary) {
   terms_head_.assign(count, -1);
 }
 
-void EliminationPattern::addTerm(std::span<const int> positions) {
+bool EliminationPattern::addTerm(std::span<const int> positions) {
   const int first = *std::ranges::min_element(positions);
-  assert(first < count_);
+  if (first >= count_) return false;
   terms_next_.push_back(terms_head_[first]);
   terms_head_[first] = static_cast<int>(first_of_term_.size());
   first_of_term_.push_back(first);
   term_entries_.insert(term_entries_.end(), positions.begin(), positions.end());
   term_begin_.push_back(static_cast<int>(term_entries_.size()));
+  return true;
 }
 
 void EliminationPattern::analyze(std::span<const int> scalars) {

@@ -19,8 +19,9 @@ class EliminationPattern {
 
   /// `boundary` positions follow the `count` eliminated ones.
   void begin(int count, int boundary);
-  /// A term over these positions, the smallest of which is eliminated here. Terms are numbered as they come.
-  void addTerm(std::span<const int> positions);
+  /// A term over these positions. False, and it is no term, when all of them lie in the boundary. Terms are numbered
+  /// as they come.
+  bool addTerm(std::span<const int> positions);
   /// `scalars`: size of the variable at each position, boundary included.
   void analyze(std::span<const int> scalars);
 

@@ -23,30 +23,29 @@ inline void addTo(double* to, const double* from, int count) {
 
 }  // namespace
 
-void Front::eliminate(Clique& clique, std::span<const Clique> cliques) {
-  gather(clique, cliques, clique.panel);
+double Front::eliminate(Clique& clique) {
+  gather(clique, clique.panel);
   clique.singular.clear();
   const double ratio = factorizePanel(clique.panelView(), clique.singular);
   subtractEliminated(clique);
   packUpdateMatrix(clique);
   packContribution(clique);
-  if (ratio < weakest_.ratio) weakest_ = {.variable = clique.variables.front(), .ratio = ratio};
   for (const int column : clique.singular) holdSingular(clique, column);
+  return clique.singular.empty() ? ratio : 0;
 }
 
-void Front::makeUpdateMatrix(Clique& clique, std::span<const Clique> cliques) {
+void Front::makeUpdateMatrix(Clique& clique) {
   unneeded_panel_.resize(std::max(unneeded_panel_.size(), clique.panelLength()));
-  gather(clique, cliques, unneeded_panel_.data());
+  gather(clique, unneeded_panel_.data());
   subtractEliminated(clique);
   packUpdateMatrix(clique);
 }
 
-void Front::gather(const Clique& clique, std::span<const Clique> cliques, double* panel) {
+void Front::gather(const Clique& clique, double* panel) {
   panel_ = panel;
   begin(clique);
   for (const FactorId f : clique.factors) addFactor(clique, f);
-  for (int child = clique.first_child; child >= 0; child = cliques[child].next_sibling)
-    addChild(clique, cliques[child]);
+  for (int child = clique.first_child; child >= 0; child = tree_[child].next_sibling) addChild(clique, tree_[child]);
 }
 
 /// What the eliminated frontals take off the separator.
@@ -176,19 +175,13 @@ void Front::holdSingular(Clique& clique, int column) {
   std::size_t v = 0;
   int component = column;
   while (component >= graph_.sizeOf(clique.variables[v])) component -= graph_.sizeOf(clique.variables[v++]);
-  const VariableId variable = clique.variables[v];
-  singular_.push_back({variable, component});
-  clique.panel[column * clique.panelStride() + clique.size] = -graph_.states()[variable].x[component];
+  const double x = graph_.states()[clique.variables[v]].x[component];
+  clique.panel[column * clique.panelStride() + clique.size] = -x;
 }
 
 Eigen::MatrixXd Front::schurComplement() const {
   return Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>(update_matrix_.data(), update_size_, update_size_,
                                                                     Eigen::OuterStride<>(update_stride_));
-}
-
-void Front::clearFindings() {
-  singular_.clear();
-  weakest_ = {};
 }
 
 }  // namespace motorcade

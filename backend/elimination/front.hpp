@@ -3,47 +3,31 @@
 #include <span>
 #include <vector>
 
-#include "backend/elimination/clique.hpp"
+#include "backend/elimination/elimination_tree.hpp"
 #include "backend/graph/factor_graph.hpp"
 
 namespace motorcade {
-
-/// A scalar that no factor constrains; its x stays where the estimate stands.
-struct SingularScalar {
-  VariableId variable;
-  int component = 0;
-};
-
-/// The smallest pivot of those so far.
-struct WeakPivot {
-  VariableId variable;
-  double ratio = 1;  // of the pivot to its diagonal before elimination
-};
 
 /// The dense work of an elimination, a clique at a time: gathers its front [H g; g^T c] from the linear models of its
 /// factors and from what its children pass on, and factorizes it.
 class Front {
  public:
-  explicit Front(const FactorGraph& graph) : graph_(graph) {}
+  Front(const FactorGraph& graph, const EliminationTree& tree) : graph_(graph), tree_(tree) {}
 
-  /// `cliques` holds the children, which have been eliminated, with their update matrices.
-  void eliminate(Clique& clique, std::span<const Clique> cliques);
+  /// The children have been eliminated, and have their update matrices. A scalar that no factor constrains keeps its x.
+  /// Returns the smallest pivot over its diagonal entry before elimination, at most 1; 0 where a scalar was singular.
+  double eliminate(Clique& clique);
   /// Fills the update matrix of a clique as its elimination did; all else of the clique stays.
-  void makeUpdateMatrix(Clique& clique, std::span<const Clique> cliques);
+  void makeUpdateMatrix(Clique& clique);
   /// [H g; g^T c], lower triangle, that the newest clique leaves on its separator.
   Eigen::MatrixXd schurComplement() const;
-
-  /// Since the last call of `clearFindings`.
-  const std::vector<SingularScalar>& singular() const { return singular_; }
-  const WeakPivot& weakestPivot() const { return weakest_; }
-  void clearFindings();
 
  private:
   struct RowSpan {
     int from, to, size;  // scalars from `from` of a small matrix go to `to` of the front
   };
 
-  void gather(const Clique& clique, std::span<const Clique> cliques, double* panel);
+  void gather(const Clique& clique, double* panel);
   void begin(const Clique& clique);
   void addFactor(const Clique& clique, FactorId id);
   void addChild(const Clique& clique, const Clique& child);
@@ -58,8 +42,7 @@ class Front {
   void holdSingular(Clique& clique, int column);
 
   const FactorGraph& graph_;
-  std::vector<SingularScalar> singular_;
-  WeakPivot weakest_;
+  const EliminationTree& tree_;
   std::vector<int> offset_;  // per variable: its first scalar in the front at hand
   std::vector<RowSpan> spans_;
   std::vector<double> product_;

@@ -39,15 +39,15 @@ std::span<double> CliqueWork::changeOf(int clique) {
   return {changes_.data() + change_begin_[clique], static_cast<std::size_t>(tree_[clique].size)};
 }
 
-void CliqueWork::apply() {
+void CliqueWork::apply(Eliminator& eliminator) {
   std::ranges::sort(dirty_, {}, [&](int c) { return tree_.sequence(c); });
   for (const int c : dirty_) {
     if (kind_[c] == Kind::kRefresh) {
-      tree_.refresh(c);
+      eliminator.refresh(c);
     } else {
       const int parent = tree_[c].parent;
       const bool passed_on = parent >= 0 && kind_[parent] == Kind::kShift;
-      tree_.shiftRightHandSide(c, changeOf(c), passed_on ? changeOf(parent) : std::span<double>());
+      eliminator.shiftRightHandSide(c, changeOf(c), passed_on ? changeOf(parent) : std::span<double>());
     }
   }
 }

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "backend/elimination/elimination_tree.hpp"
+#include "backend/elimination/eliminator.hpp"
 
 namespace motorcade {
 
@@ -19,7 +19,7 @@ class CliqueWork {
     kNew,      // was eliminated in this step
   };
 
-  explicit CliqueWork(EliminationTree& tree) : tree_(tree) {}
+  explicit CliqueWork(const EliminationTree& tree) : tree_(tree) {}
 
   /// Begins a step: no clique has work.
   void begin();
@@ -30,7 +30,7 @@ class CliqueWork {
   std::span<double> markShift(int clique);
 
   /// Shifts and refreshes what is marked so, children before parents.
-  void apply();
+  void apply(Eliminator& eliminator);
   /// The marked cliques of which the tree can take leave now; they have no more work.
   std::span<const int> releaseRemoved();
   void markNew(std::span<const int> cliques);
@@ -46,7 +46,7 @@ class CliqueWork {
   void mark(int clique, Kind kind);
   std::span<double> changeOf(int clique);
 
-  EliminationTree& tree_;
+  const EliminationTree& tree_;
   std::vector<Kind> kind_;  // per clique
   std::vector<int> dirty_;  // cliques to shift or refresh
   std::vector<int> removed_;

@@ -73,24 +73,24 @@ void IncrementalSolver::beginReport() {
   report_.problems.clear();
   report_.problems.swap(refused_);
   report_.moved.clear();
-  report_.eliminated_scalars = -tree_.eliminatedScalars();
+  report_.eliminated_scalars = -eliminator_.eliminatedScalars();
   report_.substituted_scalars = 0;
   report_.relinearized_variables = report_.relinearized_factors = report_.corrected_factors =
       report_.deferred_variables = 0;
   report_.largest_change = 0;
-  tree_.clearFindings();
+  eliminator_.resetWeakestPivot();
   budget_.beginUpdate();
 }
 
 void IncrementalSolver::endReport() {
-  report_.eliminated_scalars += tree_.eliminatedScalars();
+  report_.eliminated_scalars += eliminator_.eliminatedScalars();
   report_.deferred_variables = static_cast<int>(relinearization_.deferred());
   report_.waiting_factors = static_cast<int>(waiting_.factors().size());
   report_.waiting_chi2 = waiting_.chi2();
   report_.waiting_scalars = substitution_.waitingScalars();
   if (report_.relinearized_factors > 0) ++counters_.relinearizations;
   sortUnique(report_.moved);
-  problems_.append(graph_, tree_, report_.problems);
+  problems_.append(graph_, tree_, eliminator_.weakestPivot(), report_.problems);
   touched_.clear();
   new_variables_.clear();
   new_factors_.clear();
@@ -135,7 +135,7 @@ void IncrementalSolver::step(bool fold, Correction correction) {
     report_.corrected_factors += corrections.corrected_factors;
   }
   notingPace([&] {
-    work_.apply();
+    work_.apply(eliminator_);
     if (fold) rebuildTop();
   });
   spread_sigmas_ = params_.substitution_tolerance * graph_.models().rmsResidual();
@@ -145,10 +145,10 @@ void IncrementalSolver::step(bool fold, Correction correction) {
 template <class Elimination>
 void IncrementalSolver::notingPace(const Elimination& eliminate) {
   const auto begin = std::chrono::steady_clock::now();
-  const std::int64_t before = tree_.eliminatedScalars();
+  const std::int64_t before = eliminator_.eliminatedScalars();
   eliminate();
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-  budget_.notePace(tree_.eliminatedScalars() - before, took.count());
+  budget_.notePace(eliminator_.eliminatedScalars() - before, took.count());
 }
 
 void IncrementalSolver::touchNewFactors() {
@@ -161,20 +161,17 @@ void IncrementalSolver::touchNewFactors() {
 
 /// Eliminates the marked cliques' variables and the new ones, in a new order.
 void IncrementalSolver::rebuildTop() {
-  removed_.clear();
-  tree_.remove(work_.releaseRemoved(), removed_);
-  removed_.variables.insert(removed_.variables.end(), new_variables_.begin(), new_variables_.end());
-  removed_.factors.insert(removed_.factors.end(), new_factors_.begin(), new_factors_.end());
-  if (removed_.variables.empty()) return;
+  auto& [variables, factors, orphans] = eliminator_.remove(work_.releaseRemoved());
+  variables.insert(variables.end(), new_variables_.begin(), new_variables_.end());
+  factors.insert(factors.end(), new_factors_.begin(), new_factors_.end());
+  if (variables.empty()) return;
   const bool reorder = params_.policy == Policy::kFluid;
   last_ = touched_;
   for (const FactorId f : waiting_.factors())  // so that lifted variables stay where they are
     last_.insert(last_.end(), graph_.variablesOf(f).begin(), graph_.variablesOf(f).end());
-  const auto order = reorder ? reordered_(removed_.variables, removed_.factors, removed_.orphans, last_, new_variables_)
-                             : std::span<const VariableId>(removed_.variables);
-  created_.clear();
-  tree_.eliminate({.order = order, .boundary = {}, .factors = removed_.factors, .orphans = removed_.orphans}, created_);
-  work_.markNew(created_);
+  const auto order =
+      reorder ? reordered_(variables, factors, orphans, last_, new_variables_) : std::span<const VariableId>(variables);
+  work_.markNew(eliminator_.eliminate({.order = order, .factors = factors, .orphans = orphans}));
 }
 
 /// Solves for x where anything changed, and finds the models that are off there.
@@ -195,18 +192,13 @@ void IncrementalSolver::batchStep() {
   waiting_.clear();
   touchNewFactors();
   budget_.lift();
-  removed_.clear();
-  tree_.remove(tree_.cliques(), removed_);
+  eliminator_.remove(tree_.cliques());
   const std::vector<VariableId> variables = graph_.variables();
   const std::vector<FactorId> factors = graph_.factors();
   for (const VariableId v : variables) graph_.states().restartCoordinates(v);
   for (const FactorId f : factors) graph_.models().linearize(f);
   if (variables.empty()) return;
-  created_.clear();
-  tree_.eliminate(
-      {.order = reordered_(variables, factors, {}, touched_), .boundary = {}, .factors = factors, .orphans = {}},
-      created_);
-  work_.markNew(created_);
+  work_.markNew(eliminator_.eliminate({.order = reordered_(variables, factors, {}, touched_), .factors = factors}));
   ++counters_.reorderings, ++counters_.batch_solves;
   spread_sigmas_ = 0;
   substitute(kNoLimit);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "backend/elimination/affected_order.hpp"
-#include "backend/elimination/elimination_tree.hpp"
+#include "backend/elimination/eliminator.hpp"
 #include "backend/graph/factor_graph.hpp"
 #include "backend/solver/back_substitution.hpp"
 #include "backend/solver/clique_work.hpp"
@@ -46,7 +46,7 @@ class IncrementalSolver {
     /// Scalars substituted in an update up to which it may take a further step; 0: no limit.
     std::int64_t iterated_scalars = 3000;
     EliminationBudget::Params budget;
-    int kept_eliminations = 0;  // see EliminationTree
+    int kept_eliminations = 0;  // see Eliminator
   };
   struct Report {
     std::vector<SolverProblem> problems;
@@ -97,7 +97,7 @@ class IncrementalSolver {
   SolverCounters counters() const;
   const FactorGraph& graph() const { return graph_; }
   const EliminationTree& tree() const { return tree_; }
-  std::size_t heldBytes() const { return graph_.models().heldBytes() + tree_.heldBytes(); }
+  std::size_t heldBytes() const { return graph_.models().heldBytes() + eliminator_.heldBytes(); }
 
  private:
   void beginReport();
@@ -115,14 +115,15 @@ class IncrementalSolver {
 
   Params params_;
   FactorGraph graph_;
-  EliminationTree tree_{graph_, params_.kept_eliminations};
+  EliminationTree tree_;
+  Eliminator eliminator_{graph_, tree_, params_.kept_eliminations};
   AffectedOrder reordered_{graph_, tree_};
   CliqueWork work_{tree_};
   EliminationBudget budget_{params_.budget};
   FluidRelinearization relinearization_{params_.relinearization, graph_, tree_, substitution_, work_, budget_};
-  WaitingFactors waiting_{graph_, tree_, budget_};
+  WaitingFactors waiting_{graph_, tree_, eliminator_, budget_};
   BackSubstitution substitution_{graph_, tree_, work_, budget_};
-  Retirement retirement_{graph_, tree_};
+  Retirement retirement_{graph_, tree_, eliminator_};
   ProblemReporter problems_;
   Report report_;
   SolverCounters counters_;
@@ -134,8 +135,6 @@ class IncrementalSolver {
   std::vector<SolverProblem> refused_;
 
   // Scratch.
-  EliminationTree::Removed removed_;
-  std::vector<int> created_;
   std::vector<VariableId> last_;  // of an order
 };
 

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "backend/elimination/elimination_tree.hpp"
+#include "backend/graph/factor_graph.hpp"
 
 namespace motorcade {
 

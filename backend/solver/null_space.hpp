@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "backend/elimination/elimination_tree.hpp"
+#include "backend/graph/factor_graph.hpp"
 
 namespace motorcade {
 

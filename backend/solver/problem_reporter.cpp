@@ -6,9 +6,9 @@
 
 namespace motorcade {
 
-void ProblemReporter::append(const FactorGraph& graph, const EliminationTree& tree,
+void ProblemReporter::append(const FactorGraph& graph, const EliminationTree& tree, double weakest_pivot,
                              std::vector<SolverProblem>& problems) {
-  if (tree.singular().empty() && tree.weakestPivot().ratio >= kWeakPivot) {
+  if (weakest_pivot >= kWeakPivot) {
     if (!reported_.empty()) forgetSolved(graph, tree);
     return;
   }

@@ -14,8 +14,9 @@ namespace motorcade {
 /// concerned.
 class ProblemReporter {
  public:
-  /// Appends what is wrong since the last call.
-  void append(const FactorGraph& graph, const EliminationTree& tree, std::vector<SolverProblem>& problems);
+  /// Appends what is wrong since the last call, since when `weakest_pivot` was the weakest (see Eliminator).
+  void append(const FactorGraph& graph, const EliminationTree& tree, double weakest_pivot,
+              std::vector<SolverProblem>& problems);
   /// The id belongs to a new variable.
   void forget(VariableId v);
 

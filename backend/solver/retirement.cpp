@@ -23,6 +23,14 @@ std::vector<VariableId> neighborsOf(const FactorGraph& graph, std::span<const Fa
   return neighbors;
 }
 
+/// Besides the sorted `others`.
+std::vector<FactorId> without(const std::vector<FactorId>& others, std::span<const FactorId> factors) {
+  std::vector<FactorId> kept;
+  std::ranges::copy_if(factors, std::back_inserter(kept),
+                       [&](FactorId f) { return !std::ranges::binary_search(others, f); });
+  return kept;
+}
+
 /// What the eliminated variables knew, stated in the coordinates of `neighbors`, as a prior around their present
 /// estimates.
 std::unique_ptr<MarginalFactor> marginalPrior(FactorGraph& graph, const std::vector<VariableId>& neighbors,
@@ -68,16 +76,15 @@ std::vector<Retirement::Part> Retirement::partsWith(std::span<const VariableId> 
 }
 
 void Retirement::retirePart(const Part& part, std::span<const VariableId> gone) {
-  removed_.clear();
-  tree_.remove(part.cliques, removed_);
+  const auto& removed = eliminator_.remove(part.cliques);
   std::vector<VariableId> leaving, staying;
-  for (const VariableId v : removed_.variables) (contains(gone, v) ? leaving : staying).push_back(v);
+  for (const VariableId v : removed.variables) (contains(gone, v) ? leaving : staying).push_back(v);
 
   std::vector<FactorId> factors = factorsOf(leaving);
   const std::vector<VariableId> neighbors = neighborsOf(graph_, factors, leaving);
   includeEarlierPriors(neighbors, factors);
-  std::vector<FactorId> kept = removedFactorsWithout(factors);
-  auto knowledge = tree_.marginal(leaving, neighbors, factors);
+  std::vector<FactorId> kept = without(factors, removed.factors);
+  auto knowledge = eliminator_.marginal(leaving, neighbors, factors);
   for (const FactorId f : factors) graph_.removeFactor(f);
   forget(leaving);
   if (!neighbors.empty()) {
@@ -86,7 +93,12 @@ void Retirement::retirePart(const Part& part, std::span<const VariableId> gone) 
     if (prior && inside) kept.push_back(*prior);
     if (prior && !inside) tree_.addFactor(tree_.ownerOf(graph_.variablesOf(*prior)), *prior);
   }
-  eliminateAgain(part, staying, kept);
+  eliminator_.eliminate({.order = staying,
+                         .boundary = part.boundary,
+                         .factors = kept,
+                         .orphans = removed.orphans,
+                         .parent = part.parent,
+                         .renumber = false});
 }
 
 /// What was left on the same variable before: of something that all share, priors would grow without end.
@@ -100,39 +112,15 @@ void Retirement::includeEarlierPriors(std::span<const VariableId> neighbors, std
   sortUnique(factors);
 }
 
-/// The variables of a part that stay; what was below the part hangs below it again.
-void Retirement::eliminateAgain(const Part& part, const std::vector<VariableId>& order,
-                                const std::vector<FactorId>& factors) {
-  std::vector<int> orphans;
-  for (const int orphan : removed_.orphans) {
-    const auto separator = tree_[orphan].separator();
-    const bool outside = std::ranges::none_of(separator, [&](VariableId v) { return contains(order, v); });
-    if (outside)
-      tree_.attach(orphan, part.parent);
-    else
-      orphans.push_back(orphan);
-  }
-  if (order.empty()) return;
-  created_.clear();
-  tree_.eliminate({.order = order,
-                   .boundary = part.boundary,
-                   .factors = factors,
-                   .orphans = orphans,
-                   .parent = part.parent,
-                   .renumber = false},
-                  created_);
-}
-
 std::span<const int> Retirement::drop(std::span<const VariableId> variables) {
   const std::vector<FactorId> factors = factorsOf(variables);
   std::vector<int> cliques;
   for (const VariableId v : variables) tree_.appendCliquesWith(v, cliques);
   for (const FactorId f : factors)
     for (const VariableId v : graph_.variablesOf(f)) cliques.push_back(tree_.cliqueOf(v));
-  removed_.clear();
-  tree_.remove(tree_.withAncestors(std::move(cliques)), removed_);
+  auto& removed = eliminator_.remove(tree_.withAncestors(std::move(cliques)));
 
-  std::vector<FactorId> kept = removedFactorsWithout(factors);
+  std::vector<FactorId> kept = without(factors, removed.factors);
   for (const FactorId f : factors) {
     const InformationFactor* information = graph_.models().informationFactor(f);
     auto reduced = information ? information->without(variables) : nullptr;
@@ -140,13 +128,10 @@ std::span<const int> Retirement::drop(std::span<const VariableId> variables) {
     if (!reduced) continue;
     if (const auto id = graph_.addFactor(std::move(reduced))) kept.push_back(*id);
   }
-  for (const VariableId v : variables) std::erase(removed_.variables, v);
+  for (const VariableId v : variables) std::erase(removed.variables, v);
   forget(variables);
-  created_.clear();
-  tree_.eliminate(
-      {.order = removed_.variables, .boundary = {}, .factors = kept, .orphans = removed_.orphans, .renumber = false},
-      created_);
-  return created_;
+  return eliminator_.eliminate(
+      {.order = removed.variables, .factors = kept, .orphans = removed.orphans, .renumber = false});
 }
 
 std::vector<FactorId> Retirement::factorsOf(std::span<const VariableId> variables) const {
@@ -155,14 +140,6 @@ std::vector<FactorId> Retirement::factorsOf(std::span<const VariableId> variable
     factors.insert(factors.end(), graph_.factorsOf(v).begin(), graph_.factorsOf(v).end());
   sortUnique(factors);
   return factors;
-}
-
-/// Of the cliques that were taken out, besides these sorted ones.
-std::vector<FactorId> Retirement::removedFactorsWithout(const std::vector<FactorId>& factors) const {
-  std::vector<FactorId> kept;
-  std::ranges::copy_if(removed_.factors, std::back_inserter(kept),
-                       [&](FactorId f) { return !std::ranges::binary_search(factors, f); });
-  return kept;
 }
 
 void Retirement::forget(std::span<const VariableId> variables) {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "backend/elimination/elimination_tree.hpp"
+#include "backend/elimination/eliminator.hpp"
 
 namespace motorcade {
 
@@ -11,7 +11,8 @@ namespace motorcade {
 /// holds all variables and factors of the graph.
 class Retirement {
  public:
-  Retirement(FactorGraph& graph, EliminationTree& tree) : graph_(graph), tree_(tree) {}
+  Retirement(FactorGraph& graph, EliminationTree& tree, Eliminator& eliminator)
+      : graph_(graph), tree_(tree), eliminator_(eliminator) {}
 
   /// Marginalizes the variables: what they know stays as a factor on their neighbors, and the solution does not change.
   void marginalize(std::span<const VariableId> variables);
@@ -31,15 +32,12 @@ class Retirement {
   std::vector<Part> partsWith(std::span<const VariableId> variables) const;
   void retirePart(const Part& part, std::span<const VariableId> gone);
   void includeEarlierPriors(std::span<const VariableId> neighbors, std::vector<FactorId>& factors);
-  void eliminateAgain(const Part& part, const std::vector<VariableId>& order, const std::vector<FactorId>& factors);
   std::vector<FactorId> factorsOf(std::span<const VariableId> variables) const;
-  std::vector<FactorId> removedFactorsWithout(const std::vector<FactorId>& factors) const;
   void forget(std::span<const VariableId> variables);
 
   FactorGraph& graph_;
   EliminationTree& tree_;
-  EliminationTree::Removed removed_;
-  std::vector<int> created_;
+  Eliminator& eliminator_;
 };
 
 }  // namespace motorcade

@@ -135,7 +135,7 @@ bool WaitingFactors::liftVariableOf(FactorId id) {
     cliques.push_back(c);
     scalars += tree_[c].frontal_size;
   }
-  if (cliques.size() < 2 || !tree_.lift(v, cliques)) return false;
+  if (cliques.size() < 2 || !eliminator_.lift(v, cliques)) return false;
   budget_.spend(scalars);
   allowance_ -= scalars;
   return true;

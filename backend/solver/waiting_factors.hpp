@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "backend/elimination/elimination_tree.hpp"
+#include "backend/elimination/eliminator.hpp"
 #include "backend/graph/mark_set.hpp"
 #include "backend/solver/elimination_budget.hpp"
 
@@ -15,8 +15,8 @@ namespace motorcade {
 /// the factor asks for little.
 class WaitingFactors {
  public:
-  WaitingFactors(FactorGraph& graph, EliminationTree& tree, EliminationBudget& budget)
-      : graph_(graph), tree_(tree), budget_(budget) {}
+  WaitingFactors(FactorGraph& graph, const EliminationTree& tree, Eliminator& eliminator, EliminationBudget& budget)
+      : graph_(graph), tree_(tree), eliminator_(eliminator), budget_(budget) {}
 
   /// Leaves those of the new factors in `fresh` that the next elimination takes in, and adds the ones that waited long
   /// enough. The cliques of the `touched` variables are eliminated anew in any case.
@@ -44,7 +44,8 @@ class WaitingFactors {
   bool liftVariableOf(FactorId id);
 
   FactorGraph& graph_;
-  EliminationTree& tree_;
+  const EliminationTree& tree_;
+  Eliminator& eliminator_;
   EliminationBudget& budget_;
   std::vector<FactorId> waiting_;  // in the order they came
   std::int64_t allowance_ = 0;     // scalars, of the update at hand

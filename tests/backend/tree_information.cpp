@@ -20,6 +20,14 @@ Eigen::MatrixXd informationOfFactors(const FactorGraph& graph, const DenseSystem
   return system;
 }
 
+std::size_t matrixBytes(const EliminationTree& tree) {
+  std::size_t doubles = 0;
+  for (const int c : tree.cliques())
+    doubles += tree[c].panelLength() + (tree[c].update_matrix ? tree[c].updateMatrixLength() : 0) +
+               static_cast<std::size_t>(tree[c].separatorSize());
+  return doubles * sizeof(double);
+}
+
 Eigen::MatrixXd informationOfTree(const EliminationTree& tree, const DenseSystem& dense) {
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(dense.size() + 1, dense.size() + 1);
   std::vector<int> open = tree.roots();

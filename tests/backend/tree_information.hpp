@@ -12,6 +12,9 @@ namespace motorcade::test {
 /// Summed up from the linear models of the factors.
 Eigen::MatrixXd informationOfFactors(const FactorGraph& graph, const DenseSystem& dense);
 
+/// What the matrices of its cliques take.
+std::size_t matrixBytes(const EliminationTree& tree);
+
 /// [R d]^T [R d] of the cliques.
 Eigen::MatrixXd informationOfTree(const EliminationTree& tree, const DenseSystem& dense);
 

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "backend/elimination/eliminator.hpp"
 #include "tests/backend/random_factors.hpp"
 
 namespace motorcade {
@@ -32,12 +33,11 @@ struct ChainWithShortcuts {
 
   /// Eliminates everything, and takes the top out again, from these variables' cliques on.
   void keepTopAbove(std::span<const VariableId> touched) {
-    std::vector<int> created, cliques;
+    std::vector<int> cliques;
     const auto order = affected_order(removed.variables, removed.factors, {}, {});
-    tree.eliminate({.order = order, .boundary = {}, .factors = removed.factors, .orphans = {}}, created);
+    eliminator.eliminate({.order = order, .factors = removed.factors});
     for (const VariableId v : touched) cliques.push_back(tree.cliqueOf(v));
-    removed.clear();
-    tree.remove(tree.withAncestors(cliques), removed);
+    removed = eliminator.remove(tree.withAncestors(cliques));
   }
 
   std::vector<VariableId> order(std::span<const VariableId> touched) {
@@ -53,7 +53,8 @@ struct ChainWithShortcuts {
 
   RandomWorld world;
   FactorGraph graph;
-  EliminationTree tree{graph};
+  EliminationTree tree;
+  Eliminator eliminator{graph, tree};
   AffectedOrder affected_order{graph, tree};
   EliminationTree::Removed removed;
   std::vector<VariableId> variables;

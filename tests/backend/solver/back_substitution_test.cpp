@@ -20,17 +20,15 @@ struct PoseChain {
     for (int i = 0; i < kPoses; ++i) poses.push_back(world.addVariable(graph));
     factors.push_back(*graph.addFactor(world.prior(poses[0])));
     for (int i = 1; i < kPoses; ++i) factors.push_back(*graph.addFactor(world.between(poses[i - 1], poses[i], true)));
-    std::vector<int> created;
-    tree.eliminate({.order = poses, .boundary = {}, .factors = factors, .orphans = {}}, created);
     work.begin();
-    work.markNew(created);
+    work.markNew(eliminator.eliminate({.order = poses, .factors = factors}));
     substitution(kSmallStep_sigmas, kNoLimit);
   }
   void moveTheLast() {
     work.begin();
     const auto change = work.markShift(tree.cliqueOf(poses.back()));
     for (double& c : change) c += 1;
-    work.apply();
+    work.apply(eliminator);
   }
   bool hasFollowed(FactorId f) const { return substitution.hasFollowed(f); }
 
@@ -38,7 +36,8 @@ struct PoseChain {
   FactorGraph graph;
   std::vector<VariableId> poses;
   std::vector<FactorId> factors;
-  EliminationTree tree{graph};
+  EliminationTree tree;
+  Eliminator eliminator{graph, tree};
   CliqueWork work{tree};
   EliminationBudget budget{{}};
   BackSubstitution substitution{graph, tree, work, budget};

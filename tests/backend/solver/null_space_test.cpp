@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "backend/elimination/eliminator.hpp"
 #include "backend/graph/marginal_factor.hpp"
 #include "core/decompositions.hpp"
 #include "tests/backend/random_factors.hpp"
@@ -38,8 +39,7 @@ struct Scene {
   void eliminate() {
     std::vector<VariableId> order = variables;
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[world.below(i)]);
-    std::vector<int> created;
-    tree.eliminate({.order = order, .boundary = {}, .factors = graph.factors(), .orphans = {}}, created);
+    eliminator.eliminate({.order = order, .factors = graph.factors()});
   }
 
   /// All scalars, in elimination order.
@@ -67,7 +67,8 @@ struct Scene {
 
   RandomWorld world;
   FactorGraph graph;
-  EliminationTree tree{graph};
+  EliminationTree tree;
+  Eliminator eliminator{graph, tree};
   std::vector<VariableId> variables;
 };
 
@@ -148,14 +149,14 @@ TEST(NullSpace, APriorThatSaysNextToNothingConstrainsWeakly) {
 
 TEST(NullSpace, AlongNegativeInformationTheCostFalls) {
   FactorGraph graph;
-  EliminationTree tree(graph);
+  EliminationTree tree;
+  Eliminator eliminator(graph, tree);
   const Value origin = SmallVector(SmallVector::Zero(3));
   const VariableId v = graph.addVariable(origin);
   MatrixXd information = MatrixXd::Identity(4, 4);
   information(1, 1) = -4;
   graph.addFactor(std::make_unique<MarginalFactor>(std::vector{v}, std::vector{origin}, information));
-  std::vector<int> created;
-  tree.eliminate({.order = std::array{v}, .boundary = {}, .factors = graph.factors(), .orphans = {}}, created);
+  eliminator.eliminate({.order = std::array{v}, .factors = graph.factors()});
   const auto weak = weakScalars(tree, tree.cliqueOf(v), 1e-11);
   ASSERT_EQ(weak.size(), 1U);
   EXPECT_EQ(weak[0].column, 1);

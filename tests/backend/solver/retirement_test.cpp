@@ -6,6 +6,7 @@
 #include "tests/backend/dense_system.hpp"
 #include "tests/backend/random_factors.hpp"
 #include "tests/backend/random_graphs.hpp"
+#include "tests/backend/tree_information.hpp"
 
 namespace motorcade {
 namespace {
@@ -26,7 +27,7 @@ struct Sizes {
 
   void include(const IncrementalSolver& solver, const IncrementalSolver::Report& report) {
     eliminated_scalars = std::max(eliminated_scalars, report.eliminated_scalars);
-    used_bytes = std::max(used_bytes, solver.tree().usedBytes());
+    used_bytes = std::max(used_bytes, test::matrixBytes(solver.tree()));
     held_bytes = std::max(held_bytes, solver.heldBytes());
     variable_slots = std::max(variable_slots, solver.graph().slots());
     factor_slots = std::max(factor_slots, solver.graph().factorSlots());

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+#include "backend/elimination/elimination_tree.hpp"
+#include "backend/elimination/front.hpp"
+#include "backend/graph/block_pool.hpp"
+
+namespace motorcade {
+
+/// The memory of the cliques' update matrices. They are most of a tree's memory, and needed only where the parent is
+/// eliminated anew without the clique: near the root all the time, farther down hardly ever. Old ones are given back,
+/// and made again where a front gathers them.
+class UpdateMatrices {
+ public:
+  /// A clique's is old when it has hung where it is for over `kept_eliminations`; with 0 all are kept.
+  UpdateMatrices(EliminationTree& tree, Front& front, int kept_eliminations)
+      : tree_(tree), front_(front), kept_eliminations_(kept_eliminations) {}
+
+  void beginElimination() { ++eliminations_; }
+  /// The clique was hung below its parent.
+  void noteAttached(int clique);
+  void giveBackOld();
+
+  /// Memory for a clique that has none.
+  void take(Clique& clique) { clique.update_matrix = memory_.take(clique.updateMatrixLength()); }
+  /// The same for one that may have it still.
+  void takeAgain(Clique& clique);
+  void giveBack(Clique& clique);
+
+  /// Makes those again that the clique's front gathers.
+  void makeBelow(const Clique& clique);
+  /// Gives them back, but not those of cliques that were attached just now: these are near the root, and will be
+  /// gathered again.
+  void giveBackMadeAgainBelow(const Clique& clique);
+
+  std::size_t heldBytes() const { return memory_.heldBytes(); }
+
+ private:
+  struct Attached {
+    std::int64_t when;
+    int clique;
+  };
+
+  bool mayGiveBack(int clique) const;
+  int depthWithout(int clique) const;
+
+  EliminationTree& tree_;
+  Front& front_;
+  int kept_eliminations_;
+  std::int64_t eliminations_ = 0;
+  std::deque<Attached> attached_;  // cliques with update matrices, in that order; some have left
+  BlockPool memory_;
+};
+
+}  // namespace motorcade
