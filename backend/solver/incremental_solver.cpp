@@ -17,11 +17,34 @@ constexpr std::size_t kMostAppended = 200;
 
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 
-/// A factor over these variables was left out.
+/// Of a factor over these variables, which is left out.
 SolverProblem refusal(SolverProblem::Kind kind, VariableId because_of, std::span<const VariableId> variables) {
   SolverProblem problem{.kind = kind, .variable = because_of};
   std::ranges::copy_if(variables, std::back_inserter(problem.others), [&](VariableId v) { return v != because_of; });
   return problem;
+}
+
+std::optional<SolverProblem> whyUnusable(const FactorGraph& graph, std::span<const VariableId> variables) {
+  for (const VariableId v : variables) {
+    if (!graph.contains(v)) return refusal(SolverProblem::Kind::kUnknownVariable, v, variables);
+    if (std::ranges::count(variables, v) > 1) return refusal(SolverProblem::Kind::kRepeatedVariable, v, variables);
+  }
+  return std::nullopt;
+}
+
+void touchVariablesOf(const FactorGraph& graph, std::span<const FactorId> factors, std::vector<VariableId>& touched) {
+  for (const FactorId f : factors)
+    touched.insert(touched.end(), graph.variablesOf(f).begin(), graph.variablesOf(f).end());
+  sortUnique(touched);
+}
+
+template <class Elimination>
+void notingPace(EliminationBudget& budget, const Eliminator& eliminator, const Elimination& eliminate) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::int64_t before = eliminator.eliminatedScalars();
+  eliminate();
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+  budget.notePace(eliminator.eliminatedScalars() - before, took.count());
 }
 
 }  // namespace
@@ -29,57 +52,56 @@ SolverProblem refusal(SolverProblem::Kind kind, VariableId because_of, std::span
 VariableId IncrementalSolver::addVariable(const Value& initial) {
   const VariableId v = graph_.addVariable(initial);
   problems_.forget(v);
-  new_variables_.push_back(v);
+  changes_.variables.push_back(v);
   return v;
 }
 
-bool IncrementalSolver::usable(std::span<const VariableId> variables) {
-  for (const VariableId v : variables) {
-    if (!graph_.contains(v))
-      refused_.push_back(refusal(SolverProblem::Kind::kUnknownVariable, v, variables));
-    else if (std::ranges::count(variables, v) > 1)
-      refused_.push_back(refusal(SolverProblem::Kind::kRepeatedVariable, v, variables));
-    else
-      continue;
-    return false;
-  }
-  return true;
-}
-
 std::optional<FactorId> IncrementalSolver::addFactor(AnyFactor factor, Lifetime lifetime) {
-  const auto variables = std::visit([](const auto& any) { return any->variables(); }, factor);
-  if (!usable(variables)) return std::nullopt;
-  last_.assign(variables.begin(), variables.end());
+  const auto named = std::visit([](const auto& any) { return any->variables(); }, factor);
+  if (auto problem = whyUnusable(graph_, named)) {
+    refused_.push_back(std::move(*problem));
+    return std::nullopt;
+  }
+  const std::vector<VariableId> variables(named.begin(), named.end());
   const auto id = graph_.addFactor(std::move(factor));
   if (!id) {
-    refused_.push_back(refusal(SolverProblem::Kind::kNotFinite, last_.front(), last_));
+    refused_.push_back(refusal(SolverProblem::Kind::kNotFinite, variables.front(), variables));
     return std::nullopt;
   }
   if (lifetime == Lifetime::kProvisional) graph_.models().markProvisional(*id);
-  new_factors_.push_back(*id);
+  changes_.factors.push_back(*id);
   return id;
 }
 
 void IncrementalSolver::removeFactor(FactorId id) {
   const auto variables = graph_.variablesOf(id);
-  if (std::erase(new_factors_, id) == 0 && !waiting_.remove(id)) {
-    touched_.insert(touched_.end(), variables.begin(), variables.end());
+  if (std::erase(changes_.factors, id) == 0 && !waiting_.remove(id)) {
+    changes_.touched.insert(changes_.touched.end(), variables.begin(), variables.end());
     tree_.removeFactor(tree_.ownerOf(graph_.variablesOf(id)), id);
   }
   graph_.removeFactor(id);
 }
 
 void IncrementalSolver::beginReport() {
-  report_.problems.clear();
-  report_.problems.swap(refused_);
-  report_.moved.clear();
-  report_.eliminated_scalars = -eliminator_.eliminatedScalars();
-  report_.substituted_scalars = 0;
-  report_.relinearized_variables = report_.relinearized_factors = report_.corrected_factors =
-      report_.deferred_variables = 0;
-  report_.largest_change = 0;
+  std::vector<VariableId> moved = std::move(report_.moved);
+  moved.clear();
+  report_ = {.problems = std::move(refused_),
+             .moved = std::move(moved),
+             .eliminated_scalars = -eliminator_.eliminatedScalars()};
+  refused_.clear();
   eliminator_.resetWeakestPivot();
   budget_.beginUpdate();
+}
+
+void IncrementalSolver::note(const Step& step) {
+  report_.relinearized_variables += step.corrections.relinearized_variables;
+  report_.relinearized_factors += step.corrections.relinearized_factors;
+  report_.corrected_factors += step.corrections.corrected_factors;
+  report_.moved.insert(report_.moved.end(), step.solved.moved.begin(), step.solved.moved.end());
+  report_.substituted_scalars += step.solved.scalars;
+  report_.largest_change = std::max(report_.largest_change, step.solved.largest_change);
+  if (step.of_all) ++counters_.reorderings, ++counters_.batch_solves;
+  spread_sigmas_ = step.spread_sigmas;
 }
 
 void IncrementalSolver::endReport() {
@@ -91,124 +113,89 @@ void IncrementalSolver::endReport() {
   if (report_.relinearized_factors > 0) ++counters_.relinearizations;
   sortUnique(report_.moved);
   problems_.append(graph_, tree_, eliminator_.weakestPivot(), report_.problems);
-  touched_.clear();
-  new_variables_.clear();
-  new_factors_.clear();
+  changes_.clear();
 }
 
 const IncrementalSolver::Report& IncrementalSolver::update(Correction correction) {
   beginReport();
   ++counters_.updates;
-  const bool batch_due = counters_.updates % params_.batch_every_updates == 0 || new_variables_.size() > kMostAppended;
-  if (params_.policy == Policy::kEveryN && batch_due) {
-    batchStep();
-  } else {
-    if (params_.policy == Policy::kFluid) notingPace([&] { waiting_.admit(new_factors_, touched_); });
-    step(true, correction);
-    new_factors_.clear();
-    const int steps = correction == Correction::kNow ? params_.iterations_per_update : 1;
-    for (int i = 1; i < steps && mayIterate(); ++i) step(false, correction);
-  }
+  const bool fluid = params_.policy == Policy::kFluid;
+  const bool batch_due =
+      counters_.updates % params_.batch_every_updates == 0 || changes_.variables.size() > kMostAppended;
+  if (fluid) notingPace(budget_, eliminator_, [&] { waiting_.admit(changes_.factors, changes_.touched); });
+  touchVariablesOf(graph_, changes_.factors, changes_.touched);
+  note(!fluid && batch_due ? batchStep(changes_.touched) : step(changes_, correction));
+  const int steps = correction == Correction::kNow ? params_.iterations_per_update : 1;
+  const auto costsLittle = [&] {
+    return params_.iterated_scalars == 0 || report_.substituted_scalars <= params_.iterated_scalars;
+  };
+  for (int i = 1; i < steps && relinearization_.anyModelOff() && costsLittle(); ++i) note(step({}, correction));
   endReport();
   return report_;
 }
 
-/// Models are off, and the update has not cost too much yet for another step.
-bool IncrementalSolver::mayIterate() const {
-  return relinearization_.anyModelOff() &&
-         (params_.iterated_scalars == 0 || report_.substituted_scalars <= params_.iterated_scalars);
-}
-
-/// One Gauss-Newton step: folds in what is new, corrects the models that are off, solves for x, and lets the estimates
-/// follow.
-void IncrementalSolver::step(bool fold, Correction correction) {
+IncrementalSolver::Step IncrementalSolver::step(const Changes& changes, Correction correction) {
+  Step step;
   work_.begin();
-  if (fold) {
-    touchNewFactors();
-    for (const VariableId v : touched_) work_.markRemoved(tree_.cliqueOf(v));
-  }
-  if (params_.policy == Policy::kFluid) relinearization_.beginStep(new_factors_, waiting_.factors());
-  if (params_.policy == Policy::kFluid && correction == Correction::kNow) {
-    const auto corrections = relinearization_.correctModels();
-    report_.relinearized_variables += corrections.relinearized_variables;
-    report_.relinearized_factors += corrections.relinearized_factors;
-    report_.corrected_factors += corrections.corrected_factors;
-  }
-  notingPace([&] {
+  for (const VariableId v : changes.touched) work_.markRemoved(tree_.cliqueOf(v));
+  if (params_.policy == Policy::kFluid) relinearization_.beginStep(changes.factors, waiting_.factors());
+  if (params_.policy == Policy::kFluid && correction == Correction::kNow)
+    step.corrections = relinearization_.correctModels();
+  notingPace(budget_, eliminator_, [&] {
     work_.apply(eliminator_);
-    if (fold) rebuildTop();
+    rebuildTop(changes);
   });
-  spread_sigmas_ = params_.substitution_tolerance * graph_.models().rmsResidual();
-  substitute(params_.spread_scalars > 0 ? params_.spread_scalars : kNoLimit);
-}
-
-template <class Elimination>
-void IncrementalSolver::notingPace(const Elimination& eliminate) {
-  const auto begin = std::chrono::steady_clock::now();
-  const std::int64_t before = eliminator_.eliminatedScalars();
-  eliminate();
-  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-  budget_.notePace(eliminator_.eliminatedScalars() - before, took.count());
-}
-
-void IncrementalSolver::touchNewFactors() {
-  for (const FactorId f : new_factors_) {
-    const auto variables = graph_.variablesOf(f);
-    touched_.insert(touched_.end(), variables.begin(), variables.end());
-  }
-  sortUnique(touched_);
+  step.spread_sigmas = params_.substitution_tolerance * graph_.models().rmsResidual();
+  step.solved = substitute(step.spread_sigmas, params_.spread_scalars > 0 ? params_.spread_scalars : kNoLimit);
+  return step;
 }
 
 /// Eliminates the marked cliques' variables and the new ones, in a new order.
-void IncrementalSolver::rebuildTop() {
+void IncrementalSolver::rebuildTop(const Changes& changes) {
   auto& [variables, factors, orphans] = eliminator_.remove(work_.releaseRemoved());
-  variables.insert(variables.end(), new_variables_.begin(), new_variables_.end());
-  factors.insert(factors.end(), new_factors_.begin(), new_factors_.end());
+  variables.insert(variables.end(), changes.variables.begin(), changes.variables.end());
+  factors.insert(factors.end(), changes.factors.begin(), changes.factors.end());
   if (variables.empty()) return;
-  const bool reorder = params_.policy == Policy::kFluid;
-  last_ = touched_;
+  near_root_ = changes.touched;
   for (const FactorId f : waiting_.factors())  // so that lifted variables stay where they are
-    last_.insert(last_.end(), graph_.variablesOf(f).begin(), graph_.variablesOf(f).end());
-  const auto order =
-      reorder ? reordered_(variables, factors, orphans, last_, new_variables_) : std::span<const VariableId>(variables);
+    near_root_.insert(near_root_.end(), graph_.variablesOf(f).begin(), graph_.variablesOf(f).end());
+  const bool reorder = params_.policy == Policy::kFluid;
+  const auto order = reorder ? reordered_(variables, factors, orphans, near_root_, changes.variables)
+                             : std::span<const VariableId>(variables);
   work_.markNew(eliminator_.eliminate({.order = order, .factors = factors, .orphans = orphans}));
 }
 
 /// Solves for x where anything changed, and finds the models that are off there.
-void IncrementalSolver::substitute(std::int64_t most_scalars) {
-  const auto solved = substitution_(spread_sigmas_, std::min(most_scalars, budget_.substitutionsLeft()));
+BackSubstitution::Result IncrementalSolver::substitute(double spread_sigmas, std::int64_t most_scalars) {
+  const auto solved = substitution_(spread_sigmas, std::min(most_scalars, budget_.substitutionsLeft()));
   budget_.spendSubstitutions(solved.scalars);
-  report_.moved.insert(report_.moved.end(), solved.moved.begin(), solved.moved.end());
-  report_.substituted_scalars += solved.scalars;
-  report_.largest_change = std::max(report_.largest_change, solved.largest_change);
   if (params_.policy == Policy::kFluid) relinearization_.compareModels(solved);
+  return solved;
 }
 
-/// Relinearizes and reorders everything.
-void IncrementalSolver::batchStep() {
-  work_.begin();
-  report_.relinearized_factors += static_cast<int>(graph_.factorCount());
-  relinearization_.clear();
-  waiting_.clear();
-  touchNewFactors();
-  budget_.lift();
-  eliminator_.remove(tree_.cliques());
+IncrementalSolver::Step IncrementalSolver::batchStep(std::span<const VariableId> touched) {
   const std::vector<VariableId> variables = graph_.variables();
   const std::vector<FactorId> factors = graph_.factors();
+  work_.begin();
+  relinearization_.clear();
+  waiting_.clear();
+  budget_.lift();
+  eliminator_.remove(tree_.cliques());
   for (const VariableId v : variables) graph_.states().restartCoordinates(v);
   for (const FactorId f : factors) graph_.models().linearize(f);
-  if (variables.empty()) return;
-  work_.markNew(eliminator_.eliminate({.order = reordered_(variables, factors, {}, touched_), .factors = factors}));
-  ++counters_.reorderings, ++counters_.batch_solves;
-  spread_sigmas_ = 0;
-  substitute(kNoLimit);
+  if (variables.empty()) return {};
+  work_.markNew(eliminator_.eliminate({.order = reordered_(variables, factors, {}, touched), .factors = factors}));
+  return {.corrections = {.relinearized_factors = static_cast<int>(factors.size())},
+          .solved = substitute(0, kNoLimit),
+          .of_all = true};
 }
 
 const IncrementalSolver::Report& IncrementalSolver::converge(int max_iterations, double tolerance) {
   beginReport();
+  touchVariablesOf(graph_, changes_.factors, changes_.touched);
   for (int i = 0; i < max_iterations; ++i) {
     report_.largest_change = 0;
-    batchStep();
+    note(batchStep(changes_.touched));
     if (report_.largest_change < tolerance) break;
   }
   endReport();
@@ -216,29 +203,24 @@ const IncrementalSolver::Report& IncrementalSolver::converge(int max_iterations,
 }
 
 void IncrementalSolver::retire(std::span<const VariableId> variables) {
-  assert(touched_.empty() && new_variables_.empty() && new_factors_.empty());
-  takeInFactorsOf(variables);
+  assert(changes_.empty());
+  // Waiting factors whose variables leave can wait no longer.
+  if (Changes late{.factors = waiting_.takeWith(variables)}; !late.factors.empty()) {
+    for (const FactorId f : late.factors) graph_.models().linearize(f);
+    touchVariablesOf(graph_, late.factors, late.touched);
+    note(step(late, Correction::kNow));
+  }
   retirement_.marginalize(variables);
   counters_.retired_variables += static_cast<std::int64_t>(variables.size());
 }
 
-/// Waiting factors whose variables leave can wait no longer.
-void IncrementalSolver::takeInFactorsOf(std::span<const VariableId> leaving) {
-  new_factors_ = waiting_.takeWith(leaving);
-  if (new_factors_.empty()) return;
-  for (const FactorId f : new_factors_) graph_.models().linearize(f);
-  step(true, Correction::kNow);
-  touched_.clear();
-  new_factors_.clear();
-}
-
 const IncrementalSolver::Report& IncrementalSolver::drop(std::span<const VariableId> variables) {
-  assert(touched_.empty() && new_variables_.empty() && new_factors_.empty());
+  assert(changes_.empty());
   beginReport();
   waiting_.takeWith(variables);  // they leave with the variables
   work_.begin();
   work_.markNew(retirement_.drop(variables));
-  substitute(kNoLimit);
+  note({.corrections = {}, .solved = substitute(spread_sigmas_, kNoLimit), .spread_sigmas = spread_sigmas_});
   endReport();
   return report_;
 }

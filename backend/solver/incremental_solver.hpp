@@ -100,18 +100,34 @@ class IncrementalSolver {
   std::size_t heldBytes() const { return graph_.models().heldBytes() + eliminator_.heldBytes(); }
 
  private:
+  /// What the tree does not hold yet.
+  struct Changes {
+    std::vector<VariableId> touched = {};  // by factors that came or went
+    std::vector<VariableId> variables = {};
+    std::vector<FactorId> factors = {};
+
+    bool empty() const { return touched.empty() && variables.empty() && factors.empty(); }
+    void clear() { touched.clear(), variables.clear(), factors.clear(); }
+  };
+  /// What a step did.
+  struct Step {
+    FluidRelinearization::Corrections corrections;
+    BackSubstitution::Result solved;
+    double spread_sigmas = 0;  // smaller steps of a variable did not spread
+    bool of_all = false;       // the whole system was reordered and solved
+  };
+
   void beginReport();
   void endReport();
-  bool usable(std::span<const VariableId> variables);
-  bool mayIterate() const;
-  void touchNewFactors();
-  void takeInFactorsOf(std::span<const VariableId> leaving);
-  void step(bool fold, Correction correction);
-  void batchStep();
-  template <class Elimination>
-  void notingPace(const Elimination& eliminate);
-  void rebuildTop();
-  void substitute(std::int64_t most_scalars);
+  /// The one place where a step enters the report.
+  void note(const Step& step);
+  /// One Gauss-Newton step: folds in what is new, corrects the models that are off, solves for x, and lets the
+  /// estimates follow.
+  Step step(const Changes& changes, Correction correction);
+  /// Relinearizes and reorders everything.
+  Step batchStep(std::span<const VariableId> touched);
+  void rebuildTop(const Changes& changes);
+  BackSubstitution::Result substitute(double spread_sigmas, std::int64_t most_scalars);
 
   Params params_;
   FactorGraph graph_;
@@ -127,15 +143,10 @@ class IncrementalSolver {
   ProblemReporter problems_;
   Report report_;
   SolverCounters counters_;
-  double spread_sigmas_ = 0;  // of the newest step: smaller ones of a variable did not spread
-
-  // Since the last update.
-  std::vector<VariableId> touched_, new_variables_;
-  std::vector<FactorId> new_factors_;
+  double spread_sigmas_ = 0;  // of the newest step
+  Changes changes_;           // since the last update, as well as the factors that were left out
   std::vector<SolverProblem> refused_;
-
-  // Scratch.
-  std::vector<VariableId> last_;  // of an order
+  std::vector<VariableId> near_root_;  // scratch: variables that an order puts there
 };
 
 }  // namespace motorcade

@@ -88,7 +88,7 @@ TEST(IncrementalSolverAllocation, SteadyUpdatesTakeNothingFromTheHeap) {
 
 /// Ought to be next to nothing too. Measured: 55 in an update, 213 where everything is relinearized, all of them
 /// temporary matrices where the model of a marginal prior is made or compared (MarginalFactor::linearize, and
-/// FactorGraph's handling of an InformationFactor).
+/// LinearModels' handling of an InformationFactor).
 TEST(IncrementalSolverAllocation, MarginalPriorsCostABoundedNumberOfAllocations) {
   EXPECT_LE(allocationsOfTwoHundredSteadyUpdates({}, Leaving::kRetire), 200 * 60);
   EXPECT_LE(allocationsOfTwoHundredSteadyUpdates(kRelinearizesAll, Leaving::kRetire), 200 * 230);
