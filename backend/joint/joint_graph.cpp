@@ -56,12 +56,12 @@ JointGraph::JointGraph(const JointParams& params, const WindowParams& window, co
 /// The camera first: objects are predicted, and their motion is told from the camera's, by where it was then found.
 /// Models are corrected with the objects: theirs of the frame before are replaced in between.
 void JointGraph::add(const FrameMeasurements& measurements) {
-  clearProblems();
+  problems_.clear();
   std::erase_if(landmarks_, [this](const auto& body) { return !tracks_.contains(body.first); });
   addCamera(measurements);
   at_rest_.add(frame_count_, frames_);
   const bool alone = tracks_.empty() && measurements.objects.empty();
-  update(alone ? IncrementalSolver::Correction::kNow : IncrementalSolver::Correction::kLater);
+  heed(solver_.update(alone ? IncrementalSolver::Correction::kNow : IncrementalSolver::Correction::kLater));
   addObjects(measurements);
   if (showsPoints(measurements)) undecided_.observe(measurements.head.frame, measurements.undecided);
   calibrate(measurements.head.frame);
@@ -89,7 +89,7 @@ void JointGraph::addObjects(const FrameMeasurements& measurements) {
     objects_.renewMotion(track, measurements.head.frame);
     landmarks.renew(frame_count_, posesOf(track));
   }
-  update();
+  heed(solver_.update());
 }
 
 LandmarkBundles& JointGraph::landmarksOf(TrackId id) {
@@ -118,7 +118,7 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
 }
 
 void JointGraph::calibrate(FrameId newest) {
-  if (offset_.release(newest)) update();
+  if (offset_.release(newest)) heed(solver_.update());
   if (offset_.hasMoved()) linearizeLandmarksAnew();
   if (!offset_.isDecided(newest)) return;
   at_rest_.bundles().fix();
@@ -130,14 +130,14 @@ void JointGraph::linearizeLandmarksAnew() {
   offset_.holdAsEliminated();
   at_rest_.relinearize(frames_);
   for (const auto& [id, track] : tracks_) landmarksOf(id).relinearize(posesOf(track));
-  update();
+  heed(solver_.update());
 }
 
 void JointGraph::converge() {
   constexpr double kConverged = 1e-6;  // m or rad: far below what is published
-  clearProblems();
-  if (at_rest_.eliminateAligned(frame_count_ - 1, frames_)) update();
-  convergeWithin(params_.final_iterations, kConverged);
+  problems_.clear();
+  if (at_rest_.eliminateAligned(frame_count_ - 1, frames_)) heed(solver_.update());
+  heed(solver_.converge(params_.final_iterations, kConverged));
 }
 
 void JointGraph::dropped(TrackId id) { landmarksOf(id).drop(); }

@@ -29,10 +29,10 @@ AnchoredPoseGraph::AnchoredPoseGraph(const PoseGraphParams& params, const Window
       use_smoothness_(window.use_smoothness) {}
 
 void AnchoredPoseGraph::add(const FrameMeasurements& measurements) {
-  clearProblems();
+  problems_.clear();
   addCamera(measurements);
   addObjects(measurements);
-  update();
+  heed(solver_.update());
 }
 
 void AnchoredPoseGraph::addObjects(const FrameMeasurements& measurements) {
@@ -80,9 +80,9 @@ void AnchoredPoseGraph::addCamera(const FrameMeasurements& measurements) {
     if (root && isFinite(measurements.odometry.T_previous_now))
       noise.sqrt_information = *root;
     else
-      tell("the camera's motion or its covariance is unusable: taken as " +
-           std::string(isFinite(measurements.odometry.T_previous_now) ? "measured" : "standing still") +
-           ", and next to unknown");
+      problems_.push_back("the camera's motion or its covariance is unusable: taken as " +
+                          std::string(isFinite(measurements.odometry.T_previous_now) ? "measured" : "standing still") +
+                          ", and next to unknown");
     solver_.addFactor(std::make_unique<MotionFactor>(std::array{before, record.x}, MotionModel{T_previous_now}, noise));
   }
   frames_.emplace(measurements.head.frame, record);
@@ -196,14 +196,14 @@ void AnchoredPoseGraph::addObjectEncounter(const ObjectObservation& m, const Obj
 }
 
 void AnchoredPoseGraph::leftOut(const ObjectObservation& seen, const std::string& what) {
-  tell("object " + std::to_string(seen.track.value) + ", frame " + std::to_string(seen.frame.value) + ": " + what +
-       " is left out");
+  problems_.push_back("object " + std::to_string(seen.track.value) + ", frame " + std::to_string(seen.frame.value) +
+                      ": " + what + " is left out");
 }
 
 void AnchoredPoseGraph::converge() {
   constexpr double kConverged = 1e-7;  // m or rad: far below what is published
-  clearProblems();
-  convergeWithin(params_.final_iterations, kConverged);
+  problems_.clear();
+  heed(solver_.converge(params_.final_iterations, kConverged));
 }
 
 }  // namespace motorcade

@@ -24,6 +24,12 @@ std::vector<VariableId> variablesOf(const ObjectTrack& track) {
   return variables;
 }
 
+std::optional<TrackId> objectOf(const std::map<TrackId, ObjectTrack>& tracks, VariableId v) {
+  for (const auto& [id, track] : tracks)
+    if (std::ranges::count(variablesOf(track), v) > 0) return id;
+  return std::nullopt;
+}
+
 }  // namespace
 
 /// Points are not kept: records stay for as long as the window.
@@ -33,12 +39,6 @@ ObjectRecord& SmoothingWindow::addRecord(ObjectTrack& track, const ObjectObserva
   record.seen.measured = record.seen.patches = {};
   record.stamp = frames_.at(seen.frame).head.stamp;
   return record;
-}
-
-void SmoothingWindow::update(IncrementalSolver::Correction correction) { dropTroubled(solver_.update(correction)); }
-
-void SmoothingWindow::convergeWithin(int iterations, double tolerance) {
-  dropTroubled(solver_.converge(iterations, tolerance));
 }
 
 void SmoothingWindow::retireOldest() {
@@ -71,12 +71,6 @@ void SmoothingWindow::keep(FrameId frame, const FrameCovariances& covariances) {
   for (const auto& [id, object] : covariances.objects) tracks_.at(id).records.at(frame).covariances = object;
 }
 
-std::optional<TrackId> SmoothingWindow::objectOf(VariableId v) const {
-  for (const auto& [id, track] : tracks_)
-    if (std::ranges::count(variablesOf(track), v) > 0) return id;
-  return std::nullopt;
-}
-
 std::string SmoothingWindow::nameOf(VariableId v) const {
   for (const auto& [frame, camera] : frames_)
     if (camera.x == v) return "camera pose of frame " + std::to_string(frame.value);
@@ -93,15 +87,15 @@ std::string SmoothingWindow::nameOf(VariableId v) const {
 }
 
 /// Dropping an object may make another one undetermined, and so goes on until no object has a problem.
-void SmoothingWindow::dropTroubled(const IncrementalSolver::Report& report) {
+void SmoothingWindow::heed(const IncrementalSolver::Report& report) {
   std::vector<SolverProblem> found = report.problems;
   while (!found.empty()) {
     std::vector<TrackId> troubled;
     for (const SolverProblem& problem : found) {
-      const auto object = concernsVariable(problem.kind) ? objectOf(problem.variable) : std::nullopt;
+      const auto object = concernsVariable(problem.kind) ? objectOf(tracks_, problem.variable) : std::nullopt;
       if (object) troubled.push_back(*object);
       const std::string text = describe(problem, solver_.graph(), [&](VariableId v) { return nameOf(v); });
-      tell(object ? "object " + std::to_string(object->value) + " is dropped: " + text : text);
+      problems_.push_back(object ? "object " + std::to_string(object->value) + " is dropped: " + text : text);
     }
     found.clear();
     for (const TrackId id : troubled) {

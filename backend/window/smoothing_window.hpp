@@ -94,12 +94,10 @@ class SmoothingWindow {
   SmoothingWindow(const IncrementalSolver::Params& params, std::string shared_name)
       : solver_(params), shared_name_(std::move(shared_name)) {}
 
-  void clearProblems() { problems_.clear(); }
-  void tell(std::string problem) { problems_.push_back(std::move(problem)); }
   /// The object's record of a frame that the window holds, as yet without variables.
   ObjectRecord& addRecord(ObjectTrack& track, const ObjectObservation& seen);
-  void update(IncrementalSolver::Correction correction = IncrementalSolver::Correction::kNow);
-  void convergeWithin(int iterations, double tolerance);
+  /// Tells what the solver found wrong, and drops the objects concerned.
+  void heed(const IncrementalSolver::Report& report);
   /// Names a variable in sentences about what is wrong.
   virtual std::string nameOf(VariableId v) const;
   /// The object's variables have gone.
@@ -110,14 +108,12 @@ class SmoothingWindow {
   IncrementalSolver solver_;
   std::map<FrameId, CameraRecord> frames_;
   std::map<TrackId, ObjectTrack> tracks_;
+  std::vector<std::string> problems_;  // since the last `add`
 
  private:
-  void dropTroubled(const IncrementalSolver::Report& report);
-  std::optional<TrackId> objectOf(VariableId v) const;
   void retireRecord(ObjectTrack& track, FrameId oldest, std::vector<VariableId>& retired);
 
   std::string shared_name_;
-  std::vector<std::string> problems_;
 };
 
 }  // namespace motorcade
