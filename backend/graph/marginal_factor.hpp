@@ -7,7 +7,7 @@
 namespace motorcade {
 
 /// What retired variables said about those that stay: a quadratic around the values at that moment. When a variable's
-/// linearization point moves later, the quadratic stays the same function of e = local(value then, value now).
+/// linearization point moves later, the quadratic stays the same function of e = displacement(value then, value now).
 class MarginalFactor final : public InformationFactor {
  public:
   /// `information` is the lower triangle of [H g; g^T c] over the stacked deltas from `values`.

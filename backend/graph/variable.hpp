@@ -25,12 +25,6 @@ inline int dimension(const Value& value) {
   return std::holds_alternative<SE3>(value) ? 6 : 3;
 }
 
-/// Poses move by a right perturbation, vectors by addition.
-Value retract(const Value& value, const SmallVector& delta);
-
-/// The delta with retract(from, delta) = to.
-SmallVector local(const Value& from, const Value& to);
-
 /// A step in the world's axes: a pose's origin moves by the first numbers [m], and it turns about its origin by the
 /// last [rad]. A vector moves by addition.
 Value displaced(const Value& value, const SmallVector& step);

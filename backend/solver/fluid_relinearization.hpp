@@ -39,14 +39,7 @@ class FluidRelinearization {
 
   FluidRelinearization(const Params& params, FactorGraph& graph, const EliminationTree& tree,
                        const BackSubstitution& substitution, CliqueWork& work, EliminationBudget& budget)
-      : params_(params),
-        graph_(graph),
-        states_(graph.states()),
-        models_(graph.models()),
-        tree_(tree),
-        substitution_(substitution),
-        work_(work),
-        budget_(budget) {}
+      : params_(params), graph_(graph), tree_(tree), substitution_(substitution), work_(work), budget_(budget) {}
 
   /// Finds the models that are off after a step.
   void compareModels(const BackSubstitution::Result& step);
@@ -93,9 +86,9 @@ class FluidRelinearization {
   void correctResidual(FactorId id);
 
   Params params_;
-  const FactorGraph& graph_;
-  VariableStates& states_;
-  LinearModels& models_;
+  FactorGraph& graph_;
+  VariableStates& states_ = graph_.states();
+  LinearModels& models_ = graph_.models();
   const EliminationTree& tree_;
   const BackSubstitution& substitution_;
   CliqueWork& work_;

@@ -77,7 +77,7 @@ void IncrementalSolver::removeFactor(FactorId id) {
   const auto variables = graph_.variablesOf(id);
   if (std::erase(changes_.factors, id) == 0 && !waiting_.remove(id)) {
     changes_.touched.insert(changes_.touched.end(), variables.begin(), variables.end());
-    tree_.removeFactor(tree_.ownerOf(graph_.variablesOf(id)), id);
+    tree_.removeFactor(tree_.ownerOf(variables), id);
   }
   graph_.removeFactor(id);
 }
@@ -226,7 +226,9 @@ const IncrementalSolver::Report& IncrementalSolver::drop(std::span<const Variabl
 }
 
 std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(std::span<const VariableId> variables) const {
-  return motorcade::jointCovariance(graph_, tree_, variables);
+  Eigen::Index scalars = 0;
+  for (const VariableId v : variables) scalars += graph_.sizeOf(v);
+  return jointCovariance(variables, Eigen::MatrixXd::Identity(scalars, scalars));
 }
 
 std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(std::span<const VariableId> variables,

@@ -87,7 +87,8 @@ class IncrementalSolver {
 
   Value estimate(VariableId v) const { return graph_.states().estimate(v); }
   SE3 pose(VariableId v) const { return std::get<SE3>(estimate(v)); }
-  /// See motorcade::jointCovariance.
+  /// Joint covariance of right perturbations of the variables, stacked, and of J times them. Empty when the system is
+  /// singular there. See motorcade::jointCovariance.
   std::optional<Eigen::MatrixXd> jointCovariance(std::span<const VariableId> variables) const;
   std::optional<Eigen::MatrixXd> jointCovariance(std::span<const VariableId> variables,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& J) const;

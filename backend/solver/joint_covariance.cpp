@@ -133,13 +133,6 @@ std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const 
 }  // namespace
 
 std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
-                                               std::span<const VariableId> variables) {
-  Eigen::Index scalars = 0;
-  for (const VariableId v : variables) scalars += graph.sizeOf(v);
-  return jointCovariance(graph, tree, variables, Eigen::MatrixXd::Identity(scalars, scalars));
-}
-
-std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
                                                std::span<const VariableId> variables,
                                                const Eigen::Ref<const Eigen::MatrixXd>& J) {
   if (std::ranges::any_of(variables, [&](VariableId v) { return tree.cliqueOf(v) < 0; })) return std::nullopt;

@@ -10,12 +10,9 @@
 
 namespace motorcade {
 
-/// Joint covariance of right perturbations of the variables, stacked, from R. Empty when the system is singular there.
-/// Costs as much as the cliques from the variables up to the root.
-std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
-                                               std::span<const VariableId> variables);
-/// Covariance of J x, where x are those perturbations; cheaper where J has few rows and those of old variables come
-/// first.
+/// Covariance of J x, where x are right perturbations of the variables, stacked, from R. Empty when the system is
+/// singular there. Costs as much as the cliques from the variables up to the root, and less where J has few rows and
+/// those of old variables come first.
 std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,
                                                std::span<const VariableId> variables,
                                                const Eigen::Ref<const Eigen::MatrixXd>& J);

@@ -95,50 +95,37 @@ SolverProblem merged(const FactorGraph& graph, Kind kind, const Directions& dire
   return problem;
 }
 
+Kind kindOf(const NullSpaceDirection& direction) {
+  if (direction.constraint == Constraint::kNegative) return Kind::kIndefinite;
+  return direction.constraint == Constraint::kWeak ? Kind::kBadlyConditioned : Kind::kUnconstrained;
+}
+
+/// No factor constrains the direction, and more than a variable that has factors of its own moves along it.
+bool isJoint(const FactorGraph& graph, const NullSpaceDirection& direction) {
+  return direction.constraint == Constraint::kNone &&
+         (direction.steps.size() > 1 || graph.factorsOf(direction.held).empty());
+}
+
 /// What is wrong with one connected part.
-class PartProblems {
- public:
-  PartProblems(const FactorGraph& graph, std::int64_t part_variables)
-      : graph_(graph), part_variables_(part_variables) {}
-
-  void add(NullSpaceDirection&& direction) { directions_.push_back(std::move(direction)); }
-
-  std::vector<SolverProblem> problems() const {
-    const bool whole_part_moves =
-        std::ranges::any_of(directions_, [&](const NullSpaceDirection& d) { return movesPart(d); });
-    Directions of_part;
-    std::map<std::pair<VariableId, Kind>, Directions> of_variables;
-    for (const NullSpaceDirection& direction : directions_) {
-      if (whole_part_moves && isJoint(direction))
-        of_part.push_back(&direction);
-      else
-        of_variables[{direction.held, kindOf(direction)}].push_back(&direction);
-    }
-    std::vector<SolverProblem> problems;
-    if (!of_part.empty()) problems.push_back(merged(graph_, Kind::kMissingPrior, of_part, part_variables_));
-    for (const auto& [key, directions] : of_variables)
-      problems.push_back(merged(graph_, key.second, directions, part_variables_));
-    return problems;
+std::vector<SolverProblem> problemsOfPart(const FactorGraph& graph, const std::vector<NullSpaceDirection>& directions,
+                                          std::int64_t part_variables) {
+  const bool whole_part_moves = std::ranges::any_of(directions, [&](const NullSpaceDirection& d) {
+    return isJoint(graph, d) && static_cast<std::int64_t>(d.steps.size()) == part_variables;
+  });
+  Directions of_part;
+  std::map<std::pair<VariableId, Kind>, Directions> of_variables;
+  for (const NullSpaceDirection& direction : directions) {
+    if (whole_part_moves && isJoint(graph, direction))
+      of_part.push_back(&direction);
+    else
+      of_variables[{direction.held, kindOf(direction)}].push_back(&direction);
   }
-
- private:
-  static Kind kindOf(const NullSpaceDirection& direction) {
-    if (direction.constraint == Constraint::kNegative) return Kind::kIndefinite;
-    return direction.constraint == Constraint::kWeak ? Kind::kBadlyConditioned : Kind::kUnconstrained;
-  }
-  /// No factor constrains the direction, and more than a variable that has factors of its own moves along it.
-  bool isJoint(const NullSpaceDirection& direction) const {
-    return direction.constraint == Constraint::kNone &&
-           (direction.steps.size() > 1 || graph_.factorsOf(direction.held).empty());
-  }
-  bool movesPart(const NullSpaceDirection& direction) const {
-    return isJoint(direction) && static_cast<std::int64_t>(direction.steps.size()) == part_variables_;
-  }
-
-  const FactorGraph& graph_;
-  std::int64_t part_variables_;
-  std::vector<NullSpaceDirection> directions_;
-};
+  std::vector<SolverProblem> problems;
+  if (!of_part.empty()) problems.push_back(merged(graph, Kind::kMissingPrior, of_part, part_variables));
+  for (const auto& [key, of_variable] : of_variables)
+    problems.push_back(merged(graph, key.second, of_variable, part_variables));
+  return problems;
+}
 
 /// Weak scalars by the root of their connected part.
 std::map<int, std::vector<FrontalScalar>> weakScalarsOfParts(const EliminationTree& tree) {
@@ -160,9 +147,9 @@ std::vector<SolverProblem> findProblems(const FactorGraph& graph, const Eliminat
   std::vector<SolverProblem> problems;
   std::size_t free_parts = 0;
   for (const auto& [root, scalars] : weakScalarsOfParts(tree)) {
-    PartProblems part(graph, variablesBelow(tree, root));
-    for (const FrontalScalar& scalar : scalars) part.add(nullSpaceDirection(graph, tree, scalar));
-    const auto of_part = part.problems();
+    std::vector<NullSpaceDirection> directions;
+    for (const FrontalScalar& scalar : scalars) directions.push_back(nullSpaceDirection(graph, tree, scalar));
+    const auto of_part = problemsOfPart(graph, directions, variablesBelow(tree, root));
     if (std::ranges::any_of(of_part, concernsPart, &SolverProblem::kind)) ++free_parts;
     problems.insert(problems.end(), of_part.begin(), of_part.end());
   }

@@ -120,25 +120,10 @@ std::string describeFactor(const SolverProblem& problem, const NameOf& name) {
 }  // namespace
 
 std::string_view nameOf(SolverProblem::Kind kind) {
-  switch (kind) {
-    case Kind::kUnconstrained:
-      return "unconstrained";
-    case Kind::kMissingPrior:
-      return "missing_prior";
-    case Kind::kDisconnectedPart:
-      return "disconnected_part";
-    case Kind::kBadlyConditioned:
-      return "badly_conditioned";
-    case Kind::kIndefinite:
-      return "indefinite";
-    case Kind::kNotFinite:
-      return "not_finite";
-    case Kind::kUnknownVariable:
-      return "unknown_variable";
-    case Kind::kRepeatedVariable:
-      return "repeated_variable";
-  }
-  return {};
+  static constexpr std::array<std::string_view, 8> kNames{"unconstrained",     "missing_prior",    "disconnected_part",
+                                                          "badly_conditioned", "indefinite",       "not_finite",
+                                                          "unknown_variable",  "repeated_variable"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 std::string describe(const SolverProblem& problem, const FactorGraph& graph, const NameOf& name) {

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "tests/backend/perturbation.hpp"
 #include "tests/support/noise.hpp"
 
 namespace motorcade::test {

@@ -6,6 +6,7 @@
 
 #include "backend/graph/factor.hpp"
 #include "backend/graph/variable.hpp"
+#include "tests/backend/perturbation.hpp"
 
 namespace motorcade::test {
 

@@ -7,6 +7,7 @@
 #include "backend/factors/pose_factors.hpp"
 #include "backend/graph/relative_pose_factor.hpp"
 #include "core/decompositions.hpp"
+#include "tests/backend/perturbation.hpp"
 #include "tests/support/noise.hpp"
 
 /// Seeded measurements between variables of every kind that a solver may hold.

@@ -10,6 +10,7 @@
 #include <Eigen/Cholesky>
 
 #include "perf/backend/solver/batch_reference.hpp"
+#include "tests/backend/perturbation.hpp"
 
 namespace motorcade::perf {
 namespace {
@@ -36,7 +37,7 @@ double sigmasOff(const IncrementalSolver& batch, const IncrementalSolver& measur
   if (!covariance) return kUnknown;
   const Eigen::LLT<Eigen::MatrixXd> root(*covariance);
   if (root.info() != Eigen::Success) return kUnknown;
-  const SmallVector difference = local(batch.estimate(v), measured.estimate(v));
+  const SmallVector difference = test::local(batch.estimate(v), measured.estimate(v));
   return root.matrixL().solve(difference).norm() / std::sqrt(static_cast<double>(difference.size()));
 }
 

@@ -5,6 +5,7 @@
 #include "backend/factors/twist_factors.hpp"
 #include "tests/backend/factor_differences.hpp"
 #include "tests/backend/graph_scene.hpp"
+#include "tests/backend/perturbation.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace motorcade {
@@ -14,6 +15,7 @@ using test::forAllKinds;
 using test::GraphScene;
 using test::IsNear;
 using test::kResidualRounding;
+using test::local;
 using test::RandomWorld;
 using test::residualAt;
 

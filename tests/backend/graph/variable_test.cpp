@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/backend/perturbation.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/noise.hpp"
 
@@ -11,7 +12,9 @@ namespace motorcade {
 namespace {
 
 using test::IsNear;
+using test::local;
 using test::Noise;
+using test::retract;
 
 constexpr double kValueRounding = 1e-12;  // of a few operations on numbers of order one
 

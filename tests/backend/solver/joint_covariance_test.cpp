@@ -6,6 +6,7 @@
 
 #include "backend/solver/incremental_solver.hpp"
 #include "tests/backend/dense_system.hpp"
+#include "tests/backend/perturbation.hpp"
 #include "tests/backend/random_factors.hpp"
 #include "tests/backend/tree_information.hpp"
 #include "tests/support/matchers.hpp"
@@ -16,6 +17,7 @@ namespace {
 using test::DenseSystem;
 using test::IsNear;
 using test::kExact;
+using test::local;
 using test::RandomWorld;
 using test::settle;
 

@@ -4,6 +4,7 @@
 
 #include "backend/solver/incremental_solver.hpp"
 #include "tests/backend/dense_system.hpp"
+#include "tests/backend/perturbation.hpp"
 #include "tests/backend/random_factors.hpp"
 #include "tests/backend/random_graphs.hpp"
 #include "tests/backend/tree_information.hpp"
@@ -13,6 +14,7 @@ namespace {
 
 using test::differenceFromBatch;
 using test::kExact;
+using test::local;
 using test::MultibodyGraph;
 using test::RandomWorld;
 using test::settle;
