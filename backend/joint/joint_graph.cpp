@@ -61,7 +61,7 @@ void JointGraph::add(const FrameMeasurements& measurements) {
   addCamera(measurements);
   at_rest_.add(frame_count_, frames_);
   const bool alone = tracks_.empty() && measurements.objects.empty();
-  heed(solver_.update(alone ? IncrementalSolver::Correction::kNow : IncrementalSolver::Correction::kLater));
+  dropTroubled(solver_.update(alone ? IncrementalSolver::Correction::kNow : IncrementalSolver::Correction::kLater));
   addObjects(measurements);
   if (showsPoints(measurements)) undecided_.observe(measurements.head.frame, measurements.undecided);
   calibrate(measurements.head.frame);
@@ -89,7 +89,7 @@ void JointGraph::addObjects(const FrameMeasurements& measurements) {
     objects_.renewMotion(track, measurements.head.frame);
     landmarks.renew(frame_count_, posesOf(track));
   }
-  heed(solver_.update());
+  dropTroubled(solver_.update());
 }
 
 LandmarkBundles& JointGraph::landmarksOf(TrackId id) {
@@ -118,7 +118,7 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
 }
 
 void JointGraph::calibrate(FrameId newest) {
-  if (offset_.release(newest)) heed(solver_.update());
+  if (offset_.release(newest)) dropTroubled(solver_.update());
   if (offset_.hasMoved()) linearizeLandmarksAnew();
   if (!offset_.isDecided(newest)) return;
   at_rest_.bundles().fix();
@@ -130,14 +130,14 @@ void JointGraph::linearizeLandmarksAnew() {
   offset_.holdAsEliminated();
   at_rest_.relinearize(frames_);
   for (const auto& [id, track] : tracks_) landmarksOf(id).relinearize(posesOf(track));
-  heed(solver_.update());
+  dropTroubled(solver_.update());
 }
 
 void JointGraph::converge() {
   constexpr double kConverged = 1e-6;  // m or rad: far below what is published
   problems_.clear();
-  if (at_rest_.eliminateAligned(frame_count_ - 1, frames_)) heed(solver_.update());
-  heed(solver_.converge(params_.final_iterations, kConverged));
+  if (at_rest_.eliminateAligned(frame_count_ - 1, frames_)) dropTroubled(solver_.update());
+  dropTroubled(solver_.converge(params_.final_iterations, kConverged));
 }
 
 void JointGraph::dropped(TrackId id) { landmarksOf(id).drop(); }

@@ -32,7 +32,7 @@ void AnchoredPoseGraph::add(const FrameMeasurements& measurements) {
   problems_.clear();
   addCamera(measurements);
   addObjects(measurements);
-  heed(solver_.update());
+  dropTroubled(solver_.update());
 }
 
 void AnchoredPoseGraph::addObjects(const FrameMeasurements& measurements) {
@@ -203,7 +203,7 @@ void AnchoredPoseGraph::leftOut(const ObjectObservation& seen, const std::string
 void AnchoredPoseGraph::converge() {
   constexpr double kConverged = 1e-7;  // m or rad: far below what is published
   problems_.clear();
-  heed(solver_.converge(params_.final_iterations, kConverged));
+  dropTroubled(solver_.converge(params_.final_iterations, kConverged));
 }
 
 }  // namespace motorcade

@@ -87,7 +87,7 @@ std::string SmoothingWindow::nameOf(VariableId v) const {
 }
 
 /// Dropping an object may make another one undetermined, and so goes on until no object has a problem.
-void SmoothingWindow::heed(const IncrementalSolver::Report& report) {
+void SmoothingWindow::dropTroubled(const IncrementalSolver::Report& report) {
   std::vector<SolverProblem> found = report.problems;
   while (!found.empty()) {
     std::vector<TrackId> troubled;

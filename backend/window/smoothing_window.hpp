@@ -97,7 +97,7 @@ class SmoothingWindow {
   /// The object's record of a frame that the window holds, as yet without variables.
   ObjectRecord& addRecord(ObjectTrack& track, const ObjectObservation& seen);
   /// Tells what the solver found wrong, and drops the objects concerned.
-  void heed(const IncrementalSolver::Report& report);
+  void dropTroubled(const IncrementalSolver::Report& report);
   /// Names a variable in sentences about what is wrong.
   virtual std::string nameOf(VariableId v) const;
   /// The object's variables have gone.

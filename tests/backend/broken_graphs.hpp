@@ -65,7 +65,7 @@ class BrokenGraph : public testing::Test {
  protected:
   static constexpr int kSize = Space::kSize;
   /// Solves, and gives what was found.
-  std::vector<SolverProblem> settle() {
+  std::vector<SolverProblem> problemsFound() {
     auto problems = solver().update().problems;
     for (int i = 0; i < 10; ++i) {
       const auto& later = solver().update().problems;

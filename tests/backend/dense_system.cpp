@@ -80,7 +80,7 @@ std::vector<int> DenseSystem::entries(std::span<const VariableId> variables) con
   return at;
 }
 
-void settle(IncrementalSolver& solver) {
+void updateUntilStill(IncrementalSolver& solver) {
   for (int i = 0; i < 200; ++i)
     if (solver.update().largest_change < 1e-11) return;
 }

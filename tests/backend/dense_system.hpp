@@ -50,7 +50,7 @@ class DenseSystem {
 };
 
 /// Updates until nothing moves any more.
-void settle(IncrementalSolver& solver);
+void updateUntilStill(IncrementalSolver& solver);
 
 /// Largest difference of a variable between the solver and a converged dense solution of its own graph, which begins
 /// `nudge` (standard deviation of each component) beside the solver's: a point that is stationary but no minimum would

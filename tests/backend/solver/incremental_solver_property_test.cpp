@@ -16,7 +16,7 @@ using test::differenceFromBatch;
 using test::kExact;
 using test::MultibodyGraph;
 using test::RandomWorld;
-using test::settle;
+using test::updateUntilStill;
 
 /// Of meters and radians. The systems have condition numbers of up to 1e7, which leaves 1e-9 of rounding.
 constexpr double kBatchTol = 1e-8;
@@ -129,7 +129,7 @@ void expectEditsToEndAtTheBatchSolution(RandomWorld::Kind kind) {
     IncrementalSolver solver(kExact);
     RandomEdits edits(solver, seed, kind, kLosses[seed % 4]);
     for (std::size_t i = 0; i < 10 + 2 * seed; ++i) edits.edit();
-    settle(solver);
+    updateUntilStill(solver);
     EXPECT_LT(differenceFromBatch(solver), kBatchTol) << "seed " << seed;
   }
 }
@@ -192,7 +192,7 @@ TEST(IncrementalSolverProperty, RandomMultibodyDrivesEndAtTheBatchSolution) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     IncrementalSolver solver(kExact);
     playMultibodyDrive(solver, seed, kLosses[seed % 3]);
-    settle(solver);
+    updateUntilStill(solver);
     EXPECT_LT(differenceFromBatch(solver, 1e-3), kBatchTol) << "seed " << seed;
   }
 }

@@ -19,7 +19,7 @@ using test::IsNear;
 using test::kExact;
 using test::local;
 using test::RandomWorld;
-using test::settle;
+using test::updateUntilStill;
 
 /// A trajectory with closures, whose measurements really have the noise that its factors state.
 class Trajectory {
@@ -107,7 +107,7 @@ Trajectory swungTrajectory(IncrementalSolver& solver, std::uint64_t seed) {
   for (int i = 0; i < 12; ++i) trajectory.extend();
   const Value before = solver.estimate(trajectory.variables()[5]);
   solver.addFactor(trajectory.world().prior(trajectory.variables().back(), 0.1));
-  settle(solver);
+  updateUntilStill(solver);
   EXPECT_GT(displacement(before, solver.estimate(trajectory.variables()[5])).norm(), 0.3);
   return trajectory;
 }

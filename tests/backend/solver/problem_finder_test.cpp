@@ -26,7 +26,7 @@ TYPED_TEST(ProblemFinder, AMissingPriorIsNamedWithThePartThatIsFree) {
     this->restart();
     Chain<TypeParam> chain(this->solver(), seed);
     chain.addMany(8);
-    const auto problems = this->settle();
+    const auto problems = this->problemsFound();
     ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kMissingPrior)) << "seed " << seed;
     const auto& problem = problems[0];
     EXPECT_EQ(problem.freedoms, this->kSize);
@@ -42,7 +42,7 @@ TYPED_TEST(ProblemFinder, AMissingPriorIsNamedWithThePartThatIsFree) {
     std::vector<Value> free;
     for (const VariableId v : chain.ids()) free.push_back(this->solver().estimate(v));
     this->solver().addFactor(TypeParam::prior(problem.variable, this->solver().estimate(problem.variable)));
-    EXPECT_THAT(this->settle(), IsEmpty());
+    EXPECT_THAT(this->problemsFound(), IsEmpty());
     this->expectSolvedAs(free, chain.ids());
   }
 }
@@ -59,7 +59,7 @@ TYPED_TEST(ProblemFinder, AnUnconstrainedDirectionIsNamedInTheVariablesOwnAxes) 
   const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(this->kSize, this->kSize) - d * d.transpose();
   const auto factor =
       this->solver().addFactor(std::make_unique<test::ProjectedFactor>(TypeParam::prior(loose, seen, 25), A));
-  const auto problems = this->settle();
+  const auto problems = this->problemsFound();
   ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kUnconstrained));
   EXPECT_EQ(problems[0].variable, loose);
   ASSERT_EQ(problems[0].directions.size(), 1U);
@@ -104,7 +104,7 @@ TYPED_TEST(ProblemFinder, ADisconnectedPartIsNamedWithItsSize) {
   chain.hold(0);
   apart.addMany(3);
   const VariableId alone = this->solver().addVariable(TypeParam::origin());
-  const auto problems = this->settle();
+  const auto problems = this->problemsFound();
   ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kDisconnectedPart, Kind::kDisconnectedPart));
   EXPECT_THAT(apart.ids(), testing::Contains(problems[0].variable));
   EXPECT_EQ(problems[0].part_variables, 3);
@@ -127,7 +127,7 @@ TYPED_TEST(ProblemFinder, AFactorThatSaysNextToNothingMakesABadCondition) {
     Chain<TypeParam> chain(this->solver(), 9);
     chain.addMany(2);
     this->solver().addFactor(TypeParam::prior(chain.ids()[0], chain.truth()[0], weight));
-    const auto problems = this->settle();
+    const auto problems = this->problemsFound();
     ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kBadlyConditioned)) << weight;
     EXPECT_EQ(problems[0].freedoms, this->kSize);
     EXPECT_EQ(problems[0].moving_variables, 2);
@@ -147,7 +147,7 @@ TYPED_TEST(ProblemFinder, NegativeInformationIsNamed) {
   information(1, 1) = -4;
   this->solver().addFactor(
       std::make_unique<MarginalFactor>(std::vector{odd}, std::vector{TypeParam::origin()}, information));
-  const auto problems = this->settle();
+  const auto problems = this->problemsFound();
   ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kIndefinite));
   EXPECT_EQ(problems[0].variable, odd);
   EXPECT_THAT(problems[0].directions, ElementsAre(SmallVector(SmallVector::Unit(this->kSize, 1))));
@@ -162,7 +162,7 @@ TYPED_TEST(ProblemFinder, AFactorWithoutInformationConstrainsNothing) {
   const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(this->kSize, this->kSize);
   this->solver().addFactor(std::make_unique<test::ProjectedFactor>(
       TypeParam::relative(chain.ids()[2], loose, TypeParam::origin()), nothing));
-  const auto problems = this->settle();
+  const auto problems = this->problemsFound();
   ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kUnconstrained));
   EXPECT_EQ(problems[0].variable, loose);
   EXPECT_EQ(problems[0].freedoms, this->kSize);

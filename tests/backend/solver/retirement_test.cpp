@@ -17,7 +17,7 @@ using test::kExact;
 using test::local;
 using test::MultibodyGraph;
 using test::RandomWorld;
-using test::settle;
+using test::updateUntilStill;
 
 constexpr std::size_t kWindow = 12;
 
@@ -92,7 +92,7 @@ TEST(Retirement, AnyVariablesMayLeaveWithoutChangingTheOthers) {
       graph.addFrame();
       solver.update();
     }
-    settle(solver);
+    updateUntilStill(solver);
     auto variables = solver.graph().variables();
     std::vector<VariableId> leaving;
     for (std::size_t i = 0; i < 1 + seed; ++i) {
@@ -104,7 +104,7 @@ TEST(Retirement, AnyVariablesMayLeaveWithoutChangingTheOthers) {
     for (const VariableId v : variables) before.push_back(solver.estimate(v));
     const auto covariance = solver.jointCovariance(variables);
     solver.retire(leaving);
-    settle(solver);
+    updateUntilStill(solver);
     EXPECT_EQ(solver.graph().variables(), variables);
     EXPECT_EQ(solver.counters().retired_variables, static_cast<std::int64_t>(leaving.size()));
     for (std::size_t i = 0; i < variables.size(); ++i)
@@ -136,11 +136,11 @@ TEST(Retirement, WhatManyLeaveOnOneVariableStaysOneFactor) {
       };
       const VariableId v = add(solver, world, shared);
       add(same, world_again, shared_again);
-      settle(solver);
+      updateUntilStill(solver);
       solver.retire(std::vector{v});
     }
-    settle(solver);
-    settle(same);
+    updateUntilStill(solver);
+    updateUntilStill(same);
     EXPECT_EQ(solver.graph().factorCount(), 2U);  // its own prior, and that of all others
     EXPECT_LT(local(same.estimate(shared_again), solver.estimate(shared)).norm(), 1e-3) << "seed " << seed;
     const auto covariance = solver.jointCovariance(std::vector{shared});

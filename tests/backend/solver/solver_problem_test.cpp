@@ -29,7 +29,7 @@ TYPED_TEST(FactorLeftOut, AMeasurementThatIsNoNumberIsNamedByItsVariables) {
     const Eigen::MatrixXd A = bad * Eigen::MatrixXd::Identity(this->kSize, this->kSize);
     EXPECT_FALSE(this->solver().addFactor(std::make_unique<test::ProjectedFactor>(
         TypeParam::relative(chain.ids()[2], chain.ids()[6], TypeParam::origin()), A)));
-    const auto problems = this->settle();
+    const auto problems = this->problemsFound();
     ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kNotFinite)) << bad;
     EXPECT_EQ(problems[0].variable, chain.ids()[2]);
     EXPECT_THAT(problems[0].others, ElementsAre(chain.ids()[6]));
@@ -46,7 +46,7 @@ TYPED_TEST(FactorLeftOut, AVariableTwiceInAFactorAndOneThatIsNotThereAreNamed) {
   chain.hold(0);
   EXPECT_FALSE(this->solver().addFactor(TypeParam::relative(chain.ids()[5], chain.ids()[5], TypeParam::origin())));
   EXPECT_FALSE(this->solver().addFactor(TypeParam::relative(chain.ids()[1], VariableId{77}, TypeParam::origin())));
-  const auto problems = this->settle();
+  const auto problems = this->problemsFound();
   ASSERT_THAT(kindsOf(problems), ElementsAre(Kind::kRepeatedVariable, Kind::kUnknownVariable));
   EXPECT_EQ(problems[0].variable, chain.ids()[5]);
   EXPECT_EQ(problems[1].variable, VariableId{77});
