@@ -1,6 +1,5 @@
 #include "backend/filter/filter_backend.hpp"
 
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -81,20 +80,7 @@ FilterBackend::FilterBackend(const Params& params, const StereoCamera& camera) :
 FilterBackend::~FilterBackend() = default;
 
 EstimatesPtr FilterBackend::operator()(const FrameMeasurementsPtr& measurements) {
-  const FrameMeasurements& m = *measurements;
-  state_->path.add(m);
-  Estimates estimates{.online = cameraEstimate(m, state_->path), .finals = {}, .counters = {}};
-  for (const ObjectObservation& seen : m.objects) {
-    const auto filter = state_->observe(seen, m.disparity_offset_px);
-    if (filter && seen.frame == m.head.frame) estimates.online.objects.push_back(objectEstimate(seen, *filter));
-  }
-  std::ranges::sort(estimates.online.objects, {}, &ObjectEstimate::track);
-  for (const TrackId track : m.ended) state_->objects.erase(track);
-  ++state_->counters.updates;
-  state_->counters.variables = static_cast<std::int64_t>(state_->objects.size());
-  estimates.counters = state_->counters;
-  estimates.finals = {estimates.online};
-  return std::make_shared<const Estimates>(std::move(estimates));
+  return filtered(*state_, *measurements);
 }
 
 std::vector<FrameEstimate> FilterBackend::finish() { return {}; }
