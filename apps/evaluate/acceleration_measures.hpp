@@ -13,7 +13,7 @@ struct CoveredErrors {
   double coverage = 0;
 };
 
-/// How well the objects' accelerations are told, where the truth is exact: labels that jitter cannot judge them.
+/// Errors of the objects' accelerations where the truth is exact. Labels that jitter cannot judge them.
 struct AccelerationErrors {
   int rows = 0;  // that are asked, also those that tell none
   CoveredErrors along_mps2, yaw_radps2;

@@ -64,9 +64,9 @@ std::vector<AskedPair> askedPairs(const std::vector<ComparedFrame>& frames, doub
 /// Rows of any state on labels that move, however hidden these are, in the order of the frames.
 std::vector<AskedPair> movingPairs(const std::vector<ComparedFrame>& frames);
 
-/// How many rows of the same track come before each row.
+/// The number of rows of the same track that come before each row.
 std::map<const MatchedRow*, int> rowsBefore(const std::vector<ComparedFrame>& frames);
-/// What takes some views to be known is held to account from a track's tenth row on.
+/// A quantity that takes some views to be known counts from a track's tenth row on.
 inline constexpr int kEarlyRows = 9;
 
 /// Labels with their motion, from all frames of the sequence. `stamps` are the frames' times.

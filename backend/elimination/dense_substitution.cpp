@@ -85,7 +85,7 @@ template <int N, int R>
   for (int e = 0; e < R * N; ++e) store(y + (first + e / N) * stride + e % N * kLanes, rest[e] * broadcast(multiplier));
 }
 
-/// The same of all rows, those of the frontal scalars first.
+/// Does so for all rows, those of the frontal scalars first.
 template <int N>
 void forwardSubstituteRows(const Panel& panel, double* y, int stride) {
   constexpr int kRows = 8 / N;  // as many sums as registers hold

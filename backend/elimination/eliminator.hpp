@@ -14,7 +14,7 @@
 
 namespace motorcade {
 
-/// Which variables to eliminate, in which order. The roots that result hang below `parent`, in whose clique the
+/// The variables to eliminate, in their order. The roots that result hang below `parent`, in whose clique the
 /// `boundary` lies, and so do orphans that have no variable in `order`.
 struct Elimination {
   std::span<const VariableId> order, boundary = {};

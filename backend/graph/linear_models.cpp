@@ -10,7 +10,7 @@
 namespace motorcade {
 namespace {
 
-/// Of the residuals: without noise the tolerances that are relative to it do not vanish.
+/// The least noise of the residuals: tolerances that are relative to it do not vanish without noise.
 constexpr double kLeastMeanSquare = 1e-8;
 
 /// Columns M <- M R^T.
@@ -20,7 +20,8 @@ void turnColumns(LinearModels::Term& term, Eigen::Index column, const Eigen::Mat
     term.row(i).segment<N>(column) = (term.row(i).segment<N>(column) * R.transpose()).eval();
 }
 
-/// From right perturbations to steps in the world's axes: to first order rho = R^T dp, phi = R^T dphi.
+/// Turns columns that act on right perturbations to such that act on steps in the world's axes: to first order
+/// rho = R^T dp, phi = R^T dphi.
 void turnToWorldAxes(const VariableStates& states, std::span<const VariableId> variables, LinearModels::Term& term) {
   Eigen::Index at = 0;
   for (const VariableId v : variables) {

@@ -27,7 +27,7 @@ class LinearModels {
     auto g() const { return g_c.head(H.size); }
     double c() const { return g_c[H.size]; }
   };
-  /// How far a linear model is off at the estimates, in standard deviations.
+  /// The error of a linear model at the estimates, in standard deviations.
   struct Mismatch {
     double norm = 0;
     std::span<const double> r;  // true residual minus the model's; of an InformationFactor, the gradient

@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// Where a variable stands: its coordinates x in all linear models, and the values that they were stated around.
+/// The state of a variable: its coordinates x in all linear models, and the values that they were stated around.
 struct VariableState {
   static constexpr int kMaxDimension = 6;
   using Coordinates = std::array<double, kMaxDimension>;

@@ -66,7 +66,7 @@ struct JointGraph::TwistChanges {
   std::array<VariableId, 4> variables() const {
     return {of_speed.from->twist, of_speed.to->twist, of_yaw_rate.from->twist, of_yaw_rate.to->twist};
   }
-  /// Of the two changes by the four twists.
+  /// The derivatives of the two changes by the four twists.
   Eigen::Matrix<double, 2, 24> jacobian() const {
     Eigen::Matrix<double, 2, 24> J = Eigen::Matrix<double, 2, 24>::Zero();
     J.block<1, 3>(0, 0) = -along.transpose() / of_speed.length_s();

@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// How a rate of an object, its speed or its yaw rate, changes: its derivative is a random walk.
+/// The change of an object's speed or yaw rate. The derivative of such a rate is a random walk.
 struct RateChange {
   /// The mean change is taken from so long before a frame to so long after it, as far as the object's frames go.
   double reach_s;

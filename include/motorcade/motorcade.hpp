@@ -116,7 +116,7 @@ struct Result {
     Kind kind = Kind::kUnknown;
     double kind_probability = 0;
     std::optional<Mask> mask{};                  // with `Options::masks`, where the outline was found
-    std::optional<Acceleration> acceleration{};  // empty in its first frame
+    std::optional<Acceleration> acceleration{};  // empty in its first frame, and where the back-end cannot tell
   };
   std::int64_t frame = -1, stamp_ns = 0;  // of the pair; where the clock was set back, stamps go on all the same
   Status status = Status::kGood;
