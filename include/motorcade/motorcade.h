@@ -37,13 +37,11 @@ typedef enum {
   MOTORCADE_ERROR_MEMORY = -4,       // there is no more
   MOTORCADE_ERROR_INTERNAL = -5      // a fault of the library
 } motorcade_code;
-
 /// Of this thread's last call that gave an error: what is wrong and how to mend it, and what it is about, as
 /// "camera.baseline_m". Never NULL; the text lives until the next such call.
 const char* motorcade_last_error(void);
 const char* motorcade_last_error_field(void);
 const char* motorcade_version(void);  // as "0.1.0"
-
 typedef enum { MOTORCADE_UNDISTORTED, MOTORCADE_RADIAL_TANGENTIAL, MOTORCADE_EQUIDISTANT } motorcade_distortion;
 typedef struct {
   size_t struct_size;
@@ -65,7 +63,6 @@ typedef struct {
   int ignored_left_px, ignored_top_px, ignored_right_px, ignored_bottom_px;
   const uint8_t* ignored_mask;  // width_px x height_px, row by row; or NULL
 } motorcade_camera;
-
 typedef enum { MOTORCADE_GRAY8, MOTORCADE_GRAY16, MOTORCADE_RGB8, MOTORCADE_BGR8 } motorcade_format;
 typedef struct {
   size_t struct_size;
@@ -100,7 +97,6 @@ typedef struct {
   void* log_user;
 } motorcade_options;
 motorcade_code motorcade_options_init(motorcade_options* options);  // sets all but the size to the default
-
 typedef enum { MOTORCADE_PUSH_ACCEPTED, MOTORCADE_PUSH_REPLACED, MOTORCADE_PUSH_REJECTED } motorcade_push_status;
 typedef struct {
   size_t struct_size;
@@ -183,7 +179,6 @@ motorcade_code motorcade_result_frame(const motorcade_result* result, motorcade_
 motorcade_code motorcade_result_object(const motorcade_result* result, size_t index, motorcade_object* object);
 motorcade_code motorcade_result_mask(const motorcade_result* result, size_t index, motorcade_mask* mask);
 void motorcade_result_release(motorcade_result* result);
-
 /// For one thread at a time. What was read lives until its next call; an image that cannot be read has no pixels.
 motorcade_code motorcade_recording_open(const char* folder, motorcade_recording** recording);
 motorcade_code motorcade_recording_camera(const motorcade_recording* recording, motorcade_camera* camera);

@@ -94,8 +94,7 @@ struct Result {
     int left_px = 0, top_px = 0, cell_px = 1, width_cells = 0, height_cells = 0;
     std::vector<std::uint8_t> inside{};
   };
-  /// How an object's speed and its yaw rate change, with standard deviations.
-  struct Acceleration {
+  struct Acceleration {  // how an object's speed and its yaw rate change, with standard deviations
     double along_mps2 = 0, along_sigma_mps2 = 0;  // along its path: positive where it becomes faster
     double yaw_radps2 = 0, yaw_sigma_radps2 = 0;  // about the body's z axis
   };
@@ -107,10 +106,9 @@ struct Result {
     std::array<double, 3> velocity_world_mps{};           // of the body's origin, over ground
     std::array<double, 9> velocity_covariance{};          // [m^2/s^2], the camera's own drift left out
     double yaw_rate_radps = 0, yaw_rate_sigma_radps = 0;  // about the body's z axis
-    double age_s = 0;                                     // since it was first reported
-    double existence_probability = 1;                     // that it is there and moves, or moved before
-    int points = 0;                                       // seen on it in this frame
-    std::array<double, 4> image_box_px{};                 // left, top, right, bottom in the left image, inclusive
+    double age_s = 0, existence_probability = 1;  // since it was first reported; that it is there and moves, or moved
+    int points = 0;                               // seen on it in this frame
+    std::array<double, 4> image_box_px{};         // left, top, right, bottom in the left image, inclusive
     /// The cuboid along the body's axes, its bottom on the ground; length 0 where it is not known yet.
     std::array<double, 3> box_center_body_m{}, box_size_m{}, box_size_sigma_m{};  // length, width, height
     Kind kind = Kind::kUnknown;
@@ -176,7 +174,6 @@ class MOTORCADE_API Tracker {
   Push push(const Pair& pair) noexcept;
   /// No further pair comes: the results of those that were accepted still do.
   void close() noexcept;
-
   /// The next result if there is one already.
   std::optional<Result> poll();
   /// Waits for the next result; empty when there is none in time, and at once when there will be none (`done`).
