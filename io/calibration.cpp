@@ -63,6 +63,19 @@ void addMiddlebury(Calibration& calibration, CalibrationKeys& keys) {
   if (width && height) calibration.size[0] = ImageSize{imageSide_px(*width, 0, keys), imageSide_px(*height, 0, keys)};
 }
 
+/// In the order of `parametersOf`.
+CalibrationSigmas sigmasOf(const CalibrationValues& values, const CalibrationKeys& keys) {
+  CalibrationSigmas sigmas;
+  auto number = values.numbers.begin();
+  for (const Parameter& sigma : parametersOf(sigmas)) {
+    if (!sigma.accepts(*number))
+      keys.fail(values, "has a wrong number " + std::to_string(number - values.numbers.begin() + 1) + ", of '" +
+                            sigma.name + "': write " + sigma.allowed());
+    *std::get<double*>(sigma.value) = *number++;
+  }
+  return sigmas;
+}
+
 void requireFocalLength(double focal_px, const std::string& name) {
   constexpr double kMost_px = 1e6;  // a pixel of a camera that sees one degree of a 16384 px wide image has 9e5
   if (!(focal_px > 0)) throw InputError(name + ": the focal lengths must be positive");
@@ -171,6 +184,7 @@ Calibration readCalibration(const std::filesystem::path& file) {
     calibration.R_rect = rigid(squareMatrix(*v), Eigen::Vector3d::Zero(), *v, keys).rotation();
   if (const auto* v = keys.find({"Tr_velo_to_cam", "Tr_velo_cam"}, 12)) calibration.T_cam_velo = rigid(*v, keys);
   if (const auto* v = keys.find({"Tr_imu_to_velo", "Tr_imu_velo"}, 12)) calibration.T_velo_imu = rigid(*v, keys);
+  if (const auto* v = keys.find({"calibration_sigmas"}, kCalibrationSigmas)) calibration.sigmas = sigmasOf(*v, keys);
   const auto& P = calibration.P;
   if (!(P[0] && P[1]) && !(P[2] && P[3])) calibration.advice = keys.advice();
   return calibration;

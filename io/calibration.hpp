@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "core/calibration_errors.hpp"
 #include "core/se3.hpp"
 #include "core/stereo_camera.hpp"
 #include "io/image_file.hpp"
@@ -26,6 +27,7 @@ struct Calibration {
   std::optional<SE3> T_cam_velo{};               // the unrectified camera 0
   std::optional<SE3> T_velo_imu{};
   std::array<std::optional<ImageSize>, 4> size{};  // of the rectified images, where the file tells
+  std::optional<CalibrationSigmas> sigmas{};       // how exact it is
   std::string advice{};                            // what the file seems to be where it has no projection
 
   /// The pair's intrinsics and baseline (image size left open); throws InputError naming the key.

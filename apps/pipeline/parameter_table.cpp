@@ -26,6 +26,7 @@ std::vector<ConfigurationKey> parameterTable(PipelineConfig& config) {
   };
   auto& segmentation = config.scene_flow_segmentation;
   add("input", parametersOf(config.input));
+  add("calibration", parametersOf(config.backend.window.calibration));
   add("pipeline", parametersOf(config.pipeline));
   add("frontend", parametersOf(config.preparation));
   add("frontend.corners", parametersOf(config.preparation.corners));

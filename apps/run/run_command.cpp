@@ -73,6 +73,12 @@ void requireWithin(const ImageLimits& limits, const Sequence& sequence) {
                                  limits.max_pixels));
 }
 
+/// A calibration may tell how exact it is; what the user tells counts first.
+void considerCalibration(const Sequence& sequence, PipelineConfig& config) {
+  CalibrationSigmas& sigmas = config.backend.window.calibration;
+  if (sequence.calibration.sigmas && sigmas == CalibrationSigmas{}) sigmas = *sequence.calibration.sigmas;
+}
+
 /// Throws InputError where the calibration cannot be the images', unless the user insists.
 void requireBelievable(const Sequence& sequence, bool force) {
   for (const std::string& doubt : doubtsAbout(sequence.camera)) {
@@ -264,12 +270,13 @@ int exitCode(const RunSummary& summary, const FollowedFrames& followed, std::opt
 
 int runSequence(const RunOptions& options) {
   const ProcessUsage before = processUsage();
-  const PipelineConfig config = configurationOf(options);
+  PipelineConfig config = configurationOf(options);
   const auto required_tracking = requiredTracking(options);
   const FaultSpec fault_spec = parseFaultSpec(options.inject);
   const auto rate_hz = replayRate_hz(options, config.pipeline.policy);
   requireReplaceable(options);
   const Sequence sequence = openSequence(options.sequence, options.fps_hz, options.given);
+  considerCalibration(sequence, config);
   requireWithin(config.input, sequence);
   requireBelievable(sequence, options.force);
   tellNotes(sequence, options.force);

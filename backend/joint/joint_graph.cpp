@@ -7,7 +7,8 @@ namespace {
 
 constexpr double kComparedShare = 0.5;  // objects turn little: a factor is seldom off by the turns of several poses
 constexpr int kKeptEliminations = 10;   // of update matrices: those of older poses are hardly ever asked for
-constexpr int kEarlierViews = 3;        // of a point whose body is found: one that took longer may be of two
+constexpr int kRespondingLandmarks = 60, kResponse_frames = 8;  // see CalibrationResponse
+constexpr int kEarlierViews = 3;  // of a point whose body is found: one that took longer may be of two
 static_assert(kEarlierViews < UndecidedPoints::kMostViews);
 
 IncrementalSolver::Params solverParams(const JointParams& params, const WindowParams& window) {
@@ -51,7 +52,11 @@ JointGraph::JointGraph(const JointParams& params, const WindowParams& window, co
       offset_(solver_, params.offset_sigma_px),
       cameras_(params_, solver_, frames_),
       at_rest_(params_, camera_, solver_, offset_),
-      objects_(params_, window.use_smoothness, solver_, frames_) {}
+      objects_(params_, window.use_smoothness, solver_, frames_),
+      response_(camera_, requireValid(window.calibration), params_.static_noise,
+                pointParams(params_, camera_, params_.track_frames, kRespondingLandmarks)) {
+  calibration_ = ConsideredCalibration(camera_, window.calibration);
+}
 
 /// The camera first: objects are predicted, and their motion is told from the camera's, by where it was then found.
 /// Models are corrected with the objects: theirs of the frame before are replaced in between.
@@ -65,6 +70,7 @@ void JointGraph::add(const FrameMeasurements& measurements) {
   addObjects(measurements);
   if (showsPoints(measurements)) undecided_.observe(measurements.head.frame, measurements.undecided);
   calibrate(measurements.head.frame);
+  consider(measurements);
   ++frame_count_;
 }
 
@@ -115,6 +121,24 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
     objects_.begin(track, record);
   landmarks.points().observe(seen.frame, seen.measured,
                              [&](PointId point) { return undecided_.take(point, seen.frame, kEarlierViews); });
+}
+
+/// The response changes little from one frame to the next: it is computed in one of some frames, then for all in the
+/// newest ones.
+void JointGraph::consider(const FrameMeasurements& measurements) {
+  const auto set = [this](FrameId before, FrameId now, const ConsideredCalibration::PoseShifts& shifts) {
+    calibration_.set(now, {.seconds = secondsBetween(frames_.at(before).head.stamp, frames_.at(now).head.stamp),
+                           .T_before_now = cameraPose(before).inverse() * cameraPose(now),
+                           .shifts = shifts});
+  };
+  const auto newest = frames_.rbegin();
+  if (frames_.size() > 1) set(std::next(newest)->first, newest->first, response_.ofNewestStep());
+  if (!showsPoints(measurements)) return;
+  response_.observe(newest->first, measurements.at_rest);
+  if (frame_count_ % kResponse_frames != 0) return;
+  const auto pose = [this](VariableId camera) { return solver_.pose(camera); };
+  for (const auto& step : response_.steps(camerasOf(frames_), pose, at_rest_.noise(), offset_.px()))
+    set(step.before, step.now, step.shifts);
 }
 
 void JointGraph::calibrate(FrameId newest) {

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "backend/joint/calibration_response.hpp"
 #include "backend/joint/camera_chain.hpp"
 #include "backend/joint/joint_params.hpp"
 #include "backend/joint/landmarks_at_rest.hpp"
@@ -49,6 +50,7 @@ class JointGraph final : public SmoothingWindow {
   void addObjects(const FrameMeasurements& measurements);
   void addObservation(const ObjectObservation& seen);
   LandmarkBundles& landmarksOf(TrackId id);
+  void consider(const FrameMeasurements& measurements);
   void calibrate(FrameId newest);
   void linearizeLandmarksAnew();
 
@@ -60,6 +62,7 @@ class JointGraph final : public SmoothingWindow {
   ObjectChain objects_;
   std::map<TrackId, LandmarkBundles> landmarks_;  // of the objects
   UndecidedPoints undecided_;
+  CalibrationResponse response_;
   std::int64_t frame_count_ = 0;
 };
 

@@ -10,13 +10,6 @@ namespace {
 
 constexpr double kKnownShare = 0.5;  // of the landmarks seen now, to which the camera can be aligned
 
-PoseVariable camerasOf(const LandmarksAtRest::Frames& frames) {
-  return [&frames](FrameId frame) {
-    const auto camera = frames.find(frame);
-    return camera == frames.end() ? VariableId{} : camera->second.x;
-  };
-}
-
 LandmarkBundles::Params bundleParams(const JointParams& params, const StereoCamera& camera) {
   const int step = params.frames_per_elimination;
   return {.pose = FramePose::kWorldCam,
@@ -28,6 +21,13 @@ LandmarkBundles::Params bundleParams(const JointParams& params, const StereoCame
 }
 
 }  // namespace
+
+PoseVariable camerasOf(const LandmarksAtRest::Frames& frames) {
+  return [&frames](FrameId frame) {
+    const auto camera = frames.find(frame);
+    return camera == frames.end() ? VariableId{} : camera->second.x;
+  };
+}
 
 LandmarksAtRest::LandmarksAtRest(const JointParams& params, const StereoCamera& camera, IncrementalSolver& solver,
                                  const RigOffset& offset)

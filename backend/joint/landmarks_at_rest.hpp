@@ -46,4 +46,7 @@ class LandmarksAtRest {
   std::vector<FactorId> alignments_;  // of cameras, since landmarks were eliminated
 };
 
+/// The cameras of the frames, which must outlive this.
+PoseVariable camerasOf(const LandmarksAtRest::Frames& frames);
+
 }  // namespace motorcade

@@ -1,6 +1,7 @@
 #include "backend/window/estimate_reader.hpp"
 
 #include <array>
+#include <cmath>
 #include <iterator>
 
 #include "core/fixed_product.hpp"
@@ -10,8 +11,30 @@ namespace motorcade {
 FrameCovariances EstimateReader::covariances(FrameId frame) const {
   FrameCovariances covariances{.camera = cameraCovariance(frame), .objects = {}};
   for (const auto& [id, track] : window_.tracks())
-    if (const auto object = window_.objectCovariances(track, frame)) covariances.objects.emplace(id, *object);
+    if (const auto object = this->covariances(track, frame)) covariances.objects.emplace(id, *object);
   return covariances;
+}
+
+std::optional<ObjectCovariances> EstimateReader::covariances(const ObjectTrack& track, FrameId frame) const {
+  auto known = window_.objectCovariances(track, frame);
+  if (known) consider(*known, track, frame);
+  return known;
+}
+
+/// Errors of the calibration shift an object that is seen from the camera; that they bend it a little is left out.
+void EstimateReader::consider(ObjectCovariances& known, const ObjectTrack& track, FrameId frame) const {
+  const SE3 T_cam_world = window_.cameraPose(frame).inverse();
+  const SE3 T_cam_body = T_cam_world * window_.objectPose(track, frame);
+  const Eigen::Vector3d velocity_cam = T_cam_world.rotation() * window_.objectMotion(track, frame).velocity_world_mps;
+  const ConsideredCalibration::PointShifts place =
+      T_cam_body.rotation().transpose() * window_.calibration().ofPoint(T_cam_body.translation());
+  known.T_cam_body.topLeftCorner<3, 3>() += place * place.transpose();
+  if (!known.velocity_cam) return;
+  const auto velocity = window_.calibration().ofVelocity(frame, T_cam_body.translation(), velocity_cam);
+  *known.velocity_cam += velocity * velocity.transpose();
+  if (known.speed_sigma_mps)
+    known.speed_sigma_mps =
+        std::hypot(*known.speed_sigma_mps, (velocity.transpose() * velocity_cam.stableNormalized()).norm());
 }
 
 std::optional<Matrix6d> EstimateReader::cameraCovariance(FrameId frame) const {
@@ -29,7 +52,8 @@ std::optional<Matrix6d> EstimateReader::cameraCovariance(FrameId frame) const {
   J << -T_before_now.inverse().adjoint(), Matrix6d::Identity();
   const Eigen::Matrix<double, 6, 12> scaled = window_.designEffect() * J;
   const Eigen::Matrix<double, 12, 6> J_T = J.transpose();
-  return fixedProduct(fixedProduct(scaled, Eigen::Matrix<double, 12, 12>(*joint)), J_T);
+  const ConsideredCalibration::PoseShifts shifts = window_.calibration().ofMotion(before->first, frame);
+  return fixedProduct(fixedProduct(scaled, Eigen::Matrix<double, 12, 12>(*joint)), J_T) + shifts * shifts.transpose();
 }
 
 FrameEstimate EstimateReader::read(FrameId frame) const {

@@ -9,14 +9,18 @@ class EstimateReader {
  public:
   explicit EstimateReader(const SmoothingWindow& window) : window_(window) {}
 
-  /// Covariances of a frame, computed from the graph as it is now.
+  /// Covariances of a frame, computed from the graph as it is now, with the errors of the calibration.
   FrameCovariances covariances(FrameId frame) const;
+  /// Those of one object, see SmoothingWindow.
+  std::optional<ObjectCovariances> covariances(const ObjectTrack& track, FrameId frame) const;
   /// Poses and velocities as the graph is now, with the covariances that its records hold.
   FrameEstimate read(FrameId frame) const;
 
  private:
   std::optional<Matrix6d> cameraCovariance(FrameId frame) const;
   ObjectEstimate readObject(TrackId id, const ObjectTrack& track, FrameId frame) const;
+
+  void consider(ObjectCovariances& covariances, const ObjectTrack& track, FrameId frame) const;
 
   const SmoothingWindow& window_;
 };

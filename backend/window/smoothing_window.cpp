@@ -53,6 +53,7 @@ void SmoothingWindow::retireOldest() {
     it = over ? tracks_.erase(it) : std::next(it);
   }
   solver_.retire(retired);
+  calibration_.forget(oldest);
   frames_.erase(frames_.begin());
 }
 

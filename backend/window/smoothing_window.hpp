@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "backend/solver/incremental_solver.hpp"
+#include "backend/window/considered_calibration.hpp"
 #include "core/messages.hpp"
 
 namespace motorcade {
@@ -86,6 +87,8 @@ class SmoothingWindow {
   virtual ObjectMotionEstimate objectMotion(const ObjectTrack& track, FrameId frame) const = 0;
   /// Computes them from the graph as it is now; empty when the frame's pose is not in it.
   virtual std::optional<ObjectCovariances> objectCovariances(const ObjectTrack& track, FrameId frame) const = 0;
+  /// What the calibration's errors do to camera and objects.
+  const ConsideredCalibration& calibration() const { return calibration_; }
   /// Variances grow by this factor, at least 1, as measurements are not independent.
   virtual double designEffect() const { return 1; }
 
@@ -108,6 +111,7 @@ class SmoothingWindow {
   IncrementalSolver solver_;
   std::map<FrameId, CameraRecord> frames_;
   std::map<TrackId, ObjectTrack> tracks_;
+  ConsideredCalibration calibration_;  // exact where a kind of graph does not tell
   std::vector<std::string> problems_;  // since the last `add`
 
  private:

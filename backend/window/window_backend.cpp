@@ -24,7 +24,10 @@ class WindowBackend::Publisher {
     window_->add(measurements);
     Estimates estimates{.online = {}, .finals = {}, .counters = {}, .problems = window_->problems()};
     if (params_.compute_covariances) {
-      if (const auto settled = lagged()) keepCovariances(*settled);
+      if (const auto settled = lagged()) {
+        keepCovariances(*settled);
+        keepLookedBack(*settled);
+      }
       keepCovariances(measurements.head.frame);
     }
     estimates.online = reader_.read(measurements.head.frame);
@@ -53,6 +56,18 @@ class WindowBackend::Publisher {
 
  private:
   void keepCovariances(FrameId frame) { window_->keep(frame, reader_.covariances(frame)); }
+
+  /// An object that was found by looking back has records from before `frame` that are still without covariances.
+  void keepLookedBack(FrameId frame) {
+    for (const auto& [id, track] : window_->tracks()) {
+      for (auto it = track.records.find(frame); it != track.records.end() && it != track.records.begin();) {
+        if ((--it)->second.covariances) break;
+        const auto object = reader_.covariances(track, it->first);
+        if (!object) break;
+        window_->keep(it->first, {.camera = {}, .objects = {{id, *object}}});
+      }
+    }
+  }
 
   /// The frame whose final covariances are due.
   std::optional<FrameId> lagged() const {

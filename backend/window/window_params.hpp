@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "backend/solver/incremental_solver.hpp"
+#include "core/calibration_errors.hpp"
 #include "core/parameters.hpp"
 
 namespace motorcade {
@@ -16,6 +17,7 @@ struct WindowParams {
   double budget_ms = 0;    // for live drives: replay would not be reproducible
 
   bool compute_covariances = true;
+  CalibrationSigmas calibration{};  // is considered in covariances
   /// A correction of an object's whole track would look like motion when published online. So the published pose moves
   /// as the object does, and corrections come in over this time; 0 publishes each pose as it is estimated.
   double online_correction_s = 0.5;

@@ -42,6 +42,15 @@ TEST_F(CalibrationFile, GivesIntrinsicsAndBaselineOfEachPair) {
   EXPECT_DOUBLE_EQ(calibration.stereoCamera(CameraPair::kColor).baseline_m, 0.6);
 }
 
+TEST_F(CalibrationFile, MayTellHowExactItIs) {
+  EXPECT_FALSE(read(std::string(kProjections)).sigmas);
+  const auto sigmas = read(std::string(kProjections) + "calibration_sigmas: 0.001 0.5 0.02 0 0.3\n").sigmas;
+  EXPECT_EQ(sigmas, (CalibrationSigmas{0.001, 0.5, 0.02, 0, 0.3}));
+  EXPECT_THAT(errorOf(std::string(kProjections) + "calibration_sigmas: 0.001 0.5 0.02 -1 0.3\n"),
+              AllOf(HasSubstr("calib.txt, line 5: key calibration_sigmas"), HasSubstr("number 4, of 'baseline'")));
+  EXPECT_THAT(errorOf(std::string(kProjections) + "calibration_sigmas: 0\n"), HasSubstr("calibration_sigmas"));
+}
+
 TEST_F(CalibrationFile, TellsWhereTheLeftColorCameraStands) {
   const Calibration calibration = read(std::string(kProjections));
   EXPECT_TRUE(calibration.T_left_cam0(CameraPair::kGray).translation().isZero());

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "backend/joint/frame_index.hpp"
+#include "backend/window/considered_calibration.hpp"
+
+namespace motorcade {
+
+/// How the camera's path shifts when the observations of landmarks at rest do: the normal equations of a bundle
+/// adjustment over the newest frames, with a right-hand side for each error of the calibration. Some of the landmarks
+/// tell it as well as all.
+class CalibrationResponse {
+ public:
+  /// `points` chooses landmarks from those at rest.
+  CalibrationResponse(const StereoCamera& camera, const CalibrationSigmas& sigmas, const LandmarkNoise& noise,
+                      const BodyPoints::Params& points);
+
+  /// The points at rest of a frame, in frame order.
+  void observe(FrameId frame, std::span<const PointMeasurement> at_rest);
+
+  struct FrameStep {
+    FrameId before, now;
+    ConsideredCalibration::PoseShifts shifts;  // of T_before_now
+  };
+  /// How the motion of each of the newest frames shifts from the one before that was seen, oldest first.
+  std::vector<FrameStep> steps(const PoseVariable& camera, const std::function<SE3(VariableId)>& pose,
+                               const NoiseLevel& level, double offset_px);
+  /// Of the last step when steps were asked for last.
+  const ConsideredCalibration::PoseShifts& ofNewestStep() const { return newest_; }
+
+ private:
+  std::vector<LandmarkTrack*> tracks();
+  StereoCamera camera_;
+  CalibrationSigmas sigmas_;
+  LandmarkNoise noise_;
+  BodyPoints points_;
+  ConsideredCalibration::PoseShifts newest_ = ConsideredCalibration::PoseShifts::Zero();
+  std::vector<LandmarkTrack> ended_;  // that lie within the newest frames
+};
+
+}  // namespace motorcade

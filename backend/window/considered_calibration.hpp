@@ -1,0 +1,52 @@
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "core/calibration_errors.hpp"
+#include "core/ids.hpp"
+#include "core/se3.hpp"
+
+namespace motorcade {
+
+/// Errors of the calibration as *considered* parameters (Schmidt 1966): constant over the drive and known by their
+/// standard deviations alone. They are not estimated, as hardly any shows in a drive, but are part of every covariance,
+/// in which they do not become less with the number of points or frames.
+class ConsideredCalibration {
+ public:
+  /// By column, what each error does when it is as large as its standard deviation: S with the covariance S S'.
+  using PoseShifts = Eigen::Matrix<double, 6, kCalibrationErrors>;   // right perturbation of a pose or motion
+  using PointShifts = Eigen::Matrix<double, 3, kCalibrationErrors>;  // of a place or a velocity
+
+  /// The camera's motion up to a frame, from the last one before that was seen; in frames between, nothing shifts.
+  struct Step {
+    double seconds = 0;  // 0: it is not known
+    SE3 T_before_now;
+    PoseShifts shifts = PoseShifts::Zero();
+  };
+
+  /// An exact calibration.
+  ConsideredCalibration() = default;
+  ConsideredCalibration(const StereoCamera& camera, const CalibrationSigmas& sigmas)
+      : camera_(camera), sigmas_(sigmas) {}
+
+  /// In place of what was known of this frame.
+  void set(FrameId now, const Step& step) { steps_[now] = step; }
+  /// This frame and what is older are not asked for any more.
+  void forget(FrameId oldest) { steps_.erase(steps_.begin(), steps_.upper_bound(oldest)); }
+
+  /// The camera's motion from one frame to a later one, T_before_now: what its steps shift adds up, as the errors are
+  /// the same ones.
+  PoseShifts ofMotion(FrameId before, FrameId now) const;
+  /// A point seen from the camera [m].
+  PointShifts ofPoint(const Eigen::Vector3d& p_cam) const;
+  /// The velocity over ground of such a point, in the camera's axes [m/s]; none where the frame's step is not known.
+  PointShifts ofVelocity(FrameId frame, const Eigen::Vector3d& p_cam, const Eigen::Vector3d& velocity_cam_mps) const;
+
+ private:
+  std::optional<StereoCamera> camera_;
+  CalibrationSigmas sigmas_;
+  std::map<FrameId, Step> steps_;
+};
+
+}  // namespace motorcade
