@@ -10,6 +10,7 @@ namespace motorcade {
 
 namespace {
 
+constexpr double kMostCalibrationErrors = 5, kMostShake_px = 5;
 constexpr double kMostRigOffset_px = 64;  // far beyond what a rectification can be off and a matcher can bridge
 
 }  // namespace
@@ -39,6 +40,16 @@ void addSynth(CLI::App& app, Action& action) {
       ->add_option("--row-offset", options->rig_error.row_offset_px,
                    "rows by which the right image's content lies too low; calib.txt stays as it is [px]")
       ->check(offsets);
+  command
+      ->add_option(
+          "--calibration-errors", options->rig_error.calibration,
+          "constant errors of the calibration, drawn with the seed: their standard deviations, in those of the "
+          "configuration's section calibration; calib.txt stays as it is")
+      ->check(CLI::Range(0.0, kMostCalibrationErrors));
+  command
+      ->add_option("--shake", options->rig_error.shake_px,
+                   "standard deviation of an error that all disparities of a pair share [px]")
+      ->check(CLI::Range(0.0, kMostShake_px));
   command->footer("Example: motorcade synth DRIVE --scene urban --seed 2");
   command->callback([options, &action] { action = [options] { return runSynth(*options); }; });
 }

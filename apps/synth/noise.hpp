@@ -55,6 +55,14 @@ struct Fractal {
 float fractal2(float x, float y, const Fractal& fractal, float footprint, std::uint32_t seed);
 float fractal3(float x, float y, float z, const Fractal& fractal, float footprint, std::uint32_t seed);
 
+/// A normal number: the sum of four uniform ones is near enough.
+inline float gaussian(std::uint32_t hash) {
+  const std::uint32_t other = mix(hash ^ 0x68bc21ebU);
+  const auto low = [](std::uint32_t h) { return static_cast<float>(h & 0xffffU) * 0x1p-16F; };
+  const float sum = low(hash) + low(hash >> 16) + low(other) + low(other >> 16);
+  return (sum - 2) * 1.7320508F;
+}
+
 /// A sequence of random numbers for building a scene.
 class Random {
  public:

@@ -32,11 +32,13 @@ bool anythingMirrors(const FrameScene& frame) {
 
 bool isLevelGround(std::uint32_t surface) { return surface == kRoadSurface || surface == kBesideSurface; }
 
-RayCaster::RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side, Style style)
+RayCaster::RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side, Style style,
+                     const CalibrationErrors& errors)
     : frame_(frame),
       style_(style),
       ground_(frame),
-      rays_(frame, camera, side),
+      lens_(camera, side, errors),
+      rays_(frame, camera, side, lens_.beyond_px()),
       to_sun_(frame, frame.scene().sun),
       upwards_(frame, {0, 0, 1}),
       pixel_(static_cast<float>(1 / camera.fx_px)),
@@ -46,9 +48,10 @@ RayCaster::RayCaster(const FrameScene& frame, const StereoCamera& camera, Stereo
 }
 
 Sample RayCaster::cast(float u_px, float v_px, float sharpness, const std::optional<Exposure>& known) const {
-  const Ray ray{rays_.origin(), rays_.direction(u_px, v_px), pixel_ / sharpness};
+  const auto [exact_u_px, exact_v_px] = lens_.exact(u_px, v_px);
+  const Ray ray{rays_.origin(), rays_.direction(exact_u_px, exact_v_px), pixel_ / sharpness};
   const float t_max = std::min(kFar_m, ground_.farthest(ray.origin, ray.direction));
-  return sampleOf(ray, rays_.firstHit(u_px, v_px, ray.direction, t_max), known);
+  return sampleOf(ray, rays_.firstHit(exact_u_px, exact_v_px, ray.direction, t_max), known);
 }
 
 Sample RayCaster::sampleOf(const Ray& ray, const std::optional<RayHit>& hit,

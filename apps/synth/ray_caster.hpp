@@ -1,6 +1,7 @@
 #pragma once
 
 #include "apps/synth/ground.hpp"
+#include "apps/synth/lens_errors.hpp"
 #include "apps/synth/ray_tree.hpp"
 #include "apps/synth/rays.hpp"
 #include "apps/synth/style.hpp"
@@ -28,7 +29,8 @@ bool isLevelGround(std::uint32_t surface);
 /// Casts rays of one camera of the stereo pair into one frame.
 class RayCaster {
  public:
-  RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side, Style style);
+  RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side, Style style,
+            const CalibrationErrors& errors);
 
   /// `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel. An exposure that is known
   /// already, from the pixel and its neighbors, saves the rays towards the light.
@@ -62,6 +64,7 @@ class RayCaster {
   const FrameScene& frame_;
   Style style_;
   Ground ground_;
+  LensErrors lens_;
   CameraRays rays_;
   ParallelRays to_sun_, upwards_;
   std::optional<RayTree> tree_;  // where something mirrors

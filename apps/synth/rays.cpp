@@ -54,7 +54,7 @@ std::optional<RayHit> hitPart(const FrameScene& frame, std::uint32_t item, const
                 hit->normal, origin_body + direction_body * hit->t};
 }
 
-CameraRays::CameraRays(const FrameScene& frame, const StereoCamera& camera, StereoSide side)
+CameraRays::CameraRays(const FrameScene& frame, const StereoCamera& camera, StereoSide side, float beyond_px)
     : frame_(frame),
       cx_px_(static_cast<float>(camera.cx_px)),
       cy_px_(static_cast<float>(camera.cy_px)),
@@ -75,10 +75,11 @@ CameraRays::CameraRays(const FrameScene& frame, const StereoCamera& camera, Ster
     const Covered covered = coveredBy(i);
     if (covered.far > kNear_m) all.push_back(covered);
   }
-  constexpr float kCell_px = 12, kBorder_px = 1;
+  constexpr float kCell_px = 12;
+  const float border_px = 1 + beyond_px;
   grid_.emplace(std::move(all),
-                ItemGrid::Area{-kBorder_px, -kBorder_px, static_cast<float>(camera.width_px) + kBorder_px,
-                               static_cast<float>(camera.height_px) + kBorder_px},
+                ItemGrid::Area{-border_px, -border_px, static_cast<float>(camera.width_px) + border_px,
+                               static_cast<float>(camera.height_px) + border_px},
                 kCell_px);
 }
 

@@ -30,7 +30,8 @@ std::optional<RayHit> hitPart(const FrameScene& frame, std::uint32_t item, const
 /// The rays of one camera of the stereo pair into a frame.
 class CameraRays {
  public:
-  CameraRays(const FrameScene& frame, const StereoCamera& camera, StereoSide side);
+  /// Rays are asked for where a camera without errors would have them, up to `beyond_px` outside of its image.
+  CameraRays(const FrameScene& frame, const StereoCamera& camera, StereoSide side, float beyond_px = 0);
 
   const Vec3& origin() const { return origin_; }
   /// Has unit depth along the optical axis, so that a ray's parameter is the depth.

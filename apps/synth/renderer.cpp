@@ -32,14 +32,6 @@ float response(float light) { return 255 * std::sqrt(saturate(light * 0.98F)); }
 /// serve alone where only the texture changes.
 constexpr std::array<std::array<float, 2>, 4> kSpread{{{-0.4F, -0.2F}, {0.4F, 0.2F}, {-0.2F, 0.4F}, {0.2F, -0.4F}}};
 
-/// Sum of four uniform numbers: near enough to a Gaussian.
-float gaussian(std::uint32_t hash) {
-  const std::uint32_t other = mix(hash ^ 0x68bc21ebU);
-  const auto low = [](std::uint32_t h) { return static_cast<float>(h & 0xffffU) * 0x1p-16F; };
-  const float sum = low(hash) + low(hash >> 16) + low(other) + low(other >> 16);
-  return (sum - 2) * 1.7320508F;
-}
-
 struct Sensor {
   float gain, offset, noise_levels;
   std::uint32_t seed;
@@ -126,7 +118,7 @@ float lightOf(const RayCaster& caster, const Sample& center, const Refinement& r
 Rendering render(const FrameScene& frame, const StereoCamera& camera, StereoSide side, const RenderOptions& options) {
   const int width = camera.width_px, height = camera.height_px;
   const auto index = [width](int x, int y) { return y * width + x; };
-  const RayCaster caster(frame, camera, side, options.style);
+  const RayCaster caster(frame, camera, side, options.style, options.errors);
   std::vector<Sample> samples(index(0, height));
   parallelRows(height, options.threads, [&](int y) {
     for (int x = 0; x < width; ++x)

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/synth/frame_scene.hpp"
-#include "apps/synth/rays.hpp"
+#include "apps/synth/lens_errors.hpp"
 #include "apps/synth/style.hpp"
 #include "core/image.hpp"
 #include "core/stereo_camera.hpp"
@@ -23,6 +23,7 @@ struct RenderOptions {
   float noise_levels = 1.3F;  // standard deviation of the sensor's noise at middle gray; 0 for none
   bool equal_gains = false;   // both cameras equally sensitive
   Style style = Style::kPlain;
+  CalibrationErrors errors{};  // of the rig
 };
 
 /// Renders the image of one camera. The result does not depend on the number of threads.

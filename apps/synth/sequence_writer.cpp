@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "apps/synth/ground_truth.hpp"
+#include "apps/synth/noise.hpp"
 #include "io/errors.hpp"
 #include "io/image_file.hpp"
 #include "io/line_file.hpp"
@@ -30,20 +31,33 @@ void makeFolders(const fs::path& folder) {
   }
 }
 
-/// The right camera as it really is: its principal point lies elsewhere than the calibration says.
-StereoCamera rightCamera(const WriteOptions& options) {
+CalibrationErrors drawnErrors(const Scene& scene, const RigError& rig) {
+  constexpr int kCalibration = 4211;
+  CalibrationErrors errors;
+  for (int i = 0; i < kCalibrationErrors; ++i)
+    errors[i] = rig.calibration * gaussian(hashOf(i, kCalibration, scene.seed));
+  return errors;
+}
+
+/// The right camera as it really is in a frame: it lies elsewhere, and its principal point, than the calibration says.
+StereoCamera rightCamera(const Scene& scene, int frame, const WriteOptions& options) {
+  constexpr int kShake = 4219, kBaseline = 6;  // in the order of the errors
   StereoCamera camera = options.camera;
   camera.cx_px += options.rig_error.disparity_offset_px;
   camera.cy_px += options.rig_error.row_offset_px;
+  if (options.rig_error.shake_px > 0)
+    camera.cx_px += options.rig_error.shake_px * gaussian(hashOf(frame, kShake, scene.seed));
+  camera.baseline_m *= 1 + CalibrationSigmas{}.baseline * options.render.errors[kBaseline];
   return camera;
 }
 
 /// The gray pair as P0 and P1; P2 and P3 repeat it for readers that ask for the color pair.
-void writeCalibration(const fs::path& file, const StereoCamera& c) {
+void writeCalibration(const fs::path& file, const StereoCamera& c, const RigError& rig) {
   std::string text;
   for (int i = 0; i < 4; ++i)
     text += format("P%d: %.9g 0 %.9g %.9g 0 %.9g %.9g 0 0 0 1 0\n", i, c.fx_px, c.cx_px,
                    i % 2 == 0 ? 0.0 : -c.fx_px * c.baseline_m, c.fy_px, c.cy_px);
+  if (rig == RigError{}) text += "calibration_sigmas: 0 0 0 0 0\n";
   text += "R0_rect: 1 0 0 0 1 0 0 0 1\n";
   text += "Tr_velo_to_cam: 0 -1 0 0 0 0 -1 0 1 0 0 0\n";
   text += "Tr_imu_to_velo: 1 0 0 0 0 1 0 0 0 0 1 0\n";
@@ -94,16 +108,18 @@ struct Tables {
 
 }  // namespace
 
-void writeSequence(const Scene& scene, const fs::path& folder, const WriteOptions& options) {
+void writeSequence(const Scene& scene, const fs::path& folder, const WriteOptions& asked) {
+  WriteOptions options = asked;
+  options.render.errors = drawnErrors(scene, options.rig_error);
   makeFolders(folder);
-  writeCalibration(folder / "calib.txt", options.camera);
+  writeCalibration(folder / "calib.txt", options.camera, options.rig_error);
   Tables tables(folder);
   const SE3 T_world_map = scene.ego.T_map_cam(scene.time_s(0)).inverse();
   const int frames = options.frames > 0 ? options.frames : scene.frames;
   for (int k = 0; k < frames; ++k) {
     const FrameScene frame(scene, k, options.with_movers);
     const Rendering left = render(frame, options.camera, StereoSide::kLeft, options.render);
-    const Rendering right = render(frame, rightCamera(options), StereoSide::kRight, options.render);
+    const Rendering right = render(frame, rightCamera(scene, k, options), StereoSide::kRight, options.render);
     const std::string name = format("%06d.png", k);
     writePng(folder / "image_0" / name, left.image);
     writePng(folder / "image_1" / name, right.image);

@@ -13,6 +13,7 @@
 #include "apps/synth/renderer.hpp"
 #include "apps/synth/scene_builder.hpp"
 #include "apps/synth/sequence_writer.hpp"
+#include "io/calibration.hpp"
 #include "io/image_file.hpp"
 #include "tests/apps/rendered_scene.hpp"
 #include "tests/io/temporary_folder.hpp"
@@ -212,7 +213,7 @@ TEST(SynthSequence, ARigErrorMovesTheRightImageAloneAndByWhatWasAsked) {
   constexpr int kRight_px = 3, kDown_px = 2;
   options.rig_error = {.disparity_offset_px = kRight_px, .row_offset_px = kDown_px};
   writeSequence(scene, folder / "off", options);
-  for (const char* file : {"image_0/000000.png", "disp/000000.png", "instance/000000.png", "label_02.txt", "calib.txt"})
+  for (const char* file : {"image_0/000000.png", "disp/000000.png", "instance/000000.png", "label_02.txt"})
     EXPECT_EQ(content(folder / "exact" / file), content(folder / "off" / file)) << file;
   ImagePool pool;
   const Image exact = readImage(folder / "exact/image_1/000000.png", pool),
@@ -222,6 +223,41 @@ TEST(SynthSequence, ARigErrorMovesTheRightImageAloneAndByWhatWasAsked) {
     for (int x = kRight_px + 1; x < exact.width() - 1; ++x, ++all)
       equal += off.at(x, y) == exact.at(x - kRight_px, y - kDown_px) ? 1 : 0;
   EXPECT_GT(equal, 0.99 * all);  // single precision of the rays changes a pixel on an edge here and there
+}
+
+/// The calibration tells of itself; truth and calibration stay those of the exact rig.
+TEST(SynthSequence, ErrorsOfTheCalibrationBendBothImagesAndAreNotTold) {
+  const test::TemporaryFolder folder;
+  const Scene scene = makeScene("overtake", 5);
+  WriteOptions options;
+  options.frames = 1;
+  options.camera = kittiCamera(248, 75);
+  options.render = kNoNoise;
+  writeSequence(scene, folder / "exact", options);
+  options.rig_error = {.calibration = 1};
+  writeSequence(scene, folder / "off", options);
+  EXPECT_EQ(content(folder / "exact/poses.txt"), content(folder / "off/poses.txt"));
+  for (const char* file : {"image_0/000000.png", "image_1/000000.png"})
+    EXPECT_NE(content(folder / "exact" / file), content(folder / "off" / file)) << file;
+  EXPECT_EQ(readCalibration(folder / "exact/calib.txt").sigmas, (CalibrationSigmas{0, 0, 0, 0, 0}));
+  EXPECT_FALSE(readCalibration(folder / "off/calib.txt").sigmas);
+}
+
+/// As far as the shifts of observations say it: of a far point, as rays are shifted where they are infinitely long.
+TEST(SynthLens, PixelsOfBothCamerasTakeTheRaysThatObservationShiftsSay) {
+  const StereoCamera camera = kittiCamera();
+  CalibrationErrors errors;
+  for (int k = 0; k < kCalibrationErrors; ++k) errors[k] = 0.3 * k - 1;
+  const LensErrors left(camera, StereoSide::kLeft, errors), right(camera, StereoSide::kRight, errors);
+  const Eigen::Vector3d uvd_px{1100, 320, 24};
+  const Eigen::Vector3d exact_px =
+      uvd_px + observationShifts(camera, CalibrationSigmas{}, uvd_px) *
+                   Eigen::Map<const Eigen::Matrix<double, kCalibrationErrors, 1>>(errors.data());
+  const auto of_left = left.exact(1100, 320), of_right = right.exact(1100 - 24, 320);
+  EXPECT_NEAR(of_left.u_px, exact_px.x(), 1e-3);
+  EXPECT_NEAR(of_left.v_px, exact_px.y(), 1e-3);
+  const double by_baseline_px = CalibrationSigmas{}.baseline * errors[6] * uvd_px.z();
+  EXPECT_NEAR(of_left.u_px - of_right.u_px, exact_px.z() + by_baseline_px, 1e-3);
 }
 
 TEST(SynthSequence, MoversCanBeLeftOut) {

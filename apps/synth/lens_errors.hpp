@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+
+#include "apps/synth/rays.hpp"
+#include "core/calibration_errors.hpp"
+
+namespace motorcade::synth {
+
+/// How far a rig is off its calibration: each error in its standard deviations, in the order of the columns of
+/// ObservationShifts.
+using CalibrationErrors = std::array<double, kCalibrationErrors>;
+
+/// Which ray a pixel of a camera with errors takes: that of another pixel of a camera without.
+class LensErrors {
+ public:
+  struct Pixel {
+    float u_px, v_px;
+  };
+  LensErrors(const StereoCamera& camera, StereoSide side, const CalibrationErrors& errors);
+
+  Pixel exact(float u_px, float v_px) const;
+  /// How far such a pixel may lie outside of the image.
+  float beyond_px() const;
+
+ private:
+  StereoCamera camera_;
+  StereoSide side_;
+  Eigen::Matrix<double, kCalibrationErrors, 1> errors_;
+};
+
+}  // namespace motorcade::synth
