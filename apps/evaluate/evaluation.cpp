@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <span>
 
 #include "apps/evaluate/mounting.hpp"
 #include "apps/evaluate/recovered_finals.hpp"
+#include "apps/evaluate/truth_noise.hpp"
 #include "apps/recorded/recorded_run.hpp"
 #include "io/errors.hpp"
 #include "io/line_file.hpp"
@@ -47,15 +47,29 @@ void removeMounting(Evaluation& evaluation, const std::vector<ComparedFrame>& fi
   measureMounted(evaluation.online, of_online, T_true_cam);
 }
 
-void evaluateCovariances(Evaluation& evaluation, const std::vector<ComparedFrame>& online, const CovarianceRows& rows) {
+/// Zero where no velocities stand beside the places.
+Eigen::Matrix3d placeNoiseOf(const Sequence& sequence, const CameraTruth& camera, OxtsTimes truth) {
+  if (truth == OxtsTimes::kVelocities || sequence.truth.oxts.empty()) return Eigen::Matrix3d::Zero();
+  try {
+    const auto by_velocity = readCameraTruth(sequence, OxtsTimes::kVelocities);
+    return by_velocity ? placeNoise(camera.T_world_cam, by_velocity->T_world_cam) : Eigen::Matrix3d::Zero();
+  } catch (const InputError&) {
+    return Eigen::Matrix3d::Zero();  // packets without velocities or times are no fault here
+  }
+}
+
+void evaluateCovariances(Evaluation& evaluation, const std::vector<ComparedFrame>& online, const CovarianceRows& rows,
+                         const Eigen::Matrix3d& place_noise) {
   evaluation.camera_nees = cameraNees(online, rows, evaluation.mounting.value_or(SE3{}));
   evaluation.camera_covariance = consistencyOf(cameraErrorSamples(online, rows));
   evaluation.object_covariance = consistencyOf(objectErrorSamples(online, rows));
   if (!evaluation.mounting) return;
   auto samples = cameraErrorSamples(online, rows, *evaluation.mounting);
   evaluation.camera_mounted_covariance = consistencyOf(samples);
-  constexpr double kGyroscopes_rad = 0.01 * std::numbers::pi / 180;  // of KITTI's inertial unit over some frames
-  for (auto& sample : samples) sample.covariance.diagonal().tail<3>().array() += kGyroscopes_rad * kGyroscopes_rad;
+  const CameraPaths paths(online);
+  Matrix6d noise = truthNoise(paths.estimate, withMounting(paths.truth, *evaluation.mounting));
+  noise.topLeftCorner<3, 3>() += place_noise;
+  for (auto& sample : samples) sample.covariance += noise;
   evaluation.camera_truth_covariance = consistencyOf(samples);
 }
 
@@ -218,7 +232,7 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   evaluation.final.acceleration = accelerationsOf(final, sequence);
   evaluation.worst = worstFrames(final);
   if (mayBeMountedWrongly(sequence)) removeMounting(evaluation, final, online);
-  evaluateCovariances(evaluation, online, run.covariances);
+  evaluateCovariances(evaluation, online, run.covariances, placeNoiseOf(sequence, camera, options.truth));
   if (!sequence.truth.instances.empty())
     evaluation.masks = maskErrors(online, options.run / "masks", sequence.truth.instances);
   if (!options.half_run.empty()) {

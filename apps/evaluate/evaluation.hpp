@@ -77,7 +77,7 @@ struct Evaluation {
   std::vector<FrameNees> camera_nees;
   CovarianceErrors camera_covariance, object_covariance;
   std::optional<CovarianceErrors> camera_mounted_covariance;  // without the truth's mounting error
-  std::optional<CovarianceErrors> camera_truth_covariance;    // also with the noise of the truth's rotation added
+  std::optional<CovarianceErrors> camera_truth_covariance;    // also with the truth's noise added, see truthNoise
   std::optional<HalfErrors> half_errors;                      // against the other half's run
   std::optional<MaskEvaluation> masks;                        // where the run has some, and the truth too
   std::optional<RelativeError> camera_against_baseline;

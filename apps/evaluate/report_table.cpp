@@ -210,7 +210,7 @@ void printCovariances(std::string& text, const Evaluation& e) {
   std::string lines;
   printCovarianceLine(lines, "camera", e.camera_covariance);
   if (e.camera_mounted_covariance) printCovarianceLine(lines, "camera, without mounting", *e.camera_mounted_covariance);
-  if (e.camera_truth_covariance) printCovarianceLine(lines, "  and truth's gyroscopes", *e.camera_truth_covariance);
+  if (e.camera_truth_covariance) printCovarianceLine(lines, "  and the truth's noise", *e.camera_truth_covariance);
   printCovarianceLine(lines, "objects", e.object_covariance);
   if (e.half_errors) {
     printCovarianceLine(lines, "camera, of two halves", e.half_errors->camera);
