@@ -15,7 +15,7 @@ namespace motorcade {
 ///   xi_now = Ad(T_before_now^-1) xi_before + xi_span
 /// and whatever the spans' errors have to do with each other (they share landmarks and calibration),
 ///   Cov(xi_1 + ... + xi_n) <= n (Cov(xi_1) + ... + Cov(xi_n)).
-/// It is as honest as the tracker's own covariances, which are too small on real drives. Call it in frame order.
+/// It is as honest as the tracker's own covariances. Call it in frame order.
 class PathCovariance {
  public:
   /// Of a perturbation (rho, phi) on the right of T_world_cam; zero in the first frame, which defines the world. Empty

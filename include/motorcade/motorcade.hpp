@@ -12,7 +12,7 @@
 ///          y left, z up (as ROS wants of bodies)
 ///   world  the first frame's cam
 ///   body   of an object, fixed to it: x in the direction of travel, y left, z up, with either axes
-/// Covariances are row by row, of (rho, phi) in T exp(rho, phi) [m, rad]. On real drives they are too small.
+/// Covariances are row by row, of (rho, phi) in T exp(rho, phi) [m, rad], with typical errors of a calibration.
 #include <array>
 #include <chrono>
 #include <cstdint>
