@@ -10,8 +10,8 @@
 namespace motorcade {
 
 /// How the camera's path shifts when the observations of landmarks at rest do: the normal equations of a bundle
-/// adjustment over the newest frames, with a right-hand side for each error of the calibration. Some of the landmarks
-/// tell it as well as all.
+/// adjustment over the newest frames, with a right-hand side for each error of the calibration. A
+/// sample of the landmarks tells it.
 class CalibrationResponse {
  public:
   /// `points` chooses landmarks from those at rest.
@@ -28,17 +28,18 @@ class CalibrationResponse {
   /// How the motion of each of the newest frames shifts from the one before that was seen, oldest first.
   std::vector<FrameStep> steps(const PoseVariable& camera, const std::function<SE3(VariableId)>& pose,
                                const NoiseLevel& level, double offset_px);
-  /// Of the last step when steps were asked for last.
+  /// The shifts of the newest step when `steps` was called last; none before.
   const ConsideredCalibration::PoseShifts& ofNewestStep() const { return newest_; }
 
  private:
   std::vector<LandmarkTrack*> tracks();
+
   StereoCamera camera_;
   CalibrationSigmas sigmas_;
   LandmarkNoise noise_;
   BodyPoints points_;
-  ConsideredCalibration::PoseShifts newest_ = ConsideredCalibration::PoseShifts::Zero();
   std::vector<LandmarkTrack> ended_;  // that lie within the newest frames
+  ConsideredCalibration::PoseShifts newest_ = ConsideredCalibration::PoseShifts::Zero();
 };
 
 }  // namespace motorcade

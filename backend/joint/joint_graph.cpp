@@ -54,7 +54,8 @@ JointGraph::JointGraph(const JointParams& params, const WindowParams& window, co
       at_rest_(params_, camera_, solver_, offset_),
       objects_(params_, window.use_smoothness, solver_, frames_),
       response_(camera_, requireValid(window.calibration), params_.static_noise,
-                pointParams(params_, camera_, params_.track_frames, kRespondingLandmarks)) {
+                pointParams(params_, camera_, params_.track_frames, kRespondingLandmarks)),
+      considers_calibration_(window.compute_covariances) {
   calibration_ = ConsideredCalibration(camera_, window.calibration);
 }
 
@@ -70,7 +71,7 @@ void JointGraph::add(const FrameMeasurements& measurements) {
   addObjects(measurements);
   if (showsPoints(measurements)) undecided_.observe(measurements.head.frame, measurements.undecided);
   calibrate(measurements.head.frame);
-  consider(measurements);
+  if (considers_calibration_) consider(measurements);
   ++frame_count_;
 }
 

@@ -63,6 +63,7 @@ class JointGraph final : public SmoothingWindow {
   std::map<TrackId, LandmarkBundles> landmarks_;  // of the objects
   UndecidedPoints undecided_;
   CalibrationResponse response_;
+  bool considers_calibration_;  // for covariances alone
   std::int64_t frame_count_ = 0;
 };
 
