@@ -110,9 +110,12 @@ TEST_F(CalibrationFile, ReadsMiddleburysMatricesAndMillimeters) {
 
 TEST_F(CalibrationFile, WithoutProjectionsSaysWhatItIsAndWhatToDo) {
   const std::string p0 = ": 700 0 320 0 0 710 100 0 0 0 1 0\n", p1 = ": 700 0 320 -350 0 710 100 0 0 0 1 0\n";
+  const auto named = [&](std::string left, const std::string& right) {
+    return left.append(p0).append(right).append(p1);
+  };
   for (const auto& [content, advice] :
-       {std::pair("p0" + p0 + "p1" + p1, std::string("it has p0, p1: call the left camera's projection P0")),
-        std::pair("P_rect_101" + p0 + "P_rect_103" + p1, std::string("it has P_rect_101, P_rect_103: call")),
+       {std::pair(named("p0", "p1"), std::string("it has p0, p1: call the left camera's projection P0")),
+        std::pair(named("P_rect_101", "P_rect_103"), std::string("it has P_rect_101, P_rect_103: call")),
         std::pair(std::string("K: 721.5 0 620.5 0 721.5 187 0 0 1\n"), std::string("its K tells no baseline")),
         std::pair(std::string("f: 645.2\ncu: 635.9\ncv: 194.1\nbase: 0.57\n"),
                   std::string("--camera 645.2,645.2,635.9,194.1,0.57")),
@@ -121,7 +124,7 @@ TEST_F(CalibrationFile, WithoutProjectionsSaysWhatItIsAndWhatToDo) {
     EXPECT_THAT(errorOf(content), AllOf(HasSubstr("calib.txt: has no P0 and P1; "), HasSubstr(advice))) << content;
   EXPECT_THAT(errorOf("Pinhole 501.4 501.4 421.7 167.6 0 0 0 0\n800 400\ncrop\n800 400\n"),
               AllOf(HasSubstr("DSO's"), HasSubstr("--camera")));
-  EXPECT_THAT(errorOf("P0" + p0 + "P1" + p1, CameraPair::kColor), HasSubstr("has no P2 and P3"));
+  EXPECT_THAT(errorOf(named("P0", "P1"), CameraPair::kColor), HasSubstr("has no P2 and P3"));
 }
 
 TEST_F(CalibrationFile, RefusesTwoValuesOfOneKey) {
