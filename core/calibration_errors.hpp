@@ -9,7 +9,7 @@
 
 namespace motorcade {
 
-/// How far a rectified rig may be off its calibration: standard deviations of errors that are constant over a drive.
+/// Standard deviations of a rectified rig's calibration, whose errors are constant over a drive.
 /// The defaults are those of a rig that was calibrated with care and then driven.
 struct CalibrationSigmas {
   // What both cameras have in common.
@@ -28,8 +28,8 @@ inline constexpr int kCalibrationSigmas = 5;
 
 inline constexpr int kCalibrationErrors = 12;
 
-/// What each error does to an observation (u, v, d) when it is as large as its standard deviation: where a rig without
-/// it would have made the observation, less where it was made [px]. Of first order.
+/// Shifts of an observation (u, v, d) by each error, as large as its standard deviation, to first order: the
+/// observation of a rig without the error less the one that was made [px].
 using ObservationShifts = Eigen::Matrix<double, 3, kCalibrationErrors>;
 ObservationShifts observationShifts(const StereoCamera& camera, const CalibrationSigmas& sigmas,
                                     const Eigen::Vector3d& uvd_px);

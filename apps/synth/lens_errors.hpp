@@ -7,11 +7,10 @@
 
 namespace motorcade::synth {
 
-/// How far a rig is off its calibration: each error in its standard deviations, in the order of the columns of
-/// ObservationShifts.
+/// Errors of a rig's calibration, each in its standard deviations, in the order of the columns of ObservationShifts.
 using CalibrationErrors = std::array<double, kCalibrationErrors>;
 
-/// Which ray a pixel of a camera with errors takes: that of another pixel of a camera without.
+/// The rays of a camera with errors: each of its pixels takes that of another pixel of a camera without.
 class LensErrors {
  public:
   struct Pixel {
@@ -20,7 +19,7 @@ class LensErrors {
   LensErrors(const StereoCamera& camera, StereoSide side, const CalibrationErrors& errors);
 
   Pixel exact(float u_px, float v_px) const;
-  /// How far such a pixel may lie outside of the image.
+  /// The most by which such a pixel lies outside of the image.
   float beyond_px() const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace motorcade::synth {
 
-/// By how much the images of a rig disagree with its calibration.
+/// Errors by which the images of a rig disagree with its calibration.
 struct RigError {
   double disparity_offset_px = 0;  // true minus measured disparity: the right image's content lies too far right
   double row_offset_px = 0;        // the right image's content lies too low

@@ -9,9 +9,9 @@
 
 namespace motorcade {
 
-/// How the camera's path shifts when the observations of landmarks at rest do: the normal equations of a bundle
-/// adjustment over the newest frames, with a right-hand side for each error of the calibration. A
-/// sample of the landmarks tells it.
+/// Shifts of the camera's path that follow from those of observations of landmarks at rest. They solve the normal
+/// equations of a bundle adjustment over the newest frames, with a right-hand side for each error of the calibration.
+/// A sample of the landmarks is enough.
 class CalibrationResponse {
  public:
   /// `points` chooses landmarks from those at rest.
@@ -25,7 +25,7 @@ class CalibrationResponse {
     FrameId before, now;
     ConsideredCalibration::PoseShifts shifts;  // of T_before_now
   };
-  /// How the motion of each of the newest frames shifts from the one before that was seen, oldest first.
+  /// Shifts of the motions between the newest frames that showed points, oldest first.
   std::vector<FrameStep> steps(const PoseVariable& camera, const std::function<SE3(VariableId)>& pose,
                                const NoiseLevel& level, double offset_px);
   /// The shifts of the newest step when `steps` was called last; none before.

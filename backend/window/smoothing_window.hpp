@@ -87,7 +87,7 @@ class SmoothingWindow {
   virtual ObjectMotionEstimate objectMotion(const ObjectTrack& track, FrameId frame) const = 0;
   /// Computes them from the graph as it is now; empty when the frame's pose is not in it.
   virtual std::optional<ObjectCovariances> objectCovariances(const ObjectTrack& track, FrameId frame) const = 0;
-  /// What the calibration's errors do to camera and objects.
+  /// Shifts of camera and objects by errors of the calibration.
   const ConsideredCalibration& calibration() const { return calibration_; }
   /// Variances grow by this factor, at least 1, as measurements are not independent.
   virtual double designEffect() const { return 1; }

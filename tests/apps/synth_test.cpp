@@ -202,13 +202,18 @@ TEST(SynthSequence, IsTheSameForASeedAndAnyThreadCountAndStartsAtTheIdentity) {
   EXPECT_GT(disparity.pixels[70 * 248 + 124], 0);
 }
 
-TEST(SynthSequence, ARigErrorMovesTheRightImageAloneAndByWhatWasAsked) {
-  const test::TemporaryFolder folder;
-  const Scene scene = makeScene("overtake", 5);
+WriteOptions oneSmallPair() {
   WriteOptions options;
   options.frames = 1;
   options.camera = kittiCamera(248, 75);
   options.render = kNoNoise;
+  return options;
+}
+
+TEST(SynthSequence, ARigErrorMovesTheRightImageAloneAndByWhatWasAsked) {
+  const test::TemporaryFolder folder;
+  const Scene scene = makeScene("overtake", 5);
+  WriteOptions options = oneSmallPair();
   writeSequence(scene, folder / "exact", options);
   constexpr int kRight_px = 3, kDown_px = 2;
   options.rig_error = {.disparity_offset_px = kRight_px, .row_offset_px = kDown_px};
@@ -225,14 +230,10 @@ TEST(SynthSequence, ARigErrorMovesTheRightImageAloneAndByWhatWasAsked) {
   EXPECT_GT(equal, 0.99 * all);  // single precision of the rays changes a pixel on an edge here and there
 }
 
-/// The calibration tells of itself; truth and calibration stay those of the exact rig.
 TEST(SynthSequence, ErrorsOfTheCalibrationBendBothImagesAndAreNotTold) {
   const test::TemporaryFolder folder;
   const Scene scene = makeScene("overtake", 5);
-  WriteOptions options;
-  options.frames = 1;
-  options.camera = kittiCamera(248, 75);
-  options.render = kNoNoise;
+  WriteOptions options = oneSmallPair();
   writeSequence(scene, folder / "exact", options);
   options.rig_error = {.calibration = 1};
   writeSequence(scene, folder / "off", options);
@@ -241,6 +242,17 @@ TEST(SynthSequence, ErrorsOfTheCalibrationBendBothImagesAndAreNotTold) {
     EXPECT_NE(content(folder / "exact" / file), content(folder / "off" / file)) << file;
   EXPECT_EQ(readCalibration(folder / "exact/calib.txt").sigmas, (CalibrationSigmas{0, 0, 0, 0, 0}));
   EXPECT_FALSE(readCalibration(folder / "off/calib.txt").sigmas);
+}
+
+TEST(SynthSequence, AShakeMovesTheRightImageAlone) {
+  const test::TemporaryFolder folder;
+  const Scene scene = makeScene("overtake", 5);
+  WriteOptions options = oneSmallPair();
+  writeSequence(scene, folder / "still", options);
+  options.rig_error = {.shake_px = 1};
+  writeSequence(scene, folder / "shaken", options);
+  EXPECT_EQ(content(folder / "still/image_0/000000.png"), content(folder / "shaken/image_0/000000.png"));
+  EXPECT_NE(content(folder / "still/image_1/000000.png"), content(folder / "shaken/image_1/000000.png"));
 }
 
 /// As far as the shifts of observations say it: of a far point, as rays are shifted where they are infinitely long.
