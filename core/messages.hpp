@@ -223,6 +223,7 @@ struct SolverCounters {
   double chi2 = 0;
   /// True minus measured disparity, of back-ends that estimate it.
   double disparity_offset_px = 0, disparity_offset_sigma_px = 0;
+  double disparity_shake_px = 0;  // standard deviation of what all disparities of a frame have in common
 };
 
 /// The back-end's answer to one frame.

@@ -51,7 +51,8 @@ Json toJson(const SolverCounters& solver) {
           {"retired_variables", solver.retired_variables},
           {"chi2", solver.chi2},
           {"disparity_offset_px", solver.disparity_offset_px},
-          {"disparity_offset_sigma_px", solver.disparity_offset_sigma_px}};
+          {"disparity_offset_sigma_px", solver.disparity_offset_sigma_px},
+          {"disparity_shake_px", solver.disparity_shake_px}};
 }
 
 Json toJson(const QueueMark& queue) {

@@ -2,108 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include <Eigen/Cholesky>
-
-#include "backend/elimination/dense_kernels.hpp"
 #include "backend/graph/symmetric_product.hpp"
-#include "backend/joint/row_products.hpp"
 
 namespace motorcade {
 namespace {
 
-constexpr int kLandmark = 4;  // unknowns of a landmark
-constexpr int kRest = 2;      // columns of the offset and of the right-hand side
+constexpr int kTail = 2;  // columns of the offset and of the right-hand side
 
 constexpr double kStill = 1e-9;  // m, rad and px: of a displacement whose Jacobian is 1, of poses that have not moved
-
-using Matrix8d = Eigen::Matrix<double, 6 + kRest, 6 + kRest>;
-using Matrix84d = Eigen::Matrix<double, 6 + kRest, kLandmark>;
-using Matrix24d = Eigen::Matrix<double, kRest, kLandmark>;
-
-/// Sums up the system that the elimination of landmarks leaves. They come in the order of their first frames: several
-/// are subtracted at a time, from the first's first frame on.
-class LandmarkSum {
- public:
-  explicit LandmarkSum(int frames)
-      : own_(frames, Matrix8d::Zero()),
-        size_(6 * frames + kRest),
-        stride_(padded(size_)),
-        Y_(std::size_t(stride_) * kColumns, 0.0),
-        system_(std::size_t(stride_) * size_, 0.0) {}
-
-  void add(std::span<const LandmarkView> views, const LandmarkFit& fit) {
-    if (columns_ == kColumns) subtract();
-    if (columns_ == 0) first_row_ = 6 * views.front().frame / 4 * 4;  // rows come in fours
-    // Y = W L^-T with the landmark's information L L^T, so that W (L L^T)^-1 W^T = Y Y^T.
-    const auto right = inverseTransposed(fit.information().matrixL());
-    Eigen::Map<Eigen::MatrixXd> Y(Y_.data() + std::size_t(columns_) * stride_, stride_, kLandmark);
-    const double shared = fit.sharedError_px() / fit.sharedErrorSigma_px();
-    shared_squared_ += shared * shared;
-    Matrix24d rest = Matrix24d::Zero();
-    rest.row(kRest - 1) = shared / fit.sharedErrorSigma_px() * right.row(3);
-    const auto linear = fit.views();
-    int row = first_row_;
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      addOuterProducts<true>(linear[i].J, linear[i].J, own_[views[i].frame]);
-      const Eigen::Matrix<double, 3, kLandmark, Eigen::RowMajor> B = rowProduct(linear[i].B, right);
-      Matrix84d W = Matrix84d::Zero();
-      addOuterProducts(linear[i].J, B, W);
-      const int own = 6 * views[i].frame;
-      if (row < own) Y.middleRows(row, own - row).setZero();
-      Y.middleRows<6>(own) = W.topRows<6>();
-      row = own + 6;
-      rest += W.bottomRows<kRest>();
-    }
-    Y.middleRows(row, size_ - kRest - row).setZero();
-    Y.middleRows<kRest>(size_ - kRest) = rest;
-    columns_ += kLandmark;
-  }
-
-  Quadratic packed() {
-    subtract();
-    Quadratic system;
-    pack(Eigen::Map<Eigen::MatrixXd>(system_.data(), stride_, size_).topRows(size_), system);
-    const int n = size_ - 1, offset = n - 1;
-    for (int at = 0; at < offset; at += 6) {
-      const Matrix8d& own = own_[at / 6];
-      for (int j = 0; j < 6; ++j) {
-        double* const column = system.lower_H.data() + PackedTriangle::offset(n, at + j);
-        for (int i = j; i < 6; ++i) column[at + i] += own(i, j);
-        column[offset] += own(6, j);
-        system.g_c[at + j] += own(7, j);
-      }
-      system.lower_H.back() += own(6, 6);
-      system.g_c.tail<kRest>() += own.row(7).tail<kRest>();
-    }
-    system.g_c[n] += shared_squared_;
-    return system;
-  }
-
- private:
-  static constexpr int kColumns = 12 * kLandmark;
-
-  void subtract() {
-    if (columns_ == 0) return;
-    double* const corner = system_.data() + first_row_ + std::size_t(first_row_) * stride_;
-    subtractOuterProduct(corner, stride_, Y_.data() + first_row_, stride_, size_ - first_row_, columns_);
-    columns_ = 0;
-  }
-
-  std::vector<Matrix8d> own_;  // J' J of each frame, J = [A D r]; lower triangle
-  double shared_squared_ = 0;
-  int size_, stride_, columns_ = 0, first_row_ = 0;
-  std::vector<double> Y_, system_;  // the landmarks that are still to be subtracted; lower triangle
-};
-
-/// Landmarks in the order of their first frames.
-std::vector<int> byFirstFrame(const LandmarkViews& landmarks) {
-  std::vector<int> order(landmarks.count());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [&](int j) { return landmarks.of(j).front().frame; });
-  return order;
-}
 
 /// M <- S^-1 M, with S from a step of the frame's pose to a perturbation of T_cam_body on the left.
 template <class Rows>
@@ -139,67 +46,7 @@ Matrix6d likeStepOfLast(FramePose pose, const SE3& T_cam_body, const SE3& D) {
   return J;
 }
 
-void addLevels(const LandmarkFit& fit, ResidualLevels& levels) {
-  const auto linear = fit.views();
-  const double squared = 1 / fit.informationShare();  // residuals of full weight
-  for (const LinearView& l : linear) {
-    levels.uv_sum += squared * l.r().head<2>().squaredNorm();
-    levels.d_sum += squared * l.r().z() * l.r().z();
-  }
-  for (std::size_t i = 1; i < linear.size(); ++i)
-    levels.successive_sum += squared * linear[i - 1].r().dot(linear[i].r());
-  levels.uv_count += 2.0 * static_cast<double>(linear.size() - 1);
-  levels.d_count += static_cast<double>(linear.size() - 1);
-}
-
-/// Residuals added up by half of the image and frame, for ResidualLevels.
-class CommonSums {
- public:
-  CommonSums(double middle_px, std::size_t frames)
-      : middle_px_(middle_px), sums_(2 * frames, Eigen::Vector3d::Zero()) {}
-
-  void add(std::span<const LandmarkView> views, const LandmarkFit& fit) {
-    const double full = std::sqrt(1 / fit.informationShare());
-    for (std::size_t i = 0; i < views.size(); ++i)
-      sums_[2 * views[i].frame + (views[i].uvd_px.x() > middle_px_ ? 1 : 0)] += full * fit.views()[i].r();
-  }
-  double squares() const {
-    double squares = 0;
-    for (const Eigen::Vector3d& sum : sums_) squares += sum.squaredNorm();
-    return squares;
-  }
-
- private:
-  double middle_px_;
-  std::vector<Eigen::Vector3d> sums_;
-};
-
 }  // namespace
-
-EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
-                                       const LandmarkViews& landmarks, FramePose pose, std::vector<SE3> T_cam_body,
-                                       double offset_px) {
-  EliminatedLandmarks result{.pose = pose,
-                             .T_cam_body = std::move(T_cam_body),
-                             .offset_px = offset_px,
-                             .system = {},
-                             .levels = {},
-                             .estimates = {}};
-  result.estimates.resize(landmarks.count());
-  LandmarkFit fit(camera, noise, pose, result.T_cam_body, offset_px);
-  LandmarkSum sum(static_cast<int>(result.T_cam_body.size()));
-  CommonSums common(0.5 * camera.width_px, result.T_cam_body.size());
-  for (const int j : byFirstFrame(landmarks)) {
-    if (!fit(landmarks.of(j), landmarks.before.empty() ? std::nullopt : landmarks.before[j])) continue;
-    result.estimates[j] = fit.estimate();
-    sum.add(landmarks.of(j), fit);
-    addLevels(fit, result.levels);
-    common.add(landmarks.of(j), fit);
-  }
-  result.levels.common_sum = common.squares();
-  result.system = sum.packed();
-  return result;
-}
 
 BundleFactor::BundleFactor(std::vector<VariableId> poses, VariableId offset, EliminatedLandmarks landmarks)
     : InformationFactor((poses.push_back(offset), poses), static_cast<int>(landmarks.system.g_c.size())),
@@ -277,18 +124,18 @@ void BundleFactor::linearize(std::span<const Value* const> values, Eigen::Ref<Ei
   const Displacement d = displacement(posesFromCamera(values), offset_px(values));
   fillPoses(d, term);
   const int last = 6 * (frames_ - 1), rest = last + 6;
-  Eigen::Matrix<double, kRest, Eigen::Dynamic> offset_g(kRest, rest + 1);
+  Eigen::Matrix<double, kTail, Eigen::Dynamic> offset_g(kTail, rest + 1);
   const Eigen::VectorXd g_c = gradientAt(d.e);
   const PackedTriangle H = landmarks_.system.matrix();
   for (int j = 0; j <= rest; ++j) offset_g.col(j) << H.column(j)[rest], g_c[j];
-  Eigen::Matrix<double, kRest, 6> of_last = Eigen::Matrix<double, kRest, 6>::Zero();
+  Eigen::Matrix<double, kTail, 6> of_last = Eigen::Matrix<double, kTail, 6>::Zero();
   for (int k = 0; k + 1 < frames_; ++k) {
-    const Eigen::Matrix<double, kRest, 6> own = offset_g.middleCols<6>(6 * k) * d.J[k];
-    term.block<kRest, 6>(rest, 6 * k) = own;
+    const Eigen::Matrix<double, kTail, 6> own = offset_g.middleCols<6>(6 * k) * d.J[k];
+    term.block<kTail, 6>(rest, 6 * k) = own;
     of_last.noalias() -= own * d.J_last[k];
   }
-  term.block<kRest, 6>(rest, last) = of_last;
-  term.block<kRest, 1>(rest, rest) = offset_g.col(rest);
+  term.block<kTail, 6>(rest, last) = of_last;
+  term.block<kTail, 1>(rest, rest) = offset_g.col(rest);
   term(rest + 1, rest + 1) = g_c[rest + 1];
 }
 

@@ -3,47 +3,9 @@
 #include <vector>
 
 #include "backend/graph/factor.hpp"
-#include "backend/joint/landmark.hpp"
+#include "backend/joint/landmark_elimination.hpp"
 
 namespace motorcade {
-
-/// Landmarks of one body with their views: landmark i has views [first_view[i], first_view[i + 1]), oldest first.
-struct LandmarkViews {
-  std::vector<LandmarkView> views;
-  std::vector<int> first_view{0};
-  std::vector<std::optional<LandmarkEstimate>> before;  // of each landmark, or none at all
-  int count() const { return static_cast<int>(first_view.size()) - 1; }
-  std::span<const LandmarkView> of(int landmark) const {
-    return std::span(views).subspan(first_view[landmark], first_view[landmark + 1] - first_view[landmark]);
-  }
-};
-
-/// Sums of squared whitened residuals, and how many the landmarks' own unknowns leave: equal where the noise is as
-/// claimed.
-struct ResidualLevels {
-  double uv_sum = 0, uv_count = 0, d_sum = 0, d_count = 0;
-  /// Sum of the squares of what the residuals in one half of the image and in one frame add up to: as much as the sums
-  /// above where they are independent, and more where they have causes in common, as errors of the rectification are.
-  double common_sum = 0;
-  double successive_sum = 0;  // of the products of residuals of a landmark's successive views
-};
-
-/// What image measurements of one body say of the camera's motion around it, its landmarks eliminated (Schur
-/// complement): with r_jk = Sigma^-1/2 [ y_jk + offset e_d - pi(T_k l_j) ],
-///   H = sum(A'A - A'B (B'B)^-1 B'A)
-/// around the poses T_k = T_cam_body and the disparity offset at which they were linearized. Poses that all move as one
-/// leave it as it is, as the landmarks follow: H of such a step is zero, and so is its product with g.
-struct EliminatedLandmarks {
-  FramePose pose = FramePose::kWorldCam;  // by whose steps
-  std::vector<SE3> T_cam_body;            // of each frame
-  double offset_px = 0;
-  Quadratic system{};  // in (steps of the poses frame by frame, offset)
-  ResidualLevels levels;
-  std::vector<std::optional<LandmarkEstimate>> estimates;  // of each landmark that could be fitted
-};
-EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
-                                       const LandmarkViews& landmarks, FramePose pose, std::vector<SE3> T_cam_body,
-                                       double offset_px);
 
 /// Eliminated landmarks as a factor on the poses from which their body was seen. It knows nothing but motions relative
 /// to the last frame, D_k = T_cam(k)_body T_cam(last)_body^-1, and so stays what it is where everything moves as one:

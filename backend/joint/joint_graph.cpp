@@ -32,7 +32,8 @@ LandmarkBundles::Params objectBundles(const JointParams& params, const StereoCam
           .points = points,
           .newest = IncrementalSolver::Lifetime::kProvisional,
           .closing_frames = params.frames_per_factor,
-          .from_estimates = false};  // a vehicle's points may slide
+          .from_estimates = false,  // a vehicle's points may slide
+          .tells_shake = false};
 }
 
 /// An object's poses seen from the camera, in the frames that the window holds.
@@ -50,8 +51,9 @@ JointGraph::JointGraph(const JointParams& params, const WindowParams& window, co
       params_(requireValid(params)),
       camera_(camera),
       offset_(solver_, params.offset_sigma_px),
+      shake_(params.shake_sigma_px),
       cameras_(params_, solver_, frames_),
-      at_rest_(params_, camera_, solver_, offset_),
+      at_rest_(params_, camera_, solver_, offset_, shake_),
       objects_(params_, window.use_smoothness, solver_, frames_),
       response_(camera_, requireValid(window.calibration), params_.static_noise,
                 pointParams(params_, camera_, params_.track_frames, kRespondingLandmarks)),
@@ -103,7 +105,7 @@ LandmarkBundles& JointGraph::landmarksOf(TrackId id) {
   const auto known = landmarks_.find(id);
   if (known != landmarks_.end()) return known->second;
   const LandmarkBundles landmarks(objectBundles(params_, camera_), NoiseLevel::like(at_rest_.noise()), camera_, solver_,
-                                  offset_);
+                                  offset_, shake_);
   return landmarks_.emplace(id, landmarks).first->second;
 }
 
@@ -169,6 +171,7 @@ void JointGraph::dropped(TrackId id) { landmarksOf(id).drop(); }
 
 void JointGraph::retiring(FrameId oldest) {
   cameras_.forgetStart();
+  shake_.forget(oldest);
   at_rest_.bundles().retire(oldest);
   for (auto& [id, landmarks] : landmarks_) landmarks.retire(oldest);
 }
@@ -181,6 +184,7 @@ SolverCounters JointGraph::counters() const {
   SolverCounters counters = solver_.counters();
   counters.disparity_offset_px = offset_.px();
   counters.disparity_offset_sigma_px = offset_.sigma_px();
+  counters.disparity_shake_px = shake_.sigma_px();
   return counters;
 }
 

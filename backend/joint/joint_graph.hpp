@@ -34,7 +34,7 @@ class JointGraph final : public SmoothingWindow {
   ObjectMotionEstimate objectMotion(const ObjectTrack& track, FrameId frame) const override;
   std::optional<ObjectCovariances> objectCovariances(const ObjectTrack& track, FrameId frame) const override;
   /// The points at rest tell it, see NoiseLevel.
-  double designEffect() const override { return at_rest_.noise().designEffect(); }
+  double designEffect() const override { return at_rest_.designEffect(); }
 
  private:
   struct TwistChanges;
@@ -57,6 +57,7 @@ class JointGraph final : public SmoothingWindow {
   JointParams params_;
   StereoCamera camera_;
   RigOffset offset_;
+  RigShake shake_;
   CameraChain cameras_;
   LandmarksAtRest at_rest_;
   ObjectChain objects_;

@@ -30,6 +30,7 @@ struct JointParams {
   /// but its covariances claim it.
   LandmarkNoise static_noise{.variance_freedom = 8, .shared_disparity_sigma_px = 0.5};
   LandmarkNoise object_noise{.shared_disparity_sigma_px = 0, .shared_disparity_share = 0.7};
+  double shake_sigma_px = 0.03;  // of the cameras against each other, before it is seen; 0: they never shake
   double offset_sigma_px = 1.0;  // prior of the disparity offset of a rig that is found to be off; 0 trusts every rig
 
   double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;

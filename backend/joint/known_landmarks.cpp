@@ -1,6 +1,7 @@
 #include "backend/joint/known_landmarks.hpp"
 
 #include <optional>
+#include <vector>
 
 #include <Eigen/Cholesky>
 
@@ -12,10 +13,38 @@ namespace {
 /// Columns of the system: displacements of both poses, the offset, and the right-hand side.
 constexpr int kSystemColumns = 14;
 
-/// A view's residual and how it changes with the motion, whitened by the noise of view and landmark.
+/// A view's residual and how it changes with the motion and with the shake, whitened by the noise of view and landmark.
 struct Alignment {
   Eigen::Matrix<double, 3, 6> J;
-  Eigen::Vector3d r;
+  Eigen::Vector3d by_shake, r;
+};
+
+/// The normal equations of views, in (motion, shake), around a shake that is known.
+struct AlignmentSum {
+  double known_px;
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d g = Vector6d::Zero(), by_shake = Vector6d::Zero();
+  double shake_information = 0, shake_gradient = 0, c = 0;
+
+  void add(const Alignment& a, const LandmarkNoise& noise) {
+    const Eigen::Vector3d r = a.r + known_px * a.by_shake;
+    const double weight = robustWeight(noise.loss, r.norm(), noise.loss_scale);
+    H.noalias() += weight * (a.J.transpose() * a.J);
+    g.noalias() += weight * (a.J.transpose() * r);
+    by_shake.noalias() += weight * (a.J.transpose() * a.by_shake);
+    shake_information += weight * a.by_shake.squaredNorm();
+    shake_gradient += weight * a.by_shake.dot(r);
+    c += weight * r.squaredNorm();
+  }
+
+  FrameShake eliminateShake(double sigma_px) {
+    const double prior = 1 / (sigma_px * sigma_px), variance_px2 = 1 / (shake_information + prior);
+    const double gradient = shake_gradient + prior * known_px, step_px = -variance_px2 * gradient;
+    H.noalias() -= variance_px2 * (by_shake * by_shake.transpose());
+    g += step_px * by_shake;
+    c += prior * known_px * known_px + step_px * gradient;
+    return {known_px + step_px, variance_px2};
+  }
 };
 
 /// By a step of the earlier pose in the world.
@@ -31,6 +60,7 @@ std::optional<Alignment> align(const StereoCamera& camera, const ViewOfKnown& vi
   a.r = view.uvd_px - *predicted;
   a.r.z() += offset_px - view.landmark.unknowns[3];
   a.r.array() *= view.inverse_sigma.array();
+  a.by_shake = Eigen::Vector3d(0, 0, view.inverse_sigma.z());
   const Eigen::Matrix3d by_point =
       -(view.inverse_sigma.asDiagonal() * (camera.projectionJacobian(p_last) * T_last_first.rotation()));
   Eigen::Matrix<double, 3, 4> B;
@@ -41,6 +71,7 @@ std::optional<Alignment> align(const StereoCamera& camera, const ViewOfKnown& vi
   const Eigen::Matrix3d S = Eigen::Matrix3d::Identity() + B * (view.landmark.covariance * B.transpose());
   const Eigen::LLT<Eigen::Matrix3d> llt(S);
   llt.matrixL().solveInPlace(a.J);
+  llt.matrixL().solveInPlace(a.by_shake);
   llt.matrixL().solveInPlace(a.r);
   return a;
 }
@@ -50,23 +81,25 @@ std::optional<Alignment> align(const StereoCamera& camera, const ViewOfKnown& vi
 EliminatedLandmarks alignToKnown(const StereoCamera& camera, const LandmarkNoise& noise,
                                  std::span<const ViewOfKnown> views, const std::array<SE3, 2>& T_cam_world,
                                  double offset_px) {
-  Matrix6d H = Matrix6d::Zero();
-  Vector6d g = Vector6d::Zero();
-  double c = 0;
-  for (const ViewOfKnown& view : views) {
-    const auto a = align(camera, view, T_cam_world, offset_px);
-    if (!a) continue;
-    const double weight = robustWeight(noise.loss, a->r.norm(), noise.loss_scale);
-    H.noalias() += weight * (a->J.transpose() * a->J);
-    g.noalias() += weight * (a->J.transpose() * a->r);
-    c += weight * a->r.squaredNorm();
+  std::vector<Alignment> aligned;
+  for (const ViewOfKnown& view : views)
+    if (const auto a = align(camera, view, T_cam_world, offset_px)) aligned.push_back(*a);
+  const bool shaken = noise.shake_sigma_px > 0;
+  AlignmentSum sum{.known_px = 0};
+  for (const Alignment& a : aligned) sum.add(a, noise);
+  FrameShake shake;
+  if (shaken) {
+    sum = AlignmentSum{.known_px = sum.eliminateShake(noise.shake_sigma_px).px};  // weights follow the shake
+    for (const Alignment& a : aligned) sum.add(a, noise);
+    shake = sum.eliminateShake(noise.shake_sigma_px);
   }
   EliminatedLandmarks result{.pose = FramePose::kWorldCam,
                              .T_cam_body = {T_cam_world[0], T_cam_world[1]},
                              .offset_px = offset_px,
                              .system = {},
-                             .levels = {},
+                             .shakes = {},
                              .estimates = {}};
+  if (shaken) result.shakes = {FrameShake{}, shake};
   // What a step of the later pose does, one of the earlier undoes.
   Eigen::Matrix<double, 6, 12> by_both;
   by_both << Matrix6d::Identity(), -Matrix6d::Identity();
@@ -74,9 +107,9 @@ EliminatedLandmarks alignToKnown(const StereoCamera& camera, const LandmarkNoise
   Eigen::Matrix<double, kSystemColumns, kSystemColumns> system =
       Eigen::Matrix<double, kSystemColumns, kSystemColumns>::Zero();
   const Eigen::Matrix<double, 12, 6> by_both_T = by_both.transpose();
-  system.topLeftCorner<12, 12>() = propagated(by_both_T, H);
-  system.bottomLeftCorner<1, 12>() = g.transpose() * by_both;
-  system(kSystemColumns - 1, kSystemColumns - 1) = c;
+  system.topLeftCorner<12, 12>() = propagated(by_both_T, sum.H);
+  system.bottomLeftCorner<1, 12>() = sum.g.transpose() * by_both;
+  system(kSystemColumns - 1, kSystemColumns - 1) = sum.c;
   pack(system, result.system);
   return result;
 }

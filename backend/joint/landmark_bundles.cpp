@@ -4,6 +4,9 @@
 #include <iterator>
 #include <utility>
 
+#include "backend/joint/bundle_factor.hpp"
+#include "backend/joint/residual_levels.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -16,8 +19,14 @@ std::vector<LandmarkTrack*> pointersTo(std::vector<LandmarkTrack>& tracks) {
 }  // namespace
 
 LandmarkBundles::LandmarkBundles(const Params& params, const NoiseLevel& noise, const StereoCamera& camera,
-                                 IncrementalSolver& solver, const RigOffset& offset)
-    : params_(params), camera_(camera), solver_(solver), offset_(offset), points_(params.points), noise_(noise) {}
+                                 IncrementalSolver& solver, const RigOffset& offset, RigShake& shake)
+    : params_(params),
+      camera_(camera),
+      solver_(solver),
+      offset_(offset),
+      shake_(shake),
+      points_(params.points),
+      noise_(noise) {}
 
 void LandmarkBundles::renew(std::int64_t frame_count, const PoseVariable& pose_variable) {
   if (newest_) solver_.removeFactor(newest_->factor);
@@ -26,68 +35,83 @@ void LandmarkBundles::renew(std::int64_t frame_count, const PoseVariable& pose_v
   if (frame_count % params_.closing_frames == 0) closeEnded(pose_variable);
   std::vector<LandmarkTrack*> tracks = points_.current();
   std::ranges::copy(pointersTo(ended_), std::back_inserter(tracks));
-  newest_ = addBundle(tracks, pose_variable, params_.newest);
+  if (tracks.empty()) return;
+  const Gathered gathered = gather(tracks, pose_variable);
+  newest_ = addBundle(gathered, params_.newest);
+  if (!newest_) return;
+  neighbors_per_view_ = neighborsPerView(camera_, gathered.landmarks);
+  shake_.observe(newest_->frames, newest_->shakes);
 }
 
 /// Tracks that ended become a factor for good.
 void LandmarkBundles::closeEnded(const PoseVariable& pose_variable) {
-  if (const auto bundle = addBundle(pointersTo(ended_), pose_variable, IncrementalSolver::Lifetime::kLasting)) {
-    noise_.learn(bundle->levels);
-    closed_.push_back({bundle->factor, bundle->first, std::move(ended_)});
+  if (ended_.empty()) return;
+  const Gathered gathered = gather(pointersTo(ended_), pose_variable);
+  if (const auto bundle = addBundle(gathered, IncrementalSolver::Lifetime::kLasting)) {
+    noise_.learn(residualLevels(camera_, params_.noise, gathered.landmarks, params_.pose,
+                                posesFromCamera(gathered.index), offset_.px()));
+    closed_.push_back({bundle->factor, bundle->frames.front(), std::move(ended_)});
   }
   ended_.clear();
 }
 
-/// The result is empty when no landmark has two views from poses that the graph holds.
-std::optional<LandmarkBundles::Bundle> LandmarkBundles::addBundle(std::span<LandmarkTrack* const> tracks,
-                                                                  const PoseVariable& pose_variable,
-                                                                  IncrementalSolver::Lifetime lifetime) {
-  if (tracks.empty()) return std::nullopt;
-  const FrameIndex index(tracks, pose_variable);
-  LandmarkViews landmarks;
-  std::vector<LandmarkTrack*> landmark_tracks;
+LandmarkBundles::Gathered LandmarkBundles::gather(std::span<LandmarkTrack* const> tracks,
+                                                  const PoseVariable& pose_variable) const {
+  Gathered gathered{.index = FrameIndex(tracks, pose_variable), .landmarks = {}, .tracks = {}};
+  LandmarkViews& landmarks = gathered.landmarks;
   for (LandmarkTrack* track : tracks) {
     const std::size_t first = landmarks.views.size();
-    index.append(track->views, noise_, landmarks.views);
+    gathered.index.append(track->views, noise_, landmarks.views);
     if (landmarks.views.size() < first + 2) {
       landmarks.views.resize(first);
       continue;
     }
     landmarks.first_view.push_back(static_cast<int>(landmarks.views.size()));
     if (params_.from_estimates) landmarks.before.push_back(track->estimate);
-    landmark_tracks.push_back(track);
+    gathered.tracks.push_back(track);
   }
-  if (landmarks.count() == 0) return std::nullopt;
-  EliminatedLandmarks eliminated = eliminate(landmarks, index);
-  const auto estimates = std::exchange(eliminated.estimates, {});  // which the factor does not need
-  for (std::size_t i = 0; i < landmark_tracks.size(); ++i) landmark_tracks[i]->estimate = estimates[i];
-  const ResidualLevels levels = eliminated.levels;
-  const auto factor = solver_.addFactor(
-      std::make_unique<BundleFactor>(index.variables(), offset_.variable(), std::move(eliminated)), lifetime);
-  if (!factor) return std::nullopt;
-  return Bundle{*factor, index.frames().front(), levels};
+  landmarks.shakes_px = shake_.correct(gathered.index.frames(), landmarks.views);
+  return gathered;
 }
 
-EliminatedLandmarks LandmarkBundles::eliminate(const LandmarkViews& landmarks, const FrameIndex& index) const {
+/// The result is empty when there is no landmark.
+std::optional<LandmarkBundles::Bundle> LandmarkBundles::addBundle(const Gathered& gathered,
+                                                                  IncrementalSolver::Lifetime lifetime) {
+  if (gathered.landmarks.count() == 0) return std::nullopt;
+  LandmarkNoise noise = params_.noise;
+  if (params_.tells_shake) noise.shake_sigma_px = shake_.sigma_px();
+  EliminatedLandmarks eliminated = eliminateLandmarks(camera_, noise, gathered.landmarks, params_.pose,
+                                                      posesFromCamera(gathered.index), offset_.px());
+  const auto estimates = std::exchange(eliminated.estimates, {});  // which the factor does not need
+  for (std::size_t i = 0; i < estimates.size(); ++i) gathered.tracks[i]->estimate = estimates[i];
+  Bundle bundle{.factor = {}, .frames = gathered.index.frames(), .shakes = std::exchange(eliminated.shakes, {})};
+  const auto factor = solver_.addFactor(
+      std::make_unique<BundleFactor>(gathered.index.variables(), offset_.variable(), std::move(eliminated)), lifetime);
+  if (!factor) return std::nullopt;
+  bundle.factor = *factor;
+  return bundle;
+}
+
+std::vector<SE3> LandmarkBundles::posesFromCamera(const FrameIndex& index) const {
   std::vector<SE3> T_cam_body;
   for (const VariableId v : index.variables()) {
     const SE3 pose = solver_.pose(v);
     T_cam_body.push_back(params_.pose == FramePose::kCamBody ? pose : pose.inverse());
   }
-  return eliminateLandmarks(camera_, params_.noise, landmarks, params_.pose, std::move(T_cam_body), offset_.px());
+  return T_cam_body;
 }
 
 void LandmarkBundles::relinearize(const PoseVariable& pose_variable) {
   for (Closed& closed : closed_) {
     solver_.removeFactor(closed.factor);
-    if (const auto bundle = addBundle(pointersTo(closed.tracks), pose_variable, IncrementalSolver::Lifetime::kLasting))
-      closed.factor = bundle->factor;
+    const Gathered gathered = gather(pointersTo(closed.tracks), pose_variable);
+    if (const auto bundle = addBundle(gathered, IncrementalSolver::Lifetime::kLasting)) closed.factor = bundle->factor;
   }
 }
 
 void LandmarkBundles::retire(FrameId oldest) {
   std::erase_if(closed_, [oldest](const Closed& closed) { return closed.first <= oldest; });
-  if (!newest_ || newest_->first > oldest) return;
+  if (!newest_ || newest_->frames.front() > oldest) return;
   solver_.removeFactor(newest_->factor);
   newest_.reset();
 }

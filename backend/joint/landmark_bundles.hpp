@@ -6,6 +6,7 @@
 
 #include "backend/joint/frame_index.hpp"
 #include "backend/joint/rig_offset.hpp"
+#include "backend/joint/rig_shake.hpp"
 
 namespace motorcade {
 
@@ -20,12 +21,14 @@ class LandmarkBundles {
     IncrementalSolver::Lifetime newest = IncrementalSolver::Lifetime::kLasting;  // of the factor over the newest tracks
     int closing_frames = 5;      // tracks that ended in so many frames share a factor
     bool from_estimates = true;  // landmarks are fitted from where they were found before, not from the newest view
+    bool tells_shake = true;     // they are many enough to tell each frame's shake, not only corrected by it
   };
   LandmarkBundles(const Params& params, const NoiseLevel& noise, const StereoCamera& camera, IncrementalSolver& solver,
-                  const RigOffset& offset);
+                  const RigOffset& offset, RigShake& shake);
 
   BodyPoints& points() { return points_; }
   const NoiseLevel& noise() const { return noise_; }
+  double designEffect() const { return noise_.designEffect(neighbors_per_view_); }
   bool hasNewest() const { return newest_.has_value(); }
 
   /// Makes the factor over the tracks that go on, and over those that ended lately, anew; in one of some frames those
@@ -50,20 +53,28 @@ class LandmarkBundles {
   };
   struct Bundle {
     FactorId factor;
-    FrameId first;
-    ResidualLevels levels;
+    std::vector<FrameId> frames;
+    std::vector<FrameShake> shakes;  // of the frames, where the landmarks tell them
+  };
+  /// Landmarks with at least two views from poses that the graph holds, and the tracks that they are.
+  struct Gathered {
+    FrameIndex index;
+    LandmarkViews landmarks;
+    std::vector<LandmarkTrack*> tracks;
   };
   void closeEnded(const PoseVariable& pose_variable);
-  std::optional<Bundle> addBundle(std::span<LandmarkTrack* const> tracks, const PoseVariable& pose_variable,
-                                  IncrementalSolver::Lifetime lifetime);
-  EliminatedLandmarks eliminate(const LandmarkViews& landmarks, const FrameIndex& index) const;
+  Gathered gather(std::span<LandmarkTrack* const> tracks, const PoseVariable& pose_variable) const;
+  std::optional<Bundle> addBundle(const Gathered& gathered, IncrementalSolver::Lifetime lifetime);
+  std::vector<SE3> posesFromCamera(const FrameIndex& index) const;
 
   Params params_;
   const StereoCamera& camera_;
   IncrementalSolver& solver_;
   const RigOffset& offset_;
+  RigShake& shake_;
   BodyPoints points_;
   NoiseLevel noise_;
+  double neighbors_per_view_ = 0;     // in the newest factor
   std::vector<LandmarkTrack> ended_;  // whose factor for good is still to be made
   std::optional<Bundle> newest_;      // over these and the tracks that go on
   std::vector<Closed> closed_;        // while the offset may still move

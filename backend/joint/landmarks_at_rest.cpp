@@ -30,12 +30,13 @@ PoseVariable camerasOf(const LandmarksAtRest::Frames& frames) {
 }
 
 LandmarksAtRest::LandmarksAtRest(const JointParams& params, const StereoCamera& camera, IncrementalSolver& solver,
-                                 const RigOffset& offset)
+                                 const RigOffset& offset, RigShake& shake)
     : params_(params),
       camera_(camera),
       solver_(solver),
       offset_(offset),
-      bundles_(bundleParams(params, camera), NoiseLevel{}, camera, solver, offset) {}
+      shake_(shake),
+      bundles_(bundleParams(params, camera), NoiseLevel{}, camera, solver, offset, shake) {}
 
 int LandmarksAtRest::seenAgain() {
   return static_cast<int>(
@@ -75,8 +76,11 @@ std::optional<FactorId> LandmarksAtRest::alignNewest(const Frames& frames) {
   if (static_cast<double>(views.size()) < kKnownShare * static_cast<double>(tracks.size())) return std::nullopt;
   std::vector<VariableId> poses{before.x, frames.rbegin()->second.x};
   const std::array both{solver_.pose(poses[0]).inverse(), T_cam_world.back()};
-  return solver_.addFactor(std::make_unique<BundleFactor>(
-      std::move(poses), offset_.variable(), alignToKnown(camera_, params_.static_noise, views, both, offset_.px())));
+  LandmarkNoise noise = params_.static_noise;
+  noise.shake_sigma_px = shake_.sigma_px();
+  EliminatedLandmarks known = alignToKnown(camera_, noise, views, both, offset_.px());
+  if (!known.shakes.empty()) shake_.observe(std::array{frames.rbegin()->first}, std::span(known.shakes).last(1));
+  return solver_.addFactor(std::make_unique<BundleFactor>(std::move(poses), offset_.variable(), std::move(known)));
 }
 
 /// Views in the newest frame of landmarks that were seen in the one before, fitted to their earlier views where the
@@ -89,6 +93,7 @@ std::vector<ViewOfKnown> LandmarksAtRest::knownViews(std::span<LandmarkTrack* co
   for (LandmarkTrack* track : tracks) {
     earlier.clear();
     index.append(std::span(track->views).first(track->views.size() - 1), noise(), earlier);
+    shake_.correct(index.frames(), earlier);
     if (earlier.empty() || index.frames()[earlier.back().frame] != before) continue;
     if (!fit(earlier, track->estimate)) continue;
     track->estimate = fit.estimate();

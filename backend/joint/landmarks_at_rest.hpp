@@ -19,10 +19,12 @@ class LandmarksAtRest {
   using Frames = std::map<FrameId, CameraRecord>;  // of the window, with the newest
 
   LandmarksAtRest(const JointParams& params, const StereoCamera& camera, IncrementalSolver& solver,
-                  const RigOffset& offset);
+                  const RigOffset& offset, RigShake& shake);
 
   LandmarkBundles& bundles() { return bundles_; }
   const NoiseLevel& noise() const { return bundles_.noise(); }
+  /// By which variances grow, see NoiseLevel.
+  double designEffect() const { return bundles_.designEffect(); }
   /// How many landmarks of the newest frame were seen before.
   int seenAgain();
 
@@ -42,6 +44,7 @@ class LandmarksAtRest {
   const StereoCamera& camera_;
   IncrementalSolver& solver_;
   const RigOffset& offset_;
+  RigShake& shake_;
   LandmarkBundles bundles_;
   std::vector<FactorId> alignments_;  // of cameras, since landmarks were eliminated
 };

@@ -20,17 +20,20 @@ void NoiseLevel::learn(const ResidualLevels& levels) {
   sums_.uv_count = keep * sums_.uv_count + levels.uv_count;
   sums_.d_sum = keep * sums_.d_sum + d2 * levels.d_sum;
   sums_.d_count = keep * sums_.d_count + levels.d_count;
-  sums_.common_sum = keep * sums_.common_sum + levels.common_sum;
+  sums_.neighbor_sum = keep * sums_.neighbor_sum + levels.neighbor_sum;
+  sums_.neighbor_count = keep * sums_.neighbor_count + levels.neighbor_count;
+  sums_.views = keep * sums_.views + levels.views;
   sums_.successive_sum = keep * sums_.successive_sum + levels.successive_sum;
   residual_sum_ = keep * residual_sum_ + levels.uv_sum + levels.d_sum;
 }
 
-double NoiseLevel::designEffect() const {
-  constexpr double kPrior = 300;  // squared residuals that are independent
+double NoiseLevel::designEffect(double neighbors_per_view) const {
+  constexpr double kPrior = 300, kNeighborPrior = 3000;  // squared residuals, and products, that are independent
   constexpr double kMostCorrelation = 0.8;
-  const double all = kPrior + residual_sum_, common = (kPrior + sums_.common_sum) / all;
-  const double correlation = std::clamp(sums_.successive_sum / all, 0.0, kMostCorrelation);
-  return std::max(1.0, common) * (1 + correlation) / (1 - correlation);
+  const double successive = std::clamp(sums_.successive_sum / (kPrior + residual_sum_), 0.0, kMostCorrelation);
+  const double square = (kPrior + residual_sum_) / (kPrior / 3 + sums_.views);  // of a view's residual
+  const double of_neighbors = std::max(0.0, sums_.neighbor_sum / (kNeighborPrior + sums_.neighbor_count) / square);
+  return (1 + neighbors_per_view * of_neighbors) * (1 + successive) / (1 - successive);
 }
 
 double NoiseLevel::uv() const {

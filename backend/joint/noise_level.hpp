@@ -1,6 +1,6 @@
 #pragma once
 
-#include "backend/joint/bundle_factor.hpp"
+#include "backend/joint/residual_levels.hpp"
 
 namespace motorcade {
 
@@ -16,15 +16,16 @@ class NoiseLevel {
   double d() const;
   /// Of (u, v, d).
   Eigen::Vector3d sigmas() const { return {uv(), uv(), d()}; }
-  /// By how much variances grow as residuals are not independent, at least 1: by their common causes in one half of the
-  /// image (design effect of cluster samples: Kish, Survey Sampling, 1965), and by (1 + c) / (1 - c) with the
-  /// correlation c of successive ones (autoregressive process of first order).
-  double designEffect() const;
+  /// By how much variances grow as residuals are not independent, at least 1: by 1 + n rho with the correlation rho of
+  /// residuals in one cell of the image, of which there are n more for each (design effect of cluster samples: Kish,
+  /// Survey Sampling, 1965), and by (1 + c) / (1 - c) with the correlation c of successive ones of a landmark
+  /// (autoregressive process of first order).
+  double designEffect(double neighbors_per_view) const;
 
  private:
   double first_uv2_ = 1, first_d2_ = 1;  // of variances, until enough is seen
   ResidualLevels sums_{};
-  double residual_sum_ = 0;  // as the common sum counts them
+  double residual_sum_ = 0;  // of squares, as the other sums count them
 };
 
 }  // namespace motorcade

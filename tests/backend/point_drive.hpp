@@ -1,7 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -22,9 +22,10 @@ class PointDrive {
     int points = 40;       // of each object
     int life_frames = 15;  // of a point
     double sigma_px = 0.25;
-    double claimed = 1;          // standard deviation that is told, over the true one
-    double common_sigma_px = 0;  // of an error that all points in one half of an image share
-    int undecided_frames = 0;    // from an object's point being seen first to it being known as the object's
+    double claimed = 1;         // standard deviation that is told, over the true one
+    double field_sigma_px = 0;  // of an error that all points in one cell of the image share over the whole drive
+    double shake_px = 0;        // standard deviation of an error that all disparities of a frame share
+    int undecided_frames = 0;   // from an object's point being seen first to it being known as the object's
     bool tells_undecided = true;
     int static_points = 0;  // points at rest, replaced likewise
     double offset_px = 0;   // true minus measured disparity
@@ -38,7 +39,7 @@ class PointDrive {
 
   FrameMeasurementsPtr measure(int frame) {
     FrameMeasurements m = *drive_.measure(frame);
-    drawCommonErrors();
+    if (points_.shake_px > 0) shake_px_ = noise_.gaussian(points_.shake_px);
     for (ObjectObservation& seen : m.objects) {
       const auto vehicle = static_cast<std::size_t>(seen.track.value - 100);
       const int at = static_cast<int>(seen.frame.value);
@@ -67,17 +68,18 @@ class PointDrive {
     std::ranges::sort(m.at_rest, {}, &PointMeasurement::point);
   }
 
-  void drawCommonErrors() {
-    if (points_.common_sigma_px <= 0) return;
-    const Eigen::Vector3d sigma_px = Eigen::Vector3d::Constant(points_.common_sigma_px);
-    for (Eigen::Vector3d& error_px : common_px_) error_px = noise_.gaussian(sigma_px);
+  Eigen::Vector3d fieldAt(const Eigen::Vector3d& uvd_px) const {
+    constexpr double kCell_px = 100;
+    Noise of_cell(
+        static_cast<std::uint64_t>(20 * std::floor(uvd_px.y() / kCell_px) + std::floor(uvd_px.x() / kCell_px)));
+    const Eigen::Vector3d sigma_px = Eigen::Vector3d::Constant(points_.field_sigma_px);
+    return of_cell.gaussian(sigma_px);
   }
 
   PointMeasurement see(PointId id, const Eigen::Vector3d& uvd_px) {
     const Eigen::Vector3d sigma_px = Eigen::Vector3d::Constant(points_.sigma_px);
-    const Eigen::Vector3d common_px = common_px_[uvd_px.x() > 0.5 * kPointRig.width_px ? 1 : 0];
     const Eigen::Vector3d seen_px =
-        uvd_px - Eigen::Vector3d(0, 0, points_.offset_px) + common_px + noise_.gaussian(sigma_px);
+        uvd_px + Eigen::Vector3d(0, 0, shake_px_ - points_.offset_px) + fieldAt(uvd_px) + noise_.gaussian(sigma_px);
     return {id, seen_px.cast<float>(), (points_.claimed * sigma_px).cast<float>()};
   }
 
@@ -97,7 +99,7 @@ class PointDrive {
   SimulatedDrive drive_;
   Noise noise_;
   Options points_;
-  std::array<Eigen::Vector3d, 2> common_px_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of this frame
+  double shake_px_ = 0;  // of this frame
 };
 
 /// Vehicles in a street whose points at rest are seen, too, and an odometry that errs.

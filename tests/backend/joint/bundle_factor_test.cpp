@@ -157,63 +157,6 @@ TEST_P(BundleFactorOf, KnowsNothingOfWhereTheWholeIs) {
   EXPECT_NEAR(scene.cost(), before, 1e-6 * before);
 }
 
-/// An error of all points in one half of the image, in one frame after the other to either side.
-TEST_P(BundleFactorOf, SeesResidualsThatHaveACauseInCommon) {
-  BodyInFewFrames scene(GetParam(), 0.1, {}, 6);
-  const auto commonShare = [&] {
-    const auto levels = eliminateLandmarks(kRig, {.loss = RobustLoss::kNone}, scene.landmarks, scene.pose,
-                                           scene.factor->posesFromCamera(scene.pointers()), 0.3)
-                            .levels;
-    return levels.common_sum / (levels.uv_sum + levels.d_sum);
-  };
-  const double independent = commonShare();
-  for (LandmarkView& view : scene.landmarks.views)
-    if (view.uvd_px.x() < 0.5 * kRig.width_px) view.uvd_px.y() += view.frame % 2 == 0 ? 0.5 : -0.5;
-  EXPECT_LT(independent, 1);
-  EXPECT_GT(commonShare(), 1.5);
-}
-
-/// [H g; g' c] of one landmark after the other, by the textbook.
-Eigen::MatrixXd eliminatedOneByOne(const LandmarkViews& landmarks, const LandmarkNoise& noise,
-                                   const EliminatedLandmarks& at) {
-  const auto n = static_cast<Eigen::Index>(6 * at.T_cam_body.size());
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + 2, n + 2);
-  LandmarkFit fit(kRig, noise, at.pose, at.T_cam_body, at.offset_px);
-  for (int j = 0; j < landmarks.count(); ++j) {
-    const auto views = landmarks.of(j);
-    if (!fit(views)) continue;
-    const auto rows = static_cast<Eigen::Index>(3 * views.size() + 1);
-    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(rows, n + 2), B = Eigen::MatrixXd::Zero(rows, 4);
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      const auto row = static_cast<Eigen::Index>(3 * i);
-      A.block<3, 6>(row, 6 * views[i].frame) = fit.views()[i].J.leftCols<6>();
-      A.block<3, 2>(row, n) = fit.views()[i].J.rightCols<2>();
-      B.middleRows<3>(row) = fit.views()[i].B;
-    }
-    A(rows - 1, n + 1) = fit.sharedError_px() / fit.sharedErrorSigma_px();
-    B(rows - 1, 3) = 1 / fit.sharedErrorSigma_px();
-    system += A.transpose() * A - A.transpose() * B * (B.transpose() * B).inverse() * B.transpose() * A;
-  }
-  return system;
-}
-
-TEST_P(BundleFactorOf, ManyLandmarksAreEliminatedAsOneByOne) {
-  constexpr int kTimes = 5;  // more than are subtracted at a time
-  const BodyInFewFrames scene(GetParam(), 0.5, {}, 6);
-  LandmarkViews many;
-  for (int time = 0; time < kTimes; ++time)
-    for (int j = 0; j < scene.landmarks.count(); ++j) {
-      const auto views = scene.landmarks.of(j);
-      const auto first = views.begin() + (time + j) % 2;
-      many.views.insert(many.views.end(), first, views.end());
-      many.first_view.push_back(static_cast<int>(many.views.size()));
-    }
-  const EliminatedLandmarks& at = scene.factor->landmarks();
-  const auto eliminated = eliminateLandmarks(kRig, {}, many, at.pose, at.T_cam_body, at.offset_px);
-  const Eigen::MatrixXd expected = eliminatedOneByOne(many, {}, at);
-  EXPECT_LT((test::unpacked(eliminated.system) - expected).norm(), 1e-10 * expected.norm());
-}
-
 /// Robust weights follow slowly: fits from the estimate before come nearer.
 TEST_P(BundleFactorOf, LandmarksThatWereFoundBeforeAreFoundBetter) {
   const BodyInFewFrames scene(GetParam(), 0.3, {}, 7);

@@ -202,6 +202,33 @@ TEST(JointBackend, TrustsARigWhenToldTo) {
   EXPECT_LT(errorsOf(JointParams{}, options).camera_m, 0.5 * errorsOf(trusting, options).camera_m);
 }
 
+double shakeFound_px(double shake_px, const JointParams& params = {}) {
+  PointDrive::Options options = kStreet;
+  options.shake_px = shake_px;
+  PointDrive drive(3, options);
+  JointBackend backend(params, kPointRig);
+  return test::runDrive(backend, drive).counters.disparity_shake_px;
+}
+
+TEST(JointBackend, FindsHowTheCamerasShake) {
+  EXPECT_LT(shakeFound_px(0), 0.015);
+  EXPECT_NEAR(shakeFound_px(0.1), 0.1, 0.02);
+  JointParams rigid;
+  rigid.shake_sigma_px = 0;
+  EXPECT_EQ(shakeFound_px(0.1, rigid), 0);
+}
+
+/// Far objects most: their points are few.
+TEST(JointBackend, AShakeThatIsFoundHarmsObjectsLess) {
+  PointDrive::Options shaking = kStreet;
+  shaking.shake_px = 0.2;
+  JointParams rigid;
+  rigid.shake_sigma_px = 0;
+  const Errors with = errorsOf(JointParams{}, shaking), without = errorsOf(rigid, shaking);
+  EXPECT_LT(with.position_m, 0.95 * without.position_m);
+  EXPECT_LT(with.step_m, 0.85 * without.step_m);
+}
+
 /// What leaves the window is as good as a batch solution over the whole drive makes it.
 TEST(JointBackend, FinalsOfAShortWindowAreThoseOfABatchSolution) {
   PointDrive once(4, kStreet), again(4, kStreet);

@@ -45,11 +45,19 @@ TEST(JointEstimates, CovariancesOfTheCameraAreOfTheSizeOfItsErrors) {
   EXPECT_LT(nees, 9);
 }
 
-/// Errors that points in one half of an image share, as those of a rectification, do not average out.
+/// Errors that points in one cell of the image share, as those of a rectification, do not average out.
 TEST(JointEstimates, CovariancesGrowByWhatErrorsHaveInCommon) {
   PointDrive::Options common = kStreet;
-  common.common_sigma_px = 0.15;
+  common.field_sigma_px = 0.15;
   const double nees = cameraNees(common);
+  EXPECT_GT(nees, 1.5);
+  EXPECT_LT(nees, 9);
+}
+
+TEST(JointEstimates, CovariancesHoldTheShake) {
+  PointDrive::Options shaking = kStreet;
+  shaking.shake_px = 0.15;
+  const double nees = cameraNees(shaking);
   EXPECT_GT(nees, 1.5);
   EXPECT_LT(nees, 9);
 }

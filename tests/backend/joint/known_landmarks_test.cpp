@@ -90,6 +90,27 @@ TEST(KnownLandmarks, CountLessWhereTheyAreKnownLess) {
   EXPECT_GT(more(2, 2), 2 * H(2, 2));
 }
 
+/// With a shake, a view is a measurement of motion and shake, of which the latter is taken out.
+TEST(KnownLandmarks, TellTheShakeOfTheNewestFrame) {
+  constexpr double kShake_px = 0.2, kSigma_px = 0.5;
+  PointsSeenTwice scene(200);
+  for (auto& views : scene.uvd_px) views[1].z() -= kShake_px;
+  LandmarkNoise shaken = kNoise;
+  shaken.shake_sigma_px = kSigma_px;
+  const auto aligned = alignToKnown(kRig, shaken, scene.views(), scene.T_cam_world, kOffset_px);
+  ASSERT_EQ(aligned.shakes.size(), 2U);
+  EXPECT_NEAR(aligned.shakes[1].px, kShake_px, 0.01);
+  const Matrix6d H = test::unpacked(aligned.system).topLeftCorner<6, 6>(),
+                 rigid = test::unpacked(scene.align(scene.T_cam_world).system).topLeftCorner<6, 6>();
+  const auto pull = [](const EliminatedLandmarks& of) {
+    return test::unpacked(of.system).topRightCorner<6, 1>().norm();
+  };
+  EXPECT_LT(pull(aligned), 0.1 * pull(scene.align(scene.T_cam_world)));
+  EXPECT_GT(H.llt().matrixL().toDenseMatrix().diagonal().minCoeff(), 0);
+  EXPECT_LT(H(2, 2), rigid(2, 2));
+  EXPECT_GT((rigid - H).trace(), 0);
+}
+
 TEST(KnownLandmarks, BehindTheCameraAreLeftOut) {
   const PointsSeenTwice scene(1);
   std::vector<ViewOfKnown> views = scene.views();

@@ -83,7 +83,8 @@ class FollowedBody {
   IncrementalSolver solver_{{}};
   RigOffset offset_{solver_, 1.0};
   std::map<FrameId, VariableId> poses_;
-  LandmarkBundles bundles_{paramsOfAnObject(), NoiseLevel{}, kRig, solver_, offset_};
+  RigShake shake_{0};
+  LandmarkBundles bundles_{paramsOfAnObject(), NoiseLevel{}, kRig, solver_, offset_, shake_};
 };
 
 double errorAfterTheDrive_m(int window_frames) {

@@ -44,7 +44,8 @@ class Street {
   IncrementalSolver solver_{{}};
   RigOffset offset_{solver_, 0};
   LandmarksAtRest::Frames frames_;
-  LandmarksAtRest at_rest_{params_, kPointRig, solver_, offset_};
+  RigShake shake_{0};
+  LandmarksAtRest at_rest_{params_, kPointRig, solver_, offset_, shake_};
 };
 
 TEST(LandmarksAtRest, TellWhereEachCameraIsEliminatedOrAligned) {

@@ -35,20 +35,23 @@ TEST(NoiseLevel, FindsTheNoise) {
 }
 
 TEST(NoiseLevel, SeesWhatResidualsHaveInCommon) {
-  const auto effectOf = [](double common_sum, double successive_sum) {
+  constexpr double kNeighbors = 50;
+  const auto effectOf = [](double neighbor_sum, double successive_sum) {
     NoiseLevel level;
     for (int i = 0; i < 40; ++i)
       level.learn({.uv_sum = 2000,
                    .uv_count = 2000,
                    .d_sum = 1000,
                    .d_count = 1000,
-                   .common_sum = common_sum,
-                   .successive_sum = successive_sum});
-    return level.designEffect();
+                   .successive_sum = successive_sum,
+                   .neighbor_sum = neighbor_sum,
+                   .neighbor_count = 20000,
+                   .views = 1000});
+    return level.designEffect(kNeighbors);
   };
-  EXPECT_DOUBLE_EQ(effectOf(2800, -100), 1);
-  EXPECT_NEAR(effectOf(15000, 0), 5, 0.2);
-  EXPECT_NEAR(effectOf(3000, 1200), 1.4 / 0.6, 0.07);
+  EXPECT_DOUBLE_EQ(effectOf(-100, -100), 1);
+  EXPECT_NEAR(effectOf(0.06 * 20000 * 3, 0), 1 + 0.06 * kNeighbors, 0.3);
+  EXPECT_NEAR(effectOf(0, 1200), 1.4 / 0.6, 0.07);
 }
 
 TEST(NoiseLevel, OfAnotherBodyBeginsAsThatOfTheImageAndLearnsItsOwn) {
@@ -66,7 +69,7 @@ TEST(NoiseLevel, OfAnotherBodyBeginsAsThatOfTheImageAndLearnsItsOwn) {
 TEST(NoiseLevel, BeginsAsClaimed) {
   EXPECT_DOUBLE_EQ(NoiseLevel{}.uv(), 1);
   EXPECT_DOUBLE_EQ(NoiseLevel{}.d(), 1);
-  EXPECT_DOUBLE_EQ(NoiseLevel{}.designEffect(), 1);
+  EXPECT_DOUBLE_EQ(NoiseLevel{}.designEffect(100), 1);
 }
 
 }  // namespace

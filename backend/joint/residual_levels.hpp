@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+
+#include "backend/joint/landmark_elimination.hpp"
+
+namespace motorcade {
+
+/// Sums of squared whitened residuals, and how many the landmarks' own unknowns leave: equal where the noise is as
+/// claimed.
+struct ResidualLevels {
+  double uv_sum = 0, uv_count = 0, d_sum = 0, d_count = 0;
+  double successive_sum = 0;  // of the products of residuals of a landmark's successive views
+  /// Of the products of residuals of different landmarks that were seen in the same cell of the image, in any frames:
+  /// errors of the rectification stay where they are.
+  double neighbor_sum = 0, neighbor_count = 0;
+  double views = 0;
+};
+
+/// The residuals of landmarks that are fitted to their views, in which there is no shake any more.
+ResidualLevels residualLevels(const StereoCamera& camera, const LandmarkNoise& noise, const LandmarkViews& landmarks,
+                              FramePose pose, std::span<const SE3> T_cam_body, double offset_px);
+
+/// How many views of other landmarks lie in the cell of a view, in the mean. There is at least one view.
+double neighborsPerView(const StereoCamera& camera, const LandmarkViews& landmarks);
+
+}  // namespace motorcade

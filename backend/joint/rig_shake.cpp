@@ -1,0 +1,57 @@
+#include "backend/joint/rig_shake.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace motorcade {
+namespace {
+
+constexpr double kLeastSigma_px = 1e-3;   // less than this cannot be told from none
+constexpr double kPrior_frames = 5;       // that the first deviation counts for
+constexpr double kKeep = 1 - 1.0 / 300;   // of what earlier frames told
+constexpr double kMostSigmas = 3;         // of one frame: a pair may be damaged
+constexpr std::size_t kLater_frames = 3;  // which have seen the landmarks of a frame, too, before it is learned from
+
+}  // namespace
+
+double RigShake::sigma_px() const {
+  if (first_sigma_px_ <= 0) return 0;
+  const double first = first_sigma_px_ * first_sigma_px_;
+  const double variance_px2 = (kPrior_frames * first + weighted_sum_) / (kPrior_frames + weight_);
+  return std::sqrt(std::max(variance_px2, kLeastSigma_px * kLeastSigma_px));
+}
+
+std::vector<double> RigShake::correct(std::span<const FrameId> frames, std::span<LandmarkView> views) const {
+  std::vector<double> known_px;
+  for (const FrameId frame : frames) {
+    const auto known = px_.find(frame);
+    known_px.push_back(known == px_.end() ? 0 : known->second);
+  }
+  for (LandmarkView& view : views) view.uvd_px.z() += known_px[view.frame];
+  return known_px;
+}
+
+/// Without their mean, n of them have the n - 1 nth part of their variance.
+void RigShake::observe(std::span<const FrameId> frames, std::span<const FrameShake> shakes) {
+  const double count = static_cast<double>(shakes.size()), with_mean = count > 1 ? count / (count - 1) : 1;
+  for (std::size_t k = 0; k < shakes.size(); ++k) {
+    px_[frames[k]] = shakes[k].px;
+    if (k + kLater_frames >= shakes.size() || (learned_.valid() && frames[k] <= learned_)) continue;
+    learn({std::sqrt(with_mean) * shakes[k].px, with_mean * shakes[k].variance_px2});
+    learned_ = frames[k];
+  }
+}
+
+/// The landmarks alone, without the prior, tell a shake s with the variance v, so that s^2 - v is that of the shakes in
+/// the mean (method of moments), with a variance of 2 (sigma^2 + v)^2.
+void RigShake::learn(const FrameShake& shake) {
+  const double sigma = sigma_px(), told = 1 / shake.variance_px2 - 1 / (sigma * sigma);
+  if (!(told > 0)) return;
+  const double px = shake.px / (shake.variance_px2 * told), variance_px2 = 1 / told;
+  const double square = std::min(px * px, kMostSigmas * kMostSigmas * (sigma * sigma + variance_px2));
+  const double first = first_sigma_px_ * first_sigma_px_, weight = std::pow(first / (first + variance_px2), 2);
+  weighted_sum_ = kKeep * weighted_sum_ + weight * (square - variance_px2);
+  weight_ = kKeep * weight_ + weight;
+}
+
+}  // namespace motorcade

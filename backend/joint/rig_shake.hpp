@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "backend/joint/landmark_elimination.hpp"
+#include "core/ids.hpp"
+
+namespace motorcade {
+
+/// How the two cameras shake against each other: in each frame, all disparities are off by the same error. It is white
+/// noise from frame to frame, whose standard deviation the landmarks at rest tell.
+class RigShake {
+ public:
+  /// `sigma_px` is what the deviation is taken to be before it is seen; with 0 the cameras never shake.
+  explicit RigShake(double sigma_px) : first_sigma_px_(sigma_px) {}
+
+  /// The standard deviation as it was found.
+  double sigma_px() const;
+  /// Takes the shakes out of views in these frames, as far as they are known, and returns that of each frame.
+  std::vector<double> correct(std::span<const FrameId> frames, std::span<LandmarkView> views) const;
+
+  /// The shakes of frames as the landmarks tell them with a prior of `sigma_px`, oldest first.
+  void observe(std::span<const FrameId> frames, std::span<const FrameShake> shakes);
+  /// This frame and what is older are not asked for any more.
+  void forget(FrameId oldest) { px_.erase(px_.begin(), px_.upper_bound(oldest)); }
+
+ private:
+  void learn(const FrameShake& shake);
+
+  double first_sigma_px_;
+  std::map<FrameId, double> px_;  // to be added to the disparities
+  FrameId learned_;               // the newest frame that the deviation knows
+  double weighted_sum_ = 0, weight_ = 0;
+};
+
+}  // namespace motorcade
