@@ -226,6 +226,9 @@ struct SolverCounters {
   double disparity_shake_px = 0;  // standard deviation of what all disparities of a frame have in common
 };
 
+/// A shake with a smaller standard deviation can hardly be told from none.
+inline constexpr double kLeastToldShake_px = 0.01;
+
 /// The back-end's answer to one frame.
 struct Estimates {
   FrameEstimate online;

@@ -10,6 +10,7 @@
 #include "apps/latency/latency_report.hpp"
 #include "apps/recorded/recorded_run.hpp"
 #include "apps/report/report_sections.hpp"
+#include "core/messages.hpp"
 #include "io/json_text.hpp"
 #include "io/text_file.hpp"
 
@@ -17,6 +18,7 @@ namespace motorcade {
 namespace {
 
 using Json = nlohmann::json;
+using nlohmann::literals::operator""_json_pointer;
 
 /// An object without keys where there is no summary that can be read.
 Json summaryOf(const RunFolder& run) {
@@ -63,6 +65,13 @@ std::string timeCard(const ReportedRun& reported, const Json& summary) {
               "processing of a pair, without waiting, 99 of 100 frames");
 }
 
+/// Nothing where the cameras stand still against each other, and for runs that tell nothing of it.
+std::string shakeCard(const Json& summary) {
+  const double shake_px = summary.value("/solver/disparity_shake_px"_json_pointer, 0.0);
+  if (shake_px < kLeastToldShake_px) return "";
+  return card(fmt::format("{:.2f} px", shake_px), "shake of the cameras against each other");
+}
+
 std::string cards(const ReportedRun& reported, const Json& summary) {
   std::string text = "<div class=\"cards\">\n";
   text += card(fmt::format("{:.0f} m", lengthOf_m(reported.drive.T_world_cam)), "driven");
@@ -78,6 +87,7 @@ std::string cards(const ReportedRun& reported, const Json& summary) {
     const auto& near = reported.evaluation->final.detection.within_30m;
     if (near.labels > 0) text += card(fmt::format("{:.0f} %", 100 * near.recall()), "of movers within 30 m found");
   }
+  text += shakeCard(summary);
   text += timeCard(reported, summary);
   if (summary.contains("cpu_s") && summary.contains("frames")) {
     const double frames = std::max(1.0, summary["frames"].value("received", 1.0));

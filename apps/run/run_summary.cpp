@@ -107,6 +107,12 @@ Json toJson(const std::optional<OwnVehicleView>& view) {
   return {{"image_share", rounded(view->share)}, {"box_px", {box.left_px, box.top_px, box.right_px, box.bottom_px}}};
 }
 
+/// A line of its own, or nothing.
+std::string shakeLine(double shake_px) {
+  if (shake_px < kLeastToldShake_px) return "";
+  return fmt::format("cameras     shake by {:.2f} px against each other, which the estimate allows for\n", shake_px);
+}
+
 /// What the program is made of.
 Json programVersions() {
   Json json = Json::object();
@@ -198,14 +204,14 @@ std::string shortReport(const RunSummary& summary, const std::string& folder) {
       "and decode  p50 {:.1f} ms, p95 {:.1f} ms, p99 {:.1f} ms, max {:.1f} ms\n"
       "throughput  {:.1f} frames/s, {:.1f} ms of CPU per frame, peak memory {:.0f} MB\n"
       "machine     {:.2f} s stolen by the hypervisor, {} involuntary context switches\n"
-      "results     {}\n",
+      "{}results     {}\n",
       pipeline.received, pipeline.processed, pipeline.lost, pipeline.dropped, pipeline.rejected,
       pipeline.latency.percentile_ms(0.5), pipeline.latency.percentile_ms(0.95), pipeline.latency.percentile_ms(0.99),
       pipeline.latency.max_ms(), decoded.percentile_ms(0.50), decoded.percentile_ms(0.95), decoded.percentile_ms(0.99),
       decoded.max_ms(), summary.throughput_hz(),
       1e3 * summary.used.cpu_s / static_cast<double>(std::max<std::int64_t>(1, pipeline.received)),
       1e-6 * static_cast<double>(summary.used.peak_memory_bytes), summary.used.stolen_s,
-      summary.used.involuntary_switches, folder);
+      summary.used.involuntary_switches, shakeLine(pipeline.solver.disparity_shake_px), folder);
 }
 
 }  // namespace motorcade

@@ -16,14 +16,15 @@ struct ParameterSet {
 
 /// A line of a manifest: a drive, a glob of several, or a scene to render, with how to run it.
 struct ManifestEntry {
-  std::string path{};                      // of a recorded drive, or a glob of several
-  std::vector<std::string> other_paths{};  // where to look, in this order, when nothing is there
-  bool optional = false;                   // a drive that is not on the disk is left out
-  std::string scene{};                     // of a rendered one, in its place
-  std::string name{};                      // of the drive; from its path or scene when empty
-  int length = 0;                          // frames to render; the scene's own when 0
-  std::string size{};                      // of rendered images, WIDTHxHEIGHT
-  std::vector<std::string> sets{};         // names of parameter sets; all of them when empty
+  std::string path{};                         // of a recorded drive, or a glob of several
+  std::vector<std::string> other_paths{};     // where to look, in this order, when nothing is there
+  bool optional = false;                      // a drive that is not on the disk is left out
+  std::string scene{};                        // of a rendered one, in its place
+  std::string name{};                         // of the drive; from its path or scene when empty
+  int length = 0;                             // frames to render; the scene's own when 0
+  std::string size{};                         // of rendered images, WIDTHxHEIGHT
+  std::string calibration_errors{}, shake{};  // of the rendered rig, as `synth` takes them
+  std::vector<std::string> sets{};            // names of parameter sets; all of them when empty
   std::vector<std::uint32_t> seeds{};
   int repetitions = 1;
   std::map<std::string, std::string> options{};  // of `run` by their names, and `baseline`, of `evaluate`

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "core/edit_distance.hpp"
 #include "io/errors.hpp"
 #include "io/text_file.hpp"
@@ -18,8 +20,8 @@ namespace {
 constexpr int kMostRepetitions = 100'000, kMostFrames = 1'000'000;
 constexpr std::size_t kMostSeeds = 100'000;
 
-constexpr std::array<const char*, 10> kEntryKeys{"path", "scene", "name",        "length", "size",
-                                                 "sets", "seeds", "repetitions", "each",   "optional"};
+constexpr std::array<const char*, 12> kEntryKeys{"path",  "scene", "name",  "length",      "size", "calibration_errors",
+                                                 "shake", "sets",  "seeds", "repetitions", "each", "optional"};
 /// Names that people give to the column of the drives' paths.
 constexpr std::array<const char*, 13> kPathColumns{"path",      "paths",    "drive",   "drives", "sequence",
                                                    "sequences", "folder",   "folders", "dir",    "directory",
@@ -72,6 +74,15 @@ class EntryReader {
     return *value;
   }
 
+  /// The number in its shortest form; empty when absent.
+  std::string positive(const char* key) const {
+    const std::string text = word(key);
+    if (text.empty()) return "";
+    const auto value = numberIn<double>(text);
+    if (!value || !(*value > 0)) fail(std::string("'") + key + "' is " + printable(text) + "; write a number above 0");
+    return fmt::format("{}", *value);
+  }
+
   [[noreturn]] void fail(const std::string& message) const { throw UsageError(fields_.where + ": " + message); }
 
  private:
@@ -102,6 +113,8 @@ void requireConsistent(const ManifestEntry& entry, const EntryReader& reader) {
   if (entry.path.empty() == entry.scene.empty()) reader.fail("needs either 'path', of a drive, or 'scene', to render");
   if (entry.scene.empty() && entry.length > 0) reader.fail("'length' is for scenes; 'frames' = \"A:B\" selects");
   if (entry.scene.empty() && !entry.size.empty()) reader.fail("'size' is for scenes");
+  if (entry.scene.empty() && !(entry.calibration_errors.empty() && entry.shake.empty()))
+    reader.fail("'calibration_errors' and 'shake' are for scenes: a recorded rig has its own");
   const bool random = !entry.scene.empty() || entry.options.contains("inject");
   if (!entry.seeds.empty() && !random)
     reader.fail(
@@ -150,6 +163,8 @@ ManifestEntry entryOf(const ManifestFields& fields) {
                       .name = reader.word("name"),
                       .length = reader.wholeNumber("length", 0, kMostFrames),
                       .size = reader.word("size"),
+                      .calibration_errors = reader.positive("calibration_errors"),
+                      .shake = reader.positive("shake"),
                       .sets = reader.words("sets"),
                       .seeds = seedsIn(reader.words("seeds"), fields.where),
                       .repetitions = reader.wholeNumber("repetitions", 1, kMostRepetitions),

@@ -152,6 +152,14 @@ class Planner {
       folder += fmt::format("-{}", entry.size);
       words.insert(words.end(), {"--size", entry.size});
     }
+    if (!entry.calibration_errors.empty()) {
+      folder += fmt::format("-calibration{}", entry.calibration_errors);
+      words.insert(words.end(), {"--calibration-errors", entry.calibration_errors});
+    }
+    if (!entry.shake.empty()) {
+      folder += fmt::format("-shake{}", entry.shake);
+      words.insert(words.end(), {"--shake", entry.shake});
+    }
     describeScene(drive, seed);
     drive.found.path = options_.sequences / folder;
     addTasks(drive, seed, words);

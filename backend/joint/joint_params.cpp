@@ -9,8 +9,6 @@ std::vector<Parameter> parametersOf(JointParams& params) {
                           "more are more exact, at proportional cost"),
           numberParameter("offset_sigma_px", params.offset_sigma_px, {0, 5},
                           "how far the disparities of a rig that is not calibrated may be off; 0 trusts every rig"),
-          numberParameter("shake_sigma_px", params.shake_sigma_px, {0, 0.5},
-                          "how far the cameras shake against each other, before that is seen; 0: they never do"),
           numberParameter("point_half", params.point_half, {0, 2},
                           "1 and 2 use one half of the points each, to see how far both agree; 0 uses all")};
 }

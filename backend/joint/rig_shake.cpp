@@ -7,7 +7,7 @@ namespace motorcade {
 namespace {
 
 constexpr double kLeastSigma_px = 1e-3;   // less than this cannot be told from none
-constexpr double kPrior_frames = 5;       // that the first deviation counts for
+constexpr double kPrior_frames = 2;       // that the first deviation counts for
 constexpr double kKeep = 1 - 1.0 / 300;   // of what earlier frames told
 constexpr double kMostSigmas = 3;         // of one frame: a pair may be damaged
 constexpr std::size_t kLater_frames = 3;  // which have seen the landmarks of a frame, too, before it is learned from

@@ -109,6 +109,8 @@ TEST_F(ManifestFile, FaultsAreNamedWithTheirLineAndHowToMendThem) {
   EXPECT_THAT(complaintAbout("[[drives]]\npath = \"a\"\nseeds = [1]\n"), HasSubstr("'repetitions'"));
   EXPECT_THAT(complaintAbout("[[drives]]\npath = \"a\"\nsets = [\"x\"]\n"), HasSubstr("there is no [sets.x]"));
   EXPECT_THAT(complaintAbout("[[drives]]\npath = \"a\"\nmasks = \"yes\"\n"), HasSubstr("true or false"));
+  EXPECT_THAT(complaintAbout("[[drives]]\npath = \"a\"\nshake = 0.03\n"), HasSubstr("for scenes"));
+  EXPECT_THAT(complaintAbout("[[drives]]\nscene = \"lead\"\nshake = \"much\"\n"), HasSubstr("a number above 0"));
   EXPECT_THAT(complaintAbout("drives = 3\n"), HasSubstr("[[drives]]"));
   EXPECT_THAT(complaintAbout("\n[[drives]]\nckend.kind = \"joint\"\n"),
               testing::AllOf(HasSubstr("m.toml, line 3"), HasSubstr("[sets.NAME]")));

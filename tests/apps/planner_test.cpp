@@ -48,6 +48,14 @@ TEST_F(PlanOf, ATaskForEachDriveSeedSetAndRepetition) {
   EXPECT_THAT(planned.tasks[4].render_arguments, ElementsAre("--scene", "lead", "--seed", "1", "--frames", "20"));
 }
 
+TEST_F(PlanOf, ASceneOnARigWithErrorsIsAnotherDrive) {
+  const Plan planned = plan("[[drives]]\nscene=\"lead\"\nname=\"rig\"\nseeds=[1]\ncalibration_errors=1\nshake=0.03\n");
+  ASSERT_EQ(planned.tasks.size(), 1U);
+  EXPECT_EQ(planned.tasks[0].sequence, folder_ / "sequences" / "lead-1-calibration1-shake0.03");
+  EXPECT_THAT(planned.tasks[0].render_arguments,
+              ElementsAre("--scene", "lead", "--seed", "1", "--calibration-errors", "1", "--shake", "0.03"));
+}
+
 TEST_F(PlanOf, SeedsGoToInjectedFaults) {
   const Plan planned = plan("[[drives]]\nname=\"d\"\ninject=\"noise=20\"\nseeds=[7]\n" + drive());
   EXPECT_THAT(planned.tasks[0].run_arguments, ElementsAre("--threads", "1", "--inject", "noise=20,seed=7"));
