@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kComparedShare = 0.5;  // objects turn little: a factor is seldom off by the turns of several poses
 constexpr int kKeptEliminations = 10;   // of update matrices: those of older poses are hardly ever asked for
-constexpr int kRespondingLandmarks = 60, kResponse_frames = 8;  // see CalibrationResponse
+constexpr int kRespondingLandmarks = 60, kResponse_frames = 12, kFirstResponse = 8;  // see CalibrationResponse
 constexpr int kEarlierViews = 3;  // of a point whose body is found: one that took longer may be of two
 static_assert(kEarlierViews < UndecidedPoints::kMostViews);
 
@@ -138,7 +138,7 @@ void JointGraph::consider(const FrameMeasurements& measurements) {
   if (frames_.size() > 1) set(std::next(newest)->first, newest->first, response_.ofNewestStep());
   if (!showsPoints(measurements)) return;
   response_.observe(newest->first, measurements.at_rest);
-  if (frame_count_ % kResponse_frames != 0) return;
+  if (frame_count_ % kResponse_frames != kFirstResponse) return;
   const auto pose = [this](VariableId camera) { return solver_.pose(camera); };
   for (const auto& step : response_.steps(camerasOf(frames_), pose, at_rest_.noise(), offset_.px()))
     set(step.before, step.now, step.shifts);

@@ -47,6 +47,17 @@ struct AlignmentSum {
   }
 };
 
+/// The shake where the pose is as it is taken to be: robust weights should follow it.
+double shakeOfPose(const std::vector<Alignment>& aligned, const LandmarkNoise& noise) {
+  double information = 1 / (noise.shake_sigma_px * noise.shake_sigma_px), gradient = 0;
+  for (const Alignment& a : aligned) {
+    const double weight = robustWeight(noise.loss, a.r.norm(), noise.loss_scale);
+    information += weight * a.by_shake.squaredNorm();
+    gradient += weight * a.by_shake.dot(a.r);
+  }
+  return -gradient / information;
+}
+
 /// By a step of the earlier pose in the world.
 std::optional<Alignment> align(const StereoCamera& camera, const ViewOfKnown& view,
                                const std::array<SE3, 2>& T_cam_world, double offset_px) {
@@ -85,14 +96,10 @@ EliminatedLandmarks alignToKnown(const StereoCamera& camera, const LandmarkNoise
   for (const ViewOfKnown& view : views)
     if (const auto a = align(camera, view, T_cam_world, offset_px)) aligned.push_back(*a);
   const bool shaken = noise.shake_sigma_px > 0;
-  AlignmentSum sum{.known_px = 0};
+  AlignmentSum sum{.known_px = shaken ? shakeOfPose(aligned, noise) : 0};
   for (const Alignment& a : aligned) sum.add(a, noise);
   FrameShake shake;
-  if (shaken) {
-    sum = AlignmentSum{.known_px = sum.eliminateShake(noise.shake_sigma_px).px};  // weights follow the shake
-    for (const Alignment& a : aligned) sum.add(a, noise);
-    shake = sum.eliminateShake(noise.shake_sigma_px);
-  }
+  if (shaken) shake = sum.eliminateShake(noise.shake_sigma_px);
   EliminatedLandmarks result{.pose = FramePose::kWorldCam,
                              .T_cam_body = {T_cam_world[0], T_cam_world[1]},
                              .offset_px = offset_px,

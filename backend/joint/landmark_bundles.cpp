@@ -70,7 +70,8 @@ LandmarkBundles::Gathered LandmarkBundles::gather(std::span<LandmarkTrack* const
     if (params_.from_estimates) landmarks.before.push_back(track->estimate);
     gathered.tracks.push_back(track);
   }
-  landmarks.shakes_px = shake_.correct(gathered.index.frames(), landmarks.views);
+  landmarks.shakes_px = shake_.px(gathered.index.frames());
+  for (LandmarkView& view : landmarks.views) view.uvd_px.z() += landmarks.shakes_px[view.frame];
   return gathered;
 }
 

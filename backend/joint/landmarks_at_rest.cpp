@@ -88,12 +88,13 @@ std::optional<FactorId> LandmarksAtRest::alignNewest(const Frames& frames) {
 std::vector<ViewOfKnown> LandmarksAtRest::knownViews(std::span<LandmarkTrack* const> tracks, const FrameIndex& index,
                                                      std::span<const SE3> T_cam_world, FrameId before) {
   LandmarkFit fit(camera_, params_.static_noise, FramePose::kWorldCam, T_cam_world, offset_.px());
+  const std::vector<double> shakes_px = shake_.px(index.frames());
   std::vector<LandmarkView> earlier, newest;
   std::vector<ViewOfKnown> views;
   for (LandmarkTrack* track : tracks) {
     earlier.clear();
     index.append(std::span(track->views).first(track->views.size() - 1), noise(), earlier);
-    shake_.correct(index.frames(), earlier);
+    for (LandmarkView& view : earlier) view.uvd_px.z() += shakes_px[view.frame];
     if (earlier.empty() || index.frames()[earlier.back().frame] != before) continue;
     if (!fit(earlier, track->estimate)) continue;
     track->estimate = fit.estimate();

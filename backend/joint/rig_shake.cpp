@@ -21,14 +21,13 @@ double RigShake::sigma_px() const {
   return std::sqrt(std::max(variance_px2, kLeastSigma_px * kLeastSigma_px));
 }
 
-std::vector<double> RigShake::correct(std::span<const FrameId> frames, std::span<LandmarkView> views) const {
-  std::vector<double> known_px;
+std::vector<double> RigShake::px(std::span<const FrameId> frames) const {
+  std::vector<double> px;
   for (const FrameId frame : frames) {
     const auto known = px_.find(frame);
-    known_px.push_back(known == px_.end() ? 0 : known->second);
+    px.push_back(known == px_.end() ? 0 : known->second);
   }
-  for (LandmarkView& view : views) view.uvd_px.z() += known_px[view.frame];
-  return known_px;
+  return px;
 }
 
 /// Without their mean, n of them have the n - 1 nth part of their variance.

@@ -18,8 +18,8 @@ class RigShake {
 
   /// The standard deviation as it was found.
   double sigma_px() const;
-  /// Takes the shakes out of views in these frames, as far as they are known, and returns that of each frame.
-  std::vector<double> correct(std::span<const FrameId> frames, std::span<LandmarkView> views) const;
+  /// What is to be added to the disparities of these frames; 0 where that is not known.
+  std::vector<double> px(std::span<const FrameId> frames) const;
 
   /// The shakes of frames as the landmarks tell them with a prior of `sigma_px`, oldest first.
   void observe(std::span<const FrameId> frames, std::span<const FrameShake> shakes);
