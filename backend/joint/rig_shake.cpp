@@ -30,12 +30,14 @@ std::vector<double> RigShake::px(std::span<const FrameId> frames) const {
   return px;
 }
 
-/// Without their mean, n of them have the n - 1 nth part of their variance.
+/// Without their mean, n of them have (n - 1) / n of their variance. A frame that is learned from keeps its shake: when
+/// it is one of the oldest, few landmarks tell it, all with the same trend.
 void RigShake::observe(std::span<const FrameId> frames, std::span<const FrameShake> shakes) {
   const double count = static_cast<double>(shakes.size()), with_mean = count > 1 ? count / (count - 1) : 1;
   for (std::size_t k = 0; k < shakes.size(); ++k) {
+    if (learned_.valid() && frames[k] <= learned_) continue;
     px_[frames[k]] = shakes[k].px;
-    if (k + kLater_frames >= shakes.size() || (learned_.valid() && frames[k] <= learned_)) continue;
+    if (k + kLater_frames >= shakes.size()) continue;
     learn({std::sqrt(with_mean) * shakes[k].px, with_mean * shakes[k].variance_px2});
     learned_ = frames[k];
   }

@@ -71,5 +71,15 @@ TEST(RigShake, IsToldOfTheFramesThatItKnows) {
   EXPECT_THAT(shake.px(frames), testing::ElementsAre(0, -0.05, 0));
 }
 
+/// Seen from later frames, few landmarks are left of a frame.
+TEST(RigShake, StaysAsItIsOnceItIsLearnedFrom) {
+  RigShake shake(0.03);
+  std::vector<FrameId> frames;
+  for (int frame = 0; frame < 6; ++frame) frames.push_back({frame});
+  shake.observe(frames, std::vector(6, FrameShake{0.02, 1e-4}));
+  shake.observe(frames, std::vector(6, FrameShake{0.05, 1e-4}));
+  EXPECT_THAT(shake.px(frames), testing::ElementsAre(0.02, 0.02, 0.02, 0.05, 0.05, 0.05));
+}
+
 }  // namespace
 }  // namespace motorcade
