@@ -18,7 +18,6 @@ namespace motorcade {
 namespace {
 
 using Json = nlohmann::json;
-using nlohmann::literals::operator""_json_pointer;
 
 /// An object without keys where there is no summary that can be read.
 Json summaryOf(const RunFolder& run) {
@@ -67,7 +66,7 @@ std::string timeCard(const ReportedRun& reported, const Json& summary) {
 
 /// Nothing where the cameras stand still against each other, and for runs that tell nothing of it.
 std::string shakeCard(const Json& summary) {
-  const double shake_px = summary.value("/solver/disparity_shake_px"_json_pointer, 0.0);
+  const double shake_px = summary.value(Json::json_pointer("/solver/disparity_shake_px"), 0.0);
   if (shake_px < kLeastToldShake_px) return "";
   return card(fmt::format("{:.2f} px", shake_px), "shake of the cameras against each other");
 }

@@ -48,23 +48,23 @@ struct ShakenStreet {
 
 /// [H g; g' c] of one landmark after the other, by the textbook, in (poses, shakes, offset).
 Eigen::MatrixXd eliminatedOneByOne(const ShakenStreet& street, const LandmarkNoise& noise) {
-  constexpr Eigen::Index kOfPoses = 6 * kPoses, n = 7 * kPoses;
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + 2, n + 2);
+  constexpr Eigen::Index kOfPoses = 6 * kPoses, kAll = 7 * kPoses;
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(kAll + 2, kAll + 2);
   LandmarkFit fit(kRig, noise, FramePose::kWorldCam, street.T_cam_world, kStreetOffset_px);
   for (int j = 0; j < street.landmarks.count(); ++j) {
     const auto views = street.landmarks.of(j);
     if (!fit(views)) continue;
     const auto rows = static_cast<Eigen::Index>(3 * views.size() + 1);
-    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(rows, n + 2), B = Eigen::MatrixXd::Zero(rows, 4);
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(rows, kAll + 2), B = Eigen::MatrixXd::Zero(rows, 4);
     for (std::size_t i = 0; i < views.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(3 * i);
       const LinearView& linear = fit.views()[i];
       A.block<3, 6>(row, 6 * views[i].frame) = linear.J.leftCols<6>();
       A.block<3, 1>(row, kOfPoses + views[i].frame) = linear.J.col(6);
-      A.block<3, 2>(row, n) = linear.J.rightCols<2>();
+      A.block<3, 2>(row, kAll) = linear.J.rightCols<2>();
       B.middleRows<3>(row) = linear.B;
     }
-    A(rows - 1, n + 1) = fit.sharedError_px() / fit.sharedErrorSigma_px();
+    A(rows - 1, kAll + 1) = fit.sharedError_px() / fit.sharedErrorSigma_px();
     B(rows - 1, 3) = 1 / fit.sharedErrorSigma_px();
     system += A.transpose() * A - A.transpose() * B * (B.transpose() * B).inverse() * B.transpose() * A;
   }
