@@ -8,8 +8,6 @@
 #include <string_view>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "core/edit_distance.hpp"
 #include "io/errors.hpp"
 #include "io/text_file.hpp"
@@ -80,7 +78,8 @@ class EntryReader {
     if (text.empty()) return "";
     const auto value = numberIn<double>(text);
     if (!value || !(*value > 0)) fail(std::string("'") + key + "' is " + printable(text) + "; write a number above 0");
-    return fmt::format("{}", *value);
+    std::array<char, 32> shortest{};
+    return {shortest.data(), std::to_chars(shortest.begin(), shortest.end(), *value).ptr};
   }
 
   [[noreturn]] void fail(const std::string& message) const { throw UsageError(fields_.where + ": " + message); }
