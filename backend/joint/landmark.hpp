@@ -35,7 +35,7 @@ struct LandmarkNoise {
   /// Of an error that all disparities of a landmark share: what does not depend on the landmark, and a share of the
   /// noise of one of its disparities.
   double shared_disparity_sigma_px = 0.1, shared_disparity_share = 0;
-  /// Of an error that all disparities of a frame share, as the cameras shake against each other. With 0, they do not.
+  /// The standard deviation of an error that all disparities of a frame share. With 0, the cameras do not shake.
   double shake_sigma_px = 0;
 
   /// Mean square of a Gaussian residual under the weights of the loss, per dimension: E[w r^2] / 3.

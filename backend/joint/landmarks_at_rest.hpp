@@ -23,7 +23,7 @@ class LandmarksAtRest {
 
   LandmarkBundles& bundles() { return bundles_; }
   const NoiseLevel& noise() const { return bundles_.noise(); }
-  /// By which variances grow, see NoiseLevel.
+  /// The factor by which variances grow, see NoiseLevel.
   double designEffect() const { return bundles_.designEffect(); }
   /// How many landmarks of the newest frame were seen before.
   int seenAgain();

@@ -16,10 +16,11 @@ class NoiseLevel {
   double d() const;
   /// Of (u, v, d).
   Eigen::Vector3d sigmas() const { return {uv(), uv(), d()}; }
-  /// By how much variances grow as residuals are not independent, at least 1: by 1 + n rho with the correlation rho of
-  /// residuals in one cell of the image, of which there are n more for each (design effect of cluster samples: Kish,
-  /// Survey Sampling, 1965), and by (1 + c) / (1 - c) with the correlation c of successive ones of a landmark
-  /// (autoregressive process of first order).
+  /// The factor by which variances grow as residuals are not independent, at least 1. It has two parts:
+  ///   1 + n rho          n neighbors in the same cell of the image, with the correlation rho (design effect of cluster
+  ///                      samples: Kish, Survey Sampling, 1965)
+  ///   (1 + c) / (1 - c)  successive residuals of a landmark, with the correlation c (autoregressive process of first
+  ///                      order)
   double designEffect(double neighbors_per_view) const;
 
  private:

@@ -1,6 +1,7 @@
 #include "backend/joint/residual_levels.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace motorcade {

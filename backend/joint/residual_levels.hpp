@@ -11,8 +11,8 @@ namespace motorcade {
 struct ResidualLevels {
   double uv_sum = 0, uv_count = 0, d_sum = 0, d_count = 0;
   double successive_sum = 0;  // of the products of residuals of a landmark's successive views
-  /// Of the products of residuals of different landmarks that were seen in the same cell of the image, in any frames:
-  /// errors of the rectification stay where they are.
+  /// Products of residuals of different landmarks that were seen in the same cell of the image, in any frames. Errors
+  /// of the rectification show in them, as they stay where they are.
   double neighbor_sum = 0, neighbor_count = 0;
   double views = 0;
 };
@@ -21,7 +21,7 @@ struct ResidualLevels {
 ResidualLevels residualLevels(const StereoCamera& camera, const LandmarkNoise& noise, const LandmarkViews& landmarks,
                               FramePose pose, std::span<const SE3> T_cam_body, double offset_px);
 
-/// How many views of other landmarks lie in the cell of a view, in the mean. There is at least one view.
+/// The mean number of views of other landmarks in the cell of a view. There is at least one view.
 double neighborsPerView(const StereoCamera& camera, const LandmarkViews& landmarks);
 
 }  // namespace motorcade

@@ -30,8 +30,8 @@ std::vector<double> RigShake::px(std::span<const FrameId> frames) const {
   return px;
 }
 
-/// Without their mean, n of them have (n - 1) / n of their variance. A frame that is learned from keeps its shake: when
-/// it is one of the oldest, few landmarks tell it, all with the same trend.
+/// Shakes without their mean have (n - 1) / n of their variance. A frame that is learned from keeps its shake: few
+/// landmarks tell it once it is one of the oldest, all with the same trend.
 void RigShake::observe(std::span<const FrameId> frames, std::span<const FrameShake> shakes) {
   const double count = static_cast<double>(shakes.size()), with_mean = count > 1 ? count / (count - 1) : 1;
   for (std::size_t k = 0; k < shakes.size(); ++k) {

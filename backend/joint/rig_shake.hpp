@@ -9,8 +9,8 @@
 
 namespace motorcade {
 
-/// How the two cameras shake against each other: in each frame, all disparities are off by the same error. It is white
-/// noise from frame to frame, whose standard deviation the landmarks at rest tell.
+/// The shake of the two cameras against each other: in each frame, all disparities are off by the same error. It is
+/// white noise, whose standard deviation the landmarks at rest tell.
 class RigShake {
  public:
   /// `sigma_px` is what the deviation is taken to be before it is seen; with 0 the cameras never shake.
