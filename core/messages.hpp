@@ -203,17 +203,23 @@ struct ObjectEstimate {
   double existence_probability = 1;
 };
 
-/// A camera's covariance is that of its motion over this many frames: the drift of an absolute pose has no bound. Where
-/// the frame so long before never entered, it is since the last one before it that did.
+/// The covariance of a camera's motion is over this many frames unless the caller asks for others. Where the frame so
+/// long before never entered, it is since the last one before it that did.
 inline constexpr int kCameraCovarianceFrames = 10;
+
+/// Covariances of the camera in one frame, right perturbations; empty across what no measurement links.
+struct CameraCovariances {
+  std::optional<Matrix6d> motion;  // of T_cam(before)_cam(now), by default kCameraCovarianceFrames apart
+  std::optional<Matrix6d> pose;    // of T_world_cam, relative to the frame that defines the world: grows with the way
+};
 
 /// The camera and the objects in one frame: *online* as published when it is the newest, *settled* when it is some
 /// seconds old, *final* when it leaves the window.
 struct FrameEstimate {
   FrameHead head;
   SE3 T_world_cam;
-  std::optional<Matrix6d> camera_covariance;  // of T_cam(before)_cam(now), kCameraCovarianceFrames apart
-  std::vector<ObjectEstimate> objects;        // ordered by track
+  CameraCovariances camera_covariances;
+  std::vector<ObjectEstimate> objects;  // ordered by track
 };
 
 /// What the back-end's update cost and did, for reports and tests.

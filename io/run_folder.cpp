@@ -15,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kCovariancesHeaderStart = "frame,track_id";
-constexpr std::array kFinalFiles = {"camera_final.txt", "camera_final.tum", "objects_final.csv"};
+constexpr std::array kFinalFiles = {"camera_final.txt", "camera_final.tum", "objects_final.csv",
+                                    "covariances_final.csv", "pose_covariances_final.csv"};
 constexpr const char* kUnfinished = ".part";  // added to the names of the final files until the run has ended
 
 fs::path preparedFolder(const fs::path& folder) {
@@ -61,6 +62,10 @@ std::string covariancesHeader() {
     for (int column = row; column < 6; ++column)
       header.append(",c").append(std::to_string(row)).append(std::to_string(column)).append(unit(row, column));
   return header;
+}
+
+std::string covariancesName(const std::string& kind) {
+  return kind == "online" ? "covariances.csv" : "covariances_" + kind + ".csv";
 }
 
 // ---- reading ----
@@ -109,20 +114,40 @@ std::vector<SE3> readCamera(const fs::path& file) {
   return poses;
 }
 
+RunFolder::Trajectories readTrajectories(const fs::path& folder, const std::string& kind) {
+  return {.camera = readCamera(folder / ("camera_" + kind + ".txt")),
+          .objects = readObjects(folder / ("objects_" + kind + ".csv")),
+          .covariances = readCovariances(folder / covariancesName(kind)),
+          .pose_covariances = readCovariances(folder / ("pose_covariances_" + kind + ".csv"))};
+}
+
 }  // namespace
 
 RunFolderWriter::Files::Files(const fs::path& folder, const std::string& kind, const std::string& suffix)
     : kitti(folder / ("camera_" + kind + ".txt" + suffix)),
       tum(folder / ("camera_" + kind + ".tum" + suffix)),
-      objects(folder / ("objects_" + kind + ".csv" + suffix)) {
+      objects(folder / ("objects_" + kind + ".csv" + suffix)),
+      covariances(folder / (covariancesName(kind) + suffix)),
+      pose_covariances(folder / ("pose_covariances_" + kind + ".csv" + suffix)) {
   objects.writeLine(kObjectsHeader);
+  for (LineFile* file : {&covariances, &pose_covariances}) file->writeLine(covariancesHeader());
 }
 
 void RunFolderWriter::Files::close() {
-  for (LineFile* file : {&kitti, &tum, &objects}) file->close();
+  for (LineFile* file : {&kitti, &tum, &objects, &covariances, &pose_covariances}) file->close();
+}
+
+void RunFolderWriter::Files::writeCovariances(const FrameEstimate& estimate) {
+  const FrameId frame = estimate.head.frame;
+  const CameraCovariances& camera = estimate.camera_covariances;
+  if (camera.pose) pose_covariances.writeLine(covarianceLine(frame, {}, *camera.pose));
+  if (camera.motion) covariances.writeLine(covarianceLine(frame, {}, *camera.motion));
+  for (const auto& object : estimate.objects)
+    if (object.covariance) covariances.writeLine(covarianceLine(frame, object.track, *object.covariance));
 }
 
 void RunFolderWriter::Files::write(const FrameEstimate& estimate) {
+  writeCovariances(estimate);
   for (const auto& object : estimate.objects) objects.writeLine(objectLine(estimate.head.frame, object));
   if (estimate.head.status != FrameStatus::kRejected) tum.writeLine(tumLine(estimate.head.stamp, estimate.T_world_cam));
   kitti.writeLine(kittiLine(estimate.T_world_cam));  // last: a frame with a pose has all its objects
@@ -134,11 +159,9 @@ RunFolderWriter::RunFolderWriter(const fs::path& folder)
       online_(folder_, "online"),
       settled_(folder_, "final"),
       final_(folder_, "final", kUnfinished),
-      covariances_(folder_ / "covariances.csv"),
       frames_(folder_ / "frames.csv"),
       trace_(folder_ / "trace.json") {
   frames_.writeLine(framesHeader());
-  covariances_.writeLine(covariancesHeader());
 }
 
 RunFolderWriter::~RunFolderWriter() {
@@ -149,15 +172,7 @@ RunFolderWriter::~RunFolderWriter() {
 
 void RunFolderWriter::writeConfig(std::string_view toml) { writeAtOnce(folder_ / "effective_config.toml", toml); }
 
-void RunFolderWriter::writeOnline(const FrameEstimate& estimate) {
-  if (estimate.camera_covariance)
-    covariances_.writeLine(covarianceLine(estimate.head.frame, {}, *estimate.camera_covariance));
-  for (const auto& object : estimate.objects) {
-    if (object.covariance)
-      covariances_.writeLine(covarianceLine(estimate.head.frame, object.track, *object.covariance));
-  }
-  online_.write(estimate);
-}
+void RunFolderWriter::writeOnline(const FrameEstimate& estimate) { online_.write(estimate); }
 
 void RunFolderWriter::writeSettled(const FrameEstimate& estimate) { settled_.write(estimate); }
 
@@ -171,7 +186,7 @@ void RunFolderWriter::writeTiming(const FrameTiming& timing) {
 
 void RunFolderWriter::finish(std::string_view summary_json) {
   trace_.close();
-  for (LineFile* file : {&covariances_, &frames_}) file->close();
+  frames_.close();
   for (Files* files : {&online_, &settled_, &final_}) files->close();
   for (const char* file : kFinalFiles) replace(folder_ / (file + std::string(kUnfinished)), folder_ / file);
   finished_ = true;
@@ -186,9 +201,8 @@ RunFolder readRunFolder(const fs::path& folder) {
   }
   run.frames = readFrames(folder / "frames.csv");
   if (!run.frames.empty()) run.first_frame = run.frames.front().head.frame.value;
-  run.online = {readCamera(folder / "camera_online.txt"), readObjects(folder / "objects_online.csv")};
-  run.final = {readCamera(folder / "camera_final.txt"), readObjects(folder / "objects_final.csv")};
-  run.covariances = readCovariances(folder / "covariances.csv");
+  run.online = readTrajectories(folder, "online");
+  run.final = readTrajectories(folder, "final");
   if (fs::exists(folder / "summary.json")) run.summary_json = readWhole(folder / "summary.json");
   return run;
 }

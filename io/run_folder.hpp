@@ -27,11 +27,12 @@ class RunFolderWriter {
   RunFolderWriter& operator=(const RunFolderWriter&) = delete;
 
   void writeConfig(std::string_view toml);
-  /// `camera_online.*`, `objects_online.csv`, and `covariances.csv` where the estimate has covariances.
+  /// `camera_online.*`, `objects_online.csv`, and where the estimate has covariances, `covariances.csv` and
+  /// `pose_covariances_online.csv`.
   void writeOnline(const FrameEstimate& estimate);
-  /// What stands in `camera_final.*` and `objects_final.csv` until `finish`, so that a run that is killed has some.
+  /// What stands in the final files until `finish`, so that a run that is killed has some.
   void writeSettled(const FrameEstimate& estimate);
-  /// What stands there from then on.
+  /// What stands there from then on: as online, but `covariances_final.csv`.
   void writeFinal(const FrameEstimate& estimate);
   /// `frames.csv` and `trace.json`. Notices when the folder is no longer there.
   void writeTiming(const FrameTiming& timing);
@@ -41,14 +42,17 @@ class RunFolderWriter {
  private:
   struct Files {
     Files(const std::filesystem::path& folder, const std::string& kind, const std::string& suffix = "");
-    LineFile kitti, tum, objects;
+    LineFile kitti, tum, objects, covariances, pose_covariances;
     void write(const FrameEstimate& estimate);
     void close();
+
+   private:
+    void writeCovariances(const FrameEstimate& estimate);
   };
   std::filesystem::path folder_;
   FolderLock lock_;
   Files online_, settled_, final_;
-  LineFile covariances_, frames_;
+  LineFile frames_;
   TraceFile trace_;
   bool finished_ = false;
 };
@@ -66,15 +70,16 @@ struct RunFolder {
   };
   /// Poses and objects of one kind, online or final. Line i of the camera file belongs to frame first_frame + i.
   struct Trajectories {
-    std::vector<SE3> camera;
-    std::vector<ObjectRow> objects;
+    std::vector<SE3> camera{};
+    std::vector<ObjectRow> objects{};
+    std::vector<CovarianceRow> covariances{};       // of the camera's motion and of objects seen from it
+    std::vector<CovarianceRow> pose_covariances{};  // of the camera in the world
   };
 
   std::filesystem::path folder{};
   std::int64_t first_frame = 0;  // of the sequence; not zero when the run began later
   std::vector<FrameRow> frames{};
   Trajectories online{}, final{};
-  std::vector<CovarianceRow> covariances{};
   std::string summary_json{};  // empty when the run did not complete
 
   bool complete() const { return !summary_json.empty(); }

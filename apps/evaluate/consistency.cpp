@@ -65,17 +65,20 @@ SE3 fitOffset(const std::vector<SeenTwice>& frames) {
 
 CovarianceErrors consistencyOf(const std::vector<ErrorSample>& samples) {
   std::vector<double> pose, position, rotation;
+  AxisReliability by_axis;
   for (const auto& sample : samples) {
     const Eigen::LLT<Matrix6d> cholesky(sample.covariance);
     if (cholesky.info() != Eigen::Success) continue;
     pose.push_back(sample.xi.dot(cholesky.solve(sample.xi)));
     position.push_back(neesOf(sample.xi.head<3>(), sample.covariance.topLeftCorner<3, 3>()));
     rotation.push_back(neesOf(sample.xi.tail<3>(), sample.covariance.bottomRightCorner<3, 3>()));
+    by_axis.add(sample.xi, sample.covariance);
   }
   return {.samples = static_cast<int>(pose.size()),
           .pose = normalizedErrors(pose, kChiSquare95Of6),
           .position = normalizedErrors(position, kChiSquare95Of3),
-          .rotation = normalizedErrors(rotation, kChiSquare95Of3)};
+          .rotation = normalizedErrors(rotation, kChiSquare95Of3),
+          .by_axis = by_axis};
 }
 
 std::vector<ErrorSample> errorsWithoutOffset(const std::vector<SeenTwice>& frames) {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "apps/evaluate/axis_reliability.hpp"
 #include "core/se3.hpp"
 
 /// Whether errors are as large as covariances say.
@@ -24,6 +25,7 @@ struct CovarianceErrors {
   int samples = 0;
   NormalizedErrors pose;                // 6 degrees of freedom
   NormalizedErrors position, rotation;  // 3 each, by the blocks of the covariance
+  AxisReliability by_axis;
 };
 /// Samples whose covariance is not positive definite are left out.
 CovarianceErrors consistencyOf(const std::vector<ErrorSample>& samples);

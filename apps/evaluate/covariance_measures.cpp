@@ -46,7 +46,7 @@ std::vector<ErrorSample> samplesOf(const std::map<Key, SeenTrack>& tracks) {
 
 /// A run's online estimates, ready to be asked by frame.
 struct HalfRun {
-  explicit HalfRun(const RunFolder& run) : folder(run), covariances(byTrackAndFrame(run.covariances)) {
+  explicit HalfRun(const RunFolder& run) : folder(run), covariances(byTrackAndFrame(run.online.covariances)) {
     for (const auto& row : run.online.objects)
       if (covariances.contains({row.object.track, row.frame})) rows[row.frame].push_back(&row.object);
   }
@@ -103,17 +103,28 @@ void addSeenByBoth(const HalfRun& a, const HalfRun& b, FrameId frame, std::map<T
   }
 }
 
-/// Of a covariance of the camera; empty where the frames do not reach back so far.
-std::optional<ErrorSample> cameraError(const std::vector<ComparedFrame>& frames, const RunFolder::CovarianceRow& row,
-                                       const SE3& T_true_cam) {
-  const std::int64_t now = frames.empty() ? -1 : row.frame.value - frames.front().frame.value;
-  if (row.track.valid() || now < kCameraCovarianceFrames || now >= std::ssize(frames)) return std::nullopt;
-  std::int64_t before = now - kCameraCovarianceFrames;
-  while (before > 0 && !frames[before].entered) --before;
-  const auto &to = frames[now], &from = frames[before];
+ErrorSample motionError(const ComparedFrame& from, const ComparedFrame& to, const Matrix6d& covariance,
+                        const SE3& T_true_cam) {
   const SE3 estimate = from.T_world_cam.inverse() * to.T_world_cam,
             truth = (from.T_world_cam_true * T_true_cam).inverse() * to.T_world_cam_true * T_true_cam;
-  return ErrorSample{(estimate.inverse() * truth).log(), row.covariance};
+  return {(estimate.inverse() * truth).log(), covariance};
+}
+
+/// Where a row's frame stands among the frames; empty where it does not.
+std::optional<std::int64_t> placeOf(const RunFolder::CovarianceRow& row, const std::vector<ComparedFrame>& frames) {
+  const std::int64_t place = frames.empty() ? -1 : row.frame.value - frames.front().frame.value;
+  if (place < 0 || place >= std::ssize(frames)) return std::nullopt;
+  return place;
+}
+
+/// Of a covariance of the camera's motion; empty where the frames do not reach back so far.
+std::optional<ErrorSample> cameraError(const std::vector<ComparedFrame>& frames, const RunFolder::CovarianceRow& row,
+                                       const SE3& T_true_cam) {
+  const auto now = placeOf(row, frames);
+  if (row.track.valid() || !now || *now < kCameraCovarianceFrames) return std::nullopt;
+  std::int64_t before = *now - kCameraCovarianceFrames;
+  while (before > 0 && !frames[before].entered) --before;
+  return motionError(frames[before], frames[*now], row.covariance, T_true_cam);
 }
 
 }  // namespace
@@ -124,6 +135,17 @@ std::vector<ErrorSample> cameraErrorSamples(const std::vector<ComparedFrame>& fr
   for (const auto& row : rows)
     if (isTaken(row.frame))
       if (const auto sample = cameraError(frames, row, T_true_cam)) samples.push_back(*sample);
+  return samples;
+}
+
+std::vector<ErrorSample> cameraPoseSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows,
+                                           const SE3& T_true_cam) {
+  std::vector<ErrorSample> samples;
+  for (const auto& row : rows) {
+    const auto now = placeOf(row, frames);
+    if (isTaken(row.frame) && now && *now > 0)
+      samples.push_back(motionError(frames.front(), frames[*now], row.covariance, T_true_cam));
+  }
   return samples;
 }
 

@@ -15,6 +15,10 @@ using CovarianceRows = std::vector<RunFolder::CovarianceRow>;
 std::vector<ErrorSample> cameraErrorSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows,
                                             const SE3& T_true_cam = {});
 
+/// Errors of the camera's pose since the first frame.
+std::vector<ErrorSample> cameraPoseSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows,
+                                           const SE3& T_true_cam = {});
+
 /// The camera's normalized error squared in each frame that has a covariance, not only in every fifth.
 struct FrameNees {
   FrameId frame;

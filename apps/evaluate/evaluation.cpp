@@ -58,19 +58,37 @@ Eigen::Matrix3d placeNoiseOf(const Sequence& sequence, const CameraTruth& camera
   }
 }
 
-void evaluateCovariances(Evaluation& evaluation, const std::vector<ComparedFrame>& online, const CovarianceRows& rows,
-                         const Eigen::Matrix3d& place_noise) {
-  evaluation.camera_nees = cameraNees(online, rows, evaluation.mounting.value_or(SE3{}));
-  evaluation.camera_covariance = consistencyOf(cameraErrorSamples(online, rows));
-  evaluation.object_covariance = consistencyOf(objectErrorSamples(online, rows));
-  if (!evaluation.mounting) return;
-  auto samples = cameraErrorSamples(online, rows, *evaluation.mounting);
-  evaluation.camera_mounted_covariance = consistencyOf(samples);
-  const CameraPaths paths(online);
-  Matrix6d noise = truthNoise(paths.estimate, withMounting(paths.truth, *evaluation.mounting));
+/// `mounting`, of the truth, is empty where that is exact.
+CovarianceEvaluation evaluateCovariances(const std::vector<ComparedFrame>& frames,
+                                         const RunFolder::Trajectories& trajectories,
+                                         const std::optional<SE3>& mounting, const Eigen::Matrix3d& place_noise) {
+  const CovarianceRows& rows = trajectories.covariances;
+  const SE3 T_true_cam = mounting.value_or(SE3{});
+  CovarianceEvaluation evaluation;
+  evaluation.camera = consistencyOf(cameraErrorSamples(frames, rows));
+  evaluation.camera_pose = consistencyOf(cameraPoseSamples(frames, trajectories.pose_covariances, T_true_cam));
+  evaluation.objects = consistencyOf(objectErrorSamples(frames, rows));
+  if (!mounting) return evaluation;
+  auto samples = cameraErrorSamples(frames, rows, T_true_cam);
+  evaluation.camera_mounted = consistencyOf(samples);
+  const CameraPaths paths(frames);
+  Matrix6d noise = truthNoise(paths.estimate, withMounting(paths.truth, T_true_cam));
   noise.topLeftCorner<3, 3>() += place_noise;
   for (auto& sample : samples) sample.covariance += noise;
-  evaluation.camera_truth_covariance = consistencyOf(samples);
+  evaluation.camera_with_truth_noise = consistencyOf(samples);
+  return evaluation;
+}
+
+struct ComparedRun {
+  const RunFolder& folder;
+  const std::vector<ComparedFrame>&online, &final;
+};
+
+void evaluateCovariances(Evaluation& evaluation, const ComparedRun& run, const Eigen::Matrix3d& place_noise) {
+  const std::optional<SE3>& mounting = evaluation.mounting;
+  evaluation.camera_nees = cameraNees(run.online, run.folder.online.covariances, mounting.value_or(SE3{}));
+  evaluation.online.covariances = evaluateCovariances(run.online, run.folder.online, mounting, place_noise);
+  evaluation.final.covariances = evaluateCovariances(run.final, run.folder.final, mounting, place_noise);
 }
 
 KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
@@ -201,7 +219,7 @@ double Evaluation::latencyQuantile_ms(double part) const {
 
 KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequence, OxtsTimes times) {
   const CameraTruth camera = neededTruth(sequence, times);
-  return evaluateFrames(compareFrames({poses, {}}, 0, camera, nullptr, sequence.stamps));
+  return evaluateFrames(compareFrames({.camera = poses}, 0, camera, nullptr, sequence.stamps));
 }
 
 Evaluation evaluateRun(const EvaluateOptions& options) {
@@ -232,7 +250,7 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   evaluation.final.acceleration = accelerationsOf(final, sequence);
   evaluation.worst = worstFrames(final);
   if (mayBeMountedWrongly(sequence)) removeMounting(evaluation, final, online);
-  evaluateCovariances(evaluation, online, run.covariances, placeNoiseOf(sequence, camera, options.truth));
+  evaluateCovariances(evaluation, {run, online, final}, placeNoiseOf(sequence, camera, options.truth));
   if (!sequence.truth.instances.empty())
     evaluation.masks = maskErrors(online, options.run / "masks", sequence.truth.instances);
   if (!options.half_run.empty()) {
@@ -242,7 +260,7 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   }
   if (!options.baseline.empty()) {
     const auto poses = baselinePoses(options.baseline, run.first_frame, run.final.camera.size(), sequence);
-    compareCameras(evaluation, evaluateFrames(compare({poses, {}}, run.first_frame)));
+    compareCameras(evaluation, evaluateFrames(compare({.camera = poses}, run.first_frame)));
   }
   if (!options.baseline_run.empty()) {
     const RunFolder other = readRunFolder(options.baseline_run);

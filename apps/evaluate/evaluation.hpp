@@ -36,6 +36,14 @@ struct EvaluateOptions {
   std::filesystem::path json;          // empty for none
 };
 
+/// The covariances of one kind of estimate, see covariance_measures.hpp.
+struct CovarianceEvaluation {
+  CovarianceErrors camera, objects;
+  CovarianceErrors camera_pose;                             // since the run's first frame, without mounting
+  std::optional<CovarianceErrors> camera_mounted;           // without the truth's mounting error
+  std::optional<CovarianceErrors> camera_with_truth_noise;  // also with the truth's noise added, see truthNoise
+};
+
 /// All measures of one kind of estimate, final or online.
 struct KindEvaluation {
   std::size_t frames = 0;
@@ -54,6 +62,7 @@ struct KindEvaluation {
   Hota image_within_30m, image_within_50m, footprint_within_30m, footprint_within_50m;
   KindErrors kinds_within_30m;
   FirstReports first_within_30m, first_within_50m;
+  CovarianceEvaluation covariances{};  // of a run
 };
 
 /// (ATE_baseline - ATE_ours) / ATE_baseline of the camera's final path, SE(3) aligned RMSE.
@@ -72,14 +81,11 @@ struct Evaluation {
   std::string camera_source, object_source;  // the latter empty without labels
   std::optional<TruthCheck> truth_check;     // where the truth is not from velocities, and these are known
   KindEvaluation final, online;
-  WorstFrames worst;            // of the final estimates
-  std::optional<SE3> mounting;  // T_true_cam, fitted to the final path; empty where the truth is exact
-  std::vector<FrameNees> camera_nees;
-  CovarianceErrors camera_covariance, object_covariance;
-  std::optional<CovarianceErrors> camera_mounted_covariance;  // without the truth's mounting error
-  std::optional<CovarianceErrors> camera_truth_covariance;    // also with the truth's noise added, see truthNoise
-  std::optional<HalfErrors> half_errors;                      // against the other half's run
-  std::optional<MaskEvaluation> masks;                        // where the run has some, and the truth too
+  WorstFrames worst;                      // of the final estimates
+  std::optional<SE3> mounting;            // T_true_cam, fitted to the final path; empty where the truth is exact
+  std::vector<FrameNees> camera_nees;     // online
+  std::optional<HalfErrors> half_errors;  // against the other half's run
+  std::optional<MaskEvaluation> masks;    // where the run has some, and the truth too
   std::optional<RelativeError> camera_against_baseline;
   std::optional<RunComparison> objects_against_baseline;  // final estimates
   std::vector<double> latency_ms;                         // sorted

@@ -1,5 +1,7 @@
 #include "apps/evaluate/recovered_finals.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 namespace motorcade {
@@ -12,12 +14,17 @@ std::size_t recoverFinals(RunFolder& run) {
   for (std::size_t i = known; i < all; ++i) camera.push_back((T_final_online * run.online.camera[i]).normalized());
 
   const auto at = [&run](std::size_t frames) { return FrameId{run.first_frame + static_cast<std::int64_t>(frames)}; };
-  std::erase_if(run.final.objects, [&](const RunFolder::ObjectRow& row) { return row.frame >= at(known); });
+  const auto isUnknown = [&](const auto& row) { return row.frame >= at(known); };
+  std::erase_if(run.final.objects, isUnknown);
   for (RunFolder::ObjectRow row : run.online.objects) {
     if (row.frame < at(known) || row.frame >= at(all)) continue;
     row.object.T_world_body = (T_final_online * row.object.T_world_body).normalized();
     row.object.velocity_world_mps = T_final_online.rotation() * row.object.velocity_world_mps;
     run.final.objects.push_back(row);
+  }
+  for (auto rows : {&RunFolder::Trajectories::covariances, &RunFolder::Trajectories::pose_covariances}) {
+    std::erase_if(run.final.*rows, isUnknown);
+    std::ranges::copy_if(run.online.*rows, std::back_inserter(run.final.*rows), isUnknown);
   }
   return all - known;
 }

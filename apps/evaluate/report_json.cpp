@@ -279,6 +279,7 @@ Json jsonOf(const CovarianceErrors& errors) {
   json.update(jsonOf(errors.pose));
   json["position"] = jsonOf(errors.position);
   json["rotation"] = jsonOf(errors.rotation);
+  json["by_axis"] = jsonOf(errors.by_axis);
   return json;
 }
 
@@ -291,18 +292,24 @@ Json jsonOf(const TruthCheck& check) {
           {"doubtful", check.doubtful()}};
 }
 
-Json covarianceJson(const Evaluation& e) {
+Json jsonOf(const CovarianceEvaluation& e) {
   const auto orNull = [](const auto& errors) { return errors ? jsonOf(*errors) : Json(); };
+  return {{"camera", jsonOf(e.camera)},
+          {"camera_mounted", orNull(e.camera_mounted)},
+          {"camera_mounted_with_truth_noise", orNull(e.camera_with_truth_noise)},
+          {"camera_since_start", jsonOf(e.camera_pose)},
+          {"objects", jsonOf(e.objects)}};
+}
+
+Json covarianceJson(const Evaluation& e) {
   Json nees = Json::object();
   for (const FrameNees& frame : e.camera_nees) nees[std::to_string(frame.frame.value)] = frame.nees;
-  Json json = {{"camera", jsonOf(e.camera_covariance)},
-               {"camera_nees_by_frame", nees},
-               {"camera_mounted", orNull(e.camera_mounted_covariance)},
-               {"camera_mounted_with_truth_noise", orNull(e.camera_truth_covariance)},
-               {"objects", jsonOf(e.object_covariance)},
-               {"halves", nullptr}};
+  Json json = jsonOf(e.online.covariances);
+  json["camera_nees_by_frame"] = nees;
+  json["halves"] = nullptr;
   if (e.half_errors)
     json["halves"] = {{"camera", jsonOf(e.half_errors->camera)}, {"objects", jsonOf(e.half_errors->objects)}};
+  json["final"] = jsonOf(e.final.covariances);
   return json;
 }
 

@@ -28,7 +28,8 @@ std::string legendOf(const Evaluation& evaluation) {
         "           surely wrong: of a probability of 0.95 and more\n"
         "HOTA       tracking accuracy, of detection (Det) and association (Ass), each with recall (Re)\n"
         "           and precision (Pr), and of localization (Loc): 1 is perfect\n";
-  if (evaluation.camera_covariance.samples + evaluation.object_covariance.samples > 0)
+  const CovarianceEvaluation& covariances = evaluation.online.covariances;
+  if (covariances.camera.samples + covariances.objects.samples > 0)
     text += "NEES       squared error in units of its covariance; in: share within the region of 95 %\n";
   return text + "docs/formats.md says more of each measure, and what --json adds.\n";
 }

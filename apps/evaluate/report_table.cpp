@@ -206,21 +206,32 @@ void printCovarianceLine(std::string& text, const char* what, const CovarianceEr
   text += '\n';
 }
 
-void printCovariances(std::string& text, const Evaluation& e) {
-  std::string lines;
-  printCovarianceLine(lines, "camera", e.camera_covariance);
-  if (e.camera_mounted_covariance) printCovarianceLine(lines, "camera, without mounting", *e.camera_mounted_covariance);
-  if (e.camera_truth_covariance) printCovarianceLine(lines, "  and the truth's noise", *e.camera_truth_covariance);
-  printCovarianceLine(lines, "objects", e.object_covariance);
-  if (e.half_errors) {
-    printCovarianceLine(lines, "camera, of two halves", e.half_errors->camera);
-    printCovarianceLine(lines, "objects, of two halves", e.half_errors->objects);
-  }
+void printCovarianceLines(std::string& text, const CovarianceEvaluation& e) {
+  printCovarianceLine(text, "camera", e.camera);
+  if (e.camera_mounted) printCovarianceLine(text, "camera, without mounting", *e.camera_mounted);
+  if (e.camera_with_truth_noise) printCovarianceLine(text, "  and the truth's noise", *e.camera_with_truth_noise);
+  printCovarianceLine(text, "camera, since the start", e.camera_pose);
+  printCovarianceLine(text, "objects", e.objects);
+}
+
+void printCovariances(std::string& text, const char* kind, const std::string& lines) {
   if (lines.empty()) return;
-  text += "\ncovariances                samples  pose: NEES            position: NEES        rotation: NEES\n";
+  print(text, "\ncovariances, %-12s  samples  pose: NEES            position: NEES        rotation: NEES\n", kind);
   text += "                                      mean  median    in    mean  median    in    mean  median    in\n";
   text += "  consistent:                         6.00    5.35  95 %    3.00    2.37  95 %    3.00    2.37  95 %\n";
   text += lines;
+}
+
+void printCovariances(std::string& text, const Evaluation& e) {
+  std::string of_finals, of_online;
+  printCovarianceLines(of_finals, e.final.covariances);
+  printCovarianceLines(of_online, e.online.covariances);
+  if (e.half_errors) {
+    printCovarianceLine(of_online, "camera, of two halves", e.half_errors->camera);
+    printCovarianceLine(of_online, "objects, of two halves", e.half_errors->objects);
+  }
+  printCovariances(text, "final", of_finals);
+  printCovariances(text, "online", of_online);
 }
 
 void printComparedLine(std::string& text, const ComparedObject& object) {

@@ -93,6 +93,7 @@ motorcade_options defaultOptions() {
   options.threads = defaults.threads;
   options.realtime_priority = defaults.realtime_priority;
   options.patience_ms = defaults.patience.count();
+  options.covariance_frames = defaults.covariance_frames;
   return options;
 }
 
@@ -101,6 +102,8 @@ Tracker::Options optionsOf(const motorcade_options* given) {
   if (options.cpu_count > kMostCpus)
     throw Error("options.cpu_count", "is " + std::to_string(options.cpu_count) + "; it is at most 1024");
   if (options.cpu_count > 0) require(options.cpus, "options.cpus");
+  const bool fits = options.covariance_frames == static_cast<int>(options.covariance_frames);
+  if (!fits) throw Error("options.covariance_frames", "is " + std::to_string(options.covariance_frames));
   if (options.patience_ms < 0) throw Error("options.patience_ms", "is negative");
   Tracker::Options converted{.policy = valueOf(options.policy, Tracker::Policy::kReplay, "options.policy"),
                              .axes = valueOf(options.axes, Tracker::Axes::kRep103, "options.axes"),
@@ -109,6 +112,7 @@ Tracker::Options optionsOf(const motorcade_options* given) {
                              .realtime_priority = options.realtime_priority,
                              .cpus = {options.cpus, options.cpus + options.cpu_count},
                              .patience = std::chrono::milliseconds(options.patience_ms),
+                             .covariance_frames = static_cast<int>(options.covariance_frames),
                              .settings = options.settings != nullptr ? options.settings : ""};
   if (options.log != nullptr)
     converted.log = [log = options.log, user = options.log_user](Tracker::LogLevel level, const std::string& text) {

@@ -35,6 +35,8 @@ motorcade_frame frameOf(const Result& result) {
   frame.object_count = result.objects.size();
   frame.latency_ms = result.latency_ms;
   frame.problem = result.problem.c_str();
+  frame.has_pose_covariance = result.pose_covariance.has_value();
+  if (result.pose_covariance) copy(*result.pose_covariance, frame.pose_covariance);
   return frame;
 }
 

@@ -126,7 +126,10 @@ Result ResultConversion::operator()(const PipelineResult& result) {
   converted.cause = causeOf(online.head.cause);
   converted.segment = online.head.segment;
   converted.T_world_cam = rowsOf(T_out_cam * online.T_world_cam * T_out_cam.inverse());
-  if (online.camera_covariance) converted.motion_covariance = rowsOf<6>(turned(*online.camera_covariance, R_out_cam_));
+  const auto inOutputAxes = [this](const Matrix6d& covariance) { return rowsOf<6>(turned(covariance, R_out_cam_)); };
+  const CameraCovariances& covariances = online.camera_covariances;
+  if (covariances.motion) converted.motion_covariance = inOutputAxes(*covariances.motion);
+  if (covariances.pose) converted.pose_covariance = inOutputAxes(*covariances.pose);
   if (result.measurements) setVelocity(*result.measurements, converted);
   const auto dropped =
       std::ranges::count(result.dropped, FrameStatus::kDropped, [](const FrameEstimate& f) { return f.head.status; }) +

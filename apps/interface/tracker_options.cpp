@@ -10,6 +10,8 @@
 namespace motorcade {
 namespace {
 
+constexpr int kMostCovarianceFrames = 60;  // every back-end remembers as many
+
 /// Tried on a thread of its own.
 std::string problemWith(const ThreadPlacement& placement) {
   std::string problem;
@@ -45,6 +47,9 @@ void requireValid(const Tracker::Options& options) {
     throw Error("options.axes", "are none of those that there are");
   if (options.threads < 1 || options.threads > 64)
     throw Error("options.threads", "is " + std::to_string(options.threads) + "; it is 1 to 64");
+  if (options.covariance_frames < 1 || options.covariance_frames > kMostCovarianceFrames)
+    throw Error("options.covariance_frames", "is " + std::to_string(options.covariance_frames) + "; it is 1 to " +
+                                                 std::to_string(kMostCovarianceFrames));
   if (options.patience.count() < 0) throw Error("options.patience", "is negative");
 }
 
@@ -65,6 +70,7 @@ PipelineConfig configOf(const Tracker::Options& options) {
   PipelineConfig config;
   config.pipeline.threads = options.threads;
   config.pipeline.policy = policyOf(options.policy);
+  config.backend.window.motion_frames = options.covariance_frames;
   config.pipeline.placement = {.cpus = options.cpus, .realtime_priority = options.realtime_priority};
   try {
     applyToml(config, options.settings, "the settings");

@@ -97,6 +97,7 @@ void readResult(MergedBatch& batch, MergedTask& merged, const fs::path& result) 
       addWorstErrors(batch, merged, evaluation);
       addReliability(batch.existence[merged.task.set], kExistenceClaim, evaluation);
       addReliability(batch.kinds[merged.task.set], kKindClaim, evaluation);
+      addCovariances(batch.covariances[merged.task.set], evaluation);
     }
     addLatencies(batch.latencies[merged.task.set], summary);
   } catch (const nlohmann::json::exception& error) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/merge/covariance_reliability.hpp"
 #include "apps/merge/measures.hpp"
 #include "apps/merge/reliability_table.hpp"
 #include "apps/tasks/plan.hpp"
@@ -48,6 +49,7 @@ struct MergedBatch {
   std::vector<WorstFrame> worst_camera_m{}, worst_object_m{}, latest_ms{};  // the worst first
   std::map<std::string, std::map<double, std::int64_t>> latencies{};        // by set: frames up to so many milliseconds
   ReliabilityBySet existence{}, kinds{};                                    // of all tasks that are done
+  CovarianceReliabilityBySet covariances{};
 
   std::size_t count(TaskOutcome outcome) const;
 };

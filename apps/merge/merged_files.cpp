@@ -179,6 +179,7 @@ std::string markdownOf(const Merged& merged) {
   for (const ResultTable& table : measureTables(merged.groups)) add(table);
   add(reliabilityTable(kExistenceClaim, batch.existence));
   add(reliabilityTable(kKindClaim, batch.kinds));
+  add(covarianceTable(batch.covariances));
   add(worstFrameTable("Frames with the largest error of the camera's motion", "RPE_t m", batch.worst_camera_m));
   add(worstFrameTable("Frames with the largest error of an object's motion", "ME_t m", batch.worst_object_m));
   add(worstFrameTable("Frames that came out latest", "latency ms", batch.latest_ms));

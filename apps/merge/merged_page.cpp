@@ -182,6 +182,7 @@ std::string pageOf(const Merged& merged) {
   for (const ResultTable& table : measureTables(merged.groups)) body += section(table);
   body += section(reliabilityTable(kExistenceClaim, batch.existence));
   body += section(reliabilityTable(kKindClaim, batch.kinds));
+  body += section(covarianceTable(batch.covariances)) + covarianceCharts(batch.covariances);
   return htmlPage("Batch " + batch.folder.filename().string(), body, std::string(kChartStyle).append(kStyle));
 }
 

@@ -29,7 +29,8 @@ EstimatesPtr RestartingBackend::estimate(const FrameMeasurementsPtr& measurement
   if (restarted_) {
     Estimates moved = *estimates;
     moveToWorld(moved.online);
-    for (FrameEstimate& estimate : moved.finals) moveToWorld(estimate);
+    for (auto* estimates_left : {&moved.finals, &moved.settled})
+      for (FrameEstimate& estimate : *estimates_left) moveToWorld(estimate);
     moved.finals.insert(moved.finals.begin(), left_.begin(), left_.end());
     estimates = std::make_shared<const Estimates>(std::move(moved));
   }
@@ -56,10 +57,12 @@ std::vector<FrameEstimate> RestartingBackend::finish() {
   return finals;
 }
 
-/// Covariances of poses are relative to the camera, and stay.
+/// Covariances are relative to the camera and stay, but for that of its own pose: the new start is not where the old
+/// world was.
 void RestartingBackend::moveToWorld(FrameEstimate& estimate) const {
   if (!restarted_) return;
   estimate.T_world_cam = T_world_start_ * estimate.T_world_cam;
+  estimate.camera_covariances.pose.reset();
   for (ObjectEstimate& object : estimate.objects) {
     object.T_world_body = T_world_start_ * object.T_world_body;
     const Eigen::Matrix3d& R_world_start = T_world_start_.rotation();

@@ -14,8 +14,9 @@ namespace {
 
 std::unique_ptr<Backend> makeBackend(const BackendParams& params, const StereoCamera& camera) {
   if (params.kind == BackendKind::kJoint) return std::make_unique<JointBackend>(params.joint, camera, params.window);
-  if (params.kind == BackendKind::kFilter) return std::make_unique<FilterBackend>(params.filter, camera);
-  if (params.kind == BackendKind::kFilterMap) return std::make_unique<MapFilterBackend>(params.filter);
+  const int motion_frames = params.window.motion_frames;
+  if (params.kind == BackendKind::kFilter) return std::make_unique<FilterBackend>(params.filter, camera, motion_frames);
+  if (params.kind == BackendKind::kFilterMap) return std::make_unique<MapFilterBackend>(params.filter, motion_frames);
   return std::make_unique<PoseGraphBackend>(params.pose_graph, camera, params.window);
 }
 

@@ -29,9 +29,9 @@ void addTruth(RecordedDrive& drive, const Sequence& sequence) {
   }
 }
 
-void addCovariances(RecordedDrive& drive, const RunFolder& run) {
-  for (const auto& row : run.covariances) {
-    const auto objects = drive.objects.find(row.frame.value - run.first_frame);
+void addCovariances(RecordedDrive& drive, const std::vector<RunFolder::CovarianceRow>& rows) {
+  for (const auto& row : rows) {
+    const auto objects = drive.objects.find(row.frame.value - drive.first_frame);
     if (!row.track.valid() || objects == drive.objects.end()) continue;
     for (ObjectEstimate& object : objects->second)
       if (object.track == row.track) object.covariance = row.covariance;
@@ -55,7 +55,7 @@ RecordedDrive driveOf(const RunFolder& run, std::vector<Timestamp> stamps) {
   drive.T_world_cam.resize(stamps.size());
   drive.stamps = std::move(stamps);
   for (const auto& row : shown.objects) drive.objects[row.frame.value - run.first_frame].push_back(row.object);
-  addCovariances(drive, run);
+  addCovariances(drive, shown.covariances.empty() ? run.online.covariances : shown.covariances);
   const auto points = run.folder / kObjectPointsFile;
   if (std::filesystem::exists(points))
     for (const ObjectPoint& point : readObjectPoints(points))

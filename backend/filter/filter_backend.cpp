@@ -22,6 +22,7 @@ struct FilterBackend::State {
   };
   Params params;
   StereoCamera camera;
+  int motion_frames = kCameraCovarianceFrames;
   CameraPath path;
   std::map<TrackId, Object> objects;
   SolverCounters counters;
@@ -73,9 +74,11 @@ struct FilterBackend::State {
   }
 };
 
-FilterBackend::FilterBackend(const Params& params, const StereoCamera& camera) : state_(std::make_unique<State>()) {
+FilterBackend::FilterBackend(const Params& params, const StereoCamera& camera, int motion_frames)
+    : state_(std::make_unique<State>()) {
   state_->params = params;
   state_->camera = camera;
+  state_->motion_frames = motion_frames;
 }
 FilterBackend::~FilterBackend() = default;
 

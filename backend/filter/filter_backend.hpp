@@ -22,7 +22,7 @@ class FilterBackend final : public Backend {
  public:
   using Params = ObjectFilter::Params;
 
-  FilterBackend(const Params& params, const StereoCamera& camera);
+  FilterBackend(const Params& params, const StereoCamera& camera, int motion_frames = kCameraCovarianceFrames);
   ~FilterBackend() override;
 
   EstimatesPtr operator()(const FrameMeasurementsPtr& measurements) override;

@@ -2,12 +2,14 @@
 
 namespace motorcade {
 
-FrameEstimate cameraEstimate(const FrameMeasurements& measurements, const CameraPath& path) {
+FrameEstimate cameraEstimate(const FrameMeasurements& measurements, const CameraPath& path, int motion_frames) {
   const FrameId frame = measurements.head.frame;
-  return {.head = measurements.head,
-          .T_world_cam = path.find(frame)->T_world_cam,
-          .camera_covariance = path.covarianceSince(FrameId{frame.value - kCameraCovarianceFrames}, frame),
-          .objects = {}};
+  const CameraPath::Camera& camera = *path.find(frame);
+  CameraCovariances covariances{.motion = path.covarianceSince(FrameId{frame.value - motion_frames}, frame),
+                                .pose = {}};
+  if (measurements.head.segment == 0) covariances.pose = camera.pose_covariance;
+  return {
+      .head = measurements.head, .T_world_cam = camera.T_world_cam, .camera_covariances = covariances, .objects = {}};
 }
 
 ObjectEstimate objectEstimate(const ObjectObservation& observation, const ObjectFilter& filter) {

@@ -10,17 +10,18 @@
 
 namespace motorcade {
 
-/// What a filtering back-end publishes of a camera whose odometry is chained: as yet without objects.
-FrameEstimate cameraEstimate(const FrameMeasurements& measurements, const CameraPath& path);
+/// What a filtering back-end publishes of a camera whose odometry is chained: as yet without objects. The covariance of
+/// its motion is over `motion_frames`, at most those that the path keeps.
+FrameEstimate cameraEstimate(const FrameMeasurements& measurements, const CameraPath& path, int motion_frames);
 /// And of an object, from a filter at the observation's time.
 ObjectEstimate objectEstimate(const ObjectObservation& observation, const ObjectFilter& filter);
 
-/// One frame of a filtering back-end, whose estimates are final at once. `state` has a path, objects by track,
-/// counters, and `observe`, which gives an object's filter at the time of an observation, or nothing.
+/// One frame of a filtering back-end, whose estimates are final at once. `state` has a path, `motion_frames`,
+/// objects by track, counters, and `observe`, which gives an object's filter at the time of an observation, or nothing.
 template <class State>
 EstimatesPtr filtered(State& state, const FrameMeasurements& m) {
   state.path.add(m);
-  FrameEstimate estimate = cameraEstimate(m, state.path);
+  FrameEstimate estimate = cameraEstimate(m, state.path, state.motion_frames);
   for (const ObjectObservation& seen : m.objects) {
     const std::optional<ObjectFilter> filter = state.observe(seen, m.disparity_offset_px);
     if (filter && seen.frame == m.head.frame) estimate.objects.push_back(objectEstimate(seen, *filter));

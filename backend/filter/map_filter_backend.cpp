@@ -11,6 +11,7 @@ namespace motorcade {
 
 struct MapFilterBackend::State {
   Params params;
+  int motion_frames = kCameraCovarianceFrames;
   CameraPath path;
   std::map<TrackId, ObjectFilter> objects;
   SolverCounters counters;
@@ -39,8 +40,9 @@ struct MapFilterBackend::State {
   }
 };
 
-MapFilterBackend::MapFilterBackend(const Params& params) : state_(std::make_unique<State>()) {
+MapFilterBackend::MapFilterBackend(const Params& params, int motion_frames) : state_(std::make_unique<State>()) {
   state_->params = params;
+  state_->motion_frames = motion_frames;
 }
 MapFilterBackend::~MapFilterBackend() = default;
 

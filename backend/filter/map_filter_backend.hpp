@@ -14,7 +14,7 @@ class MapFilterBackend final : public Backend {
  public:
   using Params = ObjectFilter::Params;
 
-  explicit MapFilterBackend(const Params& params);
+  explicit MapFilterBackend(const Params& params, int motion_frames = kCameraCovarianceFrames);
   ~MapFilterBackend() override;
 
   EstimatesPtr operator()(const FrameMeasurementsPtr& measurements) override;

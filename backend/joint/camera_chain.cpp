@@ -19,7 +19,7 @@ bool showsPoints(const FrameMeasurements& measurements) {
 
 CameraRecord CameraChain::add(const FrameMeasurements& m, int seen_again) {
   const SE3 T_previous_now = isFinite(m.odometry.T_previous_now) ? m.odometry.T_previous_now : SE3{};
-  CameraRecord camera{.head = m.head, .x = {}, .part = 0, .weak = false, .covariance = {}};
+  CameraRecord camera{.head = m.head, .x = {}, .part = 0, .weak = false, .covariances = {}};
   if (frames_.empty()) {
     camera.x = solver_.addVariable(SE3{});
     start_.gauge = addGaugePrior(camera.x, SE3{});

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kComparedShare = 0.5;  // objects turn little: a factor is seldom off by the turns of several poses
 constexpr int kKeptEliminations = 10;   // of update matrices: those of older poses are hardly ever asked for
-constexpr int kRespondingLandmarks = 60, kResponse_frames = 12, kFirstResponse = 8;  // see CalibrationResponse
+constexpr int kRespondingLandmarks = 60, kResponse_frames = 12, kEarlyFrames = 8;  // see CalibrationResponse
 constexpr int kEarlierViews = 3;  // of a point whose body is found: one that took longer may be of two
 static_assert(kEarlierViews < UndecidedPoints::kMostViews);
 
@@ -126,19 +126,20 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
                              [&](PointId point) { return undecided_.take(point, seen.frame, kEarlierViews); });
 }
 
-/// The response changes little from one frame to the next: it is computed in one of some frames, then for all in the
-/// newest ones.
+/// The response changes little from one frame to the next: but for the first frames, it is computed in one of some,
+/// then for all in the newest ones.
 void JointGraph::consider(const FrameMeasurements& measurements) {
   const auto set = [this](FrameId before, FrameId now, const ConsideredCalibration::PoseShifts& shifts) {
     calibration_.set(now, {.seconds = secondsBetween(frames_.at(before).head.stamp, frames_.at(now).head.stamp),
                            .T_before_now = cameraPose(before).inverse() * cameraPose(now),
+                           .T_world_now = cameraPose(now),
                            .shifts = shifts});
   };
   const auto newest = frames_.rbegin();
   if (frames_.size() > 1) set(std::next(newest)->first, newest->first, response_.ofNewestStep());
   if (!showsPoints(measurements)) return;
   response_.observe(newest->first, measurements.at_rest);
-  if (frame_count_ % kResponse_frames != kFirstResponse) return;
+  if (frame_count_ > kEarlyFrames && frame_count_ % kResponse_frames != kEarlyFrames) return;
   const auto pose = [this](VariableId camera) { return solver_.pose(camera); };
   for (const auto& step : response_.steps(camerasOf(frames_), pose, at_rest_.noise(), offset_.px()))
     set(step.before, step.now, step.shifts);

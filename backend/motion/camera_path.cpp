@@ -7,15 +7,25 @@ namespace {
 
 constexpr std::size_t kKeptFrames = 64;
 
+/// Of a path that is one step longer.
+Matrix6d extended(const Matrix6d& covariance, const SE3& T_previous_now, const Matrix6d& of_step) {
+  const Matrix6d through = T_previous_now.inverse().adjoint();
+  return through * covariance * through.transpose() + of_step;
+}
+
 }  // namespace
 
 void CameraPath::add(const FrameMeasurements& measurements) {
   const SE3 T_previous_now =
       isFinite(measurements.odometry.T_previous_now) ? measurements.odometry.T_previous_now : SE3{};
-  const SE3 T_world_cam =
-      cameras_.empty() ? SE3{} : (cameras_.rbegin()->second.T_world_cam * T_previous_now).normalized();
-  cameras_[measurements.head.frame] = {measurements.head.stamp, T_world_cam, T_previous_now,
-                                       measurements.odometry.covariance};
+  const Matrix6d& of_step = measurements.odometry.covariance;
+  Camera camera{measurements.head.stamp, SE3{}, T_previous_now, of_step, Matrix6d::Zero()};
+  if (!cameras_.empty()) {
+    const Camera& before = cameras_.rbegin()->second;
+    camera.T_world_cam = (before.T_world_cam * T_previous_now).normalized();
+    camera.pose_covariance = extended(before.pose_covariance, T_previous_now, of_step);
+  }
+  cameras_[measurements.head.frame] = camera;
   if (cameras_.size() > kKeptFrames) cameras_.erase(cameras_.begin());
 }
 
@@ -29,10 +39,8 @@ std::optional<Matrix6d> CameraPath::covarianceSince(FrameId since, FrameId now) 
   if (after == cameras_.begin() || to == cameras_.end()) return std::nullopt;
   const auto from = std::prev(after);
   Matrix6d covariance = Matrix6d::Zero();
-  for (auto it = std::next(from); it != std::next(to); ++it) {
-    const Matrix6d through = it->second.T_previous_now.inverse().adjoint();
-    covariance = (through * covariance * through.transpose() + it->second.odometry_covariance).eval();
-  }
+  for (auto it = std::next(from); it != std::next(to); ++it)
+    covariance = extended(covariance, it->second.T_previous_now, it->second.odometry_covariance);
   return covariance;
 }
 

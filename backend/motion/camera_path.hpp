@@ -15,6 +15,7 @@ class CameraPath {
     Timestamp stamp;
     SE3 T_world_cam, T_previous_now;
     Matrix6d odometry_covariance;
+    Matrix6d pose_covariance;  // of T_world_cam by right perturbation, the steps taken as independent
   };
 
   /// Call in frame order. A motion that is no number is taken as standing still.

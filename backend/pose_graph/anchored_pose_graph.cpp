@@ -66,7 +66,7 @@ void AnchoredPoseGraph::addPrior(VariableId v, const SE3& mean, double sigma_m, 
 }
 
 void AnchoredPoseGraph::addCamera(const FrameMeasurements& measurements) {
-  CameraRecord record{.head = measurements.head, .x = {}, .part = 0, .weak = false, .covariance = {}};
+  CameraRecord record{.head = measurements.head, .x = {}, .part = 0, .weak = false, .covariances = {}};
   if (frames_.empty()) {
     record.x = solver_.addVariable(SE3{});
     addPrior(record.x, SE3{}, params_.first_pose_sigma_m, params_.first_pose_sigma_rad);

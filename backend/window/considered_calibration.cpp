@@ -1,15 +1,33 @@
 #include "backend/window/considered_calibration.hpp"
 
+#include <iterator>
+
 namespace motorcade {
 
-ConsideredCalibration::PoseShifts ConsideredCalibration::ofMotion(FrameId before, FrameId now) const {
-  PoseShifts shifts = PoseShifts::Zero();
-  SE3 T_step_now;
-  for (auto it = steps_.upper_bound(now); it != steps_.begin() && (--it)->first > before;) {
-    shifts += T_step_now.inverse().adjoint() * it->second.shifts;
-    T_step_now = it->second.T_before_now * T_step_now;
-  }
-  return shifts;
+void ConsideredCalibration::set(FrameId now, const Step& step) {
+  const auto first = steps_.insert_or_assign(now, KnownStep{.step = step}).first;
+  for (auto it = first; it != steps_.end(); ++it)
+    it->second.path = (it == steps_.begin() ? forgotten_path_ : std::prev(it)->second.path) +
+                      it->second.step.T_world_now.adjoint() * it->second.step.shifts;
+}
+
+void ConsideredCalibration::forget(FrameId oldest) {
+  forgotten_path_ = pathUpTo(oldest);
+  steps_.erase(steps_.begin(), steps_.upper_bound(oldest));
+}
+
+const ConsideredCalibration::PoseShifts& ConsideredCalibration::pathUpTo(FrameId frame) const {
+  const auto after = steps_.upper_bound(frame);
+  return after == steps_.begin() ? forgotten_path_ : std::prev(after)->second.path;
+}
+
+ConsideredCalibration::PoseShifts ConsideredCalibration::ofMotion(FrameId before, FrameId now,
+                                                                  const SE3& T_world_now) const {
+  return T_world_now.inverse().adjoint() * (pathUpTo(now) - pathUpTo(before));
+}
+
+ConsideredCalibration::PoseShifts ConsideredCalibration::ofPose(FrameId now, const SE3& T_world_now) const {
+  return T_world_now.inverse().adjoint() * pathUpTo(now);
 }
 
 ConsideredCalibration::PointShifts ConsideredCalibration::ofPoint(const Eigen::Vector3d& p_cam) const {
@@ -22,8 +40,8 @@ ConsideredCalibration::PointShifts ConsideredCalibration::ofPoint(const Eigen::V
 ConsideredCalibration::PointShifts ConsideredCalibration::ofVelocity(FrameId frame, const Eigen::Vector3d& p_cam,
                                                                      const Eigen::Vector3d& velocity_cam_mps) const {
   const auto known = steps_.find(frame);
-  if (known == steps_.end() || known->second.seconds <= 0) return PointShifts::Zero();
-  const Step& step = known->second;
+  if (known == steps_.end() || known->second.step.seconds <= 0) return PointShifts::Zero();
+  const Step& step = known->second.step;
   const PoseShifts of_twist = step.shifts / step.seconds;
   const Vector6d twist = step.T_before_now.log() / step.seconds;
   const Eigen::Vector3d turn_radps = twist.tail<3>();

@@ -21,7 +21,7 @@ class ConsideredCalibration {
   /// The camera's motion up to a frame, from the last one before that was seen; in frames between, nothing shifts.
   struct Step {
     double seconds = 0;  // 0: it is not known
-    SE3 T_before_now;
+    SE3 T_before_now, T_world_now;
     PoseShifts shifts = PoseShifts::Zero();
   };
 
@@ -31,13 +31,15 @@ class ConsideredCalibration {
       : camera_(camera), sigmas_(sigmas) {}
 
   /// In place of what was known of this frame.
-  void set(FrameId now, const Step& step) { steps_[now] = step; }
-  /// This frame and what is older are not asked for any more.
-  void forget(FrameId oldest) { steps_.erase(steps_.begin(), steps_.upper_bound(oldest)); }
+  void set(FrameId now, const Step& step);
+  /// No motion from before this frame is asked for any more.
+  void forget(FrameId oldest);
 
   /// The camera's motion from one frame to a later one, T_before_now: what its steps shift adds up, as the errors are
   /// the same ones.
-  PoseShifts ofMotion(FrameId before, FrameId now) const;
+  PoseShifts ofMotion(FrameId before, FrameId now, const SE3& T_world_now) const;
+  /// The same from the first frame on: of T_world_now.
+  PoseShifts ofPose(FrameId now, const SE3& T_world_now) const;
   /// A point seen from the camera [m].
   PointShifts ofPoint(const Eigen::Vector3d& p_cam) const;
   /// The velocity over ground of such a point, in the camera's axes [m/s]; none where the frame's step is not known.
@@ -46,7 +48,14 @@ class ConsideredCalibration {
  private:
   std::optional<StereoCamera> camera_;
   CalibrationSigmas sigmas_;
-  std::map<FrameId, Step> steps_;
+  struct KnownStep {
+    Step step;
+    PoseShifts path = PoseShifts::Zero();  // of all steps up to this one, each as a left perturbation of T_world_now
+  };
+  const PoseShifts& pathUpTo(FrameId frame) const;
+
+  std::map<FrameId, KnownStep> steps_;
+  PoseShifts forgotten_path_ = PoseShifts::Zero();
 };
 
 }  // namespace motorcade

@@ -1,15 +1,13 @@
 #include "backend/window/estimate_reader.hpp"
 
-#include <array>
 #include <cmath>
 #include <iterator>
-
-#include "core/fixed_product.hpp"
+#include <vector>
 
 namespace motorcade {
 
 FrameCovariances EstimateReader::covariances(FrameId frame) const {
-  FrameCovariances covariances{.camera = cameraCovariance(frame), .objects = {}};
+  FrameCovariances covariances{.camera = cameraCovariances(frame), .objects = {}};
   for (const auto& [id, track] : window_.tracks())
     if (const auto object = this->covariances(track, frame)) covariances.objects.emplace(id, *object);
   return covariances;
@@ -37,30 +35,47 @@ void EstimateReader::consider(ObjectCovariances& known, const ObjectTrack& track
         std::hypot(*known.speed_sigma_mps, (velocity.transpose() * velocity_cam.stableNormalized()).norm());
 }
 
-std::optional<Matrix6d> EstimateReader::cameraCovariance(FrameId frame) const {
-  const auto now = window_.frames().find(frame),
-             after = window_.frames().upper_bound(FrameId{frame.value - kCameraCovarianceFrames});
+/// The frame from which the camera's motion up to this one is told.
+std::optional<FrameId> EstimateReader::startOfMotion(FrameId frame) const {
+  const auto after = window_.frames().upper_bound(FrameId{frame.value - motion_frames_});
   if (after == window_.frames().begin()) return std::nullopt;
   const auto before = std::prev(after);
-  if (before->second.part != now->second.part) return std::nullopt;
-  const std::array variables{before->second.x, now->second.x};
-  const auto joint = window_.solver().jointCovariance(variables);
-  if (!joint) return std::nullopt;
-  // x_b^-1 x_n with both perturbed: exp(-Ad(T_n_b) xi_b + xi_n)
-  const SE3 T_before_now = window_.cameraPose(before->first).inverse() * window_.cameraPose(frame);
-  Eigen::Matrix<double, 6, 12> J;
-  J << -T_before_now.inverse().adjoint(), Matrix6d::Identity();
-  const Eigen::Matrix<double, 6, 12> scaled = window_.designEffect() * J;
-  const Eigen::Matrix<double, 12, 6> J_T = J.transpose();
-  const ConsideredCalibration::PoseShifts shifts = window_.calibration().ofMotion(before->first, frame);
-  return fixedProduct(fixedProduct(scaled, Eigen::Matrix<double, 12, 12>(*joint)), J_T) + shifts * shifts.transpose();
+  if (before->second.part != window_.frames().at(frame).part) return std::nullopt;
+  return before->first;
+}
+
+/// Both at once, as they need the same cliques: of the motion x_b^-1 x_n, with both perturbed, and of x_n. What the
+/// prior of the first pose leaves open, a millimeter, is part of the latter.
+///   x_b^-1 x_n -> exp(-Ad(T_n_b) xi_b + xi_n)
+CameraCovariances EstimateReader::cameraCovariances(FrameId frame) const {
+  const auto before = startOfMotion(frame);
+  const CameraRecord& now = window_.frames().at(frame);
+  const SE3 T_world_now = window_.cameraPose(frame);
+  std::vector<VariableId> variables{now.x};
+  Eigen::MatrixXd J = Matrix6d::Identity();
+  if (before) {
+    variables.insert(variables.begin(), window_.frames().at(*before).x);
+    J.setIdentity(12, 12);
+    J.topRows<6>() << -(T_world_now.inverse() * window_.cameraPose(*before)).adjoint(), Matrix6d::Identity();
+  }
+  CameraCovariances covariances;
+  const auto joint = window_.solver().jointCovariance(variables, J);
+  if (!joint) return covariances;
+  const auto with = [&](const Matrix6d& covariance, const ConsideredCalibration::PoseShifts& shifts) -> Matrix6d {
+    return window_.designEffect() * covariance + shifts * shifts.transpose();
+  };
+  const ConsideredCalibration& calibration = window_.calibration();
+  if (before)
+    covariances.motion = with(joint->topLeftCorner<6, 6>(), calibration.ofMotion(*before, frame, T_world_now));
+  if (now.part == 0) covariances.pose = with(joint->bottomRightCorner<6, 6>(), calibration.ofPose(frame, T_world_now));
+  return covariances;
 }
 
 FrameEstimate EstimateReader::read(FrameId frame) const {
   const CameraRecord& camera = window_.frames().at(frame);
   FrameEstimate estimate{.head = camera.head,
                          .T_world_cam = window_.cameraPose(frame).normalized(),
-                         .camera_covariance = camera.covariance,
+                         .camera_covariances = camera.covariances,
                          .objects = {}};
   for (const auto& [id, track] : window_.tracks())
     if (track.records.contains(frame)) estimate.objects.push_back(readObject(id, track, frame));

@@ -7,7 +7,8 @@ namespace motorcade {
 /// Reads what a window tells of one of its frames. It changes nothing in the window, which must outlive it.
 class EstimateReader {
  public:
-  explicit EstimateReader(const SmoothingWindow& window) : window_(window) {}
+  explicit EstimateReader(const SmoothingWindow& window, int motion_frames = kCameraCovarianceFrames)
+      : window_(window), motion_frames_(motion_frames) {}
 
   /// Covariances of a frame, computed from the graph as it is now, with the errors of the calibration.
   FrameCovariances covariances(FrameId frame) const;
@@ -17,12 +18,14 @@ class EstimateReader {
   FrameEstimate read(FrameId frame) const;
 
  private:
-  std::optional<Matrix6d> cameraCovariance(FrameId frame) const;
+  CameraCovariances cameraCovariances(FrameId frame) const;
+  std::optional<FrameId> startOfMotion(FrameId frame) const;
   ObjectEstimate readObject(TrackId id, const ObjectTrack& track, FrameId frame) const;
 
   void consider(ObjectCovariances& covariances, const ObjectTrack& track, FrameId frame) const;
 
   const SmoothingWindow& window_;
+  int motion_frames_;
 };
 
 }  // namespace motorcade

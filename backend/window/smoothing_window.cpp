@@ -68,7 +68,9 @@ void SmoothingWindow::retireRecord(ObjectTrack& track, FrameId oldest, std::vect
 }
 
 void SmoothingWindow::keep(FrameId frame, const FrameCovariances& covariances) {
-  if (covariances.camera) frames_.at(frame).covariance = covariances.camera;
+  CameraCovariances& camera = frames_.at(frame).covariances;
+  if (covariances.camera.motion) camera.motion = covariances.camera.motion;
+  if (covariances.camera.pose) camera.pose = covariances.camera.pose;
   for (const auto& [id, object] : covariances.objects) tracks_.at(id).records.at(frame).covariances = object;
 }
 

@@ -14,10 +14,10 @@ namespace motorcade {
 /// The camera in one frame of the window.
 struct CameraRecord {
   FrameHead head;
-  VariableId x;                        // T_world_cam
-  int part = 0;                        // frames of one part are linked by what was measured
-  bool weak = false;                   // measurements hardly tell how it moved since the frame before
-  std::optional<Matrix6d> covariance;  // of T_cam(before)_cam(now), kCameraCovarianceFrames apart, as last computed
+  VariableId x;                   // T_world_cam
+  int part = 0;                   // frames of one part are linked by what was measured; the world is that of part 0
+  bool weak = false;              // measurements hardly tell how it moved since the frame before
+  CameraCovariances covariances;  // as last computed
 };
 
 /// Covariances of an object in one frame, as far as its graph determines them.
@@ -45,7 +45,7 @@ struct ObjectTrack {
 };
 
 struct FrameCovariances {
-  std::optional<Matrix6d> camera;  // as in CameraRecord
+  CameraCovariances camera;
   std::map<TrackId, ObjectCovariances> objects;
 };
 

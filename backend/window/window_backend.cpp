@@ -16,7 +16,7 @@ class WindowBackend::Publisher {
   Publisher(std::unique_ptr<SmoothingWindow> window, const WindowParams& params)
       : params_(requireValid(params)),
         window_(std::move(window)),
-        reader_(*window_),
+        reader_(*window_, params.motion_frames),
         continuous_(params.online_correction_s),
         settling_(params.settling_s) {}
 

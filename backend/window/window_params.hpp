@@ -17,7 +17,8 @@ struct WindowParams {
   double budget_ms = 0;    // for live drives: replay would not be reproducible
 
   bool compute_covariances = true;
-  CalibrationSigmas calibration{};  // is considered in covariances
+  int motion_frames = kCameraCovarianceFrames;  // over which the covariance of the camera's motion is told
+  CalibrationSigmas calibration{};              // is considered in covariances
   /// A correction of an object's whole track would look like motion when published online. So the published pose moves
   /// as the object does, and corrections come in over this time; 0 publishes each pose as it is estimated.
   double online_correction_s = 0.5;

@@ -95,6 +95,7 @@ typedef struct {
   const char* settings;  // lines of a configuration file: "frontend.optical_flow.max_tracks = 1000"; or NULL
   void (*log)(motorcade_log_level level, const char* text, void* user);  // from its threads, several at once; or NULL
   void* log_user;
+  int64_t covariance_frames;  // that motion_covariance reaches back: 1 to 60
 } motorcade_options;
 motorcade_code motorcade_options_init(motorcade_options* options);  // sets all but the size to the default
 typedef enum { MOTORCADE_PUSH_ACCEPTED, MOTORCADE_PUSH_REPLACED, MOTORCADE_PUSH_REJECTED } motorcade_push_status;
@@ -144,12 +145,14 @@ typedef struct {
   motorcade_cause cause;
   int segment;                                    // counts up where nothing measured links the poses before and after
   int dropped_before;                             // pairs since the result before that a newer one replaced
-  double T_world_cam[12], motion_covariance[36];  // the latter of T_cam(before)_cam(now), ten frames apart
+  double T_world_cam[12], motion_covariance[36];  // the latter of T_cam(before)_cam(now)
   double velocity[6], velocity_covariance[36];    // own, since the last frame seen, in its axes [m/s], [rad/s]
   bool has_motion_covariance;
   size_t object_count;
   double latency_ms;    // from push to the result
   const char* problem;  // why the pair was lost or rejected, or the rig is wrong; lives as long as the result
+  bool has_pose_covariance;
+  double pose_covariance[36];  // of T_world_cam, relative to the frame that defines the world: grows with the way
 } motorcade_frame;
 typedef enum { MOTORCADE_STATE_MOVING, MOTORCADE_STATE_STOPPED, MOTORCADE_STATE_PREDICTED } motorcade_state;
 typedef struct {

@@ -121,7 +121,10 @@ struct Result {
   Cause cause = Cause::kNone;
   int segment = 0;  // counts up where nothing measured links the poses before and after
   std::array<double, 12> T_world_cam{};
-  std::optional<std::array<double, 36>> motion_covariance{};  // of T_cam(before)_cam(now), ten frames apart
+  /// Of T_world_cam, relative to the frame that defines the world: grows with the way. Empty behind a gap.
+  std::optional<std::array<double, 36>> pose_covariance{};
+  /// Of T_cam(before)_cam(now), `Options::covariance_frames` apart, or since the last frame before that with a result.
+  std::optional<std::array<double, 36>> motion_covariance{};
   /// The camera's own, along its axes [m/s] and about them [rad/s]: since the frame before that was seen.
   std::array<double, 6> velocity{};
   std::array<double, 36> velocity_covariance{};
@@ -150,6 +153,7 @@ class MOTORCADE_API Tracker {
     int realtime_priority = 0;                 // of its threads: 1 to 99 is SCHED_FIFO, which may need a privilege
     std::vector<int> cpus{};                   // that its threads may run on; empty: all
     std::chrono::milliseconds patience{5000};  // replay: a `push` waits so long at most for results to be taken
+    int covariance_frames = 10;                // that `Result::motion_covariance` reaches back: 1 to 60
     std::string settings{};                    // lines of the program's configuration: "backend.kind = 'filter'"
     std::function<void(LogLevel, const std::string&)> log{};  // called from its threads, several at once
   };

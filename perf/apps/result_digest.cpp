@@ -54,7 +54,8 @@ std::uint64_t digestOf(const FrameEstimate& estimate) {
   digest.add(estimate.head.stamp.ns);
   digest.add(static_cast<std::int64_t>(estimate.head.status));
   digest.add(estimate.T_world_cam);
-  digest.add(estimate.camera_covariance);
+  digest.add(estimate.camera_covariances.motion);
+  digest.add(estimate.camera_covariances.pose);
   for (const ObjectEstimate& object : estimate.objects) {
     digest.add(object.track.value);
     digest.add(static_cast<std::int64_t>(object.state));

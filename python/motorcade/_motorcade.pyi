@@ -18,6 +18,7 @@ class Tracker:
         realtime_priority: int,
         cpus: Sequence[int],
         patience_s: float,
+        covariance_frames: int,
         settings: str,
     ) -> None: ...
     def push(self, left: Image, right: Image, stamp_ns: int, frame: int, format: str) -> Push: ...

@@ -159,8 +159,10 @@ class Result:
     """Counts up where nothing measured links the poses before and after."""
     T_world_cam: Array
     """4x4."""
+    pose_covariance: Array | None
+    """6x6, of ``T_world_cam``, relative to the frame that defines the world: grows with the way. None behind a gap."""
     motion_covariance: Array | None
-    """6x6, of the camera's motion T_cam(before)_cam(now), ten frames apart."""
+    """6x6, of the camera's motion T_cam(before)_cam(now), ``covariance_frames`` apart."""
     velocity: Array
     """6: the camera's own motion since the frame before, in its axes: velocity [m/s] and turn rate [rad/s]."""
     velocity_covariance: Array

@@ -71,6 +71,8 @@ class Run:
     """n."""
     T_world_cam: Array
     """n x 4 x 4."""
+    pose_covariance: Array
+    """n x 6 x 6."""
     motion_covariance: Array
     """n x 6 x 6."""
     velocity: Array
@@ -124,6 +126,7 @@ def run(
     realtime_priority: int = 0,
     cpus: Sequence[int] = (),
     patience_s: float = 5.0,
+    covariance_frames: int = 10,
     settings: str = "",
     log: Log | None = None,
 ) -> Run:
@@ -142,6 +145,7 @@ def run(
         realtime_priority=realtime_priority,
         cpus=cpus,
         patience_s=patience_s,
+        covariance_frames=covariance_frames,
         settings=settings,
         log=log,
     )
@@ -206,6 +210,7 @@ def _arrays(
         cause=np.array([result.cause.value for result in results], dtype=_text(Cause)),
         segment=_integers([result.segment for result in results]),
         T_world_cam=_stacked([result.T_world_cam for result in results], 4, 4),
+        pose_covariance=_stacked([result.pose_covariance for result in results], 6, 6),
         motion_covariance=_stacked([result.motion_covariance for result in results], 6, 6),
         velocity=_stacked([result.velocity for result in results], 6),
         velocity_covariance=_stacked([result.velocity_covariance for result in results], 6, 6),

@@ -38,6 +38,7 @@ class Tracker:
     * ``realtime_priority`` of them: 1 to 99 is SCHED_FIFO, which may need a privilege
     * ``cpus`` that they may run on; empty: all
     * ``patience_s``: in replay, a ``push`` waits so long at most for results to be taken
+    * ``covariance_frames`` that a result's ``motion_covariance`` reaches back: 1 to 60
     * ``settings``: lines of the program's configuration file: ``"frontend.optical_flow.max_tracks = 1000"``
     * ``log``: called with a level and a line, from the tracker's threads
     * ``on_result``: called with each ``Result`` on a thread of the tracker, in place of ``poll`` and ``wait``
@@ -56,6 +57,7 @@ class Tracker:
         realtime_priority: int = 0,
         cpus: Sequence[int] = (),
         patience_s: float = 5.0,
+        covariance_frames: int = 10,
         settings: str = "",
         log: Log | None = None,
         on_result: Callable[[Result], object] | None = None,
@@ -73,6 +75,7 @@ class Tracker:
             realtime_priority=realtime_priority,
             cpus=cpus,
             patience_s=patience_s,
+            covariance_frames=covariance_frames,
             settings=settings,
         )
         _running.add(self)

@@ -109,10 +109,10 @@ py::object toPython(const Result& result) {
   return packaged("Result")(
       "frame"_a = result.frame, "stamp_ns"_a = result.stamp_ns, "status"_a = pythonOf(result.status),
       "cause"_a = pythonOf(result.cause), "segment"_a = result.segment,
-      "T_world_cam"_a = transformOf(result.T_world_cam), "motion_covariance"_a = squareOf(result.motion_covariance),
-      "velocity"_a = vectorOf(result.velocity), "velocity_covariance"_a = squareOf(result.velocity_covariance),
-      "objects"_a = pythonOf(result.objects), "dropped_before"_a = result.dropped_before,
-      "latency_ms"_a = result.latency_ms, "problem"_a = result.problem);
+      "T_world_cam"_a = transformOf(result.T_world_cam), "pose_covariance"_a = squareOf(result.pose_covariance),
+      "motion_covariance"_a = squareOf(result.motion_covariance), "velocity"_a = vectorOf(result.velocity),
+      "velocity_covariance"_a = squareOf(result.velocity_covariance), "objects"_a = pythonOf(result.objects),
+      "dropped_before"_a = result.dropped_before, "latency_ms"_a = result.latency_ms, "problem"_a = result.problem);
 }
 
 py::object toPython(const Tracker::Push& push) {

@@ -49,6 +49,7 @@ Tracker::Options optionsOf(const py::kwargs& given) {
   options.realtime_priority = optionOf<int>(given, "realtime_priority");
   options.cpus = optionOf<std::vector<int>>(given, "cpus");
   options.patience = patienceOf(optionOf<double>(given, "patience_s"));
+  options.covariance_frames = optionOf<int>(given, "covariance_frames");
   options.settings = optionOf<std::string>(given, "settings");
   return options;
 }

@@ -134,7 +134,8 @@ class DescribingACamera(unittest.TestCase):
 
     def test_options_out_of_range_are_named(self) -> None:
         for option, value in [("policy", "fast"), ("axes", "ned"), ("threads", 0), ("patience_s", -1.0),
-                              ("settings", "frontend.points = 3"), ("cpus", [-1]), ("realtime_priority", 100)]:
+                              ("settings", "frontend.points = 3"), ("cpus", [-1]), ("realtime_priority", 100),
+                              ("covariance_frames", 61)]:
             self.assertEqual(self.error(CAMERA, **{option: value}).field, f"options.{option}")
 
     def test_a_rig_is_rectified_inside(self) -> None:
@@ -300,6 +301,7 @@ class FollowingADrive(unittest.TestCase):
         self.assertEqual((last.T_world_cam.shape, last.velocity.shape), ((4, 4), (6,)))
         self.assertEqual((last.velocity_covariance.shape, last.motion_covariance.shape), ((6, 6), (6, 6)))
         self.assertIsNone(results[9].motion_covariance)
+        self.assertEqual(results[9].pose_covariance.shape, (6, 6))
         self.assertGreater(last.latency_ms, 0)
         (thing,) = last.objects
         self.assertIs(thing.state, motorcade.State.MOVING)
@@ -338,7 +340,8 @@ class FollowingADrive(unittest.TestCase):
                 self.assertEqual(getattr(run, name)[index], frame[name])
             for name in ("T_world_cam", "velocity", "velocity_covariance"):
                 self.assertEqual(getattr(run, name)[index].tobytes(), frame[name])
-            self.assertEqual(np.isnan(run.motion_covariance[index]).all(), frame["motion_covariance"] is None)
+            for name in ("pose_covariance", "motion_covariance"):
+                self.assertEqual(np.isnan(getattr(run, name)[index]).all(), frame[name] is None)
             for members in frame["objects"]:
                 thing = dict(zip(thing_fields, members))
                 row = run.objects[first]

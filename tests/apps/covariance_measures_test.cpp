@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/matchers.hpp"
 #include "tests/support/noise.hpp"
 
 namespace motorcade {
@@ -82,6 +83,25 @@ TEST(CameraErrorSamples, AreThoseOfTenFramesWithoutTheMounting) {
   for (const auto& sample : plain) EXPECT_NEAR(sample.xi.head<3>().norm(), 0.2, 0.1);  // ten meters, turned by .02 rad
 }
 
+/// A drift of a centimeter per frame.
+TEST(CameraPoseSamples, AreErrorsSinceTheFirstFrame) {
+  std::vector<ComparedFrame> frames;
+  CovarianceRows rows;
+  for (int i = 0; i < 21; ++i) {
+    ComparedFrame frame;
+    frame.frame = {100 + i};
+    frame.T_world_cam_true = SE3(expSO3({0, 0.3, 0}), {1, 2, 3.0 + i});
+    frame.T_world_cam = frame.T_world_cam_true * SE3(Eigen::Matrix3d::Identity(), {0, 0, 0.5 - 0.01 * i});
+    frames.push_back(frame);
+    rows.push_back({frame.frame, {}, Matrix6d::Identity()});
+  }
+  const auto samples = cameraPoseSamples(frames, rows);
+  ASSERT_EQ(samples.size(), 4U) << "frames 105, 110, 115, 120";
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    EXPECT_THAT(Eigen::Vector3d(samples[k].xi.head<3>()),
+                test::IsNear(Eigen::Vector3d(0, 0, 0.05 * (static_cast<double>(k) + 1)), 1e-9));
+}
+
 /// A run with independent errors in every pose, and the covariances that they have.
 RunFolder noisyRun(int seed, double claimed, const std::vector<std::int64_t>& track_of_object) {
   Noise noise(seed);
@@ -93,7 +113,7 @@ RunFolder noisyRun(int seed, double claimed, const std::vector<std::int64_t>& tr
     const FrameId frame{i};
     run.online.camera.push_back(motionOver(i) * SE3::exp(noise.correlated<6>(P)));
     if (i >= kCameraCovarianceFrames)
-      run.covariances.push_back({frame, {}, claimed * (P + before * P * before.transpose())});
+      run.online.covariances.push_back({frame, {}, claimed * (P + before * P * before.transpose())});
     for (std::size_t k = 0; k < track_of_object.size(); ++k) {
       // Body frames of the runs differ by a constant, some centimeters and a turn.
       const SE3 T_cam_body = SE3(expSO3({0, 0.3, 0}), {8.0 * static_cast<double>(k), 1, 15}) *
@@ -102,7 +122,7 @@ RunFolder noisyRun(int seed, double claimed, const std::vector<std::int64_t>& tr
       row.object.track = {track_of_object[k]};
       row.object.T_world_body = run.online.camera.back() * T_cam_body;
       run.online.objects.push_back(row);
-      run.covariances.push_back({frame, row.object.track, claimed * P});
+      run.online.covariances.push_back({frame, row.object.track, claimed * P});
     }
   }
   return run;

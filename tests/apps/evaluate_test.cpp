@@ -140,8 +140,11 @@ TEST_F(EvaluateDrive, APerfectRunHasNoErrors) {
   EXPECT_NEAR(evaluation.final.image_within_30m.hota, 1, 1e-9);
   EXPECT_EQ(evaluation.online.first_within_30m.frames.max, 0);
   EXPECT_EQ(evaluation.final.detection.false_rows, 0);
-  EXPECT_DOUBLE_EQ(evaluation.camera_covariance.pose.coverage_95, 1);
-  EXPECT_DOUBLE_EQ(evaluation.object_covariance.pose.coverage_95, 1);
+  for (const KindEvaluation* kind : {&evaluation.online, &evaluation.final}) {
+    EXPECT_DOUBLE_EQ(kind->covariances.camera.pose.coverage_95, 1);
+    EXPECT_DOUBLE_EQ(kind->covariances.camera_pose.pose.coverage_95, 1);
+    EXPECT_DOUBLE_EQ(kind->covariances.objects.pose.coverage_95, 1);
+  }
 }
 
 TEST_F(EvaluateDrive, MissesSwitchesAndFalseRowsAreCounted) {

@@ -70,7 +70,7 @@ class EvaluateDrive : public testing::Test {
       const SE3 T_first = camera(first).inverse();
       estimate.T_world_cam = T_first * camera(i);
       estimate.objects.push_back(lead(i, 3));
-      estimate.camera_covariance = Matrix6d::Identity() * 1e-4;
+      estimate.camera_covariances = {.motion = Matrix6d::Identity() * 1e-4, .pose = Matrix6d::Identity() * 1e-4};
       change(i, estimate);
       for (auto& object : estimate.objects) object.T_world_body = T_first * object.T_world_body;
       FrameTiming timing;

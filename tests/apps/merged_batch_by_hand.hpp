@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/evaluate/axis_reliability.hpp"
 #include "apps/merge/merge_command.hpp"
 #include "apps/tasks/batch_folder.hpp"
 #include "apps/tasks/plan.hpp"
@@ -53,6 +54,13 @@ class MergeBatch : public testing::Test {
     return {{"rows", rows}, {"brier", squares / rows}, {"tenths", tenths}};
   }
 
+  /// Of ten errors along each axis, eight in the least tenth and two in the largest.
+  static AxisReliability eightOfTenErrors() {
+    AxisReliability reliability;
+    for (auto& axis : reliability.errors) axis.front() = 8, axis.back() = 2;
+    return reliability;
+  }
+
   static nlohmann::json evaluationOf(const Result& result) {
     nlohmann::json json;
     json["frames"] = 50;
@@ -62,6 +70,11 @@ class MergeBatch : public testing::Test {
                                         {"rotation_deg_per_m", 0.00321},
                                         {"by_length", {{{"length_m", result.labels ? 100 : 10}}}}};
     json["online"]["camera"]["kitti"] = {{"translation_percent", 2.5}, {"rotation_deg_per_m", 0.004}};
+    const nlohmann::json by_axis = jsonOf(eightOfTenErrors());
+    json["covariance"] = {
+        {"camera", {{"by_axis", by_axis}}},
+        {"camera_mounted_with_truth_noise", nullptr},
+        {"final", {{"camera", {{"by_axis", by_axis}}}, {"camera_since_start", {{"by_axis", by_axis}}}}}};
     json["worst_frames"] = {{"camera", {{{"frame", 7}, {"rpe_t_m", result.ate_m}, {"rpe_r_deg", 0.1}}}},
                             {"objects", nlohmann::json::array()}};
     if (!result.labels) return json;

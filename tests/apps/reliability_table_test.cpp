@@ -11,6 +11,7 @@ namespace {
 using test::MergeBatch;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST_F(MergeBatch, ExistenceIsCountedOverAllDrives) {
   write("a", {{.drive = "x", .ate_m = 0.25}, {.drive = "y", .ate_m = 0.5}, {.drive = "z", .labels = false}});
@@ -44,6 +45,20 @@ TEST_F(MergeBatch, KindsAreCountedOverAllDrives) {
   EXPECT_THAT(merged("results.md"), AllOf(HasSubstr("| 0.625 / - | 12.5 % / - |"),
                                           HasSubstr("| default | final | 100 | 0.1 | 0.1 | 0.9 of 0.8 (100) |\n")));
   EXPECT_THAT(merged("report.html"), HasSubstr("<td class=\"number\">0.9 of 0.8 (100)</td>"));
+}
+
+/// Where the truth's noise is not known, that of the camera's motion counts as it is.
+TEST_F(MergeBatch, CovariancesAreComparedWithErrorsByAxis) {
+  write("a", {{.drive = "x"}, {.drive = "y"}});
+  const std::string shares = " 80 / 80 / 80 % | 80 / 80 / 80 % | 80 / 80 / 80 % |";
+  const std::string table = merged("results.md");
+  EXPECT_THAT(table, HasSubstr("| default | final | camera, over ten frames | 20 |" + shares + shares + "\n"));
+  EXPECT_THAT(table, HasSubstr("| default | final | camera, since the start | 20 |" + shares));
+  EXPECT_THAT(table, HasSubstr("| default | online | camera, over ten frames | 20 |" + shares));
+  EXPECT_THAT(table, Not(HasSubstr("| default | online | objects |"))) << "there are none";
+  const std::string page = merged("report.html");
+  EXPECT_THAT(page, HasSubstr("default, final: camera, since the start (20 errors)"));
+  EXPECT_THAT(page, HasSubstr("found, %"));
 }
 
 TEST_F(MergeBatch, SharesOfSizesWithinTwoStandardDeviationsAreAColumn) {

@@ -26,12 +26,13 @@ class ToyBackend final : public Backend {
     if (begun_) T_world_cam_ = T_world_cam_ * measurements->odometry.T_previous_now;
     begun_ = true;
     result.online.T_world_cam = T_world_cam_;
+    result.online.camera_covariances = {.motion = Matrix6d::Identity(), .pose = Matrix6d::Identity()};
     result.online.objects.resize(1);
     result.online.objects[0].T_world_body = T_world_cam_;
     result.online.objects[0].velocity_world_mps = T_world_cam_.rotation().col(2);
     window_.push_back(result.online);
     if (window_.size() > 2) {
-      result.finals.push_back(window_.front());
+      result.settled = result.finals = {window_.front()};
       window_.erase(window_.begin());
     }
     return std::make_shared<const Estimates>(result);
@@ -54,7 +55,7 @@ FrameMeasurementsPtr measurementsOf(std::int64_t frame) {
 }
 
 struct ToyRun {
-  std::vector<FrameEstimate> online, finals;
+  std::vector<FrameEstimate> online, settled, finals;
 };
 
 ToyRun driveFailing(const std::set<std::int64_t>& fails) {
@@ -64,6 +65,7 @@ ToyRun driveFailing(const std::set<std::int64_t>& fails) {
     try {
       const EstimatesPtr estimates = backend(measurementsOf(frame));
       result.online.push_back(estimates->online);
+      result.settled.insert(result.settled.end(), estimates->settled.begin(), estimates->settled.end());
       result.finals.insert(result.finals.end(), estimates->finals.begin(), estimates->finals.end());
     } catch (const std::runtime_error&) {
       EXPECT_TRUE(fails.contains(frame));
@@ -89,6 +91,15 @@ TEST(RestartingBackend, GoesOnInTheSameWorldAfterFramesThatFailed) {
   const ToyRun undisturbed = driveFailing({}), disturbed = driveFailing({3, 6, 7});
   EXPECT_THAT(idsOf(disturbed.online), ElementsAre(0, 1, 2, 4, 5, 8, 9));
   expectOnTheSameCircle(disturbed.online, undisturbed);
+  expectOnTheSameCircle(disturbed.settled, undisturbed);
+}
+
+/// What a pose's covariance is relative to went with the back-end that knew it.
+TEST(RestartingBackend, TellsNoCovarianceOfAPoseWhoseStartIsGone) {
+  for (const FrameEstimate& estimate : driveFailing({3}).online) {
+    EXPECT_EQ(estimate.camera_covariances.pose.has_value(), estimate.head.frame.value < 3);
+    EXPECT_TRUE(estimate.camera_covariances.motion);
+  }
 }
 
 TEST(RestartingBackend, GivesEachFrameThatDidNotFailOneFinalEstimate) {

@@ -144,6 +144,7 @@ void expectSame(const Result& expected, const motorcade_result* result) {
   EXPECT_EQ(frame.segment, expected.segment);
   EXPECT_EQ(frame.dropped_before, expected.dropped_before);
   expectSame(expected.T_world_cam, frame.T_world_cam, "T_world_cam");
+  expectSame(expected.pose_covariance, frame.has_pose_covariance, frame.pose_covariance);
   expectSame(expected.motion_covariance, frame.has_motion_covariance, frame.motion_covariance);
   expectSame(expected.velocity, frame.velocity, "own velocity");
   expectSame(expected.velocity_covariance, frame.velocity_covariance, "own velocity covariance");

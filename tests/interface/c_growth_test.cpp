@@ -114,8 +114,10 @@ TEST(CInterfaceGrowth, NewerProgramsAreServedWhileTheirNewMembersAreZero) {
 
 /// What is compiled into programs must not move: members are appended (docs: the header's rule). 64-bit Linux.
 TEST(CInterfaceGrowth, TheFirstVersionsLayoutStays) {
-  const std::array<std::size_t, 13> last{112, 120, 88, 40, 40, 80, 24, 48, 792, 784, 40, 4, 1};
-  constexpr std::size_t kObjectAtFirst = 752;
+  const std::array<std::size_t, 13> last{112, 120, 88, 40, 40, 88, 24, 48, 1088, 784, 40, 4, 1};
+  constexpr std::size_t kOptionsAtFirst = 80, kFrameAtFirst = 792, kObjectAtFirst = 752;
+  EXPECT_EQ(offsetof(motorcade_options, covariance_frames), kOptionsAtFirst);
+  EXPECT_EQ(offsetof(motorcade_frame, has_pose_covariance), kFrameAtFirst);
   EXPECT_EQ(offsetof(motorcade_object, acceleration_mps2), kObjectAtFirst);
   const std::array<std::size_t, 13> now{sizeof(motorcade_lens),
                                         sizeof(motorcade_rig),
@@ -141,10 +143,10 @@ TEST(CInterfaceGrowth, StructsEndWithTheirLastMember) {
   EXPECT_EQ(offsetof(motorcade_camera, ignored_mask) + sizeof(void*), sizeof(motorcade_camera));
   EXPECT_EQ(offsetof(motorcade_image, stride_bytes) + sizeof(std::int64_t), sizeof(motorcade_image));
   EXPECT_EQ(offsetof(motorcade_pair, frame) + sizeof(std::int64_t), sizeof(motorcade_pair));
-  EXPECT_EQ(offsetof(motorcade_options, log_user) + sizeof(void*), sizeof(motorcade_options));
+  EXPECT_EQ(offsetof(motorcade_options, covariance_frames) + sizeof(std::int64_t), sizeof(motorcade_options));
   EXPECT_EQ(offsetof(motorcade_push, why) + sizeof(char*), sizeof(motorcade_push));
   EXPECT_EQ(offsetof(motorcade_counts, untaken) + sizeof(std::int64_t), sizeof(motorcade_counts));
-  EXPECT_EQ(offsetof(motorcade_frame, problem) + sizeof(char*), sizeof(motorcade_frame));
+  EXPECT_EQ(offsetof(motorcade_frame, pose_covariance) + sizeof(double[36]), sizeof(motorcade_frame));
   EXPECT_EQ(offsetof(motorcade_object, yaw_acceleration_sigma_radps2) + sizeof(double), sizeof(motorcade_object));
   EXPECT_EQ(offsetof(motorcade_mask, inside) + sizeof(void*), sizeof(motorcade_mask));
 }

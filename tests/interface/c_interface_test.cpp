@@ -200,6 +200,7 @@ TEST(CInterfaceOptions, BadMembersAreNamed) {
   EXPECT_EQ(toldWith([](auto& o) { o.cpu_count = 1; }), "-2 options.cpus");
   EXPECT_EQ(toldWith([](auto& o) { o.cpu_count = SIZE_MAX, o.cpus = &kNoCpu; }), "-1 options.cpu_count");
   EXPECT_EQ(toldWith([](auto& o) { o.cpu_count = 1, o.cpus = &kNoCpu; }), "-1 options.cpus");
+  EXPECT_EQ(toldWith([](auto& o) { o.covariance_frames = 0; }), "-1 options.covariance_frames");
   EXPECT_EQ(toldWith([](auto& o) { o.patience_ms = -1; }), "-1 options.patience_ms");
   EXPECT_EQ(toldWith([](auto& o) { o.settings = "frontend.no_such_key = 1"; }), "-1 options.settings");
   EXPECT_THAT(motorcade_last_error(), HasSubstr("no_such_key"));

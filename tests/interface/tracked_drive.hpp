@@ -100,6 +100,7 @@ class ResultBytes {
   static std::string of(const Result& result) {
     ResultBytes bytes;
     bytes.add(result.frame, result.stamp_ns, result.status, result.cause, result.segment, result.T_world_cam);
+    bytes.addOptional(result.pose_covariance);
     bytes.addOptional(result.motion_covariance);
     bytes.add(result.velocity, result.velocity_covariance, result.dropped_before, result.objects.size());
     for (const Result::Object& object : result.objects) bytes.addObject(object);

@@ -131,6 +131,8 @@ TEST(TrackerMisuse, EachBadOptionIsNamed) {
       {"options.threads", [](Tracker::Options& o) { o.threads = 65; }},
       {"options.realtime_priority", [](Tracker::Options& o) { o.realtime_priority = -1; }},
       {"options.realtime_priority", [](Tracker::Options& o) { o.realtime_priority = 100; }},
+      {"options.covariance_frames", [](Tracker::Options& o) { o.covariance_frames = 0; }},
+      {"options.covariance_frames", [](Tracker::Options& o) { o.covariance_frames = 61; }},
       {"options.cpus", [](Tracker::Options& o) { o.cpus = {-1}; }},
       {"options.cpus",
        [](Tracker::Options& o) {

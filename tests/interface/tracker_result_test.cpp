@@ -67,6 +67,21 @@ TEST_F(Results, TellTheCamerasMotion) {
     EXPECT_LT((drift.topRightCorner<3, 1>().norm()), 0.5);
   }
   EXPECT_TRUE(results.back().motion_covariance);
+  for (const Result& result : results) ASSERT_TRUE(result.pose_covariance);
+  EXPECT_GT(squareOf(*results.back().pose_covariance).trace(), 10 * squareOf(*results[0].pose_covariance).trace());
+}
+
+TEST_F(Results, TellHowSureTheMotionIsOverAsManyFramesAsAskedFor) {
+  for (const char* kind : {"joint", "filter", "filter_map", "pose_graph"}) {
+    Tracker::Options options = replay();
+    options.settings = std::string("backend.kind = '") + kind + "'";
+    const Result by_ten = track(drive_, options).back();
+    options.covariance_frames = 1;
+    const std::vector<Result> by_step = track(drive_, options);
+    EXPECT_FALSE(by_step[0].motion_covariance) << kind;
+    EXPECT_TRUE(by_step[1].motion_covariance) << kind;
+    EXPECT_LT(squareOf(*by_step.back().motion_covariance).trace(), squareOf(*by_ten.motion_covariance).trace()) << kind;
+  }
 }
 
 /// Of the first frame nothing is known: not a velocity of zero, for sure.
@@ -117,6 +132,7 @@ TEST_F(Results, HaveSymmetricPositiveSemidefiniteCovariances) {
     for (const Result& result : track(dark, options)) {
       expectCovariance(result.velocity_covariance);
       if (result.motion_covariance) expectCovariance(*result.motion_covariance);
+      if (result.pose_covariance) expectCovariance(*result.pose_covariance);
       for (const Result::Object& object : result.objects) {
         ++objects;
         expectCovariance(object.velocity_covariance);
@@ -150,9 +166,10 @@ TEST_F(Results, InRep103AxesAreTheOpticalOnesTurned) {
                 i == 0);
     EXPECT_TRUE(squareOf(rep[i].velocity_covariance)
                     .isApprox(R6 * squareOf(optical[i].velocity_covariance) * R6.transpose(), kTol));
-    if (optical[i].motion_covariance) {
-      EXPECT_TRUE(squareOf(*rep[i].motion_covariance)
-                      .isApprox(R6 * squareOf(*optical[i].motion_covariance) * R6.transpose(), kTol));
+    for (const auto covariance : {&Result::motion_covariance, &Result::pose_covariance}) {
+      if (!(optical[i].*covariance)) continue;
+      EXPECT_TRUE(
+          squareOf(*(rep[i].*covariance)).isApprox(R6 * squareOf(*(optical[i].*covariance)) * R6.transpose(), kTol));
     }
     ASSERT_EQ(optical[i].objects.size(), rep[i].objects.size());
     for (std::size_t k = 0; k < rep[i].objects.size(); ++k, ++objects) {

@@ -49,7 +49,7 @@ FrameEstimate estimateOf(int i) {
     object.acceleration = {.along_mps2 = -2.5, .along_sigma_mps2 = 0.5, .yaw_radps2 = 0.25, .yaw_sigma_radps2 = 0.125};
   if (i != 2) object.cuboid = cuboid;
   estimate.objects.push_back(object);
-  estimate.camera_covariance = Matrix6d::Identity() * 0.02;
+  estimate.camera_covariances = {.motion = Matrix6d::Identity() * 0.02, .pose = Matrix6d::Identity() * (i + 1)};
   return estimate;
 }
 
@@ -103,9 +103,16 @@ TEST(RunFolder, ComesBackAsWritten) {
   EXPECT_DOUBLE_EQ(row.object.acceleration->along_sigma_mps2, 0.5);
   EXPECT_DOUBLE_EQ(row.object.acceleration->yaw_radps2, 0.25);
   EXPECT_DOUBLE_EQ(row.object.acceleration->yaw_sigma_radps2, 0.125);
-  ASSERT_EQ(run.covariances.size(), 6u);
-  EXPECT_FALSE(run.covariances[0].track.valid());
-  EXPECT_THAT(run.covariances[1].covariance, IsNear(Matrix6d::Identity() * 0.01, 1e-12));
+  ASSERT_EQ(run.online.covariances.size(), 6u);
+  EXPECT_FALSE(run.online.covariances[0].track.valid());
+  EXPECT_THAT(run.online.covariances[1].covariance, IsNear(Matrix6d::Identity() * 0.01, 1e-12));
+  ASSERT_EQ(run.final.covariances.size(), 6u);
+  EXPECT_EQ(run.final.covariances[3].track.value, 4);
+  for (const RunFolder::Trajectories* kind : {&run.online, &run.final}) {
+    ASSERT_EQ(kind->pose_covariances.size(), 3u);
+    EXPECT_EQ(kind->pose_covariances[1].frame.value, 6);
+    EXPECT_THAT(kind->pose_covariances[1].covariance, IsNear(Matrix6d::Identity() * 7, 1e-12));
+  }
   EXPECT_DOUBLE_EQ(run.frames[1].latency_ms, 30.5);
 }
 

@@ -58,7 +58,7 @@ SE3 motionOf(const JointGraph& graph) { return graph.cameraPose(kBefore).inverse
 
 TEST(CalibrationResponse, MotionsShiftAsTheJointEstimateDoes) {
   const auto exact = afterDrive();
-  const auto shifts = exact->calibration().ofMotion(kBefore, kNow);
+  const auto shifts = exact->calibration().ofMotion(kBefore, kNow, exact->cameraPose(kNow));
   // The estimate knows older frames, too, and its landmarks' weights change with their residuals.
   constexpr double kTolerance = 0.32, kSmall_m = 2.5e-4, kSmall_rad = 4e-6;
   for (int k = 0; k < kCalibrationErrors; ++k) {
@@ -74,7 +74,7 @@ TEST(CalibrationResponse, AMotionAcrossFramesWithoutPointsShiftsAsOneWithThem) {
                                     if (m.head.frame.value > 12 && m.head.frame.value < 15) m.at_rest.clear();
                                   });
   const auto scale = [](const JointGraph& graph, std::int64_t before, std::int64_t now) {
-    return graph.calibration().ofMotion({before}, {now}).row(2).norm();
+    return graph.calibration().ofMotion({before}, {now}, graph.cameraPose({now})).row(2).norm();
   };
   EXPECT_GT(scale(*blind, 12, 15), 0.5 * scale(*seen, 12, 15));
   EXPECT_LT(scale(*blind, 12, 15), 2 * scale(*seen, 12, 15));

@@ -103,6 +103,7 @@ TEST(CameraPath, AddsUpPosesAndCovariances) {
   EXPECT_NEAR((*covariance)(2, 2), 0.02, 1e-12);
   EXPECT_NEAR((*covariance)(0, 0), 0.02 + 0.01, 1e-12);  // a turn in frame 2 moves frame 3 by 1 m per rad
   EXPECT_FALSE(path.covarianceSince(FrameId{-1}, FrameId{3}));
+  EXPECT_THAT(path.find(FrameId{3})->pose_covariance, IsNear(*path.covarianceSince(FrameId{0}, FrameId{3}), 1e-12));
   EXPECT_EQ(path.find(FrameId{9}), nullptr);
 }
 

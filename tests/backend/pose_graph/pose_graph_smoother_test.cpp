@@ -35,7 +35,7 @@ TEST(PoseGraphSmoother, ObjectsAreBetterThanRawAndThanTheFilter) {
     for (int i = 0; i < again.options().frames; ++i) {
       const auto m = again.measure(i);
       T_world_cam = T_world_cam * m->odometry.T_previous_now;
-      seen.push_back({.head = m->head, .T_world_cam = T_world_cam, .camera_covariance = {}, .objects = {}});
+      seen.push_back({.head = m->head, .T_world_cam = T_world_cam, .camera_covariances = {}, .objects = {}});
       for (const auto& o : m->objects)
         seen.back().objects.push_back(
             {.track = o.track, .T_world_body = T_world_cam * o.T_cam_body, .box = {}, .covariance = {}});
@@ -82,11 +82,11 @@ double cameraNees(const std::vector<FrameEstimate>& estimates, const SimulatedDr
   double sum = 0;
   int count = 0;
   for (std::size_t i = 10; i < estimates.size(); i += 5) {
-    if (!estimates[i].camera_covariance) continue;
+    if (!estimates[i].camera_covariances.motion) continue;
     const int n = static_cast<int>(i);
     const SE3 truth = drive.camera(n - 10).inverse() * drive.camera(n);
     const Vector6d error = (truth.inverse() * estimates[i - 10].T_world_cam.inverse() * estimates[i].T_world_cam).log();
-    sum += error.dot(estimates[i].camera_covariance->llt().solve(error)) / 6;
+    sum += error.dot(estimates[i].camera_covariances.motion->llt().solve(error)) / 6;
     ++count;
   }
   return sum / count;

@@ -23,11 +23,14 @@ PoseShifts someShifts() {
   return shifts;
 }
 
+SE3 poseIn(std::int64_t frame) { return frame == 0 ? SE3{} : (poseIn(frame - 1) * kStep).normalized(); }
+
 /// Frames 1 to `last`, each with the same step.
 ConsideredCalibration afterSteps(std::int64_t last) {
   ConsideredCalibration calibration(kPointRig, {});
   for (FrameId now{1}; now.value <= last; ++now.value)
-    calibration.set(now, {.seconds = kDt_s, .T_before_now = kStep, .shifts = someShifts()});
+    calibration.set(
+        now, {.seconds = kDt_s, .T_before_now = kStep, .T_world_now = poseIn(now.value), .shifts = someShifts()});
   return calibration;
 }
 
@@ -36,20 +39,32 @@ TEST(ConsideredCalibration, ShiftsOfStepsAddUpToThatOfTheirProduct) {
   for (int k = 0; k < kCalibrationErrors; ++k) {
     const SE3 shifted = kStep * SE3::exp(someShifts().col(k));
     const Vector6d expected = ((kStep * kStep).inverse() * shifted * shifted).log();
-    EXPECT_THAT(Vector6d(calibration.ofMotion({1}, {3}).col(k)), IsNear(expected, 1e-5)) << "error " << k;
+    EXPECT_THAT(Vector6d(calibration.ofMotion({1}, {3}, poseIn(3)).col(k)), IsNear(expected, 1e-5)) << "error " << k;
   }
 }
 
-TEST(ConsideredCalibration, FramesThatWereForgottenShiftNothing) {
+TEST(ConsideredCalibration, TheWholePathIsKnownWhenItsStepsAreForgotten) {
   ConsideredCalibration calibration = afterSteps(3);
+  const PoseShifts whole = calibration.ofMotion({0}, {3}, poseIn(3));
+  constexpr double kSame = 1e-12;
+  EXPECT_THAT(calibration.ofPose({3}, poseIn(3)), IsNear(whole, kSame));
   calibration.forget({2});
-  EXPECT_EQ(calibration.ofMotion({0}, {2}).norm(), 0);
-  EXPECT_EQ(calibration.ofMotion({2}, {3}), someShifts());
+  EXPECT_THAT(calibration.ofPose({3}, poseIn(3)), IsNear(whole, kSame));
+  EXPECT_THAT(calibration.ofMotion({2}, {3}, poseIn(3)), IsNear(someShifts(), kSame));
+}
+
+/// The errors of a step are computed anew when more is known.
+TEST(ConsideredCalibration, ANewStepChangesWhatComesAfterIt) {
+  ConsideredCalibration calibration = afterSteps(3);
+  calibration.set({2}, {.seconds = kDt_s, .T_before_now = kStep, .T_world_now = poseIn(2)});
+  constexpr double kSame = 1e-12;
+  EXPECT_THAT(calibration.ofMotion({1}, {3}, poseIn(3)), IsNear(someShifts(), kSame)) << "the last step alone";
+  EXPECT_THAT(calibration.ofMotion({0}, {1}, poseIn(1)), IsNear(someShifts(), kSame));
 }
 
 TEST(ConsideredCalibration, AnExactOneShiftsNothing) {
   const ConsideredCalibration exact;
-  EXPECT_EQ(exact.ofMotion({0}, {2}).norm(), 0);
+  EXPECT_EQ(exact.ofMotion({0}, {2}, poseIn(2)).norm(), 0);
   EXPECT_EQ(exact.ofPoint({1, 1, 20}).norm(), 0);
   EXPECT_EQ(exact.ofVelocity({2}, {1, 1, 20}, {0, 0, 8}).norm(), 0);
 }

@@ -25,7 +25,7 @@ struct Drive {
     for (int now = 0; now < 40; ++now) {
       FrameEstimate online{.head = {.frame = {now}, .stamp = {100'000'000 * static_cast<std::int64_t>(now)}},
                            .T_world_cam = camera(now, now),
-                           .camera_covariance = {},
+                           .camera_covariances = {},
                            .objects = {}};
       ObjectEstimate& seen = online.objects.emplace_back();
       seen.track = TrackId{3};

@@ -124,13 +124,38 @@ TEST_F(EstimateReaderTest, TheCamerasCovarianceIsThatOfItsMotionOverTenFrames) {
   const std::array variables{graph_.frames().at(before).x, graph_.frames().at(kLast).x};
   const Eigen::MatrixXd expected = J * *graph_.solver().jointCovariance(variables) * J.transpose();
   constexpr double kTolerance = 1e-8;  // central differences
-  EXPECT_THAT(reader_.covariances(kLast).camera.value(), IsNear(expected, kTolerance));
+  EXPECT_THAT(reader_.covariances(kLast).camera.motion.value(), IsNear(expected, kTolerance));
 }
 
-TEST_F(EstimateReaderTest, TheCameraHasNoCovarianceInItsFirstTenFrames) {
+TEST_F(EstimateReaderTest, TheCamerasMotionHasNoCovarianceInItsFirstTenFrames) {
   drive();
-  EXPECT_FALSE(reader_.covariances({kCameraCovarianceFrames - 1}).camera);
-  EXPECT_TRUE(reader_.covariances({kCameraCovarianceFrames}).camera);
+  EXPECT_FALSE(reader_.covariances({kCameraCovarianceFrames - 1}).camera.motion);
+  EXPECT_TRUE(reader_.covariances({kCameraCovarianceFrames}).camera.motion);
+}
+
+/// A step is surer than the way that it is part of.
+TEST_F(EstimateReaderTest, TheCamerasMotionIsToldOverAsManyFramesAsAskedFor) {
+  drive();
+  const EstimateReader by_step(graph_, 1), by_twelve(graph_, 12);
+  EXPECT_TRUE(by_step.covariances({1}).camera.motion);
+  EXPECT_FALSE(by_twelve.covariances({11}).camera.motion);
+  const auto trace = [&](const EstimateReader& reader) { return reader.covariances(kLast).camera.motion->trace(); };
+  EXPECT_LT(trace(by_step), trace(reader_));
+  EXPECT_LT(trace(reader_), trace(by_twelve));
+}
+
+/// Retirement leaves what the frames that are gone knew of those that are there.
+TEST_F(EstimateReaderTest, TheCamerasPoseKeepsItsCovarianceWhenTheStartHasRetired) {
+  drive();
+  const std::array start_and_now{graph_.frames().at({0}).x, graph_.frames().at(kLast).x};
+  const Eigen::MatrixXd joint = *graph_.solver().jointCovariance(start_and_now);
+  const Matrix6d pose = reader_.covariances(kLast).camera.pose.value();
+  constexpr double kTolerance = 1e-9;
+  EXPECT_THAT(pose, IsNear(joint.bottomRightCorner<6, 6>(), kTolerance));
+  EXPECT_LT(reader_.covariances({0}).camera.pose->norm(), 2e-6) << "the first pose is the world, to a millimeter";
+  EXPECT_GT(pose.norm(), 1e-4);
+  for (int i = 0; i < 8; ++i) graph_.retireOldest();
+  EXPECT_THAT(reader_.covariances(kLast).camera.pose.value(), IsNear(pose, 1e-3 * pose.norm()));
 }
 
 /// The neighbor in time is the frame before; the first frame of a track takes the frame after.
@@ -201,12 +226,14 @@ TEST_F(EstimateReaderTest, VelocityAndYawRateAreExactOnAnArcOfConstantSpeed) {
 
 TEST_F(EstimateReaderTest, CovariancesStandInTheEstimatesOnceTheGraphKeepsThem) {
   drive();
-  EXPECT_FALSE(reader_.read(kLast).camera_covariance);
+  EXPECT_FALSE(reader_.read(kLast).camera_covariances.motion);
+  EXPECT_FALSE(reader_.read(kLast).camera_covariances.pose);
   EXPECT_THAT(reader_.read(kLast).objects, Each(Field(&ObjectEstimate::covariance, std::nullopt)));
   const FrameCovariances covariances = reader_.covariances(kLast);
   graph_.keep(kLast, covariances);
   const FrameEstimate estimate = reader_.read(kLast);
-  EXPECT_EQ(estimate.camera_covariance, covariances.camera);
+  EXPECT_EQ(estimate.camera_covariances.motion, covariances.camera.motion);
+  EXPECT_EQ(estimate.camera_covariances.pose, covariances.camera.pose);
   ASSERT_EQ(estimate.objects.size(), covariances.objects.size());
   for (const ObjectEstimate& object : estimate.objects) {
     const ObjectCovariances& computed = covariances.objects.at(object.track);

@@ -40,7 +40,7 @@ TEST(WindowBackend, CovariancesHoldTheErrorsOfTheCalibration) {
   for (const auto kind : {&test::DriveResult::online, &test::DriveResult::finals}) {
     const FrameEstimate &less = (exact.*kind).at(40), &more = (considered.*kind).at(40);
     EXPECT_EQ(less.T_world_cam.translation(), more.T_world_cam.translation());
-    EXPECT_GT((*more.camera_covariance)(2, 2), 4 * (*less.camera_covariance)(2, 2));
+    EXPECT_GT((*more.camera_covariances.motion)(2, 2), 4 * (*less.camera_covariances.motion)(2, 2));
     ASSERT_FALSE(less.objects.empty());
     for (std::size_t i = 0; i < less.objects.size(); ++i) {
       EXPECT_GT((*more.objects[i].covariance)(0, 0), (*less.objects[i].covariance)(0, 0));

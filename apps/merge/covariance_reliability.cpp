@@ -1,0 +1,93 @@
+#include "apps/merge/covariance_reliability.hpp"
+
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/html/svg_chart.hpp"
+#include "apps/merge/result_tables.hpp"
+
+namespace motorcade {
+namespace {
+
+constexpr std::array kAxisTitles = {"x", "y", "z", "about x", "about y", "about z"};
+static_assert(kAxisTitles.size() == AxisReliability::kAxes);
+constexpr std::array kToldTenths = {5, 8, 9};
+
+/// Where the covariances of each title stand in an evaluation; the first that is there counts.
+constexpr std::array<std::array<const char*, 2>, kCovarianceTitles.size()> kKeys = {
+    {{"camera_mounted_with_truth_noise", "camera"}, {"camera_since_start", ""}, {"objects", ""}}};
+
+void addTo(CovarianceReliability& sums, const nlohmann::json& covariances) {
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    for (const char* key : kKeys[i]) {
+      const auto found = covariances.find(key);
+      if (found == covariances.end() || !found->is_object() || !found->contains("by_axis")) continue;
+      sums[i].add(axisReliabilityOf(found->at("by_axis")));
+      break;
+    }
+}
+
+/// Calls `take` with the set's name, that of the estimate, the title, and the counts of each that has some.
+template <class Take>
+void forEach(const CovarianceReliabilityBySet& sets, const Take& take) {
+  for (const auto& [set, of_set] : sets)
+    for (const auto& [estimate, sums] : {std::pair("final", &of_set.final), std::pair("online", &of_set.online)})
+      for (std::size_t i = 0; i < sums->size(); ++i)
+        if ((*sums)[i].samples() > 0) take(set, estimate, kCovarianceTitles[i], (*sums)[i]);
+}
+
+std::vector<ChartLine> linesOf(const AxisReliability& counts) {
+  std::vector<ChartLine> lines{
+      {.name = "claimed", .color = "var(--truth)", .points = {{0, 0}, {100, 100}}, .dashed = true}};
+  for (int axis = 0; axis < AxisReliability::kAxes; ++axis) {
+    ChartLine line{.name = kAxisTitles[axis], .color = fmt::format("var(--s{})", axis + 1)};
+    for (int tenths = 0; tenths <= AxisReliability::kTenths; ++tenths)
+      line.points.emplace_back(10.0 * tenths, 100 * counts.shareWithin(axis, tenths));
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+}  // namespace
+
+void addCovariances(CovarianceReliabilityOfSet& sums, const nlohmann::json& evaluation) {
+  const auto covariances = evaluation.find("covariance");
+  if (covariances == evaluation.end()) return;
+  addTo(sums.online, *covariances);
+  if (covariances->contains("final")) addTo(sums.final, covariances->at("final"));
+}
+
+ResultTable covarianceTable(const CovarianceReliabilityBySet& sets) {
+  ResultTable table{
+      .title = "Covariances: share of errors within the intervals that are claimed to hold 50 / 80 / 90 % of them",
+      .heads = {"set", "estimate", "of", "errors"},
+      .names = 3};
+  table.heads.insert(table.heads.end(), kAxisTitles.begin(), kAxisTitles.end());
+  forEach(sets, [&](const std::string& set, const char* estimate, const char* title, const AxisReliability& counts) {
+    std::vector<std::string> row{set, estimate, title, std::to_string(counts.samples())};
+    for (int axis = 0; axis < AxisReliability::kAxes; ++axis) {
+      std::vector<std::string> shares;
+      for (const int tenths : kToldTenths)
+        shares.push_back(fmt::format("{:.0f}", 100 * counts.shareWithin(axis, tenths)));
+      row.push_back(fmt::format("{} %", fmt::join(shares, " / ")));
+    }
+    table.rows.push_back(std::move(row));
+  });
+  return table;
+}
+
+std::string covarianceCharts(const CovarianceReliabilityBySet& sets) {
+  std::string charts;
+  forEach(sets, [&](const std::string& set, const char* estimate, const char* title, const AxisReliability& counts) {
+    const std::string svg =
+        lineChart({.x = "claimed, % of errors within an interval", .y = "found, %"}, linesOf(counts));
+    charts += chartFigure(svg, fmt::format("{}, {}: {} ({} errors). Below the dashed line claims are too sure.", set,
+                                           estimate, title, counts.samples()));
+  });
+  return charts.empty() ? "" : "<div class=\"grid\">\n" + charts + "</div>\n";
+}
+
+}  // namespace motorcade

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "apps/evaluate/axis_reliability.hpp"
+
+/// Covariances of all drives together, by axis: what they claim against what was found.
+namespace motorcade {
+
+struct ResultTable;
+
+/// The camera's motion over ten frames, its pose since the start, and objects as seen from it.
+inline constexpr std::array kCovarianceTitles = {"camera, over ten frames", "camera, since the start", "objects"};
+using CovarianceReliability = std::array<AxisReliability, kCovarianceTitles.size()>;
+
+/// What the runs with one set of parameters claimed.
+struct CovarianceReliabilityOfSet {
+  CovarianceReliability final, online;
+};
+using CovarianceReliabilityBySet = std::map<std::string, CovarianceReliabilityOfSet>;
+
+/// Adds what an evaluation counted, of the camera's motion with the truth's noise where that has some. An evaluation of
+/// an earlier version counted nothing.
+void addCovariances(CovarianceReliabilityOfSet& sums, const nlohmann::json& evaluation);
+
+/// A row for each set, estimate and covariance of which there are errors, a column for each axis.
+ResultTable covarianceTable(const CovarianceReliabilityBySet& sets);
+
+/// The same as diagrams for a page, a line for each axis; empty where there are no errors.
+std::string covarianceCharts(const CovarianceReliabilityBySet& sets);
+
+}  // namespace motorcade
