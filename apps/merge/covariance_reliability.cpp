@@ -82,8 +82,7 @@ ResultTable covarianceTable(const CovarianceReliabilityBySet& sets) {
 std::string covarianceCharts(const CovarianceReliabilityBySet& sets) {
   std::string charts;
   forEach(sets, [&](const std::string& set, const char* estimate, const char* title, const AxisReliability& counts) {
-    const std::string svg =
-        lineChart({.x = "claimed, % of errors within an interval", .y = "found, %"}, linesOf(counts));
+    const std::string svg = lineChart({.x = "claimed, %", .y = "found, %"}, linesOf(counts));
     charts += chartFigure(svg, fmt::format("{}, {}: {} ({} errors). Below the dashed line claims are too sure.", set,
                                            estimate, title, counts.samples()));
   });
