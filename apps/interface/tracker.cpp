@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include <unistd.h>
+
 #include "apps/interface/camera_model.hpp"
 #include "apps/interface/gray_image.hpp"
 #include "apps/interface/pair_watch.hpp"
@@ -78,6 +80,9 @@ class Tracker::Impl {
   std::optional<Result> poll();
   std::optional<Result> wait(std::chrono::milliseconds timeout);
   bool done() const { return results_.done(); }
+  /// Does this process have the tracker's memory, by `fork`, but none of its threads?
+  bool inherited() const { return ::getpid() != process_; }
+  void requireOwn() const;
   void handTo(std::function<void(Result)> take);
   Counts counts() const;
 
@@ -90,6 +95,7 @@ class Tracker::Impl {
   void deliver();
   void handOn();
 
+  pid_t process_ = ::getpid();
   Camera camera_;
   CameraModel model_;
   bool replay_;
@@ -127,6 +133,13 @@ Tracker::Impl::Impl(const Camera& camera, const Options& options, const Pipeline
       pipeline_(config.pipeline, watch_.watched(makeStages(config, model_.rectified())), log_) {
   if (!replay_) stock(pool_, camera);
   deliverer_ = std::jthread([this] { deliver(); });  // at last: it would wait for results if anything failed after it
+}
+
+/// Throws where a lock may be held by a thread that is not there.
+void Tracker::Impl::requireOwn() const {
+  if (inherited())
+    throw Error("tracker", "was made by process " + std::to_string(process_) +
+                               ", of which this one is a child; make one after the fork");
 }
 
 /// Calls of other threads that wait come back first.
@@ -294,14 +307,32 @@ Tracker::Tracker(const Camera& camera, const Options& options) try
 } catch (const std::exception& error) {
   throw Error("options", error.what());
 }
-Tracker::~Tracker() = default;
 
-Tracker::Push Tracker::push(const Pair& pair) noexcept { return impl_->push(pair); }
-void Tracker::close() noexcept { impl_->close(); }
-std::optional<Result> Tracker::poll() { return impl_->poll(); }
-std::optional<Result> Tracker::wait(std::chrono::milliseconds timeout) { return impl_->wait(timeout); }
-bool Tracker::done() const noexcept { return impl_->done(); }
-void Tracker::on_result(std::function<void(Result)> take) { impl_->handTo(std::move(take)); }
-Tracker::Counts Tracker::counts() const noexcept { return impl_->counts(); }
+/// A child leaves the memory to the end of its process: what to join and to wait for is in the process that made it.
+Tracker::~Tracker() {
+  if (impl_->inherited()) static_cast<void>(impl_.release());
+}
+
+Tracker::Push Tracker::push(const Pair& pair) noexcept {
+  if (impl_->inherited()) return {PushStatus::kRejected, "the tracker was made by the process before a fork"};
+  return impl_->push(pair);
+}
+void Tracker::close() noexcept {
+  if (!impl_->inherited()) impl_->close();
+}
+std::optional<Result> Tracker::poll() {
+  impl_->requireOwn();
+  return impl_->poll();
+}
+std::optional<Result> Tracker::wait(std::chrono::milliseconds timeout) {
+  impl_->requireOwn();
+  return impl_->wait(timeout);
+}
+bool Tracker::done() const noexcept { return impl_->inherited() || impl_->done(); }
+void Tracker::on_result(std::function<void(Result)> take) {
+  impl_->requireOwn();
+  impl_->handTo(std::move(take));
+}
+Tracker::Counts Tracker::counts() const noexcept { return impl_->inherited() ? Counts{} : impl_->counts(); }
 
 }  // namespace motorcade

@@ -170,7 +170,8 @@ class MOTORCADE_API Tracker {
   /// Throws Error, or std::bad_alloc. `options` keep their defaults where they are not given.
   Tracker(const Camera& camera, const Options& options);
   explicit Tracker(const Camera& camera);
-  /// Abandons what is in flight, ends calls that wait in other threads, and joins its own.
+  /// Abandons what is in flight, ends calls that wait in other threads, and joins its own. A child of `fork` has none
+  /// of them, and can but drop what it inherited.
   ~Tracker();
   /// A pair of another size than the camera's, without pixels, not after the one before (a clock that was set back is
   /// followed after four pairs) or less than half a millisecond after it, as stamps in another unit are, after `close`,
