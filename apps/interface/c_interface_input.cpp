@@ -81,6 +81,12 @@ Camera cameraOf(const motorcade_camera* given) {
                    .baseline_m = camera.baseline_m};
   if (camera.rig != nullptr) converted.rig = rigOf(camera.rig);
   converted.ignored = ignoredOf(camera);
+  if (camera.has_sigmas)
+    converted.sigmas = {.focal = camera.sigma_focal,
+                        .middle_px = camera.sigma_middle_px,
+                        .distortion = camera.sigma_distortion,
+                        .baseline = camera.sigma_baseline,
+                        .disparity_px = camera.sigma_disparity_px};
   return converted;
 }
 

@@ -108,6 +108,13 @@ motorcade_camera cCameraOf(const Camera& camera) {
   converted.cx_px = camera.cx_px;
   converted.cy_px = camera.cy_px;
   converted.baseline_m = camera.baseline_m;
+  converted.has_sigmas = camera.sigmas.has_value();
+  const Camera::Sigmas sigmas = camera.sigmas.value_or(Camera::Sigmas{});
+  converted.sigma_focal = sigmas.focal;
+  converted.sigma_middle_px = sigmas.middle_px;
+  converted.sigma_distortion = sigmas.distortion;
+  converted.sigma_baseline = sigmas.baseline;
+  converted.sigma_disparity_px = sigmas.disparity_px;
   return converted;
 }
 

@@ -163,14 +163,33 @@ CameraModel::CameraModel(const Camera& camera) {
                          .right = Remap(rectification.right, rectification.R_right, rectified_, size)});
 }
 
-Camera cameraOf(const StereoCamera& camera) {
-  return {.width_px = camera.width_px,
-          .height_px = camera.height_px,
-          .fx_px = camera.fx_px,
-          .fy_px = camera.fy_px,
-          .cx_px = camera.cx_px,
-          .cy_px = camera.cy_px,
-          .baseline_m = camera.baseline_m};
+std::optional<CalibrationSigmas> sigmasOf(const Camera& camera) {
+  if (!camera.sigmas) return std::nullopt;
+  const CalibrationSigmas sigmas{.focal = camera.sigmas->focal,
+                                 .middle_px = camera.sigmas->middle_px,
+                                 .distortion = camera.sigmas->distortion,
+                                 .baseline = camera.sigmas->baseline,
+                                 .disparity_px = camera.sigmas->disparity_px};
+  for (const ParameterProblem& problem : problemsOf(sigmas))
+    throw Error("camera.sigmas." + problem.name, "is " + problem.value + "; it is " + problem.allowed);
+  return sigmas;
+}
+
+Camera cameraOf(const StereoCamera& camera, const std::optional<CalibrationSigmas>& sigmas) {
+  Camera converted{.width_px = camera.width_px,
+                   .height_px = camera.height_px,
+                   .fx_px = camera.fx_px,
+                   .fy_px = camera.fy_px,
+                   .cx_px = camera.cx_px,
+                   .cy_px = camera.cy_px,
+                   .baseline_m = camera.baseline_m};
+  if (sigmas)
+    converted.sigmas = {.focal = sigmas->focal,
+                        .middle_px = sigmas->middle_px,
+                        .distortion = sigmas->distortion,
+                        .baseline = sigmas->baseline,
+                        .disparity_px = sigmas->disparity_px};
+  return converted;
 }
 
 }  // namespace motorcade

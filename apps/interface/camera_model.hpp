@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/calibration_errors.hpp"
 #include "core/image.hpp"
 #include "core/messages.hpp"
 #include "core/stereo_camera.hpp"
@@ -35,7 +36,10 @@ class CameraModel {
   std::optional<Remaps> remaps_;
 };
 
+/// How exact the caller says that the calibration is. Throws Error naming the field.
+std::optional<CalibrationSigmas> sigmasOf(const Camera& camera);
+
 /// The other way round, of a pair that is rectified.
-Camera cameraOf(const StereoCamera& camera);
+Camera cameraOf(const StereoCamera& camera, const std::optional<CalibrationSigmas>& sigmas);
 
 }  // namespace motorcade

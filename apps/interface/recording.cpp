@@ -53,7 +53,7 @@ Recording::Recording(const std::string& folder) try : impl_(std::make_unique<Imp
 }
 Recording::~Recording() = default;
 
-Camera Recording::camera() const { return cameraOf(impl_->sequence().camera); }
+Camera Recording::camera() const { return cameraOf(impl_->sequence().camera, impl_->sequence().calibration.sigmas); }
 std::int64_t Recording::size() const { return static_cast<std::int64_t>(impl_->sequence().frames.size()); }
 
 Pair Recording::read(std::int64_t index) {

@@ -297,7 +297,7 @@ Tracker::Counts Tracker::Impl::counts() const {
 
 Tracker::Tracker(const Camera& camera) : Tracker(camera, Options{}) {}
 Tracker::Tracker(const Camera& camera, const Options& options) try
-    : impl_(std::make_unique<Impl>(camera, options, configOf(options))) {
+    : impl_(std::make_unique<Impl>(camera, options, configOf(options, camera))) {
 } catch (const Error&) {
   throw;
 } catch (const UsageError& error) {  // a setting that needs what is not installed

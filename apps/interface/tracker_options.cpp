@@ -4,6 +4,7 @@
 #include <thread>
 #include <vector>
 
+#include "apps/interface/camera_model.hpp"
 #include "apps/pipeline/configuration.hpp"
 #include "io/errors.hpp"
 
@@ -65,7 +66,7 @@ void requireAgreement(const PipelineParams& settings, const Tracker::Options& op
 
 }  // namespace
 
-PipelineConfig configOf(const Tracker::Options& options) {
+PipelineConfig configOf(const Tracker::Options& options, const Camera& camera) {
   requireValid(options);
   PipelineConfig config;
   config.pipeline.threads = options.threads;
@@ -77,6 +78,8 @@ PipelineConfig configOf(const Tracker::Options& options) {
   } catch (const UsageError& error) {
     throw Error("options.settings", error.what());
   }
+  const auto sigmas = sigmasOf(camera);
+  if (CalibrationSigmas& set = config.backend.window.calibration; sigmas && set == CalibrationSigmas{}) set = *sigmas;
   requireAgreement(config.pipeline, options);
   requirePlacement(config.pipeline.placement);
   return config;

@@ -62,6 +62,9 @@ typedef struct {
   /// Pixels of the left image, rectified, that are of no use: at its sides, and those of a mask that are not 0.
   int ignored_left_px, ignored_top_px, ignored_right_px, ignored_bottom_px;
   const uint8_t* ignored_mask;  // width_px x height_px, row by row; or NULL
+  /// How exact the calibration is, see motorcade.hpp; typical values where `has_sigmas` is false.
+  bool has_sigmas;
+  double sigma_focal, sigma_middle_px, sigma_distortion, sigma_baseline, sigma_disparity_px;
 } motorcade_camera;
 typedef enum { MOTORCADE_GRAY8, MOTORCADE_GRAY16, MOTORCADE_RGB8, MOTORCADE_BGR8 } motorcade_format;
 typedef struct {

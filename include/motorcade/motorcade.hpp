@@ -62,6 +62,16 @@ struct Camera {
     std::vector<std::uint8_t> mask{};  // of width_px x height_px, or empty
   };
   Ignored ignored{};
+  /// How exact the calibration is: standard deviations of errors that stay the same, of which all covariances hold what
+  /// they do. Zeros: it is exact. Empty: the values below, or those that `Options::settings` tell.
+  struct Sigmas {
+    double focal = 0.002;        // of the focal length of both cameras, as a share
+    double middle_px = 0.7;      // of the principal point of both, each way
+    double distortion = 0.01;    // of the radial term k1 of both; of the tangential ones a tenth
+    double baseline = 0.001;     // as a share
+    double disparity_px = 0.15;  // in the middle of the image, as the right camera is turned
+  };
+  std::optional<Sigmas> sigmas{};
 };
 
 /// One moment's two images. The pixels are copied by `Tracker::push`.

@@ -17,7 +17,7 @@ Names carry their units: meters, seconds, radians, pixels, integer nanoseconds. 
 """
 
 from motorcade import _motorcade
-from motorcade._camera import Camera, Distortion, Lens, Rig
+from motorcade._camera import Camera, Distortion, Lens, Rig, Sigmas
 from motorcade._error import Error
 from motorcade._recording import Pair, Recording
 from motorcade._results import Cause, Counts, Kind, LogLevel, Mask, Object, Push, PushStatus, Result, State, Status
@@ -48,6 +48,7 @@ __all__ = [
     "Result",
     "Rig",
     "Run",
+    "Sigmas",
     "State",
     "Status",
     "Tracker",

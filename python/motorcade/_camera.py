@@ -48,13 +48,30 @@ class Rig:
     T_right_left: Matrix
 
 
+@dataclass(frozen=True)
+class Sigmas:
+    """How exact a calibration is: standard deviations of errors that stay the same. Zeros: it is exact."""
+
+    focal: float = 0.002
+    """Of the focal length of both cameras, as a share."""
+    middle_px: float = 0.7
+    """Of the principal point of both, each way."""
+    distortion: float = 0.01
+    """Of the radial term k1 of both; of the tangential ones a tenth."""
+    baseline: float = 0.001
+    """As a share."""
+    disparity_px: float = 0.15
+    """In the middle of the image, as the right camera is turned."""
+
+
 @dataclass(frozen=True, eq=False)
 class Camera:
     """The stereo camera: of a rectified pair, or with ``rig`` of one that is rectified inside.
 
     ``width_px`` and ``height_px`` are those of the images that are pushed. The intrinsics [px] and ``baseline_m`` are
     the rectified pair's; with a rig they are not read. ``ignored`` has a row and a column for each pixel of the left
-    image, rectified; those that are not 0 are of no use. A bonnet is found without it.
+    image, rectified; those that are not 0 are of no use. A bonnet is found without it. All covariances hold what errors
+    of the calibration do, which are as large as ``sigmas`` say, typical ones by default.
     """
 
     width_px: int
@@ -66,3 +83,4 @@ class Camera:
     baseline_m: float = 0.0
     rig: Rig | None = None
     ignored: Mask | None = None
+    sigmas: Sigmas | None = None

@@ -84,6 +84,17 @@ Camera::Rig rigOf(const py::object& object) {
           .T_right_left = transformOf(transform, "camera.rig.T_right_left")};
 }
 
+Camera::Sigmas sigmasOf(const py::object& object) {
+  Camera::Sigmas sigmas;
+  const std::string name = "camera.sigmas";
+  read(object, "focal", name, sigmas.focal);
+  read(object, "middle_px", name, sigmas.middle_px);
+  read(object, "distortion", name, sigmas.distortion);
+  read(object, "baseline", name, sigmas.baseline);
+  read(object, "disparity_px", name, sigmas.disparity_px);
+  return sigmas;
+}
+
 /// Row by row, of the images' size.
 std::vector<std::uint8_t> maskOf(const py::object& object, const Camera& camera) {
   const auto mask = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>::ensure(object);
@@ -108,14 +119,22 @@ Camera cameraOf(const py::object& object) {
   py::object ignored;
   read(object, "ignored", "camera", ignored);
   if (!ignored.is_none()) camera.ignored.mask = maskOf(ignored, camera);
+  py::object sigmas;
+  read(object, "sigmas", "camera", sigmas);
+  if (!sigmas.is_none()) camera.sigmas = sigmasOf(sigmas);
   return camera;
 }
 
 py::object toPython(const Camera& camera) {
-  return py::module_::import("motorcade._camera")
-      .attr("Camera")("width_px"_a = camera.width_px, "height_px"_a = camera.height_px, "fx_px"_a = camera.fx_px,
-                      "fy_px"_a = camera.fy_px, "cx_px"_a = camera.cx_px, "cy_px"_a = camera.cy_px,
-                      "baseline_m"_a = camera.baseline_m);
+  const auto described = py::module_::import("motorcade._camera");
+  py::object sigmas = py::none();
+  if (const auto& known = camera.sigmas)
+    sigmas = described.attr("Sigmas")("focal"_a = known->focal, "middle_px"_a = known->middle_px,
+                                      "distortion"_a = known->distortion, "baseline"_a = known->baseline,
+                                      "disparity_px"_a = known->disparity_px);
+  return described.attr("Camera")("width_px"_a = camera.width_px, "height_px"_a = camera.height_px,
+                                  "fx_px"_a = camera.fx_px, "fy_px"_a = camera.fy_px, "cx_px"_a = camera.cx_px,
+                                  "cy_px"_a = camera.cy_px, "baseline_m"_a = camera.baseline_m, "sigmas"_a = sigmas);
 }
 
 }  // namespace motorcade::python

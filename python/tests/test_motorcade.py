@@ -270,6 +270,7 @@ class FollowingADrive(unittest.TestCase):
         np.testing.assert_array_equal(pair.right, self.pairs[13].right)
         self.assertGreater(np.ptp(pair.left), 100)
         self.assertEqual((self.camera.width_px, self.camera.height_px), (310, 94))
+        self.assertEqual(self.camera.sigmas, motorcade.Sigmas(0, 0, 0, 0, 0))
         for index in (14, -15):
             with self.assertRaisesRegex(IndexError, "of 14"):
                 self.recording[index]

@@ -185,6 +185,8 @@ TEST(CInterfaceDrive, ItsCameraAndPairsAreThoseOfCpp) {
   ASSERT_EQ(motorcade_recording_size(drive.get(), &size), MOTORCADE_OK);
   EXPECT_EQ(size, kFrames);
   EXPECT_EQ(cameraOf(drive.get()).baseline_m, expected.camera().baseline_m);
+  EXPECT_TRUE(cameraOf(drive.get()).has_sigmas);
+  EXPECT_EQ(cameraOf(drive.get()).sigma_focal, expected.camera().sigmas.value().focal);
   auto pair = sized<motorcade_pair>();
   ASSERT_EQ(motorcade_recording_read(drive.get(), 3, &pair), MOTORCADE_OK);
   const Pair expected_pair = expected.read(3);

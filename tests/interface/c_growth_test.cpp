@@ -114,8 +114,9 @@ TEST(CInterfaceGrowth, NewerProgramsAreServedWhileTheirNewMembersAreZero) {
 
 /// What is compiled into programs must not move: members are appended (docs: the header's rule). 64-bit Linux.
 TEST(CInterfaceGrowth, TheFirstVersionsLayoutStays) {
-  const std::array<std::size_t, 13> last{112, 120, 88, 40, 40, 88, 24, 48, 1088, 784, 40, 4, 1};
-  constexpr std::size_t kOptionsAtFirst = 80, kFrameAtFirst = 792, kObjectAtFirst = 752;
+  const std::array<std::size_t, 13> last{112, 120, 136, 40, 40, 88, 24, 48, 1088, 784, 40, 4, 1};
+  constexpr std::size_t kCameraAtFirst = 88, kOptionsAtFirst = 80, kFrameAtFirst = 792, kObjectAtFirst = 752;
+  EXPECT_EQ(offsetof(motorcade_camera, has_sigmas), kCameraAtFirst);
   EXPECT_EQ(offsetof(motorcade_options, covariance_frames), kOptionsAtFirst);
   EXPECT_EQ(offsetof(motorcade_frame, has_pose_covariance), kFrameAtFirst);
   EXPECT_EQ(offsetof(motorcade_object, acceleration_mps2), kObjectAtFirst);
@@ -140,7 +141,7 @@ TEST(CInterfaceGrowth, TheFirstVersionsLayoutStays) {
 TEST(CInterfaceGrowth, StructsEndWithTheirLastMember) {
   EXPECT_EQ(offsetof(motorcade_lens, coefficients) + sizeof(double[8]), sizeof(motorcade_lens));
   EXPECT_EQ(offsetof(motorcade_rig, T_right_left) + sizeof(double[12]), sizeof(motorcade_rig));
-  EXPECT_EQ(offsetof(motorcade_camera, ignored_mask) + sizeof(void*), sizeof(motorcade_camera));
+  EXPECT_EQ(offsetof(motorcade_camera, sigma_disparity_px) + sizeof(double), sizeof(motorcade_camera));
   EXPECT_EQ(offsetof(motorcade_image, stride_bytes) + sizeof(std::int64_t), sizeof(motorcade_image));
   EXPECT_EQ(offsetof(motorcade_pair, frame) + sizeof(std::int64_t), sizeof(motorcade_pair));
   EXPECT_EQ(offsetof(motorcade_options, covariance_frames) + sizeof(std::int64_t), sizeof(motorcade_options));

@@ -53,6 +53,8 @@ TEST(TrackerMisuse, EachBadFieldOfACameraIsNamed) {
       {"camera.ignored.right_px", [](Camera& c) { c.ignored.right_px = c.width_px; }},
       {"camera.ignored.bottom_px", [](Camera& c) { c.ignored.bottom_px = c.height_px; }},
       {"camera.ignored.mask", [](Camera& c) { c.ignored.mask.resize(7); }},
+      {"camera.sigmas.focal", [](Camera& c) { c.sigmas = {.focal = -0.001}; }},
+      {"camera.sigmas.disparity_px", [](Camera& c) { c.sigmas = {.disparity_px = 11}; }},
       {"camera.width_px", [](Camera& c) { c.width_px = -752; }},
       {"camera.width_px", [](Camera& c) { c.width_px = std::numeric_limits<int>::max(); }},
       {"camera.height_px", [](Camera& c) { c.height_px = 0; }},

@@ -71,6 +71,22 @@ TEST_F(Results, TellTheCamerasMotion) {
   EXPECT_GT(squareOf(*results.back().pose_covariance).trace(), 10 * squareOf(*results[0].pose_covariance).trace());
 }
 
+/// What the settings tell counts before what the camera tells of itself.
+TEST_F(Results, AreLessSureWhereTheCalibrationIs) {
+  const auto variance = [&](const std::optional<Camera::Sigmas>& sigmas, const std::string& settings = "") {
+    DriveInMemory drive = drive_;
+    drive.camera.sigmas = sigmas;
+    Tracker::Options options = replay();
+    options.settings = settings;
+    return squareOf(*track(drive, options).back().pose_covariance)(2, 2);
+  };
+  const Camera::Sigmas exact{0, 0, 0, 0, 0}, typical;
+  EXPECT_LT(2 * variance(exact), variance(typical));
+  EXPECT_EQ(variance({}), variance(typical));
+  EXPECT_GT(variance(Camera::Sigmas{.focal = 0.05}), 4 * variance(typical));
+  EXPECT_GT(variance(exact, "calibration.focal = 0.05"), 4 * variance(typical));
+}
+
 TEST_F(Results, TellHowSureTheMotionIsOverAsManyFramesAsAskedFor) {
   for (const char* kind : {"joint", "filter", "filter_map", "pose_graph"}) {
     Tracker::Options options = replay();

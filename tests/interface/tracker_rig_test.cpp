@@ -64,7 +64,8 @@ DriveInMemory rectified(const DriveInMemory& raw) {
                      .height_px = turned.height(),
                      .stride_bytes = turned.stride()});
   };
-  DriveInMemory drive{.camera = cameraOf(rectification.camera), .frames = {}};
+  DriveInMemory drive{.camera = cameraOf(rectification.camera, {}), .frames = {}};
+  drive.camera.sigmas = raw.camera.sigmas;
   for (const auto& frame : raw.frames)
     drive.frames.push_back({through(left, frame.left), through(right, frame.right), frame.stamp_ns});
   return drive;
