@@ -17,10 +17,10 @@ namespace motorcade::test {
 using nlohmann::json;
 
 /// Of a sequence of DDS.
-template <class Sequence, class ToJson>
-json listOf(const Sequence& sequence, const ToJson& toJson) {
+template <class Sequence, class Convert>
+json listOf(const Sequence& sequence, const Convert& convert) {
   json list = json::array();
-  for (std::uint32_t i = 0; i < sequence._length; ++i) list.push_back(toJson(sequence._buffer[i]));
+  for (std::uint32_t i = 0; i < sequence._length; ++i) list.push_back(convert(sequence._buffer[i]));
   return list;
 }
 

@@ -24,7 +24,7 @@ constexpr int kMostTaken = 64;
 struct Reader {
   std::string topic;
   dds_entity_t reader;
-  std::function<json(const void*)> toJson;
+  std::function<json(const void*)> convert;
 
   void take() const {
     std::vector<void*> samples(kMostTaken, nullptr);
@@ -32,7 +32,7 @@ struct Reader {
     const int taken = dds_take(reader, samples.data(), infos.data(), kMostTaken, kMostTaken);
     for (int i = 0; i < taken; ++i) {
       if (!infos[i].valid_data) continue;
-      json line = toJson(samples[i]);
+      json line = convert(samples[i]);
       line["topic"] = topic;
       std::puts(line.dump().c_str());
     }
