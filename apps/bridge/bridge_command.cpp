@@ -4,10 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stop_token>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -16,9 +19,7 @@
 #include "apps/bridge/bridge_options.hpp"
 #include "apps/bridge/dds_publisher.hpp"
 #include "apps/bridge/drive_player.hpp"
-#include "apps/bridge/message_conversion.hpp"
-#include "apps/bridge/object_markers.hpp"
-#include "apps/bridge/path_covariance.hpp"
+#include "apps/bridge/result_publisher.hpp"
 #include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
 #include "apps/console/stop_signals.hpp"
@@ -41,30 +42,17 @@ void logToSpdlog(Tracker::LogLevel level, const std::string& text) {
   }
 }
 
+/// The folder's own name, that of `.` too.
+std::string nameOf(const std::filesystem::path& drive) {
+  std::error_code unreachable;  // then the name is that which was given
+  return std::filesystem::weakly_canonical(drive, unreachable).filename().string();
+}
+
 /// A marker outlives three frames, and a second.
 double markerLifetime_s(std::optional<double> speed, double capture_rate_hz) {
   constexpr double kLeast_s = 1, kFrames = 3;
   return speed && capture_rate_hz > 0 ? std::max(kLeast_s, kFrames / (*speed * capture_rate_hz)) : kLeast_s;
 }
-
-/// Turns the results of one pass into messages and publishes them.
-class ResultPublisher {
- public:
-  ResultPublisher(DdsPublisher& out, const FrameIds& ids, double marker_lifetime_s)
-      : out_(out), ids_(ids), markers_({.frame_id = ids.world, .lifetime_s = marker_lifetime_s}) {}
-
-  void publish(const Result& result) {
-    out_.publish(poseStampedOf(result, ids_));
-    out_.publish(odometryOf(result, covariance_(result), ids_));
-    out_.publish(markers_(result));
-  }
-
- private:
-  DdsPublisher& out_;
-  FrameIds ids_;
-  PathCovariance covariance_;
-  ObjectMarkers markers_;
-};
 
 /// The public interface's error, without the name of the field: users know files and options.
 std::string textOf(const Error& error) { return std::string(error.what()).substr(error.field().size() + 2); }
@@ -107,6 +95,12 @@ std::int64_t playOnce(Tracker& tracker, DrivePlayer& player, const DrivePlayer::
   return tracker.counts().dropped;
 }
 
+void tellPlace(const DdsPublisher& out, const DdsPlace& place, const std::set<Topic>& topics) {
+  logInfo(fmt::format("{} in {}", rosNamesOf(topics), textOf(place)));
+  if (isLoopback(place) && !out.isShielded())
+    logWarning("DDS' sockets cannot be bound to the loopback device: others in the network can send to them");
+}
+
 void tellDriven(const DrivePlayer::Counts& player, std::int64_t dropped) {
   logInfo(fmt::format("{} pairs; {} dropped by a newer one, {} overtaken before they were read", player.pushed, dropped,
                       player.overtaken));
@@ -138,7 +132,9 @@ void awaitSubscribers(const DdsPublisher& out, const BridgeOptions& options, con
 }  // namespace
 
 int runBridge(const BridgeOptions& options) {
+  const auto topics = topicsOf(options.topics);
   const FrameIds ids = frameIdsOf(options);
+  const SE3 T_child_cam = mountingOf(options);
   Tracker::Options tracker_options = trackerOptionsOf(options);
   tracker_options.log = logToSpdlog;
   const DdsPlace place{.domain = options.domain, .interface = options.interface};
@@ -147,10 +143,12 @@ int runBridge(const BridgeOptions& options) {
   auto tracker = makeTracker(recording.camera(), tracker_options, options);
   DrivePlayer player(recording);
   const DrivePlayer::Pace pace{.speed = speedOf(options, player.captureRate_hz()), .live = options.live};
-  DdsPublisher out(place);
-  logInfo(fmt::format("/motorcade/pose, /motorcade/odometry and /motorcade/objects in {}", textOf(place)));
-  if (isLoopback(place) && !out.isShielded())
-    logWarning("DDS' sockets cannot be bound to the loopback device: others in the network can send to them");
+  const ResultPublisher::Params published{.ids = ids,
+                                          .T_child_cam = T_child_cam,
+                                          .drive = nameOf(options.drive),
+                                          .marker_lifetime_s = markerLifetime_s(pace.speed, player.captureRate_hz())};
+  DdsPublisher out(place, topics);
+  tellPlace(out, place, topics);
 
   std::stop_source stop;
   const auto watch = signals.watch([&stop] { stop.request_stop(); });
@@ -159,8 +157,7 @@ int runBridge(const BridgeOptions& options) {
   for (bool again = !stop.stop_requested(); again; again = options.loop && !stop.stop_requested()) {
     if (!tracker) tracker = makeTracker(recording.camera(), tracker_options, options);
     Progress progress("frame", static_cast<std::size_t>(recording.size()));
-    dropped += playOnce(*tracker, player, pace, {out, ids, markerLifetime_s(pace.speed, player.captureRate_hz())},
-                        progress, stop);
+    dropped += playOnce(*tracker, player, pace, {out, published}, progress, stop);
     tracker.reset();
   }
   tellDriven(player.counts(), dropped);

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string>
 
+#include "apps/bridge/topics.hpp"
+
 namespace motorcade {
 
 /// The command line of `motorcade bridge`, as the user typed it.
@@ -12,10 +14,12 @@ struct BridgeOptions {
   bool live = false, loop = false;
   int threads = 2;
   int domain = 0;
-  std::string interface {};               // empty: loopback
-  std::string frame_ids = "odom,camera";  // WORLD,CHILD
-  int subscribers = 0;                    // to wait for, of each topic
-  double patience_s = 30;                 // at most so long
+  std::string interface {};  // empty: loopback
+  std::string topics = kDefaultTopics;
+  std::string mounting{};   // X,Y,Z,ROLL,PITCH,YAW; empty: the camera stands for the vehicle
+  std::string frame_ids{};  // WORLD,CHILD; empty: by the mounting
+  int subscribers = 0;      // to wait for, of each topic
+  double patience_s = 30;   // at most so long
 };
 
 /// Follows a recorded drive and publishes the results as ROS 2 topics; gives the exit code. Failures are UserErrors.

@@ -1,9 +1,12 @@
 #include "apps/bridge/bridge_options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <numbers>
+#include <sstream>
 #include <string_view>
 
 #include "io/errors.hpp"
@@ -13,12 +16,36 @@ namespace motorcade {
 namespace {
 
 constexpr std::size_t kMaxConfig_bytes = std::size_t{1} << 20;
+constexpr double kFarthestMounting_m = 50, kMostTurn_deg = 360;  // beyond, it is in other units
 
 bool isFrameId(std::string_view name) {
   const auto plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '/' || c == '-';
   };
   return !name.empty() && !name.starts_with('/') && std::ranges::all_of(name, plain);
+}
+
+std::optional<double> numberIn(std::string_view text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [read, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || read != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// Meters and degrees, or empty where they are not such.
+std::optional<std::array<double, 6>> sixNumbersOf(const std::string& text) {
+  std::array<double, 6> numbers{};
+  std::istringstream stream(text + ",");
+  std::size_t count = 0;
+  for (std::string field; std::getline(stream, field, ','); ++count) {
+    const auto number = numberIn(field);
+    const double most = count < 3 ? kFarthestMounting_m : kMostTurn_deg;
+    if (count >= numbers.size() || !number || std::abs(*number) > most) return std::nullopt;
+    numbers[count] = *number;
+  }
+  if (count != numbers.size()) return std::nullopt;
+  return numbers;
 }
 
 }  // namespace
@@ -29,15 +56,14 @@ std::optional<double> speedOf(const BridgeOptions& options, double capture_rate_
     if (options.live) throw UsageError("--rate max: a live camera has a rate; give one in Hz");
     return std::nullopt;
   }
-  const char* const end = options.rate.data() + options.rate.size();
-  double rate_hz = 0;
-  const auto [read, error] = std::from_chars(options.rate.data(), end, rate_hz);
-  if (error != std::errc() || read != end || !std::isfinite(rate_hz) || rate_hz <= 0)
+  const auto rate_hz = numberIn(options.rate);
+  if (!rate_hz || *rate_hz <= 0)
     throw UsageError("--rate " + options.rate + ": write max or a positive number of pairs per second");
-  return capture_rate_hz > 0 ? rate_hz / capture_rate_hz : 1;
+  return capture_rate_hz > 0 ? *rate_hz / capture_rate_hz : 1;
 }
 
 FrameIds frameIdsOf(const BridgeOptions& options) {
+  if (options.frame_ids.empty()) return {.world = "odom", .child = options.mounting.empty() ? "camera" : "base_link"};
   const auto comma = options.frame_ids.find(',');
   FrameIds ids{.world = options.frame_ids.substr(0, comma),
                .child = comma == std::string::npos ? "" : options.frame_ids.substr(comma + 1)};
@@ -45,6 +71,21 @@ FrameIds frameIdsOf(const BridgeOptions& options) {
     throw UsageError("--frame-ids " + options.frame_ids +
                      ": write WORLD,CHILD, two different names of letters, digits, _, - and /, which is not the first");
   return ids;
+}
+
+SE3 mountingOf(const BridgeOptions& options) {
+  if (options.mounting.empty()) return {};
+  const auto numbers = sixNumbersOf(options.mounting);
+  if (!numbers)
+    throw UsageError("--mounting " + printable(options.mounting) +
+                     ": write X,Y,Z,ROLL,PITCH,YAW: where the left camera sits in the vehicle's frame, in meters (50 "
+                     "at most), and how it is turned, in degrees");
+  const auto& [x_m, y_m, z_m, roll_deg, pitch_deg, yaw_deg] = *numbers;
+  constexpr double kRadians = std::numbers::pi / 180;  // per degree
+  const auto turn = [](double angle_deg, int axis) {
+    return expSO3(kRadians * angle_deg * Eigen::Vector3d::Unit(axis));
+  };
+  return {turn(yaw_deg, 2) * turn(pitch_deg, 1) * turn(roll_deg, 0), {x_m, y_m, z_m}};
 }
 
 Tracker::Options trackerOptionsOf(const BridgeOptions& options) {

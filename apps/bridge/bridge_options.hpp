@@ -12,8 +12,13 @@ namespace motorcade {
 /// Captured seconds per second; empty for as fast as it goes. `capture_rate_hz` is 0 where nobody knows it.
 std::optional<double> speedOf(const BridgeOptions& options, double capture_rate_hz);
 
-/// Two names, which differ and are as tf2 takes them.
+/// Two names, which differ and are as tf2 takes them. Unless told otherwise `odom` and `camera`; `base_link` where the
+/// camera's mounting is told.
 FrameIds frameIdsOf(const BridgeOptions& options);
+
+/// T_vehicle_cam, both with the axes of REP 103, the camera turned by roll, then pitch, then yaw about the vehicle's.
+/// The identity without a mounting.
+SE3 mountingOf(const BridgeOptions& options);
 
 /// For the tracker, with the file of parameters read. What the tracker then says about it is the caller's to tell.
 Tracker::Options trackerOptionsOf(const BridgeOptions& options);

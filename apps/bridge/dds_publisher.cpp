@@ -1,7 +1,7 @@
 #include "apps/bridge/dds_publisher.hpp"
 
 #include <algorithm>
-#include <array>
+#include <map>
 #include <thread>
 #include <utility>
 
@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "apps/bridge/dds_messages.hpp"
+#include "apps/bridge/dds_objects.hpp"
 #include "apps/bridge/loopback_sockets.hpp"
 #include "io/errors.hpp"
 
@@ -51,16 +52,31 @@ Qos rosDefault() {
   return qos;
 }
 
+const dds_topic_descriptor_t& typeOf(Topic topic) {
+  switch (topic) {
+    case Topic::kPose:
+      return geometry_msgs_msg_dds__PoseStamped__desc;
+    case Topic::kOdometry:
+      return nav_msgs_msg_dds__Odometry__desc;
+    case Topic::kMarkers:
+      return visualization_msgs_msg_dds__MarkerArray__desc;
+    case Topic::kTrackedObjects:
+      return autoware_perception_msgs_msg_dds__TrackedObjects__desc;
+    case Topic::kDetections:
+      return vision_msgs_msg_dds__Detection3DArray__desc;
+    case Topic::kDiagnostics:
+      return diagnostic_msgs_msg_dds__DiagnosticArray__desc;
+    case Topic::kTf:
+      break;
+  }
+  return tf2_msgs_msg_dds__TFMessage__desc;
+}
+
 /// One topic with its writer.
 class Writer {
  public:
-  /// ROS' topic /NAME is rt/NAME in DDS.
-  Writer(dds_entity_t participant, const dds_topic_descriptor_t& type, const std::string& name)
-      : qos_(rosDefault()),
-        topic_(dds_create_topic(participant, &type, ("rt/" + name).c_str(), qos_.get(), nullptr), "topic " + name),
-        writer_(dds_create_writer(participant, topic_.get(), qos_.get(), nullptr), "topic " + name) {
-    counts_.topic = "/" + name;
-  }
+  Writer(dds_entity_t participant, Topic topic)
+      : Writer(participant, typeOf(topic), kTopicNames.at(static_cast<std::size_t>(topic)).ros) {}
 
   void write(const void* message) {
     const bool acknowledged = dds_wait_for_acks(writer_.get(), 0) == DDS_RETCODE_OK;
@@ -90,6 +106,14 @@ class Writer {
   }
 
  private:
+  /// ROS' topic /NAME is rt/NAME in DDS.
+  Writer(dds_entity_t participant, const dds_topic_descriptor_t& type, const std::string& name)
+      : qos_(rosDefault()),
+        topic_(dds_create_topic(participant, &type, ("rt/" + name).c_str(), qos_.get(), nullptr), "topic " + name),
+        writer_(dds_create_writer(participant, topic_.get(), qos_.get(), nullptr), "topic " + name) {
+    counts_.topic = "/" + name;
+  }
+
   Qos qos_;
   Entity topic_, writer_;
   DdsPublisher::Counts counts_{};
@@ -100,28 +124,29 @@ class Writer {
 
 /// Made and ended in the order of its members.
 struct DdsPublisher::Impl {
-  explicit Impl(const DdsPlace& place)
+  Impl(const DdsPlace& place, const std::set<Topic>& topics)
       : domain(dds_create_domain(static_cast<dds_domainid_t>(place.domain), ddsConfiguration(place).c_str()),
                textOf(place)),
         shielded(isLoopback(place) && bindSocketsToLoopback()),
-        participant(dds_create_participant(static_cast<dds_domainid_t>(place.domain), nullptr, nullptr), textOf(place)),
-        pose(participant.get(), geometry_msgs_msg_dds__PoseStamped__desc, "motorcade/pose"),
-        odometry(participant.get(), nav_msgs_msg_dds__Odometry__desc, "motorcade/odometry"),
-        objects(participant.get(), visualization_msgs_msg_dds__MarkerArray__desc, "motorcade/objects") {}
-  std::array<const Writer*, 3> all() const { return {&pose, &odometry, &objects}; }
+        participant(dds_create_participant(static_cast<dds_domainid_t>(place.domain), nullptr, nullptr),
+                    textOf(place)) {
+    for (const Topic topic : topics) writers.try_emplace(topic, participant.get(), topic);
+  }
+  void write(Topic topic, const void* message) { writers.at(topic).write(message); }
 
   Entity domain;
   bool shielded;
   Entity participant;
-  Writer pose, odometry, objects;
+  std::map<Topic, Writer> writers{};
 };
 
-DdsPublisher::DdsPublisher(const DdsPlace& place) : impl_(std::make_unique<Impl>(place)) {}
+DdsPublisher::DdsPublisher(const DdsPlace& place, const std::set<Topic>& topics)
+    : impl_(std::make_unique<Impl>(place, topics)) {}
 
 DdsPublisher::~DdsPublisher() {
   const auto deadline = std::chrono::steady_clock::now() + kLinger;
-  for (const Writer* const writer : impl_->all())
-    writer->settle(std::max<std::chrono::nanoseconds>(0ns, deadline - std::chrono::steady_clock::now()));
+  for (const auto& [topic, writer] : impl_->writers)
+    writer.settle(std::max<std::chrono::nanoseconds>(0ns, deadline - std::chrono::steady_clock::now()));
 }
 
 bool DdsPublisher::waitForSubscribers(int count, std::chrono::milliseconds patience,
@@ -129,7 +154,7 @@ bool DdsPublisher::waitForSubscribers(int count, std::chrono::milliseconds patie
   constexpr auto kBetween = 10ms;
   const auto deadline = std::chrono::steady_clock::now() + patience;
   const auto there = [&] {
-    return std::ranges::all_of(impl_->all(), [&](const Writer* writer) { return writer->subscribers() >= count; });
+    return std::ranges::all_of(impl_->writers, [&](const auto& each) { return each.second.subscribers() >= count; });
   };
   while (!there()) {
     if (stop.stop_requested() || std::chrono::steady_clock::now() >= deadline) return false;
@@ -138,22 +163,35 @@ bool DdsPublisher::waitForSubscribers(int count, std::chrono::milliseconds patie
   return true;
 }
 
+bool DdsPublisher::publishes(Topic topic) const { return impl_->writers.contains(topic); }
+
 void DdsPublisher::publish(const ros::PoseStamped& message) {
   const auto view = ddsView(message);
-  impl_->pose.write(&view);
+  impl_->write(Topic::kPose, &view);
 }
 void DdsPublisher::publish(const ros::Odometry& message) {
   const auto view = ddsView(message);
-  impl_->odometry.write(&view);
+  impl_->write(Topic::kOdometry, &view);
 }
 void DdsPublisher::publish(const ros::MarkerArray& message) {
-  const MarkerArrayView view(message);
-  impl_->objects.write(&view.array());
+  impl_->write(Topic::kMarkers, &MarkerArrayView(message).array());
+}
+void DdsPublisher::publish(const ros::TrackedObjects& message) {
+  impl_->write(Topic::kTrackedObjects, &TrackedObjectsView(message).message());
+}
+void DdsPublisher::publish(const ros::Detection3DArray& message) {
+  impl_->write(Topic::kDetections, &Detection3DArrayView(message).array());
+}
+void DdsPublisher::publish(const ros::DiagnosticArray& message) {
+  impl_->write(Topic::kDiagnostics, &DiagnosticArrayView(message).array());
+}
+void DdsPublisher::publish(const ros::TransformStamped& message) {
+  impl_->write(Topic::kTf, &TfMessageView(message).message());
 }
 
 std::vector<DdsPublisher::Counts> DdsPublisher::counts() const {
   std::vector<Counts> counts;
-  for (const Writer* const writer : impl_->all()) counts.push_back(writer->counts());
+  for (const auto& [topic, writer] : impl_->writers) counts.push_back(writer.counts());
   return counts;
 }
 

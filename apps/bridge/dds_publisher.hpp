@@ -3,12 +3,16 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "apps/bridge/dds_configuration.hpp"
+#include "apps/bridge/ros_diagnostics.hpp"
 #include "apps/bridge/ros_messages.hpp"
+#include "apps/bridge/ros_objects.hpp"
+#include "apps/bridge/topics.hpp"
 
 namespace motorcade {
 
@@ -25,7 +29,7 @@ class DdsPublisher {
     int subscribers = 0;         // now
   };
   /// Throws UsageError or OutputError.
-  explicit DdsPublisher(const DdsPlace& place);
+  DdsPublisher(const DdsPlace& place, const std::set<Topic>& topics);
   /// Gives subscribers up to a second for what they have not acknowledged.
   ~DdsPublisher();
   DdsPublisher(const DdsPublisher&) = delete;
@@ -34,10 +38,17 @@ class DdsPublisher {
   /// False when not each topic has so many subscribers in time, or when asked to stop.
   bool waitForSubscribers(int count, std::chrono::milliseconds patience, const std::stop_token& stop) const;
 
+  /// Whether it was made with this topic; no other one is to be published.
+  bool publishes(Topic topic) const;
   void publish(const ros::PoseStamped& message);
   void publish(const ros::Odometry& message);
   void publish(const ros::MarkerArray& message);
+  void publish(const ros::TrackedObjects& message);
+  void publish(const ros::Detection3DArray& message);
+  void publish(const ros::DiagnosticArray& message);
+  void publish(const ros::TransformStamped& message);
 
+  /// Of its topics, in their order.
   std::vector<Counts> counts() const;
   /// On loopback: nobody outside of this machine can send to it.
   bool isShielded() const;

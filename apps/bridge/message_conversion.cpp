@@ -5,23 +5,9 @@
 
 #include <Eigen/Geometry>
 
+#include "apps/bridge/matrix_rows.hpp"
+
 namespace motorcade {
-namespace {
-
-using RowMajor34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
-using RowMajor66 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-
-ros::Covariance rowsOf(const Matrix6d& covariance) {
-  ros::Covariance rows{};
-  Eigen::Map<RowMajor66>(rows.data()) = covariance;
-  return rows;
-}
-
-ros::Header headerOf(const Result& result, const FrameIds& ids) {
-  return {.stamp = timeOf(result.stamp_ns), .frame_id = ids.world};
-}
-
-}  // namespace
 
 ros::Time timeOf(std::int64_t stamp_ns) {
   constexpr std::int64_t kNanoseconds = 1'000'000'000;
@@ -32,8 +18,12 @@ ros::Time timeOf(std::int64_t stamp_ns) {
   return {static_cast<std::int32_t>(floor_s), static_cast<std::uint32_t>(stamp_ns - floor_s * kNanoseconds)};
 }
 
+ros::Header headerOf(const Result& result, const std::string& frame_id) {
+  return {.stamp = timeOf(result.stamp_ns), .frame_id = frame_id};
+}
+
 SE3 transformOf(const std::array<double, 12>& T_parent_child) {
-  const Eigen::Map<const RowMajor34> rows(T_parent_child.data());
+  const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> rows(T_parent_child.data());
   return {rows.leftCols<3>(), rows.col(3)};
 }
 
@@ -49,24 +39,31 @@ ros::Pose poseOf(const SE3& T_parent_child) {
 ros::Covariance covarianceInParent(const Matrix6d& covariance, const Eigen::Matrix3d& R_parent_child) {
   Matrix6d J = Matrix6d::Zero();
   J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = R_parent_child;
-  return rowsOf(J * covariance * J.transpose());
+  return rowsOf<6>(J * covariance * J.transpose());
 }
 
+ros::Covariance unknownCovariance() { return rowsOf<6>(kUnknownVariance * Matrix6d::Identity()); }
+
 ros::PoseStamped poseStampedOf(const Result& result, const FrameIds& ids) {
-  return {.header = headerOf(result, ids), .pose = poseOf(transformOf(result.T_world_cam))};
+  return {.header = headerOf(result, ids.world), .pose = poseOf(transformOf(result.T_world_cam))};
 }
 
 ros::Odometry odometryOf(const Result& result, const std::optional<Matrix6d>& covariance, const FrameIds& ids) {
-  const Matrix6d unknown = kUnknownVariance * Matrix6d::Identity();
   const SE3 T_world_cam = transformOf(result.T_world_cam);
   const auto& v = result.velocity;
-  return {.header = headerOf(result, ids),
+  return {.header = headerOf(result, ids.world),
           .child_frame_id = ids.child,
           .pose = poseOf(T_world_cam),
-          .pose_covariance = covariance ? covarianceInParent(*covariance, T_world_cam.rotation()) : rowsOf(unknown),
+          .pose_covariance = covariance ? covarianceInParent(*covariance, T_world_cam.rotation()) : unknownCovariance(),
           .linear_mps = {v[0], v[1], v[2]},
           .angular_radps = {v[3], v[4], v[5]},
           .twist_covariance = result.velocity_covariance};
+}
+
+ros::TransformStamped transformStampedOf(const Result& result, const FrameIds& ids) {
+  return {.header = headerOf(result, ids.world),
+          .child_frame_id = ids.child,
+          .transform = poseOf(transformOf(result.T_world_cam))};
 }
 
 }  // namespace motorcade

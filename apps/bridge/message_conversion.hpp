@@ -10,7 +10,7 @@
 /// From results with `Axes::kRep103` to the messages of ROS 2.
 namespace motorcade {
 
-/// Names of the world, in which poses stand, and of what moves in it (REP 105).
+/// Names of the world, in which poses stand, and of what moves in it (REP 105): the vehicle, or the camera alone.
 struct FrameIds {
   std::string world = "odom", child = "camera";
 };
@@ -22,6 +22,8 @@ inline constexpr double kUnknownVariance = 1e6;
 /// Rounded down to the second, so that `nanosec` counts forward. What 32 bits of seconds do not hold is their end.
 ros::Time timeOf(std::int64_t stamp_ns);
 
+ros::Header headerOf(const Result& result, const std::string& frame_id);
+
 /// From the upper three rows of a matrix.
 SE3 transformOf(const std::array<double, 12>& T_parent_child);
 ros::Vector3 vectorOf(const Eigen::Vector3d& vector);
@@ -32,10 +34,14 @@ ros::Pose poseOf(const SE3& T_parent_child);
 /// the parent frame: t + R rho and exp(R phi) R, to first order, so J = diag(R, R).
 ros::Covariance covarianceInParent(const Matrix6d& covariance, const Eigen::Matrix3d& R_parent_child);
 
+ros::Covariance unknownCovariance();
+
 ros::PoseStamped poseStampedOf(const Result& result, const FrameIds& ids);
 
 /// `covariance` is that of the pose, of a perturbation on the right; empty where it is not known. The twist is the
 /// motion since the frame before, and its covariance wide where nothing was measured.
 ros::Odometry odometryOf(const Result& result, const std::optional<Matrix6d>& covariance, const FrameIds& ids);
+
+ros::TransformStamped transformStampedOf(const Result& result, const FrameIds& ids);
 
 }  // namespace motorcade

@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "apps/bridge/matrix_rows.hpp"
 #include "apps/bridge/message_conversion.hpp"
+#include "apps/bridge/object_box.hpp"
 
 namespace motorcade {
 namespace {
@@ -41,14 +43,11 @@ ros::Color opaque(ros::Color color) {
   return color;
 }
 
-Eigen::Vector3d fromArray(const std::array<double, 3>& values) { return Eigen::Vector3d(values.data()); }
-
 /// An object's cuboid in the world.
 struct Placed {
   explicit Placed(const Result::Object& object)
-      : T_world_box(transformOf(object.T_world_body) *
-                    SE3(Eigen::Matrix3d::Identity(), fromArray(object.box_center_body_m))),
-        velocity_world_mps(fromArray(object.velocity_world_mps)) {}
+      : T_world_box(transformOf(object.T_world_body) * boxInBody(object)),
+        velocity_world_mps(vectorFrom(object.velocity_world_mps)) {}
   SE3 T_world_box;
   Eigen::Vector3d velocity_world_mps;
 };

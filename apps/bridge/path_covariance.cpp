@@ -1,18 +1,14 @@
 #include "apps/bridge/path_covariance.hpp"
 
 #include <algorithm>
-#include <array>
 
+#include "apps/bridge/matrix_rows.hpp"
 #include "apps/bridge/message_conversion.hpp"
 
 namespace motorcade {
 namespace {
 
 constexpr std::int64_t kSpan_frames = 10;  // that `Result::motion_covariance` reaches back
-
-Matrix6d matrixOf(const std::array<double, 36>& rows) {
-  return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(rows.data());
-}
 
 /// A covariance of perturbations on the right of T_world_before, as perturbations on the right of T_world_now.
 Matrix6d carried(const Matrix6d& covariance, const SE3& T_now_before) {
@@ -28,7 +24,7 @@ std::optional<PathCovariance::Chain> PathCovariance::overSpan(const Result& resu
       places_.rbegin(), places_.rend(), [&](const Place& place) { return place.frame <= result.frame - kSpan_frames; });
   if (before == places_.rend() || before->segment != result.segment || !before->chain) return std::nullopt;
   return Chain{.sum = carried(before->chain->sum, T_world_cam.inverse() * before->T_world_cam) +
-                      matrixOf(*result.motion_covariance),
+                      matrixOf<6>(*result.motion_covariance),
                .spans = before->chain->spans + 1,
                .steps = 0};
 }
@@ -39,7 +35,7 @@ std::optional<PathCovariance::Chain> PathCovariance::overStep(const Result& resu
   if (before.segment != result.segment || !before.chain) return std::nullopt;
   Chain chain = *before.chain;
   chain.sum = carried(chain.sum, T_world_cam.inverse() * before.T_world_cam) +
-              dt_s * dt_s * matrixOf(result.velocity_covariance);
+              dt_s * dt_s * matrixOf<6>(result.velocity_covariance);
   chain.spans += chain.steps % kSpan_frames == 0 ? 1 : 0;
   ++chain.steps;
   return chain;

@@ -9,7 +9,8 @@
 
 namespace motorcade {
 
-/// Bounds the covariance of the camera's pose in the world, which the tracker does not give, by those of its motions.
+/// Bounds the covariance of the camera's pose in the world, which the tracker does not give, by those of its motions;
+/// of results that are seen from the vehicle, that of the vehicle's pose.
 /// The path to a frame is a chain of n spans of ten frames, the first of them shorter; perturbations on the right of a
 /// product of motions add up as
 ///   xi_now = Ad(T_before_now^-1) xi_before + xi_span

@@ -6,7 +6,7 @@
 #include <vector>
 
 /// The values of the messages that the bridge publishes, as ROS 2 defines them (geometry_msgs, nav_msgs,
-/// visualization_msgs), without what it leaves empty. Lengths are meters, angles radians.
+/// tf2_msgs, visualization_msgs), without what it leaves empty. Lengths are meters, angles radians.
 namespace motorcade::ros {
 
 struct Time {
@@ -49,6 +49,13 @@ struct Odometry {
   Vector3 linear_mps{};           // in child_frame_id
   Vector3 angular_radps{};        // in child_frame_id
   Covariance twist_covariance{};  // along the axes of child_frame_id
+};
+
+/// The pose of child_frame_id in header.frame_id, as tf2 has it.
+struct TransformStamped {
+  Header header{};
+  std::string child_frame_id{};
+  Pose transform{};
 };
 
 struct Color {

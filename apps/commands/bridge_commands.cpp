@@ -29,16 +29,36 @@ void addWhere(CLI::App& command, BridgeOptions& options) {
       ->capture_default_str();
 }
 
+void addWhat(CLI::App& command, BridgeOptions& options) {
+  command
+      .add_option(
+          "--topics", options.topics,
+          "What to publish, with commas between: pose (geometry_msgs/PoseStamped), odometry (nav_msgs/Odometry), "
+          "markers (visualization_msgs/MarkerArray), tracked_objects (autoware_perception_msgs/TrackedObjects), "
+          "detections (vision_msgs/Detection3DArray), diagnostics (diagnostic_msgs/DiagnosticArray), tf "
+          "(tf2_msgs/TFMessage)")
+      ->type_name("NAMES")
+      ->capture_default_str();
+  command
+      .add_option("--mounting", options.mounting,
+                  "Where the left camera sits in the vehicle's frame (x ahead, y left, z up) [m], and its turn about "
+                  "these axes, roll first [deg]: then the vehicle's pose, motion and view are published")
+      ->type_name("X,Y,Z,ROLL,PITCH,YAW");
+  command
+      .add_option(
+          "--frame-ids", options.frame_ids,
+          "Names of the frames: the world, in which poses stand, and what moves in it; odom,camera when absent, "
+          "odom,base_link with --mounting")
+      ->type_name("WORLD,CHILD");
+}
+
 }  // namespace
 
 void addBridge(CLI::App& app, Action& action) {
   const auto options = std::make_shared<BridgeOptions>();
   CLI::App* command = app.add_subcommand("bridge", "Follow a recorded drive and publish the results as ROS 2 topics");
-  command
-      ->add_option("DRIVE", options->drive,
-                   "Folder of a sequence, as for run. Topics: /motorcade/pose (geometry_msgs/PoseStamped), "
-                   "/motorcade/odometry (nav_msgs/Odometry), /motorcade/objects (visualization_msgs/MarkerArray)")
-      ->required();
+  command->add_option("DRIVE", options->drive, "Folder of a sequence, as for run")->required();
+  addWhat(*command, *options);
   command->add_option("--rate", options->rate,
                       "Pace of the replay in pairs per second, or max; that of the capture when absent");
   command->add_flag("--live", options->live,
@@ -49,11 +69,6 @@ void addBridge(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--config", options->config, "Parameters; see effective_config.toml of any run")
       ->type_name("FILE.toml");
-  command
-      ->add_option("--frame-ids", options->frame_ids,
-                   "Names of the frames: the world, in which poses stand, and the camera")
-      ->type_name("WORLD,CHILD")
-      ->capture_default_str();
   addWhere(*command, *options);
   command->footer("Example: motorcade bridge DRIVE --loop");
   command->callback([options, &action] { action = [options] { return runBridge(*options); }; });

@@ -7,75 +7,24 @@
 #include <vector>
 
 #include <dds/dds.h>
-#include <geometry_msgs.h>
-#include <nav_msgs.h>
-#include <nlohmann/json.hpp>
-#include <visualization_msgs.h>
 
 #include "apps/bridge/dds_configuration.hpp"
+#include "tests/apps/bridge_json.hpp"
 
 /// Subscribes to the topics of `motorcade bridge` on loopback as a node of ROS 2 would, and writes each message as a
 /// line of JSON: bridge_subscriber DOMAIN SECONDS. Ends when all publishers that came have gone, or after so long.
 namespace {
 
-using nlohmann::json;
+using motorcade::test::json;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kMostTaken = 64;
-
-json jsonOf(const std_msgs_msg_dds__Header_& header) {
-  return {{"sec", header.stamp.sec}, {"nanosec", header.stamp.nanosec}, {"frame_id", header.frame_id}};
-}
-
-json jsonOf(const geometry_msgs_msg_dds__Pose_& pose) {
-  const auto& p = pose.position;
-  const auto& q = pose.orientation;
-  return {p.x, p.y, p.z, q.x, q.y, q.z, q.w};
-}
-
-template <class Vector>
-json triple(const Vector& v) {
-  return {v.x, v.y, v.z};
-}
-
-json jsonOf(const geometry_msgs_msg_dds__PoseStamped_& message) {
-  return {{"header", jsonOf(message.header)}, {"pose", jsonOf(message.pose)}};
-}
-
-json jsonOf(const nav_msgs_msg_dds__Odometry_& message) {
-  return {{"header", jsonOf(message.header)},
-          {"child_frame_id", message.child_frame_id},
-          {"pose", jsonOf(message.pose.pose)},
-          {"pose_covariance", message.pose.covariance},
-          {"linear", triple(message.twist.twist.linear)},
-          {"angular", triple(message.twist.twist.angular)},
-          {"twist_covariance", message.twist.covariance}};
-}
-
-json jsonOf(const visualization_msgs_msg_dds__Marker_& marker) {
-  return {{"header", jsonOf(marker.header)},
-          {"ns", marker.ns},
-          {"id", marker.id},
-          {"type", marker.type},
-          {"action", marker.action},
-          {"pose", jsonOf(marker.pose)},
-          {"scale", triple(marker.scale)},
-          {"points", marker.points._length},
-          {"text", marker.text},
-          {"lifetime_s", marker.lifetime.sec + 1e-9 * marker.lifetime.nanosec}};
-}
-
-json jsonOf(const visualization_msgs_msg_dds__MarkerArray_& message) {
-  json markers = json::array();
-  for (std::uint32_t i = 0; i < message.markers._length; ++i) markers.push_back(jsonOf(message.markers._buffer[i]));
-  return {{"markers", markers}};
-}
 
 /// A topic's reader: reliable as ROS' are, but it keeps all, so that what is missing was not sent.
 struct Reader {
   std::string topic;
   dds_entity_t reader;
-  std::function<json(const void*)> toJson;
+  std::function<json(const void*)> convert;
 
   void take() const {
     std::vector<void*> samples(kMostTaken, nullptr);
@@ -83,7 +32,7 @@ struct Reader {
     const int taken = dds_take(reader, samples.data(), infos.data(), kMostTaken, kMostTaken);
     for (int i = 0; i < taken; ++i) {
       if (!infos[i].valid_data) continue;
-      json line = toJson(samples[i]);
+      json line = convert(samples[i]);
       line["topic"] = topic;
       std::puts(line.dump().c_str());
     }
@@ -106,13 +55,15 @@ Reader subscribe(dds_entity_t participant, const dds_topic_descriptor_t& type, c
   const dds_entity_t reader = dds_create_reader(participant, entity, qos, nullptr);
   dds_delete_qos(qos);
   if (reader < 0) std::exit(4);
-  return {topic, reader, [](const void* message) { return jsonOf(*static_cast<const Message*>(message)); }};
+  return {topic, reader,
+          [](const void* message) { return motorcade::test::jsonOf(*static_cast<const Message*>(message)); }};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // tests count the lines meanwhile
   const int domain = std::atoi(argv[1]);
   const auto deadline = Clock::now() + std::chrono::seconds(std::atoi(argv[2]));
   const auto id = static_cast<dds_domainid_t>(domain);
@@ -124,13 +75,22 @@ int main(int argc, char** argv) {
                                                      "rt/motorcade/pose"),
       subscribe<nav_msgs_msg_dds__Odometry_>(participant, nav_msgs_msg_dds__Odometry__desc, "rt/motorcade/odometry"),
       subscribe<visualization_msgs_msg_dds__MarkerArray_>(participant, visualization_msgs_msg_dds__MarkerArray__desc,
-                                                          "rt/motorcade/objects")};
+                                                          "rt/motorcade/objects"),
+      subscribe<autoware_perception_msgs_msg_dds__TrackedObjects_>(
+          participant, autoware_perception_msgs_msg_dds__TrackedObjects__desc, "rt/motorcade/tracked_objects"),
+      subscribe<vision_msgs_msg_dds__Detection3DArray_>(participant, vision_msgs_msg_dds__Detection3DArray__desc,
+                                                        "rt/motorcade/detections"),
+      subscribe<diagnostic_msgs_msg_dds__DiagnosticArray_>(participant, diagnostic_msgs_msg_dds__DiagnosticArray__desc,
+                                                           "rt/diagnostics"),
+      subscribe<tf2_msgs_msg_dds__TFMessage_>(participant, tf2_msgs_msg_dds__TFMessage__desc, "rt/tf")};
   for (bool gone = false; !gone && Clock::now() < deadline;) {
-    gone = true;
+    std::uint32_t ever = 0, now = 0;
     for (const Reader& reader : readers) {
-      const auto [ever, now] = reader.publishersEverAndNow();
-      gone &= ever > 0 && now == 0;
+      const auto [ever_here, now_here] = reader.publishersEverAndNow();
+      ever += ever_here;
+      now += now_here;
     }
+    gone = ever > 0 && now == 0;
     for (const Reader& reader : readers) reader.take();
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }

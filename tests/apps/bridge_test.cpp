@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -20,14 +21,6 @@ namespace motorcade::test {
 namespace {
 
 using testing::HasSubstr;
-using Rows = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>;
-
-/// A full covariance without symmetries that could hide a mistake.
-Matrix6d someCovariance() {
-  Matrix6d root;
-  for (int i = 0; i < 36; ++i) root(i / 6, i % 6) = 0.1 * std::sin(1.0 + 7.0 * i);
-  return root * root.transpose() + 0.01 * Matrix6d::Identity();
-}
 
 TEST(BridgeMessages, StampsAreThoseOfTheCapture) {
   const auto pair = [](std::int64_t stamp_ns) {
@@ -76,10 +69,10 @@ TEST(BridgeMessages, PoseCovarianceIsTurnedAsFiniteDifferencesSay) {
         return difference;
       },
       T);
-  const Matrix6d covariance = someCovariance();
+  const Matrix6d covariance = unevenCovariance();
   const ros::Covariance rows = covarianceInParent(covariance, T.rotation());
   constexpr double kTol = 1e-7;  // of central differences, times the covariance
-  EXPECT_THAT(Matrix6d(Rows(rows.data())), IsNear(Matrix6d(J * covariance * J.transpose()), kTol));
+  EXPECT_THAT(matrixOfRows(rows), IsNear(Matrix6d(J * covariance * J.transpose()), kTol));
 }
 
 /// Heading to the left, along y of the world: what is uncertain ahead is uncertain in y, a roll is one about y.
@@ -90,14 +83,14 @@ TEST(BridgeMessages, PoseCovarianceOfAQuarterTurnIsTheHandComputedOne) {
       covarianceInParent(Matrix6d(variances.asDiagonal()), turned({0, 0, kHalfTurn / 2}).rotation());
   Vector6d expected;
   expected << 2, 1, 3, 5, 4, 6;
-  EXPECT_THAT(Matrix6d(Rows(rows.data())), IsNear(Matrix6d(expected.asDiagonal()), kRounding));
+  EXPECT_THAT(matrixOfRows(rows), IsNear(Matrix6d(expected.asDiagonal()), kRounding));
 }
 
 TEST(BridgeMessages, OdometryHasTheTwistInTheChildsFrame) {
   Result result;
   result.T_world_cam = rowsOf(turned({0, 0, 1}));
   result.velocity = {10, 0.1, 0.2, 0.01, 0.02, 0.3};
-  result.velocity_covariance = rowsOf(someCovariance());
+  result.velocity_covariance = rowsOf(unevenCovariance());
   const ros::Odometry message = odometryOf(result, diagonal(0.25, 0.01), {.world = "odom", .child = "camera"});
   EXPECT_EQ(message.header.frame_id, "odom");
   EXPECT_EQ(message.child_frame_id, "camera");
@@ -108,6 +101,18 @@ TEST(BridgeMessages, OdometryHasTheTwistInTheChildsFrame) {
   EXPECT_EQ(message.twist_covariance, result.velocity_covariance);
   EXPECT_NEAR(message.pose_covariance[0], 0.25, kRounding);
   EXPECT_NEAR(message.pose_covariance[35], 0.01, kRounding);
+}
+
+TEST(BridgeMessages, TheTransformIsThePose) {
+  Result result;
+  result.stamp_ns = 12'000'000'034;
+  result.T_world_cam = rowsOf(turned({0, 0, kHalfTurn / 2}, {1, 2, 3}));
+  const ros::TransformStamped message = transformStampedOf(result, {.world = "odom", .child = "base_link"});
+  EXPECT_EQ(message.header.stamp.nanosec, 34U);
+  EXPECT_EQ(message.header.frame_id, "odom");
+  EXPECT_EQ(message.child_frame_id, "base_link");
+  EXPECT_EQ(message.transform.position.y, 2);
+  EXPECT_NEAR(message.transform.orientation.z, std::sqrt(0.5), kRounding);
 }
 
 TEST(BridgeMessages, WhatIsNotKnownHasAWideCovariance) {
@@ -127,8 +132,44 @@ TEST(BridgeOptions, FrameIdsAreTwoNames) {
   const FrameIds ids = frameIdsOf({.frame_ids = "map,base_link"});
   EXPECT_EQ(ids.world, "map");
   EXPECT_EQ(ids.child, "base_link");
+  EXPECT_EQ(frameIdsOf({}).child, "camera");
+  EXPECT_EQ(frameIdsOf({.mounting = "1,0,1,0,0,0"}).child, "base_link");
+  EXPECT_EQ(frameIdsOf({.mounting = "1,0,1,0,0,0", .frame_ids = "map,roof"}).child, "roof");
   for (const char* const bad : {"map", "map,", ",camera", "/map,camera", "map,map", "map,a b", "map,a,b"})
     EXPECT_THROW(frameIdsOf({.frame_ids = bad}), UsageError) << bad;
+}
+
+TEST(BridgeOptions, TopicsAreNamesOfThoseThatAreKnown) {
+  EXPECT_EQ(topicsOf("tf,pose"), (std::set<Topic>{Topic::kPose, Topic::kTf}));
+  std::set<Topic> all = topicsOf(kDefaultTopics);
+  EXPECT_FALSE(all.contains(Topic::kTf)) << "who publishes a transform twice contradicts himself";
+  all.insert(Topic::kTf);
+  EXPECT_EQ(all.size(), kTopicCount);
+  EXPECT_EQ(rosNamesOf(topicsOf("pose,markers,tf")), "/motorcade/pose, /motorcade/objects and /tf");
+  for (const char* const bad : {"", "pose,", "objects", "pose,,tf", "Pose"})
+    EXPECT_THROW(topicsOf(bad), UsageError) << bad;
+  try {
+    topicsOf("pose,objects");
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("'objects'; write some of pose, odometry, markers, tracked_objects"));
+  }
+}
+
+/// Axes of a camera that is turned to the left, then rolled and pitched: where its axes point in the vehicle.
+TEST(BridgeOptions, AMountingIsAPlaceAndThreeTurns) {
+  EXPECT_THAT(mountingOf({}), IsNearPose(SE3(), 0));
+  const auto ahead = [](const std::string& mounting) {
+    return Eigen::Vector3d(mountingOf({.mounting = mounting}).rotation().col(0));
+  };
+  EXPECT_THAT(mountingOf({.mounting = "1.6,-0.4,1.5,0,0,0"}),
+              IsNearPose(turned({0, 0, 0}, {1.6, -0.4, 1.5}), kRounding));
+  EXPECT_THAT(ahead("0,0,0,0,0,90"), IsNear(Eigen::Vector3d(0, 1, 0), kRounding)) << "yaw to the left";
+  EXPECT_THAT(ahead("0,0,0,0,90,0"), IsNear(Eigen::Vector3d(0, 0, -1), kRounding)) << "pitch down";
+  EXPECT_THAT(ahead("0,0,0,90,90,0"), IsNear(Eigen::Vector3d(0, 0, -1), kRounding)) << "roll comes before pitch";
+  EXPECT_THAT(ahead("0,0,0,0,90,90"), IsNear(Eigen::Vector3d(0, 0, -1), kRounding)) << "yaw comes last";
+  for (const char* const bad : {"1", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,2,3,4,5,", "a,0,0,0,0,0", "1600,0,0,0,0,0",
+                                "nan,0,0,0,0,0", "0,0,0,0,0,400"})
+    EXPECT_THROW(mountingOf({.mounting = bad}), UsageError) << bad;
 }
 
 TEST(BridgeOptions, TheConfigurationIsReadAndTheAxesAreThoseOfRos) {

@@ -2,12 +2,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -18,135 +13,22 @@
 #include <netinet/in.h>
 #include <nlohmann/json.hpp>
 #include <sys/socket.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "apps/bridge/dds_publisher.hpp"
 #include "apps/bridge/message_conversion.hpp"
 #include "motorcade/motorcade.hpp"
+#include "tests/apps/bridge_process.hpp"
 #include "tests/support/matchers.hpp"
 
 /// `motorcade bridge` as other processes see it: what a subscriber gets, and what it may do to the bridge.
 namespace motorcade::test {
 namespace {
 
-namespace fs = std::filesystem;
-using namespace std::chrono_literals;
-using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr const char* kDrive = MOTORCADE_TINY_SEQUENCE;
-
-/// One that others hardly use, and below the ports that the system gives away.
-int unlikelyDomain() { return 60 + ::getpid() % 40; }
-
-std::string contentOf(const fs::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// A program that is running; killed at the end where it still does.
-class Process {
- public:
-  Process(const std::vector<std::string>& words, const fs::path& output) : output_(output), id_(::fork()) {
-    if (id_ != 0) return;
-    if (std::freopen(output.c_str(), "w", stdout) == nullptr || ::dup2(1, 2) < 0) ::_exit(126);
-    std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    ::execv(arguments[0], arguments.data());
-    ::_exit(127);
-  }
-  ~Process() {
-    if (running_) tell(SIGKILL);
-    if (running_) ::waitpid(id_, nullptr, 0);
-    fs::remove(output_);
-  }
-  Process(const Process&) = delete;
-  Process& operator=(const Process&) = delete;
-
-  void tell(int signal) const { ::kill(id_, signal); }
-  /// The exit code; -1 where it does not end in time.
-  int end(std::chrono::seconds patience) {
-    const auto deadline = std::chrono::steady_clock::now() + patience;
-    int status = 0;
-    while (std::chrono::steady_clock::now() < deadline) {
-      if (::waitpid(id_, &status, WNOHANG) == id_) {
-        running_ = false;
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-      }
-      std::this_thread::sleep_for(5ms);
-    }
-    return -1;
-  }
-  std::string said() const { return contentOf(output_); }
-
- private:
-  fs::path output_;
-  pid_t id_;
-  bool running_ = true;
-};
-
-class Bridge : public testing::Test {
- protected:
-  Process bridge(const std::vector<std::string>& options, const std::string& drive = kDrive) const {
-    std::vector<std::string> words{MOTORCADE_PROGRAM, "bridge", drive, "--domain", std::to_string(domain_)};
-    words.insert(words.end(), options.begin(), options.end());
-    return {words, file("bridge")};
-  }
-  Process subscriber() const { return {{BRIDGE_SUBSCRIBER, std::to_string(domain_), "60"}, file("subscriber")}; }
-
-  const int domain_ = unlikelyDomain();
-
- private:
-  static fs::path file(const std::string& name) {
-    return fs::path(testing::TempDir()) / ("motorcade_bridge_" + std::to_string(::getpid()) + "_" + name);
-  }
-};
-
-std::vector<Result> trackedHere() {
-  Recording recording(kDrive);
-  Tracker tracker(recording.camera(), {.policy = Tracker::Policy::kReplay, .axes = Tracker::Axes::kRep103});
-  for (std::int64_t i = 0; i < recording.size(); ++i) tracker.push(recording.read(i));
-  tracker.close();
-  std::vector<Result> results;
-  while (!tracker.done())
-    if (auto result = tracker.wait(1s)) results.push_back(*std::move(result));
-  return results;
-}
-
-/// The messages of one topic in the order in which they came.
-std::vector<json> messagesOf(const std::string& lines, const std::string& topic) {
-  std::vector<json> messages;
-  std::istringstream stream(lines);
-  for (std::string line; std::getline(stream, line);)
-    if (auto message = json::parse(line); message["topic"] == topic) messages.push_back(std::move(message));
-  return messages;
-}
-
-void expectStamped(const json& header, const Result& result) {
-  EXPECT_EQ(header["sec"].get<std::int64_t>() * 1'000'000'000 + header["nanosec"].get<std::int64_t>(), result.stamp_ns);
-  EXPECT_EQ(header["frame_id"], "map");
-}
-
-/// The tracker here and the one of the program are linked apart, and may round the last bits differently.
-constexpr double kRounding = 1e-9;
-
-template <class Numbers>
-void expectNumbers(const json& message, const Numbers& expected) {
-  EXPECT_THAT(message.get<std::vector<double>>(), testing::Pointwise(testing::DoubleNear(kRounding), expected));
-}
-
-void expectPose(const json& pose, const Result& result) {
-  const SE3 T_world_cam = transformOf(result.T_world_cam);
-  EXPECT_THAT(Eigen::Vector3d(pose[0], pose[1], pose[2]), IsNear(T_world_cam.translation(), kRounding));
-  const Eigen::Quaterniond q(pose[6], pose[3], pose[4], pose[5]);
-  EXPECT_THAT(q.toRotationMatrix(), IsNear(T_world_cam.rotation(), kRounding));
-}
-
 void expectOdometry(const json& message, const Result& result) {
-  expectStamped(message["header"], result);
-  expectPose(message["pose"], result);
+  expectStamped(message["header"], result, "map");
+  expectPose(message["pose"], transformOf(result.T_world_cam));
   EXPECT_EQ(message["child_frame_id"], "base_link");
   const auto& v = result.velocity;
   expectNumbers(message["linear"], std::array{v[0], v[1], v[2]});
@@ -185,8 +67,8 @@ TEST_F(Bridge, EveryMessageArrivesInOrderAndIsWhatTheTrackerGives) {
   std::size_t seen = 0;
   for (std::size_t i = 0; i < results.size(); ++i) {
     SCOPED_TRACE(i);
-    expectStamped(poses[i]["header"], results[i]);
-    expectPose(poses[i]["pose"], results[i]);
+    expectStamped(poses[i]["header"], results[i], "map");
+    expectPose(poses[i]["pose"], transformOf(results[i].T_world_cam));
     expectOdometry(odometry[i], results[i]);
     expectMarkers(objects[i]["markers"], results[i]);
     seen += results[i].objects.size();
@@ -232,6 +114,8 @@ TEST_F(Bridge, SaysWhatCannotBeUsed) {
   };
   expectEnd({}, "/nonexistent/drive", 3, "/nonexistent/drive");
   expectEnd({"--frame-ids", "map"}, kDrive, 2, "write WORLD,CHILD");
+  expectEnd({"--topics", "pose,objects"}, kDrive, 2, "write some of pose, odometry, markers, tracked_objects");
+  expectEnd({"--mounting", "1.6,0"}, kDrive, 2, "write X,Y,Z,ROLL,PITCH,YAW");
   expectEnd({"--rate", "fast"}, kDrive, 2, "--rate fast");
   expectEnd({"--interface", "203.0.113.7"}, kDrive, 2, "no interface of this machine");
   expectEnd({"--config", "/nonexistent.toml"}, kDrive, 2, "/nonexistent.toml");
@@ -248,7 +132,7 @@ TEST_F(Bridge, AStoppedSubscriberHoldsNothingUpAndIsCounted) {
   Process subscriber = this->subscriber();
   const auto start = std::chrono::steady_clock::now();
   {
-    DdsPublisher publisher({.domain = domain_});
+    DdsPublisher publisher({.domain = domain_}, {Topic::kPose, Topic::kMarkers});
     ASSERT_TRUE(publisher.waitForSubscribers(1, 20s, {}));
     subscriber.tell(SIGSTOP);
     const ros::MarkerArray array = manyMarkers();
@@ -256,7 +140,7 @@ TEST_F(Bridge, AStoppedSubscriberHoldsNothingUpAndIsCounted) {
     const auto before = std::chrono::steady_clock::now();
     for (int i = 0; i < kMessages; ++i) publisher.publish(array);
     EXPECT_LT(std::chrono::steady_clock::now() - before, kMessages * 10ms);
-    const auto objects = publisher.counts()[2];
+    const auto objects = publisher.counts()[1];
     EXPECT_EQ(objects.published + objects.timed_out, kMessages);
     EXPECT_GE(objects.overtaken + objects.timed_out, kMessages - 20) << "all but what the history and buffers hold";
   }
@@ -266,7 +150,7 @@ TEST_F(Bridge, AStoppedSubscriberHoldsNothingUpAndIsCounted) {
 
 /// Each is bound to an address of the loopback interface, or to its device.
 TEST_F(Bridge, NoSocketIsReachableFromOutsideOfTheMachine) {
-  const DdsPublisher publisher({.domain = domain_});
+  const DdsPublisher publisher({.domain = domain_}, topicsOf(kDefaultTopics));
   EXPECT_TRUE(publisher.isShielded());
   int sockets = 0;
   for (int descriptor = 0; descriptor < 1024; ++descriptor) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <numbers>
 
 #include <Eigen/Core>
@@ -24,6 +25,17 @@ inline std::array<double, 36> rowsOf(const Matrix6d& covariance) {
   std::array<double, 36> rows{};
   Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(rows.data()) = covariance;
   return rows;
+}
+
+inline Matrix6d matrixOfRows(const std::array<double, 36>& rows) {
+  return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(rows.data());
+}
+
+/// A full covariance without symmetries that could hide a mistake.
+inline Matrix6d unevenCovariance() {
+  Matrix6d root;
+  for (int i = 0; i < 36; ++i) root(i / 6, i % 6) = 0.1 * std::sin(1.0 + 7.0 * i);
+  return root * root.transpose() + 0.01 * Matrix6d::Identity();
 }
 
 inline Matrix6d diagonal(double rho, double phi) {

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "apps/bridge/dds_publisher.hpp"
+#include "apps/bridge/message_conversion.hpp"
+#include "apps/bridge/object_markers.hpp"
+#include "apps/bridge/path_covariance.hpp"
+#include "core/se3.hpp"
+#include "motorcade/motorcade.hpp"
+
+namespace motorcade {
+
+/// Turns the results of one tracker into the messages that are asked for, and publishes them. Call it in frame order.
+class ResultPublisher {
+ public:
+  struct Params {
+    FrameIds ids{};
+    SE3 T_child_cam{};    // where the camera sits in what `ids.child` names
+    std::string drive{};  // in diagnostics, the hardware's name
+    double marker_lifetime_s = 1;
+  };
+  ResultPublisher(DdsPublisher& out, const Params& params);
+  void publish(const Result& result);
+
+ private:
+  DdsPublisher& out_;
+  Params params_;
+  PathCovariance covariance_{};
+  ObjectMarkers markers_;
+  std::optional<std::int64_t> first_stamp_ns_{};
+};
+
+}  // namespace motorcade

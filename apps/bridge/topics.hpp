@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <set>
+#include <string>
+
+namespace motorcade {
+
+/// What can be published, in the order in which a frame's messages are.
+enum class Topic { kPose, kOdometry, kMarkers, kTrackedObjects, kDetections, kDiagnostics, kTf };
+inline constexpr std::size_t kTopicCount = 7;
+
+struct TopicNames {
+  const char* option;  // in --topics
+  const char* ros;     // without the first slash
+};
+inline constexpr std::array<TopicNames, kTopicCount> kTopicNames{{{"pose", "motorcade/pose"},
+                                                                  {"odometry", "motorcade/odometry"},
+                                                                  {"markers", "motorcade/objects"},
+                                                                  {"tracked_objects", "motorcade/tracked_objects"},
+                                                                  {"detections", "motorcade/detections"},
+                                                                  {"diagnostics", "diagnostics"},
+                                                                  {"tf", "tf"}}};
+
+/// All but tf: two that publish one transform contradict each other.
+inline constexpr const char* kDefaultTopics = "pose,odometry,markers,tracked_objects,detections,diagnostics";
+
+/// "/motorcade/pose, ... and /tf".
+std::string rosNamesOf(const std::set<Topic>& topics);
+
+/// From names with commas between them. Throws UsageError, which names the known ones.
+std::set<Topic> topicsOf(const std::string& names);
+
+}  // namespace motorcade
