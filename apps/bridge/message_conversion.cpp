@@ -48,13 +48,16 @@ ros::PoseStamped poseStampedOf(const Result& result, const FrameIds& ids) {
   return {.header = headerOf(result, ids.world), .pose = poseOf(transformOf(result.T_world_cam))};
 }
 
-ros::Odometry odometryOf(const Result& result, const std::optional<Matrix6d>& covariance, const FrameIds& ids) {
+ros::Odometry odometryOf(const Result& result, const FrameIds& ids) {
   const SE3 T_world_cam = transformOf(result.T_world_cam);
   const auto& v = result.velocity;
+  const ros::Covariance pose_covariance =
+      result.pose_covariance ? covarianceInParent(matrixOf<6>(*result.pose_covariance), T_world_cam.rotation())
+                             : unknownCovariance();
   return {.header = headerOf(result, ids.world),
           .child_frame_id = ids.child,
           .pose = poseOf(T_world_cam),
-          .pose_covariance = covariance ? covarianceInParent(*covariance, T_world_cam.rotation()) : unknownCovariance(),
+          .pose_covariance = pose_covariance,
           .linear_mps = {v[0], v[1], v[2]},
           .angular_radps = {v[3], v[4], v[5]},
           .twist_covariance = result.velocity_covariance};

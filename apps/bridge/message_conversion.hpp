@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "apps/bridge/ros_messages.hpp"
@@ -38,9 +37,9 @@ ros::Covariance unknownCovariance();
 
 ros::PoseStamped poseStampedOf(const Result& result, const FrameIds& ids);
 
-/// `covariance` is that of the pose, of a perturbation on the right; empty where it is not known. The twist is the
-/// motion since the frame before, and its covariance wide where nothing was measured.
-ros::Odometry odometryOf(const Result& result, const std::optional<Matrix6d>& covariance, const FrameIds& ids);
+/// The pose's covariance is wide where it is not known. The twist is the motion since the frame before, and its
+/// covariance wide where nothing was measured.
+ros::Odometry odometryOf(const Result& result, const FrameIds& ids);
 
 ros::TransformStamped transformStampedOf(const Result& result, const FrameIds& ids);
 

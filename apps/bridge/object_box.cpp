@@ -12,8 +12,7 @@ std::optional<Matrix6d> boxCovariance(const Result::Object& object) {
   if (!object.covariance) return std::nullopt;
   const Matrix6d adjoint = boxInBody(object).inverse().adjoint();
   Matrix6d covariance = adjoint * matrixOf<6>(*object.covariance) * adjoint.transpose();
-  covariance.diagonal().head<3>() +=
-      vectorFrom(object.box_size_sigma_m).cwiseProduct(vectorFrom(kMiddlePerSize)).cwiseAbs2();
+  covariance.diagonal().head<3>() += vectorFrom(object.box_center_sigma_m).cwiseAbs2();
   if (!covariance.allFinite()) return std::nullopt;
   return covariance;
 }

@@ -16,7 +16,7 @@ void ResultPublisher::publish(const Result& result) {
   const std::int64_t first_stamp_ns = first_stamp_ns_.value_or(seen.stamp_ns);
   const auto wanted = [this](Topic topic) { return out_.publishes(topic); };
   if (wanted(Topic::kPose)) out_.publish(poseStampedOf(seen, params_.ids));
-  if (wanted(Topic::kOdometry)) out_.publish(odometryOf(seen, covariance_(seen), params_.ids));
+  if (wanted(Topic::kOdometry)) out_.publish(odometryOf(seen, params_.ids));
   if (wanted(Topic::kMarkers)) out_.publish(markers_(seen));
   if (wanted(Topic::kTrackedObjects)) out_.publish(trackedObjectsOf(seen, world, first_stamp_ns));
   if (wanted(Topic::kDetections)) out_.publish(detectionsOf(seen, child, first_stamp_ns));

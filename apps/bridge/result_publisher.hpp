@@ -7,7 +7,6 @@
 #include "apps/bridge/dds_publisher.hpp"
 #include "apps/bridge/message_conversion.hpp"
 #include "apps/bridge/object_markers.hpp"
-#include "apps/bridge/path_covariance.hpp"
 #include "core/se3.hpp"
 #include "motorcade/motorcade.hpp"
 
@@ -28,7 +27,6 @@ class ResultPublisher {
  private:
   DdsPublisher& out_;
   Params params_;
-  PathCovariance covariance_{};
   ObjectMarkers markers_;
   std::optional<std::int64_t> first_stamp_ns_{};
 };

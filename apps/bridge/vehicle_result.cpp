@@ -22,6 +22,7 @@ Result seenFromVehicle(Result result, const SE3& T_vehicle_cam) {
     return rowsOf<6>(adjoint * matrixOf<6>(covariance) * adjoint.transpose());
   };
   result.T_world_cam = rowsOf(T_vehicle_cam * transformOf(result.T_world_cam) * T_vehicle_cam.inverse());
+  if (result.pose_covariance) result.pose_covariance = carried(*result.pose_covariance);
   if (result.motion_covariance) result.motion_covariance = carried(*result.motion_covariance);
   const Vector6d velocity = adjoint * Eigen::Map<const Vector6d>(result.velocity.data());
   Eigen::Map<Vector6d>(result.velocity.data()) = velocity;

@@ -67,6 +67,7 @@ motorcade_object objectOf(const Result::Object& object) {
   copy(object.box_center_body_m, converted.box_center_body_m);
   copy(object.box_size_m, converted.box_size_m);
   copy(object.box_size_sigma_m, converted.box_size_sigma_m);
+  copy(object.box_center_sigma_m, converted.box_center_sigma_m);
   converted.kind = static_cast<motorcade_kind>(object.kind);
   converted.kind_probability = object.kind_probability;
   converted.existence_probability = object.existence_probability;

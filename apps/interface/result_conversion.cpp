@@ -86,6 +86,7 @@ void setCuboid(const ObjectBox& cuboid, Result::Object& object) {
   object.box_center_body_m = arrayOf(cuboid.center_body);
   object.box_size_m = arrayOf(cuboid.size_m);
   object.box_size_sigma_m = arrayOf(cuboid.size_sigma_m);
+  object.box_center_sigma_m = arrayOf(cuboid.center_sigma_m);
   object.kind = kindOf(cuboid.kind);
   object.kind_probability = cuboid.kind_probability;
 }

@@ -174,6 +174,7 @@ typedef struct {
   double kind_probability, existence_probability;  // the latter that it is there and moves, or moved before
   /// Of its speed and of its yaw rate; NaN in its first frame, and where the back-end cannot tell.
   double acceleration_mps2, acceleration_sigma_mps2, yaw_acceleration_radps2, yaw_acceleration_sigma_radps2;
+  double box_center_sigma_m[3];  // along the body's axes
 } motorcade_object;
 typedef struct {
   size_t struct_size;

@@ -121,6 +121,7 @@ struct Result {
     std::array<double, 4> image_box_px{};         // left, top, right, bottom in the left image, inclusive
     /// The cuboid along the body's axes, its bottom on the ground; length 0 where it is not known yet.
     std::array<double, 3> box_center_body_m{}, box_size_m{}, box_size_sigma_m{};  // length, width, height
+    std::array<double, 3> box_center_sigma_m{};                                   // along the body's axes
     Kind kind = Kind::kUnknown;
     double kind_probability = 0;
     std::optional<Mask> mask{};                  // with `Options::masks`, where the outline was found

@@ -139,6 +139,8 @@ class Object:
     """3: length, width, height; length 0 where it is not known yet."""
     box_size_sigma_m: Array
     """3."""
+    box_center_sigma_m: Array
+    """3, along the body's axes."""
     kind: Kind
     kind_probability: float
     existence_probability: float

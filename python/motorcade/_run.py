@@ -45,6 +45,7 @@ OBJECT_DTYPE = np.dtype(
         ("box_center_body_m", "f8", (3,)),
         ("box_size_m", "f8", (3,)),
         ("box_size_sigma_m", "f8", (3,)),
+        ("box_center_sigma_m", "f8", (3,)),
     ]
 )
 """One row of ``Run.objects``: one object in one frame, with the members of ``Object``."""

@@ -92,7 +92,8 @@ py::object pythonOf(const Result::Object& object) {
       "yaw_acceleration_sigma_radps2"_a = acceleration(&Acceleration::yaw_sigma_radps2), "age_s"_a = object.age_s,
       "points"_a = object.points, "image_box_px"_a = vectorOf(object.image_box_px),
       "box_center_body_m"_a = vectorOf(object.box_center_body_m), "box_size_m"_a = vectorOf(object.box_size_m),
-      "box_size_sigma_m"_a = vectorOf(object.box_size_sigma_m), "kind"_a = pythonOf(object.kind),
+      "box_size_sigma_m"_a = vectorOf(object.box_size_sigma_m),
+      "box_center_sigma_m"_a = vectorOf(object.box_center_sigma_m), "kind"_a = pythonOf(object.kind),
       "kind_probability"_a = object.kind_probability, "existence_probability"_a = object.existence_probability,
       "mask"_a = pythonOf(object.mask));
 }

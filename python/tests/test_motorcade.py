@@ -316,7 +316,7 @@ class FollowingADrive(unittest.TestCase):
         self.assertEqual(shapes, {
             "T_world_body": (4, 4), "T_cam_body": (4, 4), "covariance": (6, 6), "velocity_world_mps": (3,),
             "velocity_covariance": (3, 3), "image_box_px": (4,), "box_center_body_m": (3,), "box_size_m": (3,),
-            "box_size_sigma_m": (3,)})
+            "box_size_sigma_m": (3,), "box_center_sigma_m": (3,)})
         rounding = 1e-9
         np.testing.assert_allclose(thing.T_world_body, last.T_world_cam @ thing.T_cam_body, atol=rounding)
         np.testing.assert_array_equal(thing.T_world_body[3], [0, 0, 0, 1])

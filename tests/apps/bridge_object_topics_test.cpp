@@ -61,7 +61,7 @@ void expectTracked(const json& sent, const Result::Object& object, const SentDri
   EXPECT_FLOAT_EQ(sent["existence_probability"], static_cast<float>(object.existence_probability));
   EXPECT_EQ(sent["is_stationary"], object.state == Result::State::kStopped);
   EXPECT_EQ(sent["orientation_availability"], 2) << "a car that drives heads somewhere";
-  EXPECT_LT(sent["pose_covariance"][0], 25) << "known";
+  EXPECT_LT(sent["pose_covariance"][0], 100) << "known";
   EXPECT_GT(sent["twist_covariance"][0], 0);
   if (!object.acceleration) return;
   EXPECT_NEAR(sent["linear_acceleration"][0], object.acceleration->along_mps2, kProgramRounding);

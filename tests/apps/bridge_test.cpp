@@ -91,7 +91,8 @@ TEST(BridgeMessages, OdometryHasTheTwistInTheChildsFrame) {
   result.T_world_cam = rowsOf(turned({0, 0, 1}));
   result.velocity = {10, 0.1, 0.2, 0.01, 0.02, 0.3};
   result.velocity_covariance = rowsOf(unevenCovariance());
-  const ros::Odometry message = odometryOf(result, diagonal(0.25, 0.01), {.world = "odom", .child = "camera"});
+  result.pose_covariance = rowsOf(diagonal(0.25, 0.01));
+  const ros::Odometry message = odometryOf(result, {.world = "odom", .child = "camera"});
   EXPECT_EQ(message.header.frame_id, "odom");
   EXPECT_EQ(message.child_frame_id, "camera");
   EXPECT_EQ(message.linear_mps.x, 10);
@@ -116,7 +117,7 @@ TEST(BridgeMessages, TheTransformIsThePose) {
 }
 
 TEST(BridgeMessages, WhatIsNotKnownHasAWideCovariance) {
-  const ros::Odometry message = odometryOf(Result(), std::nullopt, FrameIds());
+  const ros::Odometry message = odometryOf(Result(), FrameIds());
   EXPECT_EQ(message.pose_covariance, rowsOf(kUnknownVariance * Matrix6d::Identity()));
 }
 

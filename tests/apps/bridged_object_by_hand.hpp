@@ -31,6 +31,7 @@ inline Result::Object bridgedObject() {
   object.box_center_body_m = {-1, 0.2, 0.6};
   object.box_size_m = {5, 2, 2.2};
   object.box_size_sigma_m = {0.4, 0.2, 0.1};
+  object.box_center_sigma_m = {0.6, 0.2, 0.07};
   object.kind = Result::Kind::kCar;
   object.kind_probability = 0.8;
   object.acceleration = {.along_mps2 = -1.5, .along_sigma_mps2 = 0.4, .yaw_radps2 = 0.3, .yaw_sigma_radps2 = 0.2};
@@ -52,7 +53,7 @@ inline SE3 boxOfBridged(const SE3& T_parent_body) {
 }
 
 /// How unsure the middle of its cuboid is in the body: variances.
-inline Eigen::Vector3d bridgedMiddle() { return Eigen::Vector3d(1.5 * 0.4, 1.0 * 0.2, 0.7 * 0.1).cwiseAbs2(); }
+inline Eigen::Vector3d bridgedMiddle() { return Eigen::Vector3d(0.6, 0.2, 0.07).cwiseAbs2(); }
 
 /// As poses of messages are perturbed: the position, and the rotation about axes of the parent frame.
 inline Vector6d rosDifference(const SE3& moved, const SE3& T) {

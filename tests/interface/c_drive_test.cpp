@@ -121,6 +121,7 @@ void expectSame(const Result::Object& expected, const motorcade_object& object) 
   expectSame(expected.box_center_body_m, object.box_center_body_m, "box center");
   expectSame(expected.box_size_m, object.box_size_m, "box size");
   expectSame(expected.box_size_sigma_m, object.box_size_sigma_m, "box size sigma");
+  expectSame(expected.box_center_sigma_m, object.box_center_sigma_m, "box center sigma");
   EXPECT_EQ(int{object.kind}, static_cast<int>(expected.kind));
   EXPECT_EQ(object.kind_probability, expected.kind_probability);
   EXPECT_EQ(object.existence_probability, expected.existence_probability);

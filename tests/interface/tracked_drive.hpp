@@ -120,7 +120,8 @@ class ResultBytes {
   void addObject(const Result::Object& o) {
     add(o.id, o.state, o.T_world_body, o.T_cam_body, o.velocity_world_mps, o.velocity_covariance, o.yaw_rate_radps);
     add(o.yaw_rate_sigma_radps, o.age_s, o.points, o.image_box_px, o.box_center_body_m, o.box_size_m);
-    add(o.box_size_sigma_m, o.kind, o.kind_probability, o.existence_probability, o.mask.has_value());
+    add(o.box_size_sigma_m, o.box_center_sigma_m, o.kind, o.kind_probability, o.existence_probability,
+        o.mask.has_value());
     addOptional(o.covariance);
     addOptional(o.acceleration);
     if (!o.mask) return;

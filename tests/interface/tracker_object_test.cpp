@@ -90,6 +90,7 @@ TEST_F(CarAhead, IsACarOfACarsSize) {
   forEachSight([](const Sight& sight) {
     EXPECT_LT((vectorOf(sight.car.box_size_m) - Eigen::Vector3d(4.2, 1.75, 1.55)).norm(), 1);  // any car's
     EXPECT_THAT(sight.car.box_size_sigma_m, testing::Each(testing::Gt(0)));
+    EXPECT_THAT(sight.car.box_center_sigma_m, testing::Each(testing::Gt(0)));
     EXPECT_EQ(sight.car.kind, Result::Kind::kCar);
     EXPECT_GT(sight.car.kind_probability, 0.5);
     EXPECT_LE(sight.car.kind_probability, 1);
