@@ -1,5 +1,7 @@
 #include "backend/joint/joint_graph.hpp"
 
+#include <bit>
+#include <cstdint>
 #include <iterator>
 
 namespace motorcade {
@@ -34,6 +36,12 @@ LandmarkBundles::Params objectBundles(const JointParams& params, const StereoCam
           .closing_frames = params.frames_per_factor,
           .from_estimates = false,  // a vehicle's points may slide
           .tells_shake = false};
+}
+
+/// The first frames have little to compare with: the response is computed in frames 1, 2, 4 and 8, then in one of some.
+bool respondsIn(std::int64_t frame) {
+  if (frame <= kEarlyFrames) return std::has_single_bit(static_cast<std::uint64_t>(frame));
+  return frame % kResponse_frames == kEarlyFrames;
 }
 
 /// An object's poses seen from the camera, in the frames that the window holds.
@@ -126,8 +134,7 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
                              [&](PointId point) { return undecided_.take(point, seen.frame, kEarlierViews); });
 }
 
-/// The response changes little from one frame to the next: but for the first frames, it is computed in one of some,
-/// then for all in the newest ones.
+/// The response changes little from one frame to the next: where it is computed, it is so for all of the newest frames.
 void JointGraph::consider(const FrameMeasurements& measurements) {
   const auto set = [this](FrameId before, FrameId now, const ConsideredCalibration::PoseShifts& shifts) {
     calibration_.set(now, {.seconds = secondsBetween(frames_.at(before).head.stamp, frames_.at(now).head.stamp),
@@ -139,7 +146,7 @@ void JointGraph::consider(const FrameMeasurements& measurements) {
   if (frames_.size() > 1) set(std::next(newest)->first, newest->first, response_.ofNewestStep());
   if (!showsPoints(measurements)) return;
   response_.observe(newest->first, measurements.at_rest);
-  if (frame_count_ > kEarlyFrames && frame_count_ % kResponse_frames != kEarlyFrames) return;
+  if (!respondsIn(frame_count_)) return;
   const auto pose = [this](VariableId camera) { return solver_.pose(camera); };
   for (const auto& step : response_.steps(camerasOf(frames_), pose, at_rest_.noise(), offset_.px()))
     set(step.before, step.now, step.shifts);
