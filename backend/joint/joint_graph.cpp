@@ -1,8 +1,11 @@
 #include "backend/joint/joint_graph.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <iomanip>
 #include <iterator>
+#include <sstream>
 
 namespace motorcade {
 namespace {
@@ -153,11 +156,26 @@ void JointGraph::consider(const FrameMeasurements& measurements) {
 }
 
 void JointGraph::calibrate(FrameId newest) {
-  if (offset_.release(newest)) dropTroubled(solver_.update());
+  if (offset_.release(newest)) {
+    dropTroubled(solver_.update());
+    tellOfOffset();
+  }
   if (offset_.hasMoved()) linearizeLandmarksAnew();
   if (!offset_.isDecided(newest)) return;
   at_rest_.bundles().fix();
   for (auto& [id, landmarks] : landmarks_) landmarks.fix();
+}
+
+/// What is so unlikely by the calibration's own deviation is a fault of the rig or of the calibration.
+void JointGraph::tellOfOffset() {
+  constexpr double kUnlikely_sigmas = 3;
+  const double offset_px = offset_.px(), sigma_px = calibration_.sigmas().disparity_px;
+  if (std::abs(offset_px) <= kUnlikely_sigmas * sigma_px) return;
+  std::ostringstream text;
+  text << std::setprecision(2) << "disparities are too " << (offset_px > 0 ? "small" : "large") << " by about "
+       << std::abs(offset_px) << " px, where the calibration is said to be exact to " << sigma_px
+       << " px (calibration.disparity_px); the estimate allows for it, a new calibration would be better";
+  problems_.push_back(text.str());
 }
 
 /// Landmarks were eliminated at another offset.

@@ -52,6 +52,7 @@ class JointGraph final : public SmoothingWindow {
   LandmarkBundles& landmarksOf(TrackId id);
   void consider(const FrameMeasurements& measurements);
   void calibrate(FrameId newest);
+  void tellOfOffset();
   void linearizeLandmarksAnew();
 
   JointParams params_;

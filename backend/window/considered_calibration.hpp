@@ -30,6 +30,7 @@ class ConsideredCalibration {
   ConsideredCalibration(const StereoCamera& camera, const CalibrationSigmas& sigmas)
       : camera_(camera), sigmas_(sigmas) {}
 
+  const CalibrationSigmas& sigmas() const { return sigmas_; }
   /// In place of what was known of this frame.
   void set(FrameId now, const Step& step);
   /// No motion from before this frame is asked for any more.

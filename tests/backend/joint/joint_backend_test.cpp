@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "backend/filter/filter_backend.hpp"
@@ -193,6 +194,29 @@ TEST_P(JointBackendOffset, ComesOut) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rigs, JointBackendOffset, testing::Values(0.0, 1.2, -0.6));
+
+/// What a drive with an offset makes a back-end tell, whose calibration is said to be so exact.
+std::vector<std::string> toldOf(double offset_px, double sigma_px) {
+  PointDrive::Options options = kStreet;
+  options.offset_px = offset_px;
+  PointDrive drive(3, options);
+  WindowParams window;
+  window.calibration.disparity_px = sigma_px;
+  JointBackend backend(JointParams{}, kPointRig, window);
+  std::vector<std::string> told;
+  for (int frame = 0; frame < 50; ++frame) {
+    const auto problems = backend(drive.measure(frame))->problems;
+    told.insert(told.end(), problems.begin(), problems.end());
+  }
+  return told;
+}
+
+TEST(JointBackend, TellsOnceOfAnOffsetThatTheCalibrationMakesUnlikely) {
+  EXPECT_THAT(toldOf(1.2, 0.15), testing::ElementsAre(testing::HasSubstr("disparities are too small by about ")));
+  EXPECT_THAT(toldOf(-1.2, 0.15), testing::ElementsAre(testing::HasSubstr("disparities are too large by about ")));
+  EXPECT_THAT(toldOf(1.2, 1), testing::IsEmpty());
+  EXPECT_THAT(toldOf(0, 0.15), testing::IsEmpty());
+}
 
 TEST(JointBackend, TrustsARigWhenToldTo) {
   PointDrive::Options options = kStreet;
