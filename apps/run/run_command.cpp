@@ -314,6 +314,7 @@ int runSequence(const RunOptions& options) {
   summary.found = watch.found();
   summary.refused = watch.refused();
   tellEnd(summary.source_end, summary);
+  if (sequence.streamed()) summary.images.pairs = summary.pipeline.received;
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));
   if (tellsProgress()) std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);

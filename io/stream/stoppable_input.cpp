@@ -20,13 +20,18 @@ namespace {
   throw InputError(name + ": cannot be read: " + std::strerror(errno));
 }
 
+/// Checked before any other descriptor is made, which would get the number of one that is closed.
+int readable(int descriptor, const std::string& name) {
+  const int flags = ::fcntl(descriptor, F_GETFL);
+  if (flags < 0 || (flags & O_ACCMODE) == O_WRONLY) throw InputError(name + ": is closed; pipe a stream into it");
+  return descriptor;
+}
+
 }  // namespace
 
 StoppableInput::StoppableInput(int descriptor, std::string name)
-    : descriptor_(descriptor), name_(std::move(name)), wake_(::eventfd(0, EFD_CLOEXEC)) {
+    : descriptor_(readable(descriptor, name)), name_(std::move(name)), wake_(::eventfd(0, EFD_CLOEXEC)) {
   constexpr int kRoom = 1 << 20;  // the most that a user may ask for; without it all works as well
-  const int flags = ::fcntl(descriptor_, F_GETFL);
-  if (flags < 0 || (flags & O_ACCMODE) == O_WRONLY) throw InputError(name_ + ": is closed; pipe a stream into it");
   if (wake_.number() < 0) failToRead(name_);
   ::fcntl(descriptor_, F_SETPIPE_SZ, kRoom);
 }
