@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <string>
-#include <utility>
 
 #include "core/image.hpp"
 #include "io/stream/stereo_packing.hpp"

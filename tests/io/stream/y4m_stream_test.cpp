@@ -47,15 +47,16 @@ TEST(Y4mStream, GivesTheLumaPlaneOfEachFrame) {
 }
 
 TEST(Y4mStream, TellsAnEndWithinAFrameFromOneAfterIt) {
-  const std::string whole = "FRAME\n" + kLuma + kChroma;
-  for (std::size_t bytes = 1; bytes < whole.size(); ++bytes)
-    EXPECT_THAT(framesOf(kHeader + whole + whole.substr(0, bytes)), testing::ElementsAre(kLuma, "cut short")) << bytes;
+  const std::string whole = "FRAME\n" + kLuma + kChroma, two = kHeader + whole + whole;
+  for (std::size_t cut = 1; cut < whole.size(); ++cut)
+    EXPECT_THAT(framesOf(two.substr(0, two.size() - cut)), testing::ElementsAre(kLuma, "cut short")) << cut;
 }
 
 TEST(Y4mStream, RefusesWhatIsNoFrame) {
+  const std::string before = kHeader + "FRAME\n" + kLuma + kChroma;
   for (const std::string& no_frame : {std::string("FRAMES\n"), std::string("\n"), std::string(5000, 'x'),
                                       "FRAME " + std::string(5000, 'x'), std::string("junk")}) {
-    const auto frames = framesOf(kHeader + "FRAME\n" + kLuma + kChroma + no_frame);
+    const auto frames = framesOf(std::string(before).append(no_frame));
     ASSERT_EQ(frames.size(), 2U);
     EXPECT_THAT(frames.back(), HasSubstr("pipe: a frame should begin with a line FRAME"));
     EXPECT_LT(frames.back().size(), 300U);
