@@ -29,12 +29,11 @@ Image PairReader::read(const FramePaths& frame, StereoSide side) {
 }
 
 Image PairReader::decode(std::string_view bytes, const std::filesystem::path& name, StereoSide side) {
-  Image raw = decodeImage(bytes, name, pool_, expected_);
-  if (bayer_) raw = grayOfMosaic(raw, *bayer_, pool_);
-  return rectified(std::move(raw), side);
+  return prepared(decodeImage(bytes, name, pool_, expected_), side);
 }
 
-Image PairReader::rectified(Image raw, StereoSide side) {
+Image PairReader::prepared(Image raw, StereoSide side) {
+  if (bayer_) raw = grayOfMosaic(raw, *bayer_, pool_);
   if (!remaps_) return raw;
   return (side == StereoSide::kLeft ? remaps_->left : remaps_->right)(raw, pool_);
 }

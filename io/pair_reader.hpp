@@ -20,6 +20,8 @@ class PairReader {
   Image read(const FramePaths& frame, StereoSide side);
   /// From the bytes of a file; `name` is for messages.
   Image decode(std::string_view bytes, const std::filesystem::path& name, StereoSide side);
+  /// An image that came without a file, of the sequence's size.
+  Image prepared(Image raw, StereoSide side);
   /// The larger share of either image's pixels for which the camera saw nothing; 0 where nothing is to be rectified.
   double shareOutside() const;
 
@@ -27,8 +29,6 @@ class PairReader {
   struct Remaps {
     Remap left, right;
   };
-  Image rectified(Image raw, StereoSide side);
-
   ExpectedImage expected_;
   std::optional<BayerPattern> bayer_;
   int max_file_mb_;

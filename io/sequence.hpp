@@ -69,7 +69,11 @@ struct SampleUse {
   std::string why{};          // after "16-bit images, "
 };
 
-/// A recorded drive: where its images are, when they were taken, with what camera, and what is known of the truth.
+/// The user's word for a stream of pairs on the standard input, in place of a folder.
+inline constexpr const char* kStandardInput = "-";
+
+/// A recorded drive: where its images are, when they were taken, with what camera, and what is known of the truth. Of a
+/// stream (`kStandardInput`), which brings its pairs one by one, there are neither frames nor stamps.
 struct Sequence {
   /// Files with ground truth; an empty path where there is none.
   struct Truth {
@@ -89,8 +93,14 @@ struct Sequence {
     bool exact() const { return !object_poses.empty() || !virtual_kitti.empty(); }
   };
 
+  /// The drive's name in messages.
+  std::string name() const { return streamed() ? "standard input" : folder.string(); }
+  bool streamed() const { return folder == kStandardInput; }
+
   std::filesystem::path folder{};
-  std::string layout{};  // plain, odometry, tracking, raw, euroc, kitti360, virtual_kitti, argoverse or list
+  /// plain, odometry, tracking, raw, euroc, kitti360, virtual_kitti, argoverse, list, y4m_side_by_side or
+  /// y4m_over_under
+  std::string layout{};
   CameraPair pair = CameraPair::kGray;
   Calibration calibration{};
   StereoCamera camera{};  // with the size of the images

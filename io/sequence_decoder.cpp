@@ -50,6 +50,12 @@ SequenceDecoder::SequenceDecoder(Sequence sequence, FrameRange range, const Para
 
 SequenceDecoder::~SequenceDecoder() { ring_.close(); }
 
+SourceEnd SequenceDecoder::finish() {
+  ring_.close();
+  thread_.join();
+  return {};
+}
+
 /// Where both images cannot be read, throws what is wrong with the left one.
 void SequenceDecoder::readInto(StereoFrame& frame, const FramePaths& paths) {
   right_.begin(paths);

@@ -11,6 +11,7 @@
 #include "core/spsc_ring.hpp"
 #include "io/image_limits.hpp"
 #include "io/pair_reader.hpp"
+#include "io/pair_source.hpp"
 #include "io/sequence.hpp"
 #include "io/side_reader.hpp"
 
@@ -19,7 +20,7 @@ namespace motorcade {
 /// Decodes and rectifies a sequence's images on threads of its own, one per side, a bounded number of pairs ahead of
 /// whoever takes them. Takes frames from one thread only. A pair that cannot be read, or has the wrong size, comes out
 /// without images and with its `problem`.
-class SequenceDecoder {
+class SequenceDecoder final : public PairSource {
  public:
   struct Params {
     std::size_t ahead = 8;  // pairs, rounded up to a power of two
@@ -32,23 +33,20 @@ class SequenceDecoder {
   SequenceDecoder(Sequence sequence, FrameRange range, const Params& params);
   SequenceDecoder(Sequence sequence, FrameRange range) : SequenceDecoder(std::move(sequence), range, Params{}) {}
   /// Stops decoding, whether or not all frames were taken.
-  ~SequenceDecoder();
+  ~SequenceDecoder() override;
   SequenceDecoder(const SequenceDecoder&) = delete;
   SequenceDecoder& operator=(const SequenceDecoder&) = delete;
 
-  /// The next pair, numbered by its index in the sequence, without a due time; waits for it. Empty after the last or
-  /// after `stop`.
-  std::optional<StereoFrame> next();
-  /// Ends decoding early, from any thread; pairs already decoded still come out.
-  void stop() { ring_.close(); }
+  /// Pairs are numbered by their index in the sequence and have no due time.
+  std::optional<StereoFrame> next() override;
+  void stop() override { ring_.close(); }
+  SourceEnd finish() override;
 
-  FrameId first() const { return {static_cast<std::int64_t>(range_.begin)}; }
-  Timestamp stampOf(FrameId frame) const { return sequence_.stamps[frame.value]; }
-  /// See PairReader.
-  double shareOutside() const { return reader_.shareOutside(); }
-  /// Most pairs ever waiting. Final once `next` has returned nothing.
-  std::size_t highWater() const { return ring_.highWater(); }
-  std::size_t capacity() const { return ring_.capacity(); }
+  FrameId first() const override { return {static_cast<std::int64_t>(range_.begin)}; }
+  Timestamp stampOf(FrameId frame) const override { return sequence_.stamps[frame.value]; }
+  double shareOutside() const override { return reader_.shareOutside(); }
+  std::size_t highWater() const override { return ring_.highWater(); }
+  std::size_t capacity() const override { return ring_.capacity(); }
 
  private:
   void letThePairGoAhead() const;

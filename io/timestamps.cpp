@@ -120,6 +120,10 @@ Times readTimes(const std::filesystem::path& file) {
 
 std::vector<Timestamp> readTimestamps(const std::filesystem::path& file) { return readTimes(file).stamps; }
 
+Timestamp stampAtRate(std::int64_t number, double rate_hz) {
+  return {static_cast<std::int64_t>(std::llround(static_cast<double>(number) * 1e9 / rate_hz))};
+}
+
 std::string unitName(std::int64_t unit_ns) {
   if (unit_ns == kSecond_ns) return "seconds";
   if (unit_ns == 1) return "nanoseconds";

@@ -27,6 +27,9 @@ Times parseTimes(const std::filesystem::path& file, const std::vector<TextLine>&
 /// The times alone.
 std::vector<Timestamp> readTimestamps(const std::filesystem::path& file);
 
+/// The time of the frame with this number where frames come at a rate.
+Timestamp stampAtRate(std::int64_t number, double rate_hz);
+
 /// The name of a unit of time, in the plural.
 std::string unitName(std::int64_t unit_ns);
 

@@ -21,7 +21,8 @@ std::optional<std::string> suspicionOf(const std::filesystem::path& file, const 
 
 }  // namespace
 
-std::optional<std::string> mosaicDoubt(const Sequence& sequence, const FrameRange& range, std::size_t pairs) {
+std::optional<std::string> mosaicDoubt(const Sequence& sequence, const FrameRange& selected, std::size_t pairs) {
+  const FrameRange range = selected.within(sequence.frames.size());
   constexpr std::size_t kFirst = 20;
   if (sequence.bayer || range.size() == 0 || pairs == 0) return std::nullopt;
   ImagePool pool;

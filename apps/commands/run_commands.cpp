@@ -15,6 +15,8 @@ constexpr const char* kSequenceHelp =
     "two folders of "
     "images, left and right, with their calibration; or a list of images, a line LEFT RIGHT or STAMP LEFT RIGHT for "
     "each pair";
+constexpr const char* kRunInputHelp =
+    "; or - for a stream of pictures on the standard input (YUV4MPEG2, which ffmpeg and GStreamer write)";
 
 void addGivenCameras(CLI::App& command, GivenCameras& given) {
   CLI::Option* const camera = command
@@ -34,6 +36,24 @@ void addGivenCameras(CLI::App& command, GivenCameras& given) {
                   "The images are the mosaic of a color sensor, as raw images are: the filters of the first two pixels "
                   "of the first two rows")
       ->type_name("RGGB|BGGR|GRBG|GBRG");
+}
+
+void addPacking(CLI::App& command, RunOptions& options) {
+  CLI::Option* const beside =
+      command.add_flag("--side-by-side", options.side_by_side, "A picture of the stream shows left | right");
+  command.add_flag("--over-under", options.over_under, "A picture of the stream shows left above right")
+      ->excludes(beside);
+}
+
+void addPace(CLI::App& command, RunOptions& options) {
+  command.add_option("--rate", options.rate, "Pace of the replay in pairs per second, or max (the default)");
+  command
+      .add_option("--fps", options.fps_hz,
+                  "Capture rate of a sequence without times [Hz]; of a stream, in place of what its header tells")
+      ->check(CLI::Range(0.001, 100'000.0))
+      ->default_str("10");
+  command.add_flag("--live", options.live,
+                   "Behave like a camera that does not wait: the newest pair wins, others are dropped");
 }
 
 /// What a run writes and serves for the eye, beside its folder of results.
@@ -59,15 +79,11 @@ void addWaysToSee(CLI::App& command, const std::shared_ptr<RunOptions>& options)
 void addRun(CLI::App& app, Action& action) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Follow the camera and the moving vehicles through a stereo sequence");
-  command->add_option("SEQUENCE", options->sequence, kSequenceHelp)->required();
+  command->add_option("SEQUENCE", options->sequence, std::string(kSequenceHelp) + kRunInputHelp)->required();
+  addPacking(*command, *options);
   addGivenCameras(*command, options->given);
   command->add_option("--out", options->out, "Folder for the results")->required();
-  command->add_option("--rate", options->rate, "Pace of the replay in pairs per second, or max (the default)");
-  command->add_option("--fps", options->fps_hz, "Capture rate of a sequence without times [Hz]")
-      ->check(CLI::Range(0.001, 100'000.0))
-      ->capture_default_str();
-  command->add_flag("--live", options->live,
-                    "Behave like a camera that does not wait: the newest pair wins, others are dropped");
+  addPace(*command, *options);
   addWaysToSee(*command, options);
   command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
   command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");

@@ -51,14 +51,17 @@ void Progress::show(std::size_t done, const std::string& more) {
   next_ = now + (terminal_ ? Clock::duration(kBarPeriod) : Clock::duration(kLinePeriod));
   const double rate_hz = static_cast<double>(done) / std::chrono::duration<double>(now - start_).count();
   const auto text =
-      fmt::format("{0} {1} of {2}, {3:.1f} {0}s/s{4}{5}", item_, done, count_, rate_hz, more.empty() ? "" : ", ", more);
+      fmt::format("{0} {1}{2}, {3:.1f} {0}s/s{4}{5}", item_, done, count_ > 0 ? fmt::format(" of {}", count_) : "",
+                  rate_hz, more.empty() ? "" : ", ", more);
   if (!terminal_) {
     logInfo(text);
     return;
   }
-  const double share_done = count_ > 0 ? static_cast<double>(done) / static_cast<double>(count_) : 1;
   const std::size_t columns = terminalColumns() - 1;  // in the last one, the cursor may go on to the next line
-  std::fprintf(stderr, "\r%s\033[K", progressLine(share_done, text, columns).c_str());
+  const std::string line = count_ > 0
+                               ? progressLine(static_cast<double>(done) / static_cast<double>(count_), text, columns)
+                               : text.substr(0, columns);
+  std::fprintf(stderr, "\r%s\033[K", line.c_str());
   line_open_ = true;
 }
 

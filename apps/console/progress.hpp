@@ -13,7 +13,7 @@ std::string progressLine(double share_done, const std::string& text, std::size_t
 /// to the standard error output, and nothing where the user wants to read warnings and errors only.
 class Progress {
  public:
-  /// `item` is the singular of what is counted.
+  /// `item` is the singular of what is counted; `count` is 0 where nobody knows how many there are.
   Progress(std::string item, std::size_t count);
   /// Ends the bar's line.
   ~Progress();

@@ -85,10 +85,10 @@ void FaultInjector::applyTo(StereoFrame& frame, const Fault& fault, std::uint64_
       break;
   }
   if (frame.rejected()) return;
-  const FramePaths& files = sequence_.frames[static_cast<std::size_t>(frame.head.frame.value)];
+  const FrameId id = frame.head.frame;
   try {
-    if (fault.side != FaultSide::kRight) applyTo(frame.left, files, StereoSide::kLeft, fault, 2 * seed);
-    if (fault.side != FaultSide::kLeft) applyTo(frame.right, files, StereoSide::kRight, fault, 2 * seed + 1);
+    if (fault.side != FaultSide::kRight) applyTo(frame.left, {id, StereoSide::kLeft}, fault, 2 * seed);
+    if (fault.side != FaultSide::kLeft) applyTo(frame.right, {id, StereoSide::kRight}, fault, 2 * seed + 1);
   } catch (const std::exception& error) {
     frame.reject(FrameCause::kUnusable, error.what());
   }
@@ -101,13 +101,13 @@ void FaultInjector::takeEarlierRight(StereoFrame& frame, std::size_t pairs_befor
   if (!right.empty()) frame.right = right;
 }
 
-PairReader& FaultInjector::reader() {
+Image FaultInjector::readAgain(const ImageOf& of, const std::function<std::string(std::string)>& damage) {
   if (!reader_) reader_.emplace(sequence_);
-  return *reader_;
+  const std::filesystem::path& file = sequence_.frames.at(static_cast<std::size_t>(of.frame.value)).of(of.side);
+  return reader_->decode(damage(readImageBytes(file)), file, of.side);
 }
 
-void FaultInjector::applyTo(Image& image, const FramePaths& files, StereoSide side, const Fault& fault,
-                            std::uint64_t seed) {
+void FaultInjector::applyTo(Image& image, const ImageOf& of, const Fault& fault, std::uint64_t seed) {
   constexpr std::uint8_t kBlack = 0, kWhite = 255;
   if (image.empty()) return;
   switch (fault.kind) {
@@ -139,15 +139,15 @@ void FaultInjector::applyTo(Image& image, const FramePaths& files, StereoSide si
     case FaultKind::kBarrel:
       image = distorted(image, fault.value, pool_);
       break;
-    case FaultKind::kTruncated: {
-      std::string bytes = readImageBytes(files.of(side));
-      bytes.resize(static_cast<std::size_t>(fault.value * static_cast<double>(bytes.size())));
-      image = reader().decode(bytes, files.of(side), side);
+    case FaultKind::kTruncated:
+      image = readAgain(of, [&](std::string bytes) {
+        bytes.resize(static_cast<std::size_t>(fault.value * static_cast<double>(bytes.size())));
+        return bytes;
+      });
       break;
-    }
     case FaultKind::kBitFlips:
-      image = reader().decode(withBitFlips(readImageBytes(files.of(side)), static_cast<int>(fault.value), seed),
-                              files.of(side), side);
+      image = readAgain(
+          of, [&](std::string bytes) { return withBitFlips(std::move(bytes), static_cast<int>(fault.value), seed); });
       break;
     case FaultKind::kOneEyed:
       image = Image();

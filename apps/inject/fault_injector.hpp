@@ -5,6 +5,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <utility>
 
 #include "apps/inject/fault_spec.hpp"
@@ -42,10 +43,14 @@ class FaultInjector {
     std::int64_t after = 0;  // the frame that overtakes it
   };
   void applyTo(StereoFrame& frame, const Fault& fault, std::uint64_t seed);
-  /// `files` and `side` say which image it is.
-  void applyTo(Image& image, const FramePaths& files, StereoSide side, const Fault& fault, std::uint64_t seed);
+  struct ImageOf {
+    FrameId frame;
+    StereoSide side;
+  };
+  void applyTo(Image& image, const ImageOf& of, const Fault& fault, std::uint64_t seed);
   void takeEarlierRight(StereoFrame& frame, std::size_t pairs_before) const;
-  PairReader& reader();
+  /// The image of its file, whose bytes are damaged before; streams have none.
+  Image readAgain(const ImageOf& of, const std::function<std::string(std::string)>& damage);
   bool giveLate(std::int64_t frame, const Outlet& outlet);
 
   FaultSpec spec_;

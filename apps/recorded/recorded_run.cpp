@@ -37,6 +37,10 @@ fs::path recordedFolder(const RunFolder& run, const Json& summary) {
   if (folder.empty())
     throw InputError(file.string() + (run.complete() ? ": does not name" : ": is not there to name") +
                      " the sequence that was run; give --sequence");
+  if (folder == kStandardInput)
+    throw InputError(run.folder.string() +
+                     ": its images came through a pipe and were not kept; if they are also in a folder, name it with "
+                     "--sequence");
   std::error_code unreachable;  // is as if it were not there
   if (!fs::exists(folder, unreachable))
     throw InputError(file.string() + ": names the sequence " + folder +

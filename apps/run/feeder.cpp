@@ -19,15 +19,15 @@ bool sleepUntil(SteadyTime moment, const std::stop_token& stopped) {
 
 }  // namespace
 
-Feeder::Feeder(SequenceDecoder& decoder, Pipeline& pipeline, const Between& between)
-    : decoder_(decoder),
+Feeder::Feeder(PairSource& source, Pipeline& pipeline, const Between& between)
+    : source_(source),
       pipeline_(pipeline),
       clock_(between.clock),
       faults_(between.faults),
       watch_(between.watch),
       listeners_(between.listeners),
       gate_(between.gate),
-      next_(decoder.first()),
+      next_(source.first()),
       thread_([this](const std::stop_token& stopped) { feed(stopped); }) {}
 
 Feeder::~Feeder() {
@@ -37,11 +37,11 @@ Feeder::~Feeder() {
 
 void Feeder::stop() {
   thread_.request_stop();
-  decoder_.stop();
+  source_.stop();
 }
 
 void Feeder::feed(const std::stop_token& stopped) {
-  while (auto frame = decoder_.next()) {
+  while (auto frame = source_.next()) {
     passGate(stopped);
     if (clock_) {
       if (!clock_->started()) clock_->start(frame->head.stamp, std::chrono::steady_clock::now());
@@ -62,10 +62,10 @@ void Feeder::passGate(const std::stop_token& stopped) {
   if (clock_ && clock_->started()) clock_->postpone(held);
 }
 
-/// Tells first of the pairs before it that the decoder left out.
+/// Tells first of the pairs before it that the source left out.
 bool Feeder::enter(StereoFrame frame, const std::stop_token& stopped) {
   for (; next_ < frame.head.frame; ++next_.value) {
-    const Timestamp stamp = decoder_.stampOf(next_);
+    const Timestamp stamp = source_.stampOf(next_);
     pipeline_.passOver(next_, faults_ ? faults_->shifted(stamp) : stamp);
   }
   ++next_.value;

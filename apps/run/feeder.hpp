@@ -8,15 +8,15 @@
 #include "apps/run/input_watch.hpp"
 #include "apps/run/run_listener.hpp"
 #include "apps/view/replay_gate.hpp"
-#include "io/sequence_decoder.hpp"
+#include "io/pair_source.hpp"
 
 namespace motorcade {
 
-/// Plays a decoded sequence into the pipeline on a thread of its own, then closes it. With a clock, each pair enters
+/// Hands the pairs of a source to the pipeline on a thread of its own, then closes it. With a clock, each pair enters
 /// when it is due; without, as soon as there is room.
 class Feeder {
  public:
-  /// What may stand between decoder and pipeline; each may be absent.
+  /// What may stand between source and pipeline; each may be absent.
   struct Between {
     CameraClock* clock = nullptr;     // started with the first pair
     FaultInjector* faults = nullptr;  // change the pairs on their way
@@ -24,8 +24,8 @@ class Feeder {
     RunListeners listeners{};         // see those that entered
     ReplayGate* gate = nullptr;       // may hold the replay
   };
-  /// Pairs that the decoder leaves out are passed over.
-  Feeder(SequenceDecoder& decoder, Pipeline& pipeline, const Between& between);
+  /// Pairs that the source leaves out are passed over.
+  Feeder(PairSource& source, Pipeline& pipeline, const Between& between);
   /// Closes the pipeline too, so that the thread never waits for room in it.
   ~Feeder();
 
@@ -39,7 +39,7 @@ class Feeder {
   bool push(StereoFrame frame);
   FaultInjector::Outlet pipelineAfterFaults(const std::stop_token& stopped);
 
-  SequenceDecoder& decoder_;
+  PairSource& source_;
   Pipeline& pipeline_;
   CameraClock* clock_;
   FaultInjector* faults_;

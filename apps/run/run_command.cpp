@@ -1,7 +1,6 @@
 #include "apps/run/run_command.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -30,11 +29,13 @@
 #include "apps/run/other_camera.hpp"
 #include "apps/run/process_usage.hpp"
 #include "apps/run/recorder.hpp"
+#include "apps/run/run_input.hpp"
 #include "apps/run/run_listener.hpp"
 #include "apps/run/run_options.hpp"
 #include "apps/run/run_summary.hpp"
 #include "apps/view/live_view.hpp"
 #include "io/errors.hpp"
+#include "io/pair_source.hpp"
 #include "io/run_folder.hpp"
 
 namespace motorcade {
@@ -53,13 +54,6 @@ void logToSpdlog(LogLevel level, const std::string& text) {
   }
 }
 
-/// Mean rate of the selected frames.
-double captureRate_hz(const Sequence& sequence, const FrameRange& range, double fallback_hz) {
-  if (range.size() < 2) return fallback_hz;
-  return static_cast<double>(range.size() - 1) /
-         secondsBetween(sequence.stamps[range.begin], sequence.stamps[range.end - 1]);
-}
-
 void requireReplaceable(const RunOptions& options) {
   if (!options.force && holdsFinishedRun(options.out))
     throw OutputError(options.out.string() +
@@ -69,8 +63,8 @@ void requireReplaceable(const RunOptions& options) {
 void requireWithin(const ImageLimits& limits, const Sequence& sequence) {
   const int pixels = sequence.camera.width_px * sequence.camera.height_px;
   if (pixels > limits.max_pixels)
-    throw InputError(fmt::format("{}: images of {} pixels, input.max_pixels is {}", sequence.folder.string(), pixels,
-                                 limits.max_pixels));
+    throw InputError(
+        fmt::format("{}: images of {} pixels, input.max_pixels is {}", sequence.name(), pixels, limits.max_pixels));
 }
 
 /// A calibration may tell how exact it is; what the user tells counts first.
@@ -82,7 +76,7 @@ void considerCalibration(const Sequence& sequence, PipelineConfig& config) {
 /// Throws InputError where the calibration cannot be the images', unless the user insists.
 void requireBelievable(const Sequence& sequence, bool force) {
   for (const std::string& doubt : doubtsAbout(sequence.camera)) {
-    if (!force) throw InputError(sequence.folder.string() + ": " + doubt + "; --force goes on");
+    if (!force) throw InputError(sequence.name() + ": " + doubt + "; --force goes on");
     logWarning(doubt);
   }
 }
@@ -91,23 +85,32 @@ void requireBelievable(const Sequence& sequence, bool force) {
 /// worthless, unless the user insists.
 void tellNotes(const Sequence& sequence, bool force) {
   for (const InputNote& note : sequence.notes) {
-    if (note.worthless && !force) throw InputError(sequence.folder.string() + ": " + note.text + "; --force goes on");
+    if (note.worthless && !force) throw InputError(sequence.name() + ": " + note.text + "; --force goes on");
     logWarning(note.text);
   }
 }
 
-void announce(const Sequence& sequence, const FrameRange& range, double fps_hz) {
-  logInfo(sequenceLine(sequence, range));
-  if (sequence.samples) logInfo(fmt::format("16-bit images, {}", sequence.samples->why));
-  if (sequence.bayer) logInfo(fmt::format("the images are mosaics of a color sensor, {}", nameOf(*sequence.bayer)));
-  if (const auto doubt = mosaicDoubt(sequence, range, 1)) logWarning(*doubt);
-  for (const std::string& oddity : odditiesOf(sequence.camera)) logWarning(oddity);
-  if (!sequence.stamps_measured)
+void announceRate(const RunInput& input, const RunOptions& options) {
+  const Sequence& sequence = input.sequence;
+  if (sequence.streamed())
+    logInfo(fmt::format("pairs are taken as {} Hz ({})", input.capture_rate_hz,
+                        options.fps_hz ? "--fps" : "the stream's header"));
+  else if (!sequence.stamps_measured)
     logInfo(fmt::format(
-        "the sequence has no times: taken as {} Hz (--fps){}", fps_hz,
+        "the sequence has no times: taken as {} Hz (--fps){}", options.fps(),
         sequence.numbering.step > 1
             ? fmt::format(" from one image to the next, whose numbers differ by {}", sequence.numbering.step)
             : ""));
+}
+
+void announce(const RunInput& input, const RunOptions& options) {
+  const Sequence& sequence = input.sequence;
+  logInfo(sequenceLine(sequence, input.range));
+  if (sequence.samples) logInfo(fmt::format("16-bit images, {}", sequence.samples->why));
+  if (sequence.bayer) logInfo(fmt::format("the images are mosaics of a color sensor, {}", nameOf(*sequence.bayer)));
+  if (const auto doubt = mosaicDoubt(sequence, input.range, 1)) logWarning(*doubt);
+  for (const std::string& oddity : odditiesOf(sequence.camera)) logWarning(oddity);
+  announceRate(input, options);
 }
 
 void tellOutside(double share) {
@@ -121,8 +124,7 @@ void tellOutside(double share) {
 
 /// What is played into the pipeline.
 struct Replay {
-  const Sequence& sequence;
-  FrameRange range;
+  RunInput& input;
   FrameInputs inputs;  // come with each pair
   FaultInjector* faults = nullptr;
   InputWatch* watch = nullptr;
@@ -147,52 +149,59 @@ class FollowedPipeline {
 };
 
 /// Shows the run on a page, where the user wants that.
-std::unique_ptr<LiveView> makeView(const RunOptions& options, const Sequence& sequence, const FrameRange& range,
-                                   const RunSummary& summary) {
+std::unique_ptr<LiveView> makeView(const RunOptions& options, const RunInput& input, const RunSummary& summary) {
   if (!options.shown) return nullptr;
-  const ShownRun run{.name = sequence.folder.filename().string(),
-                     .folder = options.out.string(),
-                     .can_pause = summary.params.policy != InputPolicy::kLive,
-                     .first_frame = static_cast<std::int64_t>(range.begin),
-                     .end_frame = static_cast<std::int64_t>(range.end),
-                     .first_stamp = sequence.stamps[range.begin],
-                     .rate_hz = summary.capture_rate_hz,
-                     .paced = summary.rate_hz.has_value(),
-                     .camera = sequence.camera};
-  auto view = std::make_unique<LiveView>(parseListenAddress(options.view, "--view"), run, sequence);
+  const auto first = static_cast<std::int64_t>(input.range.begin);
+  const ShownRun run{
+      .name = input.sequence.streamed() ? input.sequence.name() : input.sequence.folder.filename().string(),
+      .folder = options.out.string(),
+      .can_pause = summary.params.policy != InputPolicy::kLive,
+      .first_frame = first,
+      .end_frame = first + static_cast<std::int64_t>(input.count()),
+      .first_stamp = input.first_stamp,
+      .rate_hz = summary.capture_rate_hz,
+      .paced = summary.rate_hz.has_value(),
+      .camera = input.sequence.camera};
+  auto view = std::make_unique<LiveView>(parseListenAddress(options.view, "--view"), run, input.sequence);
   std::fprintf(stderr, "the page is at %s\n", view->url().c_str());
   return view;
 }
 
-RunSummary summaryBefore(const RunOptions& options, const PipelineConfig& config, const Sequence& sequence,
-                         const FrameRange& range, std::optional<double> rate_hz) {
+RunSummary summaryBefore(const RunOptions& options, const PipelineConfig& config, const RunInput& input) {
   RunSummary summary;
   summary.params = config.pipeline;
-  summary.setSequence(sequence);
+  summary.setSequence(input.sequence);
   summary.ignored = options.ignored;
   summary.inject = options.inject;
-  summary.rate_hz = rate_hz;
-  summary.capture_rate_hz = captureRate_hz(sequence, range, options.fps_hz);
+  summary.rate_hz = input.rate_hz;
+  summary.capture_rate_hz = input.capture_rate_hz;
   return summary;
+}
+
+/// Adds how the source ended to what was found, where that is worth a word.
+void tellEnd(const SourceEnd& end, RunSummary& summary) {
+  if (end.remark.empty()) return;
+  const FrameId after_last{summary.pipeline.received};
+  summary.found.push_back({.finding = {.name = "stream", .text = end.remark, .worthless = end.damaged},
+                           .last_good = {},
+                           .first_bad = after_last});
+  if (end.damaged)
+    logError(end.remark);
+  else
+    logWarning(end.remark);
+  summary.refused = summary.refused || end.damaged;
 }
 
 /// Runs the frames through the pipeline and writes all results but the summary.
 void follow(const Replay& replay, const PipelineConfig& config, Stages stages, Recorder& recorder, RunSummary& summary,
             StopSignals& signals) {
-  std::optional<CameraClock> clock;
-  if (summary.rate_hz) clock.emplace(*summary.rate_hz / summary.capture_rate_hz, 1 / summary.capture_rate_hz);
-  SequenceDecoder::Params decoding{.ahead = std::bit_floor(static_cast<std::size_t>(config.pipeline.frames_in_flight)),
-                                   .max_file_mb = config.input.max_file_mb,
-                                   .inputs = replay.inputs};
-  // Where decoding is too slow for a live camera, pairs that a later one has overtaken are left out.
-  if (clock && config.pipeline.policy == InputPolicy::kLive)
-    decoding.wanted = [&](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };
-  SequenceDecoder decoder(replay.sequence, replay.range, decoding);
-  tellOutside(decoder.shareOutside());
+  auto clock = clockOf(replay.input, config.pipeline.policy);
+  const auto source = makeSource(replay.input, config, replay.inputs, clock);
+  tellOutside(source->shareOutside());
   Pipeline pipeline(config.pipeline, std::move(stages), logToSpdlog);
   const auto start = std::chrono::steady_clock::now();
   {
-    Feeder feeder(decoder, pipeline,
+    Feeder feeder(*source, pipeline,
                   {clock ? &*clock : nullptr, replay.faults, replay.watch, replay.listeners,
                    replay.view ? replay.view->gate() : nullptr});
     const FollowedPipeline followed(replay.view, pipeline);
@@ -207,9 +216,10 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   summary.pipeline = end.summary;
   summary.good_frames = recorder.followed().count();
   summary.own_vehicle = recorder.finish();
-  summary.decoded = {"decode>input", static_cast<std::int64_t>(decoder.highWater()),
-                     static_cast<std::int64_t>(decoder.capacity())};
   summary.signal = signals.received();
+  summary.source_end = source->finish();
+  summary.decoded = {"decode>input", static_cast<std::int64_t>(source->highWater()),
+                     static_cast<std::int64_t>(source->capacity())};
 }
 
 /// What the user asked for beside the run folder's own files. Made before the run, so that what cannot be written is
@@ -273,37 +283,38 @@ int runSequence(const RunOptions& options) {
   PipelineConfig config = configurationOf(options);
   const auto required_tracking = requiredTracking(options);
   const FaultSpec fault_spec = parseFaultSpec(options.inject);
-  const auto rate_hz = replayRate_hz(options, config.pipeline.policy);
   requireReplaceable(options);
-  const Sequence sequence = openSequence(options.sequence, options.fps_hz, options.given);
+  RunInput input = openRunInput(options, config.pipeline.policy);
+  const Sequence& sequence = input.sequence;
   considerCalibration(sequence, config);
   requireWithin(config.input, sequence);
   requireBelievable(sequence, options.force);
   tellNotes(sequence, options.force);
-  const FrameRange range = selectedFrames(options.frames, sequence);
   const FrameInputs inputs{.ignored = sharedMask(ignoredPixels(options.ignored, sequence.camera))};
   Stages stages = makeStages(config, sequence.camera);
   if (auto other_camera = otherCamera(options, config, sequence)) replaceOdometry(stages, *std::move(other_camera));
-  announce(sequence, range, options.fps_hz);
+  announce(input, options);
   logDebug(fmt::format("{} threads, {} frames in flight; results go to {}", config.pipeline.threads,
                        config.pipeline.frames_in_flight, options.out.string()));
 
-  RunSummary summary = summaryBefore(options, config, sequence, range, rate_hz);
+  RunSummary summary = summaryBefore(options, config, input);
   StopSignals signals;  // before all threads
-  const auto view = makeView(options, sequence, range, summary);
+  const auto view = makeView(options, input, summary);
   RunFolderWriter folder(options.out);
   folder.writeConfig(toToml(config));
   ExtraOutputs extras(options, sequence.camera, config.pipeline.policy);
   RunListeners listeners = extras.listeners();
   if (view) listeners.push_back(view.get());
-  Recorder recorder(folder, listeners, range.size());
+  Recorder recorder(folder, listeners, input.count());
   FaultInjector faults(fault_spec, sequence);
   InputWatch watch(sequence.camera, options.force);
-  follow({sequence, range, inputs, options.inject.empty() ? nullptr : &faults, &watch, listeners, view.get()}, config,
+  follow({input, inputs, options.inject.empty() ? nullptr : &faults, &watch, listeners, view.get()}, config,
          std::move(stages), recorder, summary, signals);
   extras.close(summary);
   summary.found = watch.found();
   summary.refused = watch.refused();
+  tellEnd(summary.source_end, summary);
+  if (sequence.streamed()) summary.images.pairs = summary.pipeline.received;
   summary.used = processUsage().since(before);
   folder.finish(toJson(summary));
   if (tellsProgress()) std::fputs(shortReport(summary, options.out.string()).c_str(), stdout);

@@ -34,7 +34,7 @@ PipelineConfig configurationOf(const RunOptions& options) {
 }
 
 std::optional<double> replayRate_hz(const RunOptions& options, InputPolicy policy) {
-  if (options.rate.empty()) return policy == InputPolicy::kLive ? std::optional(options.fps_hz) : std::nullopt;
+  if (options.rate.empty()) return policy == InputPolicy::kLive ? std::optional(options.fps()) : std::nullopt;
   if (options.rate == "max") {
     if (policy == InputPolicy::kLive) throw UsageError("--rate max: a live camera has a rate; give one in Hz");
     return std::nullopt;

@@ -14,9 +14,10 @@ struct PipelineConfig;
 
 /// The command line of `motorcade run`, as the user typed it.
 struct RunOptions {
-  std::filesystem::path sequence, out;
-  std::string rate;  // `max`, HZ, or empty for the default
-  double fps_hz = 10;
+  std::filesystem::path sequence, out;            // the first may be `kStandardInput`
+  bool side_by_side = false, over_under = false;  // the images in a picture of a stream
+  std::string rate;                               // `max`, HZ, or empty for the default
+  std::optional<double> fps_hz;                   // where the user gives it
   bool live = false;
   bool masks = false;
   std::filesystem::path mcap;  // file, for other programs
@@ -33,6 +34,9 @@ struct RunOptions {
   bool shown = false;                    // on a page
   std::string view;                      // ADDR:PORT of that page, empty for the default
   bool force = false;                    // replace a finished run, go on where results will be worthless
+
+  /// Capture rate of a recorded drive without times.
+  double fps() const { return fps_hz.value_or(10); }
 };
 
 /// The configuration in force: defaults, then the file, then `--set`, then the options. Throws UsageError.

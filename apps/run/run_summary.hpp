@@ -8,6 +8,7 @@
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/run/process_usage.hpp"
 #include "apps/watch/rig_watch.hpp"
+#include "io/pair_source.hpp"
 #include "io/sequence.hpp"
 
 namespace motorcade {
@@ -48,6 +49,7 @@ struct RunSummary {
   std::vector<RigFinding> found{};  // wrong with the pairs
   bool refused = false;             // and so the run was ended
   int signal = 0;                   // that ended the run early
+  SourceEnd source_end{};           // also among what was found
 
   void setSequence(const Sequence& of);
   /// Share of the received frames that have a measured ego-motion.

@@ -52,10 +52,8 @@ ImageSize imageSize(const Sequence& sequence) {
 /// The times of frames are those of their places.
 void setStampsByRate(Sequence& sequence, double fps_hz) {
   if (!(fps_hz > 0) || !std::isfinite(fps_hz)) throw UsageError("--fps must be a positive number");
-  for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
-    const auto place = static_cast<double>(placeOf(sequence, i));
-    sequence.stamps.push_back({static_cast<std::int64_t>(std::llround(place * 1e9 / fps_hz))});
-  }
+  for (std::size_t i = 0; i < sequence.frames.size(); ++i)
+    sequence.stamps.push_back(stampAtRate(placeOf(sequence, i), fps_hz));
 }
 
 }  // namespace

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+#include "apps/pipeline/pipeline_config.hpp"
+#include "apps/run/camera_clock.hpp"
+#include "apps/run/run_options.hpp"
+#include "core/messages.hpp"
+#include "io/pair_source.hpp"
+#include "io/sequence.hpp"
+#include "io/stream/stereo_packing.hpp"
+#include "io/stream/y4m_stream.hpp"
+
+namespace motorcade {
+
+/// The input of a run: what is known before its first pair, of a recorded drive or of a stream.
+struct RunInput {
+  Sequence sequence;
+  FrameRange range{};                                  // of a stream without --frames it has no end
+  double capture_rate_hz = 0;                          // mean over the range
+  std::optional<double> rate_hz{};                     // at which pairs come; empty for as fast as it goes
+  Timestamp first_stamp{};                             // of the range
+  std::unique_ptr<Y4mStream> stream{};                 // null for a recorded drive
+  StereoPacking packing = StereoPacking::kSideBySide;  // of a stream
+
+  /// The pairs come when the stream's writer sends them, whether or not they are taken.
+  bool writerPaced(InputPolicy policy) const { return sequence.streamed() && policy == InputPolicy::kLive; }
+  /// Pairs that there are; 0 where nobody knows before the end.
+  std::size_t count() const { return range.end == FrameRange{}.end ? 0 : range.size(); }
+};
+
+/// Opens what the user named. For a stream it waits for the header; what a stream cannot do is refused before. Throws
+/// InputError or UsageError.
+RunInput openRunInput(const RunOptions& options, InputPolicy policy);
+
+/// The clock that pairs are due by; empty where they come as fast as it goes, and where their writer has the clock.
+std::optional<CameraClock> clockOf(const RunInput& input, InputPolicy policy);
+
+/// Begins to decode the input's pairs; `inputs` come with each. The source takes the stream; `clock` must outlive it.
+std::unique_ptr<PairSource> makeSource(RunInput& input, const PipelineConfig& config, const FrameInputs& inputs,
+                                       const std::optional<CameraClock>& clock);
+
+}  // namespace motorcade

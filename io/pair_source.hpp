@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "core/messages.hpp"
+
+namespace motorcade {
+
+/// The end of a source, as far as it is worth a word to the user.
+struct SourceEnd {
+  std::string remark{};  // a sentence; empty where all pairs came
+  bool damaged = false;  // what follows the last pair cannot be used, or there was none
+};
+
+/// Stereo pairs as a run takes them: decoded, rectified and numbered, from a recorded drive, a pipe, or whatever else
+/// brings some. One thread takes the pairs.
+class PairSource {
+ public:
+  virtual ~PairSource() = default;
+
+  /// The next pair; waits for it. Its due time is set only where the source knows when it came. Empty after the last
+  /// pair or after `stop`.
+  virtual std::optional<StereoFrame> next() = 0;
+  /// Ends the source early, from any thread; pairs already decoded still come out.
+  virtual void stop() = 0;
+  /// Stops, and waits until nothing more is read. Call it once, when no further pair is taken.
+  virtual SourceEnd finish() = 0;
+
+  /// The number of the first pair, unless it is left out.
+  virtual FrameId first() const = 0;
+  /// The time of any pair up to the last that came, also of one that was left out.
+  virtual Timestamp stampOf(FrameId frame) const = 0;
+  /// The larger share of either image's pixels for which the camera saw nothing; 0 where nothing is rectified.
+  virtual double shareOutside() const = 0;
+  /// Most pairs ever waiting, and how many may. Final once `finish` has returned.
+  virtual std::size_t highWater() const = 0;
+  virtual std::size_t capacity() const = 0;
+};
+
+}  // namespace motorcade

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "io/sequence.hpp"
+#include "io/stream/stereo_packing.hpp"
+#include "io/stream/y4m_header.hpp"
+
+namespace motorcade {
+
+/// What is known of a stream's drive before its first pair: all but the frames and their times. A pipe brings no
+/// calibration, so that the user gives it. Throws InputError or UsageError.
+Sequence sequenceOfStream(const Y4mHeader& header, StereoPacking packing, const GivenCameras& given);
+
+}  // namespace motorcade
