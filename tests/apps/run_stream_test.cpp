@@ -30,7 +30,7 @@ class RunStream : public Run {
   fs::path streamOf(const fs::path& drive, StereoPacking packing, const std::string& tags = "F10:1 Ip Cmono") {
     const Sequence sequence = openSequence(drive);
     PairReader reader(sequence);
-    const fs::path file = out("stream.y4m");
+    fs::path file = out("stream.y4m");
     std::ofstream stream(file, std::ios::binary);
     stream << y4mHeaderLine({sequence.camera.width_px, sequence.camera.height_px}, packing, tags);
     for (const FramePaths& frame : sequence.frames)
