@@ -38,7 +38,7 @@ class DdsPublisher {
   /// False when not each topic has so many subscribers in time, or when asked to stop.
   bool waitForSubscribers(int count, std::chrono::milliseconds patience, const std::stop_token& stop) const;
 
-  /// Whether it was made with this topic; no other one is to be published.
+  /// True for the topics that it was made with; no other one is to be published.
   bool publishes(Topic topic) const;
   void publish(const ros::PoseStamped& message);
   void publish(const ros::Odometry& message);
@@ -48,7 +48,7 @@ class DdsPublisher {
   void publish(const ros::DiagnosticArray& message);
   void publish(const ros::TransformStamped& message);
 
-  /// Of its topics, in their order.
+  /// The counts of its topics, in their order.
   std::vector<Counts> counts() const;
   /// On loopback: nobody outside of this machine can send to it.
   bool isShielded() const;

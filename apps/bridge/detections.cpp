@@ -8,7 +8,7 @@
 namespace motorcade {
 namespace {
 
-/// As the column `kind` of a run's files has it.
+/// The name that the column `kind` of a run's files has.
 const char* classIdOf(Result::Kind kind) {
   switch (kind) {
     case Result::Kind::kUnknown:

@@ -16,7 +16,7 @@ struct CauseWords {
   const char* name;  // as in the Python module
   const char* sentence;
 };
-/// In the order of `Result::Cause`.
+/// The causes, in the order of `Result::Cause`.
 constexpr std::array<CauseWords, 9> kCauses{{{"none", "measured"},
                                              {"after_gap", "measured across missing frames"},
                                              {"few_points", "measured by hardly points enough"},

@@ -12,9 +12,9 @@ namespace motorcade {
 /// T_body_box: the box has the body's axes.
 SE3 boxInBody(const Result::Object& object);
 
-/// Of a perturbation on the right of the box's pose, as seen from the camera; empty where the object's is not known.
-/// The body's T exp(xi) is the box's T_box exp(Ad(T_box_body) xi); how unsure the cuboid's middle is in the body adds
-/// to that.
+/// The covariance of the box's pose as seen from the camera, right perturbation; empty where the object's is not known.
+/// The body's T exp(xi) is the box's T_box exp(Ad(T_box_body) xi). The variances of the cuboid's middle in the body are
+/// added to that.
 std::optional<Matrix6d> boxCovariance(const Result::Object& object);
 
 }  // namespace motorcade

@@ -11,8 +11,8 @@ struct KindShare {
   double probability = 0;
 };
 
-/// What an object may be: the kind that the tracker names, and unknown with the rest. The shares sum to one. Where none
-/// is named, the tracker's probability is that of a kind it does not tell, and all is unknown.
+/// The kinds that an object may be: the one that the tracker names, and unknown with the rest. The shares sum to one.
+/// Where none is named, the tracker's probability is that of a kind it does not tell, and all is unknown.
 std::vector<KindShare> kindShares(const Result::Object& object);
 
 }  // namespace motorcade

@@ -12,7 +12,7 @@ namespace motorcade {
 /// again the same.
 ros::Uuid uuidOf(std::int64_t object, std::int64_t first_stamp_ns);
 
-/// As 0125d8e3-1b2c-8f00-8000-000000000007.
+/// The usual text, as 0125d8e3-1b2c-8f00-8000-000000000007.
 std::string textOf(const ros::Uuid& uuid);
 
 }  // namespace motorcade

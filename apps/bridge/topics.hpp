@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// What can be published, in the order in which a frame's messages are.
+/// The topics that can be published, in the order of a frame's messages.
 enum class Topic { kPose, kOdometry, kMarkers, kTrackedObjects, kDetections, kDiagnostics, kTf };
 inline constexpr std::size_t kTopicCount = 7;
 
@@ -29,7 +29,7 @@ inline constexpr const char* kDefaultTopics = "pose,odometry,markers,tracked_obj
 /// "/motorcade/pose, ... and /tf".
 std::string rosNamesOf(const std::set<Topic>& topics);
 
-/// From names with commas between them. Throws UsageError, which names the known ones.
+/// The topics of names with commas between them. Throws UsageError, which names the known ones.
 std::set<Topic> topicsOf(const std::string& names);
 
 }  // namespace motorcade

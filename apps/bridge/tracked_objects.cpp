@@ -64,7 +64,7 @@ void setTwist(const Result::Object& object, ros::TrackedObject& message) {
   message.twist_covariance = rowsOf<6>(covariance);
 }
 
-/// Of the body's origin along its path, and of its yaw rate.
+/// The acceleration is that of the body's origin along its path, and of its yaw rate.
 void setAcceleration(const Result::Object& object, ros::TrackedObject& message) {
   Vector6d variances = Vector6d::Constant(kUnknownVariance);
   if (const auto& known = object.acceleration) {

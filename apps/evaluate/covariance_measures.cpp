@@ -110,14 +110,14 @@ ErrorSample motionError(const ComparedFrame& from, const ComparedFrame& to, cons
   return {(estimate.inverse() * truth).log(), covariance};
 }
 
-/// Where a row's frame stands among the frames; empty where it does not.
+/// The index of a row's frame; empty where the frame is not there.
 std::optional<std::int64_t> placeOf(const RunFolder::CovarianceRow& row, const std::vector<ComparedFrame>& frames) {
   const std::int64_t place = frames.empty() ? -1 : row.frame.value - frames.front().frame.value;
   if (place < 0 || place >= std::ssize(frames)) return std::nullopt;
   return place;
 }
 
-/// Of a covariance of the camera's motion; empty where the frames do not reach back so far.
+/// The error of the camera's motion to a row's frame; empty where the frames do not reach back so far.
 std::optional<ErrorSample> cameraError(const std::vector<ComparedFrame>& frames, const RunFolder::CovarianceRow& row,
                                        const SE3& T_true_cam) {
   const auto now = placeOf(row, frames);

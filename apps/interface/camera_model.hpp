@@ -36,7 +36,7 @@ class CameraModel {
   std::optional<Remaps> remaps_;
 };
 
-/// How exact the caller says that the calibration is. Throws Error naming the field.
+/// The exactness of the calibration, where the caller tells it. Throws Error naming the field.
 std::optional<CalibrationSigmas> sigmasOf(const Camera& camera);
 
 /// The other way round, of a pair that is rectified.

@@ -16,7 +16,7 @@ constexpr std::array kAxisTitles = {"x", "y", "z", "about x", "about y", "about 
 static_assert(kAxisTitles.size() == AxisReliability::kAxes);
 constexpr std::array kToldTenths = {5, 8, 9};
 
-/// Where the covariances of each title stand in an evaluation; the first that is there counts.
+/// The keys of each title's covariances in an evaluation; the first that is there counts.
 constexpr std::array<std::array<const char*, 2>, kCovarianceTitles.size()> kKeys = {
     {{"camera_mounted_with_truth_noise", "camera"}, {"camera_since_start", ""}, {"objects", ""}}};
 
@@ -77,6 +77,14 @@ ResultTable covarianceTable(const CovarianceReliabilityBySet& sets) {
     table.rows.push_back(std::move(row));
   });
   return table;
+}
+
+nlohmann::ordered_json covarianceJson(const CovarianceReliabilityBySet& sets) {
+  auto json = nlohmann::ordered_json::object();
+  forEach(sets, [&](const std::string& set, const char* estimate, const char* title, const AxisReliability& counts) {
+    json[set][estimate][title] = jsonOf(counts);
+  });
+  return json;
 }
 
 std::string covarianceCharts(const CovarianceReliabilityBySet& sets) {

@@ -30,6 +30,9 @@ void addCovariances(CovarianceReliabilityOfSet& sums, const nlohmann::json& eval
 /// A row for each set, estimate and covariance of which there are errors, a column for each axis.
 ResultTable covarianceTable(const CovarianceReliabilityBySet& sets);
 
+/// The same as an object for each set, with `final` and `online`: counts by axis, by what they are of.
+nlohmann::ordered_json covarianceJson(const CovarianceReliabilityBySet& sets);
+
 /// The same as diagrams for a page, a line for each axis; empty where there are no errors.
 std::string covarianceCharts(const CovarianceReliabilityBySet& sets);
 

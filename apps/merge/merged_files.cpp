@@ -153,6 +153,7 @@ std::string jsonOf(const Merged& merged) {
                    {"latency_ms", jsonOf(batch.latest_ms)}}},
                  {"existence", reliabilityJson(kExistenceClaim, batch.existence)},
                  {"kinds", reliabilityJson(kKindClaim, batch.kinds)},
+                 {"covariances", covarianceJson(batch.covariances)},
                  {"left_out", std::move(left_out)},
                  {"published", std::move(published)},
                  {"comparison", merged.comparison ? jsonOf(*merged.comparison) : Json()}});

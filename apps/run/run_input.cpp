@@ -45,7 +45,7 @@ void refuseForStream(const RunOptions& options, InputPolicy policy) {
     throw UsageError(std::string("-: the standard input is a terminal; pipe a stream into it, as by") + kY4mCommand);
 }
 
-/// What the user says comes before what the stream says.
+/// The user's rate comes before the stream's.
 double streamRate_hz(const RunOptions& options, const Y4mHeader& header) {
   if (options.fps_hz) return *options.fps_hz;
   if (header.rate_hz) return *header.rate_hz;

@@ -166,7 +166,7 @@ void JointGraph::calibrate(FrameId newest) {
   for (auto& [id, landmarks] : landmarks_) landmarks.fix();
 }
 
-/// What is so unlikely by the calibration's own deviation is a fault of the rig or of the calibration.
+/// An offset that the calibration's deviation makes so unlikely is a fault of the rig or of the calibration.
 void JointGraph::tellOfOffset() {
   constexpr double kUnlikely_sigmas = 3;
   const double offset_px = offset_.px(), sigma_px = calibration_.sigmas().disparity_px;

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kKeptFrames = 64;
 
-/// Of a path that is one step longer.
+/// The covariance of a path that is one step longer.
 Matrix6d extended(const Matrix6d& covariance, const SE3& T_previous_now, const Matrix6d& of_step) {
   const Matrix6d through = T_previous_now.inverse().adjoint();
   return through * covariance * through.transpose() + of_step;

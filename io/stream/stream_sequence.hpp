@@ -8,8 +8,8 @@
 
 namespace motorcade {
 
-/// What is known of a stream's drive before its first pair: all but the frames and their times. A pipe brings no
-/// calibration, so that the user gives it. Throws InputError or UsageError.
+/// A stream's drive as known before its first pair: all but the frames and their times. A pipe brings no calibration:
+/// the user gives it. Throws InputError or UsageError.
 Sequence sequenceOfStream(const Y4mHeader& header, StereoPacking packing, const GivenCameras& given);
 
 }  // namespace motorcade

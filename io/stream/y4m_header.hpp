@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// What the first line of a YUV4MPEG2 stream tells of all its frames.
+/// The first line of a YUV4MPEG2 stream, which holds for all its frames.
 struct Y4mHeader {
   int width = 0, height = 0;
   std::optional<double> rate_hz{};  // none where the stream tells none

@@ -16,7 +16,7 @@ namespace motorcade::test {
 
 using nlohmann::json;
 
-/// Of a sequence of DDS.
+/// The elements of a sequence of DDS.
 template <class Sequence, class Convert>
 json listOf(const Sequence& sequence, const Convert& convert) {
   json list = json::array();

@@ -19,12 +19,12 @@
 #include "tests/apps/bridge_process.hpp"
 #include "tests/support/matchers.hpp"
 
-/// What planners get of `motorcade bridge`: objects with velocities and covariances, the state of the tracker, and the
-/// vehicle's frame.
+/// The messages of `motorcade bridge` for planners: objects with velocities and covariances, the state of the tracker,
+/// and the vehicle's frame.
 namespace motorcade::test {
 namespace {
 
-/// Of a drive from the first stamp on, whose camera sits at `T_child_cam`.
+/// The results of a drive from the first stamp on, whose camera sits at `T_child_cam`.
 struct SentDrive {
   std::vector<Result> results;
   SE3 T_child_cam;

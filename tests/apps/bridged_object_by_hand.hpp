@@ -11,7 +11,7 @@ namespace motorcade::test {
 
 inline constexpr std::int64_t kBridgedStamp_ns = 5'000'000'250;
 
-/// Where the camera of `bridgedResult` is.
+/// The pose of the camera of `bridgedResult`.
 inline SE3 bridgedCamera() { return turned({0.02, -0.01, 0.6}, {30, -4, 0.5}); }
 
 /// A van ahead that drives a bend, nothing of it along an axis of the world.
@@ -52,10 +52,10 @@ inline SE3 boxOfBridged(const SE3& T_parent_body) {
   return T_parent_body * SE3(Eigen::Matrix3d::Identity(), {x, y, z});
 }
 
-/// How unsure the middle of its cuboid is in the body: variances.
+/// The variances of its cuboid's middle in the body.
 inline Eigen::Vector3d bridgedMiddle() { return Eigen::Vector3d(0.6, 0.2, 0.07).cwiseAbs2(); }
 
-/// As poses of messages are perturbed: the position, and the rotation about axes of the parent frame.
+/// The perturbation of a message's pose: of the position, and the rotation about axes of the parent frame.
 inline Vector6d rosDifference(const SE3& moved, const SE3& T) {
   Vector6d difference;
   difference << moved.translation() - T.translation(), logSO3(moved.rotation() * T.rotation().transpose());

@@ -47,7 +47,7 @@ TEST_F(MergeBatch, KindsAreCountedOverAllDrives) {
   EXPECT_THAT(merged("report.html"), HasSubstr("<td class=\"number\">0.9 of 0.8 (100)</td>"));
 }
 
-/// Where the truth's noise is not known, that of the camera's motion counts as it is.
+/// The camera's own covariance counts where the truth's noise is not known.
 TEST_F(MergeBatch, CovariancesAreComparedWithErrorsByAxis) {
   write("a", {{.drive = "x"}, {.drive = "y"}});
   const std::string shares = " 80 / 80 / 80 % | 80 / 80 / 80 % | 80 / 80 / 80 % |";
@@ -56,6 +56,8 @@ TEST_F(MergeBatch, CovariancesAreComparedWithErrorsByAxis) {
   EXPECT_THAT(table, HasSubstr("| default | final | camera, since the start | 20 |" + shares));
   EXPECT_THAT(table, HasSubstr("| default | online | camera, over ten frames | 20 |" + shares));
   EXPECT_THAT(table, Not(HasSubstr("| default | online | objects |"))) << "there are none";
+  const auto json = nlohmann::json::parse(merged("results.json"));
+  EXPECT_EQ(json["covariances"]["default"]["final"]["camera, since the start"]["about_z"][9], 4);
   const std::string page = merged("report.html");
   EXPECT_THAT(page, HasSubstr("default, final: camera, since the start (20 errors)"));
   EXPECT_THAT(page, HasSubstr("found, %"));

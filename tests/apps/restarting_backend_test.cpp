@@ -94,7 +94,7 @@ TEST(RestartingBackend, GoesOnInTheSameWorldAfterFramesThatFailed) {
   expectOnTheSameCircle(disturbed.settled, undisturbed);
 }
 
-/// What a pose's covariance is relative to went with the back-end that knew it.
+/// A pose's covariance is relative to a start that went with the old back-end.
 TEST(RestartingBackend, TellsNoCovarianceOfAPoseWhoseStartIsGone) {
   for (const FrameEstimate& estimate : driveFailing({3}).online) {
     EXPECT_EQ(estimate.camera_covariances.pose.has_value(), estimate.head.frame.value < 3);

@@ -55,7 +55,7 @@ TEST(TrackedObjects, HaveThePoseCovarianceThatFiniteDifferencesSay) {
   EXPECT_THAT(matrixOfRows(trackedOf(object).pose_covariance), IsNear(expected, kDifferences));
 }
 
-/// Where the cuboid's middle is after a moment, seen from the body before it.
+/// The twist moves the cuboid's middle to where it is a moment later.
 TEST(TrackedObjects, HaveTheTwistOfTheCuboidsMiddleAlongTheirOwnAxes) {
   const Result::Object object = bridgedObject();
   const SE3 T_world_body = transformOf(object.T_world_body);

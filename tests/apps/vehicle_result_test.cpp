@@ -97,7 +97,7 @@ TEST(VehicleResult, HasTheCovariancesThatFiniteDifferencesSay) {
               IsNear(Matrix6d(0.2 * J * unevenCovariance() * J.transpose()), kTol));
 }
 
-/// What is unsure of the camera's heading moves the vehicle's origin, two meters behind it, aside.
+/// An error of the camera's heading moves the vehicle's origin, two meters behind it, aside.
 TEST(VehicleResult, GivesThePosesCovarianceOfTheVehicle) {
   Result camera;
   camera.pose_covariance = rowsOf(diagonal(0.01, 0.0001));

@@ -71,7 +71,7 @@ TEST_F(Results, TellTheCamerasMotion) {
   EXPECT_GT(squareOf(*results.back().pose_covariance).trace(), 10 * squareOf(*results[0].pose_covariance).trace());
 }
 
-/// What the settings tell counts before what the camera tells of itself.
+/// The settings count before what the camera tells of itself.
 TEST_F(Results, AreLessSureWhereTheCalibrationIs) {
   const auto variance = [&](const std::optional<Camera::Sigmas>& sigmas, const std::string& settings = "") {
     DriveInMemory drive = drive_;

@@ -195,7 +195,7 @@ TEST_P(JointBackendOffset, ComesOut) {
 
 INSTANTIATE_TEST_SUITE_P(Rigs, JointBackendOffset, testing::Values(0.0, 1.2, -0.6));
 
-/// What a drive with an offset makes a back-end tell, whose calibration is said to be so exact.
+/// The problems of a drive with an offset, whose calibration is said to be exact to `sigma_px`.
 std::vector<std::string> toldOf(double offset_px, double sigma_px) {
   PointDrive::Options options = kStreet;
   options.offset_px = offset_px;

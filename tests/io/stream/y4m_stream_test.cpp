@@ -18,7 +18,7 @@ using Next = Y4mStream::Next;
 const std::string kHeader = "YUV4MPEG2 W4 H2 F10:1 C420\n";
 const std::string kLuma = "abcdefgh", kChroma = "1234";
 
-/// What a stream of such bytes gives, frame by frame: `frame TEXT`, or how it ends.
+/// The frames of a stream of such bytes, as `frame TEXT`, and how it ends.
 std::vector<std::string> framesOf(const std::string& bytes) {
   test::Pipe pipe;
   pipe.write(bytes);
