@@ -16,6 +16,7 @@
 #include "core/pixel_mask.hpp"
 #include "core/se3.hpp"
 #include "core/timestamp.hpp"
+#include "core/vehicle_motion.hpp"
 
 /// The messages that pass between folders. Each is filled once by its stage and then only read.
 namespace motorcade {
@@ -59,6 +60,9 @@ struct FrameHead {
 struct FrameInputs {
   /// Pixels of the left image that are of no use, as those that show the own vehicle; null: none.
   std::shared_ptr<const PixelMask> ignored;
+  /// The vehicle's own motion, as far as it was known when the pair came: so many samples. Null: nothing tells it.
+  std::shared_ptr<const VehicleMotionLog> vehicle_motion{};
+  std::uint64_t vehicle_samples = 0;
 };
 
 /// A rectified stereo pair as it enters the pipeline.
@@ -72,10 +76,10 @@ struct StereoFrame {
   SteadyTime decoded{};  // when they were read
 
   bool rejected() const { return head.status == FrameStatus::kRejected; }
-  /// Gives up the images, and what came with them.
+  /// Gives up the images, and what was told of their pixels.
   void reject(FrameCause cause, std::string why) {
     left = right = Image{};
-    inputs = {};
+    inputs.ignored.reset();
     head.status = FrameStatus::kRejected;
     head.cause = cause;
     problem = std::move(why);
@@ -154,6 +158,21 @@ struct ObjectObservation {
 struct Odometry {
   SE3 T_previous_now;
   Matrix6d covariance = Matrix6d::Identity();  // right perturbation
+  /// The same motion as the vehicle's own sensors tell it; empty where they do not, or are not believed. Where frames
+  /// in a row have no other, the covariances are those of independent steps that add up to what is known of the whole.
+  struct Vehicle {
+    SE3 T_previous_now;
+    Matrix6d covariance;
+  };
+  std::optional<Vehicle> vehicle{};
+};
+
+/// What was found out about the sensors of the vehicle's own motion.
+struct VehicleSensors {
+  bool believed = true;            // they agree with the camera
+  double speed_scale = 1;          // true over told speed
+  double yaw_rate_bias_radps = 0;  // told minus true
+  double speed_ratio = 1;          // of the camera's speed to the one told, over the last second or so
 };
 
 /// What the front-end measured in one frame: all that the back-end needs.
@@ -172,6 +191,7 @@ struct FrameMeasurements {
   std::vector<TrackId> ended;
   /// The part of the image that is known to show the own vehicle; nothing is measured there.
   std::optional<OwnVehicleView> own_vehicle{};
+  std::optional<VehicleSensors> vehicle_sensors{};  // empty where there are none
 };
 using FrameMeasurementsPtr = std::shared_ptr<const FrameMeasurements>;
 

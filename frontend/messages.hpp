@@ -121,6 +121,7 @@ struct SceneMotion {
   std::vector<MotionComponent> components;      // moving and unknown ones; the static rest is not listed
   FeaturesPtr features;                         // the stereo pair
   std::optional<OwnVehicleView> own_vehicle{};  // as found up to this frame
+  std::optional<VehicleSensors> vehicle_sensors{};
 };
 using SceneMotionPtr = std::shared_ptr<const SceneMotion>;
 

@@ -36,6 +36,17 @@ std::optional<Eigen::Vector3d> readVelocity(FieldReader& fields) {
   return velocity_mps;
 }
 
+/// After the velocity; empty where the packet ends before.
+std::optional<double> readYawRate(FieldReader& fields) {
+  constexpr int kAccelerationsAndRates = 11;  // ax ay az af al au wx wy wz wf wl, before wu
+  for (int skipped = 0; skipped < kAccelerationsAndRates; ++skipped) {
+    if (fields.atEnd()) return std::nullopt;
+    fields.word("an acceleration or a turn rate");
+  }
+  if (fields.atEnd()) return std::nullopt;
+  return fields.number("the turn rate about the upward axis");
+}
+
 OxtsPacket packetOf(const fs::path& file, const TextLine& line) {
   FieldReader fields(file, line);
   OxtsPacket packet;
@@ -46,6 +57,7 @@ OxtsPacket packetOf(const fs::path& file, const TextLine& line) {
   packet.pitch_rad = fields.number("pitch");
   packet.yaw_rad = fields.number("yaw");
   packet.velocity_mps = readVelocity(fields);
+  packet.yaw_rate_radps = readYawRate(fields);
   constexpr double kMaxMercator_deg = 89;
   if (std::abs(packet.latitude_deg) > kMaxMercator_deg) fields.fail("the latitude is out of range");
   return packet;

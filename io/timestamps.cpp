@@ -118,6 +118,10 @@ Times readTimes(const std::filesystem::path& file) {
   return parseTimes(file, lines);
 }
 
+Timestamp readTime(const std::filesystem::path& file, const TextLine& line) {
+  return parseTime(file, line, kSecond_ns);
+}
+
 std::vector<Timestamp> readTimestamps(const std::filesystem::path& file) { return readTimes(file).stamps; }
 
 Timestamp stampAtRate(std::int64_t number, double rate_hz) {

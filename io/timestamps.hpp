@@ -24,6 +24,9 @@ Times readTimes(const std::filesystem::path& file);
 /// The same of lines that are read already.
 Times parseTimes(const std::filesystem::path& file, const std::vector<TextLine>& lines);
 
+/// The time of one line, in seconds or as a date.
+Timestamp readTime(const std::filesystem::path& file, const TextLine& line);
+
 /// The times alone.
 std::vector<Timestamp> readTimestamps(const std::filesystem::path& file);
 

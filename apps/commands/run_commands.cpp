@@ -74,6 +74,28 @@ void addWaysToSee(CLI::App& command, const std::shared_ptr<RunOptions>& options)
       ->each([options](const std::string&) { options->shown = true; });
 }
 
+/// What is known beside the images.
+void addWhatComesBeside(CLI::App& command, RunOptions& options) {
+  command
+      .add_option(
+          "--camera-poses", options.camera_poses,
+          "KITTI pose lines of another camera trajectory, one per frame of the sequence, for backend.kind filter, "
+          "filter_map or pose_graph")
+      ->type_name("POSES.txt");
+  command
+      .add_option("--vehicle-motion", options.vehicle_motion,
+                  "The vehicle's own motion, which predicts where images fail: time_s,speed_mps,yaw_rate_radps as CSV "
+                  "on the images' clock, or KITTI's oxts.txt; without it, motion.csv in the sequence's folder; 'none' "
+                  "leaves that out")
+      ->type_name("FILE|none");
+  command
+      .add_option("--ignore", options.ignored,
+                  "Pixels of the left image, rectified, that are of no use: so many rows or columns at a side, as "
+                  "bottom=70 (top, left, right), or an image that is not black there; may come several times. What is "
+                  "fixed to the camera, as a bonnet, is found without it")
+      ->type_name("SIDE=PIXELS|MASK.png");
+}
+
 }  // namespace
 
 void addRun(CLI::App& app, Action& action) {
@@ -87,18 +109,7 @@ void addRun(CLI::App& app, Action& action) {
   addWaysToSee(*command, options);
   command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
   command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
-  command
-      ->add_option(
-          "--camera-poses", options->camera_poses,
-          "KITTI pose lines of another camera trajectory, one per frame of the sequence, for backend.kind filter, "
-          "filter_map or pose_graph")
-      ->type_name("POSES.txt");
-  command
-      ->add_option("--ignore", options->ignored,
-                   "Pixels of the left image, rectified, that are of no use: so many rows or columns at a side, as "
-                   "bottom=70 (top, left, right), or an image that is not black there; may come several times. What is "
-                   "fixed to the camera, as a bonnet, is found without it")
-      ->type_name("SIDE=PIXELS|MASK.png");
+  addWhatComesBeside(*command, *options);
   command->add_option("--config", options->config, "Parameters; see effective_config.toml of any run")
       ->type_name("FILE.toml");
   command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")

@@ -21,6 +21,7 @@
 #include "apps/interface/tracker_options.hpp"
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/watch/own_vehicle_news.hpp"
+#include "apps/watch/vehicle_motion_news.hpp"
 #include "io/errors.hpp"
 #include "motorcade/motorcade.hpp"
 
@@ -109,8 +110,9 @@ class Tracker::Impl {
   bool told_of_stamps_ = false;  // the pushing thread's
   std::atomic<bool> closed_{false}, failed_{false};
   std::atomic<std::int64_t> pushed_{0}, rejected_{0}, dropped_{0};
-  ResultConversion convert_;    // the delivering thread's
-  OwnVehicleNews own_vehicle_;  // the delivering thread's
+  ResultConversion convert_;          // the delivering thread's
+  OwnVehicleNews own_vehicle_;        // the delivering thread's
+  VehicleMotionNews vehicle_motion_;  // the delivering thread's
   ResultQueue results_;
   ThreadPlacement placement_;
   PairWatch watch_;
@@ -242,6 +244,8 @@ void Tracker::Impl::deliver() {
       if (const auto news = sample_bits_.news()) tell(log_, motorcade::LogLevel::kInfo, [&] { return *news; });
       if (const auto news = own_vehicle_.observe(*result->measurements))
         tell(log_, motorcade::LogLevel::kInfo, [&] { return *news; });
+      if (const auto news = vehicle_motion_.observe(*result->measurements))
+        tell(log_, motorcade::LogLevel::kWarning, [&] { return *news; });
       Result converted = convert_(*result);
       if (converted.problem.empty()) converted.problem = watch_.problem();
       results_.put(std::move(converted));

@@ -18,6 +18,7 @@ void Recorder::record(const PipelineResult& result) {
   folder_.writeOnline(result.online);
   if (const auto doubt = plausibility_.observe(result.online)) logWarning(*doubt);
   if (const auto news = own_vehicle_.observe(*result.measurements)) logInfo(*news);
+  if (const auto news = vehicle_motion_.observe(*result.measurements)) logWarning(*news);
   for (RunListener* const listener : listeners_) listener->frameLeft(result);
   for (const FrameEstimate& estimate : result.settled) folder_.writeSettled(estimate);
   recordFinals(result.finals);

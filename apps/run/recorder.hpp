@@ -10,6 +10,7 @@
 #include "apps/run/plausibility.hpp"
 #include "apps/run/run_listener.hpp"
 #include "apps/watch/own_vehicle_news.hpp"
+#include "apps/watch/vehicle_motion_news.hpp"
 #include "core/messages.hpp"
 #include "io/run_folder.hpp"
 
@@ -29,6 +30,7 @@ class Recorder {
   std::optional<OwnVehicleView> finish();
 
   const FollowedFrames& followed() const { return followed_; }
+  const VehicleMotionNews& vehicleMotion() const { return vehicle_motion_; }
 
  private:
   RunFolderWriter& folder_;
@@ -37,6 +39,7 @@ class Recorder {
   Plausibility plausibility_;
   FollowedFrames followed_;
   OwnVehicleNews own_vehicle_;
+  VehicleMotionNews vehicle_motion_;
   std::size_t done_ = 0;
 };
 

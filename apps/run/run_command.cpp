@@ -111,6 +111,8 @@ void announce(const RunInput& input, const RunOptions& options) {
   if (const auto doubt = mosaicDoubt(sequence, input.range, 1)) logWarning(*doubt);
   for (const std::string& oddity : odditiesOf(sequence.camera)) logWarning(oddity);
   announceRate(input, options);
+  if (!input.vehicle_motion.empty())
+    logInfo(fmt::format("the vehicle's own motion is known: {} samples", input.vehicle_motion.size()));
 }
 
 void tellOutside(double share) {
@@ -216,6 +218,10 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
   summary.pipeline = end.summary;
   summary.good_frames = recorder.followed().count();
   summary.own_vehicle = recorder.finish();
+  if (const auto& sensors = recorder.vehicleMotion().sensors())
+    summary.vehicle_motion = {.found = *sensors,
+                              .samples = static_cast<std::int64_t>(replay.input.vehicle_motion.size()),
+                              .left_out = recorder.vehicleMotion().leftOut()};
   summary.signal = signals.received();
   summary.source_end = source->finish();
   summary.decoded = {"decode>input", static_cast<std::int64_t>(source->highWater()),

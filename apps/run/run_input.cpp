@@ -14,6 +14,8 @@
 #include "io/stream/stream_sequence.hpp"
 #include "io/stream/y4m_source.hpp"
 #include "io/timestamps.hpp"
+#include "io/vehicle_motion_file.hpp"
+#include "io/vehicle_motion_source.hpp"
 
 namespace motorcade {
 namespace {
@@ -93,19 +95,16 @@ std::unique_ptr<PairSource> makeRecorded(const RunInput& input, const PipelineCo
   return std::make_unique<SequenceDecoder>(input.sequence, input.range, decoding);
 }
 
-}  // namespace
-
-RunInput openRunInput(const RunOptions& options, InputPolicy policy) {
-  return options.sequence == kStandardInput ? openStream(options, policy) : openRecorded(options, policy);
+/// Of the vehicle's own motion; empty where there is none.
+std::filesystem::path motionFileOf(const RunOptions& options) {
+  if (options.vehicle_motion == kNoVehicleMotion) return {};
+  if (!options.vehicle_motion.empty()) return options.vehicle_motion;
+  const std::filesystem::path beside = options.sequence / kVehicleMotionFile;
+  return std::filesystem::exists(beside) ? beside : std::filesystem::path{};
 }
 
-std::optional<CameraClock> clockOf(const RunInput& input, InputPolicy policy) {
-  if (!input.rate_hz || input.writerPaced(policy)) return std::nullopt;
-  return std::make_optional<CameraClock>(*input.rate_hz / input.capture_rate_hz, 1 / input.capture_rate_hz);
-}
-
-std::unique_ptr<PairSource> makeSource(RunInput& input, const PipelineConfig& config, const FrameInputs& inputs,
-                                       const std::optional<CameraClock>& clock) {
+std::unique_ptr<PairSource> makePairs(RunInput& input, const PipelineConfig& config, const FrameInputs& inputs,
+                                      const std::optional<CameraClock>& clock) {
   const std::size_t ahead = std::bit_floor(static_cast<std::size_t>(config.pipeline.frames_in_flight));
   if (!input.sequence.streamed()) return makeRecorded(input, config, ahead, inputs, clock);
   const Y4mSource::Params params{.packing = input.packing,
@@ -115,6 +114,27 @@ std::unique_ptr<PairSource> makeSource(RunInput& input, const PipelineConfig& co
                                  .ahead = ahead,
                                  .inputs = inputs};
   return std::make_unique<Y4mSource>(std::move(input.stream), input.sequence, params);
+}
+
+}  // namespace
+
+RunInput openRunInput(const RunOptions& options, InputPolicy policy) {
+  RunInput input = options.sequence == kStandardInput ? openStream(options, policy) : openRecorded(options, policy);
+  const std::filesystem::path motion = motionFileOf(options);
+  if (!motion.empty()) input.vehicle_motion = readVehicleMotion(motion, input.sequence);
+  return input;
+}
+
+std::optional<CameraClock> clockOf(const RunInput& input, InputPolicy policy) {
+  if (!input.rate_hz || input.writerPaced(policy)) return std::nullopt;
+  return std::make_optional<CameraClock>(*input.rate_hz / input.capture_rate_hz, 1 / input.capture_rate_hz);
+}
+
+std::unique_ptr<PairSource> makeSource(RunInput& input, const PipelineConfig& config, const FrameInputs& inputs,
+                                       const std::optional<CameraClock>& clock) {
+  auto pairs = makePairs(input, config, inputs, clock);
+  if (input.vehicle_motion.empty()) return pairs;
+  return std::make_unique<VehicleMotionSource>(std::move(pairs), input.vehicle_motion);
 }
 
 }  // namespace motorcade

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "apps/pipeline/pipeline_config.hpp"
 #include "apps/run/camera_clock.hpp"
@@ -24,6 +25,7 @@ struct RunInput {
   Timestamp first_stamp{};                             // of the range
   std::unique_ptr<Y4mStream> stream{};                 // null for a recorded drive
   StereoPacking packing = StereoPacking::kSideBySide;  // of a stream
+  std::vector<VehicleMotion> vehicle_motion{};         // samples by time; none where it is not known
 
   /// The pairs come when the stream's writer sends them, whether or not they are taken.
   bool writerPaced(InputPolicy policy) const { return sequence.streamed() && policy == InputPolicy::kLive; }

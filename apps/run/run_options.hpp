@@ -12,6 +12,9 @@ namespace motorcade {
 
 struct PipelineConfig;
 
+/// The value of --vehicle-motion that leaves out what lies beside the drive.
+inline constexpr const char* kNoVehicleMotion = "none";
+
 /// The command line of `motorcade run`, as the user typed it.
 struct RunOptions {
   std::filesystem::path sequence, out;            // the first may be `kStandardInput`
@@ -26,6 +29,7 @@ struct RunOptions {
   std::filesystem::path config;
   GivenCameras given;                    // --camera and --calibration
   std::filesystem::path camera_poses;    // KITTI pose lines
+  std::filesystem::path vehicle_motion;  // --vehicle-motion: a file, `none`, or empty for the drive's own
   std::vector<std::string> ignored;      // --ignore: SIDE=PIXELS or a mask's file
   std::vector<std::string> assignments;  // key=value
   std::string min_existence;             // of rows, a probability; empty for the configuration's

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -107,6 +108,14 @@ Json toJson(const std::optional<OwnVehicleView>& view) {
   return {{"image_share", rounded(view->share)}, {"box_px", {box.left_px, box.top_px, box.right_px, box.bottom_px}}};
 }
 
+Json toJson(const RunSummary::VehicleMotionUse& motion) {
+  constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
+  return {{"samples", motion.samples},
+          {"speed_scale", rounded(motion.found.speed_scale)},
+          {"yaw_rate_bias_deg_s", rounded(kDegreesPerRadian * motion.found.yaw_rate_bias_radps)},
+          {"frames_left_out", motion.left_out}};
+}
+
 /// A line of its own, or nothing.
 std::string shakeLine(double shake_px) {
   if (shake_px < kLeastToldShake_px) return "";
@@ -190,6 +199,7 @@ std::string toJson(const RunSummary& summary) {
             {"queues", queues},
             {"solver", toJson(pipeline.solver)},
             {"versions", programVersions()}};
+  if (summary.vehicle_motion) json["vehicle_motion"] = toJson(*summary.vehicle_motion);
   if (summary.mcap) json["mcap"] = toJson(*summary.mcap);
   if (summary.signal != 0) json["interrupted_by"] = summary.signal == SIGINT ? "SIGINT" : "SIGTERM";
   return jsonText(json, 2) + "\n";

@@ -45,6 +45,12 @@ struct RunSummary {
   double wall_s = 0;
   ProcessUsage used;
   std::optional<OwnVehicleView> own_vehicle{};  // as found at the end
+  struct VehicleMotionUse {
+    VehicleSensors found;       // at the end
+    std::int64_t samples = 0;   // that there were
+    std::int64_t left_out = 0;  // frames in which they were not believed
+  };
+  std::optional<VehicleMotionUse> vehicle_motion{};
   std::optional<McapSummary> mcap{};
   std::vector<RigFinding> found{};  // wrong with the pairs
   bool refused = false;             // and so the run was ended

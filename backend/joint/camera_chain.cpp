@@ -34,13 +34,18 @@ CameraRecord CameraChain::add(const FrameMeasurements& m, int seen_again) {
   return camera;
 }
 
-/// Where points hardly tell it, odometry says how the camera moved since points were seen last; unseen frames lie where
-/// a steady motion puts them. An unknown motion begins a new part: after a weak factor all that follows would float.
+/// Where points hardly tell it, odometry says how the camera moved since points were seen last, and the vehicle's own
+/// sensors, where there are some, since the frame before; else unseen frames lie where a steady motion puts them. An
+/// unknown motion begins a new part: after a weak factor all that follows would float.
 void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
   const auto& [frame_before, before] = *frames_.rbegin();
   camera.part = before.part;
   if (!last_seen_.frame.valid()) return linkUnseen(m, camera);
+  const bool after_unseen = last_seen_.frame != frame_before;
+  const bool told = m.odometry.vehicle && (camera.weak || after_unseen);
+  if (told) addOdometry(m.odometry.vehicle->T_previous_now, m.odometry.vehicle->covariance, before.x, camera.x);
   if (m.head.cause == FrameCause::kUnlinked) {
+    if (told) return;
     ++camera.part;
     addGaugePrior(camera.x, solver_.pose(camera.x));
     return;
@@ -48,10 +53,10 @@ void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
   const auto seen = frames_.find(last_seen_.frame);
   if (!showsPoints(m) || seen == frames_.end()) {
     const Matrix6d covariance = showsPoints(m) ? unknownMotionCovariance() : m.odometry.covariance;
-    addOdometry(m.odometry.T_previous_now, covariance, before.x, camera.x);
+    if (!told) addOdometry(m.odometry.T_previous_now, covariance, before.x, camera.x);
     return;
   }
-  if (seen->first != frame_before) {
+  if (after_unseen && !told) {
     const double dt_s = secondsBetween(before.head.stamp, m.head.stamp);
     const SE3 steady =
         scaledMotion(last_seen_.T_seen_now, dt_s / secondsBetween(seen->second.head.stamp, m.head.stamp));
@@ -64,9 +69,13 @@ void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
 /// The world is what was seen first: the gauge moves there.
 void CameraChain::linkUnseen(const FrameMeasurements& m, const CameraRecord& camera) {
   const CameraRecord& before = frames_.rbegin()->second;
-  const std::optional<FactorId> link =
-      addOdometry(m.odometry.T_previous_now, m.odometry.covariance, before.x, camera.x);
-  start_.links.push_back({link, before.x, camera.x, before.head.stamp, m.head.stamp});
+  if (const auto& told = m.odometry.vehicle) {
+    addOdometry(told->T_previous_now, told->covariance, before.x, camera.x);
+  } else {
+    const std::optional<FactorId> link =
+        addOdometry(m.odometry.T_previous_now, m.odometry.covariance, before.x, camera.x);
+    start_.links.push_back({link, before.x, camera.x, before.head.stamp, m.head.stamp});
+  }
   if (!showsPoints(m)) return;
   if (start_.gauge) solver_.removeFactor(*start_.gauge);
   addGaugePrior(camera.x, solver_.pose(camera.x));

@@ -12,8 +12,9 @@ namespace motorcade {
 /// Were points seen, whether or not they tell how the camera moved?
 bool showsPoints(const FrameMeasurements& measurements);
 
-/// The camera's poses as variables, and what links them where landmarks hardly do: the front-end's odometry, a steady
-/// motion over frames in which nothing was seen, and a new part where nobody knows how the camera moved.
+/// The camera's poses as variables, and what links them where landmarks hardly do: the front-end's odometry, the
+/// vehicle's own motion, a steady one over frames in which nothing was seen, and a new part where nobody knows how the
+/// camera moved.
 class CameraChain {
  public:
   /// `frames` are those of the window, before the newest one.

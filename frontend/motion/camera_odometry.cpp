@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
+
 #include "core/unknown_motion.hpp"
 
 namespace motorcade {
@@ -38,8 +40,15 @@ CameraMotion unlinked(const PredictedMotion& predicted, std::size_t observations
   return {.status = FrameStatus::kLost,
           .cause = FrameCause::kUnlinked,
           .T_seen_now = predicted.T_seen_now,
-          .covariance = unknownMotionCovariance(predicted.dt_s),
+          .covariance = predicted.by_vehicle.value_or(unknownMotionCovariance(predicted.dt_s)),
           .inliers = std::vector<bool>(observations, false)};
+}
+
+/// Differences of covariances are those of a step but for rounding and what frames share.
+Matrix6d positivePart(const Matrix6d& difference) {
+  constexpr double kLeast = 1e-8;  // of a tenth of a millimeter, or a hundredth of a degree
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(0.5 * (difference + difference.transpose()));
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(kLeast).asDiagonal() * solver.eigenvectors().transpose();
 }
 
 }  // namespace
@@ -49,6 +58,15 @@ double CameraOdometry::sinceSeen_s(Timestamp stamp) const {
 }
 
 PredictedMotion CameraOdometry::predict(Timestamp stamp) const {
+  PredictedMotion predicted = predictedByCamera(stamp);
+  if (const Told told = vehicle_.motion(toldSince(stamp), stamp)) {
+    predicted.T_seen_now = told->T_then_now;
+    predicted.by_vehicle = told->covariance;
+  }
+  return predicted;
+}
+
+PredictedMotion CameraOdometry::predictedByCamera(Timestamp stamp) const {
   const double dt_s = sinceSeen_s(stamp);
   const bool is_car = secondsBetween(measured_at_, stamp) < kMaxUnbelieved_s;
   PredictedMotion predicted{SE3{}, dt_s, steady_frames_, is_car ? ahead_frames_ : 0};
@@ -60,35 +78,76 @@ PredictedMotion CameraOdometry::predict(Timestamp stamp) const {
   return predicted;
 }
 
+/// The last frame that was seen, or the first one of all.
+Timestamp CameraOdometry::toldSince(Timestamp stamp) const {
+  return trail_.empty() ? first_stamp_.value_or(stamp) : trail_.newest().stamp;
+}
+
 bool CameraOdometry::motionKnown(Timestamp stamp) const {
+  if (vehicle_.motion(toldSince(stamp), stamp)) return true;
   return last_motion_ && secondsBetween(measured_at_, stamp) < kMaxPrediction_s;
 }
 
 Odometry CameraOdometry::add(Timestamp stamp, const CameraMotion& motion) {
-  if (!trail_.empty() && motion.status == FrameStatus::kGood) {
-    const PredictedMotion predicted = predict(stamp);
-    steady_frames_ =
-        last_motion_ && ego_motion_.follows(motion.T_seen_now.inverse(), predicted) ? steady_frames_ + 1 : 0;
-    if (drivesAhead(motion.T_seen_now, predicted.dt_s)) ++ahead_frames_;
-    if (slides(motion.T_seen_now, predicted.dt_s)) ahead_frames_ = 0;
-    last_motion_ = motion.T_seen_now;
-    last_dt_s_ = predicted.dt_s;
-    measured_at_ = stamp;
-  }
-  if (motion.status != FrameStatus::kGood)
-    unlinked_ = true;
+  const Told told = vehicle_.motion(toldSince(stamp), stamp);
+  const bool is_good = motion.status == FrameStatus::kGood;
+  const bool is_first = trail_.empty();
+  if (!is_first && is_good) rememberMotion(stamp, motion);
+  if (!is_good)
+    unlinked_ = unlinked_ || !told;
   else if (std::exchange(unlinked_, false))
     ++segment_;
+  Odometry odometry = stepTo(stamp, is_first && told ? told->T_then_now : motion.T_seen_now, motion.covariance, told);
+  if (told && (is_first || !is_good)) odometry.covariance = odometry.vehicle->covariance;
+  T_seen_before_ = SE3{};
+  told_before_.reset();
   trail_.add(stamp, motion.T_seen_now);
-  last_stamp_ = stamp;
-  return {std::exchange(T_seen_before_, SE3{}).inverse() * motion.T_seen_now, motion.covariance};
+  vehicle_.forgetBefore(stamp);
+  return odometry;
+}
+
+void CameraOdometry::rememberMotion(Timestamp stamp, const CameraMotion& motion) {
+  const PredictedMotion predicted = predict(stamp);
+  steady_frames_ = last_motion_ && ego_motion_.follows(motion.T_seen_now.inverse(), predicted) ? steady_frames_ + 1 : 0;
+  if (drivesAhead(motion.T_seen_now, predicted.dt_s)) ++ahead_frames_;
+  if (slides(motion.T_seen_now, predicted.dt_s)) ahead_frames_ = 0;
+  last_motion_ = motion.T_seen_now;
+  last_dt_s_ = predicted.dt_s;
+  measured_at_ = stamp;
+  if (motion.cause == FrameCause::kNone)
+    vehicle_.compare(trail_.newest().stamp, stamp, {motion.T_seen_now, motion.covariance});
 }
 
 Odometry CameraOdometry::passOver(Timestamp stamp) {
-  const SE3 T_seen_now = predict(stamp).T_seen_now;
-  const SE3 T_seen_before = std::exchange(T_seen_before_, T_seen_now);
-  const Timestamp before = std::exchange(last_stamp_, stamp).value_or(stamp);
-  return {(T_seen_before.inverse() * T_seen_now).normalized(), unknownMotionCovariance(secondsBetween(before, stamp))};
+  const Timestamp before = last_stamp_.value_or(stamp);
+  const Told told = vehicle_.motion(toldSince(stamp), stamp);
+  SE3 T_seen_now = told ? told->T_then_now : predictedByCamera(stamp).T_seen_now;
+  if (!told && told_before_) {  // the sensors fall silent: on from where they led
+    const SE3 T_seen_before = predictedByCamera(before).T_seen_now;
+    T_seen_now = T_seen_before_ * T_seen_before.inverse() * T_seen_now;
+  }
+  Odometry odometry = stepTo(stamp, T_seen_now, unknownMotionCovariance(secondsBetween(before, stamp)), told);
+  odometry.T_previous_now = odometry.T_previous_now.normalized();
+  if (told) odometry.covariance = odometry.vehicle->covariance;
+  T_seen_before_ = T_seen_now;
+  if (told) told_before_ = told;
+  return odometry;
+}
+
+/// From the frame before, seen or not. What the sensors tell of it is what they tell since the last frame that was
+/// seen, less what they told up to the frame before.
+Odometry CameraOdometry::stepTo(Timestamp stamp, const SE3& T_seen_now, const Matrix6d& covariance, const Told& told) {
+  last_stamp_ = stamp;
+  if (!first_stamp_) first_stamp_ = stamp;
+  Odometry odometry{T_seen_before_.inverse() * T_seen_now, covariance};
+  if (!told) return odometry;
+  odometry.vehicle = {told->T_then_now, told->covariance};
+  if (!told_before_) return odometry;
+  const SE3 T_before_now = told_before_->T_then_now.inverse() * told->T_then_now;
+  const Matrix6d A = T_before_now.inverse().adjoint();
+  odometry.vehicle = {T_before_now.normalized(),
+                      positivePart(told->covariance - A * told_before_->covariance * A.transpose())};
+  return odometry;
 }
 
 CameraMotion CameraOdometry::measure(const StereoFrame& frame, const std::vector<std::optional<KnownPoint>>& known,
@@ -109,7 +168,10 @@ CameraMotion CameraOdometry::measure(const StereoFrame& frame, const std::vector
     labels.push_back(known[i]->label);
     of_observation.push_back(i);
   }
-  const auto ego = ego_motion_(observations, labels, predicted, static_cast<std::uint64_t>(frame.head.frame.value));
+  const auto seed = static_cast<std::uint64_t>(frame.head.frame.value);
+  auto ego = ego_motion_(observations, labels, predicted, seed);
+  if (!ego && predicted.by_vehicle)  // the sensors may be wrong
+    ego = ego_motion_(observations, labels, predictedByCamera(frame.head.stamp), seed);
   if (!ego) return unlinked(predicted, observed.size());
   motion.T_seen_now = ego->T_seen_now;
   motion.covariance = ego->covariance;

@@ -9,6 +9,7 @@
 #include "frontend/motion/camera_trail.hpp"
 #include "frontend/motion/ego_motion.hpp"
 #include "frontend/motion/point_tracks.hpp"
+#include "frontend/motion/vehicle_odometry.hpp"
 
 namespace motorcade {
 
@@ -29,9 +30,12 @@ class CameraOdometry {
  public:
   CameraOdometry(const EgoMotionEstimator::Params& params, const StereoCamera& camera) : ego_motion_(params, camera) {}
 
-  /// The motion since the last frame that was seen, at the velocity measured last; standing still while none is known.
+  /// Takes what comes with the next frame.
+  void hear(const FrameInputs& inputs) { vehicle_.hear(inputs); }
+  /// The motion since the last frame that was seen: as the vehicle's own sensors tell it, else at the velocity measured
+  /// last, standing still while none is known.
   PredictedMotion predict(Timestamp stamp) const;
-  /// Was the motion measured, and not too long ago?
+  /// Do sensors tell the motion, or was it measured not too long ago?
   bool motionKnown(Timestamp stamp) const;
 
   /// May the camera have moved like this since the last frame that was seen?
@@ -49,21 +53,32 @@ class CameraOdometry {
   Odometry passOver(Timestamp stamp);
 
   const CameraTrail& trail() const { return trail_; }
+  /// Empty where there are none.
+  std::optional<VehicleSensors> vehicleSensors() const { return vehicle_.sensors(); }
   /// As last measured; 0 while it is not known.
   double speed_mps() const { return last_motion_ ? last_motion_->translation().norm() / last_dt_s_ : 0; }
   /// See FrameHead: of the last frame.
   int segment() const { return segment_; }
 
  private:
+  /// A motion told by the vehicle's sensors since the last frame that was seen.
+  using Told = std::optional<UncertainMotion>;
   double sinceSeen_s(Timestamp stamp) const;
+  PredictedMotion predictedByCamera(Timestamp stamp) const;
+  Timestamp toldSince(Timestamp stamp) const;
+  Odometry stepTo(Timestamp stamp, const SE3& T_seen_now, const Matrix6d& covariance, const Told& told);
+  void rememberMotion(Timestamp stamp, const CameraMotion& motion);
 
   EgoMotionEstimator ego_motion_;
+  VehicleOdometry vehicle_;
   CameraTrail trail_;  // of frames that were seen
   int segment_ = 0;
-  bool unlinked_ = false;                // since the last frame that was good
-  SE3 T_seen_before_;                    // from the last one to the last frame, seen or not
-  std::optional<Timestamp> last_stamp_;  // of the last frame, seen or not
-  std::optional<SE3> last_motion_;       // as last measured, from frame to frame
+  bool unlinked_ = false;                 // since the last frame that was good
+  SE3 T_seen_before_;                     // from the last one to the last frame, seen or not
+  Told told_before_;                      // the same as the vehicle's sensors tell it, while frames are not seen
+  std::optional<Timestamp> first_stamp_;  // of the first frame, seen or not
+  std::optional<Timestamp> last_stamp_;   // of the last frame, seen or not
+  std::optional<SE3> last_motion_;        // as last measured, from frame to frame
   double last_dt_s_ = 0;
   Timestamp measured_at_;
   int steady_frames_ = 0, ahead_frames_ = 0;  // see PredictedMotion

@@ -24,6 +24,8 @@ constexpr double kVoteCell_m = 4;          // edge of the floor's cells, each wi
 constexpr double kVoteDepth_m = 40;        // beyond it depth noise exceeds a cell
 constexpr double kSurprisePenalty = 0.3;   // votes, as a share of all, against a motion that no vehicle can make
 constexpr double kMaxSurprise = 2;         // times this penalty: all points may jump, where an unseen frame is missing
+constexpr double kSensorsPenalty = 0.8;    // the same against what the vehicle's own sensors contradict
+constexpr double kSensorsSigmas = 4;       // of their motion, beyond which they do
 constexpr int kTrustedSteadyFrames = 3;    // after which the penalty counts in full
 constexpr int kTrustedAheadFrames = 20;    // after which a camera that slides is not believed
 constexpr double kSlide_mps = 0.5, kSlideShare = 0.2;   // sideways and upwards; the latter of the way ahead
@@ -134,32 +136,40 @@ bool slides(const SE3& T_seen_now, double dt_s) {
          turn > kSway_radps * dt_s + std::abs(way.z()) / kMinRadius_m;
 }
 
+/// Against a motion that surprises, as a share of all votes.
+double EgoMotionEstimator::penaltyOf(const PredictedMotion& predicted) {
+  if (predicted.by_vehicle) return kSensorsPenalty;
+  return kSurprisePenalty * std::min(1.0, static_cast<double>(predicted.steady_frames) / kTrustedSteadyFrames);
+}
+
 bool EgoMotionEstimator::isBeyondBelief(const SE3& T_now_seen, const PredictedMotion& predicted) {
   return predicted.ahead_frames >= kTrustedAheadFrames && slides(T_now_seen.inverse(), predicted.dt_s);
 }
 
-/// By how much the change from what was predicted is more than a vehicle can do; 1: just what it can.
+/// By how much the change from what was predicted is more than a vehicle can do, or than its sensors are wrong; 1: just
+/// what is possible.
 double EgoMotionEstimator::surprise(const SE3& T_now_seen, const PredictedMotion& predicted) const {
   const double change_m = (T_now_seen.inverse().translation() - predicted.T_seen_now.translation()).norm();
-  const double possible_m = params_.max_acceleration_mps2 * predicted.dt_s * predicted.dt_s;
+  const double possible_m = predicted.by_vehicle
+                                ? kSensorsSigmas * std::sqrt(predicted.by_vehicle->topLeftCorner<3, 3>().trace())
+                                : params_.max_acceleration_mps2 * predicted.dt_s * predicted.dt_s;
   return possible_m > 0 ? change_m / possible_m : std::numeric_limits<double>::infinity();
 }
 
 bool EgoMotionEstimator::breaks(const SE3& T_now_seen, const PredictedMotion& predicted) const {
-  return predicted.steady_frames >= kTrustedSteadyFrames && !follows(T_now_seen, predicted);
+  return (predicted.by_vehicle || predicted.steady_frames >= kTrustedSteadyFrames) && !follows(T_now_seen, predicted);
 }
 
 SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observations,
                                        const std::vector<PointLabel>& labels, const PredictedMotion& predicted,
                                        std::uint64_t seed) const {
   auto votes = votesOf(observations, labels);
-  if (predicted.steady_frames < kTrustedSteadyFrames) hearTheRoad(observations, labels, votes);
+  if (!predicted.by_vehicle && predicted.steady_frames < kTrustedSteadyFrames) hearTheRoad(observations, labels, votes);
   const Voters voters = chooseVoters(observations, votes, params_.inlier_chi2);
   SE3 start = predicted.T_seen_now.inverse();
   Sampler sample(observations, votes, labels, seed);
   if (sample.empty()) return start;
-  const double trust = std::min(1.0, static_cast<double>(predicted.steady_frames) / kTrustedSteadyFrames);
-  const double penalty = kSurprisePenalty * trust * voters.worst_score;
+  const double penalty = penaltyOf(predicted) * voters.worst_score;
 
   SE3 best = start;
   const auto score = [&](const SE3& T_now_seen, double bound) {
@@ -174,7 +184,7 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
     if (!fit || isBeyondBelief(fit->T_cam_ref, predicted)) continue;
     double fit_score = score(fit->T_cam_ref, best_score);
     if (const double by = surprise(fit->T_cam_ref, predicted); by >= 1)
-      fit_score += std::min(by, kMaxSurprise) * penalty;
+      fit_score += std::min(by, predicted.by_vehicle ? 1.0 : kMaxSurprise) * penalty;
     if (fit_score >= best_score) continue;
     best_score = fit_score;
     best = fit->T_cam_ref;

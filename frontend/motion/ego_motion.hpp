@@ -27,6 +27,9 @@ struct PredictedMotion {
   double dt_s = 0;        // from the previous frame to now
   int steady_frames = 0;  // in a row that moved as the frame before them did; 0: no motion is known
   int ahead_frames = 0;   // that the camera drove along its optical axis, as on a car, and none in which it slid
+  /// Of T_seen_now where the vehicle's own sensors tell it, right perturbation; empty where it is the motion before
+  /// that is taken to go on.
+  std::optional<Matrix6d> by_vehicle{};
 };
 
 /// Does a camera that moves like this go along its optical axis at the speed of a car?
@@ -62,6 +65,7 @@ class EgoMotionEstimator {
 
  private:
   double surprise(const SE3& T_now_seen, const PredictedMotion& predicted) const;
+  static double penaltyOf(const PredictedMotion& predicted);
   /// A car's camera, which has driven ahead all the time, cannot slide: then it is the points that move, as when a
   /// truck fills the view.
   static bool isBeyondBelief(const SE3& T_now_seen, const PredictedMotion& predicted);

@@ -62,6 +62,7 @@ SceneFlowSegmentation::SceneFlowSegmentation(const Params& params, const StereoC
 /// those that are observed and belong to the world.
 SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow) {
   const StereoFrame& frame = *stereo->features->frame;
+  odometry_.hear(frame.inputs);
   if (frame.rejected() || flow->observations.empty()) return passOver(frame);
 
   const MeasuredFrame measured = measure(*stereo, *flow);
@@ -176,7 +177,8 @@ std::shared_ptr<SceneMotion> SceneFlowSegmentation::newMotion(const FrameHead& h
                         .points = std::move(points),
                         .components = {},
                         .features = {},
-                        .own_vehicle = own_vehicle_.view()};
+                        .own_vehicle = own_vehicle_.view(),
+                        .vehicle_sensors = odometry_.vehicleSensors()};
   motion->head.segment = odometry_.segment();
   return motion;
 }

@@ -52,6 +52,7 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   removeEnded(*measurements);
   measurements->disparity_offset_px = scene->disparity_offset_px;
   measurements->own_vehicle = scene->own_vehicle;
+  measurements->vehicle_sensors = scene->vehicle_sensors;
   addOtherPoints(*scene, *measurements);
   std::ranges::stable_sort(measurements->objects, {}, &ObjectObservation::track);
   previous_scene_ = scene;

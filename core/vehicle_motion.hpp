@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "core/timestamp.hpp"
+
+namespace motorcade {
+
+/// What the vehicle's own sensors tell of its motion at one moment: of the middle of its rear axle, as wheel speed and
+/// yaw rate on a vehicle's bus.
+struct VehicleMotion {
+  Timestamp stamp;
+  double speed_mps = 0;        // ahead; negative in reverse
+  double yaw_rate_radps = 0;   // about the upward axis: positive to the left
+  double speed_sigma_mps = 0;  // standard deviations; 0: found out while the camera sees
+  double yaw_rate_sigma_radps = 0;
+};
+
+/// The samples in the order in which they came, numbered from 0, for readers in other threads. Holds the newest ones
+/// alone; adding asks nothing of the heap.
+class VehicleMotionLog {
+ public:
+  explicit VehicleMotionLog(std::size_t capacity = 4096) : ring_(capacity) {}
+
+  void add(const VehicleMotion& sample);
+  /// How many were added so far.
+  std::uint64_t count() const;
+  /// Those with numbers from `begin` up to, but not including, `end`, as far as they are still held.
+  std::vector<VehicleMotion> read(std::uint64_t begin, std::uint64_t end) const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<VehicleMotion> ring_;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace motorcade

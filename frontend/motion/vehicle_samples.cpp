@@ -1,0 +1,94 @@
+#include "frontend/motion/vehicle_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+
+namespace motorcade {
+namespace {
+
+constexpr std::size_t kMostSamples = 20'000;  // 20 s at 1 kHz
+constexpr double kHeld_s = 0.25;              // beyond the first and the last sample
+constexpr double kBridged_s = 1.0;            // between two samples
+constexpr double kUsual_s = 0.12;             // between two samples: sensors with ten a second are slow ones
+/// Tires hold no more than 1.2 g; the rest is what steps and noise of the sensor do.
+constexpr double kMaxAcceleration_mps2 = 12, kStep_mps = 0.5;
+
+bool isFinite(const VehicleMotion& sample) {
+  return std::isfinite(sample.speed_mps) && std::isfinite(sample.yaw_rate_radps);
+}
+
+/// Values at a moment between two samples, or beside the nearer one.
+VehicleMotion at(const VehicleMotion& before, const VehicleMotion& after, Timestamp stamp) {
+  const double gap_s = secondsBetween(before.stamp, after.stamp);
+  const double share = gap_s > 0 ? std::clamp(secondsBetween(before.stamp, stamp) / gap_s, 0.0, 1.0) : 0.0;
+  return {.stamp = stamp,
+          .speed_mps = std::lerp(before.speed_mps, after.speed_mps, share),
+          .yaw_rate_radps = std::lerp(before.yaw_rate_radps, after.yaw_rate_radps, share),
+          .speed_sigma_mps = std::max(before.speed_sigma_mps, after.speed_sigma_mps),
+          .yaw_rate_sigma_radps = std::max(before.yaw_rate_sigma_radps, after.yaw_rate_sigma_radps)};
+}
+
+VehicleSamples::Piece pieceOf(const VehicleMotion& from, const VehicleMotion& to, double unknown_s) {
+  return {.dt_s = secondsBetween(from.stamp, to.stamp),
+          .speed_mps = (from.speed_mps + to.speed_mps) / 2,
+          .yaw_rate_radps = (from.yaw_rate_radps + to.yaw_rate_radps) / 2,
+          .speed_sigma_mps = std::max(from.speed_sigma_mps, to.speed_sigma_mps),
+          .yaw_rate_sigma_radps = std::max(from.yaw_rate_sigma_radps, to.yaw_rate_sigma_radps),
+          .unknown_s = unknown_s};
+}
+
+}  // namespace
+
+void VehicleSamples::add(const VehicleMotion& sample) {
+  const auto place = std::ranges::lower_bound(samples_, sample.stamp, {}, &VehicleMotion::stamp);
+  if (!isFinite(sample) || (place != samples_.end() && place->stamp == sample.stamp)) return;
+  samples_.insert(place, sample);
+  if (samples_.size() > kMostSamples) samples_.erase(samples_.begin());
+}
+
+/// Keeps one sample from before.
+void VehicleSamples::forgetBefore(Timestamp stamp) {
+  const auto first = std::ranges::upper_bound(samples_, stamp, {}, &VehicleMotion::stamp);
+  if (first - samples_.begin() > 1) samples_.erase(samples_.begin(), std::prev(first));
+}
+
+/// Those within the span, with one before and one after it where there are.
+std::vector<VehicleMotion> VehicleSamples::believable(Timestamp from, Timestamp to) const {
+  auto it = std::ranges::upper_bound(samples_, from, {}, &VehicleMotion::stamp);
+  if (it != samples_.begin()) --it;
+  std::vector<VehicleMotion> found;
+  for (; it != samples_.end(); ++it) {
+    const bool jumps =
+        !found.empty() && std::abs(it->speed_mps - found.back().speed_mps) >
+                              kStep_mps + kMaxAcceleration_mps2 * secondsBetween(found.back().stamp, it->stamp);
+    if (!jumps) found.push_back(*it);
+    if (it->stamp >= to && !jumps) break;
+  }
+  return found;
+}
+
+std::optional<std::vector<VehicleSamples::Piece>> VehicleSamples::between(Timestamp from, Timestamp to) const {
+  const std::vector<VehicleMotion> samples = believable(from, to);
+  if (samples.empty() || secondsBetween(from, samples.front().stamp) > kHeld_s ||
+      secondsBetween(samples.back().stamp, to) > kHeld_s)
+    return std::nullopt;
+  std::vector<Piece> pieces;
+  VehicleMotion last = at(samples.front(), samples.size() > 1 ? samples[1] : samples.front(), from);
+  for (std::size_t i = 0; i <= samples.size() && last.stamp < to; ++i) {
+    const bool held = i == samples.size();
+    const Timestamp end = held ? to : std::min(samples[i].stamp, to);
+    if (end <= last.stamp) continue;
+    const VehicleMotion& before = samples[i == 0 ? 0 : i - 1];
+    const VehicleMotion& after = held ? before : samples[i];
+    const double gap_s = secondsBetween(before.stamp, held ? to : after.stamp);
+    if (gap_s > kBridged_s) return std::nullopt;
+    const VehicleMotion next = at(before, after, end);
+    pieces.push_back(pieceOf(last, next, gap_s > kUsual_s ? gap_s : 0));
+    last = next;
+  }
+  return pieces;
+}
+
+}  // namespace motorcade

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/vehicle_motion.hpp"
+
+namespace motorcade {
+
+/// Samples of the vehicle's own motion by time, as they come: at a rate of their own, late, out of order, with gaps.
+class VehicleSamples {
+ public:
+  /// One with the stamp of an earlier one, or that is no number, is left out.
+  void add(const VehicleMotion& sample);
+  void forgetBefore(Timestamp stamp);
+
+  /// A part of a span over which speed and yaw rate are taken as constant.
+  struct Piece {
+    double dt_s, speed_mps, yaw_rate_radps;
+    double speed_sigma_mps, yaw_rate_sigma_radps;  // as told, 0 where they are not
+    double unknown_s = 0;                          // from the samples beside it, where these are farther than usual
+  };
+  /// The span cut at the samples, with values halfway between those of its ends; before the first and after the last
+  /// sample they are held for a while. Speeds that no vehicle reaches from the sample before are passed over, as those
+  /// of a wheel that spins. Empty where samples are missing.
+  std::optional<std::vector<Piece>> between(Timestamp from, Timestamp to) const;
+
+ private:
+  std::vector<VehicleMotion> believable(Timestamp from, Timestamp to) const;
+
+  std::vector<VehicleMotion> samples_;  // by stamp
+};
+
+}  // namespace motorcade
