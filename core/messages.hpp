@@ -172,7 +172,10 @@ struct VehicleSensors {
   bool believed = true;            // they agree with the camera
   double speed_scale = 1;          // true over told speed
   double yaw_rate_bias_radps = 0;  // told minus true
-  double speed_ratio = 1;          // of the camera's speed to the one told, over the last second or so
+  struct Motion {
+    double speed_mps = 0, yaw_rate_radps = 0;
+  };
+  Motion told{}, seen{};  // by the sensors and by the camera, when they were compared last
 };
 
 /// What the front-end measured in one frame: all that the back-end needs.

@@ -4,7 +4,7 @@
 
 namespace motorcade {
 
-void VehicleMotionLog::add(const VehicleMotion& sample) {
+void VehicleMotionLog::add(const VehicleMotionSample& sample) {
   const std::lock_guard lock(mutex_);
   ring_[count_ % ring_.size()] = sample;
   ++count_;
@@ -15,11 +15,11 @@ std::uint64_t VehicleMotionLog::count() const {
   return count_;
 }
 
-std::vector<VehicleMotion> VehicleMotionLog::read(std::uint64_t begin, std::uint64_t end) const {
+std::vector<VehicleMotionSample> VehicleMotionLog::read(std::uint64_t begin, std::uint64_t end) const {
   const std::lock_guard lock(mutex_);
   end = std::min(end, count_);
   if (count_ > ring_.size()) begin = std::max(begin, count_ - ring_.size());
-  std::vector<VehicleMotion> samples;
+  std::vector<VehicleMotionSample> samples;
   for (std::uint64_t number = begin; number < end; ++number) samples.push_back(ring_[number % ring_.size()]);
   return samples;
 }

@@ -11,7 +11,7 @@ namespace motorcade {
 
 /// What the vehicle's own sensors tell of its motion at one moment: of the middle of its rear axle, as wheel speed and
 /// yaw rate on a vehicle's bus.
-struct VehicleMotion {
+struct VehicleMotionSample {
   Timestamp stamp;
   double speed_mps = 0;        // ahead; negative in reverse
   double yaw_rate_radps = 0;   // about the upward axis: positive to the left
@@ -25,15 +25,15 @@ class VehicleMotionLog {
  public:
   explicit VehicleMotionLog(std::size_t capacity = 4096) : ring_(capacity) {}
 
-  void add(const VehicleMotion& sample);
+  void add(const VehicleMotionSample& sample);
   /// How many were added so far.
   std::uint64_t count() const;
   /// Those with numbers from `begin` up to, but not including, `end`, as far as they are still held.
-  std::vector<VehicleMotion> read(std::uint64_t begin, std::uint64_t end) const;
+  std::vector<VehicleMotionSample> read(std::uint64_t begin, std::uint64_t end) const;
 
  private:
   mutable std::mutex mutex_;
-  std::vector<VehicleMotion> ring_;
+  std::vector<VehicleMotionSample> ring_;
   std::uint64_t count_ = 0;
 };
 

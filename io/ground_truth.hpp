@@ -23,7 +23,7 @@ struct OxtsPacket {
   double latitude_deg = 0, longitude_deg = 0, altitude_m = 0;
   double roll_rad = 0, pitch_rad = 0, yaw_rad = 0;
   std::optional<Eigen::Vector3d> velocity_mps;  // ahead and to the left, both level, and up; not in shortened packets
-  std::optional<double> yaw_rate_radps;         // about the upward axis; not in shortened packets
+  std::optional<double> yaw_rate_radps{};       // about the upward axis; not in shortened packets
   Eigen::Matrix3d attitude() const;
 };
 std::vector<OxtsPacket> readOxts(const std::filesystem::path& file_or_folder);

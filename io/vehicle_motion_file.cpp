@@ -25,9 +25,9 @@ double deviation(FieldReader& fields, std::string_view what) {
   return value;
 }
 
-VehicleMotion sampleOf(const fs::path& file, const TextLine& line, bool with_sigmas) {
+VehicleMotionSample sampleOf(const fs::path& file, const TextLine& line, bool with_sigmas) {
   FieldReader fields(file, line, ',');
-  VehicleMotion sample;
+  VehicleMotionSample sample;
   sample.stamp = readTime(file, {line.number, std::string(fields.word("time_s"))});
   sample.speed_mps = fields.number("speed_mps");
   sample.yaw_rate_radps = fields.number("yaw_rate_radps");
@@ -39,15 +39,15 @@ VehicleMotion sampleOf(const fs::path& file, const TextLine& line, bool with_sig
   return sample;
 }
 
-std::vector<VehicleMotion> readMotionTable(const fs::path& file, const std::vector<TextLine>& lines) {
+std::vector<VehicleMotionSample> readMotionTable(const fs::path& file, const std::vector<TextLine>& lines) {
   const std::string header = trimmed(lines.front().text);
   if (header != kHeader && header != kHeaderWithSigmas)
     throw InputError(file.string() + ": begins with '" + printable(header) + "'; '" + std::string(kHeaderWithSigmas) +
                      "' is expected, without the last two columns where deviations are not known");
-  std::vector<VehicleMotion> samples;
+  std::vector<VehicleMotionSample> samples;
   for (auto line = lines.begin() + 1; line != lines.end(); ++line)
     samples.push_back(sampleOf(file, *line, header == kHeaderWithSigmas));
-  std::ranges::stable_sort(samples, {}, &VehicleMotion::stamp);
+  std::ranges::stable_sort(samples, {}, &VehicleMotionSample::stamp);
   return samples;
 }
 
@@ -65,10 +65,10 @@ std::vector<Timestamp> stampsOfPackets(const fs::path& file, const Sequence& seq
   return stamps;
 }
 
-std::vector<VehicleMotion> readPackets(const fs::path& file, const Sequence& sequence) {
+std::vector<VehicleMotionSample> readPackets(const fs::path& file, const Sequence& sequence) {
   const std::vector<OxtsPacket> packets = readOxts(file);
   const std::vector<Timestamp> stamps = stampsOfPackets(file, sequence, packets.size());
-  std::vector<VehicleMotion> samples;
+  std::vector<VehicleMotionSample> samples;
   for (std::size_t i = 0; i < packets.size(); ++i) {
     if (!packets[i].velocity_mps || !packets[i].yaw_rate_radps)
       throw InputError(file.string() + ": packet " + std::to_string(i) +
@@ -81,7 +81,7 @@ std::vector<VehicleMotion> readPackets(const fs::path& file, const Sequence& seq
 
 std::string seconds(Timestamp stamp) { return std::to_string(static_cast<double>(stamp.ns) * 1e-9) + " s"; }
 
-void requireOverlap(const fs::path& file, const std::vector<VehicleMotion>& samples, const Sequence& sequence) {
+void requireOverlap(const fs::path& file, const std::vector<VehicleMotionSample>& samples, const Sequence& sequence) {
   if (sequence.stamps.empty()) return;
   if (samples.front().stamp <= sequence.stamps.back() && samples.back().stamp >= sequence.stamps.front()) return;
   throw InputError(file.string() + ": its times, " + seconds(samples.front().stamp) + " to " +
@@ -96,8 +96,8 @@ bool isTable(const fs::path& file, const std::vector<TextLine>& lines) {
 
 }  // namespace
 
-std::vector<VehicleMotion> readVehicleMotion(const fs::path& file, const Sequence& sequence) {
-  std::vector<VehicleMotion> samples;
+std::vector<VehicleMotionSample> readVehicleMotion(const fs::path& file, const Sequence& sequence) {
+  std::vector<VehicleMotionSample> samples;
   if (fs::is_directory(file)) {
     samples = readPackets(file, sequence);
   } else {

@@ -16,6 +16,6 @@ inline constexpr const char* kVehicleMotionFile = "motion.csv";
 /// `yaw_rate_sigma_radps`, or KITTI's packets (`oxts.txt`, or a folder of them), of which the speed ahead and the rate
 /// about the upward axis are taken. Throws InputError naming file and line, also where no sample is of the images'
 /// time.
-std::vector<VehicleMotion> readVehicleMotion(const std::filesystem::path& file, const Sequence& sequence);
+std::vector<VehicleMotionSample> readVehicleMotion(const std::filesystem::path& file, const Sequence& sequence);
 
 }  // namespace motorcade

@@ -5,7 +5,7 @@
 namespace motorcade {
 
 /// All samples may come at once, before the first pair.
-VehicleMotionSource::VehicleMotionSource(std::unique_ptr<PairSource> pairs, std::vector<VehicleMotion> samples)
+VehicleMotionSource::VehicleMotionSource(std::unique_ptr<PairSource> pairs, std::vector<VehicleMotionSample> samples)
     : pairs_(std::move(pairs)),
       samples_(std::move(samples)),
       log_(std::make_shared<VehicleMotionLog>(samples_.size() + 1)) {}

@@ -13,7 +13,7 @@ namespace motorcade {
 class VehicleMotionSource final : public PairSource {
  public:
   /// `samples` are ordered by time.
-  VehicleMotionSource(std::unique_ptr<PairSource> pairs, std::vector<VehicleMotion> samples);
+  VehicleMotionSource(std::unique_ptr<PairSource> pairs, std::vector<VehicleMotionSample> samples);
 
   std::optional<StereoFrame> next() override;
   void stop() override { pairs_->stop(); }
@@ -27,7 +27,7 @@ class VehicleMotionSource final : public PairSource {
 
  private:
   std::unique_ptr<PairSource> pairs_;
-  std::vector<VehicleMotion> samples_;
+  std::vector<VehicleMotionSample> samples_;
   std::size_t next_ = 0;  // of the samples
   std::shared_ptr<VehicleMotionLog> log_;
 };

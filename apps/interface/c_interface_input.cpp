@@ -141,4 +141,13 @@ Pair pairOf(const motorcade_pair* given) {
           .frame = pair.frame};
 }
 
+VehicleMotion motionOf(const motorcade_vehicle_motion* given) {
+  const motorcade_vehicle_motion motion = readStruct(given, "motion", motorcade_vehicle_motion{});
+  return {.stamp_ns = motion.stamp_ns,
+          .speed_mps = motion.speed_mps,
+          .yaw_rate_radps = motion.yaw_rate_radps,
+          .speed_sigma_mps = motion.speed_sigma_mps,
+          .yaw_rate_sigma_radps = motion.yaw_rate_sigma_radps};
+}
+
 }  // namespace motorcade

@@ -9,6 +9,7 @@ namespace motorcade {
 Camera cameraOf(const motorcade_camera* given);
 Tracker::Options optionsOf(const motorcade_options* given);
 Pair pairOf(const motorcade_pair* given);
+VehicleMotion motionOf(const motorcade_vehicle_motion* given);
 
 motorcade_options defaultOptions();
 motorcade_pair defaultPair();

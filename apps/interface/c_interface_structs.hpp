@@ -24,6 +24,9 @@ inline constexpr std::size_t kLeast_bytes<motorcade_image> = offsetof(motorcade_
 template <>
 inline constexpr std::size_t kLeast_bytes<motorcade_pair> = offsetof(motorcade_pair, frame);
 template <>
+inline constexpr std::size_t kLeast_bytes<motorcade_vehicle_motion> = offsetof(motorcade_vehicle_motion,
+                                                                               speed_sigma_mps);
+template <>
 inline constexpr std::size_t kLeast_bytes<motorcade_push> = offsetof(motorcade_push, why);
 
 inline void require(const void* pointer, const char* name) {

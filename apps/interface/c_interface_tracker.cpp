@@ -63,6 +63,16 @@ motorcade_code motorcade_tracker_push(motorcade_tracker* tracker, const motorcad
   });
 }
 
+motorcade_code motorcade_tracker_push_motion(motorcade_tracker* tracker, const motorcade_vehicle_motion* motion,
+                                             motorcade_push* push) {
+  return guarded([&] {
+    require(tracker, "tracker");
+    requireStruct(push, "push");
+    writeStruct(pushOf(tracker->tracker.push_motion(motionOf(motion))), push);
+    return MOTORCADE_OK;
+  });
+}
+
 motorcade_code motorcade_tracker_close(motorcade_tracker* tracker) {
   return guarded([&] {
     require(tracker, "tracker");

@@ -13,12 +13,14 @@
 
 #include <unistd.h>
 
+#include "apps/interface/call_guards.hpp"
 #include "apps/interface/camera_model.hpp"
 #include "apps/interface/gray_image.hpp"
 #include "apps/interface/pair_watch.hpp"
 #include "apps/interface/result_conversion.hpp"
 #include "apps/interface/result_queue.hpp"
 #include "apps/interface/tracker_options.hpp"
+#include "apps/interface/vehicle_motion_input.hpp"
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/watch/own_vehicle_news.hpp"
 #include "apps/watch/vehicle_motion_news.hpp"
@@ -30,22 +32,6 @@ namespace {
 
 using PushStatus = Tracker::Push::Status;
 
-/// Holds off a second thread that pushes at the same time.
-class OneAtATime {
- public:
-  explicit OneAtATime(std::atomic_flag& busy) : busy_(busy), entered_(!busy.test_and_set(std::memory_order_acquire)) {}
-  ~OneAtATime() {
-    if (entered_) busy_.clear(std::memory_order_release);
-  }
-  OneAtATime(const OneAtATime&) = delete;
-  OneAtATime& operator=(const OneAtATime&) = delete;
-  bool entered() const { return entered_; }
-
- private:
-  std::atomic_flag& busy_;
-  bool entered_;
-};
-
 /// Puts as many buffers into the pool as images are ever in use at once, in flight, in the entrance and in the stages'
 /// memories, and some to spare: a pool may miss one that comes back in that moment. Their pages are untouched, and so
 /// cost no memory until they are used.
@@ -54,18 +40,6 @@ void stock(ImagePool& pool, const Camera& camera) {
   std::vector<Image> images;
   while (images.size() < kImages) images.push_back(pool.acquire(camera.width_px, camera.height_px));
 }
-
-/// A call that is under way: the tracker outlives it.
-class Visit {
- public:
-  explicit Visit(std::atomic<int>& visits) : visits_(visits) { ++visits_; }
-  ~Visit() { --visits_; }
-  Visit(const Visit&) = delete;
-  Visit& operator=(const Visit&) = delete;
-
- private:
-  std::atomic<int>& visits_;
-};
 
 }  // namespace
 
@@ -77,6 +51,7 @@ class Tracker::Impl {
   ~Impl();
 
   Push push(const Pair& pair) noexcept;
+  Push pushMotion(const VehicleMotion& motion) noexcept;
   void close();
   std::optional<Result> poll();
   std::optional<Result> wait(std::chrono::milliseconds timeout);
@@ -103,6 +78,7 @@ class Tracker::Impl {
   std::chrono::milliseconds patience_;
   LogCallback log_;
   ImagePool pool_;
+  std::shared_ptr<VehicleMotionLog> vehicle_motion_ = std::make_shared<VehicleMotionLog>();
   SampleBits sample_bits_;
   std::atomic<int> visits_{0};
   std::atomic_flag pushing_;
@@ -110,9 +86,9 @@ class Tracker::Impl {
   bool told_of_stamps_ = false;  // the pushing thread's
   std::atomic<bool> closed_{false}, failed_{false};
   std::atomic<std::int64_t> pushed_{0}, rejected_{0}, dropped_{0};
-  ResultConversion convert_;          // the delivering thread's
-  OwnVehicleNews own_vehicle_;        // the delivering thread's
-  VehicleMotionNews vehicle_motion_;  // the delivering thread's
+  ResultConversion convert_;        // the delivering thread's
+  OwnVehicleNews own_vehicle_;      // the delivering thread's
+  VehicleMotionNews vehicle_news_;  // the delivering thread's
   ResultQueue results_;
   ThreadPlacement placement_;
   PairWatch watch_;
@@ -169,6 +145,14 @@ Tracker::Push Tracker::Impl::push(const Pair& pair) noexcept {
   return outcome;
 }
 
+Tracker::Push Tracker::Impl::pushMotion(const VehicleMotion& motion) noexcept {
+  const Visit visit(visits_);
+  if (closed_) return {PushStatus::kRejected, "the tracker was closed"};
+  if (const char* const problem = problemOf(motion)) return {PushStatus::kRejected, problem};
+  vehicle_motion_->add(sampleOf(motion));
+  return {};
+}
+
 Tracker::Push Tracker::Impl::judge(const Pair& pair) noexcept {
   const OneAtATime one(pushing_);
   if (!one.entered()) return {PushStatus::kRejected, "another thread is pushing"};
@@ -185,9 +169,8 @@ Tracker::Push Tracker::Impl::judge(const Pair& pair) noexcept {
 }
 
 const char* Tracker::Impl::problemWith(const Pair& pair) const {
-  constexpr std::int64_t kMost = std::int64_t{1} << 62;  // differences of two still are numbers
-  if (pair.frame < -1 || pair.frame > kMost) return "its number is neither -1 nor one from 0 to 2^62";
-  if (pair.stamp_ns < -kMost || pair.stamp_ns > kMost) return "its stamp is beyond 2^62 ns";
+  if (pair.frame < -1 || pair.frame > kFarthestStamp_ns) return "its number is neither -1 nor one from 0 to 2^62";
+  if (pair.stamp_ns < -kFarthestStamp_ns || pair.stamp_ns > kFarthestStamp_ns) return "its stamp is beyond 2^62 ns";
   const char* const left = problemOf(pair.left, camera_);
   return left != nullptr ? left : problemOf(pair.right, camera_);
 }
@@ -196,6 +179,8 @@ Tracker::Push Tracker::Impl::enter(const Pair& pair) {
   StereoFrame frame;
   frame.head = {.frame = {pair.frame}, .stamp = {pair.stamp_ns}};
   frame.inputs = model_.inputs();
+  frame.inputs.vehicle_samples = vehicle_motion_->count();
+  if (frame.inputs.vehicle_samples > 0) frame.inputs.vehicle_motion = vehicle_motion_;
   frame.due = std::chrono::steady_clock::now();
   const int sample_bits = sample_bits_.of(pair);
   frame.left = model_.leftOf(grayImage(pair.left, sample_bits, pool_), pool_);
@@ -244,7 +229,7 @@ void Tracker::Impl::deliver() {
       if (const auto news = sample_bits_.news()) tell(log_, motorcade::LogLevel::kInfo, [&] { return *news; });
       if (const auto news = own_vehicle_.observe(*result->measurements))
         tell(log_, motorcade::LogLevel::kInfo, [&] { return *news; });
-      if (const auto news = vehicle_motion_.observe(*result->measurements))
+      if (const auto news = vehicle_news_.observe(*result->measurements))
         tell(log_, motorcade::LogLevel::kWarning, [&] { return *news; });
       Result converted = convert_(*result);
       if (converted.problem.empty()) converted.problem = watch_.problem();
@@ -320,6 +305,10 @@ Tracker::~Tracker() {
 Tracker::Push Tracker::push(const Pair& pair) noexcept {
   if (impl_->inherited()) return {PushStatus::kRejected, "the tracker was made by the process before a fork"};
   return impl_->push(pair);
+}
+Tracker::Push Tracker::push_motion(const VehicleMotion& motion) noexcept {
+  if (impl_->inherited()) return {PushStatus::kRejected, "the tracker was made by the process before a fork"};
+  return impl_->pushMotion(motion);
 }
 void Tracker::close() noexcept {
   if (!impl_->inherited()) impl_->close();

@@ -25,7 +25,7 @@ struct RunInput {
   Timestamp first_stamp{};                             // of the range
   std::unique_ptr<Y4mStream> stream{};                 // null for a recorded drive
   StereoPacking packing = StereoPacking::kSideBySide;  // of a stream
-  std::vector<VehicleMotion> vehicle_motion{};         // samples by time; none where it is not known
+  std::vector<VehicleMotionSample> vehicle_motion{};   // samples by time; none where it is not known
 
   /// The pairs come when the stream's writer sends them, whether or not they are taken.
   bool writerPaced(InputPolicy policy) const { return sequence.streamed() && policy == InputPolicy::kLive; }

@@ -10,15 +10,28 @@ namespace {
 constexpr int kMostSentences = 10;   // of a sensor that comes and goes
 constexpr double kLooksAlike = 0.1;  // of a ratio
 
-/// What may be wrong with a speed that the camera sees `ratio` times as large.
-std::string guessAt(double ratio) {
-  constexpr double kKilometersPerHour = 3.6, kMilesPerHour = 2.237, kFeetPerSecond = 3.281;
-  const auto isNear = [&](double factor) { return std::abs(ratio * factor - 1) < kLooksAlike; };
-  if (isNear(kKilometersPerHour)) return "; it looks like km/h, and m/s are expected";
-  if (isNear(kMilesPerHour)) return "; it looks like mph, and m/s are expected";
-  if (isNear(kFeetPerSecond)) return "; it looks like feet per second, and m/s are expected";
-  if (std::abs(ratio + 1) < kLooksAlike) return "; its sign is the wrong way round";
+/// What may be wrong with a motion that is told, in words that end a sentence.
+std::string guessAt(const VehicleSensors& sensors) {
+  constexpr double kKilometersPerHour = 3.6, kMilesPerHour = 2.237, kFeetPerSecond = 3.281, kDegreesPerRadian = 57.3;
+  const auto isTimes = [](double told, double seen, double factor) {
+    return std::abs(told - factor * seen) < kLooksAlike * std::abs(factor * seen);
+  };
+  const double told_mps = sensors.told.speed_mps, seen_mps = sensors.seen.speed_mps;
+  if (isTimes(told_mps, seen_mps, kKilometersPerHour)) return ": it looks like km/h, and m/s are expected";
+  if (isTimes(told_mps, seen_mps, kMilesPerHour)) return ": it looks like mph, and m/s are expected";
+  if (isTimes(told_mps, seen_mps, kFeetPerSecond)) return ": it looks like feet per second, and m/s are expected";
+  if (isTimes(told_mps, seen_mps, -1)) return ": its sign is the wrong way round; speeds are positive ahead";
+  if (isTimes(sensors.told.yaw_rate_radps, sensors.seen.yaw_rate_radps, kDegreesPerRadian))
+    return ": the yaw rate looks like deg/s, and rad/s are expected";
+  if (isTimes(sensors.told.yaw_rate_radps, sensors.seen.yaw_rate_radps, -1))
+    return ": the yaw rate's sign is the wrong way round; it is positive to the left";
   return "";
+}
+
+std::string textOf(const VehicleSensors::Motion& motion) {
+  std::ostringstream text;
+  text << std::setprecision(3) << motion.speed_mps << " m/s and " << motion.yaw_rate_radps << " rad/s";
+  return text.str();
 }
 
 }  // namespace
@@ -30,15 +43,10 @@ std::optional<std::string> VehicleMotionNews::observe(const FrameMeasurements& f
   left_out_ += !sensors_->believed;
   if (sensors_->believed == believed_before || told_ >= kMostSentences) return std::nullopt;
   ++told_;
-  std::ostringstream text;
-  text << "frame " << frame.head.frame.value << ": ";
-  if (sensors_->believed) {
-    text << "the vehicle's own motion agrees with the camera again, and is used";
-  } else {
-    text << std::setprecision(2) << "the vehicle's own motion contradicts the camera, and is left out; the camera sees "
-         << sensors_->speed_ratio << " times the speed that is told" << guessAt(sensors_->speed_ratio);
-  }
-  return text.str();
+  const std::string when = "frame " + std::to_string(frame.head.frame.value) + ": the vehicle's own motion ";
+  if (sensors_->believed) return when + "agrees with the camera again, and is used";
+  return when + "contradicts the camera, and is left out; " + textOf(sensors_->told) +
+         " are told where the camera sees " + textOf(sensors_->seen) + guessAt(*sensors_);
 }
 
 }  // namespace motorcade

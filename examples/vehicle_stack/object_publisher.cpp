@@ -66,7 +66,7 @@ void addOrNull(JsonLine& line, const char* key, const std::optional<Matrix<kSize
   }
 }
 
-void addMotion(JsonLine& line, const VehicleMotion& motion) {
+void addMotion(JsonLine& line, const VehicleMotionSample& motion) {
   line.add("ego_velocity", motion.velocity.values).add("ego_velocity_covariance", motion.covariance.values);
 }
 

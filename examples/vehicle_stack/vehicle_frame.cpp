@@ -98,7 +98,7 @@ VehicleObject VehicleFrame::object(const motorcade::Result& result, const motorc
   return converted;
 }
 
-VehicleMotion VehicleFrame::motion(const motorcade::Result& result) const {
+VehicleMotionSample VehicleFrame::motion(const motorcade::Result& result) const {
   const Matrix6 J = motionJacobian(R_vehicle_cam_, t_vehicle_cam_m_);
   return {.velocity = J * Matrix<6, 1>{result.velocity},
           .covariance = variance_factor_ * propagated(J, Matrix6{result.velocity_covariance})};

@@ -31,7 +31,7 @@ struct VehicleObject {
 };
 
 /// The vehicle's own motion, of its origin: velocity [m/s] and turn rate [rad/s] along its axes.
-struct VehicleMotion {
+struct VehicleMotionSample {
   Matrix<6, 1> velocity;
   Matrix6 covariance;
 };
@@ -43,7 +43,7 @@ class VehicleFrame {
 
   VehicleObject object(const motorcade::Result& result, const motorcade::Result::Object& object) const;
   /// Its covariance is wide where hardly anything is known, as in the first frame and in one that is lost.
-  VehicleMotion motion(const motorcade::Result& result) const;
+  VehicleMotionSample motion(const motorcade::Result& result) const;
 
  private:
   Matrix3 R_vehicle_cam_;

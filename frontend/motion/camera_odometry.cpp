@@ -36,11 +36,26 @@ constexpr double kFarthest_m = 1e5;
 /// A motion measured by fewer is as good as it can be, but not safe.
 constexpr int kFewInliers = 25;
 
-CameraMotion unlinked(const PredictedMotion& predicted, std::size_t observations) {
+// A motion that the vehicle's sensors contradict is believed when so many points agree on it, and such a share.
+constexpr int kSureInliers = 60;
+constexpr double kSureShare = 0.6;
+
+/// Does the view move as vehicles around the camera would make it? They go along with it, so that it seems to stand, or
+/// move off ahead of it while it stands, so that it seems to go back or aside.
+bool mayBeVehicles(const SE3& seen, const SE3& told, double dt_s) {
+  constexpr double kStanding_mps = 0.5, kMoving_mps = 2, kAlongShare = 0.15;
+  const double seen_m = seen.translation().norm(), told_m = told.translation().norm();
+  const bool goes_along = seen_m < kAlongShare * told_m && told_m > kMoving_mps * dt_s;
+  const bool moves_off = told_m < kStanding_mps * dt_s && seen.translation().z() < 0.5 * seen_m;
+  return goes_along || moves_off;
+}
+
+CameraMotion unlinked(const PredictedMotion& predicted, std::size_t observations, bool is_disputed) {
   return {.status = FrameStatus::kLost,
           .cause = FrameCause::kUnlinked,
           .T_seen_now = predicted.T_seen_now,
           .covariance = predicted.by_vehicle.value_or(unknownMotionCovariance(predicted.dt_s)),
+          .disputed = is_disputed,
           .inliers = std::vector<bool>(observations, false)};
 }
 
@@ -93,6 +108,7 @@ Odometry CameraOdometry::add(Timestamp stamp, const CameraMotion& motion) {
   const bool is_good = motion.status == FrameStatus::kGood;
   const bool is_first = trail_.empty();
   if (!is_first && is_good) rememberMotion(stamp, motion);
+  if (motion.disputed) vehicle_.dispute();
   if (!is_good)
     unlinked_ = unlinked_ || !told;
   else if (std::exchange(unlinked_, false))
@@ -150,6 +166,18 @@ Odometry CameraOdometry::stepTo(Timestamp stamp, const SE3& T_seen_now, const Ma
   return odometry;
 }
 
+/// The vehicle's sensors may be wrong, but not because a few points move alike: most must.
+std::optional<EgoMotion> CameraOdometry::againstVehicle(std::span<const PoseObservation> observations,
+                                                        const std::vector<PointLabel>& labels,
+                                                        const FrameHead& head) const {
+  auto ego =
+      ego_motion_(observations, labels, predictedByCamera(head.stamp), static_cast<std::uint64_t>(head.frame.value));
+  if (!ego || ego->inlier_count < kSureInliers ||
+      ego->inlier_count < kSureShare * static_cast<double>(observations.size()))
+    return std::nullopt;
+  return ego;
+}
+
 CameraMotion CameraOdometry::measure(const StereoFrame& frame, const std::vector<std::optional<KnownPoint>>& known,
                                      const std::vector<std::optional<StereoObservation>>& observed,
                                      const PredictedMotion& predicted) const {
@@ -170,9 +198,10 @@ CameraMotion CameraOdometry::measure(const StereoFrame& frame, const std::vector
   }
   const auto seed = static_cast<std::uint64_t>(frame.head.frame.value);
   auto ego = ego_motion_(observations, labels, predicted, seed);
-  if (!ego && predicted.by_vehicle)  // the sensors may be wrong
-    ego = ego_motion_(observations, labels, predictedByCamera(frame.head.stamp), seed);
-  if (!ego) return unlinked(predicted, observed.size());
+  if (!ego && predicted.by_vehicle) ego = againstVehicle(observations, labels, frame.head);
+  const bool is_disputed =
+      ego && predicted.by_vehicle && mayBeVehicles(ego->T_seen_now, predicted.T_seen_now, predicted.dt_s);
+  if (!ego || is_disputed) return unlinked(predicted, observed.size(), is_disputed);
   motion.T_seen_now = ego->T_seen_now;
   motion.covariance = ego->covariance;
   motion.inlier_count = ego->inlier_count;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/messages.hpp"
@@ -20,6 +21,7 @@ struct CameraMotion {
   SE3 T_seen_now;
   Matrix6d covariance = Matrix6d::Identity();  // right perturbation of T_seen_now
   int inlier_count = 0, measured_count = 0;    // of so many points that were known before
+  bool disputed = false;                       // most points agree on one that the vehicle's sensors contradict
   std::vector<bool> inliers;                   // one per observation: agrees with this motion over a static world
 };
 
@@ -67,6 +69,8 @@ class CameraOdometry {
   PredictedMotion predictedByCamera(Timestamp stamp) const;
   Timestamp toldSince(Timestamp stamp) const;
   Odometry stepTo(Timestamp stamp, const SE3& T_seen_now, const Matrix6d& covariance, const Told& told);
+  std::optional<EgoMotion> againstVehicle(std::span<const PoseObservation> observations,
+                                          const std::vector<PointLabel>& labels, const FrameHead& head) const;
   void rememberMotion(Timestamp stamp, const CameraMotion& motion);
 
   EgoMotionEstimator ego_motion_;

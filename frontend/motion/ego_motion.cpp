@@ -164,7 +164,7 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
                                        const std::vector<PointLabel>& labels, const PredictedMotion& predicted,
                                        std::uint64_t seed) const {
   auto votes = votesOf(observations, labels);
-  if (!predicted.by_vehicle && predicted.steady_frames < kTrustedSteadyFrames) hearTheRoad(observations, labels, votes);
+  if (predicted.steady_frames < kTrustedSteadyFrames) hearTheRoad(observations, labels, votes);
   const Voters voters = chooseVoters(observations, votes, params_.inlier_chi2);
   SE3 start = predicted.T_seen_now.inverse();
   Sampler sample(observations, votes, labels, seed);
@@ -212,6 +212,7 @@ std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObse
   const PoseObservations all(observations);
   const auto fit = refine(observations, all, hypothesis);
   if (!fit || isBeyondBelief(fit->T_cam_ref, predicted)) return std::nullopt;
+  if (predicted.by_vehicle && !follows(fit->T_cam_ref, predicted)) return std::nullopt;
 
   EgoMotion ego;
   ego.T_seen_now = fit->T_cam_ref.inverse();

@@ -1,6 +1,6 @@
 #include "frontend/motion/vehicle_odometry.hpp"
 
-#include <cmath>
+#include <span>
 
 namespace motorcade {
 namespace {
@@ -9,13 +9,26 @@ namespace {
 // twenty in which they agreed.
 constexpr double kAgreementRate = 0.1, kLeastAgreement = 0.7, kRegainedAgreement = 0.85;
 constexpr double kStrange_sigmas = 4;
-constexpr double kLeastSpeed_mps = 1;  // at which speeds have a ratio
+
+/// Of a camera that looks ahead, or of pieces on the mean.
+VehicleSensors::Motion motionOf(const SE3& T_then_now, double dt_s) {
+  return {T_then_now.translation().z() / dt_s, -T_then_now.log()[4] / dt_s};
+}
+VehicleSensors::Motion motionOf(std::span<const VehicleSamples::Piece> pieces, double dt_s) {
+  VehicleSensors::Motion mean;
+  for (const auto& piece : pieces) {
+    mean.speed_mps += piece.speed_mps * piece.dt_s / dt_s;
+    mean.yaw_rate_radps += piece.yaw_rate_radps * piece.dt_s / dt_s;
+  }
+  return mean;
+}
 
 }  // namespace
 
 void VehicleOdometry::hear(const FrameInputs& inputs) {
   if (!inputs.vehicle_motion || inputs.vehicle_samples <= heard_) return;
-  for (const VehicleMotion& sample : inputs.vehicle_motion->read(heard_, inputs.vehicle_samples)) samples_.add(sample);
+  for (const VehicleMotionSample& sample : inputs.vehicle_motion->read(heard_, inputs.vehicle_samples))
+    samples_.add(sample);
   heard_ = inputs.vehicle_samples;
 }
 
@@ -32,22 +45,24 @@ void VehicleOdometry::compare(Timestamp from, Timestamp to, const UncertainMotio
   if (!pieces) return;
   const auto [speed_sigmas, yaw_rate_sigmas] = calibration_.compare(*pieces, seen);
   const bool agrees = speed_sigmas < kStrange_sigmas && yaw_rate_sigmas < kStrange_sigmas;
-  followRatio(*pieces, seen.T_then_now);
+  told_ = motionOf(*pieces, secondsBetween(from, to));
+  seen_ = motionOf(seen.T_then_now, secondsBetween(from, to));
   if (agrees) calibration_.learn(*pieces, seen);
   judge(agrees);
 }
 
 void VehicleOdometry::judge(bool agrees) {
   agreement_ += kAgreementRate * ((agrees ? 1 : 0) - agreement_);
+  if (agrees) disputed_ = 0;
   believed_ = agreement_ > (believed_ ? kLeastAgreement : kRegainedAgreement);
 }
 
-void VehicleOdometry::followRatio(std::span<const VehicleSamples::Piece> pieces, const SE3& T_then_now) {
-  double way_m = 0, time_s = 0;
-  for (const auto& piece : pieces) way_m += piece.speed_mps * piece.dt_s, time_s += piece.dt_s;
-  if (std::abs(way_m) < kLeastSpeed_mps * time_s) return;
-  const double ratio = T_then_now.translation().z() / way_m;
-  speed_ratio_ += kAgreementRate * (ratio - speed_ratio_);
+/// Vehicles do not fill the view for ever, and a sensor may stick.
+void VehicleOdometry::dispute() {
+  constexpr int kMostDisputed = 50;
+  if (++disputed_ < kMostDisputed) return;
+  agreement_ = 0;
+  believed_ = false;
 }
 
 std::optional<VehicleSensors> VehicleOdometry::sensors() const {
@@ -55,7 +70,8 @@ std::optional<VehicleSensors> VehicleOdometry::sensors() const {
   return VehicleSensors{.believed = believed_,
                         .speed_scale = calibration_.scale(),
                         .yaw_rate_bias_radps = calibration_.bias_radps(),
-                        .speed_ratio = speed_ratio_};
+                        .told = told_,
+                        .seen = seen_};
 }
 
 }  // namespace motorcade

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 
 #include "core/messages.hpp"
 #include "frontend/motion/vehicle_calibration.hpp"
@@ -20,6 +19,8 @@ class VehicleOdometry {
   std::optional<UncertainMotion> motion(Timestamp from, Timestamp to) const;
   /// A motion that the camera measured, from one frame to the next.
   void compare(Timestamp from, Timestamp to, const UncertainMotion& seen);
+  /// They tell a motion that hardly a point agrees with, but vehicles around the camera may be why.
+  void dispute();
   /// Nothing before this moment will be asked for.
   void forgetBefore(Timestamp stamp) { samples_.forgetBefore(stamp); }
 
@@ -28,13 +29,13 @@ class VehicleOdometry {
 
  private:
   void judge(bool agrees);
-  void followRatio(std::span<const VehicleSamples::Piece> pieces, const SE3& T_then_now);
 
   VehicleSamples samples_;
   VehicleCalibration calibration_;
   std::uint64_t heard_ = 0;
   double agreement_ = 0.9;  // share of the last frames in which they agreed with the camera
-  double speed_ratio_ = 1;
+  VehicleSensors::Motion told_, seen_;
+  int disputed_ = 0;  // frames since they agreed
   bool believed_ = true;
 };
 

@@ -15,12 +15,12 @@ constexpr double kUsual_s = 0.12;             // between two samples: sensors wi
 /// Tires hold no more than 1.2 g; the rest is what steps and noise of the sensor do.
 constexpr double kMaxAcceleration_mps2 = 12, kStep_mps = 0.5;
 
-bool isFinite(const VehicleMotion& sample) {
+bool isFinite(const VehicleMotionSample& sample) {
   return std::isfinite(sample.speed_mps) && std::isfinite(sample.yaw_rate_radps);
 }
 
 /// Values at a moment between two samples, or beside the nearer one.
-VehicleMotion at(const VehicleMotion& before, const VehicleMotion& after, Timestamp stamp) {
+VehicleMotionSample at(const VehicleMotionSample& before, const VehicleMotionSample& after, Timestamp stamp) {
   const double gap_s = secondsBetween(before.stamp, after.stamp);
   const double share = gap_s > 0 ? std::clamp(secondsBetween(before.stamp, stamp) / gap_s, 0.0, 1.0) : 0.0;
   return {.stamp = stamp,
@@ -30,7 +30,7 @@ VehicleMotion at(const VehicleMotion& before, const VehicleMotion& after, Timest
           .yaw_rate_sigma_radps = std::max(before.yaw_rate_sigma_radps, after.yaw_rate_sigma_radps)};
 }
 
-VehicleSamples::Piece pieceOf(const VehicleMotion& from, const VehicleMotion& to, double unknown_s) {
+VehicleSamples::Piece pieceOf(const VehicleMotionSample& from, const VehicleMotionSample& to, double unknown_s) {
   return {.dt_s = secondsBetween(from.stamp, to.stamp),
           .speed_mps = (from.speed_mps + to.speed_mps) / 2,
           .yaw_rate_radps = (from.yaw_rate_radps + to.yaw_rate_radps) / 2,
@@ -41,8 +41,8 @@ VehicleSamples::Piece pieceOf(const VehicleMotion& from, const VehicleMotion& to
 
 }  // namespace
 
-void VehicleSamples::add(const VehicleMotion& sample) {
-  const auto place = std::ranges::lower_bound(samples_, sample.stamp, {}, &VehicleMotion::stamp);
+void VehicleSamples::add(const VehicleMotionSample& sample) {
+  const auto place = std::ranges::lower_bound(samples_, sample.stamp, {}, &VehicleMotionSample::stamp);
   if (!isFinite(sample) || (place != samples_.end() && place->stamp == sample.stamp)) return;
   samples_.insert(place, sample);
   if (samples_.size() > kMostSamples) samples_.erase(samples_.begin());
@@ -50,15 +50,15 @@ void VehicleSamples::add(const VehicleMotion& sample) {
 
 /// Keeps one sample from before.
 void VehicleSamples::forgetBefore(Timestamp stamp) {
-  const auto first = std::ranges::upper_bound(samples_, stamp, {}, &VehicleMotion::stamp);
+  const auto first = std::ranges::upper_bound(samples_, stamp, {}, &VehicleMotionSample::stamp);
   if (first - samples_.begin() > 1) samples_.erase(samples_.begin(), std::prev(first));
 }
 
 /// Those within the span, with one before and one after it where there are.
-std::vector<VehicleMotion> VehicleSamples::believable(Timestamp from, Timestamp to) const {
-  auto it = std::ranges::upper_bound(samples_, from, {}, &VehicleMotion::stamp);
+std::vector<VehicleMotionSample> VehicleSamples::believable(Timestamp from, Timestamp to) const {
+  auto it = std::ranges::upper_bound(samples_, from, {}, &VehicleMotionSample::stamp);
   if (it != samples_.begin()) --it;
-  std::vector<VehicleMotion> found;
+  std::vector<VehicleMotionSample> found;
   for (; it != samples_.end(); ++it) {
     const bool jumps =
         !found.empty() && std::abs(it->speed_mps - found.back().speed_mps) >
@@ -70,21 +70,21 @@ std::vector<VehicleMotion> VehicleSamples::believable(Timestamp from, Timestamp 
 }
 
 std::optional<std::vector<VehicleSamples::Piece>> VehicleSamples::between(Timestamp from, Timestamp to) const {
-  const std::vector<VehicleMotion> samples = believable(from, to);
+  const std::vector<VehicleMotionSample> samples = believable(from, to);
   if (samples.empty() || secondsBetween(from, samples.front().stamp) > kHeld_s ||
       secondsBetween(samples.back().stamp, to) > kHeld_s)
     return std::nullopt;
   std::vector<Piece> pieces;
-  VehicleMotion last = at(samples.front(), samples.size() > 1 ? samples[1] : samples.front(), from);
+  VehicleMotionSample last = at(samples.front(), samples.size() > 1 ? samples[1] : samples.front(), from);
   for (std::size_t i = 0; i <= samples.size() && last.stamp < to; ++i) {
     const bool held = i == samples.size();
     const Timestamp end = held ? to : std::min(samples[i].stamp, to);
     if (end <= last.stamp) continue;
-    const VehicleMotion& before = samples[i == 0 ? 0 : i - 1];
-    const VehicleMotion& after = held ? before : samples[i];
+    const VehicleMotionSample& before = samples[i == 0 ? 0 : i - 1];
+    const VehicleMotionSample& after = held ? before : samples[i];
     const double gap_s = secondsBetween(before.stamp, held ? to : after.stamp);
     if (gap_s > kBridged_s) return std::nullopt;
-    const VehicleMotion next = at(before, after, end);
+    const VehicleMotionSample next = at(before, after, end);
     pieces.push_back(pieceOf(last, next, gap_s > kUsual_s ? gap_s : 0));
     last = next;
   }

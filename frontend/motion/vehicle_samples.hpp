@@ -11,7 +11,7 @@ namespace motorcade {
 class VehicleSamples {
  public:
   /// One with the stamp of an earlier one, or that is no number, is left out.
-  void add(const VehicleMotion& sample);
+  void add(const VehicleMotionSample& sample);
   void forgetBefore(Timestamp stamp);
 
   /// A part of a span over which speed and yaw rate are taken as constant.
@@ -26,9 +26,9 @@ class VehicleSamples {
   std::optional<std::vector<Piece>> between(Timestamp from, Timestamp to) const;
 
  private:
-  std::vector<VehicleMotion> believable(Timestamp from, Timestamp to) const;
+  std::vector<VehicleMotionSample> believable(Timestamp from, Timestamp to) const;
 
-  std::vector<VehicleMotion> samples_;  // by stamp
+  std::vector<VehicleMotionSample> samples_;  // by stamp
 };
 
 }  // namespace motorcade

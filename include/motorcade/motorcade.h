@@ -120,6 +120,15 @@ motorcade_code motorcade_tracker_create(const motorcade_camera* camera, const mo
 void motorcade_tracker_destroy(motorcade_tracker* tracker);
 /// Copies the pixels. MOTORCADE_OK: see `push` for whether the pair was accepted. An image may be NULL: it is rejected.
 motorcade_code motorcade_tracker_push(motorcade_tracker* tracker, const motorcade_pair* pair, motorcade_push* push);
+typedef struct {
+  size_t struct_size;
+  int64_t stamp_ns;                              // on the clock of the pairs
+  double speed_mps, yaw_rate_radps;              // of the rear axle's middle: positive ahead; to the left
+  double speed_sigma_mps, yaw_rate_sigma_radps;  // standard deviations; 0: found out
+} motorcade_vehicle_motion;
+/// The vehicle's own motion, which predicts the camera where images fail; see motorcade.hpp. For any thread.
+motorcade_code motorcade_tracker_push_motion(motorcade_tracker* tracker, const motorcade_vehicle_motion* motion,
+                                             motorcade_push* push);
 /// No further pair comes: the results of those that were accepted still do.
 motorcade_code motorcade_tracker_close(motorcade_tracker* tracker);
 /// MOTORCADE_OK: the next result, which the caller releases. MOTORCADE_NONE, MOTORCADE_DONE: NULL.

@@ -90,6 +90,13 @@ struct Pair {
   std::int64_t frame = -1;    // number, from 0, after that of the pair before; -1: the next one
 };
 
+/// What the vehicle's own sensors tell of its motion, that of the middle of its rear axle.
+struct VehicleMotion {
+  std::int64_t stamp_ns = 0;                             // on the clock of the pairs
+  double speed_mps = 0, yaw_rate_radps = 0;              // positive ahead; about the upward axis, to the left
+  double speed_sigma_mps = 0, yaw_rate_sigma_radps = 0;  // standard deviations; 0: found out
+};
+
 /// What is known in one frame, as soon as it is.
 struct Result {
   enum class Status { kGood, kLost, kRejected };  // lost and rejected: the pose is predicted, with a wide covariance
@@ -188,6 +195,9 @@ class MOTORCADE_API Tracker {
   /// followed after four pairs) or less than half a millisecond after it, as stamps in another unit are, after `close`,
   /// or beside another thread's push is rejected.
   Push push(const Pair& pair) noexcept;
+  /// Predicts the camera where images fail. For any thread, at a rate of its own, also late and out of order; a pair
+  /// knows what came before it. What contradicts the images is left out, as the log tells. Rejected: what is no number.
+  Push push_motion(const VehicleMotion& motion) noexcept;
   /// No further pair comes: the results of those that were accepted still do.
   void close() noexcept;
   /// The next result if there is one already.

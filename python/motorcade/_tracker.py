@@ -100,6 +100,24 @@ class Tracker:
         """
         return self._native.push(left, right, stamp_ns, frame, format)
 
+    def push_motion(
+        self,
+        stamp_ns: int,
+        speed_mps: float,
+        yaw_rate_radps: float,
+        speed_sigma_mps: float = 0.0,
+        yaw_rate_sigma_radps: float = 0.0,
+    ) -> Push:
+        """What the vehicle's own sensors tell of its motion, that of the middle of its rear axle: positive ahead, and
+        to the left. It predicts the camera where images fail. Samples come at a rate of their own, also late and out of
+        order; a pair knows what came before it. ``stamp_ns`` is on the clock of the pairs. Standard deviations of 0 are
+        found out.
+
+        What contradicts the images is left out, as the log tells. Rejected is what is no number, and all after
+        ``close``.
+        """
+        return self._native.push_motion(stamp_ns, speed_mps, yaw_rate_radps, speed_sigma_mps, yaw_rate_sigma_radps)
+
     def poll(self) -> Result | None:
         """The next result if there is one already."""
         return self._native.poll()

@@ -98,6 +98,13 @@ Tracker::Push TrackerBinding::push(const Pair& pair) {
   return running.tracker.push(pair);
 }
 
+Tracker::Push TrackerBinding::pushMotion(const VehicleMotion& motion) {
+  if (!running_) return {.status = Tracker::Push::Status::kRejected, .why = "the tracker was stopped"};
+  Running& running = *running_;
+  const Visit visit(running);
+  return running.tracker.push_motion(motion);
+}
+
 std::optional<Result> TrackerBinding::poll() {
   if (!running_) return std::nullopt;
   Running& running = *running_;
@@ -209,6 +216,17 @@ py::object push(TrackerBinding& tracker, const py::object& left, const py::objec
                                 .frame = valueOf<std::int64_t>(frame, "frame")}));
 }
 
+py::object pushMotion(TrackerBinding& tracker, const py::object& stamp_ns, const py::object& speed_mps,
+                      const py::object& yaw_rate_radps, const py::object& speed_sigma_mps,
+                      const py::object& yaw_rate_sigma_radps) {
+  return toPython(
+      tracker.pushMotion({.stamp_ns = valueOf<std::int64_t>(stamp_ns, "stamp_ns"),
+                          .speed_mps = valueOf<double>(speed_mps, "speed_mps"),
+                          .yaw_rate_radps = valueOf<double>(yaw_rate_radps, "yaw_rate_radps"),
+                          .speed_sigma_mps = valueOf<double>(speed_sigma_mps, "speed_sigma_mps"),
+                          .yaw_rate_sigma_radps = valueOf<double>(yaw_rate_sigma_radps, "yaw_rate_sigma_radps")}));
+}
+
 py::object optional(const std::optional<Result>& result) { return result ? toPython(*result) : py::none(); }
 
 }  // namespace
@@ -217,6 +235,7 @@ void bindTracker(py::module_& module) {
   py::class_<TrackerBinding>(module, "Tracker")
       .def(py::init<const py::object&, const py::object&, const py::kwargs&>())
       .def("push", &push)
+      .def("push_motion", &pushMotion)
       .def("poll", [](TrackerBinding& tracker) { return optional(tracker.poll()); })
       .def("wait",
            [](TrackerBinding& tracker, std::optional<double> timeout_s) { return optional(tracker.wait(timeout_s)); })

@@ -23,6 +23,7 @@ class TrackerBinding {
   TrackerBinding& operator=(const TrackerBinding&) = delete;
 
   Tracker::Push push(const Pair& pair);
+  Tracker::Push pushMotion(const VehicleMotion& motion);
   std::optional<Result> poll();
   /// For ever without a timeout.
   std::optional<Result> wait(std::optional<double> timeout_s);

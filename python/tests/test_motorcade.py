@@ -228,6 +228,16 @@ class HandingImagesIn(unittest.TestCase):
         self.assertEqual(why(black(), black(), 4000), "the tracker was stopped")
         self.assertEqual(self.tracker.counts.pushed, 6)
 
+    def test_the_vehicles_motion_is_taken_or_refused_with_a_reason(self) -> None:
+        self.assertTrue(self.tracker.push_motion(5, 12.0, -0.1).accepted)
+        self.assertTrue(self.tracker.push_motion(6, 12, 0, speed_sigma_mps=0.1).accepted)
+        refused = self.tracker.push_motion(7, float("nan"), 0.0)
+        self.assertFalse(refused.accepted)
+        self.assertIn("speed", refused.why)
+        with self.assertRaisesRegex(TypeError, "speed_mps: is 'fast'"):
+            self.tracker.push_motion(8, "fast", 0.0)  # type: ignore[arg-type]
+        self.assertEqual(self.tracker.counts.pushed, 0)
+
     def test_nothing_copies_the_pixels_on_the_way_to_the_library(self) -> None:
         # Numpy's and Python's allocations are traced, the library's own copy is not; an image has 29 kB.
         images = [black(), np.zeros((94, 400), np.uint8)[:, :310], np.zeros((94, 310), np.uint16),

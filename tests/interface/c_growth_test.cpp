@@ -150,6 +150,8 @@ TEST(CInterfaceGrowth, StructsEndWithTheirLastMember) {
   EXPECT_EQ(offsetof(motorcade_frame, pose_covariance) + sizeof(double[36]), sizeof(motorcade_frame));
   EXPECT_EQ(offsetof(motorcade_object, box_center_sigma_m) + sizeof(double[3]), sizeof(motorcade_object));
   EXPECT_EQ(offsetof(motorcade_mask, inside) + sizeof(void*), sizeof(motorcade_mask));
+  EXPECT_EQ(offsetof(motorcade_vehicle_motion, yaw_rate_sigma_radps) + sizeof(double),
+            sizeof(motorcade_vehicle_motion));
 }
 
 }  // namespace

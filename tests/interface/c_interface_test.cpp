@@ -114,6 +114,27 @@ TEST_F(CInterface, NullPlacesForWhatIsAskedAreNamed) {
   EXPECT_EQ(told(motorcade_tracker_push(tracker_.get(), nullptr, &push)), "-2 pair");
 }
 
+TEST_F(CInterface, TheVehiclesMotionIsTakenOrRefusedWithAReason) {
+  auto motion = sized<motorcade_vehicle_motion>();
+  auto push = sized<motorcade_push>();
+  motion.stamp_ns = 5;
+  motion.speed_mps = 12;
+  EXPECT_EQ(motorcade_tracker_push_motion(tracker_.get(), &motion, &push), MOTORCADE_OK);
+  EXPECT_EQ(push.status, MOTORCADE_PUSH_ACCEPTED);
+  motion.speed_sigma_mps = -1;
+  EXPECT_EQ(motorcade_tracker_push_motion(tracker_.get(), &motion, &push), MOTORCADE_OK);
+  EXPECT_EQ(push.status, MOTORCADE_PUSH_REJECTED);
+  EXPECT_THAT(push.why, HasSubstr("standard deviation"));
+  motion.struct_size = offsetof(motorcade_vehicle_motion, speed_sigma_mps);  // as a first version might have been
+  EXPECT_EQ(motorcade_tracker_push_motion(tracker_.get(), &motion, &push), MOTORCADE_OK);
+  EXPECT_EQ(push.status, MOTORCADE_PUSH_ACCEPTED);
+  motion.struct_size = 0;
+  EXPECT_EQ(told(motorcade_tracker_push_motion(tracker_.get(), &motion, &push)), "-3 motion.struct_size");
+  EXPECT_EQ(told(motorcade_tracker_push_motion(tracker_.get(), nullptr, &push)), "-2 motion");
+  EXPECT_EQ(told(motorcade_tracker_push_motion(nullptr, &motion, &push)), "-2 tracker");
+  EXPECT_EQ(told(motorcade_tracker_push_motion(tracker_.get(), &motion, nullptr)), "-2 push");
+}
+
 TEST(CInterfaceHandles, EndingNullDoesNothing) {
   motorcade_tracker_destroy(nullptr);
   motorcade_recording_close(nullptr);

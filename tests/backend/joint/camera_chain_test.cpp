@@ -1,5 +1,6 @@
 /// How the camera's poses are linked where nothing is seen.
 
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -44,12 +45,30 @@ struct Path {
   std::vector<FrameEstimate> online, finals;
 };
 
-Path follow(std::uint64_t seed, const Frames& dark) {
+/// The same, with what the vehicle's own sensors tell of each step; of the first frame after the dark, images tell
+/// nothing.
+FrameMeasurementsPtr measureWithSensors(PointDrive& drive, int frame, const Frames& dark) {
+  FrameMeasurements m = *measureWithDark(drive, frame, dark);
+  if (frame == 0) return std::make_shared<const FrameMeasurements>(std::move(m));
+  const SE3 T_before_now = drive.truth().camera(frame - 1).inverse() * drive.truth().camera(frame);
+  m.odometry.vehicle = {T_before_now * SE3::exp(Vector6d::Constant(1e-3)), 1e-4 * Matrix6d::Identity()};
+  if (frame == dark.end) {
+    m.head.status = FrameStatus::kLost;
+    m.head.cause = FrameCause::kUnlinked;
+    m.undecided.insert(m.undecided.end(), m.at_rest.begin(), m.at_rest.end());
+    m.at_rest.clear();
+  }
+  return std::make_shared<const FrameMeasurements>(std::move(m));
+}
+
+using Measure = FrameMeasurementsPtr (*)(PointDrive&, int, const Frames&);
+
+Path follow(std::uint64_t seed, const Frames& dark, Measure measure = measureWithDark) {
   PointDrive drive(seed, {.static_points = 150, .drive = {.frames = 40}});
   JointBackend backend(JointParams{}, kPointRig);
   Path path;
   for (int frame = 0; frame < drive.options().frames; ++frame) {
-    const auto estimates = backend(measureWithDark(drive, frame, dark));
+    const auto estimates = backend(measure(drive, frame, dark));
     EXPECT_TRUE(estimates->problems.empty());
     path.online.push_back(estimates->online);
     path.finals.insert(path.finals.end(), estimates->finals.begin(), estimates->finals.end());
@@ -89,6 +108,23 @@ TEST(CameraChain, UnseenFramesLieOnASteadyMotion) {
   ASSERT_EQ(path.finals.size(), 40u);
   EXPECT_LT(motionError_m(path, 19, 28), 0.05);
   for (int frame = 20; frame < 28; ++frame) EXPECT_LT(motionError_m(path, 19, frame), 1.0) << frame;
+}
+
+TEST(CameraChain, TheVehiclesOwnMotionLinksWhatImagesDoNot) {
+  const Path path = follow(2, {20, 28}, measureWithSensors);
+  ASSERT_EQ(path.finals.size(), 40u);
+  for (int frame = 20; frame <= 28; ++frame) EXPECT_LT(motionError_m(path, 19, frame), 0.05) << frame;
+  const auto position_sigma_m = [](const FrameEstimate& estimate) {
+    return std::sqrt(estimate.camera_covariances.pose->topLeftCorner<3, 3>().trace());
+  };
+  ASSERT_TRUE(path.online[28].camera_covariances.pose) << "no new part begins";
+  EXPECT_GT(position_sigma_m(path.online[27]), 0.2);  // eight steps of 1 cm and 10 mrad each way, over 8 m
+  EXPECT_LT(position_sigma_m(path.online[27]), 0.5);
+}
+
+TEST(CameraChain, AStartInTheDarkIsDrivenAsTheVehicleTells) {
+  const Path path = follow(1, {0, 5}, measureWithSensors);
+  EXPECT_LT(motionError_m(path, 0, 5), 0.05);
 }
 
 }  // namespace

@@ -1,0 +1,205 @@
+#include "frontend/motion/vehicle_odometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "frontend/motion/camera_odometry.hpp"
+#include "tests/frontend/motion/simulated_vehicle.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/stereo_views.hpp"
+
+/// The vehicle's own motion where the camera sees and where it does not.
+namespace motorcade {
+namespace {
+
+using test::SimulatedVehicle;
+
+UncertainMotion asMeasured(const SE3& T_then_now) { return {T_then_now, 1e-6 * Matrix6d::Identity()}; }
+
+/// The samples up to a frame's time, as they come with it.
+class Inputs {
+ public:
+  explicit Inputs(std::vector<VehicleMotionSample> samples) : samples_(std::move(samples)) {}
+  FrameInputs upTo(Timestamp stamp) {
+    for (; next_ < samples_.size() && samples_[next_].stamp <= stamp; ++next_) log_->add(samples_[next_]);
+    return {.ignored = {}, .vehicle_motion = log_, .vehicle_samples = next_};
+  }
+
+ private:
+  std::vector<VehicleMotionSample> samples_;
+  std::size_t next_ = 0;
+  std::shared_ptr<VehicleMotionLog> log_ = std::make_shared<VehicleMotionLog>();
+};
+
+/// Sensors that are told wrongly from one frame on, and what becomes of them.
+class Sensors {
+ public:
+  template <class Spoil>
+  Sensors(int frames, const Spoil& spoil) : drive_(11, frames, {}) {
+    auto samples = drive_.samples;
+    for (auto& sample : samples) spoil(sample);
+    Inputs inputs(samples);
+    for (int frame = 0; frame < frames; ++frame) {
+      odometry_.hear(inputs.upTo(drive_.stampOf(frame)));
+      if (frame > 0)
+        odometry_.compare(drive_.stampOf(frame - 1), drive_.stampOf(frame),
+                          asMeasured(drive_.motion(frame - 1, frame)));
+      believed_.push_back(odometry_.sensors().value_or(VehicleSensors{}).believed);
+    }
+  }
+  const std::vector<bool>& believed() const { return believed_; }
+  VehicleSensors found() const { return *odometry_.sensors(); }
+
+ private:
+  SimulatedVehicle drive_;
+  VehicleOdometry odometry_;
+  std::vector<bool> believed_;
+};
+
+int framesWithoutBelief(const Sensors& sensors) {
+  return static_cast<int>(std::ranges::count(sensors.believed(), false));
+}
+
+TEST(VehicleOdometry, SensorsWithUsualFaultsAreBelievedAllTheTime) {
+  EXPECT_EQ(framesWithoutBelief(Sensors(200, [](auto&) {})), 0);
+}
+
+TEST(VehicleOdometry, WhatLiesFromTheStartIsLeftOutWithinAFewFrames) {
+  const auto expectLeftOut = [](const char* what, const auto& spoil) {
+    const Sensors sensors(60, spoil);
+    EXPECT_FALSE(sensors.believed().back()) << what;
+    EXPECT_GE(framesWithoutBelief(sensors), 55) << what;
+  };
+  expectLeftOut("km/h", [](auto& sample) { sample.speed_mps *= 3.6; });
+  expectLeftOut("dead", [](auto& sample) { sample.speed_mps = 0; });
+  expectLeftOut("backwards", [](auto& sample) { sample.speed_mps *= -1; });
+  expectLeftOut("turning", [](auto& sample) { sample.yaw_rate_radps += 0.3; });
+}
+
+TEST(VehicleOdometry, AWheelThatSpinsForAWhileIsLeftOutMeanwhile) {
+  const Sensors sensors(140, [](auto& sample) {
+    const double time_s = static_cast<double>(sample.stamp.ns) * 1e-9;
+    if (time_s > 5 && time_s < 7) sample.speed_mps += 5;
+  });
+  EXPECT_TRUE(sensors.believed()[50]);
+  EXPECT_FALSE(sensors.believed()[60]);
+  EXPECT_TRUE(sensors.believed()[110]);
+  EXPECT_NEAR(sensors.found().speed_scale, 1 / 1.02, 0.01) << "nothing was learned from it";
+}
+
+TEST(VehicleOdometry, WhatIsDisputedForFiveSecondsIsLeftOut) {
+  VehicleOdometry odometry;
+  const SimulatedVehicle drive(1, 20, {});
+  Inputs inputs(drive.samples);
+  odometry.hear(inputs.upTo(drive.stampOf(20)));
+  for (int i = 0; i < 49; ++i) odometry.dispute();
+  EXPECT_TRUE(odometry.motion(drive.stampOf(3), drive.stampOf(5)));
+  odometry.dispute();
+  EXPECT_FALSE(odometry.motion(drive.stampOf(3), drive.stampOf(5)));
+}
+
+/// A camera that sees the first frames of a drive, and nothing in those after.
+class InTheDark : public testing::Test {
+ protected:
+  static constexpr int kSeen = 40, kDark = 30;
+
+  void drive(std::vector<VehicleMotionSample> samples) {
+    Inputs inputs(std::move(samples));
+    for (int frame = 0; frame < kSeen + kDark; ++frame) {
+      const Timestamp stamp = drive_.stampOf(frame);
+      odometry_.hear(inputs.upTo(stamp));
+      if (frame >= kSeen)
+        steps_.push_back(odometry_.passOver(stamp));
+      else
+        odometry_.add(stamp, {.T_seen_now = frame == 0 ? SE3{} : drive_.motion(frame - 1, frame),
+                              .covariance = 1e-6 * Matrix6d::Identity(),
+                              .inliers = {}});
+    }
+  }
+  SE3 steppedTo(int frames) const {
+    SE3 T_seen_now;
+    for (int i = 0; i < frames; ++i) T_seen_now = T_seen_now * steps_[static_cast<std::size_t>(i)].T_previous_now;
+    return T_seen_now;
+  }
+
+  const SimulatedVehicle drive_{21, kSeen + kDark, {}};
+  CameraOdometry odometry_{{}, test::kRig};
+  std::vector<Odometry> steps_;
+};
+
+TEST_F(InTheDark, TheCameraGoesOnAsTheVehicleDoes) {
+  drive(drive_.samples);
+  const Vector6d error = (drive_.motion(kSeen - 1, kSeen + kDark - 1).inverse() * steppedTo(kDark)).log();
+  EXPECT_LT(error.head<3>().norm(), 0.5);  // of 30 m
+  EXPECT_TRUE(odometry_.motionKnown(drive_.stampOf(kSeen + kDark)));
+}
+
+TEST_F(InTheDark, StepsAddUpToWhatIsKnownOfTheWhole) {
+  drive(drive_.samples);
+  const auto whole = odometry_.predict(drive_.stampOf(kSeen + kDark - 1));
+  ASSERT_TRUE(whole.by_vehicle);
+  SE3 T_seen_now;
+  Matrix6d sum = Matrix6d::Zero();
+  for (const Odometry& step : steps_) {
+    ASSERT_TRUE(step.vehicle);
+    const Matrix6d A = step.vehicle->T_previous_now.inverse().adjoint();
+    sum = A * sum * A.transpose() + step.vehicle->covariance;
+    T_seen_now = T_seen_now * step.vehicle->T_previous_now;
+  }
+  EXPECT_THAT(T_seen_now, test::IsNearPose(whole.T_seen_now, 1e-6));
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(std::sqrt(sum(i, i) / (*whole.by_vehicle)(i, i)), 1, 0.15) << i;
+}
+
+TEST_F(InTheDark, WhereSensorsFallSilentTheCameraGoesOnFromWhereTheyLed) {
+  auto samples = drive_.samples;
+  std::erase_if(samples, [](const auto& sample) { return sample.stamp > SimulatedVehicle::stampOf(kSeen + 10); });
+  drive(samples);
+  const double way_m = steppedTo(10).translation().norm();
+  EXPECT_NEAR(way_m, drive_.motion(kSeen - 1, kSeen + 9).translation().norm(), 0.3);
+  EXPECT_FALSE(steps_.back().vehicle);
+  EXPECT_LT((steppedTo(kDark).translation() - steppedTo(12).translation()).norm(), 1) << "and stands";
+}
+
+TEST_F(InTheDark, WithoutSensorsItIsTakenToStandAfterASecond) {
+  drive({});
+  EXPECT_FALSE(steps_.front().vehicle);
+  EXPECT_LT(steppedTo(kDark).translation().norm(), 20);
+}
+
+TEST(CameraOdometryWithSensors, WhatIsNotLinkedByImagesStaysInTheSegment) {
+  const SimulatedVehicle drive(4, 12, {});
+  Inputs inputs(drive.samples);
+  CameraOdometry odometry({}, test::kRig);
+  odometry.hear(inputs.upTo(drive.stampOf(11)));
+  odometry.add(drive.stampOf(0), {.T_seen_now = SE3{}, .inliers = {}});
+  const auto predicted = odometry.predict(drive.stampOf(10));
+  StereoFrame frame;
+  frame.head.stamp = drive.stampOf(10);
+  const CameraMotion unlinked = odometry.measure(frame, {}, {}, predicted);
+  EXPECT_EQ(unlinked.cause, FrameCause::kUnlinked);
+  const Odometry step = odometry.add(drive.stampOf(10), unlinked);
+  ASSERT_TRUE(step.vehicle);
+  EXPECT_LT((step.T_previous_now.translation() - drive.motion(0, 10).translation()).norm(), 1.0);
+  odometry.add(drive.stampOf(11), {.T_seen_now = drive.motion(10, 11), .inliers = {}});
+  EXPECT_EQ(odometry.segment(), 0);
+}
+
+TEST(CameraOdometryWithSensors, AStartInTheDarkIsDrivenAsToldUntilSomethingIsSeen) {
+  const SimulatedVehicle drive(4, 12, {});
+  Inputs inputs(drive.samples);
+  CameraOdometry odometry({}, test::kRig);
+  odometry.hear(inputs.upTo(drive.stampOf(12)));
+  SE3 T_start_now;
+  for (int frame = 0; frame < 10; ++frame)
+    T_start_now = T_start_now * odometry.passOver(drive.stampOf(frame)).T_previous_now;
+  T_start_now = T_start_now * odometry.add(drive.stampOf(10), {.T_seen_now = SE3{}, .inliers = {}}).T_previous_now;
+  EXPECT_LT((T_start_now.translation() - drive.motion(0, 10).translation()).norm(), 1.0);
+}
+
+}  // namespace
+}  // namespace motorcade
