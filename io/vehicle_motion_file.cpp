@@ -1,12 +1,14 @@
 #include "io/vehicle_motion_file.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <string>
 #include <string_view>
 
 #include "io/errors.hpp"
 #include "io/ground_truth.hpp"
+#include "io/line_file.hpp"
 #include "io/text_file.hpp"
 #include "io/timestamps.hpp"
 #include "io/velocity_path.hpp"
@@ -108,6 +110,15 @@ std::vector<VehicleMotionSample> readVehicleMotion(const fs::path& file, const S
   if (samples.empty()) throw InputError(file.string() + ": has no sample of the vehicle's motion");
   requireOverlap(file, samples, sequence);
   return samples;
+}
+
+void writeVehicleMotion(const std::vector<VehicleMotionSample>& samples, const fs::path& file) {
+  std::ostringstream text;
+  text << kHeader << '\n' << std::fixed;
+  for (const VehicleMotionSample& sample : samples)
+    text << std::setprecision(9) << static_cast<double>(sample.stamp.ns) * 1e-9 << std::setprecision(5) << ','
+         << sample.speed_mps << ',' << sample.yaw_rate_radps << '\n';
+  writeAtOnce(file, text.str());
 }
 
 }  // namespace motorcade

@@ -18,4 +18,7 @@ inline constexpr const char* kVehicleMotionFile = "motion.csv";
 /// time.
 std::vector<VehicleMotionSample> readVehicleMotion(const std::filesystem::path& file, const Sequence& sequence);
 
+/// Writes such a table, without deviations. Throws OutputError.
+void writeVehicleMotion(const std::vector<VehicleMotionSample>& samples, const std::filesystem::path& file);
+
 }  // namespace motorcade

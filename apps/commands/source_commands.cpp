@@ -50,6 +50,10 @@ void addSynth(CLI::App& app, Action& action) {
       ->add_option("--shake", options->rig_error.shake_px,
                    "standard deviation of an error that all disparities of a pair share [px]")
       ->check(CLI::Range(0.0, kMostShake_px));
+  command->add_flag(
+      "--vehicle-motion", options->vehicle_motion,
+      "write motion.csv, too: the car's speed and yaw rate by sensors with the faults of cheap ones, drawn "
+      "with the seed");
   command->footer("Example: motorcade synth DRIVE --scene urban --seed 2");
   command->callback([options, &action] { action = [options] { return runSynth(*options); }; });
 }

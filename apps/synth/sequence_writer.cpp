@@ -6,10 +6,12 @@
 
 #include "apps/synth/ground_truth.hpp"
 #include "apps/synth/noise.hpp"
+#include "apps/synth/vehicle_sensors.hpp"
 #include "io/errors.hpp"
 #include "io/image_file.hpp"
 #include "io/line_file.hpp"
 #include "io/trajectory.hpp"
+#include "io/vehicle_motion_file.hpp"
 
 namespace motorcade::synth {
 namespace {
@@ -129,6 +131,7 @@ void writeSequence(const Scene& scene, const fs::path& folder, const WriteOption
     if (options.progress) options.progress(k + 1, frames);
   }
   tables.close();
+  if (options.vehicle_motion) writeVehicleMotion(sensedMotion(scene, frames), folder / kVehicleMotionFile);
 }
 
 }  // namespace motorcade::synth

@@ -25,6 +25,7 @@ struct WriteOptions {
   bool with_movers = true;
   StereoCamera camera = kittiCamera();
   RigError rig_error;
+  bool vehicle_motion = false;  // what the car's sensors tell of it is written, too
   RenderOptions render;
   std::function<void(int done, int frames)> progress;  // called after each frame
 };

@@ -52,6 +52,7 @@ int runSynth(const SynthOptions& options) {
   writing.with_movers = !options.without_movers;
   writing.camera = camera;
   writing.rig_error = options.rig_error;
+  writing.vehicle_motion = options.vehicle_motion;
   writing.render.style = synth::styleOf(options.style);
   writing.render.threads =
       options.threads > 0 ? options.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

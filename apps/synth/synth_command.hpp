@@ -13,7 +13,7 @@ struct SynthOptions {
   int frames = 0, threads = 0;   // 0: the scene's own length, all processors
   std::uint32_t seed = 1;
   std::string style = "plain";
-  bool without_movers = false;
+  bool without_movers = false, vehicle_motion = false;
   synth::RigError rig_error;
 };
 

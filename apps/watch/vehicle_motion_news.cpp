@@ -7,8 +7,8 @@
 namespace motorcade {
 namespace {
 
-constexpr int kMostSentences = 10;   // of a sensor that comes and goes
-constexpr double kLooksAlike = 0.1;  // of a ratio
+constexpr int kMostSentences = 10;    // of a sensor that comes and goes
+constexpr double kLooksAlike = 0.05;  // of a ratio
 
 /// What may be wrong with a motion that is told, in words that end a sentence.
 std::string guessAt(const VehicleSensors& sensors) {

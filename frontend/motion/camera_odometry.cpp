@@ -159,7 +159,7 @@ Odometry CameraOdometry::stepTo(Timestamp stamp, const SE3& T_seen_now, const Ma
   if (!told) return odometry;
   odometry.vehicle = {told->T_then_now, told->covariance};
   if (!told_before_) return odometry;
-  const SE3 T_before_now = told_before_->T_then_now.inverse() * told->T_then_now;
+  const SE3 T_before_now = T_seen_before_.inverse() * told->T_then_now;
   const Matrix6d A = T_before_now.inverse().adjoint();
   odometry.vehicle = {T_before_now.normalized(),
                       positivePart(told->covariance - A * told_before_->covariance * A.transpose())};

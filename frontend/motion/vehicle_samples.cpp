@@ -14,6 +14,8 @@ constexpr double kBridged_s = 1.0;            // between two samples
 constexpr double kUsual_s = 0.12;             // between two samples: sensors with ten a second are slow ones
 /// Tires hold no more than 1.2 g; the rest is what steps and noise of the sensor do.
 constexpr double kMaxAcceleration_mps2 = 12, kStep_mps = 0.5;
+constexpr double kMostPassedOver_s = 0.9;  // wheels spin or lock no longer: it was the sensor that leapt
+constexpr double kBackShare = 0.5;         // of a leap: by so much at least it goes back
 
 bool isFinite(const VehicleMotionSample& sample) {
   return std::isfinite(sample.speed_mps) && std::isfinite(sample.yaw_rate_radps);
@@ -28,6 +30,13 @@ VehicleMotionSample at(const VehicleMotionSample& before, const VehicleMotionSam
           .yaw_rate_radps = std::lerp(before.yaw_rate_radps, after.yaw_rate_radps, share),
           .speed_sigma_mps = std::max(before.speed_sigma_mps, after.speed_sigma_mps),
           .yaw_rate_sigma_radps = std::max(before.yaw_rate_sigma_radps, after.yaw_rate_sigma_radps)};
+}
+
+/// The change of speed where no vehicle could make it, else 0.
+double leapBetween(const VehicleMotionSample& before, const VehicleMotionSample& now) {
+  const double change_mps = now.speed_mps - before.speed_mps;
+  const double possible_mps = kStep_mps + kMaxAcceleration_mps2 * secondsBetween(before.stamp, now.stamp);
+  return std::abs(change_mps) > possible_mps ? change_mps : 0;
 }
 
 VehicleSamples::Piece pieceOf(const VehicleMotionSample& from, const VehicleMotionSample& to, double unknown_s) {
@@ -54,17 +63,25 @@ void VehicleSamples::forgetBefore(Timestamp stamp) {
   if (first - samples_.begin() > 1) samples_.erase(samples_.begin(), std::prev(first));
 }
 
-/// Those within the span, with one before and one after it where there are.
+/// Those within the span, with one before and one after it where there are. From a leap on samples are passed over, and
+/// the speed before it is held, until one leaps back.
 std::vector<VehicleMotionSample> VehicleSamples::believable(Timestamp from, Timestamp to) const {
   auto it = std::ranges::upper_bound(samples_, from, {}, &VehicleMotionSample::stamp);
   if (it != samples_.begin()) --it;
   std::vector<VehicleMotionSample> found;
-  for (; it != samples_.end(); ++it) {
-    const bool jumps =
-        !found.empty() && std::abs(it->speed_mps - found.back().speed_mps) >
-                              kStep_mps + kMaxAcceleration_mps2 * secondsBetween(found.back().stamp, it->stamp);
-    if (!jumps) found.push_back(*it);
-    if (it->stamp >= to && !jumps) break;
+  double leap_mps = 0;
+  for (; it != samples_.end() && (found.empty() || found.back().stamp < to); ++it) {
+    const double change_mps = found.empty() ? 0 : leapBetween(*std::prev(it), *it);
+    const bool goes_back = change_mps * leap_mps < 0 && std::abs(change_mps) > kBackShare * std::abs(leap_mps);
+    if (leap_mps == 0)
+      leap_mps = change_mps;
+    else if (goes_back || secondsBetween(found.back().stamp, it->stamp) > kMostPassedOver_s)
+      leap_mps = 0;
+    if (leap_mps == 0) found.push_back(*it);
+  }
+  if (leap_mps != 0) {
+    found.push_back(found.back());
+    found.back().stamp = samples_.back().stamp;
   }
   return found;
 }

@@ -165,6 +165,23 @@ TEST_F(InTheDark, WhereSensorsFallSilentTheCameraGoesOnFromWhereTheyLed) {
   EXPECT_LT((steppedTo(kDark).translation() - steppedTo(12).translation()).norm(), 1) << "and stands";
 }
 
+TEST_F(InTheDark, AfterAPauseOfTheSensorsTheCameraIsWhereTheyTell) {
+  auto samples = drive_.samples;
+  std::erase_if(samples, [](const auto& sample) {
+    return sample.stamp > SimulatedVehicle::stampOf(kSeen + 10) && sample.stamp < SimulatedVehicle::stampOf(kSeen + 18);
+  });
+  drive(samples);
+  EXPECT_FALSE(steps_[15].vehicle);
+  ASSERT_TRUE(steps_[20].vehicle);
+  EXPECT_LT((steppedTo(25).translation() - drive_.motion(kSeen - 1, kSeen + 24).translation()).norm(), 1.0);
+  SE3 T_seen_now;
+  for (int i = 0; i < 25; ++i) {
+    const Odometry& step = steps_[static_cast<std::size_t>(i)];
+    T_seen_now = T_seen_now * (step.vehicle ? step.vehicle->T_previous_now : step.T_previous_now);
+  }
+  EXPECT_THAT(T_seen_now, test::IsNearPose(steppedTo(25), 1e-6));
+}
+
 TEST_F(InTheDark, WithoutSensorsItIsTakenToStandAfterASecond) {
   drive({});
   EXPECT_FALSE(steps_.front().vehicle);

@@ -70,8 +70,15 @@ TEST(VehicleSamples, AHoleOfMoreThanASecondIsNotBridgedAShorterOneIsLessSure) {
 
 TEST(VehicleSamples, AWheelThatSpinsIsPassedOver) {
   VehicleSamples samples;
-  for (int i = 0; i <= 10; ++i) samples.add(at(0.02 * i, i == 4 || i == 5 ? 12 : 6));
-  EXPECT_NEAR(wayOver(samples, 0, 0.2), 1.2, 1e-9);
+  for (int i = 0; i <= 60; ++i) samples.add(at(0.02 * i, i >= 4 && i < 34 ? 8.1 : 6));
+  EXPECT_NEAR(wayOver(samples, 0, 1.2), 7.2, 1e-9);
+  EXPECT_NEAR(wayOver(samples, 0, 0.5), 3.0, 1e-9) << "in the midst of it";
+}
+
+TEST(VehicleSamples, ALeapThatStaysIsBelievedAfterASecond) {
+  VehicleSamples samples;
+  for (int i = 0; i <= 100; ++i) samples.add(at(0.02 * i, i < 4 ? 6 : 16));
+  EXPECT_NEAR(wayOver(samples, 1.2, 1.4), 3.2, 1e-9);
 }
 
 TEST(VehicleSamples, WhatIsForgottenLeavesTheNextSpanAsItWas) {
