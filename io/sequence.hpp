@@ -72,6 +72,9 @@ struct SampleUse {
 /// The user's word for a stream of pairs on the standard input, in place of a folder.
 inline constexpr const char* kStandardInput = "-";
 
+/// The layout of a drive whose pairs are in a bag.
+inline constexpr const char* kBagLayout = "bag";
+
 /// A recorded drive: where its images are, when they were taken, with what camera, and what is known of the truth. Of a
 /// pipe (`kStandardInput`) and a bag, which bring their pairs one by one, there are neither frames nor stamps.
 struct Sequence {
@@ -96,10 +99,9 @@ struct Sequence {
   /// The drive's name in messages.
   std::string name() const { return piped() ? "standard input" : folder.string(); }
   bool piped() const { return folder == kStandardInput; }
-  bool streamed() const { return piped() || bag; }
+  bool streamed() const { return piped() || layout == kBagLayout; }
 
   std::filesystem::path folder{};
-  bool bag = false;  // it is a recording of messages, and no folder of images
   /// plain, odometry, tracking, raw, euroc, kitti360, virtual_kitti, argoverse, list, y4m_side_by_side, y4m_over_under
   /// or bag
   std::string layout{};

@@ -38,21 +38,19 @@ struct FirstPairs {
     }
     if (stamps_ns.size() < kLookedAt)
       brightest = std::max({brightest, pair.left.brightestSample(), pair.right.brightestSample()});
-    stamps_ns.push_back(pair.left.stamp_ns());
+    stamps_ns.push_back(pair.left.stamp_ns);
   }
 };
 
 [[noreturn]] void failWithoutPair(BagPairs& pairs, const std::string& bag, const ImageTopics& topics) {
-  const std::size_t left = pairs.images(StereoSide::kLeft), right = pairs.images(StereoSide::kRight);
+  const std::size_t left = pairs.images(Side::kLeft), right = pairs.images(Side::kRight);
   if (left == 0 || right == 0)
     failWithTopics(pairs.bag(), bag + ": has no message of " + printable(left == 0 ? topics.left : topics.right, 200));
   std::string text = bag + ": has no pair: of " + std::to_string(left) + " left and " + std::to_string(right) +
-                     " right images, no two have stamps within " +
-                     std::to_string(BagPairing::kTolerance_ns / 1'000'000) + " ms";
-  if (const auto nearest_ns = pairs.pairing().nearest_ns())
-    text += " (the nearest are " + std::to_string(*nearest_ns / 1'000'000) +
-            " ms apart, of those that were near each "
-            "other in the file)";
+                     " right images, no two have stamps within " + std::to_string(BagPairs::kTolerance_ns / 1'000'000) +
+                     " ms";
+  if (const auto nearest_ns = pairs.nearest_ns())
+    text += " (the nearest are " + std::to_string(*nearest_ns / 1'000'000) + " ms apart)";
   throw InputError(text +
                    ". A file with one topic behind the other is put in order by\n  mcap sort BAG.mcap -o SORTED.mcap");
 }
@@ -61,7 +59,7 @@ struct FirstPairs {
 FirstPairs readFirstPairs(BagPairs& pairs, bool infos_needed) {
   constexpr std::size_t kPairs = 16, kPairsWithoutInfo = 300;
   FirstPairs first;
-  const auto knowsInfos = [&] { return pairs.info(StereoSide::kLeft) && pairs.info(StereoSide::kRight); };
+  const auto knowsInfos = [&] { return pairs.info(Side::kLeft) && pairs.info(Side::kRight); };
   try {
     while (first.stamps_ns.size() < (infos_needed && !knowsInfos() ? kPairsWithoutInfo : kPairs)) {
       const auto pair = pairs.next();
@@ -91,13 +89,13 @@ CameraInfoPair requiredInfos(const BagPairs& pairs, const std::string& bag, cons
     throw InputError(infos.left_name +
                      ": would be the camera_info of both images; give --camera fx,fy,cx,cy,baseline of a rectified "
                      "pair, or --calibration FILE");
-  for (const StereoSide side : {StereoSide::kLeft, StereoSide::kRight})
+  for (const Side side : {Side::kLeft, Side::kRight})
     if (!pairs.info(side))
       throw InputError(
-          (side == StereoSide::kLeft ? infos.left_name : infos.right_name) +
+          (side == Side::kLeft ? infos.left_name : infos.right_name) +
           ": has no message of sensor_msgs/CameraInfo with the first pairs; record it beside the images, or "
           "give --camera fx,fy,cx,cy,baseline of a rectified pair, or --calibration FILE");
-  infos.left = *pairs.info(StereoSide::kLeft), infos.right = *pairs.info(StereoSide::kRight);
+  infos.left = *pairs.info(Side::kLeft), infos.right = *pairs.info(Side::kRight);
   return infos;
 }
 
@@ -117,8 +115,7 @@ SampleUse sampleUseOf(const FirstPairs& first) {
 }
 
 Sequence sequenceOf(const fs::path& bag, const FirstPairs& first, const GivenCameras& given) {
-  Sequence sequence{.folder = fs::absolute(bag).lexically_normal(), .layout = "bag"};
-  sequence.bag = true;
+  Sequence sequence{.folder = fs::absolute(bag).lexically_normal(), .layout = kBagLayout};
   sequence.stamps_measured = true;
   sequence.given = absolute(given);
   sequence.bayer = mosaicOf(sequence, given);

@@ -4,6 +4,11 @@
 #include "io/text_file.hpp"
 
 namespace motorcade {
+namespace {
+
+constexpr std::size_t kMost_bytes = std::size_t{64} << 20;  // as several images wait for their partners
+
+}  // namespace
 
 BagImage::BagImage(const std::string& bag, const BagTopic& topic, const BagMessage& message)
     : name_(bag + ": " + message.place + ", " + printable(topic.name, 80)) {
@@ -15,9 +20,12 @@ BagImage::BagImage(const std::string& bag, const BagTopic& topic, const BagMessa
   if (!format)
     throw InputError(name_ + ": is encoded as '" + printable(topic.encoding) + "'; cdr (ROS 2) and ros1 are read");
   kind_ = *kind, format_ = *format;
+  if (message.data.size() > kMost_bytes)
+    throw InputError(name_ + ": has " + std::to_string(message.data.size()) + " bytes, " + std::to_string(kMost_bytes) +
+                     " at most are read of an image");
   message_.assign(message.data.begin(), message.data.end());
-  stamp_ns_ = stampOfMessage(reader());
-  if (stamp_ns_ == 0) stamp_ns_ = message.log_ns;
+  stamp_ns = stampOfMessage(reader());
+  if (stamp_ns == 0) stamp_ns = message.log_ns;
 }
 
 ImageHeader BagImage::header() const {

@@ -58,7 +58,7 @@ SourceEnd BagSource::readAll() {
     if (!pair) return endAfter(index, "");
     {
       const std::lock_guard lock(mutex_);
-      stamps_.push_back({pair->left.stamp_ns()});
+      stamps_.push_back({pair->left.stamp_ns});
     }
     if (index >= params_.range.begin && !give(index, *pair)) break;
   }
@@ -75,14 +75,14 @@ SourceEnd BagSource::endAfter(std::size_t pairs, const std::string& damage) cons
 
 /// False where no further pair is wanted.
 bool BagSource::give(std::size_t index, const BagPair& pair) {
-  if (params_.wanted && !params_.wanted({pair.left.stamp_ns()})) return !ring_.closed();
+  if (params_.wanted && !params_.wanted({pair.left.stamp_ns})) return !ring_.closed();
   return ring_.push(decode(index, pair));
 }
 
 StereoFrame BagSource::decode(std::size_t index, const BagPair& pair) {
   const auto start = std::chrono::steady_clock::now();
   StereoFrame frame;
-  frame.head = {.frame = {static_cast<std::int64_t>(index)}, .stamp = {pair.left.stamp_ns()}};
+  frame.head = {.frame = {static_cast<std::int64_t>(index)}, .stamp = {pair.left.stamp_ns}};
   frame.inputs = params_.inputs;
   try {
     frame.left = reader_.prepared(pair.left.gray(pool_, conversion_), StereoSide::kLeft);

@@ -26,7 +26,7 @@ Db3Reader::Db3Reader(const std::filesystem::path& file) : name_(file.string()) {
   requireTable("topics");
   requireTable("messages");
   readTopics();
-  // Of what is put in order only these few numbers are held, or written to a temporary file.
+  // rosbag2 keeps an index by time. Without it, these few numbers are put in order, in a temporary file if need be.
   order_ = prepare("SELECT rowid, topic_id, timestamp FROM messages ORDER BY timestamp, rowid");
   data_ = prepare("SELECT data FROM messages WHERE rowid = ?");
 }
@@ -38,13 +38,14 @@ void Db3Reader::fail(const std::string& what) const {
                    what);
 }
 
-/// A database from strangers can do nothing but be read.
+/// A database from strangers can do nothing but be read. One that was cut off is refused as a whole, unless its schema
+/// may be written, which nothing here does.
 void Db3Reader::open() {
   sqlite3* database = nullptr;
   const int outcome = sqlite3_open_v2(name_.c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, nullptr);
   database_.reset(database);
   if (outcome != SQLITE_OK) fail(std::string("cannot be opened: ") + sqlite3_errstr(outcome));
-  sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_WRITABLE_SCHEMA, 1, nullptr);
   sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_limit(database, SQLITE_LIMIT_LENGTH, static_cast<int>(mcap::kMostRecord_bytes));
 }

@@ -16,7 +16,7 @@ constexpr double kLeastFocal_px = 1, kMostFocal_px = 1e6;
 bool isFocal_px(double value) { return value >= kLeastFocal_px && value <= kMostFocal_px; }
 
 /// One side's message with its name for messages.
-struct Side {
+struct InfoSide {
   const CameraInfoMessage& info;
   const std::string& name;
 
@@ -25,7 +25,7 @@ struct Side {
   }
 };
 
-ImageSize sizeOf(const Side& side) {
+ImageSize sizeOf(const InfoSide& side) {
   const auto width = side.info.width, height = side.info.height;
   if (width == 0 || height == 0) return {};  // not told
   if (width > kMaxImage_pixels || height > kMaxImage_pixels) side.fail("its width and height are no size of an image");
@@ -33,12 +33,12 @@ ImageSize sizeOf(const Side& side) {
 }
 
 /// The camera of images that were rectified to P.
-LensCamera projectedLens(const Side& side) {
+LensCamera projectedLens(const InfoSide& side) {
   const auto& P = side.info.P;
   return {.fx_px = P[0], .fy_px = P[5], .cx_px = P[2], .cy_px = P[6], .size = sizeOf(side)};
 }
 
-LensCamera rawLens(const Side& side) {
+LensCamera rawLens(const InfoSide& side) {
   const auto& K = side.info.K;
   if (!isFocal_px(K[0]) || !isFocal_px(K[4])) side.fail("has no focal lengths in K: the camera is not calibrated");
   LensCamera lens{.fx_px = K[0], .fy_px = K[4], .cx_px = K[2], .cy_px = K[5], .size = sizeOf(side)};
@@ -47,13 +47,13 @@ LensCamera rawLens(const Side& side) {
   return lens;
 }
 
-Eigen::Matrix3d rotationOf(const Side& side) {
+Eigen::Matrix3d rotationOf(const InfoSide& side) {
   const Eigen::Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(side.info.R.data());
   if (!isRotation(R)) side.fail("R holds no rotation matrix");
   return SE3(R, Eigen::Vector3d::Zero()).normalized().rotation();
 }
 
-void requireUsable(const Side& side) {
+void requireUsable(const InfoSide& side) {
   const CameraInfoMessage& info = side.info;
   const auto finite = [](const auto& values) {
     return std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
@@ -65,7 +65,7 @@ void requireUsable(const Side& side) {
     side.fail("has no focal lengths in P: the cameras are not calibrated as a pair");
 }
 
-StereoCamera cameraOf(const Side& left, const Side& right) {
+StereoCamera cameraOf(const InfoSide& left, const InfoSide& right) {
   const auto &P_left = left.info.P, &P_right = right.info.P;
   const StereoCamera camera{.fx_px = P_left[0],
                             .fy_px = P_left[5],
@@ -90,8 +90,8 @@ bool isRectifiedFor(const StereoCamera& camera, const LensCamera& lens, const Ei
 }  // namespace
 
 Rig rigOf(const CameraInfoPair& infos, bool rectified) {
-  const Side left{infos.left, infos.left_name}, right{infos.right, infos.right_name};
-  for (const Side& side : {left, right}) requireUsable(side);
+  const InfoSide left{infos.left, infos.left_name}, right{infos.right, infos.right_name};
+  for (const InfoSide& side : {left, right}) requireUsable(side);
   Rig rig{.file = infos.left_name,
           .left = rectified ? projectedLens(left) : rawLens(left),
           .right = rectified ? projectedLens(right) : rawLens(right)};
