@@ -44,6 +44,15 @@ std::optional<ImageTopics> likelyPair(const std::vector<BagTopic>& topics) {
   return std::nullopt;
 }
 
+std::string nameOf(const BagTopic& topic) { return printable(topic.name, kMostCharacters); }
+
+/// The option that a user is likely to want, in parentheses; empty where no two topics look like a pair's.
+std::string likelyOption(const std::vector<BagTopic>& topics) {
+  const auto pair = likelyPair(topics);
+  if (!pair) return "";
+  return " (perhaps --topics " + shellWord(printable(pair->left + "," + pair->right, 2 * kMostCharacters)) + ")";
+}
+
 }  // namespace
 
 ImageTopics parseImageTopics(const std::string& text) {
@@ -56,18 +65,18 @@ ImageTopics parseImageTopics(const std::string& text) {
 }
 
 std::string topicsText(const std::vector<BagTopic>& topics) {
+  constexpr std::size_t kMostTopics = 100;
+  const std::size_t shown = std::min(topics.size(), kMostTopics);
   std::size_t longest = 0;
-  for (const BagTopic& topic : topics) longest = std::max(longest, printable(topic.name, kMostCharacters).size());
+  for (std::size_t i = 0; i < shown; ++i) longest = std::max(longest, nameOf(topics[i]).size());
   std::string text;
-  for (const BagTopic& topic : topics) {
-    std::string name = printable(topic.name, kMostCharacters);
+  for (std::size_t i = 0; i < shown; ++i) {
+    std::string name = nameOf(topics[i]);
     name.resize(longest, ' ');
-    text += "\n  " + name + "  " + printable(topic.type, kMostCharacters);
-    if (topic.messages > 0) text += ", " + std::to_string(topic.messages) + " messages";
+    text += "\n  " + name + "  " + printable(topics[i].type, kMostCharacters);
+    if (topics[i].messages > 0) text += ", " + std::to_string(topics[i].messages) + " messages";
   }
-  if (const auto pair = likelyPair(topics))
-    text += "\nThe pair is perhaps given by\n  --topics " +
-            shellWord(printable(pair->left + "," + pair->right, 2 * kMostCharacters));
+  if (topics.size() > shown) text += "\n  and " + std::to_string(topics.size() - shown) + " more";
   return text;
 }
 
@@ -78,7 +87,7 @@ void failWithTopics(BagReader& bag, const std::string& what) {
   } catch (const InputError&) {  // the topics up to the damage
   }
   if (bag.topics().empty()) throw UsageError(what + "; it has no topics");
-  throw UsageError(what + "; it has" + topicsText(bag.topics()));
+  throw UsageError(what + likelyOption(bag.topics()) + "; it has" + topicsText(bag.topics()));
 }
 
 }  // namespace motorcade

@@ -15,10 +15,11 @@ struct ImageTopics {
 /// Reads `LEFT,RIGHT`; throws UsageError.
 ImageTopics parseImageTopics(const std::string& text);
 
-/// A line for each topic, and the option that is likely meant.
+/// A line for each topic, beginning with the line's end before it.
 std::string topicsText(const std::vector<BagTopic>& topics);
 
-/// Throws UsageError with all topics of a bag; reads on where the bag does not list them before.
+/// Throws UsageError with all topics of a bag, and those that are likely meant; reads on where the bag does not list
+/// them before.
 [[noreturn]] void failWithTopics(BagReader& bag, const std::string& what);
 
 }  // namespace motorcade
