@@ -43,7 +43,7 @@ struct FirstPairs {
 };
 
 [[noreturn]] void failWithoutPair(BagPairs& pairs, const std::string& bag, const ImageTopics& topics) {
-  const std::size_t left = pairs.images(Side::kLeft), right = pairs.images(Side::kRight);
+  const std::size_t left = pairs.images(StereoSide::kLeft), right = pairs.images(StereoSide::kRight);
   if (left == 0 || right == 0)
     failWithTopics(pairs.bag(), bag + ": has no message of " + printable(left == 0 ? topics.left : topics.right, 200));
   std::string text = bag + ": has no pair: of " + std::to_string(left) + " left and " + std::to_string(right) +
@@ -59,7 +59,7 @@ struct FirstPairs {
 FirstPairs readFirstPairs(BagPairs& pairs, bool infos_needed) {
   constexpr std::size_t kPairs = 16, kPairsWithoutInfo = 300;
   FirstPairs first;
-  const auto knowsInfos = [&] { return pairs.info(Side::kLeft) && pairs.info(Side::kRight); };
+  const auto knowsInfos = [&] { return pairs.info(StereoSide::kLeft) && pairs.info(StereoSide::kRight); };
   try {
     while (first.stamps_ns.size() < (infos_needed && !knowsInfos() ? kPairsWithoutInfo : kPairs)) {
       const auto pair = pairs.next();
@@ -89,13 +89,13 @@ CameraInfoPair requiredInfos(const BagPairs& pairs, const std::string& bag, cons
     throw InputError(infos.left_name +
                      ": would be the camera_info of both images; give --camera fx,fy,cx,cy,baseline of a rectified "
                      "pair, or --calibration FILE");
-  for (const Side side : {Side::kLeft, Side::kRight})
+  for (const StereoSide side : kStereoSides)
     if (!pairs.info(side))
       throw InputError(
-          (side == Side::kLeft ? infos.left_name : infos.right_name) +
+          (side == StereoSide::kLeft ? infos.left_name : infos.right_name) +
           ": has no message of sensor_msgs/CameraInfo with the first pairs; record it beside the images, or "
           "give --camera fx,fy,cx,cy,baseline of a rectified pair, or --calibration FILE");
-  infos.left = *pairs.info(Side::kLeft), infos.right = *pairs.info(Side::kRight);
+  infos.left = *pairs.info(StereoSide::kLeft), infos.right = *pairs.info(StereoSide::kRight);
   return infos;
 }
 

@@ -36,10 +36,10 @@ std::optional<BagPair> BagPairs::take(const BagMessage& message) {
   const BagTopic& topic = bag_->topics()[message.topic];
   const bool left = topic.name == topics_.left;
   if (!left && topic.name != topics_.right) {
-    takeInfo(message, topic.name == info_topics_[0] ? Side::kLeft : Side::kRight);
+    takeInfo(message, topic.name == info_topics_[0] ? StereoSide::kLeft : StereoSide::kRight);
     return std::nullopt;
   }
-  const Side side = left ? Side::kLeft : Side::kRight;
+  const StereoSide side = left ? StereoSide::kLeft : StereoSide::kRight;
   ++images_[indexOf(side)];
   BagImage image(name_, topic, message);
   noteDistance(side, image.stamp_ns);
@@ -55,7 +55,7 @@ std::optional<BagPair> BagPairs::take(const BagMessage& message) {
 }
 
 /// Stamps of strangers may be anything: a difference that no number holds counts as the largest.
-void BagPairs::noteDistance(Side side, std::int64_t stamp_ns) {
+void BagPairs::noteDistance(StereoSide side, std::int64_t stamp_ns) {
   stamps_ns_[indexOf(side)] = stamp_ns;
   const auto other_ns = stamps_ns_[indexOf(otherThan(side))];
   if (!other_ns) return;
@@ -66,7 +66,7 @@ void BagPairs::noteDistance(Side side, std::int64_t stamp_ns) {
                          static_cast<std::int64_t>(std::min(apart_ns, static_cast<std::uint64_t>(kMost))));
 }
 
-void BagPairs::takeInfo(const BagMessage& message, Side side) {
+void BagPairs::takeInfo(const BagMessage& message, StereoSide side) {
   const BagTopic& topic = bag_->topics()[message.topic];
   auto& info = infos_[indexOf(side)];
   const auto format = wireFormatNamed(topic.encoding);
@@ -75,13 +75,13 @@ void BagPairs::takeInfo(const BagMessage& message, Side side) {
       WireReader(message.data, *format, name_ + ": " + message.place + ", " + printable(topic.name, 80)));
 }
 
-std::int64_t BagPairs::withoutPartner(Side side) const {
+std::int64_t BagPairs::withoutPartner(StereoSide side) const {
   return pairing_.unpaired(side) + static_cast<std::int64_t>(pairing_.waiting(side));
 }
 
 std::string BagPairs::remark() const {
   std::string text;
-  const std::int64_t left = withoutPartner(Side::kLeft), right = withoutPartner(Side::kRight);
+  const std::int64_t left = withoutPartner(StereoSide::kLeft), right = withoutPartner(StereoSide::kRight);
   if (left + right > 0)
     text = name_ + ": " + std::to_string(left) + " left and " + std::to_string(right) +
            " right images have no partner within " + std::to_string(kTolerance_ns / 1'000'000) + " ms and are left out";

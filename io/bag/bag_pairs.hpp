@@ -35,9 +35,9 @@ class BagPairs {
 
   BagReader& bag() { return *bag_; }
   /// The first camera_info of a side that came so far.
-  const std::optional<CameraInfoMessage>& info(Side side) const { return infos_[indexOf(side)]; }
+  const std::optional<CameraInfoMessage>& info(StereoSide side) const { return infos_[indexOf(side)]; }
   /// Images of a side that came.
-  std::size_t images(Side side) const { return images_[indexOf(side)]; }
+  std::size_t images(StereoSide side) const { return images_[indexOf(side)]; }
   /// The least difference between an image's stamp and that of the other side's last one; empty where there are none.
   std::optional<std::int64_t> nearest_ns() const { return nearest_ns_; }
   /// A sentence about the images that belong to no pair; empty where there are none. Call it at the end.
@@ -46,9 +46,9 @@ class BagPairs {
  private:
   void requireListed();
   std::optional<BagPair> take(const BagMessage& message);
-  void takeInfo(const BagMessage& message, Side side);
-  void noteDistance(Side side, std::int64_t stamp_ns);
-  std::int64_t withoutPartner(Side side) const;
+  void takeInfo(const BagMessage& message, StereoSide side);
+  void noteDistance(StereoSide side, std::int64_t stamp_ns);
+  std::int64_t withoutPartner(StereoSide side) const;
 
   std::string name_;
   ImageTopics topics_;
