@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -26,7 +27,7 @@ struct BagMessage {
   std::string place{};  // in the bag, as `byte 1234`
 };
 
-/// A recording of many topics' messages, read from its beginning to its end. One thread reads.
+/// A recording of many topics' messages, read from its beginning to its end. One thread reads, any thread may stop.
 class BagReader {
  public:
   virtual ~BagReader() = default;
@@ -35,9 +36,15 @@ class BagReader {
   virtual const std::vector<BagTopic>& topics() const = 0;
   /// Leaves out the messages of all other topics, from now on.
   virtual void select(std::set<std::string> topics) = 0;
-  /// The next message; empty after the last one. Throws InputError with the file's name and the position where the file
-  /// is damaged, or ends before it is finished; nothing can be read afterwards.
+  /// The next message; empty after the last one, and after `stop`. Throws InputError with the file's name and the
+  /// position where the file is damaged, or ends before it is finished; nothing can be read afterwards.
   virtual std::optional<BagMessage> next() = 0;
+
+  void stop() { stopped_.store(true); }
+  bool stopped() const { return stopped_.load(); }
+
+ private:
+  std::atomic<bool> stopped_{false};
 };
 
 /// True for files and folders that are bags by their name or their first bytes.

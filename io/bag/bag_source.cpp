@@ -34,10 +34,15 @@ BagSource::BagSource(const BagDrive& drive, const Params& params)
   });
 }
 
-BagSource::~BagSource() { ring_.close(); }
+BagSource::~BagSource() { stop(); }
+
+void BagSource::stop() {
+  pairs_.bag().stop();
+  ring_.close();
+}
 
 SourceEnd BagSource::finish() {
-  ring_.close();
+  stop();
   thread_.join();
   return end_;
 }
@@ -55,7 +60,7 @@ SourceEnd BagSource::readAll() {
     } catch (const InputError& damage) {
       return endAfter(index, damage.what());
     }
-    if (!pair) return endAfter(index, "");
+    if (!pair) return pairs_.bag().stopped() ? SourceEnd{} : endAfter(index, "");
     {
       const std::lock_guard lock(mutex_);
       stamps_.push_back({pair->left.stamp_ns});

@@ -35,7 +35,7 @@ class BagSource final : public PairSource {
   BagSource& operator=(const BagSource&) = delete;
 
   std::optional<StereoFrame> next() override { return ring_.pop(); }
-  void stop() override { ring_.close(); }
+  void stop() override;
   SourceEnd finish() override;
 
   FrameId first() const override { return {static_cast<std::int64_t>(params_.range.begin)}; }

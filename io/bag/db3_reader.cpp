@@ -86,7 +86,7 @@ void Db3Reader::readTopics() {
 }
 
 std::optional<BagMessage> Db3Reader::next() {
-  while (step(order_.get())) {
+  while (!stopped() && step(order_.get())) {
     const auto place = places_.find(sqlite3_column_int64(order_.get(), 1));
     if (place == places_.end() || (selected_ && !selected_->contains(topics_[place->second].name))) continue;
     const std::int64_t number = sqlite3_column_int64(order_.get(), 0), log_ns = sqlite3_column_int64(order_.get(), 2);

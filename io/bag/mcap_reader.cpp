@@ -135,7 +135,7 @@ void McapReader::openChunk(const Record& record) {
 }
 
 std::optional<BagMessage> McapReader::next() {
-  while (!ended_) {
+  while (!ended_ && !stopped()) {
     const auto record = chunk_.empty() ? nextInFile() : nextInChunk();
     if (!record)
       ended_ = true;

@@ -151,7 +151,20 @@ TEST_F(BagSourceTest, StopsWithoutTakingAllPairs) {
   const auto source = sourceOf(NumberedBag().pairs(0, 60).whole(), {.ahead = 2});
   EXPECT_TRUE(source->next());
   source->stop();
-  EXPECT_FALSE(source->finish().damaged);
+  const SourceEnd end = source->finish();
+  EXPECT_EQ(end.remark, "");
+  EXPECT_FALSE(end.damaged);
+}
+
+/// As in what follows the last pair of a long recording.
+TEST_F(BagSourceTest, StopsWhileNoPairComes) {
+  test::McapText rest;
+  for (int i = 0; i < 1000; ++i) rest.message(1, 0, "no image");
+  BagPairs pairs(folder_.write("bag.mcap", NumberedBag().pairs(0, 1).cut() + rest.text()),
+                 parseImageTopics(NumberedBag::kTopics), BagPairs::Infos::kLeaveOut);
+  EXPECT_TRUE(pairs.next());
+  pairs.bag().stop();
+  EXPECT_FALSE(pairs.next()) << "what follows would be an error";
 }
 
 }  // namespace
