@@ -71,13 +71,13 @@ inline std::string rosCompressedImage(Wire wire, std::int64_t stamp_ns, std::str
 }
 
 /// A camera of a rectified pair, 300 px long, with its middle in that of 320 x 160 pixels.
-inline std::string rosCameraInfo(Wire wire, double baseline_m, std::uint32_t binning = 0) {
+inline std::string rosCameraInfo(Wire wire, double baseline_m, std::uint32_t binning = 0, double k1 = 0) {
   RosMessageText message(wire);
   message.head(0).u32(160).u32(320).word("plumb_bob").u32(5);
   const auto fill = [&](const std::vector<double>& values) {
     for (const double value : values) message.f64(value);
   };
-  fill({0, 0, 0, 0, 0});
+  fill({k1, 0, 0, 0, 0});
   fill({300, 0, 160, 0, 300, 80, 0, 0, 1});
   fill({1, 0, 0, 0, 1, 0, 0, 0, 1});
   fill({300, 0, 160, -300 * baseline_m, 0, 300, 80, 0, 0, 0, 1, 0});

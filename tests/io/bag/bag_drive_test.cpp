@@ -6,6 +6,7 @@
 
 #include "io/bag/bag_reader.hpp"
 #include "io/errors.hpp"
+#include "io/rig/rectification.hpp"
 #include "tests/io/bag/numbered_bag.hpp"
 #include "tests/io/temporary_folder.hpp"
 
@@ -44,6 +45,30 @@ TEST_F(BagDriveTest, CameraRateAndTimesAreThoseOfTheMessages) {
   EXPECT_EQ(drive.sequence.calibrated_by, "/left/camera_info,/right/camera_info");
   EXPECT_EQ(drive.rate_hz, 10);
   EXPECT_EQ(drive.first.ns, NumberedBag::stampOf_ns(0));
+}
+
+TEST_F(BagDriveTest, RawImagesAreRectifiedByTheirMessages) {
+  const BagDrive drive = open(NumberedBag(true, -0.2).pairs(0, 2).whole());
+  ASSERT_TRUE(drive.sequence.rectification);
+  EXPECT_EQ(drive.sequence.rectification->left.coefficients[0], -0.2);
+  EXPECT_EQ(drive.sequence.camera.fx_px, 300);
+  EXPECT_EQ(drive.sequence.camera.baseline_m, 0.5);
+}
+
+TEST_F(BagDriveTest, SamplesOf16BitsAreScaledByTheBrightest) {
+  const auto deep = [](std::int64_t stamp_ns, std::uint8_t upper) {
+    std::string pixels(2 * 320 * 160, '\0');
+    pixels[2 * 320 + 1] = static_cast<char>(upper);
+    test::RosMessageText message(test::Wire::kCdr);
+    return message.head(stamp_ns).u32(160).u32(320).word("mono16").u8(0).u32(640).bytes(pixels).text();
+  };
+  NumberedBag bag;
+  bag.message("left", deep(10, 1), 10).message("right", deep(10, 2), 10);
+  bag.message("left", deep(20'000'000, 1), 20).message("right", deep(20'000'000, 0x0F), 20);
+  const BagDrive drive = open(bag.whole());
+  EXPECT_EQ(drive.conversion.sample_bits, 12);
+  ASSERT_TRUE(drive.sequence.samples);
+  EXPECT_THAT(drive.sequence.samples->why, HasSubstr("3840"));
 }
 
 TEST_F(BagDriveTest, TheUsersCameraComesBeforeTheBags) {

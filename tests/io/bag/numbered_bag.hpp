@@ -16,7 +16,8 @@ class NumberedBag {
   static constexpr std::int64_t kPeriod_ns = 100'000'000;
   static constexpr const char* kTopics = "/left/image_raw,/right/image_raw";
 
-  explicit NumberedBag(bool with_infos = true) {
+  /// The lenses distort by k1.
+  explicit NumberedBag(bool with_infos = true, double k1 = 0) {
     text_.magic().header();
     for (const char* side : {"left", "right"}) {
       const std::string name = std::string("/") + side;
@@ -24,8 +25,8 @@ class NumberedBag {
       if (with_infos) text_.topic(topic(side) + 2, name + "/camera_info", "sensor_msgs/msg/CameraInfo");
     }
     if (!with_infos) return;
-    text_.message(topic("left") + 2, 0, rosCameraInfo(Wire::kCdr, 0));
-    text_.message(topic("right") + 2, 0, rosCameraInfo(Wire::kCdr, 0.5));
+    text_.message(topic("left") + 2, 0, rosCameraInfo(Wire::kCdr, 0, 0, k1));
+    text_.message(topic("right") + 2, 0, rosCameraInfo(Wire::kCdr, 0.5, 0, k1));
   }
 
   static std::int64_t stampOf_ns(int number) { return (number + 1) * kPeriod_ns; }
