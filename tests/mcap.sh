@@ -26,7 +26,7 @@ node "$work/read_mcap.js" "$work/run" "$work/exported.mcap" final
 # A bag's camera_info has the projections, and not how exact they are.
 grep '^P[01]:' "$sequence/calib.txt" >"$work/projections.txt"
 "$program" run "$sequence" --calibration "$work/projections.txt" --out "$work/folder" --quiet
-for bag in "ros2 raw none" "ros2 raw lz4" "ros2 compressed zstd" "ros1 raw zstd" "ros1 compressed lz4"; do
+for bag in "ros2 raw none" "ros2 raw lz4" "ros2 compressed zstd" "ros1 raw zstd" "ros1 compressed lz4" "foxglove raw none" "foxglove compressed zstd"; do
   read -r profile kind compression <<<"$bag"
   node "$work/write_bag.js" "$sequence" "$work/drive.mcap" "$profile" "$kind" "$compression"
   end=$([[ $kind == compressed ]] && echo /compressed || true)

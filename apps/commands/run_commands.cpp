@@ -49,11 +49,11 @@ void addPacking(CLI::App& command, RunOptions& options) {
 
 void addTopics(CLI::App& command, RunOptions& options) {
   command
-      .add_option(
-          "--topics", options.topics,
-          "Topics of a bag's images, of sensor_msgs' Image or CompressedImage; without it, run lists those that "
-          "there are. The calibration is that of the camera_info beside them, unless --camera or --calibration "
-          "is given")
+      .add_option("--topics", options.topics,
+                  "Topics of a bag's images, of sensor_msgs' (or foxglove's) images, compressed or not; without it, "
+                  "run lists those that "
+                  "there are. The calibration is that of the camera_info beside them, unless --camera or --calibration "
+                  "is given")
       ->type_name("LEFT,RIGHT");
 }
 

@@ -15,10 +15,11 @@ BagImage::BagImage(const std::string& bag, const BagTopic& topic, const BagMessa
   const auto kind = sensorMessageNamed(topic.type);
   if (!kind || *kind == SensorMessage::kCameraInfo)
     throw InputError(name_ + ": is of type " + printable(topic.type) +
-                     "; sensor_msgs' Image and CompressedImage are read");
+                     "; sensor_msgs' Image and CompressedImage are read, and foxglove's RawImage and CompressedImage");
   const auto format = wireFormatNamed(topic.encoding);
   if (!format)
-    throw InputError(name_ + ": is encoded as '" + printable(topic.encoding) + "'; cdr (ROS 2) and ros1 are read");
+    throw InputError(name_ + ": is encoded as '" + printable(topic.encoding) +
+                     "'; cdr (ROS 2), ros1 and protobuf are read");
   kind_ = *kind, format_ = *format;
   if (message.data.size() > kMost_bytes)
     throw InputError(name_ + ": has " + std::to_string(message.data.size()) + " bytes, " + std::to_string(kMost_bytes) +

@@ -1,5 +1,7 @@
 #include "io/bag/sensor_messages.hpp"
 
+#include "io/bag/foxglove_messages.hpp"
+
 namespace motorcade {
 namespace {
 
@@ -29,6 +31,9 @@ bool readReduction(WireReader& reader, const CameraInfoMessage& info) {
 }  // namespace
 
 std::optional<SensorMessage> sensorMessageNamed(std::string_view type) {
+  if (type == "foxglove.RawImage") return SensorMessage::kImage;
+  if (type == "foxglove.CompressedImage") return SensorMessage::kCompressedImage;
+  if (type == "foxglove.CameraCalibration") return SensorMessage::kCameraInfo;
   if (!type.starts_with("sensor_msgs/")) return std::nullopt;
   const std::string_view name = type.substr(type.rfind('/') + 1);
   if (name == "Image") return SensorMessage::kImage;
@@ -40,12 +45,17 @@ std::optional<SensorMessage> sensorMessageNamed(std::string_view type) {
 std::optional<WireFormat> wireFormatNamed(std::string_view encoding) {
   if (encoding == "cdr") return WireFormat::kCdr;
   if (encoding == "ros1") return WireFormat::kRos1;
+  if (encoding == "protobuf") return WireFormat::kProtobuf;
   return std::nullopt;
 }
 
-std::int64_t stampOfMessage(WireReader reader) { return readHead(reader).stamp_ns; }
+std::int64_t stampOfMessage(WireReader reader) {
+  if (reader.format() == WireFormat::kProtobuf) return stampOfFoxglove(reader.message(), reader.name());
+  return readHead(reader).stamp_ns;
+}
 
 ImageMessage readImageMessage(WireReader reader) {
+  if (reader.format() == WireFormat::kProtobuf) return readFoxgloveImage(reader.message(), reader.name());
   ImageMessage image;
   MessageHead head = readHead(reader);
   image.stamp_ns = head.stamp_ns;
@@ -60,6 +70,7 @@ ImageMessage readImageMessage(WireReader reader) {
 }
 
 CompressedImageMessage readCompressedImageMessage(WireReader reader) {
+  if (reader.format() == WireFormat::kProtobuf) return readFoxgloveCompressedImage(reader.message(), reader.name());
   CompressedImageMessage image;
   MessageHead head = readHead(reader);
   image.stamp_ns = head.stamp_ns;
@@ -70,6 +81,7 @@ CompressedImageMessage readCompressedImageMessage(WireReader reader) {
 }
 
 CameraInfoMessage readCameraInfoMessage(WireReader reader) {
+  if (reader.format() == WireFormat::kProtobuf) return readFoxgloveCalibration(reader.message(), reader.name());
   CameraInfoMessage info;
   MessageHead head = readHead(reader);
   info.stamp_ns = head.stamp_ns;

@@ -10,7 +10,7 @@ namespace motorcade {
 
 WireReader::WireReader(std::span<const std::uint8_t> message, WireFormat format, std::string name)
     : message_(message), format_(format), name_(std::move(name)) {
-  if (format_ == WireFormat::kRos1) return;
+  if (format_ != WireFormat::kCdr) return;
   constexpr std::size_t kHead = 4;
   constexpr std::uint8_t kPlain2 = 6;  // XCDR2, of which doubles are aligned to four bytes
   const std::uint8_t kind = take(kHead)[1];

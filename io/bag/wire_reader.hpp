@@ -9,10 +9,11 @@
 
 namespace motorcade {
 
-/// Ways in which ROS writes the fields of a message.
+/// Ways in which the fields of a message are written.
 enum class WireFormat {
-  kCdr,   // ROS 2: aligned, with a head that tells the order of bytes
-  kRos1,  // packed, lowest byte first
+  kCdr,       // ROS 2: aligned, with a head that tells the order of bytes
+  kRos1,      // packed, lowest byte first
+  kProtobuf,  // Foxglove's; its fields are taken by ProtobufFields
 };
 
 /// Takes a message's fields one by one. Whatever would lie beyond its bytes is an InputError that begins with `name`.
@@ -21,6 +22,9 @@ class WireReader {
   WireReader(std::span<const std::uint8_t> message, WireFormat format, std::string name);
 
   WireFormat format() const { return format_; }
+  const std::string& name() const { return name_; }
+  /// All bytes.
+  std::span<const std::uint8_t> message() const { return message_; }
   std::uint8_t u8() { return static_cast<std::uint8_t>(number(1)); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(number(4)); }
   double f64();

@@ -138,7 +138,7 @@ Image grayImageOf(const ImageMessage& message, const std::string& name, ImagePoo
                   const MessageConversion& conversion) {
   const ImageHeader header = imageHeaderOf(message, name);
   requireExpected(header, conversion, name);
-  const Image samples = samplesOf(message, pixelKindOf(message, name), pool, conversion.sample_bits);
+  Image samples = samplesOf(message, pixelKindOf(message, name), pool, conversion.sample_bits);
   const auto named = mosaicNamed(message.encoding);
   const auto mosaic = named ? named : conversion.bayer;
   if (!mosaic) return samples;

@@ -1,5 +1,5 @@
 // Writes the images of a drive to a bag with other people's writers:
-//   node write_bag.js DRIVE FILE PROFILE KIND COMPRESSION     ros1|ros2, raw|compressed, none|zstd|lz4
+//   node write_bag.js DRIVE FILE PROFILE KIND COMPRESSION     ros1|ros2|foxglove, raw|compressed, none|zstd|lz4
 // DRIVE has image_0, image_1 and calib.txt as KITTI's, and times.txt, or else a pair each tenth of a second. Where the first time is 0,
 // the first heads tell none.
 const fs = require("node:fs");
@@ -11,15 +11,20 @@ const { parse } = require("@foxglove/rosmsg");
 const { ros1, ros2humble } = require("@foxglove/rosmsg-msgs-common");
 const ros1Writer = require("@foxglove/rosmsg-serialization").MessageWriter;
 const ros2Writer = require("@foxglove/rosmsg2-serialization").MessageWriter;
+const { foxgloveMessageSchemas, generateProto } = require("@foxglove/schemas/internal");
 const { PNG } = require("pngjs");
+const protobuf = require("protobufjs");
 
 const [drive, file, profile, kind, compression] = process.argv.slice(2);
 const isRos2 = profile === "ros2";
+const isFoxglove = profile === "foxglove";
 const definitions = isRos2 ? ros2humble : ros1;
 const second_ns = 1000000000n;
 
 const keyOf = (name) => name.replace("/msg/", "/");
-const typeName = (name) => (isRos2 ? name : keyOf(name));
+const foxgloveNames = { Image: "RawImage", CompressedImage: "CompressedImage", CameraInfo: "CameraCalibration" };
+const foxgloveName = (name) => foxgloveNames[name.split("/").pop()];
+const typeName = (name) => (isFoxglove ? `foxglove.${foxgloveName(name)}` : isRos2 ? name : keyOf(name));
 
 function timesOf(count) {
   const times = path.join(drive, "times.txt");
@@ -44,6 +49,15 @@ function writerOf(name) {
   const Writer = isRos2 ? ros2Writer : ros1Writer;
   const writer = new Writer(all.map((definition, i) => (i === 0 ? { ...definition, name: undefined } : definition)));
   return (message) => writer.writeMessage(message);
+}
+
+// Writes a message of ROS as Foxglove's of the same meaning.
+function foxgloveWriterOf(name) {
+  const { root } = protobuf.parse(generateProto(foxgloveMessageSchemas[foxgloveName(name)], []), new protobuf.Root(), { keepCase: true });
+  root.addJSON(protobuf.common.get("google/protobuf/timestamp.proto").nested);
+  const type = root.lookupType(typeName(name));
+  return ({ header: { stamp, frame_id }, ...fields }) =>
+    type.encode(type.fromObject({ timestamp: { seconds: stamp.sec, nanos: stamp.nsec }, frame_id, ...fields })).finish();
 }
 
 function header(index) {
@@ -94,9 +108,9 @@ function compressor(zstd) {
 async function addTopic(writer, topic, type) {
   const name = typeName(type);
   const data = new TextEncoder().encode("# the readers of the test know the type\n");
-  const schemaId = await writer.registerSchema({ name, encoding: isRos2 ? "ros2msg" : "ros1msg", data });
-  const channel = { schemaId, topic, messageEncoding: isRos2 ? "cdr" : "ros1", metadata: new Map() };
-  return { id: await writer.registerChannel(channel), write: writerOf(name) };
+  const schemaId = await writer.registerSchema({ name, encoding: isFoxglove ? "protobuf" : isRos2 ? "ros2msg" : "ros1msg", data });
+  const channel = { schemaId, topic, messageEncoding: isFoxglove ? "protobuf" : isRos2 ? "cdr" : "ros1", metadata: new Map() };
+  return { id: await writer.registerChannel(channel), write: isFoxglove ? foxgloveWriterOf(type) : writerOf(name) };
 }
 
 async function writeBag(zstd) {

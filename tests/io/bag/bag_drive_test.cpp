@@ -17,7 +17,6 @@ using test::messageOf;
 using test::NumberedBag;
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::Not;
 
 class BagDriveTest : public testing::Test {
  protected:
