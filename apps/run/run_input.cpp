@@ -118,7 +118,7 @@ RunInput openRecorded(const RunOptions& options, InputPolicy policy) {
   return input;
 }
 
-/// Where decoding is too slow for a live camera, pairs that a later one has overtaken are left out.
+/// Pairs of a live camera that a later one has overtaken are left out where decoding is too slow.
 std::function<bool(Timestamp)> wantedPairs(const PipelineConfig& config, const std::optional<CameraClock>& clock) {
   if (!clock || config.pipeline.policy != InputPolicy::kLive) return {};
   return [&clock](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };

@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 
-#include "core/timestamp.hpp"
 #include "io/bag/bag_image.hpp"
 #include "io/bag/bag_reader.hpp"
 #include "io/bag/bag_topics.hpp"

@@ -77,7 +77,7 @@ McapReader::Record McapReader::readRecord() {
   return record;
 }
 
-/// Where the summary begins by the footer, the last record; 0 where there is none.
+/// The summary's beginning by the footer, the last record; 0 where there is none.
 std::uint64_t McapReader::summaryStart() {
   constexpr std::size_t kFooter_bytes = kHead_bytes + 20, kEnd_bytes = kFooter_bytes + mcap::kMagic.size();
   if (file_.left() < kEnd_bytes) return 0;

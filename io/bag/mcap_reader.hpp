@@ -30,9 +30,6 @@ class McapReader final : public BagReader {
     std::uint64_t position = 0;  // in the file
     std::span<const std::uint8_t> content{};
   };
-  struct Schema {
-    std::string name;
-  };
 
   std::uint64_t readHead(Record& record);
   Record readRecord();

@@ -30,7 +30,7 @@ class WireReader {
   double f64();
   void fill(std::span<double> values);
   std::string text();
-  /// As many as a count before them tells.
+  /// Bytes, as many as a count before them tells.
   std::span<const std::uint8_t> bytes() { return take(u32()); }
   std::vector<double> doubles(std::size_t most);
 

@@ -12,7 +12,7 @@
 namespace motorcade {
 namespace {
 
-/// Where an encoding has the samples of a pixel that make its gray. Of YUV the luma is gray already.
+/// The samples of a pixel that make its gray, by their place. The luma of YUV is gray already.
 struct PixelKind {
   std::string_view encoding;
   int channels = 1;

@@ -49,7 +49,7 @@ ImageHeader imageHeaderOf(const CompressedImageMessage& message, const std::stri
 int brightestSampleOf(const ImageMessage& message, const std::string& name);
 int brightestSampleOf(const CompressedImageMessage& message, const std::string& name);
 
-/// As 8-bit gray; colors are weighted as those of files are, mosaics become the gray of their colors.
+/// The image as 8-bit gray; colors are weighted as those of files are, mosaics become the gray of their colors.
 Image grayImageOf(const ImageMessage& message, const std::string& name, ImagePool& pool,
                   const MessageConversion& conversion = {});
 Image grayImageOf(const CompressedImageMessage& message, const std::string& name, ImagePool& pool,

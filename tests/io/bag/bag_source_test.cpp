@@ -156,7 +156,7 @@ TEST_F(BagSourceTest, StopsWithoutTakingAllPairs) {
   EXPECT_FALSE(end.damaged);
 }
 
-/// As in what follows the last pair of a long recording.
+/// The messages behind the last pair of a long recording may be many.
 TEST_F(BagSourceTest, StopsWhileNoPairComes) {
   test::McapText rest;
   for (int i = 0; i < 1000; ++i) rest.message(1, 0, "no image");

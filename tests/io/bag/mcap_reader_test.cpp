@@ -49,7 +49,7 @@ std::string twoMessages() {
 
 class McapReaderTest : public testing::Test {
  protected:
-  /// What the messages of a file say, with an end that tells of damage.
+  /// The messages of a file, and the error that ends them if there is one.
   std::vector<std::string> messagesIn(const std::string& content, const std::set<std::string>& topics = {}) {
     std::vector<std::string> messages;
     try {

@@ -43,7 +43,7 @@ class NumberedBag {
     for (int number = begin; number < end; ++number) left(number).right(number);
     return *this;
   }
-  /// Without the end that a finished file has.
+  /// The file without the end that a finished one has.
   const std::string& cut() const { return text_.text(); }
   std::string whole() const { return McapText(text_).end().text(); }
 
