@@ -12,7 +12,6 @@ namespace motorcade {
 namespace {
 
 using test::Wire;
-using testing::HasSubstr;
 
 constexpr Wire kWires[] = {Wire::kCdr, Wire::kBigCdr, Wire::kCdr2, Wire::kRos1};
 
