@@ -52,8 +52,8 @@ fs::path fileOfFolder(const fs::path& folder) {
 
 bool isBag(const fs::path& path) {
   if (fs::is_directory(path)) return fs::exists(path / kMetadata);
-  if (!fs::is_regular_file(path)) return false;
   if (const std::string suffix = lowerSuffix(path); suffix == ".mcap" || suffix == ".db3") return true;
+  if (!fs::is_regular_file(path)) return false;
   try {
     const std::string start = startOf(path);
     return start.starts_with(mcap::kMagic) || start.starts_with(kSqliteStart);

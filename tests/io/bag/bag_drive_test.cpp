@@ -146,6 +146,7 @@ TEST_F(BagDriveTest, OtherFilesAreNoBags) {
   EXPECT_FALSE(isBag(folder_.write("pairs.txt", "a.png b.png\n")));
   EXPECT_FALSE(isBag(folder_.path()));
   EXPECT_FALSE(isBag("-"));
+  EXPECT_TRUE(isBag("not_there.mcap")) << "the message will be that it is not there";
   EXPECT_TRUE(isBag(folder_.write("no_suffix", NumberedBag().whole())));
   const auto ros1 = folder_.write("drive.mcap", "#ROSBAG V2.0\n");
   EXPECT_THAT(messageOf<InputError>([&] { openBag(ros1); }), HasSubstr("mcap convert"));
