@@ -72,8 +72,11 @@ struct SampleUse {
 /// The user's word for a stream of pairs on the standard input, in place of a folder.
 inline constexpr const char* kStandardInput = "-";
 
+/// The layout of a drive whose pairs are in a bag.
+inline constexpr const char* kBagLayout = "bag";
+
 /// A recorded drive: where its images are, when they were taken, with what camera, and what is known of the truth. Of a
-/// stream (`kStandardInput`), which brings its pairs one by one, there are neither frames nor stamps.
+/// pipe (`kStandardInput`) and a bag, which bring their pairs one by one, there are neither frames nor stamps.
 struct Sequence {
   /// Files with ground truth; an empty path where there is none.
   struct Truth {
@@ -94,12 +97,13 @@ struct Sequence {
   };
 
   /// The drive's name in messages.
-  std::string name() const { return streamed() ? "standard input" : folder.string(); }
-  bool streamed() const { return folder == kStandardInput; }
+  std::string name() const { return piped() ? "standard input" : folder.string(); }
+  bool piped() const { return folder == kStandardInput; }
+  bool streamed() const { return piped() || layout == kBagLayout; }
 
   std::filesystem::path folder{};
-  /// plain, odometry, tracking, raw, euroc, kitti360, virtual_kitti, argoverse, list, y4m_side_by_side or
-  /// y4m_over_under
+  /// plain, odometry, tracking, raw, euroc, kitti360, virtual_kitti, argoverse, list, y4m_side_by_side, y4m_over_under
+  /// or bag
   std::string layout{};
   CameraPair pair = CameraPair::kGray;
   Calibration calibration{};

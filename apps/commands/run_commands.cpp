@@ -6,6 +6,7 @@
 #include "apps/commands/commands.hpp"
 #include "apps/inject/fault_spec.hpp"
 #include "apps/run/run_command.hpp"
+#include "io/bag/bag_reader.hpp"
 
 namespace motorcade {
 namespace {
@@ -16,7 +17,8 @@ constexpr const char* kSequenceHelp =
     "images, left and right, with their calibration; or a list of images, a line LEFT RIGHT or STAMP LEFT RIGHT for "
     "each pair";
 constexpr const char* kRunInputHelp =
-    "; or - for a stream of pictures on the standard input (YUV4MPEG2, which ffmpeg and GStreamer write)";
+    "; or a bag of ROS 2 (FILE.mcap, FILE.db3, or the folder of one), with --topics; or - for a stream of pictures on "
+    "the standard input (YUV4MPEG2, which ffmpeg and GStreamer write)";
 
 void addGivenCameras(CLI::App& command, GivenCameras& given) {
   CLI::Option* const camera = command
@@ -45,6 +47,16 @@ void addPacking(CLI::App& command, RunOptions& options) {
       ->excludes(beside);
 }
 
+void addTopics(CLI::App& command, RunOptions& options) {
+  command
+      .add_option("--topics", options.topics,
+                  "Topics of a bag's images, of sensor_msgs' (or foxglove's) images, compressed or not; without it, "
+                  "run lists those that "
+                  "there are. The calibration is that of the camera_info beside them, unless --camera or --calibration "
+                  "is given")
+      ->type_name("LEFT,RIGHT");
+}
+
 void addPace(CLI::App& command, RunOptions& options) {
   command.add_option("--rate", options.rate, "Pace of the replay in pairs per second, or max (the default)");
   command
@@ -54,6 +66,17 @@ void addPace(CLI::App& command, RunOptions& options) {
       ->default_str("10");
   command.add_flag("--live", options.live,
                    "Behave like a camera that does not wait: the newest pair wins, others are dropped");
+}
+
+/// The input, all that tells of it, and the folder of the results. A bag's topics may be listed without such a folder.
+void addInputAndFolder(CLI::App& command, RunOptions& options) {
+  CLI::Option* const input =
+      command.add_option("SEQUENCE", options.sequence, std::string(kSequenceHelp) + kRunInputHelp)->required();
+  addPacking(command, options);
+  addTopics(command, options);
+  addGivenCameras(command, options.given);
+  CLI::Option* const out = command.add_option("--out", options.out, "Folder for the results")->required();
+  input->each([out](const std::string& path) { out->required(!isBag(path)); });
 }
 
 /// What a run writes and serves for the eye, beside its folder of results.
@@ -101,10 +124,7 @@ void addWhatComesBeside(CLI::App& command, RunOptions& options) {
 void addRun(CLI::App& app, Action& action) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Follow the camera and the moving vehicles through a stereo sequence");
-  command->add_option("SEQUENCE", options->sequence, std::string(kSequenceHelp) + kRunInputHelp)->required();
-  addPacking(*command, *options);
-  addGivenCameras(*command, options->given);
-  command->add_option("--out", options->out, "Folder for the results")->required();
+  addInputAndFolder(*command, *options);
   addPace(*command, *options);
   addWaysToSee(*command, options);
   command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
@@ -130,7 +150,10 @@ void addRun(CLI::App& app, Action& action) {
   command->add_flag("--force", options->force,
                     "Replace a finished run, and go on where the input is found to be worthless");
   command->footer("Example: motorcade run DRIVE --out RUN --masks");
-  command->callback([options, &action] { action = [options] { return runSequence(*options); }; });
+  command->callback([options, &action] {
+    if (options->out.empty() && !options->topics.empty()) throw CLI::RequiredError("--out");
+    action = [options] { return runSequence(*options); };
+  });
 }
 
 void addCheck(CLI::App& app, Action& action) {

@@ -6,12 +6,15 @@
 #include <Eigen/Core>
 #include <jpeglib.h>
 #include <libdeflate.h>
+#include <lz4.h>
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/version.h>
 #include <opencv2/core/version.hpp>
 #include <png.h>
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/version.h>
+#include <sqlite3.h>
+#include <zstd.h>
 
 #include "core/instruction_set.hpp"
 
@@ -50,6 +53,9 @@ std::vector<std::pair<std::string, std::string>> versions() {
           {"libpng", png_get_libpng_ver(nullptr)},
           {"libdeflate", LIBDEFLATE_VERSION_STRING},
           {kJpegName, kJpegVersion},
+          {"zstd", ZSTD_VERSION_STRING},
+          {"lz4", LZ4_VERSION_STRING},
+          {"sqlite", SQLITE_VERSION},
           {"cli11", CLI11_VERSION},
           {"spdlog", numbered(SPDLOG_VER_MAJOR, SPDLOG_VER_MINOR, SPDLOG_VER_PATCH)},
           {"fmt", numbered(FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},

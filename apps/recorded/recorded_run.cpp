@@ -41,6 +41,9 @@ fs::path recordedFolder(const RunFolder& run, const Json& summary) {
     throw InputError(run.folder.string() +
                      ": its images came through a pipe and were not kept; if they are also in a folder, name it with "
                      "--sequence");
+  if (textOf(summary, "layout") == kBagLayout)
+    throw InputError(run.folder.string() + ": its images are in the bag " + folder +
+                     ", which `run` alone reads; if they are also in a folder, name it with --sequence");
   std::error_code unreachable;  // is as if it were not there
   if (!fs::exists(folder, unreachable))
     throw InputError(file.string() + ": names the sequence " + folder +

@@ -92,7 +92,7 @@ void tellNotes(const Sequence& sequence, bool force) {
 
 void announceRate(const RunInput& input, const RunOptions& options) {
   const Sequence& sequence = input.sequence;
-  if (sequence.streamed())
+  if (sequence.piped())
     logInfo(fmt::format("pairs are taken as {} Hz ({})", input.capture_rate_hz,
                         options.fps_hz ? "--fps" : "the stream's header"));
   else if (!sequence.stamps_measured)
@@ -154,16 +154,15 @@ class FollowedPipeline {
 std::unique_ptr<LiveView> makeView(const RunOptions& options, const RunInput& input, const RunSummary& summary) {
   if (!options.shown) return nullptr;
   const auto first = static_cast<std::int64_t>(input.range.begin);
-  const ShownRun run{
-      .name = input.sequence.streamed() ? input.sequence.name() : input.sequence.folder.filename().string(),
-      .folder = options.out.string(),
-      .can_pause = summary.params.policy != InputPolicy::kLive,
-      .first_frame = first,
-      .end_frame = first + static_cast<std::int64_t>(input.count()),
-      .first_stamp = input.first_stamp,
-      .rate_hz = summary.capture_rate_hz,
-      .paced = summary.rate_hz.has_value(),
-      .camera = input.sequence.camera};
+  const ShownRun run{.name = input.sequence.piped() ? input.sequence.name() : input.sequence.folder.filename().string(),
+                     .folder = options.out.string(),
+                     .can_pause = summary.params.policy != InputPolicy::kLive,
+                     .first_frame = first,
+                     .end_frame = first + static_cast<std::int64_t>(input.count()),
+                     .first_stamp = input.first_stamp,
+                     .rate_hz = summary.capture_rate_hz,
+                     .paced = summary.rate_hz.has_value(),
+                     .camera = input.sequence.camera};
   auto view = std::make_unique<LiveView>(parseListenAddress(options.view, "--view"), run, input.sequence);
   std::fprintf(stderr, "the page is at %s\n", view->url().c_str());
   return view;

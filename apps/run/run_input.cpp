@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <functional>
 #include <string>
 #include <utility>
 
 #include <unistd.h>
 
 #include "apps/inject/fault_spec.hpp"
+#include "io/bag/bag_reader.hpp"
+#include "io/bag/bag_source.hpp"
 #include "io/errors.hpp"
 #include "io/sequence_decoder.hpp"
 #include "io/stream/stream_sequence.hpp"
@@ -28,21 +31,28 @@ StereoPacking packingOf(const RunOptions& options) {
   return options.side_by_side ? StereoPacking::kSideBySide : StereoPacking::kOverUnder;
 }
 
+/// Throws UsageError for what is not there where pairs come one by one. `input` is what the user named.
+void refuseOneByOne(const RunOptions& options, const std::string& input) {
+  if (!options.camera_poses.empty())
+    throw UsageError("--camera-poses: needs a pose for each frame, and nobody knows how many " + input +
+                     " has; give a folder of images");
+  for (const Fault& fault : parseFaultSpec(options.inject).faults)
+    if (fault.kind == FaultKind::kTruncated || fault.kind == FaultKind::kBitFlips)
+      throw UsageError("--inject: faults of files (truncated, bitflips) need a file for each image, and " + input +
+                       " has none");
+}
+
 /// Throws UsageError for what a stream has not.
 void refuseForStream(const RunOptions& options, InputPolicy policy) {
   if (options.given.empty())
     throw UsageError(
         "-: a stream brings no calibration: give --camera fx,fy,cx,cy,baseline of a rectified pair, or --calibration "
         "FILE");
-  if (!options.camera_poses.empty())
-    throw UsageError("--camera-poses: needs a pose for each frame, and nobody knows how many a stream has; record it");
+  refuseOneByOne(options, "a stream");
   if (policy == InputPolicy::kLive && !options.rate.empty())
     throw UsageError("--rate " + options.rate +
                      ": with --live, the program that writes the stream sets its pace (of "
                      "ffmpeg, by -re)");
-  for (const Fault& fault : parseFaultSpec(options.inject).faults)
-    if (fault.kind == FaultKind::kTruncated || fault.kind == FaultKind::kBitFlips)
-      throw UsageError("--inject: faults of files (truncated, bitflips) need files, and a stream has none");
   if (::isatty(STDIN_FILENO) == 1)
     throw UsageError(std::string("-: the standard input is a terminal; pipe a stream into it, as by") + kY4mCommand);
 }
@@ -74,10 +84,34 @@ double meanRate_hz(const Sequence& sequence, const FrameRange& range, double fal
          secondsBetween(sequence.stamps[range.begin], sequence.stamps[range.end - 1]);
 }
 
-RunInput openRecorded(const RunOptions& options, InputPolicy policy) {
+void refuseForFiles(const RunOptions& options) {
   if (options.side_by_side || options.over_under)
     throw UsageError(std::string(options.side_by_side ? "--side-by-side" : "--over-under") +
                      ": tells of a stream on the standard input; write - in place of the sequence");
+}
+
+void refuseTopics(const RunOptions& options) {
+  if (!options.topics.empty())
+    throw UsageError("--topics: tells of a bag (FILE.mcap, FILE.db3, or a folder of rosbag2), and " +
+                     options.sequence.string() + " is none");
+}
+
+RunInput openBagDriveOf(const RunOptions& options, InputPolicy policy) {
+  refuseForFiles(options);
+  refuseOneByOne(options, "a bag");
+  const FrameRange range = options.frames.empty() ? FrameRange{} : parseFrameRange(options.frames);
+  BagDrive drive = openBagDrive(options.sequence, options.topics, options.given);
+  RunInput input{.sequence = drive.sequence, .range = range};
+  input.capture_rate_hz = drive.rate_hz;
+  input.rate_hz = replayRate_hz(options, policy);
+  if (input.rate_hz && options.rate.empty()) input.rate_hz = drive.rate_hz;
+  input.first_stamp = drive.first;
+  input.bag = std::move(drive);
+  return input;
+}
+
+RunInput openRecorded(const RunOptions& options, InputPolicy policy) {
+  refuseForFiles(options);
   const auto rate_hz = replayRate_hz(options, policy);
   RunInput input{.sequence = openSequence(options.sequence, options.fps(), options.given), .rate_hz = rate_hz};
   input.range = selectedFrames(options.frames, input.sequence);
@@ -86,13 +120,30 @@ RunInput openRecorded(const RunOptions& options, InputPolicy policy) {
   return input;
 }
 
+/// Pairs of a live camera that a later one has overtaken are left out where decoding is too slow.
+std::function<bool(Timestamp)> wantedPairs(const PipelineConfig& config, const std::optional<CameraClock>& clock) {
+  if (!clock || config.pipeline.policy != InputPolicy::kLive) return {};
+  return [&clock](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };
+}
+
+std::unique_ptr<PairSource> makeBagSource(const RunInput& input, const PipelineConfig& config, std::size_t ahead,
+                                          const FrameInputs& inputs, const std::optional<CameraClock>& clock) {
+  const BagSource::Params params{
+      .range = input.range, .ahead = ahead, .wanted = wantedPairs(config, clock), .inputs = inputs};
+  return std::make_unique<BagSource>(*input.bag, params);
+}
+
 std::unique_ptr<PairSource> makeRecorded(const RunInput& input, const PipelineConfig& config, std::size_t ahead,
                                          const FrameInputs& inputs, const std::optional<CameraClock>& clock) {
-  SequenceDecoder::Params decoding{.ahead = ahead, .max_file_mb = config.input.max_file_mb, .inputs = inputs};
-  // Where decoding is too slow for a live camera, pairs that a later one has overtaken are left out.
-  if (clock && config.pipeline.policy == InputPolicy::kLive)
-    decoding.wanted = [&](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };
+  const SequenceDecoder::Params decoding{
+      .ahead = ahead, .wanted = wantedPairs(config, clock), .max_file_mb = config.input.max_file_mb, .inputs = inputs};
   return std::make_unique<SequenceDecoder>(input.sequence, input.range, decoding);
+}
+
+RunInput openPairs(const RunOptions& options, InputPolicy policy) {
+  if (isBag(options.sequence)) return openBagDriveOf(options, policy);
+  refuseTopics(options);
+  return options.sequence == kStandardInput ? openStream(options, policy) : openRecorded(options, policy);
 }
 
 /// Of the vehicle's own motion; empty where there is none.
@@ -106,6 +157,7 @@ std::filesystem::path motionFileOf(const RunOptions& options) {
 std::unique_ptr<PairSource> makePairs(RunInput& input, const PipelineConfig& config, const FrameInputs& inputs,
                                       const std::optional<CameraClock>& clock) {
   const std::size_t ahead = std::bit_floor(static_cast<std::size_t>(config.pipeline.frames_in_flight));
+  if (input.bag) return makeBagSource(input, config, ahead, inputs, clock);
   if (!input.sequence.streamed()) return makeRecorded(input, config, ahead, inputs, clock);
   const Y4mSource::Params params{.packing = input.packing,
                                  .range = input.range,
@@ -119,7 +171,7 @@ std::unique_ptr<PairSource> makePairs(RunInput& input, const PipelineConfig& con
 }  // namespace
 
 RunInput openRunInput(const RunOptions& options, InputPolicy policy) {
-  RunInput input = options.sequence == kStandardInput ? openStream(options, policy) : openRecorded(options, policy);
+  RunInput input = openPairs(options, policy);
   const std::filesystem::path motion = motionFileOf(options);
   if (!motion.empty()) input.vehicle_motion = readVehicleMotion(motion, input.sequence);
   return input;

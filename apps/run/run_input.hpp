@@ -9,6 +9,7 @@
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/run_options.hpp"
 #include "core/messages.hpp"
+#include "io/bag/bag_drive.hpp"
 #include "io/pair_source.hpp"
 #include "io/sequence.hpp"
 #include "io/stream/stereo_packing.hpp"
@@ -16,19 +17,20 @@
 
 namespace motorcade {
 
-/// The input of a run: what is known before its first pair, of a recorded drive or of a stream.
+/// The input of a run: what is known before its first pair, of a recorded drive, a stream or a bag.
 struct RunInput {
   Sequence sequence;
-  FrameRange range{};                                  // of a stream without --frames it has no end
+  FrameRange range{};                                  // of a stream or bag without --frames it has no end
   double capture_rate_hz = 0;                          // mean over the range
   std::optional<double> rate_hz{};                     // at which pairs come; empty for as fast as it goes
   Timestamp first_stamp{};                             // of the range
-  std::unique_ptr<Y4mStream> stream{};                 // null for a recorded drive
+  std::unique_ptr<Y4mStream> stream{};                 // null for all but a stream
   StereoPacking packing = StereoPacking::kSideBySide;  // of a stream
+  std::optional<BagDrive> bag{};                       // of a bag
   std::vector<VehicleMotionSample> vehicle_motion{};   // samples by time; none where it is not known
 
   /// The pairs come when the stream's writer sends them, whether or not they are taken.
-  bool writerPaced(InputPolicy policy) const { return sequence.streamed() && policy == InputPolicy::kLive; }
+  bool writerPaced(InputPolicy policy) const { return sequence.piped() && policy == InputPolicy::kLive; }
   /// Pairs that there are; 0 where nobody knows before the end.
   std::size_t count() const { return range.end == FrameRange{}.end ? 0 : range.size(); }
 };

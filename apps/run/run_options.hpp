@@ -19,6 +19,7 @@ inline constexpr const char* kNoVehicleMotion = "none";
 struct RunOptions {
   std::filesystem::path sequence, out;            // the first may be `kStandardInput`
   bool side_by_side = false, over_under = false;  // the images in a picture of a stream
+  std::string topics;                             // LEFT,RIGHT of a bag's images
   std::string rate;                               // `max`, HZ, or empty for the default
   std::optional<double> fps_hz;                   // where the user gives it
   bool live = false;

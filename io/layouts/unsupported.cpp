@@ -179,9 +179,13 @@ std::string ofSideBySide(const fs::path& image) {
 bool isRecordingFile(const fs::path& file) { return isBag(file) || isVideo(file) || lowerExtension(file) == ".svo"; }
 
 std::string adviceOnFile(const fs::path& file) {
+  if (lowerExtension(file) == ".bag")
+    return ": is a bag of ROS 1's own format, which is not read; write it as MCAP, which `run` reads\n  mcap convert " +
+           shellWord(file.string()) + " DRIVE.mcap\n  motorcade run DRIVE.mcap\nor write its images into two folders" +
+           ofRos1(file) + kThen;
   if (isBag(file))
-    return ": is a bag of messages, which is not read; write its images into two folders" +
-           (lowerExtension(file) == ".bag" ? ofRos1(file) : ofRos2(file)) + kThen;
+    return ": is a bag of messages, which `run` alone reads\n  motorcade run " + shellWord(file.string()) +
+           "\nFor other commands, write its images into two folders" + ofRos2(file) + kThen;
   if (isVideo(file))
     return ": is a video, which is not read; write its images into two folders," + ofVideo(file) + kThen;
   if (lowerExtension(file) == ".svo")

@@ -240,10 +240,11 @@ TEST_F(Layouts, BagIsToldHowToBecomeImages) {
   folder_.write("one/drive.bag", "#ROSBAG V2.0\n");
   folder_.write("two/drive_0.db3", "SQLite");
   for (const char* name : {"one", "one/drive.bag"})
-    EXPECT_THAT(openError(name),
-                AllOf(HasSubstr("drive.bag: is a bag"), HasSubstr("rosbag info"), HasSubstr("read_messages")));
+    EXPECT_THAT(openError(name), AllOf(HasSubstr("drive.bag: is a bag"), HasSubstr("mcap convert"),
+                                       HasSubstr("rosbag info"), HasSubstr("read_messages")));
   for (const char* name : {"two", "two/drive_0.db3"})
-    EXPECT_THAT(openError(name), AllOf(HasSubstr("drive_0.db3"), HasSubstr("ros2 bag info"), HasSubstr("sqlite3")));
+    EXPECT_THAT(openError(name), AllOf(HasSubstr("motorcade run"), HasSubstr("drive_0.db3"), HasSubstr("ros2 bag info"),
+                                       HasSubstr("sqlite3")));
   EXPECT_THAT(openError("nowhere"), HasSubstr("does not exist"));
 }
 
