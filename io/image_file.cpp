@@ -50,18 +50,20 @@ ImageFormat imageFormat(const fs::path& file) {
   }
 }
 
-ImageHeader readImageHeader(const fs::path& file) {
-  const std::string bytes = readImageBytes(file);
-  return requiredCodecOf(bytes, file).header(bytes, file);
+ImageHeader parseImageHeader(std::string_view bytes, const fs::path& name) {
+  return requiredCodecOf(bytes, name).header(bytes, name);
 }
+
+ImageHeader readImageHeader(const fs::path& file) { return parseImageHeader(readImageBytes(file), file); }
 
 ImageSize readImageSize(const fs::path& file) { return readImageHeader(file).size; }
 
-int readBrightestSample(const fs::path& file) {
-  const std::string bytes = readImageBytes(file);
-  const ImageCodec& codec = requiredCodecOf(bytes, file);
-  return codec.header(bytes, file).bits == kAllSampleBits ? codec.brightest(bytes, file) : 0;
+int brightestSampleIn(std::string_view bytes, const fs::path& name) {
+  const ImageCodec& codec = requiredCodecOf(bytes, name);
+  return codec.header(bytes, name).bits == kAllSampleBits ? codec.brightest(bytes, name) : 0;
 }
+
+int readBrightestSample(const fs::path& file) { return brightestSampleIn(readImageBytes(file), file); }
 
 Image readImage(const fs::path& file, ImagePool& pool, std::optional<ImageSize> expected, int max_mb) {
   return decodeImage(readImageBytes(file, max_mb), file, pool, {.size = expected});

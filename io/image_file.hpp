@@ -77,6 +77,9 @@ struct ExpectedImage {
 /// The same from the bytes of a whole file; `name` is for messages.
 Image decodeImage(std::string_view bytes, const std::filesystem::path& name, ImagePool& pool,
                   const ExpectedImage& expected = {});
+/// The header, and the brightest sample as `readBrightestSample` gives it, from the bytes of a whole file.
+ImageHeader parseImageHeader(std::string_view bytes, const std::filesystem::path& name);
+int brightestSampleIn(std::string_view bytes, const std::filesystem::path& name);
 /// The whole file, unless it is too large for an image.
 std::string readImageBytes(const std::filesystem::path& file, int max_mb = kMaxImageFile_mb);
 /// A gray PNG of 16 bits; one of 8 bits is widened without scaling.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "io/image_limits.hpp"
@@ -16,16 +18,14 @@ Eigen::Matrix3d rotationOf(const Eigen::Matrix3d& matrix, const YamlPart& part) 
   return SE3(matrix, Eigen::Vector3d::Zero()).normalized().rotation();
 }
 
-Distortion distortionNamed(const std::string& model, const YamlPart& part) {
+std::optional<Distortion> distortionNamed(const std::string& model) {
   for (const char* name : {"radtan", "radial-tangential", "radialtangential", "radialtangential8", "radtan8",
                            "plumb_bob", "rational_polynomial", "perspective"})
     if (model == name) return Distortion::kRadialTangential;
   for (const char* name : {"equidistant", "equi", "fisheye", "kannala_brandt", "kb4"})
     if (model == name) return Distortion::kEquidistant;
   if (model.empty() || model == "none") return Distortion::kNone;
-  part.fail(
-      "belongs to the distortion model '" + printable(model) +
-      "', which is not understood; calibrate with radtan (plumb_bob) or equidistant, or rectify the images yourself");
+  return std::nullopt;
 }
 
 }  // namespace
@@ -92,22 +92,32 @@ bool areZeros(const std::vector<double>& coefficients) {
 
 }  // namespace
 
-void setDistortion(LensCamera& camera, const std::string& model, std::vector<double> coefficients,
-                   const YamlPart& part) {
-  camera.distortion = distortionNamed(model, part);
+std::string setDistortion(LensCamera& camera, const std::string& model, std::vector<double> coefficients) {
+  const auto distortion = distortionNamed(model);
+  if (!distortion)
+    return "belongs to the distortion model '" + printable(model) +
+           "', which is not understood; calibrate with radtan (plumb_bob) or equidistant, or rectify the images "
+           "yourself";
+  camera.distortion = *distortion;
   while (coefficients.size() > 4 && coefficients.back() == 0) coefficients.pop_back();  // of longer models, not used
   const std::size_t most = camera.distortion == Distortion::kEquidistant ? 4 : camera.coefficients.size();
   if (coefficients.size() > most)
-    part.fail("has " + std::to_string(coefficients.size()) + " coefficients, " + std::to_string(most) +
-              " are understood");
-  for (const double value : coefficients)
-    if (std::abs(value) > 1e6) part.fail("holds a coefficient that no lens has");
+    return "has " + std::to_string(coefficients.size()) + " coefficients, " + std::to_string(most) + " are understood";
+  if (std::ranges::any_of(coefficients, [](double value) { return std::abs(value) > 1e6; }))
+    return "holds a coefficient that no lens has";
   if (camera.distortion == Distortion::kNone && !areZeros(coefficients))
-    part.fail("belongs to no model; add distortion_model: radtan or equidistant beside it");
+    return "belongs to no model; add distortion_model: radtan or equidistant beside it";
   camera.coefficients = {};
   std::ranges::copy(coefficients, camera.coefficients.begin());
   if (areZeros(coefficients) && camera.distortion == Distortion::kRadialTangential)
     camera.distortion = Distortion::kNone;
+  return {};
+}
+
+void setDistortion(LensCamera& camera, const std::string& model, std::vector<double> coefficients,
+                   const YamlPart& part) {
+  const std::string problem = setDistortion(camera, model, std::move(coefficients));
+  if (!problem.empty()) part.fail(problem);
 }
 
 void setDistortion(LensCamera& camera, const std::string& model, const YamlPart& coefficients) {

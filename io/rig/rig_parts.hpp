@@ -34,6 +34,8 @@ void setIntrinsics(LensCamera& camera, const std::array<double, 4>& fx_fy_cx_cy,
 void setDistortion(LensCamera& camera, const std::string& model, const YamlPart& coefficients);
 void setDistortion(LensCamera& camera, const std::string& model, std::vector<double> coefficients,
                    const YamlPart& part);
+/// The same from elsewhere; gives what is wrong, to be told after the name of the coefficients, or nothing.
+std::string setDistortion(LensCamera& camera, const std::string& model, std::vector<double> coefficients);
 /// The same where OpenCV's calibration or ROS' names no model. Four coefficients are as well those of a fish-eye lens:
 /// they are refused, unless no such lens has them.
 void setDistortion(LensCamera& camera, const YamlPart& coefficients);

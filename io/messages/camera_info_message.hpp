@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/rig/rectification.hpp"
+
+namespace motorcade {
+
+/// ROS' sensor_msgs/CameraInfo, with ROS' names of the matrices, row by row.
+struct CameraInfoMessage {
+  std::int64_t stamp_ns = 0;
+  std::string frame_id{};
+  std::uint32_t width = 0, height = 0;
+  std::string distortion_model{};
+  std::vector<double> D{};
+  std::array<double, 9> K{}, R{};
+  std::array<double, 12> P{};
+  bool reduced = false;  // the images are binned, or a region of the sensor's
+};
+
+/// The most coefficients that a model of distortion has; a message with more is refused by whoever receives it.
+inline constexpr std::size_t kMostCoefficients = 14;
+
+/// The messages of a pair, with names for what is told to the user, as the topics.
+struct CameraInfoPair {
+  CameraInfoMessage left{}, right{};
+  std::string left_name{}, right_name{};
+};
+
+/// The rig that both messages tell of; the right one's P has the baseline. Images of which `rectified` says that they
+/// were rectified before they were sent go by P alone. `Rig::rectified` is set where nothing is left to be done.
+/// Throws InputError naming the message.
+Rig rigOf(const CameraInfoPair& infos, bool rectified);
+
+}  // namespace motorcade
