@@ -8,12 +8,15 @@
 #include <optional>
 #include <utility>
 
+#include "io/sequence.hpp"
+
 namespace motorcade {
 
-/// The two cameras, as indices of arrays too.
-enum class Side : std::uint8_t { kLeft, kRight };
-inline constexpr std::size_t indexOf(Side side) { return static_cast<std::size_t>(side); }
-inline constexpr Side otherThan(Side side) { return side == Side::kLeft ? Side::kRight : Side::kLeft; }
+inline constexpr std::array kStereoSides{StereoSide::kLeft, StereoSide::kRight};
+inline constexpr std::size_t indexOf(StereoSide side) { return static_cast<std::size_t>(side); }
+inline constexpr StereoSide otherThan(StereoSide side) {
+  return side == StereoSide::kLeft ? StereoSide::kRight : StereoSide::kLeft;
+}
 
 /// Pairs two cameras' messages by their capture stamps, in the order in which they come. Each side may miss messages
 /// or send more than the other, and its clock may be set back: a pair ends the waiting of all that came before it.
@@ -31,7 +34,7 @@ class StampPairing {
   explicit StampPairing(const Params& params) : params_(params) {}
 
   /// The pair that the message completes, with the nearest stamp of those that wait on the other side.
-  std::optional<Pair> add(Side side, Message message) {
+  std::optional<Pair> add(StereoSide side, Message message) {
     auto& others = waiting_[indexOf(otherThan(side))];
     const auto distance_ns = [&](const Message& other) { return apart_ns(other.stamp_ns, message.stamp_ns); };
     const auto nearest = std::ranges::min_element(others, {}, distance_ns);
@@ -43,24 +46,24 @@ class StampPairing {
     drop(otherThan(side), static_cast<std::size_t>(nearest - others.begin()));
     others.pop_front();
     drop(side, waiting(side));
-    if (side == Side::kLeft) return Pair{.left = std::move(message), .right = std::move(other)};
+    if (side == StereoSide::kLeft) return Pair{.left = std::move(message), .right = std::move(other)};
     return Pair{.left = std::move(other), .right = std::move(message)};
   }
 
-  std::size_t waiting(Side side) const { return waiting_[indexOf(side)].size(); }
+  std::size_t waiting(StereoSide side) const { return waiting_[indexOf(side)].size(); }
   /// Messages that were dropped without one of the other side.
-  std::int64_t unpaired(Side side) const { return unpaired_[indexOf(side)]; }
+  std::int64_t unpaired(StereoSide side) const { return unpaired_[indexOf(side)]; }
 
  private:
   /// Unsigned: stamps of a wrong unit may be further apart than an integer holds.
   static std::uint64_t apart_ns(std::int64_t a, std::int64_t b) {
     return static_cast<std::uint64_t>(std::max(a, b)) - static_cast<std::uint64_t>(std::min(a, b));
   }
-  void keep(Side side, Message message) {
+  void keep(StereoSide side, Message message) {
     waiting_[indexOf(side)].push_back(std::move(message));
     if (waiting(side) > params_.most_waiting) drop(side, 1);
   }
-  void drop(Side side, std::size_t count) {
+  void drop(StereoSide side, std::size_t count) {
     auto& messages = waiting_[indexOf(side)];
     messages.erase(messages.begin(), messages.begin() + static_cast<std::ptrdiff_t>(count));
     unpaired_[indexOf(side)] += static_cast<std::int64_t>(count);

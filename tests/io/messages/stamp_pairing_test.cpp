@@ -23,10 +23,10 @@ struct StampedMessage {
 using Pairing = StampPairing<StampedMessage>;
 
 struct Arrival {
-  Side side;
+  StereoSide side;
   std::int64_t stamp_ms;
 };
-constexpr Side kL = Side::kLeft, kR = Side::kRight;
+constexpr StereoSide kL = StereoSide::kLeft, kR = StereoSide::kRight;
 
 /// The stamps of the pairs, left and right, in milliseconds.
 std::vector<std::pair<int, int>> pairsOf(Pairing& pairing, const std::vector<Arrival>& arrivals) {
