@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <exception>
+#include <fstream>
 #include <memory>
-#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -101,6 +101,18 @@ void tellFollowed(const InputCounts& input, const Tracker::Counts& tracker) {
     logWarning(fmt::format("{} pairs were rejected: of another size, or without a later stamp", input.rejected));
 }
 
+/// Debian's default holds no image.
+void tellSmallReceiveBuffer() {
+  constexpr std::int64_t kLeast_bytes = 1 << 20;
+  std::int64_t most_bytes = 0;
+  std::ifstream("/proc/sys/net/core/rmem_max") >> most_bytes;
+  if (most_bytes <= 0 || most_bytes >= kLeast_bytes) return;
+  logWarning(
+      fmt::format("net.core.rmem_max is {} bytes: parts of images may be lost; as root: sysctl -w "
+                  "net.core.rmem_max=33554432",
+                  most_bytes));
+}
+
 TopicFeeder::Params feederParamsOf(const BridgeOptions& options) {
   return {.cameras = {.topics = cameraTopicsOf(options), .given = options.given},
           .tolerance_ns = std::llround(1e6 * options.pair_within_ms),
@@ -122,6 +134,7 @@ int runTopicBridge(const BridgeOptions& options) {
   DdsPublisher out(place, topics);
   ImageSubscriber images(place, {.topics = input.cameras.topics, .every_image = options.every_pair});
   tellPlace(out, place, topics);
+  tellSmallReceiveBuffer();
 
   std::stop_source stop;
   const auto watch = signals.watch([&stop] { stop.request_stop(); });
