@@ -1,6 +1,5 @@
 #include "apps/bridge/topic_feeder.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,6 +15,8 @@ using namespace std::chrono_literals;
 
 constexpr auto kNap = 50ms;                  // without an image; so often the state is looked at
 constexpr auto kPatienceForInfos = 5s;       // then the log tells what is missing
+constexpr auto kBetweenComplaints = 10s;     // about pairs that cannot be read
+constexpr int kMostAtOnce = 64;              // images, then the state is looked at
 constexpr std::size_t kMostEarlyPairs = 64;  // that wait for the cameras where none may be lost
 
 Pair::Image viewOf(const Image& image) {
@@ -56,9 +57,9 @@ bool TopicFeeder::takeImage() {
 }
 
 bool TopicFeeder::takeImages() {
-  bool any = false;
-  while ((pairs_.empty() || !params_.every_pair) && takeImage()) any = true;
-  return any || !pairs_.empty();
+  int taken = 0;
+  while (taken < kMostAtOnce && (pairs_.empty() || !params_.every_pair) && takeImage()) ++taken;
+  return taken > 0 || !pairs_.empty();
 }
 
 void TopicFeeder::keep(ReceivedPair pair) {
@@ -114,7 +115,7 @@ bool TopicFeeder::awaitCameras(std::chrono::milliseconds patience) {
   for (const auto deadline = Clock::now() + patience; !cameras_ && Clock::now() < deadline;) {
     images_.wait(kNap);
     takeInfos();
-    while (takeImage()) continue;
+    for (int taken = 0; taken < kMostAtOnce && takeImage();) ++taken;
     if (params_.cameras.complete()) knowCameras();
     tellState();
     tellMissingInfos(Clock::now());
@@ -124,7 +125,9 @@ bool TopicFeeder::awaitCameras(std::chrono::milliseconds patience) {
 
 void TopicFeeder::refuse(const std::string& why) {
   ++counts_.unreadable;
-  if (std::exchange(refused_, why) != why) logWarning(why);
+  if (Clock::now() < next_complaint_) return;
+  next_complaint_ = Clock::now() + kBetweenComplaints;
+  logWarning(why);
 }
 
 void TopicFeeder::push(Tracker& tracker, PairConversion& conversion, const ReceivedPair& pair) {
@@ -138,7 +141,6 @@ void TopicFeeder::push(Tracker& tracker, PairConversion& conversion, const Recei
   if (!knew_bits && conversion.sampleBits())
     logInfo(fmt::format("16-bit images, taken as {} bits by the brightest sample of the first pair",
                         *conversion.sampleBits()));
-  refused_.clear();
   ++counts_.pairs;
   const auto pushed =
       tracker.push({.left = viewOf(grays.left), .right = viewOf(grays.right), .stamp_ns = pair.left.stamp_ns});

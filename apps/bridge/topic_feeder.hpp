@@ -66,7 +66,7 @@ class TopicFeeder {
   std::deque<ReceivedPair> pairs_;  // that wait to be pushed
   std::optional<Sequence> cameras_{};
   bool told_infos_ = false;
-  std::string refused_{};  // why the last pair was unreadable
+  Clock::time_point next_complaint_{};
 
   InputCounts counts_{};
   mutable std::mutex mutex_;  // of the two below
