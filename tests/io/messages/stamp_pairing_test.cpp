@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -15,10 +14,9 @@ using testing::ElementsAre;
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// One that cannot be copied, as those that own a camera's pixels.
 struct StampedMessage {
   std::int64_t stamp_ns = 0;
-  std::unique_ptr<int> pixels{};
+  std::vector<int> pixels{};
 };
 using Pairing = StampPairing<StampedMessage>;
 
@@ -95,13 +93,16 @@ TEST(StampPairing, StampsAtBothEndsOfTimeAreNoPair) {
   EXPECT_FALSE(pairing.add(kR, {.stamp_ns = std::numeric_limits<std::int64_t>::max()}));
 }
 
-TEST(StampPairing, TheMessagesAreMovedThrough) {
+TEST(StampPairing, PixelsAreNotCopied) {
   Pairing pairing({});
-  pairing.add(kR, {.stamp_ns = 7, .pixels = std::make_unique<int>(2)});
-  const auto pair = pairing.add(kL, {.stamp_ns = 7, .pixels = std::make_unique<int>(1)});
+  std::vector<int> left{1, 2}, right{3, 4};
+  const int* const left_pixels = left.data();
+  const int* const right_pixels = right.data();
+  pairing.add(kR, {.stamp_ns = 7, .pixels = std::move(right)});
+  const auto pair = pairing.add(kL, {.stamp_ns = 7, .pixels = std::move(left)});
   ASSERT_TRUE(pair);
-  EXPECT_EQ(*pair->left.pixels, 1);
-  EXPECT_EQ(*pair->right.pixels, 2);
+  EXPECT_EQ(pair->left.pixels.data(), left_pixels);
+  EXPECT_EQ(pair->right.pixels.data(), right_pixels);
 }
 
 }  // namespace
