@@ -2,24 +2,22 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
-#include <set>
 #include <stop_token>
 #include <string>
 #include <system_error>
 #include <thread>
-#include <vector>
 
 #include <fmt/format.h>
 
 #include "apps/bridge/bridge_options.hpp"
+#include "apps/bridge/bridge_parts.hpp"
 #include "apps/bridge/dds_publisher.hpp"
 #include "apps/bridge/drive_player.hpp"
 #include "apps/bridge/result_publisher.hpp"
+#include "apps/bridge/topic_bridge.hpp"
 #include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
 #include "apps/console/stop_signals.hpp"
@@ -30,17 +28,6 @@ namespace motorcade {
 namespace {
 
 using namespace std::chrono_literals;
-
-void logToSpdlog(Tracker::LogLevel level, const std::string& text) {
-  switch (level) {
-    case Tracker::LogLevel::kInfo:
-      return logInfo(text);
-    case Tracker::LogLevel::kWarning:
-      return logWarning(text);
-    case Tracker::LogLevel::kError:
-      return logError(text);
-  }
-}
 
 /// The folder's own name, that of `.` too.
 std::string nameOf(const std::filesystem::path& drive) {
@@ -54,25 +41,11 @@ double markerLifetime_s(std::optional<double> speed, double capture_rate_hz) {
   return speed && capture_rate_hz > 0 ? std::max(kLeast_s, kFrames / (*speed * capture_rate_hz)) : kLeast_s;
 }
 
-/// The public interface's error, without the name of the field: users know files and options.
-std::string textOf(const Error& error) { return std::string(error.what()).substr(error.field().size() + 2); }
-
 Recording opened(const std::filesystem::path& drive) {
   try {
     return Recording(drive.string());
   } catch (const Error& error) {
     throw InputError(textOf(error));
-  }
-}
-
-std::unique_ptr<Tracker> makeTracker(const Camera& camera, const Tracker::Options& tracker_options,
-                                     const BridgeOptions& options) {
-  try {
-    return std::make_unique<Tracker>(camera, tracker_options);
-  } catch (const Error& error) {
-    if (error.field().starts_with("camera")) throw InputError(options.drive.string() + ": " + error.what());
-    if (error.field() == "options.settings") throw UsageError(options.config.string() + ": " + textOf(error));
-    throw UsageError(error.what());
   }
 }
 
@@ -95,12 +68,6 @@ std::int64_t playOnce(Tracker& tracker, DrivePlayer& player, const DrivePlayer::
   return tracker.counts().dropped;
 }
 
-void tellPlace(const DdsPublisher& out, const DdsPlace& place, const std::set<Topic>& topics) {
-  logInfo(fmt::format("{} in {}", rosNamesOf(topics), textOf(place)));
-  if (isLoopback(place) && !out.isShielded())
-    logWarning("DDS' sockets cannot be bound to the loopback device: others in the network can send to them");
-}
-
 void tellDriven(const DrivePlayer::Counts& player, std::int64_t dropped) {
   logInfo(fmt::format("{} pairs; {} dropped by a newer one, {} overtaken before they were read", player.pushed, dropped,
                       player.overtaken));
@@ -108,30 +75,10 @@ void tellDriven(const DrivePlayer::Counts& player, std::int64_t dropped) {
     logWarning(fmt::format("{} pairs were rejected: damaged, or without a later stamp", player.rejected));
 }
 
-void tellPublished(const std::vector<DdsPublisher::Counts>& topics) {
-  for (const auto& topic : topics) {
-    logInfo(fmt::format("{}: {} messages published, {} subscribers at the end", topic.topic, topic.published,
-                        topic.subscribers));
-    if (topic.timed_out > 0)
-      logWarning(fmt::format("{}: {} messages were not sent in time", topic.topic, topic.timed_out));
-    if (topic.overtaken > 0)
-      logWarning(
-          fmt::format("{}: {} messages left the history before every subscriber acknowledged them, and may be missing",
-                      topic.topic, topic.overtaken));
-  }
-}
-
-void awaitSubscribers(const DdsPublisher& out, const BridgeOptions& options, const std::stop_token& stop) {
-  if (options.subscribers == 0) return;
-  const std::chrono::milliseconds patience(std::llround(1e3 * options.patience_s));
-  if (!out.waitForSubscribers(options.subscribers, patience, stop) && !stop.stop_requested())
-    logWarning(fmt::format("not every topic has {} subscribers after {} s (--wait-at-most): going on without",
-                           options.subscribers, options.patience_s));
-}
-
 }  // namespace
 
 int runBridge(const BridgeOptions& options) {
+  if (!options.images.empty()) return runTopicBridge(options);
   const auto topics = topicsOf(options.topics);
   const FrameIds ids = frameIdsOf(options);
   const SE3 T_child_cam = mountingOf(options);
@@ -140,7 +87,7 @@ int runBridge(const BridgeOptions& options) {
   const DdsPlace place{.domain = options.domain, .interface = options.interface};
   StopSignals signals;  // before all threads
   Recording recording = opened(options.drive);
-  auto tracker = makeTracker(recording.camera(), tracker_options, options);
+  auto tracker = makeTracker(recording.camera(), tracker_options, options, options.drive.string());
   DrivePlayer player(recording);
   const DrivePlayer::Pace pace{.speed = speedOf(options, player.captureRate_hz()), .live = options.live};
   const ResultPublisher::Params published{.ids = ids,
@@ -155,7 +102,7 @@ int runBridge(const BridgeOptions& options) {
   awaitSubscribers(out, options, stop.get_token());
   std::int64_t dropped = 0;
   for (bool again = !stop.stop_requested(); again; again = options.loop && !stop.stop_requested()) {
-    if (!tracker) tracker = makeTracker(recording.camera(), tracker_options, options);
+    if (!tracker) tracker = makeTracker(recording.camera(), tracker_options, options, options.drive.string());
     Progress progress("frame", static_cast<std::size_t>(recording.size()));
     dropped += playOnce(*tracker, player, pace, {out, published}, progress, stop);
     tracker.reset();

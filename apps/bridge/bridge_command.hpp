@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
 #include "apps/bridge/topics.hpp"
+#include "io/sequence.hpp"
 
 namespace motorcade {
 
@@ -12,6 +14,11 @@ struct BridgeOptions {
   std::filesystem::path drive{}, config{};
   std::string rate{};  // `max`, HZ, or empty for the drive's own pace
   bool live = false, loop = false;
+  std::string images{};     // LEFT,RIGHT: topics that are followed instead of a drive
+  bool every_pair = false;  // of them: no pair is lost
+  double pair_within_ms = 5;
+  std::int64_t pairs = 0;  // after which it ends; 0: there is no end
+  GivenCameras given{};    // where no camera_info comes
   int threads = 2;
   int domain = 0;
   std::string interface {};  // empty: loopback
@@ -22,7 +29,8 @@ struct BridgeOptions {
   double patience_s = 30;   // at most so long
 };
 
-/// Follows a recorded drive and publishes the results as ROS 2 topics; gives the exit code. Failures are UserErrors.
+/// Follows a recorded drive, or topics with images, and publishes the results as ROS 2 topics; gives the exit code.
+/// Failures are UserErrors.
 int runBridge(const BridgeOptions& options);
 
 }  // namespace motorcade

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "io/errors.hpp"
+#include "io/messages/image_topics.hpp"
 #include "io/text_file.hpp"
 
 namespace motorcade {
@@ -23,6 +24,11 @@ bool isFrameId(std::string_view name) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '/' || c == '-';
   };
   return !name.empty() && !name.starts_with('/') && std::ranges::all_of(name, plain);
+}
+
+bool isTopic(std::string_view name) {
+  const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '/'; };
+  return name.size() > 1 && name.starts_with('/') && !name.ends_with('/') && std::ranges::all_of(name, plain);
 }
 
 std::optional<double> numberIn(std::string_view text) {
@@ -88,9 +94,27 @@ SE3 mountingOf(const BridgeOptions& options) {
   return {turn(yaw_deg, 2) * turn(pitch_deg, 1) * turn(roll_deg, 0), {x_m, y_m, z_m}};
 }
 
+std::array<CameraTopics, 2> cameraTopicsOf(const BridgeOptions& options) {
+  const auto comma = options.images.find(',');
+  const std::string left = options.images.substr(0, comma);
+  const std::string right = comma == std::string::npos ? "" : options.images.substr(comma + 1);
+  if (!isTopic(left) || !isTopic(right) || left == right)
+    throw UsageError("--images " + printable(options.images) +
+                     ": write LEFT,RIGHT, the topics of the two cameras' images, as "
+                     "/left/image_raw,/right/image_raw");
+  if (!options.given.empty()) return {CameraTopics{.image = left}, CameraTopics{.image = right}};
+  std::array topics{CameraTopics{.image = left, .info = cameraInfoTopicOf(left)},
+                    CameraTopics{.image = right, .info = cameraInfoTopicOf(right)}};
+  if (topics[0].info == topics[1].info)
+    throw UsageError("--images: " + topics[0].info +
+                     " would be the camera_info of both; give --camera or --calibration");
+  return topics;
+}
+
 Tracker::Options trackerOptionsOf(const BridgeOptions& options) {
   Tracker::Options tracker;
-  tracker.policy = options.live ? Tracker::Policy::kLive : Tracker::Policy::kReplay;
+  const bool live = options.images.empty() ? options.live : !options.every_pair;
+  tracker.policy = live ? Tracker::Policy::kLive : Tracker::Policy::kReplay;
   tracker.axes = Tracker::Axes::kRep103;
   tracker.threads = options.threads;
   if (options.config.empty()) return tracker;

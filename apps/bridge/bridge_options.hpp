@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "apps/bridge/bridge_command.hpp"
 #include "apps/bridge/message_conversion.hpp"
+#include "apps/bridge/received_image.hpp"
 #include "motorcade/motorcade.hpp"
 
 /// What the command line of `motorcade bridge` means. All throw UsageError.
@@ -19,6 +21,9 @@ FrameIds frameIdsOf(const BridgeOptions& options);
 /// T_vehicle_cam, both with the axes of REP 103, the camera turned by roll, then pitch, then yaw about the vehicle's.
 /// The identity without a mounting.
 SE3 mountingOf(const BridgeOptions& options);
+
+/// The topics of `--images LEFT,RIGHT`; no camera_info where the user gives the cameras.
+std::array<CameraTopics, 2> cameraTopicsOf(const BridgeOptions& options);
 
 /// For the tracker, with the file of parameters read. What the tracker then says about it is the caller's to tell.
 Tracker::Options trackerOptionsOf(const BridgeOptions& options);

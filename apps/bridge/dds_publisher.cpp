@@ -8,6 +8,7 @@
 #include <dds/dds.h>
 #include <fmt/format.h>
 
+#include "apps/bridge/dds_entity.hpp"
 #include "apps/bridge/dds_messages.hpp"
 #include "apps/bridge/dds_objects.hpp"
 #include "apps/bridge/loopback_sockets.hpp"
@@ -22,28 +23,8 @@ constexpr int kHistory = 10;  // messages; ROS 2's default
 constexpr dds_duration_t kMostBlocking = DDS_MSECS(10);
 constexpr auto kLinger = 1s;  // at the end, of all writers together
 
-/// Ends what was made in it, too.
-class Entity {
- public:
-  Entity(dds_entity_t entity, const std::string& what) : entity_(entity) {
-    if (entity < 0) throw OutputError(fmt::format("{}: DDS says: {}", what, dds_strretcode(entity)));
-  }
-  ~Entity() { dds_delete(entity_); }
-  Entity(const Entity&) = delete;
-  Entity& operator=(const Entity&) = delete;
-  dds_entity_t get() const { return entity_; }
-
- private:
-  dds_entity_t entity_;
-};
-
-struct DeleteQos {
-  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
-};
-using Qos = std::unique_ptr<dds_qos_t, DeleteQos>;
-
-Qos rosDefault() {
-  Qos qos(dds_create_qos());
+DdsQos rosDefault() {
+  DdsQos qos(dds_create_qos());
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMostBlocking);
   dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kHistory);
@@ -114,8 +95,8 @@ class Writer {
     counts_.topic = "/" + name;
   }
 
-  Qos qos_;
-  Entity topic_, writer_;
+  DdsQos qos_;
+  DdsEntity topic_, writer_;
   DdsPublisher::Counts counts_{};
   int unacknowledged_ = 0;  // since all were
 };
@@ -134,9 +115,9 @@ struct DdsPublisher::Impl {
   }
   void write(Topic topic, const void* message) { writers.at(topic).write(message); }
 
-  Entity domain;
+  DdsEntity domain;
   bool shielded;
-  Entity participant;
+  DdsEntity participant;
   std::map<Topic, Writer> writers{};
 };
 

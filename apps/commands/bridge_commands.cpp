@@ -4,6 +4,7 @@
 
 #include "apps/bridge/bridge_command.hpp"
 #include "apps/commands/commands.hpp"
+#include "io/errors.hpp"
 
 namespace motorcade {
 namespace {
@@ -52,26 +53,89 @@ void addWhat(CLI::App& command, BridgeOptions& options) {
       ->type_name("WORLD,CHILD");
 }
 
+/// The options for topics that are followed in place of a drive.
+void addImages(CLI::App& command, BridgeOptions& options, CLI::Option* drive) {
+  constexpr double kLeastWithin_ms = 1e-3, kMostWithin_ms = 1000;
+  CLI::Option* const images =
+      command
+          .add_option("--images", options.images,
+                      "Follow these topics in place of a drive, sensor_msgs/Image or, where the name ends in "
+                      "/compressed, sensor_msgs/CompressedImage; the cameras are those of the camera_info beside them")
+          ->type_name("LEFT,RIGHT")
+          ->excludes(drive);
+  command
+      .add_option("--pair-within", options.pair_within_ms,
+                  "Images whose stamps are no further apart are a pair; less than half the cameras' period [ms]")
+      ->needs(images)
+      ->check(CLI::Range(kLeastWithin_ms, kMostWithin_ms))
+      ->capture_default_str();
+  command.add_option("--pairs", options.pairs, "End after so many pairs; without, at SIGINT or SIGTERM")
+      ->needs(images)
+      ->check(CLI::PositiveNumber);
+  command
+      .add_flag("--every-pair", options.every_pair,
+                "Lose no pair, for replays: subscribe reliably and hold the publisher up; without, the newest pair "
+                "wins")
+      ->needs(images);
+  CLI::Option* const camera =
+      command
+          .add_option("--camera", options.given.camera,
+                      "The cameras of a rectified pair, in pixels and, the last, meters, in place of camera_info")
+          ->type_name("FX,FY,CX,CY,BASELINE")
+          ->needs(images);
+  command
+      .add_option("--calibration", options.given.calibration,
+                  "Calibration of the pair in place of camera_info, in any form that run reads")
+      ->type_name("FILE[,FILE]")
+      ->needs(images)
+      ->excludes(camera);
+  command
+      .add_option("--bayer", options.given.bayer,
+                  "Images that do not tell it are the mosaic of a color sensor: the filters of the first two pixels of "
+                  "the first two rows")
+      ->type_name("RGGB|BGGR|GRBG|GBRG")
+      ->needs(images);
+}
+
+void addPace(CLI::App& command, BridgeOptions& options, CLI::Option* drive) {
+  command
+      .add_option("--rate", options.rate,
+                  "Pace of the replay in pairs per second, or max; that of the capture when absent")
+      ->needs(drive);
+  command
+      .add_flag("--live", options.live,
+                "Behave like a camera that does not wait: the newest pair wins, others are dropped")
+      ->needs(drive);
+  command.add_flag("--loop", options.loop, "Begin anew at the drive's end, until SIGINT or SIGTERM")->needs(drive);
+}
+
+/// Throws UsageError where there is nothing to follow.
+int runChecked(const BridgeOptions& options) {
+  if (options.drive.empty() && options.images.empty())
+    throw UsageError("bridge: give the folder of a DRIVE, or the topics of two cameras by --images LEFT,RIGHT");
+  return runBridge(options);
+}
+
 }  // namespace
 
 void addBridge(CLI::App& app, Action& action) {
   const auto options = std::make_shared<BridgeOptions>();
-  CLI::App* command = app.add_subcommand("bridge", "Follow a recorded drive and publish the results as ROS 2 topics");
-  command->add_option("DRIVE", options->drive, "Folder of a sequence, as for run")->required();
+  CLI::App* command =
+      app.add_subcommand("bridge", "Follow a recorded drive, or cameras, and publish the results as ROS 2 topics");
+  CLI::Option* const drive = command->add_option("DRIVE", options->drive, "Folder of a sequence, as for run");
+  addImages(*command, *options, drive);
   addWhat(*command, *options);
-  command->add_option("--rate", options->rate,
-                      "Pace of the replay in pairs per second, or max; that of the capture when absent");
-  command->add_flag("--live", options->live,
-                    "Behave like a camera that does not wait: the newest pair wins, others are dropped");
-  command->add_flag("--loop", options->loop, "Begin anew at the drive's end, until SIGINT or SIGTERM");
+  addPace(*command, *options, drive);
   command->add_option("--threads", options->threads, "Workers of the pipeline")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   command->add_option("--config", options->config, "Parameters; see effective_config.toml of any run")
       ->type_name("FILE.toml");
   addWhere(*command, *options);
-  command->footer("Example: motorcade bridge DRIVE --loop");
-  command->callback([options, &action] { action = [options] { return runBridge(*options); }; });
+  command->footer(
+      "Example: motorcade bridge DRIVE --loop\n"
+      "         motorcade bridge --images /left/image_raw,/right/image_raw");
+  command->callback([options, &action] { action = [options] { return runChecked(*options); }; });
 }
 
 }  // namespace motorcade

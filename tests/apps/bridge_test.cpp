@@ -173,6 +173,23 @@ TEST(BridgeOptions, AMountingIsAPlaceAndThreeTurns) {
     EXPECT_THROW(mountingOf({.mounting = bad}), UsageError) << bad;
 }
 
+TEST(BridgeOptions, ImagesAreTwoTopicsWithTheirCameraInfo) {
+  const auto topics = cameraTopicsOf({.images = "/stereo/left/image_raw,/stereo/right/image_raw/compressed"});
+  EXPECT_EQ(topics[0].image, "/stereo/left/image_raw");
+  EXPECT_EQ(topics[0].info, "/stereo/left/camera_info");
+  EXPECT_EQ(topics[1].image, "/stereo/right/image_raw/compressed");
+  EXPECT_EQ(topics[1].info, "/stereo/right/camera_info");
+  EXPECT_EQ(cameraTopicsOf({.images = "/a/b,/a/c", .given = {.camera = "1,1,1,1,1"}})[0].info, "");
+  for (const char* const bad : {"/l/i", "/l/i,", "l/i,r/i", "/l/i,/l/i", "/l/i,/r/i,/x/i", "/l/i,/r i", "/l/,/r/",
+                                "/stereo/left,/stereo/right"})
+    EXPECT_THROW(cameraTopicsOf({.images = bad}), UsageError) << bad;
+}
+
+TEST(BridgeOptions, TopicsAreLiveUnlessEveryPairIsWanted) {
+  EXPECT_EQ(trackerOptionsOf({.images = "/l/i,/r/i"}).policy, Tracker::Policy::kLive);
+  EXPECT_EQ(trackerOptionsOf({.images = "/l/i,/r/i", .every_pair = true}).policy, Tracker::Policy::kReplay);
+}
+
 TEST(BridgeOptions, TheConfigurationIsReadAndTheAxesAreThoseOfRos) {
   EXPECT_EQ(trackerOptionsOf({}).axes, Tracker::Axes::kRep103);
   EXPECT_EQ(trackerOptionsOf({}).policy, Tracker::Policy::kReplay);

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "apps/bridge/bridge_command.hpp"
+#include "apps/bridge/dds_publisher.hpp"
+#include "motorcade/motorcade.hpp"
+
+/// What the bridge does alike whether a drive or topics are followed.
+namespace motorcade {
+
+/// The tracker's log.
+void logToSpdlog(Tracker::LogLevel level, const std::string& text);
+
+/// The public interface's error, without the name of the field: users know files and options.
+std::string textOf(const Error& error);
+
+/// Throws UserError; `input` is what has the camera.
+std::unique_ptr<Tracker> makeTracker(const Camera& camera, const Tracker::Options& tracker_options,
+                                     const BridgeOptions& options, const std::string& input);
+
+void tellPlace(const DdsPublisher& out, const DdsPlace& place, const std::set<Topic>& topics);
+void tellPublished(const std::vector<DdsPublisher::Counts>& topics);
+
+/// As many as the options want, as long as they want.
+void awaitSubscribers(const DdsPublisher& out, const BridgeOptions& options, const std::stop_token& stop);
+
+}  // namespace motorcade
