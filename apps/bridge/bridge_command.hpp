@@ -14,8 +14,9 @@ struct BridgeOptions {
   std::filesystem::path drive{}, config{};
   std::string rate{};  // `max`, HZ, or empty for the drive's own pace
   bool live = false, loop = false;
-  std::string images{};     // LEFT,RIGHT: topics that are followed instead of a drive
-  bool every_pair = false;  // of them: no pair is lost
+  std::string images{};          // LEFT,RIGHT: topics that are followed instead of a drive
+  std::string vehicle_motion{};  // topic; empty: none
+  bool every_pair = false;       // of them: no pair is lost
   double pair_within_ms = 5;
   std::int64_t pairs = 0;  // after which it ends; 0: there is no end
   GivenCameras given{};    // where no camera_info comes

@@ -94,6 +94,12 @@ SE3 mountingOf(const BridgeOptions& options) {
   return {turn(yaw_deg, 2) * turn(pitch_deg, 1) * turn(roll_deg, 0), {x_m, y_m, z_m}};
 }
 
+std::string vehicleMotionTopicOf(const BridgeOptions& options) {
+  if (options.vehicle_motion.empty() || isTopic(options.vehicle_motion)) return options.vehicle_motion;
+  throw UsageError("--vehicle-motion " + printable(options.vehicle_motion) +
+                   ": write a topic, as /vehicle/twist_with_covariance");
+}
+
 std::array<CameraTopics, 2> cameraTopicsOf(const BridgeOptions& options) {
   const auto comma = options.images.find(',');
   const std::string left = options.images.substr(0, comma);

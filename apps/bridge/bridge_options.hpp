@@ -22,6 +22,9 @@ FrameIds frameIdsOf(const BridgeOptions& options);
 /// The identity without a mounting.
 SE3 mountingOf(const BridgeOptions& options);
 
+/// Empty where there is none.
+std::string vehicleMotionTopicOf(const BridgeOptions& options);
+
 /// The topics of `--images LEFT,RIGHT`; no camera_info where the user gives the cameras.
 std::array<CameraTopics, 2> cameraTopicsOf(const BridgeOptions& options);
 

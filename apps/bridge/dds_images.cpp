@@ -1,6 +1,7 @@
 #include "apps/bridge/dds_images.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -60,6 +61,19 @@ CameraInfoMessage cameraInfoMessageOf(const sensor_msgs_msg_dds__CameraInfo_& sa
   std::ranges::copy(sample.r, message.R.begin());
   std::ranges::copy(sample.p, message.P.begin());
   return message;
+}
+
+VehicleMotion vehicleMotionOf(const geometry_msgs_msg_dds__TwistWithCovarianceStamped_& sample) {
+  constexpr int kAlong = 0, kAboutUp = 35;  // of the covariance's diagonal
+  const auto sigma = [&](int entry) {
+    const double variance = sample.twist.covariance[entry];
+    return std::isfinite(variance) && variance > 0 ? std::sqrt(variance) : 0.0;
+  };
+  return {.stamp_ns = nanosecondsOf(sample.header.stamp),
+          .speed_mps = sample.twist.twist.linear.x,
+          .yaw_rate_radps = sample.twist.twist.angular.z,
+          .speed_sigma_mps = sigma(kAlong),
+          .yaw_rate_sigma_radps = sigma(kAboutUp)};
 }
 
 }  // namespace motorcade

@@ -11,9 +11,11 @@ namespace {
 using RawImage = sensor_msgs_msg_dds__Image_;
 using CompressedImage = sensor_msgs_msg_dds__CompressedImage_;
 using Info = sensor_msgs_msg_dds__CameraInfo_;
+using Twist = geometry_msgs_msg_dds__TwistWithCovarianceStamped_;
 
 constexpr int kNewestImages = 4;  // kept until they are taken
-constexpr int kMostImages = 32;   // that wait, where none may be lost
+constexpr int kNewestTwists = 256;
+constexpr int kMostImages = 32;  // that wait, where none may be lost
 constexpr const char* kCompressed = "/compressed";
 
 bool isCompressed(const std::string& topic) { return topic.ends_with(kCompressed); }
@@ -108,11 +110,15 @@ struct ImageSubscriber::Impl {
         anything(dds_create_waitset(participant.get()), textOf(place)) {
     left.attachTo(anything.get());
     right.attachTo(anything.get());
+    if (!params.vehicle_motion.empty())
+      motions.emplace(participant.get(), geometry_msgs_msg_dds__TwistWithCovarianceStamped__desc, params.vehicle_motion,
+                      lastKept(kNewestTwists));
   }
   const CameraReaders& of(StereoSide side) const { return side == StereoSide::kLeft ? left : right; }
 
   DdsEntity participant;
   CameraReaders left, right;
+  std::optional<Reader> motions{};
   DdsEntity anything;
 };
 
@@ -136,6 +142,13 @@ std::optional<CameraInfoMessage> ImageSubscriber::takeInfo(StereoSide side) {
   const auto sample = camera.infos->take<Info>();
   if (!sample) return std::nullopt;
   return cameraInfoMessageOf(*sample);
+}
+
+std::optional<VehicleMotion> ImageSubscriber::takeMotion() {
+  if (!impl_->motions) return std::nullopt;
+  const auto sample = impl_->motions->take<Twist>();
+  if (!sample) return std::nullopt;
+  return vehicleMotionOf(*sample);
 }
 
 int ImageSubscriber::publishers(StereoSide side) const { return impl_->of(side).images.publishers(); }

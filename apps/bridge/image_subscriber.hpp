@@ -10,16 +10,18 @@
 #include "apps/bridge/received_image.hpp"
 #include "io/messages/camera_info_message.hpp"
 #include "io/sequence.hpp"
+#include "motorcade/motorcade.hpp"
 
 namespace motorcade {
 
-/// Receives two cameras' images and camera_info. A name that ends in `/compressed` is that of a
-/// sensor_msgs/CompressedImage, another one of a sensor_msgs/Image.
-/// The place's DDS domain has been made: by a DdsPublisher. For one thread.
+/// Receives two cameras' images and camera_info, and the vehicle's own motion where that is wanted. A name that ends in
+/// `/compressed` is that of a sensor_msgs/CompressedImage, another one of a sensor_msgs/Image. The place's DDS domain
+/// has been made: by a DdsPublisher. For one thread.
 class ImageSubscriber {
  public:
   struct Params {
     std::array<CameraTopics, 2> topics{};
+    std::string vehicle_motion{};  // topic of a geometry_msgs/TwistWithCovarianceStamped; empty: none
     /// Best effort, which understands reliable publishers too: of what waits, the last images are kept. Or reliable,
     /// which understands those alone: a publisher waits for room.
     bool every_image = false;
@@ -36,6 +38,8 @@ class ImageSubscriber {
   std::optional<ReceivedImage> takeImage(StereoSide side);
   /// The newest camera_info that came since the last call.
   std::optional<CameraInfoMessage> takeInfo(StereoSide side);
+  /// The oldest that waits.
+  std::optional<VehicleMotion> takeMotion();
   /// That send on the image topic now, with its type.
   int publishers(StereoSide side) const;
 

@@ -132,7 +132,9 @@ int runTopicBridge(const BridgeOptions& options) {
   const DdsPlace place{.domain = options.domain, .interface = options.interface};
   StopSignals signals;  // before all threads
   DdsPublisher out(place, topics);
-  ImageSubscriber images(place, {.topics = input.cameras.topics, .every_image = options.every_pair});
+  ImageSubscriber images(place, {.topics = input.cameras.topics,
+                                 .vehicle_motion = vehicleMotionTopicOf(options),
+                                 .every_image = options.every_pair});
   tellPlace(out, place, topics);
   tellSmallReceiveBuffer();
 

@@ -42,6 +42,14 @@ void TopicFeeder::takeInfos() {
   }
 }
 
+void TopicFeeder::takeMotions(Tracker& tracker) {
+  while (const auto motion = images_.takeMotion()) {
+    const auto pushed = tracker.push_motion(*motion);
+    if (pushed.status != Tracker::Push::Status::kRejected || std::exchange(told_motion_, true)) continue;
+    logWarning(fmt::format("a message of the vehicle's motion is of no use: {}", pushed.why));
+  }
+}
+
 bool TopicFeeder::takeImage() {
   const StereoSide first = pairing_.waiting(StereoSide::kLeft) <= pairing_.waiting(StereoSide::kRight)
                                ? StereoSide::kLeft
@@ -152,6 +160,7 @@ void TopicFeeder::feed(Tracker& tracker, const std::stop_token& stop) {
   while (!stop.stop_requested() && !hasAll()) {
     if (!takeImages()) images_.wait(kNap);
     takeInfos();
+    takeMotions(tracker);
     for (; !pairs_.empty() && !hasAll() && !stop.stop_requested(); pairs_.pop_front())
       push(tracker, conversion, pairs_.front());
     tellState();

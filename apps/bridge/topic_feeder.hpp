@@ -45,6 +45,7 @@ class TopicFeeder {
   using Clock = InputWatch::Clock;
 
   void takeInfos();
+  void takeMotions(Tracker& tracker);
   /// One image from the side on which fewer wait for a partner; false where there is none.
   bool takeImage();
   /// Up to the next pair where none may be lost, else all that came. False where there is nothing to be done.
@@ -65,7 +66,7 @@ class TopicFeeder {
   InputWatch watch_;
   std::deque<ReceivedPair> pairs_;  // that wait to be pushed
   std::optional<Sequence> cameras_{};
-  bool told_infos_ = false;
+  bool told_infos_ = false, told_motion_ = false;
   Clock::time_point next_complaint_{};
 
   InputCounts counts_{};

@@ -69,6 +69,12 @@ void addImages(CLI::App& command, BridgeOptions& options, CLI::Option* drive) {
       ->needs(images)
       ->check(CLI::Range(kLeastWithin_ms, kMostWithin_ms))
       ->capture_default_str();
+  command
+      .add_option("--vehicle-motion", options.vehicle_motion,
+                  "Where the vehicle's own motion comes, a geometry_msgs/TwistWithCovarianceStamped of the rear axle's "
+                  "middle: it leads the camera where images fail")
+      ->type_name("TOPIC")
+      ->needs(images);
   command.add_option("--pairs", options.pairs, "End after so many pairs; without, at SIGINT or SIGTERM")
       ->needs(images)
       ->check(CLI::PositiveNumber);

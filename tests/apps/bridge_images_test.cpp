@@ -102,6 +102,25 @@ TEST_F(BridgedImages, EveryPairGivesTheResultsOfTheDrive) {
   EXPECT_EQ(resultsIn(subscriber.said()), expected) << bridge.said();
 }
 
+TEST_F(BridgedImages, TheVehiclesMotionReachesTheTracker) {
+  constexpr double kTooFast_mps = 90;
+  Process subscriber = this->subscriber();
+  Process bridge =
+      followed({"--every-pair", "--vehicle-motion", "/vehicle/twist", "--pairs", std::to_string(recording_.size()),
+                "--calibration", std::string(kDrive) + "/calib.txt", "--wait-for-subscribers", "1"});
+  const CameraPublishers cameras(domain_, Driver::kReliable);
+  ASSERT_TRUE(cameras.areSubscribed(kMuch, /*infos_too=*/false)) << bridge.said();
+  ASSERT_TRUE(cameras.motionIsSubscribed(kMuch)) << bridge.said();
+  for (std::int64_t i = 0; i < recording_.size(); ++i) cameras.publishMotion(kTooFast_mps, recording_.read(i).stamp_ns);
+  for (std::int64_t i = 0; i < recording_.size(); ++i) {
+    const Pair pair = recording_.read(i);
+    cameras.publish(kLeft, pair.left, pair.stamp_ns);
+    cameras.publish(kRight, pair.right, pair.stamp_ns);
+  }
+  EXPECT_EQ(bridge.end(kMuch), 0) << bridge.said();
+  EXPECT_THAT(bridge.said(), HasSubstr("90 m/s and 0 rad/s are told where the camera sees"));
+}
+
 TEST_F(BridgedImages, PublishersWaitForRoomWhereEveryPairCounts) {
   constexpr std::int64_t kPairs = 150;  // many times what is kept
   Process subscriber = this->subscriber();

@@ -37,6 +37,7 @@ class CameraPublishers {
                             : writer(sensor_msgs_msg_dds__Image__desc, name + "/image_raw", driver));
       infos_.push_back(writer(sensor_msgs_msg_dds__CameraInfo__desc, name + "/camera_info", driver));
     }
+    motion_ = writer(geometry_msgs_msg_dds__TwistWithCovarianceStamped__desc, "rt/vehicle/twist", driver);
   }
   ~CameraPublishers() { dds_delete(domain_); }
   CameraPublishers(const CameraPublishers&) = delete;
@@ -44,17 +45,11 @@ class CameraPublishers {
 
   /// False where a topic has no subscriber in time.
   bool areSubscribed(std::chrono::seconds patience, bool infos_too = true) const {
-    const auto deadline = std::chrono::steady_clock::now() + patience;
     std::vector<dds_entity_t> wanted = images_;
     if (infos_too) wanted.insert(wanted.end(), infos_.begin(), infos_.end());
-    for (const dds_entity_t writer : wanted)
-      for (dds_publication_matched_status_t status{}; status.current_count == 0;) {
-        dds_get_publication_matched_status(writer, &status);
-        if (std::chrono::steady_clock::now() > deadline) return false;
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      }
-    return true;
+    return allAreSubscribed(wanted, patience);
   }
+  bool motionIsSubscribed(std::chrono::seconds patience) const { return allAreSubscribed({motion_}, patience); }
 
   /// Gray of 8 bits, as mono8, or as the rgb8 that has the same gray.
   void publish(StereoSide side, const Pair::Image& image, std::int64_t stamp_ns, bool colors = false) const {
@@ -72,6 +67,14 @@ class CameraPublishers {
     message.step = message.width * (colors ? 3 : 1);
     message.data = ddsSequence<decltype(message.data)>(bytes);
     write(images_[indexOf(side)], &message);
+  }
+  /// The vehicle's own motion.
+  void publishMotion(double speed_mps, std::int64_t stamp_ns) const {
+    const std::string frame_id = "base_link";
+    geometry_msgs_msg_dds__TwistWithCovarianceStamped_ message{};
+    message.header = headerAt(stamp_ns, frame_id);
+    message.twist.twist.linear.x = speed_mps;
+    write(motion_, &message);
   }
   /// The bytes of a file.
   void publish(StereoSide side, const std::string& file, std::int64_t stamp_ns) const {
@@ -105,6 +108,16 @@ class CameraPublishers {
   }
 
  private:
+  static bool allAreSubscribed(const std::vector<dds_entity_t>& wanted, std::chrono::seconds patience) {
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    for (const dds_entity_t writer : wanted)
+      for (dds_publication_matched_status_t status{}; status.current_count == 0;) {
+        dds_get_publication_matched_status(writer, &status);
+        if (std::chrono::steady_clock::now() > deadline) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      }
+    return true;
+  }
   static dds_entity_t made(dds_entity_t entity) {
     if (entity < 0) throw std::runtime_error(dds_strretcode(entity));
     return entity;
@@ -138,6 +151,7 @@ class CameraPublishers {
 
   dds_entity_t domain_, participant_;
   std::vector<dds_entity_t> images_{}, infos_{};
+  dds_entity_t motion_ = 0;
 };
 
 }  // namespace motorcade::test
