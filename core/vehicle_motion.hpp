@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
@@ -26,15 +27,15 @@ class VehicleMotionLog {
   explicit VehicleMotionLog(std::size_t capacity = 4096) : ring_(capacity) {}
 
   void add(const VehicleMotionSample& sample);
-  /// How many were added so far.
-  std::uint64_t count() const;
+  /// How many were added so far; takes no lock.
+  std::uint64_t count() const { return count_.load(std::memory_order_acquire); }
   /// Those with numbers from `begin` up to, but not including, `end`, as far as they are still held.
   std::vector<VehicleMotionSample> read(std::uint64_t begin, std::uint64_t end) const;
 
  private:
   mutable std::mutex mutex_;
   std::vector<VehicleMotionSample> ring_;
-  std::uint64_t count_ = 0;
+  std::atomic<std::uint64_t> count_{0};  // changes under the mutex
 };
 
 }  // namespace motorcade

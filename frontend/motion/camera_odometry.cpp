@@ -43,9 +43,9 @@ constexpr double kSureShare = 0.6;
 /// Does the view move as vehicles around the camera would make it? They go along with it, so that it seems to stand, or
 /// move off ahead of it while it stands, so that it seems to go back or aside.
 bool mayBeVehicles(const SE3& seen, const SE3& told, double dt_s) {
-  constexpr double kStanding_mps = 0.5, kMoving_mps = 2, kAlongShare = 0.15;
+  constexpr double kStanding_mps = 0.5, kMoving_mps = 2, kAlongShare = 0.15, kAlong_mps = 1.5;
   const double seen_m = seen.translation().norm(), told_m = told.translation().norm();
-  const bool goes_along = seen_m < kAlongShare * told_m && told_m > kMoving_mps * dt_s;
+  const bool goes_along = told_m > kMoving_mps * dt_s && seen_m < std::min(kAlongShare * told_m, kAlong_mps * dt_s);
   const bool moves_off = told_m < kStanding_mps * dt_s && seen.translation().z() < 0.5 * seen_m;
   return goes_along || moves_off;
 }
