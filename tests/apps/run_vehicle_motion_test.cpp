@@ -16,10 +16,11 @@ namespace {
 
 using testing::HasSubstr;
 
+const std::string kDark = "--inject black@20:49 ";
+
 class SensedDrive : public Run {
  protected:
   static constexpr std::size_t kDarkBegin = 20, kDarkEnd = 50;  // three seconds
-  const std::string kDark = "--inject black@20:49 ";
 
   RunFolder follow(const std::string& name, const std::string& options) {
     EXPECT_EQ(run(name, options), 0) << contentOf(errors());
