@@ -43,7 +43,7 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   measurements->head = scene->head;
   measurements->odometry = scene->odometry;
   advance(*scene);
-  if (scene->head.cause == FrameCause::kUnlinked) endAll(*measurements);
+  if (scene->head.cause == FrameCause::kUnlinked && !scene->odometry.vehicle) endAll(*measurements);
   for (TrackedObject& object : objects_) follow(object, *scene, *measurements);
   matchComponents(*scene);
   mergeDuplicates(objects_, SeeThrough(*scene, camera_), camera_);
