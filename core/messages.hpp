@@ -167,7 +167,7 @@ struct Odometry {
   std::optional<Vehicle> vehicle{};
 };
 
-/// What was found out about the sensors of the vehicle's own motion.
+/// The findings about the sensors of the vehicle's own motion.
 struct VehicleSensors {
   bool believed = true;            // they agree with the camera
   double speed_scale = 1;          // true over told speed

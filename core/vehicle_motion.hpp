@@ -27,7 +27,7 @@ class VehicleMotionLog {
   explicit VehicleMotionLog(std::size_t capacity = 4096) : ring_(capacity) {}
 
   void add(const VehicleMotionSample& sample);
-  /// How many were added so far; takes no lock.
+  /// The number of samples added so far; takes no lock.
   std::uint64_t count() const { return count_.load(std::memory_order_acquire); }
   /// Those with numbers from `begin` up to, but not including, `end`, as far as they are still held.
   std::vector<VehicleMotionSample> read(std::uint64_t begin, std::uint64_t end) const;

@@ -36,7 +36,7 @@ std::optional<Eigen::Vector3d> readVelocity(FieldReader& fields) {
   return velocity_mps;
 }
 
-/// After the velocity; empty where the packet ends before.
+/// The turn rate after the velocity; empty where the packet ends before.
 std::optional<double> readYawRate(FieldReader& fields) {
   constexpr int kAccelerationsAndRates = 11;  // ax ay az af al au wx wy wz wf wl, before wu
   for (int skipped = 0; skipped < kAccelerationsAndRates; ++skipped) {

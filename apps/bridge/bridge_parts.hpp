@@ -10,7 +10,7 @@
 #include "apps/bridge/dds_publisher.hpp"
 #include "motorcade/motorcade.hpp"
 
-/// What the bridge does alike whether a drive or topics are followed.
+/// The parts of the bridge that drives and topics share.
 namespace motorcade {
 
 /// The tracker's log.
@@ -26,7 +26,7 @@ std::unique_ptr<Tracker> makeTracker(const Camera& camera, const Tracker::Option
 void tellPlace(const DdsPublisher& out, const DdsPlace& place, const std::set<Topic>& topics);
 void tellPublished(const std::vector<DdsPublisher::Counts>& topics);
 
-/// As many as the options want, as long as they want.
+/// Waits for as many as the options want, as long as they want.
 void awaitSubscribers(const DdsPublisher& out, const BridgeOptions& options, const std::stop_token& stop);
 
 }  // namespace motorcade

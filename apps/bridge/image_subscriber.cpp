@@ -81,7 +81,7 @@ std::optional<ReceivedImage> receivedFrom(const Reader& reader) {
   return ReceivedImage{.stamp_ns = message.stamp_ns, .message = message, .holder = std::move(sample)};
 }
 
-/// What one camera sends.
+/// The readers of one camera's topics.
 struct CameraReaders {
   CameraReaders(dds_entity_t participant, const CameraTopics& topics, const DdsQos& qos)
       : compressed(isCompressed(topics.image)),

@@ -40,7 +40,7 @@ class ImageSubscriber {
   std::optional<CameraInfoMessage> takeInfo(StereoSide side);
   /// The oldest that waits.
   std::optional<VehicleMotion> takeMotion();
-  /// That send on the image topic now, with its type.
+  /// The number of those that send on the image topic now, with its type.
   int publishers(StereoSide side) const;
 
  private:

@@ -31,9 +31,9 @@ class InputWatch {
 
   void imageCame(StereoSide side, Clock::time_point now) { images_[indexOf(side)].last = now; }
   void pairCame(Clock::time_point now) { pairs_.last = now; }
-  /// What changed since the last call; to be called often.
+  /// The changes since the last call; to be called often.
   std::vector<News> look(Clock::time_point now);
-  /// What is wrong, as of the last look: in one sentence, empty where all is well.
+  /// The fault as of the last look, in one sentence; empty where all is well.
   const std::string& problem() const { return problem_; }
 
  private:
@@ -52,7 +52,7 @@ class InputWatch {
   std::string problem_{};
 };
 
-/// How the input fares, in numbers.
+/// The numbers that tell how the input fares.
 struct InputCounts {
   std::int64_t pairs = 0;                     // handed to the tracker
   std::array<std::int64_t, 2> unpaired{};     // dropped without an image of the other side

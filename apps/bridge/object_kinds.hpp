@@ -12,7 +12,7 @@ struct KindShare {
 };
 
 /// The kinds that an object may be: the one that the tracker names, and unknown with the rest. The shares sum to one.
-/// Where none is named, the tracker's probability is that of a kind it does not tell, and all is unknown.
+/// All is unknown where no kind is named: the tracker's probability is then that of a kind that it does not tell.
 std::vector<KindShare> kindShares(const Result::Object& object);
 
 }  // namespace motorcade

@@ -19,7 +19,7 @@ using ReceivedPair = StampPairing<ReceivedImage>::Pair;
 /// The image's size, from its header. Throws InputError, which begins with `name`.
 ImageSize sizeOf(const ReceivedImage& image, const std::string& name);
 
-/// What is known of the cameras: the user's word, else both sides' camera_info.
+/// The knowledge of the cameras: the user's word, else both sides' camera_info.
 struct CameraKnowledge {
   std::array<CameraTopics, 2> topics{};
   GivenCameras given{};
@@ -42,7 +42,7 @@ class PairConversion {
 
   /// Throws InputError naming the topic.
   Grays operator()(const ReceivedPair& pair);
-  /// How samples of 16 bits are taken, once that is known.
+  /// The bits that samples of 16 bits use, once they are known.
   std::optional<int> sampleBits() const { return sample_bits_; }
 
  private:

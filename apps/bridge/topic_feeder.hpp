@@ -33,9 +33,9 @@ class TopicFeeder {
   /// Works until the cameras are known and a pair has come, or for so long. True once that is so. Throws InputError
   /// where the calibration is of no use.
   bool awaitCameras(std::chrono::milliseconds patience);
-  /// That of the rectified pairs.
+  /// The camera of the rectified pairs.
   const Sequence& cameras() const { return *cameras_; }
-  /// Until asked to stop, or all pairs have come; then closes the tracker.
+  /// Pushes until asked to stop, or until all pairs have come; then closes the tracker.
   void feed(Tracker& tracker, const std::stop_token& stop);
 
   InputCounts counts() const;
@@ -48,7 +48,7 @@ class TopicFeeder {
   void takeMotions(Tracker& tracker);
   /// One image from the side on which fewer wait for a partner; false where there is none.
   bool takeImage();
-  /// Up to the next pair where none may be lost, else all that came. False where there is nothing to be done.
+  /// Takes up to the next pair where none may be lost, else all that came. False where there is nothing to be done.
   bool takeImages();
   void keep(ReceivedPair pair);
   void tell(const InputWatch::News& news) const;

@@ -97,7 +97,7 @@ void addWaysToSee(CLI::App& command, const std::shared_ptr<RunOptions>& options)
       ->each([options](const std::string&) { options->shown = true; });
 }
 
-/// What is known beside the images.
+/// The options that tell what is known beside the images.
 void addWhatComesBeside(CLI::App& command, RunOptions& options) {
   command
       .add_option(

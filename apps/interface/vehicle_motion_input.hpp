@@ -7,10 +7,10 @@
 
 namespace motorcade {
 
-/// Of stamps, either side of zero: differences of two still are numbers.
+/// The farthest stamp, either side of zero: differences of two still are numbers.
 inline constexpr std::int64_t kFarthestStamp_ns = std::int64_t{1} << 62;
 
-/// What keeps a sample from being used, as static text; null where nothing does.
+/// The reason why a sample cannot be used, as static text; null where it can.
 const char* problemOf(const VehicleMotion& motion);
 
 VehicleMotionSample sampleOf(const VehicleMotion& motion);

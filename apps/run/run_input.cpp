@@ -146,7 +146,7 @@ RunInput openPairs(const RunOptions& options, InputPolicy policy) {
   return options.sequence == kStandardInput ? openStream(options, policy) : openRecorded(options, policy);
 }
 
-/// Of the vehicle's own motion; empty where there is none.
+/// The file of the vehicle's own motion; empty where there is none.
 std::filesystem::path motionFileOf(const RunOptions& options) {
   if (options.vehicle_motion == kNoVehicleMotion) return {};
   if (!options.vehicle_motion.empty()) return options.vehicle_motion;

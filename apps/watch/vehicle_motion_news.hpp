@@ -13,7 +13,7 @@ class VehicleMotionNews {
   /// Takes the frames in order. A sentence when there is something to tell; no more than a few in a drive.
   std::optional<std::string> observe(const FrameMeasurements& frame);
 
-  /// What was found last; empty where there are no such sensors.
+  /// The newest findings; empty where there are no such sensors.
   const std::optional<VehicleSensors>& sensors() const { return sensors_; }
   /// Frames in which they were left out.
   int leftOut() const { return left_out_; }

@@ -150,7 +150,7 @@ Odometry CameraOdometry::passOver(Timestamp stamp) {
   return odometry;
 }
 
-/// From the frame before, seen or not. What the sensors tell of it is what they tell since the last frame that was
+/// The step from the frame before, seen or not. The sensors tell of it what they tell since the last frame that was
 /// seen, less what they told up to the frame before.
 Odometry CameraOdometry::stepTo(Timestamp stamp, const SE3& T_seen_now, const Matrix6d& covariance, const Told& told) {
   last_stamp_ = stamp;
@@ -198,9 +198,11 @@ CameraMotion CameraOdometry::measure(const StereoFrame& frame, const std::vector
   }
   const auto seed = static_cast<std::uint64_t>(frame.head.frame.value);
   auto ego = ego_motion_(observations, labels, predicted, seed);
-  if (!ego && predicted.by_vehicle) ego = againstVehicle(observations, labels, frame.head);
-  const bool is_disputed =
-      ego && predicted.by_vehicle && mayBeVehicles(ego->T_seen_now, predicted.T_seen_now, predicted.dt_s);
+  bool is_disputed = false;
+  if (!ego && predicted.by_vehicle) {
+    ego = againstVehicle(observations, labels, frame.head);
+    is_disputed = ego && mayBeVehicles(ego->T_seen_now, predicted.T_seen_now, predicted.dt_s);
+  }
   if (!ego || is_disputed) return unlinked(predicted, observed.size(), is_disputed);
   motion.T_seen_now = ego->T_seen_now;
   motion.covariance = ego->covariance;

@@ -78,7 +78,7 @@ Sums sumsOf(Pieces pieces, double speed_variance, double yaw_rate_variance) {
 
 double square(double x) { return x * x; }
 
-/// Of a motion, along the vehicle's axes at its end, beside what errors of the state do. A heading that walks off
+/// A motion's noise along the vehicle's axes at its end, beside errors of the state. A heading that walks off
 /// carries the place aside by the way / 2 with it, by the way / sqrt(3) in all; so does the slope of a road.
 Matrix6d noiseOf(const Sums& sums) {
   const double way_m = sums.way_m, slope = square(kSlopeWalk) * sums.path_m;
@@ -112,7 +112,7 @@ VehicleCalibration::VehicleCalibration()
   covariance_ = sigma.cwiseAbs2().asDiagonal();
 }
 
-/// Of the motion under right perturbation, along the vehicle's axes; by differences, as the path has many arcs.
+/// The Jacobian of the motion under right perturbation, along the vehicle's axes; by differences, as arcs are many.
 VehicleCalibration::StateJacobian VehicleCalibration::jacobian(Pieces pieces, const SE3& T_then_now) const {
   constexpr double kStep = 1e-5;
   const Matrix6d R_vehicle_cam = turning(mountingOf(state_).rotation());
@@ -180,7 +180,7 @@ void VehicleCalibration::learn(Pieces pieces, const UncertainMotion& seen) {
   learnNoise(found, camera_variance);
 }
 
-/// What differs and is not the camera's is the samples' noise.
+/// The samples' noise is what differs and is not the camera's.
 void VehicleCalibration::learnNoise(const Difference& found, const Vector6d& camera_variance) {
   const auto follow = [&](double& variance, int row, double least) {
     const double squared = square(found.seen_less_expected[row]) - camera_variance[row];

@@ -28,7 +28,7 @@ class VehicleCalibration {
   /// The camera's motion over pieces of the vehicle's.
   UncertainMotion motionOver(std::span<const VehicleSamples::Piece> pieces) const;
 
-  /// How the camera's measured motion differs from the vehicle's, in deviations of what is usual on roads.
+  /// The camera's measured motion less the vehicle's, in deviations of what is usual on roads.
   struct Surprise {
     double speed_sigmas = 0, yaw_rate_sigmas = 0;
   };

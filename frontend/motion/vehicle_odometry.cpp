@@ -10,7 +10,7 @@ namespace {
 constexpr double kAgreementRate = 0.1, kLeastAgreement = 0.7, kRegainedAgreement = 0.85;
 constexpr double kStrange_sigmas = 4;
 
-/// Of a camera that looks ahead, or of pieces on the mean.
+/// The motion of a camera that looks ahead, or the mean over pieces.
 VehicleSensors::Motion motionOf(const SE3& T_then_now, double dt_s) {
   return {T_then_now.translation().z() / dt_s, -T_then_now.log()[4] / dt_s};
 }

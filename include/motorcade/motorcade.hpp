@@ -90,7 +90,7 @@ struct Pair {
   std::int64_t frame = -1;    // number, from 0, after that of the pair before; -1: the next one
 };
 
-/// What the vehicle's own sensors tell of its motion, that of the middle of its rear axle.
+/// The motion of the rear axle's middle, as the vehicle's own sensors tell it.
 struct VehicleMotion {
   std::int64_t stamp_ns = 0;                             // on the clock of the pairs
   double speed_mps = 0, yaw_rate_radps = 0;              // positive ahead; about the upward axis, to the left

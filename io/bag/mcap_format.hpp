@@ -6,7 +6,7 @@
 /// Records of MCAP files (https://mcap.dev/spec).
 namespace motorcade::mcap {
 
-/// At the file's beginning and at its end.
+/// The bytes at the file's beginning and at its end.
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 
 enum class Opcode : std::uint8_t {

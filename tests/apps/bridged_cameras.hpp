@@ -20,7 +20,7 @@
 /// Two cameras as drivers of ROS 2 publish them, with the code that idlc makes of the public definitions.
 namespace motorcade::test {
 
-/// How a driver publishes: ROS' sensor data are best effort.
+/// A driver's way to publish: ROS' sensor data are best effort.
 enum class Driver { kReliable, kBestEffort };
 
 /// Publishers of one domain, in this process.

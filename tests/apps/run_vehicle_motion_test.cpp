@@ -26,7 +26,7 @@ class SensedDrive : public Run {
     EXPECT_EQ(run(name, options), 0) << contentOf(errors());
     return readRunFolder(out(name));
   }
-  /// Of the motion over the dark, as a share of the whole way.
+  /// The motion's error over the dark, as a share of the whole way.
   static double errorOverTheDark(const RunFolder& folder) {
     const std::vector<SE3> truth = readKittiPoses(std::filesystem::path(MOTORCADE_RENDERED_SEQUENCE) / "poses.txt");
     double way_m = 0;

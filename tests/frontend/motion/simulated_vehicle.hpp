@@ -29,7 +29,7 @@ struct SimulatedVehicle {
 
   SimulatedVehicle(std::uint64_t seed, int frames, const Faults& faults) : SimulatedVehicle(seed, frames, faults, 1) {}
 
-  /// With hills as rough as `roughness` times those of real roads.
+  /// A road with hills `roughness` times as rough as real ones.
   SimulatedVehicle(std::uint64_t seed, int frames, const Faults& faults, double roughness) {
     constexpr int kSteps = 20;  // per frame
     constexpr double kStep_s = kFrame_s / kSteps;

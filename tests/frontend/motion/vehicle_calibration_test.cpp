@@ -50,7 +50,7 @@ TEST(VehicleCalibration, WithoutNoiseTheMotionIsThatOfTheMountedCamera) {
   EXPECT_LT(error.tail<3>().norm(), 0.01);
 }
 
-/// Of 200 drives, over as many frames without images.
+/// The errors of 200 drives lie within their covariance after so many frames without images.
 void expectCovered(int frames, double most_error_share) {
   constexpr int kSeeds = 200;
   constexpr double kChi2_95 = 12.59;  // of six

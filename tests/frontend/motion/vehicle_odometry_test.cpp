@@ -188,6 +188,33 @@ TEST_F(InTheDark, WithoutSensorsItIsTakenToStandAfterASecond) {
   EXPECT_LT(steppedTo(kDark).translation().norm(), 20);
 }
 
+TEST(CameraOdometryWithSensors, ACarThatStandsIsSeenToStand) {
+  std::vector<VehicleMotionSample> samples;
+  for (int i = 0; i <= 200; ++i) samples.push_back({.stamp = {i * 50'000'000LL}});
+  Inputs inputs(samples);
+  CameraOdometry odometry({}, test::kRig);
+  odometry.hear(inputs.upTo({10'000'000'000LL}));
+  odometry.add({0}, {.T_seen_now = SE3{}, .inliers = {}});
+  test::Noise noise(5);
+  for (int number = 1; number < 80; ++number) {
+    std::vector<std::optional<KnownPoint>> known;
+    std::vector<std::optional<StereoObservation>> observed;
+    while (known.size() < 150) {
+      const Eigen::Vector3d p = test::streetPoint(noise, 6, 40);
+      const auto seen = test::lookTwice(p, p, noise);
+      if (!seen) continue;
+      known.push_back(KnownPoint{seen->p_ref, seen->covariance_ref, test::kRig.project(p)->z(), PointLabel::kUnknown});
+      observed.emplace_back(StereoObservation{seen->uvd_px.cast<float>(), seen->sigma_px.cast<float>()});
+    }
+    StereoFrame frame;
+    frame.head = {.frame = {number}, .stamp = {number * 100'000'000LL}};
+    const CameraMotion motion = odometry.measure(frame, known, observed, odometry.predict(frame.head.stamp));
+    EXPECT_EQ(motion.status, FrameStatus::kGood) << number;
+    odometry.add(frame.head.stamp, motion);
+  }
+  EXPECT_TRUE(odometry.vehicleSensors()->believed);
+}
+
 TEST(CameraOdometryWithSensors, WhatIsNotLinkedByImagesStaysInTheSegment) {
   const SimulatedVehicle drive(4, 12, {});
   Inputs inputs(drive.samples);

@@ -13,7 +13,7 @@
 namespace motorcade {
 namespace {
 
-/// How many objects a lead car becomes where images do not tell how the camera moved in one frame.
+/// The number of objects that a lead car becomes where images do not tell the camera's motion in one frame.
 std::size_t objectsAcrossAnUnlinkedFrame(const std::optional<Odometry::Vehicle>& told) {
   test::SimulatedTraffic traffic({{.x_m = 0.5, .z_m = 14, .speed_mps = 10}}, 10, 1, 0.003);
   ObjectTracker tracker({}, test::kRig);
