@@ -1,5 +1,6 @@
 #include "frontend/motion/vehicle_calibration.hpp"
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include "tests/frontend/motion/simulated_vehicle.hpp"
