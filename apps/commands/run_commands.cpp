@@ -80,21 +80,20 @@ void addInputAndFolder(CLI::App& command, RunOptions& options) {
 }
 
 /// What a run writes and serves for the eye, beside its folder of results.
-void addWaysToSee(CLI::App& command, const std::shared_ptr<RunOptions>& options) {
-  command.add_flag("--masks", options->masks,
+void addWaysToSee(CLI::App& command, RunOptions& options) {
+  command.add_flag("--masks", options.masks,
                    "Write what the image shows of the objects: masks/NNNNNN.png, outlines.jsonl, object_points.csv");
   command
       .add_option(
-          "--mcap", options->mcap,
+          "--mcap", options.mcap,
           "Write images, poses, cuboids and points to an MCAP file for Foxglove and Rerun, while the run goes on")
       ->type_name("FILE");
   command
-      .add_option("--view", options->view,
+      .add_option("--view", options.view,
                   "Serve a page that follows the run, under http://127.0.0.1:8080/ unless told otherwise")
       ->type_name("[ADDR:PORT]")
       ->expected(0, 1)
-      ->default_str("")
-      ->each([options](const std::string&) { options->shown = true; });
+      ->default_str("");
 }
 
 /// The options that tell what is known beside the images.
@@ -126,7 +125,7 @@ void addRun(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("run", "Follow the camera and the moving vehicles through a stereo sequence");
   addInputAndFolder(*command, *options);
   addPace(*command, *options);
-  addWaysToSee(*command, options);
+  addWaysToSee(*command, *options);
   command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
   command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
   addWhatComesBeside(*command, *options);
@@ -150,7 +149,8 @@ void addRun(CLI::App& app, Action& action) {
   command->add_flag("--force", options->force,
                     "Replace a finished run, and go on where the input is found to be worthless");
   command->footer("Example: motorcade run DRIVE --out RUN --masks");
-  command->callback([options, &action] {
+  command->callback([options, command, &action] {
+    options->shown = command->count("--view") > 0;  // checks of an option are not called where it has no value
     if (options->out.empty() && !options->topics.empty()) throw CLI::RequiredError("--out");
     action = [options] { return runSequence(*options); };
   });

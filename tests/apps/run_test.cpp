@@ -17,6 +17,7 @@ namespace motorcade::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 TEST_F(Run, WritesTheSameBytesForEveryNumberOfThreadsAndEveryRate) {
   ASSERT_EQ(run("two", "--threads 2"), 0) << contentOf(errors());
@@ -177,6 +178,15 @@ TEST_F(Run, TakesOnlyTheFramesAskedFor) {
   EXPECT_EQ(folder.first_frame, 2);
   EXPECT_EQ(folder.final.camera.size(), 3u);
   EXPECT_EQ(run("none", "--frames 1000:"), 2);
+}
+
+TEST_F(Run, ServesThePageWithAndWithoutAnAddress) {
+  ASSERT_EQ(run("nowhere", "--frames 0:2"), 0) << contentOf(errors());
+  EXPECT_THAT(contentOf(errors()), Not(HasSubstr("http://")));
+  ASSERT_EQ(run("told", "--frames 0:2 --view :0"), 0) << contentOf(errors());
+  EXPECT_THAT(contentOf(errors()), HasSubstr("the page is at http://127.0.0.1:"));
+  run("untold", "--frames 0:2 --view --masks");
+  EXPECT_THAT(contentOf(errors()), HasSubstr("127.0.0.1:8080")) << "the page, or that another program has its port";
 }
 
 TEST_F(Run, AccountsForEveryFrameOfALiveCameraThatIsTooFast) {
