@@ -3,21 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
-#include <cmath>
-#include <numbers>
-#include <sstream>
 #include <string_view>
 
 #include "io/errors.hpp"
 #include "io/messages/image_topics.hpp"
+#include "io/mounting_text.hpp"
+#include "io/number_text.hpp"
 #include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {
 
 constexpr std::size_t kMaxConfig_bytes = std::size_t{1} << 20;
-constexpr double kFarthestMounting_m = 50, kMostTurn_deg = 360;  // beyond, it is in other units
 
 bool isFrameId(std::string_view name) {
   const auto plain = [](char c) {
@@ -29,29 +26,6 @@ bool isFrameId(std::string_view name) {
 bool isTopic(std::string_view name) {
   const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '/'; };
   return name.size() > 1 && name.starts_with('/') && !name.ends_with('/') && std::ranges::all_of(name, plain);
-}
-
-std::optional<double> numberIn(std::string_view text) {
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [read, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || read != end || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-/// Meters and degrees, or empty where they are not such.
-std::optional<std::array<double, 6>> sixNumbersOf(const std::string& text) {
-  std::array<double, 6> numbers{};
-  std::istringstream stream(text + ",");
-  std::size_t count = 0;
-  for (std::string field; std::getline(stream, field, ','); ++count) {
-    const auto number = numberIn(field);
-    const double most = count < 3 ? kFarthestMounting_m : kMostTurn_deg;
-    if (count >= numbers.size() || !number || std::abs(*number) > most) return std::nullopt;
-    numbers[count] = *number;
-  }
-  if (count != numbers.size()) return std::nullopt;
-  return numbers;
 }
 
 }  // namespace
@@ -80,18 +54,7 @@ FrameIds frameIdsOf(const BridgeOptions& options) {
 }
 
 SE3 mountingOf(const BridgeOptions& options) {
-  if (options.mounting.empty()) return {};
-  const auto numbers = sixNumbersOf(options.mounting);
-  if (!numbers)
-    throw UsageError("--mounting " + printable(options.mounting) +
-                     ": write X,Y,Z,ROLL,PITCH,YAW: where the left camera sits in the vehicle's frame, in meters (50 "
-                     "at most), and how it is turned, in degrees");
-  const auto& [x_m, y_m, z_m, roll_deg, pitch_deg, yaw_deg] = *numbers;
-  constexpr double kRadians = std::numbers::pi / 180;  // per degree
-  const auto turn = [](double angle_deg, int axis) {
-    return expSO3(kRadians * angle_deg * Eigen::Vector3d::Unit(axis));
-  };
-  return {turn(yaw_deg, 2) * turn(pitch_deg, 1) * turn(roll_deg, 0), {x_m, y_m, z_m}};
+  return options.mounting.empty() ? SE3() : parseMounting(options.mounting);
 }
 
 std::string vehicleMotionTopicOf(const BridgeOptions& options) {

@@ -156,21 +156,11 @@ TEST(BridgeOptions, TopicsAreNamesOfThoseThatAreKnown) {
   }
 }
 
-/// Axes of a camera that is turned to the left, then rolled and pitched: where its axes point in the vehicle.
-TEST(BridgeOptions, AMountingIsAPlaceAndThreeTurns) {
+TEST(BridgeOptions, WithoutAMountingTheCameraIsTheVehicle) {
   EXPECT_THAT(mountingOf({}), IsNearPose(SE3(), 0));
-  const auto ahead = [](const std::string& mounting) {
-    return Eigen::Vector3d(mountingOf({.mounting = mounting}).rotation().col(0));
-  };
   EXPECT_THAT(mountingOf({.mounting = "1.6,-0.4,1.5,0,0,0"}),
               IsNearPose(turned({0, 0, 0}, {1.6, -0.4, 1.5}), kRounding));
-  EXPECT_THAT(ahead("0,0,0,0,0,90"), IsNear(Eigen::Vector3d(0, 1, 0), kRounding)) << "yaw to the left";
-  EXPECT_THAT(ahead("0,0,0,0,90,0"), IsNear(Eigen::Vector3d(0, 0, -1), kRounding)) << "pitch down";
-  EXPECT_THAT(ahead("0,0,0,90,90,0"), IsNear(Eigen::Vector3d(0, 0, -1), kRounding)) << "roll comes before pitch";
-  EXPECT_THAT(ahead("0,0,0,0,90,90"), IsNear(Eigen::Vector3d(0, 0, -1), kRounding)) << "yaw comes last";
-  for (const char* const bad : {"1", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,2,3,4,5,", "a,0,0,0,0,0", "1600,0,0,0,0,0",
-                                "nan,0,0,0,0,0", "0,0,0,0,0,400"})
-    EXPECT_THROW(mountingOf({.mounting = bad}), UsageError) << bad;
+  EXPECT_THROW(mountingOf({.mounting = "1,2,3"}), UsageError);
 }
 
 TEST(BridgeOptions, ImagesAreTwoTopicsWithTheirCameraInfo) {
