@@ -26,6 +26,12 @@ Fields& Fields::map(const std::map<std::uint16_t, std::uint64_t>& value) {
   return *this;
 }
 
+Fields& Fields::map(const Texts& value) {
+  Fields pairs;
+  for (const auto& [key, what] : value) pairs.text(key).text(what);
+  return text(pairs.content());
+}
+
 std::uint64_t append(std::string& records, Opcode opcode, const Fields& fields) {
   const std::size_t start = records.size();
   records += Fields().u8(static_cast<std::uint8_t>(opcode)).u64(fields.content().size()).content();

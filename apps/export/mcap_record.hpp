@@ -9,6 +9,9 @@
 
 namespace motorcade::mcap {
 
+/// Texts by their names, in an order of their own.
+using Texts = std::map<std::string, std::string>;
+
 /// The content of a record, field by field: numbers with the lowest byte first, strings and maps after their length.
 class Fields {
  public:
@@ -21,6 +24,7 @@ class Fields {
   Fields& bytes(std::string_view value);
   /// From a channel's number.
   Fields& map(const std::map<std::uint16_t, std::uint64_t>& value);
+  Fields& map(const Texts& value);
 
   const std::string& content() const { return content_; }
 

@@ -39,14 +39,22 @@ SchemaId Writer::addSchema(std::string_view name, std::string_view descriptors) 
   return id;
 }
 
-ChannelId Writer::addChannel(SchemaId schema, std::string_view topic) {
+ChannelId Writer::addChannel(SchemaId schema, std::string_view topic, const Texts& metadata) {
   const auto id = static_cast<ChannelId>(messages_.size() + 1);
   messages_[id] = 0;
   std::string record;
-  append(record, Opcode::kChannel, Fields().u16(id).u16(schema).text(topic).text("protobuf").map({}));
+  append(record, Opcode::kChannel, Fields().u16(id).u16(schema).text(topic).text("protobuf").map(metadata));
   channels_ += record;
   chunk_ += record;
   return id;
+}
+
+void Writer::writeMetadata(std::string_view name, const Texts& metadata) {
+  std::string record;
+  const std::uint64_t length = append(record, Opcode::kMetadata, Fields().text(name).map(metadata));
+  append(metadata_indexes_, Opcode::kMetadataIndex, Fields().u64(offset_).u64(length).text(name));
+  ++metadata_count_;
+  put(record);
 }
 
 void Writer::write(ChannelId channel, Timestamp time, std::string_view message) {
@@ -126,7 +134,7 @@ std::string Writer::statistics() const {
              .u16(schema_count_)
              .u32(static_cast<std::uint32_t>(messages_.size()))
              .u32(0)  // attachments
-             .u32(0)  // metadata
+             .u32(metadata_count_)
              .u32(static_cast<std::uint32_t>(chunks_.size()))
              .u64(span_.start_ns)
              .u64(span_.end_ns)
@@ -145,6 +153,7 @@ void Writer::writeSummary() {
   addGroup(Opcode::kChannel, channels_);
   addGroup(Opcode::kStatistics, statistics());
   addGroup(Opcode::kChunkIndex, chunkIndexes());
+  addGroup(Opcode::kMetadataIndex, metadata_indexes_);
   const std::uint64_t offsets_start = start + summary.size();
   summary += offsets;
   // The sum goes up to its own field: over the head of the footer and the two offsets too.

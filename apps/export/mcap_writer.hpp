@@ -26,7 +26,9 @@ class Writer {
 
   /// `descriptors` is a serialized FileDescriptorSet with all that the message type `name` needs.
   SchemaId addSchema(std::string_view name, std::string_view descriptors);
-  ChannelId addChannel(SchemaId schema, std::string_view topic);
+  ChannelId addChannel(SchemaId schema, std::string_view topic, const Texts& metadata = {});
+  /// Facts about the whole file, written at once.
+  void writeMetadata(std::string_view name, const Texts& metadata);
   /// Times before zero, which the format cannot hold, become zero.
   void write(ChannelId channel, Timestamp time, std::string_view message);
   /// Writes the last chunk, index and summary. Without it the file is like one that was cut off.
@@ -62,6 +64,8 @@ class Writer {
   std::uint32_t crc_ = 0;           // of all that was written
   std::string schemas_, channels_;  // records, which come again in the summary
   std::uint16_t schema_count_ = 0;
+  std::string metadata_indexes_;  // records of the summary
+  std::uint32_t metadata_count_ = 0;
   std::map<ChannelId, std::uint64_t> messages_;  // per channel
   std::string chunk_;                            // records of the chunk that is gathering
   TimeSpan chunk_span_, span_;

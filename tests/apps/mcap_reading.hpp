@@ -39,6 +39,16 @@ class McapFields {
     rest_.remove_prefix(text.size());
     return text;
   }
+  /// Texts by their names.
+  std::map<std::string, std::string> texts() {
+    const std::string pairs = text();
+    std::map<std::string, std::string> texts;
+    for (McapFields fields(pairs); !fields.rest().empty();) {
+      const std::string key = fields.text();
+      texts[key] = fields.text();
+    }
+    return texts;
+  }
   std::string_view rest() const { return rest_; }
 
  private:
@@ -70,7 +80,7 @@ inline std::uint32_t mcapCrc(std::string_view bytes) {
   return static_cast<std::uint32_t>(::crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-/// What is in the whole chunks of a file, which may be cut off.
+/// What is in the whole chunks of a file, which may be cut off, and between them.
 struct McapContent {
   struct Message {
     std::uint32_t sequence = 0;
@@ -83,6 +93,9 @@ struct McapContent {
   std::map<std::uint16_t, Schema> schemas;
   std::map<std::string, std::uint16_t> schema_of;        // by topic
   std::map<std::string, std::vector<Message>> messages;  // by topic
+  using Texts = std::map<std::string, std::string>;
+  std::map<std::string, Texts> channel_metadata;  // by topic
+  std::map<std::string, Texts> metadata;          // by name
   std::size_t chunks = 0;
 };
 
@@ -99,6 +112,8 @@ inline void addChunkRecord(const McapRecord& record, std::map<std::uint16_t, std
     EXPECT_TRUE(content.schemas.contains(schema)) << "a schema comes before its channel";
     topics[id] = fields.text();
     content.schema_of[topics[id]] = schema;
+    EXPECT_EQ(fields.text(), "protobuf");
+    content.channel_metadata[topics[id]] = fields.texts();
   } else {
     ASSERT_EQ(record.opcode, 0x05);
     ASSERT_TRUE(topics.contains(id)) << "a channel comes before its messages";
@@ -116,8 +131,12 @@ inline McapContent readMcap(std::string_view bytes) {
   EXPECT_TRUE(bytes.starts_with(kMcapMagic));
   for (const McapRecord& record : mcapRecords(bytes, kMcapMagic.size())) {
     if (record.opcode == 0x0F) break;
-    if (record.opcode != 0x06) continue;
     McapFields fields(record.content);
+    if (record.opcode == 0x0C) {
+      const std::string name = fields.text();
+      content.metadata[name] = fields.texts();
+    }
+    if (record.opcode != 0x06) continue;
     const auto start_ns = fields.number<std::uint64_t>(), end_ns = fields.number<std::uint64_t>();
     EXPECT_LT(end_ns - start_ns, 1'000'000'000U);
     const auto size = fields.number<std::uint64_t>();

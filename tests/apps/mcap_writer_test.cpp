@@ -112,6 +112,35 @@ TEST_F(McapWriter, SumsUpTheDataSectionAndCountsItsMessages) {
   EXPECT_TRUE(ended && counted);
 }
 
+TEST_F(McapWriter, TellsFactsOfTheFileAndOfItsChannels) {
+  mcap::Writer writer(folder_ / "file.mcap");
+  const auto channel = writer.addChannel(writer.addSchema("test.Message", ""), "/topic", {{"made of", "images"}});
+  writer.writeMetadata("first", {{"a", "1"}, {"b", ""}});
+  writer.write(channel, {5}, "message");
+  writer.writeMetadata("second", {});
+  writer.close();
+  const std::string bytes = content();
+  const McapContent found = test::readMcap(bytes);
+  EXPECT_THAT(found.channel_metadata.at("/topic"), testing::ElementsAre(testing::Pair("made of", "images")));
+  EXPECT_THAT(found.metadata.at("first"), testing::ElementsAre(testing::Pair("a", "1"), testing::Pair("b", "")));
+  EXPECT_THAT(found.metadata.at("second"), testing::IsEmpty());
+  std::vector<std::string> indexed;
+  for (const McapRecord& record : test::mcapRecords(bytes, test::kMcapMagic.size())) {
+    McapFields fields(record.content);
+    if (record.opcode == 0x0D) {
+      const auto offset = fields.number<std::uint64_t>(), length = fields.number<std::uint64_t>();
+      const auto records = test::mcapRecords(std::string_view(bytes).substr(0, offset + length), offset);
+      ASSERT_EQ(records.size(), 1U);
+      EXPECT_EQ(records[0].opcode, 0x0C);
+      indexed.push_back(fields.text());
+      EXPECT_EQ(McapFields(records[0].content).text(), indexed.back());
+    } else if (record.opcode == 0x0B) {
+      EXPECT_EQ(McapFields(std::string_view(record.content).substr(8 + 2 + 4 + 4)).number<std::uint32_t>(), 2U);
+    }
+  }
+  EXPECT_THAT(indexed, testing::ElementsAre("first", "second"));
+}
+
 TEST_F(McapWriter, AFileThatIsCutOffAnywhereHasItsWholeChunks) {
   writeFile();
   const std::string bytes = content();
