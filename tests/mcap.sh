@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Writes a short rendered drive as MCAP, live and from its run folder, and reads both files with the readers and schemas that others
-# use (npm's @mcap/core, @foxglove/schemas). Then runs the drive from bags that others' writers made: the results are those of the folder.
+# use (npm's @mcap/core, @foxglove/schemas). The same with an ASAM OSI trace. Then runs the drive from bags that others' writers made: the results are those of the folder.
 #   tests/mcap.sh [PROGRAM] [FOLDER of a sequence with image_0, image_1 and calib.txt]
 # Installs Node.js where it is missing; prints one line and ends well where that cannot be, or npm cannot reach its packages.
 set -euo pipefail
@@ -12,7 +12,7 @@ command -v node >/dev/null && command -v npm >/dev/null || apps/setup.sh nodejs 
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp tests/mcap/package.json tests/mcap/read_mcap.js tests/mcap/write_bag.js "$work"
+cp tests/mcap/package.json tests/mcap/read_mcap.js tests/mcap/read_osi.js tests/mcap/write_bag.js "$work"
 timeout 300 npm install --prefix "$work" --no-audit --no-fund --ignore-scripts --loglevel=error >"$work/npm.log" 2>&1 ||
   leave_out "npm cannot install its packages"
 
@@ -22,6 +22,8 @@ sequence=${2:-$work/drive}
 "$program" export "$work/run" --mcap "$work/exported.mcap" --quiet
 node "$work/read_mcap.js" "$work/run" "$work/live.mcap" online
 node "$work/read_mcap.js" "$work/run" "$work/exported.mcap" final
+"$program" export "$work/run" --osi "$work/trace.mcap" --quiet
+node "$work/read_osi.js" "$work/run" "$work/trace.mcap"
 
 # A bag's camera_info has the projections, and not how exact they are.
 grep '^P[01]:' "$sequence/calib.txt" >"$work/projections.txt"

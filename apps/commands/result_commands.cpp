@@ -121,11 +121,20 @@ void addLatency(CLI::App& app, Action& action) {
 
 void addExport(CLI::App& app, Action& action) {
   const auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "Write a run for other programs: Foxglove, Rerun, evo");
+  CLI::App* command = app.add_subcommand("export", "Write a run for other programs: Foxglove, Rerun, ASAM OSI, evo");
   command->add_option("run", options->run, "Run folder")->required();
   command->add_option("--sequence", options->sequence, "The sequence that was run, where it is no longer where it was");
   command->add_option("--mcap", options->mcap, "MCAP file of images, poses, cuboids and points, for Foxglove and Rerun")
       ->type_name("FILE");
+  command
+      ->add_option("--osi", options->osi,
+                   "MCAP file of ASAM OSI: an osi3.SensorData per frame, as the rules for trace files want it")
+      ->type_name("FILE");
+  command
+      ->add_option("--mounting", options->mounting,
+                   "For --osi: where the left camera sits in the vehicle's frame (x ahead, y left, z up) [m], and its "
+                   "turn about these axes, roll first [deg]")
+      ->type_name("X,Y,Z,ROLL,PITCH,YAW");
   command->add_option("--tum", options->tum, "Folder for trajectories: camera.tum, object_NNN.tum")->type_name("DIR");
   command->add_flag("--predicted", options->with_predicted,
                     "Also poses in the trajectories that were predicted, not measured");

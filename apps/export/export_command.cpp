@@ -8,9 +8,11 @@
 #include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
 #include "apps/export/drive_mcap.hpp"
+#include "apps/export/osi_trace.hpp"
 #include "apps/export/tum_export.hpp"
 #include "apps/recorded/recorded_run.hpp"
 #include "io/errors.hpp"
+#include "io/mounting_text.hpp"
 #include "io/pair_reader.hpp"
 
 namespace motorcade {
@@ -47,13 +49,25 @@ void exportMcap(const RunFolder& run, const ExportOptions& options) {
                    options.mcap.string()));
 }
 
+std::optional<SE3> mountingOf(const ExportOptions& options) {
+  if (options.mounting.empty()) return std::nullopt;
+  if (options.osi.empty()) throw UsageError("--mounting is for --osi FILE; the other files are of the camera");
+  return parseMounting(options.mounting);
+}
+
 }  // namespace
 
 int runExport(const ExportOptions& options) {
-  if (options.mcap.empty() && options.tum.empty())
-    throw UsageError("motorcade export: say what to write: --mcap FILE, --tum DIR, or both");
+  if (options.mcap.empty() && options.tum.empty() && options.osi.empty())
+    throw UsageError("motorcade export: say what to write: --mcap FILE, --osi FILE, --tum DIR, or several of them");
+  const auto T_vehicle_sensor = mountingOf(options);
   const RunFolder run = readRunFolder(options.run);
   if (!options.mcap.empty()) exportMcap(run, options);
+  if (!options.osi.empty()) {
+    const OsiTrace trace = exportOsi(run, options.osi, T_vehicle_sensor);
+    tell(fmt::format("{} frames with {} detected objects, {:.1f} MB in {}", trace.frames, trace.objects,
+                     1e-6 * static_cast<double>(trace.bytes), options.osi.string()));
+  }
   if (!options.tum.empty()) {
     const std::size_t objects = exportTum(run, options.tum, options.with_predicted);
     tell(fmt::format("trajectories of the camera and {} objects in {}", objects, options.tum.string()));

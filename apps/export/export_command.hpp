@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace motorcade {
 
@@ -12,6 +13,8 @@ struct ExportOptions {
   std::filesystem::path mcap;  // file
   std::filesystem::path tum;   // folder
   bool with_predicted = false;
+  std::filesystem::path osi;  // file
+  std::string mounting;       // X,Y,Z,ROLL,PITCH,YAW; empty: the camera stands for the vehicle
 };
 
 /// Writes a run, also one that was killed, for other programs; gives the exit code. Failures are UserErrors.
