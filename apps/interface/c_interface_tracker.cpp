@@ -1,4 +1,5 @@
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -28,6 +29,16 @@ motorcade_code give(motorcade_tracker* from, motorcade_result** result, const Ne
     *result = handle.release();
     return MOTORCADE_OK;
   });
+}
+
+/// Empty where there is none.
+std::function<void(Result)> takerOf(motorcade_take take, void* user) {
+  if (take == nullptr) return {};
+  return [take, user](Result result) {
+    auto handle = std::make_unique<motorcade_result>();
+    handle->result = std::move(result);
+    take(handle.release(), user);
+  };
 }
 
 }  // namespace
@@ -102,14 +113,15 @@ motorcade_code motorcade_tracker_done(const motorcade_tracker* tracker, bool* do
 motorcade_code motorcade_tracker_on_result(motorcade_tracker* tracker, motorcade_take take, void* user) {
   return guarded([&] {
     require(tracker, "tracker");
-    if (take == nullptr)
-      tracker->tracker.on_result({});
-    else
-      tracker->tracker.on_result([take, user](Result result) {
-        auto handle = std::make_unique<motorcade_result>();
-        handle->result = std::move(result);
-        take(handle.release(), user);
-      });
+    tracker->tracker.on_result(takerOf(take, user));
+    return MOTORCADE_OK;
+  });
+}
+
+motorcade_code motorcade_tracker_on_final(motorcade_tracker* tracker, motorcade_take take, void* user) {
+  return guarded([&] {
+    require(tracker, "tracker");
+    tracker->tracker.on_final(takerOf(take, user));
     return MOTORCADE_OK;
   });
 }

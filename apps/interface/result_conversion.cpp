@@ -117,20 +117,24 @@ bool wasLookedAt(const FrameMeasurements& measured) {
 
 ResultConversion::ResultConversion(Tracker::Axes axes, bool masks) : R_out_cam_(axesFrom(axes)), masks_(masks) {}
 
-Result ResultConversion::operator()(const PipelineResult& result) {
-  const FrameEstimate& online = result.online;
+Result ResultConversion::cameraOf(const FrameEstimate& estimate) const {
   const SE3 T_out_cam(R_out_cam_, Eigen::Vector3d::Zero());
   Result converted;
-  converted.frame = online.head.frame.value;
-  converted.stamp_ns = online.head.stamp.ns;
-  converted.status = statusOf(online.head.status);
-  converted.cause = causeOf(online.head.cause);
-  converted.segment = online.head.segment;
-  converted.T_world_cam = rowsOf(T_out_cam * online.T_world_cam * T_out_cam.inverse());
+  converted.frame = estimate.head.frame.value;
+  converted.stamp_ns = estimate.head.stamp.ns;
+  converted.status = statusOf(estimate.head.status);
+  converted.cause = causeOf(estimate.head.cause);
+  converted.segment = estimate.head.segment;
+  converted.T_world_cam = rowsOf(T_out_cam * estimate.T_world_cam * T_out_cam.inverse());
   const auto inOutputAxes = [this](const Matrix6d& covariance) { return rowsOf<6>(turned(covariance, R_out_cam_)); };
-  const CameraCovariances& covariances = online.camera_covariances;
+  const CameraCovariances& covariances = estimate.camera_covariances;
   if (covariances.motion) converted.motion_covariance = inOutputAxes(*covariances.motion);
   if (covariances.pose) converted.pose_covariance = inOutputAxes(*covariances.pose);
+  return converted;
+}
+
+Result ResultConversion::operator()(const PipelineResult& result) {
+  Result converted = cameraOf(result.online);
   if (result.measurements) setVelocity(*result.measurements, converted);
   const auto dropped =
       std::ranges::count(result.dropped, FrameStatus::kDropped, [](const FrameEstimate& f) { return f.head.status; }) +
@@ -146,6 +150,14 @@ Result ResultConversion::operator()(const PipelineResult& result) {
     converted.cause = Result::Cause::kFailed;
     converted.problem = kNoMemoryLeft;
   }
+  return converted;
+}
+
+Result ResultConversion::final(const FrameEstimate& estimate) const {
+  Result converted = cameraOf(estimate);
+  converted.velocity_covariance =
+      rowsOf<6>(turned(unknownMotionCovariance(std::numeric_limits<double>::infinity()), R_out_cam_));
+  for (const ObjectEstimate& seen : estimate.objects) converted.objects.push_back(object(seen, estimate.T_world_cam));
   return converted;
 }
 

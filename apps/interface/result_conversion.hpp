@@ -16,8 +16,11 @@ class ResultConversion {
   ResultConversion(Tracker::Axes axes, bool masks);
   /// A result for which there is no memory tells so, without objects.
   Result operator()(const PipelineResult& result);
+  /// A frame that has left the smoothing window: without velocity, masks and latency. May throw std::bad_alloc.
+  Result final(const FrameEstimate& estimate) const;
 
  private:
+  Result cameraOf(const FrameEstimate& estimate) const;
   void setObjects(const PipelineResult& result, Result& converted) const;
   Result::Object object(const ObjectEstimate& object, const SE3& T_world_cam) const;
   void setVelocity(const FrameMeasurements& measured, Result& converted);

@@ -15,10 +15,12 @@
 
 #include "apps/interface/call_guards.hpp"
 #include "apps/interface/camera_model.hpp"
+#include "apps/interface/final_taker.hpp"
 #include "apps/interface/gray_image.hpp"
 #include "apps/interface/pair_watch.hpp"
 #include "apps/interface/result_conversion.hpp"
 #include "apps/interface/result_queue.hpp"
+#include "apps/interface/stamp_doubts.hpp"
 #include "apps/interface/tracker_options.hpp"
 #include "apps/interface/vehicle_motion_input.hpp"
 #include "apps/pipeline/pipeline.hpp"
@@ -44,7 +46,7 @@ void stock(ImagePool& pool, const Camera& camera) {
 }  // namespace
 
 /// Pairs go through checks, one copy and the rectification into the pipeline; a thread takes the pipeline's results and
-/// converts them for those who take them, a second one calls the callback where there is one.
+/// converts them for those who take them, and calls the callback for finals; a second one calls that for results.
 class Tracker::Impl {
  public:
   Impl(const Camera& camera, const Options& options, const PipelineConfig& config);
@@ -60,16 +62,20 @@ class Tracker::Impl {
   bool inherited() const { return ::getpid() != process_; }
   void requireOwn() const;
   void handTo(std::function<void(Result)> take);
+  void handFinalsTo(std::function<void(Result)> take);
   Counts counts() const;
 
  private:
   Push judge(const Pair& pair) noexcept;
   const char* problemWith(const Pair& pair) const;
   Push enter(const Pair& pair);
-  const char* reasonOf(Admission admission) const;
-  void tellOfStamps(Admission admission, const Pair& pair);
+  const char* whyNot(Admission admission) const;
   void deliver();
+  void deliverFinals(const std::vector<FrameEstimate>& finals);
+  PipelineEnd finish();
   void handOn();
+  template <class Call>
+  void callGuarded(const char* what, const Call& call) const;
 
   pid_t process_ = ::getpid();
   Camera camera_;
@@ -82,14 +88,14 @@ class Tracker::Impl {
   SampleBits sample_bits_;
   std::atomic<int> visits_{0};
   std::atomic_flag pushing_;
-  int untimely_ = 0;             // by how many stamps seem to have another unit; the pushing thread's
-  bool told_of_stamps_ = false;  // the pushing thread's
-  std::atomic<bool> closed_{false}, failed_{false};
+  StampDoubts stamp_doubts_;  // the pushing thread's
+  std::atomic<bool> closed_{false}, failed_{false}, abandoned_{false};
   std::atomic<std::int64_t> pushed_{0}, rejected_{0}, dropped_{0};
   ResultConversion convert_;        // the delivering thread's
   OwnVehicleNews own_vehicle_;      // the delivering thread's
   VehicleMotionNews vehicle_news_;  // the delivering thread's
   ResultQueue results_;
+  FinalTaker finals_;
   ThreadPlacement placement_;
   PairWatch watch_;
   Pipeline pipeline_;
@@ -123,7 +129,7 @@ void Tracker::Impl::requireOwn() const {
 /// Calls of other threads that wait come back first.
 Tracker::Impl::~Impl() {
   constexpr std::chrono::microseconds kPause(100);
-  closed_ = true;
+  closed_ = abandoned_ = true;
   pipeline_.abandon();
   results_.abandon();
   while (visits_ > 0) std::this_thread::sleep_for(kPause);
@@ -187,37 +193,17 @@ Tracker::Push Tracker::Impl::enter(const Pair& pair) {
   frame.right = model_.rightOf(grayImage(pair.right, sample_bits, pool_), pool_);
   const Admission admission = pipeline_.push(std::move(frame));
   if (!isTaken(admission)) {
-    tellOfStamps(admission, pair);
-    return {PushStatus::kRejected, reasonOf(admission)};
+    if (const auto doubt = stamp_doubts_.refused(admission, pair.stamp_ns))
+      tell(log_, motorcade::LogLevel::kError, [&] { return *doubt; });
+    return {PushStatus::kRejected, whyNot(admission)};
   }
-  untimely_ = std::max(0, untimely_ - 1);
+  stamp_doubts_.taken();
   return {admission == Admission::kReplacedOlder ? PushStatus::kReplacedOlder : PushStatus::kAccepted, ""};
 }
 
-/// Logs, once, that stamps seem to have another unit: when several pairs in a row were too close together, or far
-/// apart.
-void Tracker::Impl::tellOfStamps(Admission admission, const Pair& pair) {
-  constexpr int kRefused = 2, kSeveral = 3 * kRefused;  // of pairs far apart every second one is accepted
-  if (admission != Admission::kTooClose && admission != Admission::kFarAhead) return;
-  untimely_ = std::min(kSeveral, untimely_ + kRefused);
-  if (untimely_ < kSeveral || std::exchange(told_of_stamps_, true)) return;
-  tell(log_, motorcade::LogLevel::kError, [&] {
-    return "pairs are rejected: the stamp " + std::to_string(pair.stamp_ns) +
-           (admission == Admission::kTooClose
-                ? " is less than half a millisecond after that of the pair before, as the stamps before it were"
-                : " is more than ten seconds after that of the pair before, as the stamps before it were") +
-           "; stamp_ns must be in nanoseconds";
-  });
-}
-
 /// Static text.
-const char* Tracker::Impl::reasonOf(Admission admission) const {
-  if (admission == Admission::kLate) return "its number is not after that of the pair before";
-  if (admission == Admission::kOutOfOrder) return "its stamp does not follow that of the pair before";
-  if (admission == Admission::kTooClose)
-    return "its stamp is less than half a millisecond after that of the pair before; stamps are nanoseconds";
-  if (admission == Admission::kFarAhead)
-    return "its stamp is more than ten seconds after that of the pair before; stamps are nanoseconds";
+const char* Tracker::Impl::whyNot(Admission admission) const {
+  if (admission != Admission::kClosed) return reasonOf(admission);
   return failed_ ? "the tracker has failed, as its log tells" : "the tracker was closed";
 }
 
@@ -234,9 +220,10 @@ void Tracker::Impl::deliver() {
       Result converted = convert_(*result);
       if (converted.problem.empty()) converted.problem = watch_.problem();
       results_.put(std::move(converted));
+      deliverFinals(result->finals);
       watch_.look(result->online.head.frame);
     }
-    if (!closed_) pipeline_.finish();
+    if (!closed_ || (finals_.isThere() && !abandoned_)) deliverFinals(finish().finals);
   } catch (const std::exception& error) {
     failed_ = true;
     pipeline_.abandon();
@@ -244,6 +231,21 @@ void Tracker::Impl::deliver() {
     tell(log_, motorcade::LogLevel::kError, [&] { return std::string("no further results: ") + error.what(); });
   }
   results_.close();
+}
+
+void Tracker::Impl::deliverFinals(const std::vector<FrameEstimate>& finals) {
+  for (const FrameEstimate& final : finals)
+    if (finals_.isThere() && !abandoned_) callGuarded("finals", [&] { finals_.give(convert_.final(final)); });
+}
+
+/// Waits for a push that is under way, which a pipeline that ends must not meet; those that come later find it closed.
+PipelineEnd Tracker::Impl::finish() {
+  constexpr std::chrono::microseconds kPause(100);
+  while (true) {
+    const OneAtATime one(pushing_);
+    if (one.entered()) return pipeline_.finish();
+    std::this_thread::sleep_for(kPause);
+  }
 }
 
 std::optional<Result> Tracker::Impl::poll() {
@@ -262,18 +264,29 @@ void Tracker::Impl::handTo(std::function<void(Result)> take) {
   results_.handTo(std::move(take));
 }
 
+void Tracker::Impl::handFinalsTo(std::function<void(Result)> take) {
+  const Visit visit(visits_);
+  finals_.handTo(std::move(take));
+}
+
 void Tracker::Impl::handOn() {
   const PlacedThread placed(placement_);
-  const auto complain = [this](const char* what) {
-    tell(log_, motorcade::LogLevel::kError, [&] { return std::string("the callback for results: ") + what; });
+  for (bool more = true; more;) callGuarded("results", [&] { more = results_.handNext(); });
+}
+
+/// What a callback throws is logged, and the next call is made all the same.
+template <class Call>
+void Tracker::Impl::callGuarded(const char* what, const Call& call) const {
+  const auto complain = [&](const char* why) {
+    tell(log_, motorcade::LogLevel::kError, [&] { return std::string("the callback for ") + what + ": " + why; });
   };
-  for (bool more = true; more;) try {
-      more = results_.handNext();
-    } catch (const std::exception& error) {
-      complain(error.what());
-    } catch (...) {
-      complain("it threw what is no std::exception");
-    }
+  try {
+    call();
+  } catch (const std::exception& error) {
+    complain(error.what());
+  } catch (...) {
+    complain("it threw what is no std::exception");
+  }
 }
 
 Tracker::Counts Tracker::Impl::counts() const {
@@ -325,6 +338,10 @@ bool Tracker::done() const noexcept { return impl_->inherited() || impl_->done()
 void Tracker::on_result(std::function<void(Result)> take) {
   impl_->requireOwn();
   impl_->handTo(std::move(take));
+}
+void Tracker::on_final(std::function<void(Result)> take) {
+  impl_->requireOwn();
+  impl_->handFinalsTo(std::move(take));
 }
 Tracker::Counts Tracker::counts() const noexcept { return impl_->inherited() ? Counts{} : impl_->counts(); }
 

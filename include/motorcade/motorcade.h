@@ -139,6 +139,8 @@ motorcade_code motorcade_tracker_done(const motorcade_tracker* tracker, bool* do
 /// all but destroy. NULL: they are for poll and wait again.
 typedef void (*motorcade_take)(motorcade_result* result, void* user);
 motorcade_code motorcade_tracker_on_result(motorcade_tracker* tracker, motorcade_take take, void* user);
+/// The same for frames that have left the smoothing window; see motorcade.hpp. NULL: nobody wants them.
+motorcade_code motorcade_tracker_on_final(motorcade_tracker* tracker, motorcade_take take, void* user);
 motorcade_code motorcade_tracker_counts(const motorcade_tracker* tracker, motorcade_counts* counts);
 /// Lost and rejected: the pose is predicted, with a wide covariance.
 typedef enum { MOTORCADE_STATUS_GOOD, MOTORCADE_STATUS_LOST, MOTORCADE_STATUS_REJECTED } motorcade_status;

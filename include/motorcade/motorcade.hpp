@@ -208,6 +208,10 @@ class MOTORCADE_API Tracker {
   /// From now on results, those that wait first, go to this callback, one by one on a thread of the tracker; empty: to
   /// `poll` and `wait` again. The one before has returned then. It may throw, and call all but ~Tracker.
   void on_result(std::function<void(Result)> take);
+  /// From now on every frame, dropped ones too, goes to this callback once, in order, when it has left the smoothing
+  /// window, the last ones after `close`: as the program's final files have it, without velocity, masks and latency.
+  /// Results that follow wait for it, and `done`. Empty: to nobody. It may call all but `push`, `wait`, ~Tracker.
+  void on_final(std::function<void(Result)> take);
   Counts counts() const noexcept;
 
  private:

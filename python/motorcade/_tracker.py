@@ -144,6 +144,12 @@ class Tracker:
         again. The callback before has returned by then, unless it is the caller."""
         self._native.on_result(self._kept(take))
 
+    def on_final(self, take: Callable[[Result], object] | None) -> None:
+        """From now on every frame, dropped ones too, goes to ``take`` once, in order, when it has left the smoothing
+        window, the last ones after ``close``: as the program's final files have it, without velocity, masks and
+        latency. ``done`` and the results that follow wait for ``take``, which may not call ``push`` and ``wait``."""
+        self._native.on_final(self._kept(take))
+
     def close(self) -> None:
         """No further pair comes: the results of those that were accepted still do."""
         self._native.close()

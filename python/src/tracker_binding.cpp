@@ -149,6 +149,15 @@ void TrackerBinding::handTo(const py::object& take) {
   running.tracker.on_result(std::move(taker));
 }
 
+void TrackerBinding::handFinalsTo(const py::object& take) {
+  auto taker = takerOf(take);
+  if (!running_) return;
+  Running& running = *running_;
+  const Visit visit(running);
+  const py::gil_scoped_release release;
+  running.tracker.on_final(std::move(taker));
+}
+
 Tracker::Counts TrackerBinding::counts() const {
   if (!running_) return last_counts_;
   const Visit visit(*running_);
@@ -240,6 +249,7 @@ void bindTracker(py::module_& module) {
       .def("wait",
            [](TrackerBinding& tracker, std::optional<double> timeout_s) { return optional(tracker.wait(timeout_s)); })
       .def("on_result", &TrackerBinding::handTo)
+      .def("on_final", &TrackerBinding::handFinalsTo)
       .def("hands_on", &TrackerBinding::handsOn)
       .def("close", &TrackerBinding::close)
       .def("stop", &TrackerBinding::stop)

@@ -30,6 +30,7 @@ class TrackerBinding {
   bool done() const;
   /// `take` is None, or can be held weakly.
   void handTo(const pybind11::object& take);
+  void handFinalsTo(const pybind11::object& take);
   /// Whether results go to a callback.
   bool handsOn() const;
   Tracker::Counts counts() const;

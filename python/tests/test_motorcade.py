@@ -540,6 +540,15 @@ class TakingResults(unittest.TestCase):
         self.assertEqual([result.frame for result in tracker], [5, 6, 7])
         self.assertEqual(len(taken), 5)
 
+    def test_finals_come_once_each_and_in_order_and_results_as_ever(self) -> None:
+        finals: list[int] = []
+        tracker = self.tracker()
+        tracker.on_final(lambda final: finals.append(final.frame))
+        self.push(tracker, 5)
+        tracker.close()
+        self.assertEqual([result.frame for result in tracker], [0, 1, 2, 3, 4])
+        self.assertEqual(finals, [0, 1, 2, 3, 4])
+
     def test_a_callback_that_raises_is_printed_and_the_next_result_comes(self) -> None:
         calls: list[int] = []
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "apps/pipeline/admission.hpp"
+
+namespace motorcade {
+
+/// Why a pair was not taken; static text. Empty where the reason is not the pair's.
+const char* reasonOf(Admission admission);
+
+/// Notices that stamps seem to have another unit: several pairs in a row are too close together, or far apart. The
+/// pushing thread's.
+class StampDoubts {
+ public:
+  /// What is to be told of a pair that was not taken, once.
+  std::optional<std::string> refused(Admission admission, std::int64_t stamp_ns);
+  void taken();
+
+ private:
+  int untimely_ = 0;
+  bool told_ = false;
+};
+
+}  // namespace motorcade
