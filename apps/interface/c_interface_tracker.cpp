@@ -92,6 +92,14 @@ motorcade_code motorcade_tracker_close(motorcade_tracker* tracker) {
   });
 }
 
+motorcade_code motorcade_tracker_reset(motorcade_tracker* tracker) {
+  return guarded([&] {
+    require(tracker, "tracker");
+    tracker->tracker.reset();
+    return MOTORCADE_OK;
+  });
+}
+
 motorcade_code motorcade_tracker_poll(motorcade_tracker* tracker, motorcade_result** result) {
   return give(tracker, result, [](Tracker& from) { return from.poll(); });
 }

@@ -91,8 +91,8 @@ void setCuboid(const ObjectBox& cuboid, Result::Object& object) {
   object.kind_probability = cuboid.kind_probability;
 }
 
-void setMask(const std::vector<ObjectMask>& masks, Result::Object& object) {
-  const auto mask = std::ranges::find(masks, object.id, [](const ObjectMask& m) { return m.track.value; });
+void setMask(const std::vector<ObjectMask>& masks, TrackId track, Result::Object& object) {
+  const auto mask = std::ranges::find(masks, track, &ObjectMask::track);
   if (mask == masks.end()) return;
   object.mask = Result::Mask{.left_px = mask->left_px,
                              .top_px = mask->top_px,
@@ -153,7 +153,7 @@ Result ResultConversion::operator()(const PipelineResult& result) {
   return converted;
 }
 
-Result ResultConversion::final(const FrameEstimate& estimate) const {
+Result ResultConversion::final(const FrameEstimate& estimate) {
   Result converted = cameraOf(estimate);
   converted.velocity_covariance =
       rowsOf<6>(turned(unknownMotionCovariance(std::numeric_limits<double>::infinity()), R_out_cam_));
@@ -161,11 +161,11 @@ Result ResultConversion::final(const FrameEstimate& estimate) const {
   return converted;
 }
 
-void ResultConversion::setObjects(const PipelineResult& result, Result& converted) const {
+void ResultConversion::setObjects(const PipelineResult& result, Result& converted) {
   converted.objects.reserve(result.online.objects.size());
   for (const ObjectEstimate& estimate : result.online.objects) {
     converted.objects.push_back(object(estimate, result.online.T_world_cam));
-    if (masks_) setMask(result.masks, converted.objects.back());
+    if (masks_) setMask(result.masks, estimate.track, converted.objects.back());
   }
 }
 
@@ -190,10 +190,11 @@ void ResultConversion::setVelocity(const FrameMeasurements& measured, Result& co
   T_seen_before_ = SE3{};
 }
 
-Result::Object ResultConversion::object(const ObjectEstimate& object, const SE3& T_world_cam) const {
+Result::Object ResultConversion::object(const ObjectEstimate& object, const SE3& T_world_cam) {
   const SE3 T_out_cam(R_out_cam_, Eigen::Vector3d::Zero());
   Result::Object converted;
-  converted.id = object.track.value;
+  converted.id = first_id_ + object.track.value;
+  next_id_ = std::max(next_id_, converted.id + 1);
   converted.state = stateOf(object.state);
   converted.T_world_body = rowsOf(T_out_cam * object.T_world_body);
   converted.T_cam_body = rowsOf(T_out_cam * T_world_cam.inverse() * object.T_world_body);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include <Eigen/Core>
@@ -17,16 +18,20 @@ class ResultConversion {
   /// A result for which there is no memory tells so, without objects.
   Result operator()(const PipelineResult& result);
   /// A frame that has left the smoothing window: without velocity, masks and latency. May throw std::bad_alloc.
-  Result final(const FrameEstimate& estimate) const;
+  Result final(const FrameEstimate& estimate);
+  /// Ids that no object of a drive before has.
+  void startIdsAt(std::int64_t first_id) { first_id_ = next_id_ = first_id; }
+  std::int64_t nextId() const { return next_id_; }
 
  private:
   Result cameraOf(const FrameEstimate& estimate) const;
-  void setObjects(const PipelineResult& result, Result& converted) const;
-  Result::Object object(const ObjectEstimate& object, const SE3& T_world_cam) const;
+  void setObjects(const PipelineResult& result, Result& converted);
+  Result::Object object(const ObjectEstimate& object, const SE3& T_world_cam);
   void setVelocity(const FrameMeasurements& measured, Result& converted);
 
   Eigen::Matrix3d R_out_cam_;  // from optical axes to those that were chosen
   bool masks_;
+  std::int64_t first_id_ = 0, next_id_ = 0;
   std::optional<Timestamp> before_, seen_;  // the last frame, and the last one that was looked at
   SE3 T_seen_before_;
 };

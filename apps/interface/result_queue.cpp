@@ -1,6 +1,7 @@
 #include "apps/interface/result_queue.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <new>
 #include <utility>
 
@@ -17,8 +18,12 @@ std::chrono::milliseconds bounded(std::chrono::milliseconds time) {
 
 void ResultQueue::put(Result result) {
   std::unique_lock lock(mutex_);
-  if (live_) went_.wait(lock, [this] { return !callbackIsBusy() || abandoned_; });
+  if (live_) went_.wait(lock, [this] { return !callbackIsBusy() || abandoned_ || discarding_; });
   ++given_;
+  if (discarding_) {
+    ++untaken_;
+    return;
+  }
   if (results_.size() == kMost) {
     results_.pop_front();
     ++untaken_;
@@ -44,6 +49,25 @@ void ResultQueue::abandon() {
   closed_ = abandoned_ = room_for_all_ = true;
   came_.notify_all();
   went_.notify_all();
+}
+
+void ResultQueue::dropAll() {
+  untaken_ += std::ssize(results_);
+  results_.clear();
+}
+
+void ResultQueue::discard() {
+  const std::scoped_lock lock(mutex_);
+  dropAll();
+  discarding_ = room_for_all_ = true;
+  went_.notify_all();
+}
+
+void ResultQueue::restart() {
+  const std::scoped_lock lock(mutex_);
+  dropAll();
+  closed_ = discarding_ = room_for_all_ = false;
+  under_way_ = 0;
 }
 
 bool ResultQueue::waitForRoom(std::chrono::milliseconds patience) {
@@ -123,8 +147,8 @@ class ResultQueue::Handing {
 
 bool ResultQueue::handNext() {
   std::unique_lock lock(mutex_);
-  came_.wait(lock, [this] { return abandoned_ || (taker_ && !results_.empty()) || (closed_ && results_.empty()); });
-  if (abandoned_ || results_.empty()) return false;
+  came_.wait(lock, [this] { return abandoned_ || (taker_ && !results_.empty()); });
+  if (abandoned_) return false;
   auto result = take();
   const Handing handing(*this, taker_);
   lock.unlock();

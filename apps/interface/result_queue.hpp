@@ -30,6 +30,10 @@ class ResultQueue {
   void close();
   /// Nobody takes results any more: ends every wait.
   void abandon();
+  /// Results that wait, and those that still come, are untaken, and no `put` waits, until it is as new.
+  void discard();
+  /// The queue is as new, but for its counts and its callback.
+  void restart();
 
   /// Producer of pairs: one more is under way; waits until less than `kMost` results are or wait, false when nobody
   /// took one in time. Does not wait after `endWaitsForRoom`.
@@ -47,7 +51,7 @@ class ResultQueue {
   /// From now on results, those that wait first, go to the callback, or where it is empty to `poll` and `wait` again.
   /// The callback before has returned by then, unless it is the caller.
   void handTo(Taker taker);
-  /// The thread that calls callbacks: waits for a result and hands it on; false when there will be none.
+  /// The thread that calls callbacks: waits for a result and hands it on; false when nobody takes any more.
   bool handNext();
 
   std::int64_t given() const;
@@ -56,6 +60,7 @@ class ResultQueue {
  private:
   class Handing;
   std::optional<Result> take();
+  void dropAll();
   bool callbackIsBusy() const { return taker_ != nullptr && (!results_.empty() || handing_ != std::thread::id{}); }
 
   const bool live_;
@@ -64,7 +69,7 @@ class ResultQueue {
   std::deque<Result> results_;
   std::shared_ptr<const Taker> taker_;
   std::thread::id handing_;  // that is in the callback
-  bool closed_ = false, abandoned_ = false, room_for_all_ = false;
+  bool closed_ = false, abandoned_ = false, discarding_ = false, room_for_all_ = false;
   std::size_t under_way_ = 0;  // replay: pairs that were accepted, and whose result was not taken
   std::int64_t given_ = 0, untaken_ = 0;
 };

@@ -1,11 +1,11 @@
-#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <optional>
+#include <shared_mutex>
 #include <string>
 #include <thread>
 #include <utility>
@@ -14,18 +14,13 @@
 #include <unistd.h>
 
 #include "apps/interface/call_guards.hpp"
+#include "apps/interface/callback_call.hpp"
 #include "apps/interface/camera_model.hpp"
-#include "apps/interface/final_taker.hpp"
 #include "apps/interface/gray_image.hpp"
-#include "apps/interface/pair_watch.hpp"
 #include "apps/interface/result_conversion.hpp"
 #include "apps/interface/result_queue.hpp"
-#include "apps/interface/stamp_doubts.hpp"
+#include "apps/interface/tracked_drive.hpp"
 #include "apps/interface/tracker_options.hpp"
-#include "apps/interface/vehicle_motion_input.hpp"
-#include "apps/pipeline/pipeline.hpp"
-#include "apps/watch/own_vehicle_news.hpp"
-#include "apps/watch/vehicle_motion_news.hpp"
 #include "io/errors.hpp"
 #include "motorcade/motorcade.hpp"
 
@@ -45,8 +40,8 @@ void stock(ImagePool& pool, const Camera& camera) {
 
 }  // namespace
 
-/// Pairs go through checks, one copy and the rectification into the pipeline; a thread takes the pipeline's results and
-/// converts them for those who take them, and calls the callback for finals; a second one calls that for results.
+/// Pairs go through checks, one copy and the rectification into the drive's pipeline, and its results to those who take
+/// them; a thread calls the callback for results where there is one.
 class Tracker::Impl {
  public:
   Impl(const Camera& camera, const Options& options, const PipelineConfig& config);
@@ -55,6 +50,7 @@ class Tracker::Impl {
   Push push(const Pair& pair) noexcept;
   Push pushMotion(const VehicleMotion& motion) noexcept;
   void close();
+  void reset();
   std::optional<Result> poll();
   std::optional<Result> wait(std::chrono::milliseconds timeout);
   bool done() const { return results_.done(); }
@@ -69,54 +65,52 @@ class Tracker::Impl {
   Push judge(const Pair& pair) noexcept;
   const char* problemWith(const Pair& pair) const;
   Push enter(const Pair& pair);
-  const char* whyNot(Admission admission) const;
-  void deliver();
-  void deliverFinals(const std::vector<FrameEstimate>& finals);
-  PipelineEnd finish();
   void handOn();
-  template <class Call>
-  void callGuarded(const char* what, const Call& call) const;
+  std::unique_ptr<TrackedDrive> newDrive();
+  void requireOtherThread() const;
+  void replaceDrive(std::unique_ptr<TrackedDrive> next);
 
   pid_t process_ = ::getpid();
   Camera camera_;
   CameraModel model_;
-  bool replay_;
+  PipelineConfig config_;
+  Axes axes_;
+  bool replay_, masks_;
   std::chrono::milliseconds patience_;
   LogCallback log_;
   ImagePool pool_;
-  std::shared_ptr<VehicleMotionLog> vehicle_motion_ = std::make_shared<VehicleMotionLog>();
-  SampleBits sample_bits_;
   std::atomic<int> visits_{0};
   std::atomic_flag pushing_;
-  StampDoubts stamp_doubts_;  // the pushing thread's
-  std::atomic<bool> closed_{false}, failed_{false}, abandoned_{false};
   std::atomic<std::int64_t> pushed_{0}, rejected_{0}, dropped_{0};
-  ResultConversion convert_;        // the delivering thread's
-  OwnVehicleNews own_vehicle_;      // the delivering thread's
-  VehicleMotionNews vehicle_news_;  // the delivering thread's
+  std::int64_t entered_ = 0;  // that were accepted; the pushing thread's
   ResultQueue results_;
   FinalTaker finals_;
-  ThreadPlacement placement_;
-  PairWatch watch_;
-  Pipeline pipeline_;
-  std::jthread deliverer_;
+  mutable std::shared_mutex drive_mutex_;  // of the pointer, for all but the pushing thread
+  std::unique_ptr<TrackedDrive> drive_;
+  std::mutex reset_mutex_;
   std::once_flag callback_wanted_;
   std::jthread caller_;  // of callbacks
 };
 
+/// The drive's thread starts at last: it would wait for results if anything failed after it.
 Tracker::Impl::Impl(const Camera& camera, const Options& options, const PipelineConfig& config)
     : camera_(camera),
       model_(camera),
+      config_(config),
+      axes_(options.axes),
       replay_(options.policy == Policy::kReplay),
+      masks_(options.masks),
       patience_(options.patience),
       log_(logOf(options)),
-      convert_(options.axes, options.masks),
       results_(options.policy),
-      placement_(config.pipeline.placement),
-      watch_(model_.rectified(), log_),
-      pipeline_(config.pipeline, watch_.watched(makeStages(config, model_.rectified())), log_) {
+      drive_(newDrive()) {
   if (!replay_) stock(pool_, camera);
-  deliverer_ = std::jthread([this] { deliver(); });  // at last: it would wait for results if anything failed after it
+  drive_->start(0);
+}
+
+std::unique_ptr<TrackedDrive> Tracker::Impl::newDrive() {
+  const TrackedDrive::Surroundings around{config_, model_, log_, pushing_, results_, finals_};
+  return std::make_unique<TrackedDrive>(around, ResultConversion(axes_, masks_));
 }
 
 /// Throws where a lock may be held by a thread that is not there.
@@ -129,17 +123,49 @@ void Tracker::Impl::requireOwn() const {
 /// Calls of other threads that wait come back first.
 Tracker::Impl::~Impl() {
   constexpr std::chrono::microseconds kPause(100);
-  closed_ = abandoned_ = true;
-  pipeline_.abandon();
+  drive_->abandon();
   results_.abandon();
   while (visits_ > 0) std::this_thread::sleep_for(kPause);
 }
 
 void Tracker::Impl::close() {
   const Visit visit(visits_);
-  closed_ = true;
-  pipeline_.close();
+  const std::shared_lock lock(drive_mutex_);
+  drive_->close();
   results_.endWaitsForRoom();
+}
+
+/// The new drive is there before the old one goes: where there is no memory for it, nothing has changed.
+void Tracker::Impl::reset() {
+  constexpr std::chrono::microseconds kPause(100);
+  const Visit visit(visits_);
+  requireOtherThread();
+  const std::scoped_lock resetting(reset_mutex_);
+  auto next = newDrive();
+  results_.discard();
+  drive_->abandon();
+  while (true) {
+    const OneAtATime one(pushing_);
+    if (one.entered()) return replaceDrive(std::move(next));
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
+void Tracker::Impl::requireOtherThread() const {
+  const std::shared_lock lock(drive_mutex_);
+  if (drive_->delivers()) throw Error("reset", "cannot be called by the callback for finals, which it would wait for");
+}
+
+/// Pairs of which no result came count as dropped.
+void Tracker::Impl::replaceDrive(std::unique_ptr<TrackedDrive> next) {
+  const std::int64_t first_id = drive_->end();
+  dropped_ = entered_ - results_.given();
+  results_.restart();
+  {
+    const std::scoped_lock lock(drive_mutex_);
+    drive_.swap(next);
+  }
+  drive_->start(first_id);
 }
 
 Tracker::Push Tracker::Impl::push(const Pair& pair) noexcept {
@@ -147,16 +173,13 @@ Tracker::Push Tracker::Impl::push(const Pair& pair) noexcept {
   pushed_.fetch_add(1, std::memory_order_relaxed);
   const Push outcome = judge(pair);
   if (outcome.status == PushStatus::kRejected) rejected_.fetch_add(1, std::memory_order_relaxed);
-  if (outcome.status == PushStatus::kReplacedOlder) dropped_.fetch_add(1, std::memory_order_relaxed);
   return outcome;
 }
 
 Tracker::Push Tracker::Impl::pushMotion(const VehicleMotion& motion) noexcept {
   const Visit visit(visits_);
-  if (closed_) return {PushStatus::kRejected, "the tracker was closed"};
-  if (const char* const problem = problemOf(motion)) return {PushStatus::kRejected, problem};
-  vehicle_motion_->add(sampleOf(motion));
-  return {};
+  const std::shared_lock lock(drive_mutex_);
+  return drive_->pushMotion(motion);
 }
 
 Tracker::Push Tracker::Impl::judge(const Pair& pair) noexcept {
@@ -170,7 +193,11 @@ Tracker::Push Tracker::Impl::judge(const Pair& pair) noexcept {
     outcome = enter(pair);
   } catch (const std::bad_alloc&) {  // the pair has not entered
   }
-  if (replay_ && outcome.status == PushStatus::kRejected) results_.giveUpRoom();
+  if (outcome.status == PushStatus::kReplacedOlder) dropped_.fetch_add(1, std::memory_order_relaxed);
+  if (outcome.status != PushStatus::kRejected)
+    ++entered_;
+  else if (replay_)
+    results_.giveUpRoom();
   return outcome;
 }
 
@@ -185,67 +212,11 @@ Tracker::Push Tracker::Impl::enter(const Pair& pair) {
   StereoFrame frame;
   frame.head = {.frame = {pair.frame}, .stamp = {pair.stamp_ns}};
   frame.inputs = model_.inputs();
-  frame.inputs.vehicle_samples = vehicle_motion_->count();
-  if (frame.inputs.vehicle_samples > 0) frame.inputs.vehicle_motion = vehicle_motion_;
   frame.due = std::chrono::steady_clock::now();
-  const int sample_bits = sample_bits_.of(pair);
+  const int sample_bits = drive_->sampleBitsOf(pair);
   frame.left = model_.leftOf(grayImage(pair.left, sample_bits, pool_), pool_);
   frame.right = model_.rightOf(grayImage(pair.right, sample_bits, pool_), pool_);
-  const Admission admission = pipeline_.push(std::move(frame));
-  if (!isTaken(admission)) {
-    if (const auto doubt = stamp_doubts_.refused(admission, pair.stamp_ns))
-      tell(log_, motorcade::LogLevel::kError, [&] { return *doubt; });
-    return {PushStatus::kRejected, whyNot(admission)};
-  }
-  stamp_doubts_.taken();
-  return {admission == Admission::kReplacedOlder ? PushStatus::kReplacedOlder : PushStatus::kAccepted, ""};
-}
-
-/// Static text.
-const char* Tracker::Impl::whyNot(Admission admission) const {
-  if (admission != Admission::kClosed) return reasonOf(admission);
-  return failed_ ? "the tracker has failed, as its log tells" : "the tracker was closed";
-}
-
-/// A pipeline that ends unasked tells why when it is finished.
-void Tracker::Impl::deliver() {
-  try {
-    const PlacedThread placed(placement_);
-    while (const auto result = pipeline_.next()) {
-      if (const auto news = sample_bits_.news()) tell(log_, motorcade::LogLevel::kInfo, [&] { return *news; });
-      if (const auto news = own_vehicle_.observe(*result->measurements))
-        tell(log_, motorcade::LogLevel::kInfo, [&] { return *news; });
-      if (const auto news = vehicle_news_.observe(*result->measurements))
-        tell(log_, motorcade::LogLevel::kWarning, [&] { return *news; });
-      Result converted = convert_(*result);
-      if (converted.problem.empty()) converted.problem = watch_.problem();
-      results_.put(std::move(converted));
-      deliverFinals(result->finals);
-      watch_.look(result->online.head.frame);
-    }
-    if (!closed_ || (finals_.isThere() && !abandoned_)) deliverFinals(finish().finals);
-  } catch (const std::exception& error) {
-    failed_ = true;
-    pipeline_.abandon();
-    results_.endWaitsForRoom();
-    tell(log_, motorcade::LogLevel::kError, [&] { return std::string("no further results: ") + error.what(); });
-  }
-  results_.close();
-}
-
-void Tracker::Impl::deliverFinals(const std::vector<FrameEstimate>& finals) {
-  for (const FrameEstimate& final : finals)
-    if (finals_.isThere() && !abandoned_) callGuarded("finals", [&] { finals_.give(convert_.final(final)); });
-}
-
-/// Waits for a push that is under way, which a pipeline that ends must not meet; those that come later find it closed.
-PipelineEnd Tracker::Impl::finish() {
-  constexpr std::chrono::microseconds kPause(100);
-  while (true) {
-    const OneAtATime one(pushing_);
-    if (one.entered()) return pipeline_.finish();
-    std::this_thread::sleep_for(kPause);
-  }
+  return drive_->push(std::move(frame));
 }
 
 std::optional<Result> Tracker::Impl::poll() {
@@ -270,23 +241,8 @@ void Tracker::Impl::handFinalsTo(std::function<void(Result)> take) {
 }
 
 void Tracker::Impl::handOn() {
-  const PlacedThread placed(placement_);
-  for (bool more = true; more;) callGuarded("results", [&] { more = results_.handNext(); });
-}
-
-/// What a callback throws is logged, and the next call is made all the same.
-template <class Call>
-void Tracker::Impl::callGuarded(const char* what, const Call& call) const {
-  const auto complain = [&](const char* why) {
-    tell(log_, motorcade::LogLevel::kError, [&] { return std::string("the callback for ") + what + ": " + why; });
-  };
-  try {
-    call();
-  } catch (const std::exception& error) {
-    complain(error.what());
-  } catch (...) {
-    complain("it threw what is no std::exception");
-  }
+  const PlacedThread placed(config_.pipeline.placement);
+  for (bool more = true; more;) callLogged(log_, "results", [&] { more = results_.handNext(); });
 }
 
 Tracker::Counts Tracker::Impl::counts() const {
@@ -325,6 +281,10 @@ Tracker::Push Tracker::push_motion(const VehicleMotion& motion) noexcept {
 }
 void Tracker::close() noexcept {
   if (!impl_->inherited()) impl_->close();
+}
+void Tracker::reset() {
+  impl_->requireOwn();
+  impl_->reset();
 }
 std::optional<Result> Tracker::poll() {
   impl_->requireOwn();

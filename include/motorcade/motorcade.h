@@ -131,6 +131,8 @@ motorcade_code motorcade_tracker_push_motion(motorcade_tracker* tracker, const m
                                              motorcade_push* push);
 /// No further pair comes: the results of those that were accepted still do.
 motorcade_code motorcade_tracker_close(motorcade_tracker* tracker);
+/// Forgets the drive, and what was not taken: the next pair begins a new one; see motorcade.hpp.
+motorcade_code motorcade_tracker_reset(motorcade_tracker* tracker);
 /// MOTORCADE_OK: the next result, which the caller releases. MOTORCADE_NONE, MOTORCADE_DONE: NULL.
 motorcade_code motorcade_tracker_poll(motorcade_tracker* tracker, motorcade_result** result);
 motorcade_code motorcade_tracker_wait(motorcade_tracker* tracker, int64_t timeout_ms, motorcade_result** result);

@@ -149,8 +149,7 @@ struct Result {
   std::vector<Object> objects{};  // by id
   int dropped_before = 0;         // pairs since the result before that a newer one replaced
   double latency_ms = 0;          // from `push` to the result
-  /// Why the pair is of no use, what failed, or what of the rig makes results worthless; see `cause` for the rest.
-  std::string problem{};
+  std::string problem{};          // why the pair is of no use, what failed or is wrong with the rig; else see `cause`
 };
 
 /// Follows the camera and the objects. One thread pushes, one takes results; every other call is for any thread.
@@ -198,10 +197,11 @@ class MOTORCADE_API Tracker {
   /// Predicts the camera where images fail. For any thread, at a rate of its own, also late and out of order; a pair
   /// knows what came before it. What contradicts the images is left out, as the log tells. Rejected: what is no number.
   Push push_motion(const VehicleMotion& motion) noexcept;
-  /// No further pair comes: the results of those that were accepted still do.
-  void close() noexcept;
-  /// The next result if there is one already.
-  std::optional<Result> poll();
+  void close() noexcept;  // no further pair comes: the results of those that were accepted still do
+  /// Forgets the drive, and whatever is in flight or was not taken: the next pair begins a new world, with stamps and
+  /// numbers of its own, also after `close`. Ids and counts go on, and callbacks stay. Not by `log` or that of finals.
+  void reset();
+  std::optional<Result> poll();  // the next result if there is one already
   /// Waits for the next result; empty when there is none in time, and at once when there will be none (`done`).
   std::optional<Result> wait(std::chrono::milliseconds timeout);
   bool done() const noexcept;

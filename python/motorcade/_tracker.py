@@ -154,6 +154,12 @@ class Tracker:
         """No further pair comes: the results of those that were accepted still do."""
         self._native.close()
 
+    def reset(self) -> None:
+        """Forgets the drive, and whatever is in flight or was not taken: the next pair begins a new world, with stamps
+        and numbers of its own, also after ``close``. Ids and counts go on, and callbacks stay. Not for ``log`` and
+        the callback for finals, which it waits for."""
+        self._native.reset()
+
     def stop(self) -> None:
         """Abandons what is in flight and joins the tracker's threads, or from within a callback has that done behind
         the caller's back. Later calls do nothing: a ``push`` is rejected, and no result comes."""

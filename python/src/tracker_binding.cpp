@@ -172,6 +172,14 @@ void TrackerBinding::close() {
   running.tracker.close();
 }
 
+void TrackerBinding::reset() {
+  if (!running_) return;
+  Running& running = *running_;
+  const Visit visit(running);
+  const py::gil_scoped_release release;
+  running.tracker.reset();
+}
+
 void TrackerBinding::stop() {
   if (!running_) return;
   if (running_->process != ::getpid()) {
@@ -252,6 +260,7 @@ void bindTracker(py::module_& module) {
       .def("on_final", &TrackerBinding::handFinalsTo)
       .def("hands_on", &TrackerBinding::handsOn)
       .def("close", &TrackerBinding::close)
+      .def("reset", &TrackerBinding::reset)
       .def("stop", &TrackerBinding::stop)
       .def("done", &TrackerBinding::done)
       .def("counts", [](const TrackerBinding& tracker) { return toPython(tracker.counts()); });

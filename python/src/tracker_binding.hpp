@@ -35,6 +35,7 @@ class TrackerBinding {
   bool handsOn() const;
   Tracker::Counts counts() const;
   void close();
+  void reset();
 
   /// Abandons what is in flight. Calls of other threads have come back, and the tracker's threads have ended, unless
   /// this one is in a callback: then a thread of its own sees to that.

@@ -549,6 +549,16 @@ class TakingResults(unittest.TestCase):
         self.assertEqual([result.frame for result in tracker], [0, 1, 2, 3, 4])
         self.assertEqual(finals, [0, 1, 2, 3, 4])
 
+    def test_a_tracker_that_was_reset_begins_anew(self) -> None:
+        tracker = self.tracker()
+        for _ in range(2):
+            self.push(tracker, 3)
+            tracker.close()
+            self.assertEqual([result.frame for result in tracker], [0, 1, 2])
+            tracker.reset()
+            self.assertFalse(tracker.done)
+        self.assertEqual(tracker.counts.results, 6)
+
     def test_a_callback_that_raises_is_printed_and_the_next_result_comes(self) -> None:
         calls: list[int] = []
 

@@ -1,6 +1,11 @@
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <mutex>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -23,5 +28,25 @@ inline motorcade_camera cameraOf(const motorcade_recording* recording) {
   EXPECT_EQ(motorcade_recording_camera(recording, &camera), MOTORCADE_OK);
   return camera;
 }
+
+using CResults = std::vector<Owned<motorcade_result>>;
+
+/// Results as a callback gets them.
+struct Taken {
+  std::mutex mutex;
+  std::condition_variable came;
+  CResults results;
+
+  static void take(motorcade_result* result, void* user) {
+    auto& taken = *static_cast<Taken*>(user);
+    const std::scoped_lock lock(taken.mutex);
+    taken.results.emplace_back(result);
+    taken.came.notify_all();
+  }
+  bool waitFor(std::size_t count) {
+    std::unique_lock lock(mutex);
+    return came.wait_for(lock, std::chrono::minutes(1), [&] { return results.size() == count; });
+  }
+};
 
 }  // namespace motorcade::test

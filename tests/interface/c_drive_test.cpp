@@ -4,10 +4,8 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <cstdint>
 #include <cstring>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,12 +24,12 @@ namespace motorcade {
 namespace {
 
 using test::cameraOf;
+using test::CResults;
 using test::kDrive;
 using test::openDrive;
 using test::Owned;
 using test::replayOptions;
 using test::sized;
-using CResults = std::vector<Owned<motorcade_result>>;
 
 constexpr int kFrames = 14;  // as it is rendered (tests/apps/CMakeLists.txt)
 
@@ -274,32 +272,14 @@ TEST(CInterfaceDrive, FormatsAndStridesMeanWhatTheyDoInCpp) {
              followedInC(cameraOf(openDrive().get()), replayOptions(), otherwise));
 }
 
-/// Results as a callback gets them.
-struct Taken {
-  std::mutex mutex;
-  std::condition_variable came;
-  CResults results;
-
-  static void take(motorcade_result* result, void* user) {
-    auto& taken = *static_cast<Taken*>(user);
-    const std::scoped_lock lock(taken.mutex);
-    taken.results.emplace_back(result);
-    taken.came.notify_all();
-  }
-  bool waitForAll() {
-    std::unique_lock lock(mutex);
-    return came.wait_for(lock, std::chrono::minutes(1), [this] { return results.size() == kFrames; });
-  }
-};
-
 TEST(CInterfaceDrive, ACallbackGetsTheResultsOfCpp) {
   const auto drive = openDrive();
   const auto options = replayOptions();
-  Taken taken;
+  test::Taken taken;
   const auto tracker = test::trackerOf(cameraOf(drive.get()), &options);
-  ASSERT_EQ(motorcade_tracker_on_result(tracker.get(), Taken::take, &taken), MOTORCADE_OK);
+  ASSERT_EQ(motorcade_tracker_on_result(tracker.get(), test::Taken::take, &taken), MOTORCADE_OK);
   play(drive.get(), tracker.get(), asItIs);
-  ASSERT_TRUE(taken.waitForAll());
+  ASSERT_TRUE(taken.waitFor(kFrames));
   expectSame(followed(Recording(kDrive).camera(), {}), taken.results);
 
   auto counts = sized<motorcade_counts>();
@@ -320,22 +300,35 @@ TEST(CInterfaceDrive, ACallbackGetsTheFinalsOfCpp) {
 
   const auto drive = openDrive();
   const auto options = replayOptions();
-  Taken taken;
+  test::Taken taken;
   const auto tracker = test::trackerOf(cameraOf(drive.get()), &options);
-  ASSERT_EQ(motorcade_tracker_on_final(tracker.get(), Taken::take, &taken), MOTORCADE_OK);
+  ASSERT_EQ(motorcade_tracker_on_final(tracker.get(), test::Taken::take, &taken), MOTORCADE_OK);
   play(drive.get(), tracker.get(), asItIs);
-  ASSERT_TRUE(taken.waitForAll());
+  ASSERT_TRUE(taken.waitFor(kFrames));
   expectSame(expected, taken.results);
   EXPECT_EQ(motorcade_tracker_on_final(tracker.get(), nullptr, nullptr), MOTORCADE_OK);
   EXPECT_EQ(motorcade_tracker_on_final(nullptr, nullptr, nullptr), MOTORCADE_ERROR_NULL);
 }
 
+TEST(CInterfaceDrive, AResetTrackerFollowsADriveFromItsFirstFrame) {
+  const auto options = replayOptions();
+  const auto drive = openDrive(), again = openDrive();
+  const auto tracker = test::trackerOf(cameraOf(drive.get()), &options);
+  play(drive.get(), tracker.get(), asItIs);
+  ASSERT_EQ(motorcade_tracker_reset(tracker.get()), MOTORCADE_OK);
+  play(again.get(), tracker.get(), asItIs);
+  std::size_t results = 0;
+  while (test::taken(tracker.get())) ++results;
+  EXPECT_EQ(results, kFrames);
+  EXPECT_EQ(motorcade_tracker_reset(nullptr), MOTORCADE_ERROR_NULL);
+}
+
 TEST(CInterfaceDrive, WithoutACallbackResultsAreForWaitAgain) {
   const auto drive = openDrive();
   const auto options = replayOptions();
-  Taken taken;
+  test::Taken taken;
   const auto tracker = test::trackerOf(cameraOf(drive.get()), &options);
-  motorcade_tracker_on_result(tracker.get(), Taken::take, &taken);
+  motorcade_tracker_on_result(tracker.get(), test::Taken::take, &taken);
   ASSERT_EQ(motorcade_tracker_on_result(tracker.get(), nullptr, nullptr), MOTORCADE_OK);
   play(drive.get(), tracker.get(), asItIs);
   EXPECT_NE(test::taken(tracker.get()), nullptr);

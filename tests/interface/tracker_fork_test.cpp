@@ -67,6 +67,7 @@ TEST_F(TrackerFork, TheChildIsToldThatTheTrackerIsNotItsOwn) {
                            [this] { return isRefused([this] { tracker_->wait(std::chrono::hours(1)); }); },
                            [this] { return isRefused([this] { tracker_->on_result({}); }); },
                            [this] { return isRefused([this] { tracker_->on_final({}); }); },
+                           [this] { return isRefused([this] { tracker_->reset(); }); },
                            [this] { return tracker_->done() && tracker_->counts().pushed == 0; },
                            [this] {
                              tracker_->close();

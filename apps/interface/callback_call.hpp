@@ -1,0 +1,25 @@
+#pragma once
+
+#include <exception>
+#include <string>
+
+#include "apps/pipeline/log_callback.hpp"
+
+namespace motorcade {
+
+/// Makes a call of a callback for `what`. What it throws is logged, and the next call is made all the same.
+template <class Call>
+void callLogged(const LogCallback& log, const char* what, const Call& call) {
+  const auto complain = [&](const char* why) {
+    tell(log, LogLevel::kError, [&] { return std::string("the callback for ") + what + ": " + why; });
+  };
+  try {
+    call();
+  } catch (const std::exception& error) {
+    complain(error.what());
+  } catch (...) {
+    complain("it threw what is no std::exception");
+  }
+}
+
+}  // namespace motorcade
