@@ -21,6 +21,7 @@
 #include "apps/interface/result_queue.hpp"
 #include "apps/interface/tracked_drive.hpp"
 #include "apps/interface/tracker_options.hpp"
+#include "apps/interface/vehicle_motion_input.hpp"
 #include "io/errors.hpp"
 #include "motorcade/motorcade.hpp"
 
