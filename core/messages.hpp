@@ -13,6 +13,7 @@
 
 #include "core/ids.hpp"
 #include "core/image.hpp"
+#include "core/instance_labels.hpp"
 #include "core/pixel_mask.hpp"
 #include "core/se3.hpp"
 #include "core/timestamp.hpp"
@@ -60,6 +61,8 @@ struct FrameHead {
 struct FrameInputs {
   /// Pixels of the left image that are of no use, as those that show the own vehicle; null: none.
   std::shared_ptr<const PixelMask> ignored;
+  /// Which body the left image's pixels show, of the image's size; null: nobody tells.
+  std::shared_ptr<const InstanceLabels> instances{};
   /// The vehicle's own motion, as far as it was known when the pair came: so many samples. Null: nothing tells it.
   std::shared_ptr<const VehicleMotionLog> vehicle_motion{};
   std::uint64_t vehicle_samples = 0;
@@ -80,6 +83,7 @@ struct StereoFrame {
   void reject(FrameCause cause, std::string why) {
     left = right = Image{};
     inputs.ignored.reset();
+    inputs.instances.reset();
     head.status = FrameStatus::kRejected;
     head.cause = cause;
     problem = std::move(why);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -90,6 +91,7 @@ struct ScenePoint {
   bool ambiguous = false;   // its patch is also found where a point at rest would be: its motion proves nothing
   bool ego_inlier = false;  // agrees with the camera's motion over a static world since the previous frame
   PointLabel label = PointLabel::kUnknown;
+  std::uint16_t instance = 0;  // the body that it lies on, as the pair's instance labels tell; 0: they do not
   std::optional<SceneFlow> flow;
 };
 

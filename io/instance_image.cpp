@@ -72,6 +72,11 @@ fs::path instanceFile(const fs::path& folder, FrameId frame) {
   return fs::exists(virtual_kitti) ? virtual_kitti : rendered;
 }
 
+bool isInstanceFile(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return isMaskFile(file) || (name.starts_with("instancegt_") && name.ends_with(".png"));
+}
+
 Gray16Image readInstances(const fs::path& file) {
   const std::string bytes = readImageBytes(file);
   if (!hasPalette(bytes)) return readPng16(file);

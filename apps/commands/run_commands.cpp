@@ -111,6 +111,11 @@ void addWhatComesBeside(CLI::App& command, RunOptions& options) {
                   "leaves that out")
       ->type_name("FILE|none");
   command
+      .add_option("--instances", options.instances,
+                  "Instance labels of the left image, rectified, as a network tells them, one PNG for a frame or for "
+                  "some: NNNNNN.png, one number for the pixels of a body, 0 for none. They need not be right")
+      ->type_name("FOLDER");
+  command
       .add_option("--ignore", options.ignored,
                   "Pixels of the left image, rectified, that are of no use: so many rows or columns at a side, as "
                   "bottom=70 (top, left, right), or an image that is not black there; may come several times. What is "

@@ -113,6 +113,7 @@ void announce(const RunInput& input, const RunOptions& options) {
   announceRate(input, options);
   if (!input.vehicle_motion.empty())
     logInfo(fmt::format("the vehicle's own motion is known: {} samples", input.vehicle_motion.size()));
+  if (!input.instances.empty()) logInfo("instance labels come from " + input.instances.string());
 }
 
 void tellOutside(double share) {
@@ -173,6 +174,7 @@ RunSummary summaryBefore(const RunOptions& options, const PipelineConfig& config
   summary.params = config.pipeline;
   summary.setSequence(input.sequence);
   summary.ignored = options.ignored;
+  summary.instances = options.instances.string();
   summary.inject = options.inject;
   summary.rate_hz = input.rate_hz;
   summary.capture_rate_hz = input.capture_rate_hz;

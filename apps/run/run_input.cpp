@@ -13,6 +13,7 @@
 #include "io/bag/bag_reader.hpp"
 #include "io/bag/bag_source.hpp"
 #include "io/errors.hpp"
+#include "io/instance_source.hpp"
 #include "io/sequence_decoder.hpp"
 #include "io/stream/stream_sequence.hpp"
 #include "io/stream/y4m_source.hpp"
@@ -174,6 +175,7 @@ RunInput openRunInput(const RunOptions& options, InputPolicy policy) {
   RunInput input = openPairs(options, policy);
   const std::filesystem::path motion = motionFileOf(options);
   if (!motion.empty()) input.vehicle_motion = readVehicleMotion(motion, input.sequence);
+  input.instances = options.instances;
   return input;
 }
 
@@ -185,6 +187,9 @@ std::optional<CameraClock> clockOf(const RunInput& input, InputPolicy policy) {
 std::unique_ptr<PairSource> makeSource(RunInput& input, const PipelineConfig& config, const FrameInputs& inputs,
                                        const std::optional<CameraClock>& clock) {
   auto pairs = makePairs(input, config, inputs, clock);
+  const StereoCamera& camera = input.sequence.camera;
+  if (!input.instances.empty())
+    pairs = std::make_unique<InstanceSource>(std::move(pairs), input.instances, camera.width_px, camera.height_px);
   if (input.vehicle_motion.empty()) return pairs;
   return std::make_unique<VehicleMotionSource>(std::move(pairs), input.vehicle_motion);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -28,6 +29,7 @@ struct RunInput {
   StereoPacking packing = StereoPacking::kSideBySide;  // of a stream
   std::optional<BagDrive> bag{};                       // of a bag
   std::vector<VehicleMotionSample> vehicle_motion{};   // samples by time; none where it is not known
+  std::filesystem::path instances{};                   // a folder of instance labels; empty without
 
   /// The pairs come when the stream's writer sends them, whether or not they are taken.
   bool writerPaced(InputPolicy policy) const { return sequence.piped() && policy == InputPolicy::kLive; }

@@ -31,6 +31,7 @@ struct RunOptions {
   GivenCameras given;                    // --camera and --calibration
   std::filesystem::path camera_poses;    // KITTI pose lines
   std::filesystem::path vehicle_motion;  // --vehicle-motion: a file, `none`, or empty for the drive's own
+  std::filesystem::path instances;       // --instances: a folder of labels, or empty
   std::vector<std::string> ignored;      // --ignore: SIDE=PIXELS or a mask's file
   std::vector<std::string> assignments;  // key=value
   std::string min_existence;             // of rows, a probability; empty for the configuration's

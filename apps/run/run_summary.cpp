@@ -175,6 +175,7 @@ std::string toJson(const RunSummary& summary) {
             {"sample_bits", summary.sample_bits},
             {"images", toJson(summary.images)},
             {"ignored", summary.ignored},
+            {"instances", summary.instances},
             {"inject", summary.inject},
             {"capture_rate_hz", rounded(summary.capture_rate_hz)},
             {"rate", summary.rate_hz ? Json(*summary.rate_hz) : Json("max")},

@@ -38,6 +38,7 @@ struct RunSummary {
   std::string bayer;                 // the mosaic in force, empty for none
   int sample_bits = 8;               // that the images' samples use
   std::vector<std::string> ignored;  // pixels, as the user gave them
+  std::string instances;             // the folder of labels, as the user gave it
   std::string inject;                // faults on the way from the camera, as the user gave them
   std::optional<double> rate_hz;     // of the replay; empty for as fast as it went
   double capture_rate_hz = 0;

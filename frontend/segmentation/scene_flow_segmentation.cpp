@@ -37,6 +37,10 @@ void leaveOut(const PixelMask& ignored, std::vector<std::optional<StereoObservat
   }
 }
 
+void addInstances(const InstanceLabels& labels, std::vector<ScenePoint>& points) {
+  for (ScenePoint& point : points) point.instance = labels.at(point.uvd_px.x(), point.uvd_px.y());
+}
+
 /// Observations of both, ordered by point; where both have a point, that of the flow.
 OpticalFlow merged(const OpticalFlow& flow, const std::vector<FlowObservation>& found) {
   OpticalFlow all{.features = flow.features, .observations = {}};
@@ -78,6 +82,7 @@ SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo,
   motion->ego_inliers = measured.camera.inlier_count;
   motion->disparity_offset_px = disparity_offset_.offset_px();
   addPoints(of_world, measured.camera.inliers, motion->points);
+  if (frame.inputs.instances) addInstances(*frame.inputs.instances, motion->points);
   const std::vector<bool> violates_geometry = testGeometry();
   motion->ground = findGround(violates_geometry, head.frame, motion->points);
   motion->components = segmenter_(motion->points, violates_geometry, motion->ground, motion->camera_speed_mps);

@@ -77,8 +77,9 @@ typedef struct {
 typedef struct {
   size_t struct_size;
   const motorcade_image *left, *right;
-  int64_t stamp_ns;  // capture time, after that of the pair before
-  int64_t frame;     // number, from 0, after that of the pair before; -1, the default: the next one
+  int64_t stamp_ns;                  // capture time, after that of the pair before
+  int64_t frame;                     // number, from 0, after that of the pair before; -1, the default: the next one
+  const motorcade_image* instances;  // which body each pixel of the left image shows, see motorcade.hpp; or NULL
 } motorcade_pair;
 motorcade_code motorcade_pair_init(motorcade_pair* pair);  // sets all but the size to the default
 /// Live: the newest pair wins, push never waits. Replay: no pair is lost, push waits for room, results are repeatable.

@@ -88,6 +88,9 @@ struct Pair {
   Image left{}, right{};
   std::int64_t stamp_ns = 0;  // capture time, after that of the pair before
   std::int64_t frame = -1;    // number, from 0, after that of the pair before; -1: the next one
+  /// Which body the rectified left image's pixels show, where a network tells it: one number for the pixels of one, 0
+  /// for none; kGray8 or kGray16. Evidence, and no more: they may be late, change from pair to pair, and lie.
+  Image instances{};
 };
 
 /// The motion of the rear axle's middle, as the vehicle's own sensors tell it.
