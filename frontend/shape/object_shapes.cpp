@@ -177,8 +177,8 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
       shape.looks[frame.head.frame] = {*look, view.T_cam_body};
     }
     if (object.state != ObjectState::kPredicted) {
-      completeOutline(seen->outline, seen->disparities, view, camera_);
-      masks.push_back(maskOf(seen->outline, seen->disparities.level, object.track));
+      if (!seen->labelled) completeOutline(seen->outline, seen->disparities, view, camera_);
+      masks.push_back(maskOf(seen->bounds(), seen->disparities.level, object.track));
     }
   }
   object.existence_probability = shape.existence.probability();
@@ -208,6 +208,8 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
                   .ground = scene.ground,
                   .disparity_offset_px = scene.disparity_offset_px};
   if (observed) view.points = extentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
+  if (is_new && observed && observed->born_slow && !view.points)
+    view.points = extentOf(observed->patches, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
   if (is_new && view.points) {
     if (!isCutOff(observed->box, T_cam_body, camera_)) shape.evidence = shape.first = nearFaceAtPoints(view);
     view.box = estimateBox(shape.evidence, shape.speed_mps);
@@ -243,7 +245,7 @@ std::optional<FaceInformation> ObjectShapes::measured(const Sight& seen, ObjectV
   const std::vector<SurfacePoint> surface = surfacePoints(seen.disparities, seen.outline, view, camera_);
   FaceInformation look;
   for (int i = 0; i < kIterations; ++i) {
-    look = measureFaces(seen.disparities, seen.outline, surface, view, camera_);
+    look = measureFaces(seen.disparities, seen.bounds(), surface, view, camera_);
     FaceInformation both = shape.evidence;
     both.add(look, kLookWeight);
     view.box = estimateBox(both, shape.speed_mps);

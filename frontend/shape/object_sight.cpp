@@ -8,6 +8,7 @@
 
 #include "frontend/image/image_pyramid.hpp"
 #include "frontend/shape/disparity_refinement.hpp"
+#include "frontend/shape/instance_outline.hpp"
 
 namespace motorcade {
 namespace {
@@ -38,7 +39,10 @@ std::optional<Sight> ObjectSight::operator()(const ObjectView& view, const Featu
   refine(*disparities, cells, features);
   Outline outline = findOutline(*disparities, cells, view, camera_);
   if (outline.count() < kLeastCells) return std::nullopt;
-  return Sight{std::move(*disparities), std::move(outline)};
+  Sight sight{std::move(*disparities), std::move(outline)};
+  if (const auto& labels = features.frame->inputs.instances)
+    sight.labelled = labelledOutline(sight.outline, sight.disparities, *labels);
+  return sight;
 }
 
 std::optional<Box> ObjectSight::usualBox(const ObjectView& view) const {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/decompositions.hpp"
+#include "frontend/tracking/small_body.hpp"
 #include "frontend/tracking/vehicle_size.hpp"
 
 namespace motorcade {
@@ -43,6 +44,8 @@ void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKine
     if (!observation || isTaken(*earlier, observation->T_cam_body, object.born_slow)) return;
     // What was only near the object then is evidence of it, but surely a point of it only if it was followed later.
     std::erase_if(observation->measured, [&](const PointMeasurement& p) { return !followed.find(p.point); });
+    const bool stands = object.born_slow && then.speed_mps() < kSlowestWalk_mps;
+    if (stands && observation->measured.empty()) return;
     object.backlog.insert(object.backlog.begin(), std::move(*observation));
   }
 }

@@ -29,7 +29,6 @@ class LookBack {
   void remember(const SceneMotionPtr& scene, const SE3& T_world_cam, const std::vector<ObjectObservation>& reported,
                 const std::vector<TrackedObject>& objects);
 
- private:
   struct Body {
     SE3 T_cam_body;
     Eigen::AlignedBox3d core;  // around its points, in its frame
@@ -39,6 +38,10 @@ class LookBack {
     SE3 T_world_cam;
     std::vector<Body> reported;
   };
+  /// The frames that are remembered, oldest first.
+  const std::deque<PastScene>& past() const { return past_; }
+
+ private:
   std::optional<ObjectObservation> observe(const PastScene& earlier, TrackedObject& object, ObjectKinematics& then,
                                            MeasuredPoints& later) const;
 
@@ -46,7 +49,7 @@ class LookBack {
 
   int frames_, kept_;
   ObjectMotionEstimator motion_;
-  std::deque<PastScene> past_;  // oldest first
+  std::deque<PastScene> past_;
 };
 
 }  // namespace motorcade

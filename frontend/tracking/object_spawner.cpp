@@ -68,6 +68,14 @@ std::optional<TrackedObject> ObjectSpawner::walker(const SceneMotion& scene, con
   return object;
 }
 
+std::optional<TrackedObject> ObjectSpawner::walker(const SceneMotion& scene, const MotionComponent& sure,
+                                                   const SE3& T_world_cam) {
+  TrackedObject object = objectOf(scene, sure, T_world_cam);
+  if (!object.born_slow) return std::nullopt;
+  object.track = TrackId{next_track_++};
+  return object;
+}
+
 /// Finds the patches in the frame before where the velocity takes them from. One pose of the body must agree with most
 /// of them; how far it lies from that of now is measured, not assumed.
 bool ObjectSpawner::haveMoved(const TrackedObject& object, const SceneMotion& scene, const SceneMotion& before) const {

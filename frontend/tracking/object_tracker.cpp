@@ -7,6 +7,7 @@
 #include "core/decompositions.hpp"
 #include "frontend/tracking/body_axes.hpp"
 #include "frontend/tracking/duplicate_objects.hpp"
+#include "frontend/tracking/labelled_walkers.hpp"
 #include "frontend/tracking/object_association.hpp"
 #include "frontend/tracking/small_body.hpp"
 
@@ -199,6 +200,7 @@ void ObjectTracker::matchComponents(const SceneMotion& scene) {
     std::ranges::move(spawn_(scene, scene.components[s], T_world_cam_, taken), std::back_inserter(objects_));
   }
   spawnWalkers(scene, object_of, taken);
+  spawnLabelledWalkers(scene, taken);
   dropFarthest();
 }
 
@@ -214,6 +216,19 @@ void ObjectTracker::spawnWalkers(const SceneMotion& scene, const std::vector<int
     if (std::ranges::any_of(component.points, is_taken) || std::ranges::any_of(objects_, holds)) continue;
     if (auto walker = spawn_.walker(scene, *previous_scene_, component, T_world_cam_))
       objects_.push_back(std::move(*walker));
+  }
+}
+
+/// People whom instance labels show.
+void ObjectTracker::spawnLabelledWalkers(const SceneMotion& scene, const std::vector<bool>& taken) {
+  if (!scene.features || !scene.features->frame->inputs.instances) return;
+  const LabelledWalkers walkers(look_back_, camera_);
+  for (const InstanceRegion& region : regionsOf(*scene.features->frame->inputs.instances)) {
+    const auto labelled = walkers(region, scene, T_world_cam_, taken);
+    if (!labelled) continue;
+    const auto holds = [&](const TrackedObject& object) { return isAt(object, labelled->centroid_cam); };
+    if (std::ranges::any_of(objects_, holds)) continue;
+    if (auto walker = spawn_.walker(scene, *labelled, T_world_cam_)) objects_.push_back(std::move(*walker));
   }
 }
 

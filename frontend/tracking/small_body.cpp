@@ -13,9 +13,8 @@ bool mayBeSmall(const TrackedObject& object) {
 }
 
 bool isWalk(double speed_mps, double z_m, const StereoCamera& camera) {
-  constexpr double kSlowest_mps = 0.5;
   constexpr double kBehind_m = 0.5, kSigma_px = 0.3;  // of a patch's disparity
-  if (speed_mps < kSlowest_mps || speed_mps > kFastestWalk_mps) return false;
+  if (speed_mps < kSlowestWalk_mps || speed_mps > kFastestWalk_mps) return false;
   return camera.fx_px * camera.baseline_m * kBehind_m > kSigma_px * z_m * z_m;
 }
 

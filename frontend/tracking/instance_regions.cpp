@@ -1,0 +1,36 @@
+#include "frontend/tracking/instance_regions.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace motorcade {
+namespace {
+
+/// Adds the columns `first` to `last` of a row.
+void extend(Box& box, int first, int last, int row) {
+  box.left_px = std::min<double>(box.left_px, first), box.right_px = std::max<double>(box.right_px, last);
+  box.top_px = std::min<double>(box.top_px, row), box.bottom_px = std::max<double>(box.bottom_px, row);
+}
+
+}  // namespace
+
+std::vector<InstanceRegion> regionsOf(const InstanceLabels& labels) {
+  constexpr Box kNowhere{1e9, 1e9, -1e9, -1e9};
+  std::map<std::uint16_t, Box> boxes;
+  for (int v = 0; v < labels.height(); ++v) {
+    const std::uint16_t *const row = labels.row(v), *const end = row + labels.width();
+    for (const std::uint16_t* from = row; from != end;) {
+      const std::uint16_t label = *from;
+      const std::uint16_t* const to = std::find_if(from, end, [label](std::uint16_t other) { return other != label; });
+      if (label != 0)
+        extend(boxes.try_emplace(label, kNowhere).first->second, static_cast<int>(from - row),
+               static_cast<int>(to - row) - 1, v);
+      from = to;
+    }
+  }
+  std::vector<InstanceRegion> regions;
+  for (const auto& [label, box] : boxes) regions.push_back({label, box});
+  return regions;
+}
+
+}  // namespace motorcade

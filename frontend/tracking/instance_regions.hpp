@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/instance_labels.hpp"
+#include "core/messages.hpp"
+
+namespace motorcade {
+
+/// Where an instance label lies in the left image.
+struct InstanceRegion {
+  std::uint16_t label;
+  Box box;
+};
+
+/// The region of each label, ordered by label. Takes one look at each pixel.
+std::vector<InstanceRegion> regionsOf(const InstanceLabels& labels);
+
+}  // namespace motorcade

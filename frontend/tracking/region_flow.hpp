@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/stereo_camera.hpp"
+#include "frontend/image/region_template.hpp"
+#include "frontend/messages.hpp"
+#include "frontend/motion/point_track.hpp"
+#include "frontend/motion/scene_flow.hpp"
+#include "frontend/tracking/instance_regions.hpp"
+#include "frontend/tracking/look_back.hpp"
+
+namespace motorcade {
+
+/// Scene flow of what an instance label shows as a whole: it is looked for in the frames before, by its brightness in
+/// both images, and a point at rest and one that moves are fitted to where it was, as to any scene point.
+class RegionFlow {
+ public:
+  /// `past` outlives it.
+  RegionFlow(const LookBack& past, const StereoCamera& camera) : past_(past), camera_(camera), estimate_({}, camera) {}
+
+  /// Of the region's upper part, which of a person is trunk and head: legs swing. The disparity is that of its points.
+  /// Empty where it is found in too few frames.
+  std::optional<SceneFlow> operator()(const InstanceRegion& region, double disparity_px, const SceneMotion& scene,
+                                      const SE3& T_world_cam) const;
+
+ private:
+  /// Pixels of a region, from its middle.
+  struct Pixels {
+    Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
+    std::vector<Eigen::Vector2f> offsets_px;
+  };
+  static Pixels upperPart(const InstanceRegion& region, const InstanceLabels& labels);
+  /// Where the region is looked for, and how much larger it is seen there than now.
+  struct Guess {
+    Eigen::Vector3d uvd_px;
+    double scale = 1;
+    int radius_px = 0;  // columns each way
+  };
+  std::optional<PointObservation> observe(const RegionTemplate& now, const Pixels& pixels, const Features& there,
+                                          const Guess& guess) const;
+  std::optional<SceneFlow> fit(const std::vector<PointObservation>& newest_first,
+                               const std::vector<const LookBack::PastScene*>& scenes, const SceneMotion& scene,
+                               const SE3& T_world_cam) const;
+
+  const LookBack& past_;
+  StereoCamera camera_;
+  SceneFlowEstimator estimate_;
+};
+
+}  // namespace motorcade
