@@ -49,7 +49,8 @@ motorcade_code motorcade_recording_read(motorcade_recording* recording, int64_t 
                  .left = &recording->left,
                  .right = &recording->right,
                  .stamp_ns = read.stamp_ns,
-                 .frame = read.frame},
+                 .frame = read.frame,
+                 .instances = nullptr},
                 pair);
     return MOTORCADE_OK;
   });
