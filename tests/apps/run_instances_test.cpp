@@ -18,7 +18,7 @@ class RunInstances : public Run {
  protected:
   /// Every third frame's.
   fs::path labels() const {
-    const fs::path folder = out("labels");
+    fs::path folder = out("labels");
     fs::create_directories(folder);
     for (const char* name : {"000000.png", "000003.png", "000006.png"})
       fs::copy_file(kSequence / "instance" / name, folder / name, fs::copy_options::overwrite_existing);

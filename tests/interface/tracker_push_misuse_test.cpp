@@ -97,7 +97,7 @@ TEST_F(BadPairs, InstanceLabelsThatAreNotOfTheCameraAreRejected) {
        [](Pair::Image& labels) { labels.format = Pair::Format::kGray16, labels.stride_bytes = 619; }},
       {"labels' stride is above", [](Pair::Image& labels) { labels.stride_bytes = kMost; }}};
   for (const auto& [why, spoil] : misuses) {
-    expectRejected(why, [&spoil](Pair& pair) { spoil(pair.instances = pair.left); });
+    expectRejected(why, [&change = spoil](Pair& pair) { change(pair.instances = pair.left); });
     if (next_ < drive_.frames.size()) pushGood();
   }
   expectResultsOfGoodPairs();
