@@ -13,6 +13,10 @@ class InstanceLabels {
  public:
   InstanceLabels() = default;
   InstanceLabels(int width, int height) { resize(width, height); }
+  /// Takes the memory of so many pixels: up to there, `resize` asks nothing of the heap.
+  void reserve(int width, int height) {
+    labels_.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  }
   /// Content is undefined afterwards, but 0 where the size grows.
   void resize(int width, int height) {
     width_ = width, height_ = height;

@@ -1,29 +1,61 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <memory>
+#include <utility>
 
 #include "core/idle_slots.hpp"
 
 namespace motorcade {
 
 /// Hands out objects and takes them back, unchanged, when their last pointer is gone, so that the memory they hold is
-/// used again. Any thread may acquire and release objects, without locks. An object that is in use outlives the pool.
+/// used again. Any thread may acquire and release objects, without locks, and without the heap once there are enough of
+/// them. An object that is in use outlives the pool.
 template <class T>
 class ObjectPool {
  public:
   /// An object in the state in which it was released, or a new one.
   std::shared_ptr<T> acquire() {
-    T* object = shelf_->idle.take();
-    return {object ? object : new T, [shelf = shelf_](T* released) {
-              if (!shelf->idle.putBack(released)) delete released;
-            }};
+    Place* idle = shelf_->idle.take();
+    Place* place = idle ? idle : new Place;
+    const auto keep = [](T*) {};
+    return {&place->object, keep, InPlace<T>(shelf_, place)};
   }
 
  private:
+  /// An object, and room for the counts of the shared pointers to it.
+  struct Place {
+    T object;
+    alignas(std::max_align_t) std::array<std::byte, 64> counts;
+  };
   struct Shelf {
-    IdleSlots<T> idle;
+    IdleSlots<Place> idle;
     ~Shelf() {
-      while (T* object = idle.take()) delete object;
+      while (Place* place = idle.take()) delete place;
+    }
+  };
+  /// Lays the counts beside their object. They are the last to be released: then the object is idle.
+  template <class Counts>
+  struct InPlace {
+    using value_type = Counts;
+    std::shared_ptr<Shelf> shelf;
+    Place* place;
+
+    InPlace(std::shared_ptr<Shelf> s, Place* p) : shelf(std::move(s)), place(p) {}
+    template <class Other>
+    explicit(false) InPlace(const InPlace<Other>& other) : shelf(other.shelf), place(other.place) {}
+
+    Counts* allocate(std::size_t) const {
+      static_assert(sizeof(Counts) <= sizeof(Place::counts) && alignof(Counts) <= alignof(std::max_align_t));
+      return reinterpret_cast<Counts*>(place->counts.data());
+    }
+    void deallocate(Counts*, std::size_t) const {
+      if (!shelf->idle.putBack(place)) delete place;
+    }
+    template <class Other>
+    bool operator==(const InPlace<Other>& other) const {
+      return place == other.place;
     }
   };
   std::shared_ptr<Shelf> shelf_ = std::make_shared<Shelf>();

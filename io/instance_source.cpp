@@ -13,13 +13,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Any one of the folder's; throws InputError where there is none.
-fs::path someLabels(const fs::path& folder) {
+/// Throws InputError where there is none.
+fs::path firstByName(const fs::path& folder) {
   if (!fs::is_directory(folder))
     throw InputError(folder.string() + ": is no folder; instance labels are a folder of PNG files, one for a frame");
+  fs::path first;
   for (const auto& entry : fs::directory_iterator(folder))
-    if (isInstanceFile(entry.path())) return entry.path();
-  throw InputError(folder.string() + ": holds no instance labels; they are called NNNNNN.png, by the frame's number");
+    if (isInstanceFile(entry.path()) && (first.empty() || entry.path() < first)) first = entry.path();
+  if (first.empty())
+    throw InputError(folder.string() + ": holds no instance labels; they are called NNNNNN.png, by the frame's number");
+  return first;
 }
 
 /// Throws InputError naming the file.
@@ -32,12 +35,18 @@ Gray16Image readLabels(const fs::path& file, int width_px, int height_px) {
   return image;
 }
 
+std::string countOfFiles(int files) {
+  return files == 1 ? "a file of instance labels is" : std::to_string(files) + " files of instance labels are";
+}
+
 }  // namespace
 
-InstanceSource::InstanceSource(std::unique_ptr<PairSource> pairs, fs::path folder, int width_px, int height_px)
-    : pairs_(std::move(pairs)), folder_(std::move(folder)), width_px_(width_px), height_px_(height_px) {
-  readLabels(someLabels(folder_), width_px_, height_px_);
+void requireInstances(const fs::path& folder, int width_px, int height_px) {
+  readLabels(firstByName(folder), width_px, height_px);
 }
+
+InstanceSource::InstanceSource(std::unique_ptr<PairSource> pairs, fs::path folder, int width_px, int height_px)
+    : pairs_(std::move(pairs)), folder_(std::move(folder)), width_px_(width_px), height_px_(height_px) {}
 
 std::optional<StereoFrame> InstanceSource::next() {
   auto frame = pairs_->next();
@@ -61,11 +70,10 @@ std::shared_ptr<const InstanceLabels> InstanceSource::labelsOf(FrameId frame) tr
 
 SourceEnd InstanceSource::finish() {
   SourceEnd end = pairs_->finish();
-  if (unreadable_ == 0 && read_ > 0) return end;
-  if (!end.remark.empty()) end.remark += "; ";
-  end.remark += unreadable_ > 0
-                    ? std::to_string(unreadable_) + " files of instance labels are left out: " + first_problem_
-                    : folder_.string() + ": holds no instance labels of any frame that was taken";
+  if (unreadable_ > 0)
+    end.instances = countOfFiles(unreadable_) + " left out: " + first_problem_;
+  else if (read_ == 0)
+    end.instances = folder_.string() + ": holds no instance labels of any frame that was taken";
   return end;
 }
 

@@ -10,12 +10,15 @@
 
 namespace motorcade {
 
+/// Throws InputError naming the folder where it holds no instance labels, or its first file, by name, where that cannot
+/// be read or has another size.
+void requireInstances(const std::filesystem::path& folder, int width_px, int height_px);
+
 /// The pairs of another source, each with the instance labels that a folder holds for its frame, as somebody else's
 /// segmentation wrote them: NNNNNN.png, gray of 8 or 16 bits or with a palette. Frames without a file have none.
 class InstanceSource final : public PairSource {
  public:
-  /// Throws InputError naming the folder where it holds no labels, or the file where the first ones are not of the
-  /// images' size.
+  /// Labels have the size of the rectified images.
   InstanceSource(std::unique_ptr<PairSource> pairs, std::filesystem::path folder, int width_px, int height_px);
 
   /// Labels that cannot be read are left out, and told at the end.

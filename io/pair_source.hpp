@@ -10,8 +10,9 @@ namespace motorcade {
 
 /// The end of a source, as far as it is worth a word to the user.
 struct SourceEnd {
-  std::string remark{};  // a sentence; empty where all pairs came
-  bool damaged = false;  // what follows the last pair cannot be used, or there was none
+  std::string remark{};     // a sentence; empty where all pairs came
+  bool damaged = false;     // what follows the last pair cannot be used, or there was none
+  std::string instances{};  // what is wrong with the instance labels, a sentence; empty where nothing is
 };
 
 /// Stereo pairs as a run takes them: decoded, rectified and numbered, from a recorded drive, a pipe, or whatever else

@@ -138,7 +138,8 @@ Pair pairOf(const motorcade_pair* given) {
   return {.left = imageOf(pair.left, "pair.left", "pair.left.format"),
           .right = imageOf(pair.right, "pair.right", "pair.right.format"),
           .stamp_ns = pair.stamp_ns,
-          .frame = pair.frame};
+          .frame = pair.frame,
+          .instances = imageOf(pair.instances, "pair.instances", "pair.instances.format")};
 }
 
 VehicleMotion motionOf(const motorcade_vehicle_motion* given) {

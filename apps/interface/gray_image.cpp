@@ -22,10 +22,6 @@ std::ptrdiff_t bytesPerPixel(Pair::Format format) {
   return 0;
 }
 
-std::ptrdiff_t strideOf(const Pair::Image& image) {
-  return image.stride_bytes != 0 ? image.stride_bytes : image.width_px * bytesPerPixel(image.format);
-}
-
 /// The caller's rows need not be aligned.
 std::uint16_t sampleAt(const void* row, int x) {
   std::uint16_t value = 0;
@@ -90,11 +86,14 @@ std::optional<std::string> SampleBits::news() {
          ": the brightest sample of the first pair that is not dark is " + std::to_string(brightest_);
 }
 
+std::ptrdiff_t strideOf(const Pair::Image& image) {
+  return image.stride_bytes != 0 ? image.stride_bytes : image.width_px * bytesPerPixel(image.format);
+}
+
 const char* problemOf(const Pair::Image& image, const Camera& camera) {
   if (image.pixels == nullptr) return "an image has no pixels";
   if (image.width_px != camera.width_px || image.height_px != camera.height_px)
     return "an image is not of the camera's size";
-  constexpr std::ptrdiff_t kMostStride_bytes = 1 << 24;
   const std::ptrdiff_t bytes = bytesPerPixel(image.format);
   if (bytes == 0) return "an image's format is none of those that there are";
   if (image.stride_bytes != 0 && image.stride_bytes < bytes * image.width_px)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -8,6 +9,12 @@
 #include "motorcade/motorcade.hpp"
 
 namespace motorcade {
+
+/// The longest stride that is taken: a longer one is a mistake.
+inline constexpr std::ptrdiff_t kMostStride_bytes = 1 << 24;
+
+/// Bytes from row to row, where the caller says nothing, too.
+std::ptrdiff_t strideOf(const Pair::Image& image);
 
 /// Why an image cannot be one of this camera; null when it can.
 const char* problemOf(const Pair::Image& image, const Camera& camera);

@@ -9,19 +9,17 @@
 #include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include <unistd.h>
 
 #include "apps/interface/call_guards.hpp"
 #include "apps/interface/callback_call.hpp"
 #include "apps/interface/camera_model.hpp"
-#include "apps/interface/gray_image.hpp"
+#include "apps/interface/pair_input.hpp"
 #include "apps/interface/result_conversion.hpp"
 #include "apps/interface/result_queue.hpp"
 #include "apps/interface/tracked_drive.hpp"
 #include "apps/interface/tracker_options.hpp"
-#include "apps/interface/vehicle_motion_input.hpp"
 #include "io/errors.hpp"
 #include "motorcade/motorcade.hpp"
 
@@ -29,15 +27,6 @@ namespace motorcade {
 namespace {
 
 using PushStatus = Tracker::Push::Status;
-
-/// Puts as many buffers into the pool as images are ever in use at once, in flight, in the entrance and in the stages'
-/// memories, and some to spare: a pool may miss one that comes back in that moment. Their pages are untouched, and so
-/// cost no memory until they are used.
-void stock(ImagePool& pool, const Camera& camera) {
-  constexpr std::size_t kImages = 32;
-  std::vector<Image> images;
-  while (images.size() < kImages) images.push_back(pool.acquire(camera.width_px, camera.height_px));
-}
 
 }  // namespace
 
@@ -64,7 +53,6 @@ class Tracker::Impl {
 
  private:
   Push judge(const Pair& pair) noexcept;
-  const char* problemWith(const Pair& pair) const;
   Push enter(const Pair& pair);
   void handOn();
   std::unique_ptr<TrackedDrive> newDrive();
@@ -72,14 +60,13 @@ class Tracker::Impl {
   void replaceDrive(std::unique_ptr<TrackedDrive> next);
 
   pid_t process_ = ::getpid();
-  Camera camera_;
   CameraModel model_;
   PipelineConfig config_;
   Axes axes_;
   bool replay_, masks_;
   std::chrono::milliseconds patience_;
   LogCallback log_;
-  ImagePool pool_;
+  PairInput input_;  // the pushing thread's
   std::atomic<int> visits_{0};
   std::atomic_flag pushing_;
   std::atomic<std::int64_t> pushed_{0}, rejected_{0}, dropped_{0};
@@ -95,17 +82,16 @@ class Tracker::Impl {
 
 /// The drive's thread starts at last: it would wait for results if anything failed after it.
 Tracker::Impl::Impl(const Camera& camera, const Options& options, const PipelineConfig& config)
-    : camera_(camera),
-      model_(camera),
+    : model_(camera),
       config_(config),
       axes_(options.axes),
       replay_(options.policy == Policy::kReplay),
       masks_(options.masks),
       patience_(options.patience),
       log_(logOf(options)),
+      input_(camera, model_, options.policy),
       results_(options.policy),
       drive_(newDrive()) {
-  if (!replay_) stock(pool_, camera);
   drive_->start(0);
 }
 
@@ -186,7 +172,7 @@ Tracker::Push Tracker::Impl::pushMotion(const VehicleMotion& motion) noexcept {
 Tracker::Push Tracker::Impl::judge(const Pair& pair) noexcept {
   const OneAtATime one(pushing_);
   if (!one.entered()) return {PushStatus::kRejected, "another thread is pushing"};
-  if (const char* const problem = problemWith(pair)) return {PushStatus::kRejected, problem};
+  if (const char* const problem = input_.problemWith(pair)) return {PushStatus::kRejected, problem};
   if (replay_ && !results_.waitForRoom(patience_))
     return {PushStatus::kRejected, "256 results wait, and nobody takes them"};
   Push outcome{.status = PushStatus::kRejected, .why = "out of memory"};
@@ -202,22 +188,8 @@ Tracker::Push Tracker::Impl::judge(const Pair& pair) noexcept {
   return outcome;
 }
 
-const char* Tracker::Impl::problemWith(const Pair& pair) const {
-  if (pair.frame < -1 || pair.frame > kFarthestStamp_ns) return "its number is neither -1 nor one from 0 to 2^62";
-  if (pair.stamp_ns < -kFarthestStamp_ns || pair.stamp_ns > kFarthestStamp_ns) return "its stamp is beyond 2^62 ns";
-  const char* const left = problemOf(pair.left, camera_);
-  return left != nullptr ? left : problemOf(pair.right, camera_);
-}
-
 Tracker::Push Tracker::Impl::enter(const Pair& pair) {
-  StereoFrame frame;
-  frame.head = {.frame = {pair.frame}, .stamp = {pair.stamp_ns}};
-  frame.inputs = model_.inputs();
-  frame.due = std::chrono::steady_clock::now();
-  const int sample_bits = drive_->sampleBitsOf(pair);
-  frame.left = model_.leftOf(grayImage(pair.left, sample_bits, pool_), pool_);
-  frame.right = model_.rightOf(grayImage(pair.right, sample_bits, pool_), pool_);
-  return drive_->push(std::move(frame));
+  return drive_->push(input_.frameOf(pair, drive_->sampleBitsOf(pair)));
 }
 
 std::optional<Result> Tracker::Impl::poll() {

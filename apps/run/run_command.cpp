@@ -181,17 +181,21 @@ RunSummary summaryBefore(const RunOptions& options, const PipelineConfig& config
   return summary;
 }
 
-/// Adds how the source ended to what was found, where that is worth a word.
-void tellEnd(const SourceEnd& end, RunSummary& summary) {
-  if (end.remark.empty()) return;
+/// Adds a sentence about the source to what was found, unless it is empty.
+void tellAtEnd(const char* name, const std::string& text, bool worthless, RunSummary& summary) {
+  if (text.empty()) return;
   const FrameId after_last{summary.pipeline.received};
-  summary.found.push_back({.finding = {.name = "stream", .text = end.remark, .worthless = end.damaged},
-                           .last_good = {},
-                           .first_bad = after_last});
-  if (end.damaged)
-    logError(end.remark);
+  summary.found.push_back(
+      {.finding = {.name = name, .text = text, .worthless = worthless}, .last_good = {}, .first_bad = after_last});
+  if (worthless)
+    logError(text);
   else
-    logWarning(end.remark);
+    logWarning(text);
+}
+
+void tellEnd(const SourceEnd& end, RunSummary& summary) {
+  tellAtEnd("stream", end.remark, end.damaged, summary);
+  tellAtEnd("instances", end.instances, false, summary);
   summary.refused = summary.refused || end.damaged;
 }
 

@@ -176,6 +176,8 @@ RunInput openRunInput(const RunOptions& options, InputPolicy policy) {
   const std::filesystem::path motion = motionFileOf(options);
   if (!motion.empty()) input.vehicle_motion = readVehicleMotion(motion, input.sequence);
   input.instances = options.instances;
+  const StereoCamera& camera = input.sequence.camera;
+  if (!input.instances.empty()) requireInstances(input.instances, camera.width_px, camera.height_px);
   return input;
 }
 

@@ -88,8 +88,9 @@ struct Pair {
   Image left{}, right{};
   std::int64_t stamp_ns = 0;  // capture time, after that of the pair before
   std::int64_t frame = -1;    // number, from 0, after that of the pair before; -1: the next one
-  /// Which body the rectified left image's pixels show, where a network tells it: one number for the pixels of one, 0
-  /// for none; kGray8 or kGray16. Evidence, and no more: they may be late, change from pair to pair, and lie.
+  /// Which body the left image's pixels show, rectified and of the camera's size, where a network tells it: one number
+  /// for the pixels of one, 0 for none; kGray8 or kGray16, or without pixels. Evidence, and no more: they may be late,
+  /// change from pair to pair, and lie. With the first ones `push` asks the heap for their room.
   Image instances{};
 };
 
@@ -193,9 +194,9 @@ class MOTORCADE_API Tracker {
   /// Abandons what is in flight, ends calls that wait in other threads, and joins its own. A child of `fork` has none
   /// of them, and can but drop what it inherited.
   ~Tracker();
-  /// A pair of another size than the camera's, without pixels, not after the one before (a clock that was set back is
-  /// followed after four pairs) or less than half a millisecond after it, as stamps in another unit are, after `close`,
-  /// or beside another thread's push is rejected.
+  /// A pair or labels of another size than the camera's, a pair without pixels, not after the one before (a clock that
+  /// was set back is followed after four pairs) or less than half a millisecond after it, as stamps in another unit
+  /// are, after `close`, or beside another thread's push is rejected.
   Push push(const Pair& pair) noexcept;
   /// Predicts the camera where images fail. For any thread, at a rate of its own, also late and out of order; a pair
   /// knows what came before it. What contradicts the images is left out, as the log tells. Rejected: what is no number.

@@ -83,7 +83,14 @@ class Tracker:
             self.on_result(on_result)
 
     def push(
-        self, left: Image, right: Image, stamp_ns: int, frame: int = -1, *, format: Literal["rgb", "bgr"] = "rgb"
+        self,
+        left: Image,
+        right: Image,
+        stamp_ns: int,
+        frame: int = -1,
+        *,
+        format: Literal["rgb", "bgr"] = "rgb",
+        instances: Image = None,
     ) -> Push:
         """Hands one moment's two images in. They are numpy arrays, or anything else with the buffer protocol, of
         uint8 or uint16 (height x width) or of uint8 (height x width x 3; the order of colors is ``format``), of
@@ -94,11 +101,15 @@ class Tracker:
         ``stamp_ns`` is the capture time, integer nanoseconds, after that of the pair before; ``frame`` its number,
         after that of the pair before, or -1 for the next one.
 
-        A pair of another size than the camera's, without pixels (None), not after the one before (a clock that was set
-        back is followed after four pairs), after ``close``, or beside another thread's push is rejected, and the
-        answer says why. Raises TypeError or ValueError for an array that is no image.
+        ``instances`` are labels of the left image, rectified, where a network tells them: height x width, of uint8 or
+        uint16, one number for the pixels of one body, 0 for none. They are evidence, and no more: they may be late,
+        change from pair to pair, and be wrong.
+
+        A pair or labels of another size than the camera's, a pair without pixels (None), not after the one before (a
+        clock that was set back is followed after four pairs), after ``close``, or beside another thread's push is
+        rejected, and the answer says why. Raises TypeError or ValueError for an array that is no image.
         """
-        return self._native.push(left, right, stamp_ns, frame, format)
+        return self._native.push((left, right, instances), stamp_ns, frame, format)
 
     def push_motion(
         self,

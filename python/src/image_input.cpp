@@ -27,15 +27,19 @@ std::string elementName(const py::object& image, const py::buffer_info& buffer) 
 
 bool isUint16(const py::buffer_info& buffer) { return buffer.format == "H" || buffer.format == "<H"; }
 
-void requireElement(const py::object& image, const std::string& name, const py::buffer_info& buffer) {
+constexpr const char* kMendOfImages =
+    "image.astype(numpy.uint8), and where they are 0 to 1, (255 * image).astype(numpy.uint8)";
+constexpr const char* kMendOfLabels = "labels.astype(numpy.uint16)";
+
+void requireElement(const py::object& image, const std::string& name, const py::buffer_info& buffer,
+                    const std::string& mend) {
   if (buffer.format == "B" || isUint16(buffer)) return;
   throw py::type_error(name + ": its pixels are " + elementName(image, buffer) +
-                       ", not uint8 or uint16 in this machine's byte order; convert them: image.astype(numpy.uint8), " +
-                       "and where they are 0 to 1, (255 * image).astype(numpy.uint8)");
+                       ", not uint8 or uint16 in this machine's byte order; convert them: " + mend);
 }
 
 /// Empty where the shape is none of an image's.
-std::optional<Pair::Format> formatOf(const py::buffer_info& buffer, Pair::Format color_format) {
+std::optional<Pair::Format> formatOf(const py::buffer_info& buffer, std::optional<Pair::Format> color_format) {
   if (buffer.ndim == 2) return isUint16(buffer) ? Pair::Format::kGray16 : Pair::Format::kGray8;
   if (buffer.ndim == 3 && buffer.shape[2] == 3 && !isUint16(buffer)) return color_format;
   return std::nullopt;
@@ -72,14 +76,15 @@ Pair::Format colorFormatOf(const std::string& name) {
   throw Error("format", "is '" + name + "'; it is 'rgb' or 'bgr'");
 }
 
-ImageInput::ImageInput(const py::object& image, const std::string& name, Pair::Format color_format) {
+ImageInput::ImageInput(const py::object& image, const std::string& name, std::optional<Pair::Format> color_format) {
   if (image.is_none()) return;
   buffer_ = bufferOf(image, name);
-  requireElement(image, name, buffer_);
+  requireElement(image, name, buffer_, color_format ? kMendOfImages : kMendOfLabels);
   const auto format = formatOf(buffer_, color_format);
   if (!format)
     throw py::value_error(name + ": has the shape " + shapeText(buffer_) +
-                          "; images are (height, width), or of uint8 (height, width, 3)");
+                          (color_format ? "; images are (height, width), or of uint8 (height, width, 3)"
+                                        : "; labels are (height, width)"));
   requireStrides(name, buffer_);
   view_ = {.pixels = buffer_.ptr,
            .width_px = sideOf_px(buffer_.shape[1]),

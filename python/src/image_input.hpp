@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <pybind11/pybind11.h>
@@ -15,9 +16,9 @@ Pair::Format colorFormatOf(const std::string& name);
 /// it lives; made and destroyed with the GIL.
 class ImageInput {
  public:
-  /// None is an image without pixels. Throws TypeError or ValueError, which call the image `name` and tell how to mend
-  /// it.
-  ImageInput(const pybind11::object& image, const std::string& name, Pair::Format color_format);
+  /// None is an image without pixels. Without `color_format` it holds labels, and no colors. Throws TypeError or
+  /// ValueError, which call the image `name` and tell how to mend it.
+  ImageInput(const pybind11::object& image, const std::string& name, std::optional<Pair::Format> color_format);
   const Pair::Image& view() const { return view_; }
 
  private:

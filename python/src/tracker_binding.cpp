@@ -222,15 +222,17 @@ void TrackerBinding::waitForLeaving() {
 
 namespace {
 
-/// The images of Python's are held until the library has copied them.
-py::object push(TrackerBinding& tracker, const py::object& left, const py::object& right, const py::object& stamp_ns,
-                const py::object& frame, const std::string& format) {
+/// Left and right image and the instance labels. What Python holds is held until the library has copied them.
+py::object push(TrackerBinding& tracker, const py::tuple& images, const py::object& stamp_ns, const py::object& frame,
+                const std::string& format) {
   const auto color_format = colorFormatOf(format);
-  const ImageInput left_image(left, "left", color_format), right_image(right, "right", color_format);
-  return toPython(tracker.push({.left = left_image.view(),
-                                .right = right_image.view(),
+  const ImageInput left(images[0], "left", color_format), right(images[1], "right", color_format),
+      instances(images[2], "instances", std::nullopt);
+  return toPython(tracker.push({.left = left.view(),
+                                .right = right.view(),
                                 .stamp_ns = valueOf<std::int64_t>(stamp_ns, "stamp_ns"),
-                                .frame = valueOf<std::int64_t>(frame, "frame")}));
+                                .frame = valueOf<std::int64_t>(frame, "frame"),
+                                .instances = instances.view()}));
 }
 
 py::object pushMotion(TrackerBinding& tracker, const py::object& stamp_ns, const py::object& speed_mps,

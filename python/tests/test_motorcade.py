@@ -238,6 +238,20 @@ class HandingImagesIn(unittest.TestCase):
             self.tracker.push_motion(8, "fast", 0.0)  # type: ignore[arg-type]
         self.assertEqual(self.tracker.counts.pushed, 0)
 
+    def test_instance_labels_are_taken_or_refused_with_a_reason(self) -> None:
+        def push(labels: object) -> motorcade.Push:
+            self.stamp_ns = getattr(self, "stamp_ns", 0) + PERIOD_NS
+            return self.tracker.push(black(), black(), self.stamp_ns, instances=labels)
+
+        for labels in (None, black(), black().astype(np.uint16), memoryview(black()), np.zeros((94, 400), np.uint8)[:, :310]):
+            self.assertTrue(push(labels).accepted)
+        self.assertEqual(push(black()[:90]).why, "the instance labels are not of the camera's size")
+        with self.assertRaisesRegex(TypeError, r"instances: its pixels are int32, .*labels.astype\(numpy.uint16\)"):
+            push(black().astype(np.int32))
+        with self.assertRaisesRegex(ValueError, r"instances: has the shape \(94, 310, 3\); labels are \(height, width\)"):
+            push(np.zeros((94, 310, 3), np.uint8))
+        self.assertEqual((self.tracker.counts.pushed, self.tracker.counts.rejected), (6, 1))
+
     def test_nothing_copies_the_pixels_on_the_way_to_the_library(self) -> None:
         # Numpy's and Python's allocations are traced, the library's own copy is not; an image has 29 kB.
         images = [black(), np.zeros((94, 400), np.uint8)[:, :310], np.zeros((94, 310), np.uint16),

@@ -83,6 +83,15 @@ TEST_F(RunBag, RunsTheFramesThatAreAskedForAtThePaceThatIsAskedFor) {
   EXPECT_THAT(contentOf(errors()), HasSubstr("before the first of --frames"));
 }
 
+TEST_F(RunBag, InstanceLabelsComeBesideABagToo) {
+  const fs::path labels = out("labels");
+  fs::copy(kSequence / "instance", labels);
+  fs::resize_file(labels / "000003.png", 60);
+  ASSERT_EQ(runBag("bag", bagOf(kSequence), "--frames 2:6 --instances " + labels.string()), 0) << contentOf(errors());
+  EXPECT_EQ(summary("bag")["instances"], labels.string());
+  EXPECT_THAT(contentOf(errors()), HasSubstr("a file of instance labels is left out: "));
+}
+
 /// However many pairs are in time.
 TEST_F(RunBag, LiveGivesEachPairItsLine) {
   EXPECT_THAT(runBag("live", bagOf(kSequence), "--live"), AnyOf(0, 3)) << contentOf(errors());

@@ -221,6 +221,21 @@ TEST_F(RunStream, FaultsAreInjectedIntoAStreamToo) {
   expectSameTables("ignored", "pipe");
 }
 
+/// Labels are found by the numbers of the pairs, which count from the stream's first one.
+TEST_F(RunStream, InstanceLabelsComeBesideAStreamToo) {
+  const fs::path stream = streamOf(kSequence, StereoPacking::kSideBySide), labels = out("labels");
+  fs::copy(kSequence / "instance", labels);
+  fs::resize_file(labels / "000006.png", 60);
+  const std::string options = "--frames 5:9 --instances " + labels.string() + " " + rendered();
+  ASSERT_EQ(run("folder", options), 0) << contentOf(errors());
+  const auto findings = summary("folder")["findings"];
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_THAT(findings[0]["text"].get<std::string>(), HasSubstr("a file of instance labels is left out"));
+  ASSERT_EQ(runPiped("pipe", stream, "--side-by-side " + options), 0) << contentOf(errors());
+  EXPECT_EQ(summary("pipe")["findings"], findings);
+  expectSameTables("folder", "pipe");
+}
+
 TEST_F(RunStream, WhoeverNeedsTheImagesSaysThatTheyWereNotKept) {
   const fs::path stream = streamOf(kSequence, StereoPacking::kSideBySide);
   ASSERT_EQ(runPiped("pipe", stream, "--side-by-side " + rendered()), 0) << contentOf(errors());

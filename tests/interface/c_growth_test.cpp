@@ -84,6 +84,28 @@ TEST(CInterfaceGrowth, OlderProgramsOptionsHaveDefaultsForTheRest) {
   EXPECT_NE(test::trackerOf(plainCamera(), &options), nullptr) << motorcade_last_error();
 }
 
+/// Pixels of another size than the camera's are rejected where they are read.
+TEST(CInterfaceGrowth, OlderProgramsPairsHaveNoInstanceLabels) {
+  const auto options = replayOptions();
+  const auto tracker = test::trackerOf(plainCamera(), &options);
+  const std::vector<std::uint8_t> pixels(std::size_t{128} * 96, 100);
+  auto image = sized<motorcade_image>();
+  image.pixels = pixels.data();
+  image.width_px = 128;
+  image.height_px = 96;
+  auto labels = image;
+  labels.width_px = 96;
+  auto pair = sized<motorcade_pair>();
+  pair.left = pair.right = &image;
+  pair.instances = &labels;
+  auto push = sized<motorcade_push>();
+  ASSERT_EQ(motorcade_tracker_push(tracker.get(), &pair, &push), MOTORCADE_OK);
+  EXPECT_EQ(push.status, MOTORCADE_PUSH_REJECTED);
+  pair.struct_size = offsetof(motorcade_pair, instances);
+  ASSERT_EQ(motorcade_tracker_push(tracker.get(), &pair, &push), MOTORCADE_OK);
+  EXPECT_EQ(push.status, MOTORCADE_PUSH_ACCEPTED) << push.why;
+}
+
 TEST(CInterfaceGrowth, OlderProgramsCamerasHaveNoRig) {
   auto camera = plainCamera();
   camera.rig = reinterpret_cast<const motorcade_rig*>(1);
@@ -114,9 +136,11 @@ TEST(CInterfaceGrowth, NewerProgramsAreServedWhileTheirNewMembersAreZero) {
 
 /// What is compiled into programs must not move: members are appended (docs: the header's rule). 64-bit Linux.
 TEST(CInterfaceGrowth, TheFirstVersionsLayoutStays) {
-  const std::array<std::size_t, 13> last{112, 120, 136, 40, 40, 88, 24, 48, 1088, 808, 40, 4, 1};
-  constexpr std::size_t kCameraAtFirst = 88, kOptionsAtFirst = 80, kFrameAtFirst = 792, kObjectAtFirst = 752;
+  const std::array<std::size_t, 13> last{112, 120, 136, 40, 48, 88, 24, 48, 1088, 808, 40, 4, 1};
+  constexpr std::size_t kCameraAtFirst = 88, kPairAtFirst = 40, kOptionsAtFirst = 80, kFrameAtFirst = 792,
+                        kObjectAtFirst = 752;
   EXPECT_EQ(offsetof(motorcade_camera, has_sigmas), kCameraAtFirst);
+  EXPECT_EQ(offsetof(motorcade_pair, instances), kPairAtFirst);
   EXPECT_EQ(offsetof(motorcade_options, covariance_frames), kOptionsAtFirst);
   EXPECT_EQ(offsetof(motorcade_frame, has_pose_covariance), kFrameAtFirst);
   EXPECT_EQ(offsetof(motorcade_object, acceleration_mps2), kObjectAtFirst);
@@ -143,7 +167,7 @@ TEST(CInterfaceGrowth, StructsEndWithTheirLastMember) {
   EXPECT_EQ(offsetof(motorcade_rig, T_right_left) + sizeof(double[12]), sizeof(motorcade_rig));
   EXPECT_EQ(offsetof(motorcade_camera, sigma_disparity_px) + sizeof(double), sizeof(motorcade_camera));
   EXPECT_EQ(offsetof(motorcade_image, stride_bytes) + sizeof(std::int64_t), sizeof(motorcade_image));
-  EXPECT_EQ(offsetof(motorcade_pair, frame) + sizeof(std::int64_t), sizeof(motorcade_pair));
+  EXPECT_EQ(offsetof(motorcade_pair, instances) + sizeof(motorcade_image*), sizeof(motorcade_pair));
   EXPECT_EQ(offsetof(motorcade_options, covariance_frames) + sizeof(std::int64_t), sizeof(motorcade_options));
   EXPECT_EQ(offsetof(motorcade_push, why) + sizeof(char*), sizeof(motorcade_push));
   EXPECT_EQ(offsetof(motorcade_counts, untaken) + sizeof(std::int64_t), sizeof(motorcade_counts));

@@ -255,6 +255,29 @@ TEST_F(CInterface, PairsThatCannotBeAreRejectedWithTheReason) {
   EXPECT_EQ(counts.rejected, 6);
 }
 
+TEST_F(CInterface, InstanceLabelsAreTakenOrRefusedWithAReason) {
+  motorcade_image labels = left_;
+  pair_.instances = &labels;
+  EXPECT_EQ(pushed(), "");
+  pair_.stamp_ns += 100'000'000;
+  labels.format = MOTORCADE_GRAY16;
+  EXPECT_EQ(pushed(), "");
+  pair_.stamp_ns += 100'000'000;
+  labels.pixels = nullptr;
+  EXPECT_EQ(pushed(), "");
+  pair_.stamp_ns += 100'000'000;
+  labels = left_;
+  labels.height_px = 95;
+  EXPECT_EQ(pushed(), "the instance labels are not of the camera's size");
+  labels = left_;
+  labels.format = MOTORCADE_BGR8;
+  EXPECT_EQ(pushed(), "the instance labels are not gray of 8 or 16 bits");
+  labels.format = static_cast<motorcade_format>(4);
+  EXPECT_EQ(pushed(), "-1 pair.instances.format");
+  labels.struct_size = 0;
+  EXPECT_EQ(pushed(), "-3 pair.instances.struct_size");
+}
+
 TEST_F(CInterface, WaitingTellsNothingYetFromNothingMore) {
   auto* result = reinterpret_cast<motorcade_result*>(this);
   bool done = true;

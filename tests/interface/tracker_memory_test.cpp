@@ -42,17 +42,18 @@ int __wrap_pthread_mutex_lock(pthread_mutex_t* mutex) {
 namespace motorcade {
 namespace {
 
-/// One picture for both sides, in a format of which it has enough bytes.
+/// One picture for both sides, in a format of which it has enough bytes, and for the labels where there are some.
 class Camera30Hz {
  public:
-  explicit Camera30Hz(const DriveInMemory& drive, Pair::Format format)
-      : drive_(drive), format_(format), pixels_(3 * drive.frames[0].left.size(), 90) {}
+  explicit Camera30Hz(const DriveInMemory& drive, Pair::Format format, bool labelled = false)
+      : drive_(drive), format_(format), labelled_(labelled), pixels_(3 * drive.frames[0].left.size(), 90) {}
 
   Pair next() {
     constexpr std::int64_t kPeriod_ns = 33'000'000;
     Pair pair = drive_.pair(0);
     pair.left.pixels = pair.right.pixels = pixels_.data();
     pair.left.format = pair.right.format = format_;
+    if (labelled_) pair.instances = pair.left;
     pair.stamp_ns = kPeriod_ns * pairs_++;
     return pair;
   }
@@ -60,13 +61,13 @@ class Camera30Hz {
  private:
   const DriveInMemory& drive_;
   Pair::Format format_;
+  bool labelled_;
   std::vector<std::uint8_t> pixels_;
   std::int64_t pairs_ = 0;
 };
 
-void expectNothingAsked(const DriveInMemory& drive, Pair::Format format) {
-  Tracker tracker(drive.camera, {});
-  Camera30Hz camera(drive, format);
+/// From the first pair on.
+void expectNothingAsked(Tracker& tracker, Camera30Hz& camera) {
   heap_calls = 0;
   locks = 0;
   int taken = 0;
@@ -84,6 +85,12 @@ void expectNothingAsked(const DriveInMemory& drive, Pair::Format format) {
   EXPECT_EQ(taken, 400);
   EXPECT_EQ(heap_calls, 0);
   EXPECT_EQ(locks, 0);
+}
+
+void expectNothingAsked(const DriveInMemory& drive, Pair::Format format) {
+  Tracker tracker(drive.camera, {});
+  Camera30Hz camera(drive, format);
+  expectNothingAsked(tracker, camera);
 }
 
 Camera rigOf(const Camera& camera) {
@@ -116,6 +123,16 @@ TEST(TrackerMemory, NeitherDoesOneThatRectifies) {
   DriveInMemory drive = blankDrive(1);
   drive.camera = rigOf(drive.camera);
   for (const auto format : {Pair::Format::kGray8, Pair::Format::kRgb8}) expectNothingAsked(drive, format);
+}
+
+TEST(TrackerMemory, NorDoesOneWithInstanceLabelsAfterTheFirst) {
+  const DriveInMemory drive = blankDrive(1);
+  for (const auto format : {Pair::Format::kGray8, Pair::Format::kGray16}) {
+    Tracker tracker(drive.camera, {});
+    Camera30Hz camera(drive, format, true);
+    EXPECT_NE(tracker.push(camera.next()).status, Tracker::Push::Status::kRejected);
+    expectNothingAsked(tracker, camera);
+  }
 }
 
 /// The pair is rejected, and the next one is as any other. In live its memory is there from the beginning.

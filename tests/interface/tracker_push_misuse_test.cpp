@@ -85,6 +85,24 @@ TEST_F(BadPairs, ImagesThatAreNotOfTheCameraAreRejected) {
   expectResultsOfGoodPairs();
 }
 
+TEST_F(BadPairs, InstanceLabelsThatAreNotOfTheCameraAreRejected) {
+  const std::vector<std::pair<std::string, std::function<void(Pair::Image&)>>> misuses = {
+      {"instance labels are not of the camera's size", [](Pair::Image& labels) { labels.width_px -= 1; }},
+      {"instance labels are not of the camera's size", [](Pair::Image& labels) { labels.height_px *= -1; }},
+      {"not gray of 8 or 16 bits", [](Pair::Image& labels) { labels.format = Pair::Format::kRgb8; }},
+      {"not gray of 8 or 16 bits", [](Pair::Image& labels) { labels.format = Pair::Format{9}; }},
+      {"labels' stride is shorter", [](Pair::Image& labels) { labels.stride_bytes = 309; }},
+      {"labels' stride is shorter", [](Pair::Image& labels) { labels.stride_bytes = kLeast; }},
+      {"labels' stride is shorter",
+       [](Pair::Image& labels) { labels.format = Pair::Format::kGray16, labels.stride_bytes = 619; }},
+      {"labels' stride is above", [](Pair::Image& labels) { labels.stride_bytes = kMost; }}};
+  for (const auto& [why, spoil] : misuses) {
+    expectRejected(why, [&change = spoil](Pair& pair) { change(pair.instances = pair.left); });
+    if (next_ < drive_.frames.size()) pushGood();
+  }
+  expectResultsOfGoodPairs();
+}
+
 TEST_F(BadPairs, StampsAndNumbersThatDoNotRiseAreRejected) {
   const auto stamp = [this](std::int64_t offset_ns) {
     return [=, this](Pair& p) { p.stamp_ns = drive_.frames[next_ - 1].stamp_ns + offset_ns; };

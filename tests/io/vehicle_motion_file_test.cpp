@@ -9,6 +9,7 @@
 #include "io/errors.hpp"
 #include "io/vehicle_motion_source.hpp"
 #include "tests/io/temporary_folder.hpp"
+#include "tests/io/three_pairs.hpp"
 
 namespace motorcade {
 namespace {
@@ -101,30 +102,8 @@ TEST_F(VehicleMotionFile, ShortenedPacketsAreNotEnough) {
               HasSubstr("fields 9 (vf) and 23 (wu)"));
 }
 
-/// Three pairs without images.
-class ThreePairs final : public PairSource {
- public:
-  std::optional<StereoFrame> next() override {
-    if (next_ == 3) return std::nullopt;
-    StereoFrame frame;
-    frame.head = {.frame = {next_}, .stamp = stampOf({next_})};
-    ++next_;
-    return frame;
-  }
-  void stop() override { next_ = 3; }
-  SourceEnd finish() override { return {.remark = "the end"}; }
-  FrameId first() const override { return {0}; }
-  Timestamp stampOf(FrameId frame) const override { return {100 * frame.value}; }
-  double shareOutside() const override { return 0.25; }
-  std::size_t highWater() const override { return 2; }
-  std::size_t capacity() const override { return 4; }
-
- private:
-  std::int64_t next_ = 0;
-};
-
 TEST(VehicleMotionSource, APairKnowsTheSamplesUpToItsTime) {
-  VehicleMotionSource source(std::make_unique<ThreePairs>(),
+  VehicleMotionSource source(std::make_unique<test::ThreePairs>(),
                              {{.stamp = {0}}, {.stamp = {99}}, {.stamp = {100}}, {.stamp = {101}}, {.stamp = {500}}});
   for (const std::uint64_t known : {1, 3, 4}) {
     const auto frame = source.next();
