@@ -155,6 +155,7 @@ struct ObjectObservation {
   std::vector<PointMeasurement> measured;  // the body's points that agree with its motion, ordered by point
   std::vector<PointMeasurement> patches;   // the same of patches, which cover a body that may be a walking person
   bool born_slow = false;                  // the object was as slow and small as a person when it was spawned
+  bool born_labelled = false;              // and all that an instance label showed had moved as one
 };
 
 /// The camera's motion since the frame before, identity in the first one; predicted, with a wide covariance, unless the

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/LU>
+
 namespace motorcade {
 namespace {
 
@@ -28,11 +30,22 @@ bool normalize(std::vector<float>& values) {
   return true;
 }
 
-/// A parabola through the scores at -1, 0 and 1, of which the middle one is the greatest.
+/// The quadratic through the scores around the greatest one: where it peaks, and its curvature there.
 struct Peak {
-  double at, curvature;
-  Peak(double before, double best, double after) : at(0), curvature(std::max(1e-6, 2 * best - before - after)) {
-    at = 0.5 * (after - before) / curvature;
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d curvature;  // minus the second derivatives
+
+  /// `score(x, y)` of -1, 0 and 1. A coordinate that is held stays 0.
+  template <class Score>
+  Peak(const Score& score, bool holds_u, bool holds_v) {
+    constexpr double kLeast = 1e-6;
+    const double best = score(0, 0), left = score(-1, 0), right = score(1, 0), above = score(0, -1),
+                 below = score(0, 1);
+    const double cross = holds_u || holds_v ? 0 : (score(1, 1) - score(1, -1) - score(-1, 1) + score(-1, -1)) / 4;
+    curvature << std::max(kLeast, 2 * best - left - right), -cross, -cross, std::max(kLeast, 2 * best - above - below);
+    const Eigen::Vector2d slope(holds_u ? 0 : (right - left) / 2, holds_v ? 0 : (below - above) / 2);
+    if (curvature.determinant() <= kLeast * kLeast) curvature = Eigen::Matrix2d(curvature.diagonal().asDiagonal());
+    at = (curvature.inverse() * slope).cwiseMax(-1).cwiseMin(1);
   }
 };
 
@@ -61,7 +74,8 @@ std::optional<RegionTemplate::Match> RegionTemplate::find(const Image& image, co
                                                           double scale, const Eigen::Vector2i& radius_px) const {
   // Neighboring pixels and what bends and swings leave fewer independent ones than there are.
   constexpr double kDependentPixels = 9;
-  constexpr int kPeak_px = 3;  // from the best match, which scores high there as well
+  constexpr double kLeastUnexplained = 0.01;  // of the correlation: sampling between pixels leaves as much
+  constexpr int kPeak_px = 3;                 // from the best match, which scores high there as well
   if (values_.empty()) return std::nullopt;
   const auto at = [&](int x, int y) { return ncc(image, guess_px + Eigen::Vector2d(x, y), scale); };
   Match match;
@@ -77,15 +91,15 @@ std::optional<RegionTemplate::Match> RegionTemplate::find(const Image& image, co
     for (int x = -radius_px.x(); x <= radius_px.x(); ++x, ++i)
       if (std::abs(x - u) > kPeak_px || std::abs(y - v) > kPeak_px) elsewhere = std::max(elsewhere, scores[i]);
   const double independent = static_cast<double>(values_.size()) / kDependentPixels;
-  if (match.ncc - elsewhere < (1 - match.ncc * match.ncc) / std::sqrt(independent)) return std::nullopt;
+  const double unexplained = std::max(kLeastUnexplained, 1 - match.ncc);
+  if (match.ncc - elsewhere < unexplained * (1 + match.ncc) / std::sqrt(independent)) return std::nullopt;
   const bool at_edge =
       (radius_px.x() > 0 && std::abs(u) == radius_px.x()) || (radius_px.y() > 0 && std::abs(v) == radius_px.y());
   if (match.ncc <= 0 || at_edge) return std::nullopt;
-  const Peak across(at(u - 1, v), match.ncc, at(u + 1, v)), down(at(u, v - 1), match.ncc, at(u, v + 1));
-  match.middle_px = guess_px + Eigen::Vector2d(u, v) +
-                    Eigen::Vector2d(radius_px.x() > 0 ? across.at : 0, radius_px.y() > 0 ? down.at : 0);
-  const double noise = 2 * (1 - match.ncc) * kDependentPixels / static_cast<double>(values_.size());
-  match.sigma_px = {std::sqrt(noise / across.curvature), std::sqrt(noise / down.curvature)};
+  const bool holds_u = radius_px.x() == 0, holds_v = radius_px.y() == 0;
+  const Peak peak([&](int x, int y) { return at(u + x, v + y); }, holds_u, holds_v);
+  match.middle_px = guess_px + Eigen::Vector2d(u, v) + peak.at;
+  match.sigma_px = (2 * unexplained / independent * peak.curvature.inverse()).diagonal().cwiseSqrt();
   return match;
 }
 

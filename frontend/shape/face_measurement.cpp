@@ -262,4 +262,17 @@ FaceInformation measureFaces(const LevelDisparities& disparities, const Outline&
   return FaceMeasurement(disparities, outline, surface, view, camera)();
 }
 
+FaceInformation measureFaces(const Sight& seen, std::span<const SurfacePoint> surface, const ObjectView& view,
+                             const StereoCamera& camera) {
+  const auto by = [&](const Outline& outline) {
+    return measureFaces(seen.disparities, outline, surface, view, camera);
+  };
+  if (!seen.labelled) return by(seen.outline);
+  if (view.small) return by(*seen.labelled);
+  FaceInformation both;
+  both.add(by(seen.outline), 0.5);
+  both.add(by(*seen.labelled), 0.5);
+  return both;
+}
+
 }  // namespace motorcade

@@ -32,11 +32,11 @@ std::optional<Outline> labelledOutline(const Outline& outline, const LevelDispar
                                        const InstanceLabels& labels) {
   const std::vector<std::uint16_t> of_cells = labelsOfCells(outline, disparities, labels);
   const int width = outline.window.width, height = outline.window.height;
-  const auto isBorder = [&](int column, int row) {
-    const int step_px = 1 << disparities.level;
-    const double u_px = disparities.u_px(column), v_px = disparities.v_px(row);
-    return (column == 0 && u_px >= step_px) || (column == width - 1 && u_px + step_px < labels.width()) ||
-           (row == 0 && v_px >= step_px) || (row == height - 1 && v_px + step_px < labels.height());
+  const PixelWindow& window = outline.window;
+  const int image_columns = labels.width() >> disparities.level, image_rows = labels.height() >> disparities.level;
+  const auto isBorder = [&](int column, int row) {  // of the window, within the image
+    return (column == 0 && window.u0 > 0) || (column == width - 1 && window.u0 + width < image_columns) ||
+           (row == 0 && window.v0 > 0) || (row == height - 1 && window.v0 + height < image_rows);
   };
   std::map<std::uint16_t, Cover> covers;
   for (int row = 0; row < height; ++row)

@@ -178,7 +178,7 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
     }
     if (object.state != ObjectState::kPredicted) {
       if (!seen->labelled) completeOutline(seen->outline, seen->disparities, view, camera_);
-      masks.push_back(maskOf(seen->bounds(), seen->disparities.level, object.track));
+      masks.push_back(maskOf(seen->mask(), seen->disparities.level, object.track));
     }
   }
   object.existence_probability = shape.existence.probability();
@@ -200,7 +200,7 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
     shape.evidence = faded;
   }
   const auto* observed = observationOf(object.track, *inputs.measurements);
-  if (is_new && observed && observed->born_slow) shape.existence.doubtSlowBirth();
+  if (is_new && observed && observed->born_slow && !observed->born_labelled) shape.existence.doubtSlowBirth();
   shape.last = frame.head.frame;
   shape.speed_mps = object.velocity_world_mps.norm();
   ObjectView view{.T_cam_body = T_cam_body,
@@ -245,7 +245,7 @@ std::optional<FaceInformation> ObjectShapes::measured(const Sight& seen, ObjectV
   const std::vector<SurfacePoint> surface = surfacePoints(seen.disparities, seen.outline, view, camera_);
   FaceInformation look;
   for (int i = 0; i < kIterations; ++i) {
-    look = measureFaces(seen.disparities, seen.bounds(), surface, view, camera_);
+    look = measureFaces(seen, surface, view, camera_);
     FaceInformation both = shape.evidence;
     both.add(look, kLookWeight);
     view.box = estimateBox(both, shape.speed_mps);

@@ -16,8 +16,7 @@ struct Sight {
   Outline outline;
   /// The same as instance labels have it, with its legs and wheels; empty where none agree.
   std::optional<Outline> labelled{};
-  /// The best that is known of where the object ends in the image.
-  const Outline& bounds() const { return labelled ? *labelled : outline; }
+  const Outline& mask() const { return labelled ? *labelled : outline; }
 };
 
 /// Looks densely at the window around an object. Keeps its buffers; one call at a time.

@@ -65,6 +65,7 @@ bool isInView(const TrackedObject& object, const StereoCamera& camera) {
 
 /// An object that has left the view gives way to one in it: the last points of a trailer that we pass are on its truck.
 bool youngerStays(const TrackedObject& older, const TrackedObject& younger, const StereoCamera& camera) {
+  if (older.isGuess() != younger.isGuess()) return older.isGuess();
   if (!younger.life.reported()) return false;
   return !older.life.reported() || (!isInView(older, camera) && isInView(younger, camera));
 }

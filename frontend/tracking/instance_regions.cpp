@@ -14,6 +14,11 @@ void extend(Box& box, int first, int last, int row) {
 
 }  // namespace
 
+Box upperPart(const Box& region) {
+  constexpr double kUpper = 0.6;
+  return {region.left_px, region.top_px, region.right_px, region.top_px + kUpper * (region.bottom_px - region.top_px)};
+}
+
 std::vector<InstanceRegion> regionsOf(const InstanceLabels& labels) {
   constexpr Box kNowhere{1e9, 1e9, -1e9, -1e9};
   std::map<std::uint16_t, Box> boxes;

@@ -14,6 +14,9 @@ struct InstanceRegion {
   Box box;
 };
 
+/// The upper part of a region, which of a person is trunk and head: legs swing.
+Box upperPart(const Box& region);
+
 /// The region of each label, ordered by label. Takes one look at each pixel.
 std::vector<InstanceRegion> regionsOf(const InstanceLabels& labels);
 

@@ -23,38 +23,64 @@ double medianDisparity_px(const std::vector<int>& points, const SceneMotion& sce
   return *middle;
 }
 
-/// Along the line of sight the flow tells little of a velocity, and people walk at about the same speed.
-void expectWalk(MotionComponent& component) {
-  constexpr double kSpeed_mps = 1.5;
-  const Eigen::Matrix3d W = component.velocity_covariance.inverse();
-  const Eigen::Matrix3d both = W + Eigen::Matrix3d::Identity() / (kSpeed_mps * kSpeed_mps);
-  component.velocity_covariance = both.inverse();
-  component.velocity_mps = component.velocity_covariance * W * component.velocity_mps;
+/// The velocity of a component, expected to be as small as a standard deviation, and how well both agree: twice the
+/// negative logarithm of their likelihood.
+struct ExpectedVelocity {
+  Eigen::Vector3d velocity_mps;
+  Eigen::Matrix3d covariance;
+  double misfit;
+
+  ExpectedVelocity(const MotionComponent& component, double sigma_mps) {
+    const Eigen::Vector3d& v = component.velocity_mps;
+    const Eigen::Matrix3d& C = component.velocity_covariance;
+    const Eigen::Matrix3d both = C + sigma_mps * sigma_mps * Eigen::Matrix3d::Identity(), gain = C * both.inverse();
+    velocity_mps = v - gain * v;
+    covariance = C - gain * C;
+    misfit = v.dot(both.inverse() * v) + std::log(both.determinant());
+  }
+};
+
+/// Along the line of sight the flow tells little of a velocity. It is taken for that of a walk, or else of a ride.
+void expectUsual(MotionComponent& component) {
+  constexpr double kWalk_mps = 1.5, kRide_mps = 5;
+  const ExpectedVelocity walk(component, kWalk_mps), ride(component, kRide_mps);
+  const ExpectedVelocity& likelier = walk.misfit < ride.misfit ? walk : ride;
+  component.velocity_mps = likelier.velocity_mps;
+  component.velocity_covariance = likelier.covariance;
+}
+
+bool isSure(const MotionComponent& component) {
+  const Eigen::Vector3d& v = component.velocity_mps;
+  return v.dot(component.velocity_covariance.inverse() * v) > kSurely * kSurely;
 }
 
 }  // namespace
 
-std::optional<MotionComponent> LabelledWalkers::operator()(const InstanceRegion& region, const SceneMotion& scene,
-                                                           const SE3& T_world_cam,
-                                                           const std::vector<bool>& taken) const {
-  MotionComponent component;
+std::optional<LabelledWalkers::Mover> LabelledWalkers::operator()(const InstanceRegion& region,
+                                                                  const SceneMotion& scene, const SE3& T_world_cam,
+                                                                  const std::vector<bool>& taken) const {
+  Mover mover;
+  MotionComponent& component = mover.component;
   component.points = pointsIn(region, scene);
   const auto is_taken = [&](int i) { return bool{taken[i]}; };
   if (component.points.empty() || std::ranges::any_of(component.points, is_taken)) return std::nullopt;
   const double disparity_px = medianDisparity_px(component.points, scene);
-  if (!isLikeAPerson(region, disparity_px)) return std::nullopt;
-  const auto flow = flow_of_(region, disparity_px, scene, T_world_cam);
-  if (!flow || flow->static_chi2 - flow->moving_chi2 < kNotStaticChi2) return std::nullopt;
-  std::erase_if(component.points, [&](int i) { return !mayBeOn(*flow, scene.points[i]); });
-  component.centroid_cam = flow->p_cam;
-  component.velocity_mps = flow->velocity_mps;
-  component.velocity_covariance = flow->covariance.bottomRightCorner<3, 3>() +
-                                  sharedVelocityCovariance(camera_, flow->p_cam, scene.camera_speed_mps);
-  const Eigen::Vector3d& v = component.velocity_mps;
-  if (v.dot(component.velocity_covariance.inverse() * v) < kSurely * kSurely) return std::nullopt;
-  expectWalk(component);
-  if (!isWalk(v.norm(), component.centroid_cam.z(), camera_)) return std::nullopt;
-  return component;
+  if (!isLikeAPerson(region, disparity_px) || !endsWhereItsBodyDoes(region, disparity_px, scene)) return std::nullopt;
+  const auto seen = flow_of_(region, disparity_px, scene, T_world_cam);
+  if (!seen || seen->flow.static_chi2 - seen->flow.moving_chi2 < kNotStaticChi2) return std::nullopt;
+  std::erase_if(component.points, [&](int i) { return !mayBeOn(seen->flow, scene.points[i]); });
+  component.centroid_cam = seen->flow.p_cam;
+  component.velocity_mps = seen->flow.velocity_mps;
+  component.velocity_covariance = seen->flow.covariance.bottomRightCorner<3, 3>() +
+                                  sharedVelocityCovariance(camera_, component.centroid_cam, scene.camera_speed_mps);
+  if (!isSure(component)) return std::nullopt;
+  expectUsual(component);
+  const double speed_mps = component.velocity_mps.norm();
+  const bool rides = speed_mps > kFastestWalk_mps && speed_mps < kFastestRide_mps;
+  if (!rides && !isWalk(speed_mps, component.centroid_cam.z(), camera_)) return std::nullopt;
+  mover.frames = seen->flow.observations;
+  mover.duration_s = seen->duration_s;
+  return mover;
 }
 
 std::vector<int> LabelledWalkers::pointsIn(const InstanceRegion& region, const SceneMotion& scene) {
@@ -82,6 +108,24 @@ bool LabelledWalkers::isLikeAPerson(const InstanceRegion& region, double dispari
   const double width_m = (region.box.right_px - region.box.left_px) * m_per_px,
                height_m = (region.box.bottom_px - region.box.top_px) * m_per_px * camera_.fx_px / camera_.fy_px;
   return height_m > kLeast_m && height_m < kPerson.height_m + kNoise_m && width_m < kPerson.length_m + kNoise_m;
+}
+
+/// Is what lies to both sides of the region, along its upper part, of another depth than the region itself? Beside a
+/// label that is late, or lies across a body, the body goes on, and beside one on a wall the wall.
+bool LabelledWalkers::endsWhereItsBodyDoes(const InstanceRegion& region, double disparity_px,
+                                           const SceneMotion& scene) {
+  constexpr double kMargin_px = 4, kLeastWide_px = 12;
+  constexpr double kLeastInside = 0.3, kMostBeside = 0.5;  // of the share inside: clothes may be smooth
+  const Box inside = upperPart(region.box);
+  const double wide_px = std::max(kLeastWide_px, 0.5 * (inside.right_px - inside.left_px));
+  Box left = inside, right = inside;
+  left.right_px = inside.left_px - kMargin_px, left.left_px = left.right_px - wide_px;
+  right.left_px = inside.right_px + kMargin_px, right.right_px = right.left_px + wide_px;
+  const auto share = [&](const Box& box) {
+    return shareAtDepth(*scene.features, box, disparity_px, scene.disparity_offset_px);
+  };
+  const double own = share(inside);
+  return own > kLeastInside && share(left) < kMostBeside * own && share(right) < kMostBeside * own;
 }
 
 }  // namespace motorcade

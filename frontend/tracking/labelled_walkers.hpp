@@ -11,22 +11,29 @@
 
 namespace motorcade {
 
-/// Looks for people on foot where instance labels show what may be one. Corners are few on clothes, and none of them
-/// may be followed for long; what a label shows can be looked for as a whole. A label proves nothing by itself: what
-/// does not move surely is left alone, whatever it shows.
+/// Looks for people on foot, and on bicycles that come or go, where instance labels show what may be one. Corners are
+/// few on clothes, and none of them may be followed for long; what a label shows can be looked for as a whole. A label
+/// proves nothing by itself: what does not move surely is left alone, whatever it shows.
 class LabelledWalkers {
  public:
   /// `past` outlives it.
   LabelledWalkers(const LookBack& past, const StereoCamera& camera) : camera_(camera), flow_of_(past, camera) {}
 
-  /// The walker in a region; empty where nobody walks surely. `taken` points are those of known objects.
-  std::optional<MotionComponent> operator()(const InstanceRegion& region, const SceneMotion& scene,
-                                            const SE3& T_world_cam, const std::vector<bool>& taken) const;
+  /// Somebody who walks or rides, and in how many frames and for how long that was seen.
+  struct Mover {
+    MotionComponent component;
+    int frames = 0;
+    double duration_s = 0;
+  };
+  /// The mover in a region; empty where nobody moves surely. `taken` points are those of known objects.
+  std::optional<Mover> operator()(const InstanceRegion& region, const SceneMotion& scene, const SE3& T_world_cam,
+                                  const std::vector<bool>& taken) const;
 
  private:
   static std::vector<int> pointsIn(const InstanceRegion& region, const SceneMotion& scene);
   bool mayBeOn(const SceneFlow& person, const ScenePoint& point) const;
   bool isLikeAPerson(const InstanceRegion& region, double disparity_px) const;
+  static bool endsWhereItsBodyDoes(const InstanceRegion& region, double disparity_px, const SceneMotion& scene);
 
   StereoCamera camera_;
   RegionFlow flow_of_;

@@ -56,7 +56,8 @@ void claimRest(const std::vector<TrackedObject>& objects, const SceneMotion& sce
   for (std::size_t s = 0; s < scene.components.size(); ++s) {
     if (scene.components[s].label != PointLabel::kMoving || object_of[s] >= 0) continue;
     for (std::size_t m = 0; m < objects.size(); ++m)
-      if (sharedPoints(objects[m], scene, scene.components[s]) >= kClaimedShare) object_of[s] = static_cast<int>(m);
+      if (!objects[m].isGuess() && sharedPoints(objects[m], scene, scene.components[s]) >= kClaimedShare)
+        object_of[s] = static_cast<int>(m);
   }
 }
 
@@ -77,6 +78,7 @@ std::vector<int> associateObjects(const std::vector<TrackedObject>& objects, con
   for (int s = 0; s < components; ++s) {
     if (scene.components[s].label != PointLabel::kMoving) continue;
     for (int m = 0; m < known; ++m) {
+      if (objects[m].isGuess()) continue;
       costs(s, m) = cost(objects[m], scene, scene.components[s], T_world_cam);
       if (costs(s, m) < kForbidden && sharedPoints(objects[m], scene, scene.components[s]) < kClaimedShare &&
           see_through.isApart(objects[m], scene.components[s]))

@@ -68,11 +68,14 @@ std::optional<TrackedObject> ObjectSpawner::walker(const SceneMotion& scene, con
   return object;
 }
 
-std::optional<TrackedObject> ObjectSpawner::walker(const SceneMotion& scene, const MotionComponent& sure,
-                                                   const SE3& T_world_cam) {
-  TrackedObject object = objectOf(scene, sure, T_world_cam);
-  if (!object.born_slow) return std::nullopt;
+/// What it was seen to do before counts for its confirmation.
+TrackedObject ObjectSpawner::labelled(const SceneMotion& scene, const LabelledWalkers::Mover& mover,
+                                      const SE3& T_world_cam) {
+  TrackedObject object = objectOf(scene, mover.component, T_world_cam);
   object.track = TrackId{next_track_++};
+  object.spawned_at_world -= mover.duration_s * (T_world_cam.rotation() * mover.component.velocity_mps);
+  object.born_labelled = true;
+  for (int earlier = 1; earlier < mover.frames; ++earlier) object.life.observe();
   return object;
 }
 

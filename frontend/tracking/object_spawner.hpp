@@ -6,6 +6,7 @@
 
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
+#include "frontend/tracking/labelled_walkers.hpp"
 #include "frontend/tracking/object_motion.hpp"
 #include "frontend/tracking/tracked_object.hpp"
 
@@ -26,8 +27,8 @@ class ObjectSpawner {
   /// The person. Empty unless the patches around the points moved together since the frame before, and surely.
   std::optional<TrackedObject> walker(const SceneMotion& scene, const SceneMotion& before,
                                       const MotionComponent& component, const SE3& T_world_cam);
-  /// The person whose motion is sure already.
-  std::optional<TrackedObject> walker(const SceneMotion& scene, const MotionComponent& sure, const SE3& T_world_cam);
+  /// Somebody whom an instance label shows.
+  TrackedObject labelled(const SceneMotion& scene, const LabelledWalkers::Mover& mover, const SE3& T_world_cam);
 
  private:
   TrackedObject objectOf(const SceneMotion& scene, const MotionComponent& component, const SE3& T_world_cam) const;

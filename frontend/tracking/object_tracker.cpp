@@ -146,6 +146,7 @@ void ObjectTracker::updateState(TrackedObject& object) const {
 void ObjectTracker::record(TrackedObject& object, ObjectObservation observation, FrameMeasurements& measurements) {
   observation.track = object.track;
   observation.born_slow = object.born_slow;
+  observation.born_labelled = object.born_labelled;
   observation.velocity_cam_mps = T_world_cam_.rotation().transpose() * object.kinematics.velocityWorld_mps();
   if (object.life.reported()) {
     measurements.objects.push_back(std::move(observation));
@@ -173,6 +174,7 @@ void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measuremen
   for (ObjectObservation& o : object.backlog) {
     o.track = object.track;
     o.born_slow = object.born_slow;
+    o.born_labelled = object.born_labelled;
     measurements.objects.push_back(std::move(o));
   }
   object.backlog.clear();
@@ -184,7 +186,8 @@ void ObjectTracker::matchComponents(const SceneMotion& scene) {
   std::vector<bool> taken(scene.points.size(), false);
   for (const TrackedObject& object : objects_)
     for (const BodyPoint& p : object.points)
-      if (const ScenePoint* seen = findPoint(scene, p.point)) taken[seen - scene.points.data()] = true;
+      if (const ScenePoint* seen = findPoint(scene, p.point); seen && !object.isGuess())
+        taken[seen - scene.points.data()] = true;
 
   for (std::size_t s = 0; s < scene.components.size(); ++s) {
     if (object_of[s] < 0) continue;
@@ -194,13 +197,13 @@ void ObjectTracker::matchComponents(const SceneMotion& scene) {
     adopt_(object, scene, &scene.components[s], T_world_cam_, taken);
   }
   for (TrackedObject& object : objects_)
-    if (object.life.missed() == 0) adopt_(object, scene, nullptr, T_world_cam_, taken);
+    if (object.life.missed() == 0 && !object.isGuess()) adopt_(object, scene, nullptr, T_world_cam_, taken);
   for (std::size_t s = 0; s < scene.components.size(); ++s) {
     if (object_of[s] >= 0 || scene.components[s].label != PointLabel::kMoving) continue;
     std::ranges::move(spawn_(scene, scene.components[s], T_world_cam_, taken), std::back_inserter(objects_));
   }
   spawnWalkers(scene, object_of, taken);
-  spawnLabelledWalkers(scene, taken);
+  spawnLabelled(scene, taken);
   dropFarthest();
 }
 
@@ -211,7 +214,9 @@ void ObjectTracker::spawnWalkers(const SceneMotion& scene, const std::vector<int
   for (std::size_t s = 0; s < scene.components.size(); ++s) {
     const MotionComponent& component = scene.components[s];
     const auto is_taken = [&](int i) { return bool{taken[i]}; };
-    const auto holds = [&](const TrackedObject& object) { return isAt(object, component.centroid_cam); };
+    const auto holds = [&](const TrackedObject& object) {
+      return !object.isGuess() && isAt(object, component.centroid_cam);
+    };
     if (object_of[s] >= 0 || !spawn_.mayBeWalker(component, scene.ground)) continue;
     if (std::ranges::any_of(component.points, is_taken) || std::ranges::any_of(objects_, holds)) continue;
     if (auto walker = spawn_.walker(scene, *previous_scene_, component, T_world_cam_))
@@ -220,15 +225,15 @@ void ObjectTracker::spawnWalkers(const SceneMotion& scene, const std::vector<int
 }
 
 /// People whom instance labels show.
-void ObjectTracker::spawnLabelledWalkers(const SceneMotion& scene, const std::vector<bool>& taken) {
+void ObjectTracker::spawnLabelled(const SceneMotion& scene, const std::vector<bool>& taken) {
   if (!scene.features || !scene.features->frame->inputs.instances) return;
-  const LabelledWalkers walkers(look_back_, camera_);
+  const LabelledWalkers movers(look_back_, camera_);
   for (const InstanceRegion& region : regionsOf(*scene.features->frame->inputs.instances)) {
-    const auto labelled = walkers(region, scene, T_world_cam_, taken);
-    if (!labelled) continue;
-    const auto holds = [&](const TrackedObject& object) { return isAt(object, labelled->centroid_cam); };
+    const auto mover = movers(region, scene, T_world_cam_, taken);
+    if (!mover) continue;
+    const auto holds = [&](const TrackedObject& object) { return isAt(object, mover->component.centroid_cam); };
     if (std::ranges::any_of(objects_, holds)) continue;
-    if (auto walker = spawn_.walker(scene, *labelled, T_world_cam_)) objects_.push_back(std::move(*walker));
+    objects_.push_back(spawn_.labelled(scene, *mover, T_world_cam_));
   }
 }
 

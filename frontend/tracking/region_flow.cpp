@@ -19,9 +19,9 @@ constexpr int kMost_px = 24;             // that somebody moves between two fram
 
 }  // namespace
 
-std::optional<SceneFlow> RegionFlow::operator()(const InstanceRegion& region, double disparity_px,
-                                                const SceneMotion& scene, const SE3& T_world_cam) const {
-  const Pixels pixels = upperPart(region, *scene.features->frame->inputs.instances);
+std::optional<RegionFlow::Seen> RegionFlow::operator()(const InstanceRegion& region, double disparity_px,
+                                                       const SceneMotion& scene, const SE3& T_world_cam) const {
+  const Pixels pixels = pixelsOf(region, *scene.features->frame->inputs.instances);
   const RegionTemplate now(scene.features->left.levels.front(), pixels.middle_px, pixels.offsets_px);
   const auto seen = observe(now, pixels, *scene.features, {{pixels.middle_px.x(), pixels.middle_px.y(), disparity_px}});
   if (!seen) return std::nullopt;
@@ -48,27 +48,24 @@ std::optional<SceneFlow> RegionFlow::operator()(const InstanceRegion& region, do
     velocity_mps = (T_then_now.inverse() * camera_.triangulate(then->uvd_px.cast<double>()) - p_cam) / dt_s;
   }
   if (std::ssize(observations) < kLeastSeen) return std::nullopt;
-  return fit(observations, scenes, scene, T_world_cam);
+  const auto flow = fit(observations, scenes, scene, T_world_cam);
+  return flow ? std::optional<Seen>({*flow, -last_s}) : std::nullopt;
 }
 
-RegionFlow::Pixels RegionFlow::upperPart(const InstanceRegion& region, const InstanceLabels& labels) {
-  constexpr double kUpper = 0.6;
-  constexpr int kMargin_px = 2;  // clothes may be smooth: what tells most is where they end
-  constexpr int kMost = 200;     // pixels, evenly spread
-  const int left = static_cast<int>(region.box.left_px) - kMargin_px,
-            right = static_cast<int>(region.box.right_px) + kMargin_px,
-            top = static_cast<int>(region.box.top_px) - kMargin_px;
-  const int bottom = top + static_cast<int>(kUpper * (region.box.bottom_px - region.box.top_px));
+/// With a margin: clothes may be smooth, and what tells most is where they end.
+RegionFlow::Pixels RegionFlow::pixelsOf(const InstanceRegion& region, const InstanceLabels& labels) {
+  constexpr int kMargin_px = 2;
+  constexpr int kMost = 200;  // pixels, evenly spread
+  const Box upper = upperPart(region.box);
+  const int left = static_cast<int>(upper.left_px) - kMargin_px, right = static_cast<int>(upper.right_px) + kMargin_px,
+            top = static_cast<int>(upper.top_px) - kMargin_px, bottom = static_cast<int>(upper.bottom_px);
   const int step = std::max(1, static_cast<int>(std::sqrt((right - left + 1) * (bottom - top + 1) / kMost)));
-  const auto isNear = [&](int u, int v) {
-    const auto is = [&](int x, int y) { return labels.at(x, y) == region.label; };
-    return is(u, v) || is(u - kMargin_px, v) || is(u + kMargin_px, v) || is(u, v + kMargin_px);
-  };
+  const auto is = [&](int u, int v) { return labels.at(u, v) == region.label; };
   Pixels pixels;
   for (int v = top; v <= bottom; v += step)
     for (int u = left; u <= right; u += step)
-      if (isNear(u, v)) pixels.offsets_px.emplace_back(u, v);
-  if (pixels.offsets_px.empty()) return pixels;
+      if (is(u, v) || is(u - kMargin_px, v) || is(u + kMargin_px, v) || is(u, v + kMargin_px))
+        pixels.offsets_px.emplace_back(u, v);
   for (const Eigen::Vector2f& p : pixels.offsets_px)
     pixels.middle_px += p.cast<double>() / static_cast<double>(pixels.offsets_px.size());
   for (Eigen::Vector2f& p : pixels.offsets_px) p -= pixels.middle_px.cast<float>();

@@ -22,10 +22,14 @@ class RegionFlow {
   /// `past` outlives it.
   RegionFlow(const LookBack& past, const StereoCamera& camera) : past_(past), camera_(camera), estimate_({}, camera) {}
 
-  /// Of the region's upper part, which of a person is trunk and head: legs swing. The disparity is that of its points.
-  /// Empty where it is found in too few frames.
-  std::optional<SceneFlow> operator()(const InstanceRegion& region, double disparity_px, const SceneMotion& scene,
-                                      const SE3& T_world_cam) const;
+  /// The flow, and for how long it was seen.
+  struct Seen {
+    SceneFlow flow;
+    double duration_s = 0;
+  };
+  /// Of the region's upper part. The disparity is that of its points. Empty where it is found in too few frames.
+  std::optional<Seen> operator()(const InstanceRegion& region, double disparity_px, const SceneMotion& scene,
+                                 const SE3& T_world_cam) const;
 
  private:
   /// Pixels of a region, from its middle.
@@ -33,7 +37,7 @@ class RegionFlow {
     Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
     std::vector<Eigen::Vector2f> offsets_px;
   };
-  static Pixels upperPart(const InstanceRegion& region, const InstanceLabels& labels);
+  static Pixels pixelsOf(const InstanceRegion& region, const InstanceLabels& labels);
   /// Where the region is looked for, and how much larger it is seen there than now.
   struct Guess {
     Eigen::Vector3d uvd_px;

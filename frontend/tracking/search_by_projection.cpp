@@ -42,6 +42,12 @@ std::optional<ScenePoint> findPatch(const ScenePoint& measured, const Features& 
   return found;
 }
 
+/// Between patches that cover a box.
+int stepOf(const Box& box) {
+  const double area_px2 = (box.right_px - box.left_px) * (box.bottom_px - box.top_px);
+  return std::max(kStep_px, static_cast<int>(std::sqrt(area_px2 / kMostPatches)));
+}
+
 double medianDisparity_px(const std::vector<ScenePoint>& points) {
   std::vector<double> disparities_px;
   for (const ScenePoint& p : points) disparities_px.push_back(p.uvd_px.z());
@@ -54,8 +60,7 @@ double medianDisparity_px(const std::vector<ScenePoint>& points) {
 
 std::vector<ScenePoint> samplePatches(const Features& features, const Box& box, double disparity_px,
                                       double disparity_offset_px) {
-  const double area_px2 = (box.right_px - box.left_px) * (box.bottom_px - box.top_px);
-  const int step_px = std::max(kStep_px, static_cast<int>(std::sqrt(area_px2 / kMostPatches)));
+  const int step_px = stepOf(box);
   const Image &left = features.left.levels.front(), &right = features.right.levels.front();
   std::vector<ScenePoint> patches;
   for (double v = box.top_px; v <= box.bottom_px; v += step_px) {
@@ -71,6 +76,14 @@ std::vector<ScenePoint> samplePatches(const Features& features, const Box& box, 
     }
   }
   return patches;
+}
+
+double shareAtDepth(const Features& features, const Box& box, double disparity_px, double disparity_offset_px) {
+  const int step_px = stepOf(box);
+  const int columns = static_cast<int>((box.right_px - box.left_px) / step_px) + 1,
+            rows = static_cast<int>((box.bottom_px - box.top_px) / step_px) + 1;
+  const auto found = samplePatches(features, box, disparity_px, disparity_offset_px).size();
+  return static_cast<double>(found) / (columns * rows);
 }
 
 std::vector<ScenePoint> samplePatches(const MeasuredPoints& measured, double disparity_offset_px) {

@@ -25,6 +25,9 @@ inline bool isFollowed(PointId point) { return point.value >= 0; }
 std::vector<ScenePoint> samplePatches(const Features& features, const Box& box, double disparity_px,
                                       double disparity_offset_px);
 
+/// The share of a box's patches that lie at about a disparity.
+double shareAtDepth(const Features& features, const Box& box, double disparity_px, double disparity_offset_px);
+
 /// The same between the measured points of a body, at about their disparity.
 std::vector<ScenePoint> samplePatches(const MeasuredPoints& measured, double disparity_offset_px);
 

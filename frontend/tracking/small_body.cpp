@@ -5,9 +5,8 @@
 namespace motorcade {
 
 bool mayBeSmall(const TrackedObject& object) {
-  constexpr double kFastest_mps = 8;  // on a bicycle
-  constexpr double kLongest_m = 2;    // a bicycle, and the diagonal of who walks beside one
-  if (object.kinematics.speed_mps() > kFastest_mps) return false;
+  constexpr double kLongest_m = 2;  // a bicycle, and the diagonal of who walks beside one
+  if (object.kinematics.speed_mps() > kFastestRide_mps) return false;
   const Eigen::Vector3d size_m = object.core(SE3{}).sizes();
   return hypotenuse(size_m.x(), size_m.y()) < kLongest_m;
 }

@@ -9,6 +9,7 @@
 namespace motorcade {
 
 inline constexpr double kFastestWalk_mps = 3;    // who runs for a bus
+inline constexpr double kFastestRide_mps = 8;    // on a bicycle
 inline constexpr double kSlowestWalk_mps = 0.5;  // what is slower cannot be told from what it stands before
 
 /// May an object be a person or a two-wheeler, as far as is seen of it? It is no faster than these, and its points lie

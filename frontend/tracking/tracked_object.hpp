@@ -36,7 +36,8 @@ struct MeasuredPoints {
 /// to the vehicle from then on.
 struct TrackedObject {
   TrackId track;
-  bool born_slow = false;  // it was as slow and small as a person when it was spawned
+  bool born_slow = false;      // it was as slow and small as a person when it was spawned
+  bool born_labelled = false;  // it was spawned from an instance label
   LifeCycle life;
   ObjectKinematics kinematics;    // in the front-end's own odometry world
   SE3 T_cam_body;                 // of the newest frame
@@ -48,6 +49,8 @@ struct TrackedObject {
   Eigen::Vector3d spawned_at_world = Eigen::Vector3d::Zero();
   std::vector<ObjectObservation> backlog;  // observations until it is confirmed, oldest first
 
+  /// Nothing but an instance label led to it yet: it gives way to what is found without one.
+  bool isGuess() const { return born_labelled && !life.reported(); }
   const BodyPoint* find(PointId point) const;
   /// Index of a point that is there.
   std::size_t indexOf(PointId point) const { return find(point) - points.data(); }

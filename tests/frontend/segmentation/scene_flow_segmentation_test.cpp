@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -97,6 +98,29 @@ TEST(SceneFlowSegmentation, PointsOnIgnoredPixelsTakePartInNothing) {
   const auto motion = estimate(stereo, scene.flow(*stereo, 0));
   EXPECT_GT(motion->points.size(), 20U);
   for (const ScenePoint& p : motion->points) EXPECT_GE(p.uvd_px.x() - p.uvd_px.z(), 299);  // in the right image, too
+}
+
+/// Pixels beside each other have other labels, and none has 0.
+TEST(SceneFlowSegmentation, PointsCarryTheInstanceLabelOfTheirPixel) {
+  constexpr int kLabels = 65535;
+  const auto label_of = [](int u, int v) {
+    return static_cast<std::uint16_t>(1 + (v * test::kSmallRig.width_px + u) % kLabels);
+  };
+  auto labels = std::make_shared<InstanceLabels>(test::kSmallRig.width_px, test::kSmallRig.height_px);
+  for (int v = 0; v < labels->height(); ++v)
+    for (int u = 0; u < labels->width(); ++u) labels->mutableRow(v)[u] = label_of(u, v);
+  const test::TwoSurfaces scene(0.5);
+  SceneFlowSegmentation estimate({}, test::kSmallRig);
+  for (int frame = 0; frame < 2; ++frame) {
+    const bool labelled = frame == 1;  // when points are followed
+    const auto stereo = scene.stereo(frame, {.ignored = nullptr, .instances = labelled ? labels : nullptr});
+    const auto motion = estimate(stereo, scene.flow(*stereo, frame));
+    ASSERT_GT(motion->points.size(), 50U);
+    for (const ScenePoint& p : motion->points) {
+      const int u = static_cast<int>(std::lround(p.uvd_px.x())), v = static_cast<int>(std::lround(p.uvd_px.y()));
+      EXPECT_EQ(p.instance, labelled ? label_of(u, v) : 0) << "frame " << frame;
+    }
+  }
 }
 
 }  // namespace
