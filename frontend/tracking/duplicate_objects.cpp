@@ -63,7 +63,8 @@ bool isInView(const TrackedObject& object, const StereoCamera& camera) {
   return uvd_px && camera.inLeftImage(uvd_px->x(), uvd_px->y());
 }
 
-/// An object that has left the view gives way to one in it: the last points of a trailer that we pass are on its truck.
+/// A guess gives way, and an object that has left the view to one in it: the last points of a trailer that we pass are
+/// on its truck.
 bool youngerStays(const TrackedObject& older, const TrackedObject& younger, const StereoCamera& camera) {
   if (older.isGuess() != younger.isGuess()) return older.isGuess();
   if (!younger.life.reported()) return false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <ranges>
 #include <utility>
 
 #include "frontend/tracking/small_body.hpp"
@@ -30,20 +31,20 @@ std::optional<RegionFlow::Seen> RegionFlow::operator()(const InstanceRegion& reg
   std::vector<const LookBack::PastScene*> scenes;
   Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
   double last_s = 0;
-  for (auto past = past_.past().rbegin(); past != past_.past().rend(); ++past) {
-    const double dt_s = secondsBetween(scene.head.stamp, past->scene->head.stamp);
-    if (!past->scene->features || -dt_s > kLongest_s) break;
-    const SE3 T_then_now = past->T_world_cam.inverse() * T_world_cam;
+  for (const LookBack::PastScene& past : std::views::reverse(past_.past())) {
+    const double dt_s = secondsBetween(scene.head.stamp, past.scene->head.stamp);
+    if (!past.scene->features || -dt_s > kLongest_s) break;
+    const SE3 T_then_now = past.T_world_cam.inverse() * T_world_cam;
     const auto uvd_px = camera_.project(T_then_now * (p_cam + dt_s * velocity_mps));
     if (!uvd_px) break;
     const double unsure_mps = scenes.empty() ? kFastestWalk_mps : 0.5 * kFastestWalk_mps;
     const double reach_px = unsure_mps * (last_s - dt_s) * uvd_px->z() / camera_.baseline_m;
     const int radius_px = std::min(kMost_px, kAround_px + static_cast<int>(reach_px));
-    const auto then = observe(now, pixels, *past->scene->features,
+    const auto then = observe(now, pixels, *past.scene->features,
                               {*uvd_px, uvd_px->z() / static_cast<double>(seen->uvd_px.z()), radius_px});
     if (!then) continue;
     observations.push_back(*then);
-    scenes.push_back(&*past);
+    scenes.push_back(&past);
     last_s = dt_s;
     velocity_mps = (T_then_now.inverse() * camera_.triangulate(then->uvd_px.cast<double>()) - p_cam) / dt_s;
   }
