@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <ranges>
 #include <utility>
 
 #include "frontend/tracking/small_body.hpp"
@@ -11,9 +11,9 @@
 namespace motorcade {
 namespace {
 
-constexpr double kLongest_s = 0.6;  // that is looked back: about a step of a walk
-constexpr int kLeastSeen = 3;       // frames, with the newest
-constexpr double kLeastNcc = 0.5;
+constexpr double kLongest_s = 0.6;       // that is looked back: about a step of a walk
+constexpr int kLeastSeen = 3;            // frames, with the newest
+constexpr double kLeastNcc = 0.5;        // of a match that is believed
 constexpr double kLeastSigma_px = 0.15;  // of a body that bends and swings its arms
 constexpr int kAround_px = 3;            // of what is predicted by a known velocity, and of a disparity
 constexpr int kMost_px = 24;             // that somebody moves between two frames
@@ -31,7 +31,8 @@ std::optional<RegionFlow::Seen> RegionFlow::operator()(const InstanceRegion& reg
   std::vector<const LookBack::PastScene*> scenes;
   Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
   double last_s = 0;
-  for (const LookBack::PastScene& past : std::views::reverse(past_.past())) {
+  for (std::size_t k = past_.past().size(); k-- > 0;) {
+    const LookBack::PastScene& past = past_.past()[k];
     const double dt_s = secondsBetween(scene.head.stamp, past.scene->head.stamp);
     if (!past.scene->features || -dt_s > kLongest_s) break;
     const SE3 T_then_now = past.T_world_cam.inverse() * T_world_cam;
