@@ -2,6 +2,7 @@
 #include <string>
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "io/image_file.hpp"
 #include "tests/apps/program_run.hpp"
@@ -43,6 +44,31 @@ TEST_F(RunInstances, LabelsOfEveryThirdFrameAreTakenAndRemembered) {
   EXPECT_TRUE(summary("labelled")["findings"].empty());
   ASSERT_EQ(run("plain", "--frames 0:8"), 0) << contentOf(errors());
   EXPECT_EQ(summary("plain")["instances"], "");
+}
+
+/// Masks and boxes to 30 m, by how much of them is true.
+struct Overlap {
+  double masks, boxes;
+  explicit Overlap(const nlohmann::json& measures)
+      : masks(measures["masks"]["within_30m"]["iou"]), boxes(measures["final"]["boxes_within_30m"]["iou_2d"]) {}
+};
+
+TEST_F(RunInstances, ExactLabelsMakeMasksAndBoxesBetterAndThoseOfOtherFramesNoWorse) {
+  const fs::path others = out("others");
+  fs::create_directories(others);
+  for (const auto& entry : fs::directory_iterator(kSequence / "instance")) {
+    std::string name = std::to_string(kFrames - 1 - std::stoul(entry.path().stem().string()));
+    name.insert(0, 6 - name.size(), '0');
+    fs::copy_file(entry.path(), others / (name + ".png"));
+  }
+  ASSERT_EQ(run("plain", "--masks"), 0) << contentOf(errors());
+  ASSERT_EQ(run("exact", "--masks --instances " + (kSequence / "instance").string()), 0) << contentOf(errors());
+  ASSERT_EQ(run("lying", "--masks --instances " + others.string()), 0) << contentOf(errors());
+  const Overlap plain(evaluate("plain")), exact(evaluate("exact")), lying(evaluate("lying"));
+  EXPECT_GT(exact.masks, plain.masks + 0.03);
+  EXPECT_GT(exact.boxes, plain.boxes + 0.02);
+  EXPECT_GT(lying.masks, 0.98 * plain.masks);
+  EXPECT_GT(lying.boxes, 0.98 * plain.boxes);
 }
 
 TEST_F(RunInstances, ADamagedFileIsLeftOutAndToldAtTheEnd) {
