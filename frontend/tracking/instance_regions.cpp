@@ -1,7 +1,9 @@
 #include "frontend/tracking/instance_regions.hpp"
 
 #include <algorithm>
-#include <map>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 
 namespace motorcade {
 namespace {
@@ -21,20 +23,21 @@ Box upperPart(const Box& region) {
 
 std::vector<InstanceRegion> regionsOf(const InstanceLabels& labels) {
   constexpr Box kNowhere{1e9, 1e9, -1e9, -1e9};
-  std::map<std::uint16_t, Box> boxes;
+  constexpr std::size_t kLabels = std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1;
+  std::vector<Box> boxes(kLabels, kNowhere);
   for (int v = 0; v < labels.height(); ++v) {
     const std::uint16_t *const row = labels.row(v), *const end = row + labels.width();
     for (const std::uint16_t* from = row; from != end;) {
       const std::uint16_t label = *from;
       const std::uint16_t* const to = std::find_if(from, end, [label](std::uint16_t other) { return other != label; });
-      if (label != 0)
-        extend(boxes.try_emplace(label, kNowhere).first->second, static_cast<int>(from - row),
-               static_cast<int>(to - row) - 1, v);
+      extend(boxes[label], static_cast<int>(from - row), static_cast<int>(to - row) - 1, v);
       from = to;
     }
   }
   std::vector<InstanceRegion> regions;
-  for (const auto& [label, box] : boxes) regions.push_back({label, box});
+  for (std::size_t label = 1; label < kLabels; ++label)
+    if (boxes[label].left_px <= boxes[label].right_px)
+      regions.push_back({static_cast<std::uint16_t>(label), boxes[label]});
   return regions;
 }
 

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -56,19 +60,39 @@ bool isSure(const MotionComponent& component) {
 
 }  // namespace
 
-std::optional<LabelledWalkers::Mover> LabelledWalkers::operator()(const InstanceRegion& region,
-                                                                  const SceneMotion& scene, const SE3& T_world_cam,
-                                                                  const std::vector<bool>& taken) const {
-  Mover mover;
-  MotionComponent& component = mover.component;
-  component.points = pointsIn(region, scene);
-  const auto is_taken = [&](int i) { return bool{taken[i]}; };
-  if (component.points.empty() || std::ranges::any_of(component.points, is_taken)) return std::nullopt;
-  const double disparity_px = medianDisparity_px(component.points, scene);
-  if (!isLikeAPerson(region, disparity_px) || !endsWhereItsBodyDoes(region, disparity_px, scene)) return std::nullopt;
+std::vector<LabelledWalkers::Candidate> LabelledWalkers::candidates(const SceneMotion& scene,
+                                                                    const std::vector<bool>& taken) const {
+  constexpr std::size_t kMost = 32;  // each takes about a millisecond
+  std::map<std::uint16_t, std::vector<int>> points_of;
+  for (int i = 0; i < static_cast<int>(scene.points.size()); ++i)
+    if (scene.points[i].instance != 0 && scene.points[i].label != PointLabel::kGround)
+      points_of[scene.points[i].instance].push_back(i);
+  std::vector<Candidate> all;
+  for (const InstanceRegion& region : regionsOf(*scene.features->frame->inputs.instances)) {
+    const auto points = points_of.find(region.label);
+    if (points == points_of.end()) continue;
+    if (std::ranges::any_of(points->second, [&](int i) { return bool{taken[i]}; })) continue;
+    const double disparity_px = medianDisparity_px(points->second, scene);
+    if (isLikeAPerson(region, disparity_px)) all.push_back({region, std::move(points->second), disparity_px});
+  }
+  if (all.size() <= kMost) return all;
+  const std::size_t first = static_cast<std::size_t>(scene.head.frame.value) * kMost % all.size();
+  std::ranges::rotate(all, all.begin() + static_cast<std::ptrdiff_t>(first));
+  all.resize(kMost);
+  return all;
+}
+
+std::optional<LabelledWalkers::Mover> LabelledWalkers::operator()(const Candidate& candidate, const SceneMotion& scene,
+                                                                  const SE3& T_world_cam) const {
+  const InstanceRegion& region = candidate.region;
+  const double disparity_px = candidate.disparity_px;
+  if (!endsWhereItsBodyDoes(region, disparity_px, scene)) return std::nullopt;
   const auto seen = flow_of_(region, disparity_px, scene, T_world_cam);
   if (!seen || seen->flow.static_chi2 - seen->flow.moving_chi2 < kNotStaticChi2) return std::nullopt;
-  std::erase_if(component.points, [&](int i) { return !mayBeOn(seen->flow, scene.points[i]); });
+  Mover mover{.component = {}, .frames = seen->flow.observations, .duration_s = seen->duration_s};
+  MotionComponent& component = mover.component;
+  for (const int i : candidate.points)
+    if (mayBeOn(seen->flow, scene.points[i])) component.points.push_back(i);
   component.centroid_cam = seen->flow.p_cam;
   component.velocity_mps = seen->flow.velocity_mps;
   component.velocity_covariance = seen->flow.covariance.bottomRightCorner<3, 3>() +
@@ -78,16 +102,7 @@ std::optional<LabelledWalkers::Mover> LabelledWalkers::operator()(const Instance
   const double speed_mps = component.velocity_mps.norm();
   const bool rides = speed_mps > kFastestWalk_mps && speed_mps < kFastestRide_mps;
   if (!rides && !isWalk(speed_mps, component.centroid_cam.z(), camera_)) return std::nullopt;
-  mover.frames = seen->flow.observations;
-  mover.duration_s = seen->duration_s;
   return mover;
-}
-
-std::vector<int> LabelledWalkers::pointsIn(const InstanceRegion& region, const SceneMotion& scene) {
-  std::vector<int> points;
-  for (int i = 0; i < static_cast<int>(scene.points.size()); ++i)
-    if (scene.points[i].instance == region.label && scene.points[i].label != PointLabel::kGround) points.push_back(i);
-  return points;
 }
 
 /// Is a point as far away as the person, and does it move alike as far as is known?

@@ -25,12 +25,19 @@ class LabelledWalkers {
     int frames = 0;
     double duration_s = 0;
   };
-  /// The mover in a region; empty where nobody moves surely. `taken` points are those of known objects.
-  std::optional<Mover> operator()(const InstanceRegion& region, const SceneMotion& scene, const SE3& T_world_cam,
-                                  const std::vector<bool>& taken) const;
+  /// A region that has a person's size at the depth of its points.
+  struct Candidate {
+    InstanceRegion region;
+    std::vector<int> points;  // indices into `SceneMotion::points`
+    double disparity_px = 0;  // the points' median
+  };
+  /// The candidates of a frame, ordered by label; where labels are so many that they cannot be, some of them, and
+  /// others in the next frame. `taken` points are those of known objects, which are no candidates.
+  std::vector<Candidate> candidates(const SceneMotion& scene, const std::vector<bool>& taken) const;
+  /// The mover that a candidate is; empty where nobody moves surely.
+  std::optional<Mover> operator()(const Candidate& candidate, const SceneMotion& scene, const SE3& T_world_cam) const;
 
  private:
-  static std::vector<int> pointsIn(const InstanceRegion& region, const SceneMotion& scene);
   bool mayBeOn(const SceneFlow& person, const ScenePoint& point) const;
   bool isLikeAPerson(const InstanceRegion& region, double disparity_px) const;
   static bool endsWhereItsBodyDoes(const InstanceRegion& region, double disparity_px, const SceneMotion& scene);

@@ -227,9 +227,9 @@ void ObjectTracker::spawnWalkers(const SceneMotion& scene, const std::vector<int
 /// People whom instance labels show.
 void ObjectTracker::spawnLabelled(const SceneMotion& scene, const std::vector<bool>& taken) {
   if (!scene.features || !scene.features->frame->inputs.instances) return;
-  const LabelledWalkers movers(look_back_, camera_);
-  for (const InstanceRegion& region : regionsOf(*scene.features->frame->inputs.instances)) {
-    const auto mover = movers(region, scene, T_world_cam_, taken);
+  const LabelledWalkers mover_of(look_back_, camera_);
+  for (const LabelledWalkers::Candidate& candidate : mover_of.candidates(scene, taken)) {
+    const auto mover = mover_of(candidate, scene, T_world_cam_);
     if (!mover) continue;
     const auto holds = [&](const TrackedObject& object) { return isAt(object, mover->component.centroid_cam); };
     if (std::ranges::any_of(objects_, holds)) continue;

@@ -1,7 +1,11 @@
 #include "frontend/tracking/labelled_walkers.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -28,7 +32,13 @@ std::optional<MotionComponent> walkerIn(const Box& labelled, const SceneMotion& 
                                         std::vector<bool> taken = {}) {
   taken.resize(scene.points.size());
   const LabelledWalkers walkers(street.past, kNarrowRig);
-  const auto mover = walkers(LabelledStreet::region(labelled), scene, LabelledStreet::T_world_cam(), taken);
+  const auto candidates = walkers.candidates(scene, taken);
+  if (candidates.empty()) return std::nullopt;
+  EXPECT_EQ(candidates.size(), 1U);
+  const Box& found = candidates.front().region.box;
+  EXPECT_EQ(found.left_px, labelled.left_px);
+  EXPECT_EQ(found.bottom_px, labelled.bottom_px);
+  const auto mover = walkers(candidates.front(), scene, LabelledStreet::T_world_cam());
   return mover ? std::optional(mover->component) : std::nullopt;
 }
 std::optional<MotionComponent> walkerIn(const Box& labelled, const std::vector<Eigen::Vector3d>& points_px,
@@ -128,6 +138,44 @@ TEST(LabelledWalkers, GoAcrossNeitherSlowerNorFasterThanPeopleWalk) {
     const LabelledStreet street({.walk_mps = speed_mps});
     EXPECT_FALSE(walkerIn(street.boardBox(), cornersOn(street), street)) << speed_mps;
   }
+}
+
+/// Labels without end, each of a person's size, take no more time than some of them.
+TEST(LabelledWalkers, LookAtSomeOfTooManyLabelsAndAtOthersInTheNextFrame) {
+  const LabelledStreet street(kWalks);
+  constexpr int kColumns = 20, kRows = 4, kSide_px = 8;
+  std::vector<Eigen::Vector3d> points_px;
+  const double near_px = kNarrowRig.fx_px * kNarrowRig.baseline_m / 40;  // where so little is as high as a child
+  for (int label = 0; label < kColumns * kRows; ++label)
+    points_px.emplace_back(10 + kSide_px * (label % kColumns), 10 + 2 * kSide_px * (label / kColumns), near_px);
+  const auto scene = street.now(street.boardBox(), {});
+  auto labels = std::make_shared<InstanceLabels>(kNarrowRig.width_px, kNarrowRig.height_px);
+  for (std::size_t k = 0; k < points_px.size(); ++k) {
+    const auto label = static_cast<std::uint16_t>(k + 1);
+    for (int v = -5; v <= 5; ++v)
+      for (int u = -2; u <= 2; ++u)
+        labels->mutableRow(static_cast<int>(points_px[k].y()) + v)[static_cast<int>(points_px[k].x()) + u] = label;
+    scene->points.push_back({.point = {static_cast<std::int64_t>(k)},
+                             .uvd_px = points_px[k],
+                             .sigma_px = Eigen::Vector3d::Constant(0.3),
+                             .instance = label,
+                             .flow = {}});
+  }
+  auto pair = std::make_shared<StereoFrame>();
+  pair->inputs.instances = labels;
+  auto features = std::make_shared<Features>();
+  features->frame = pair;
+  scene->features = features;
+  const LabelledWalkers walkers(street.past, kNarrowRig);
+  const std::vector<bool> taken(scene->points.size());
+  std::set<std::uint16_t> seen;
+  for (int frame = 0; frame < 6; ++frame) {
+    scene->head.frame = {frame};
+    const auto candidates = walkers.candidates(*scene, taken);
+    EXPECT_EQ(candidates.size(), 32U) << frame;
+    for (const auto& candidate : candidates) seen.insert(candidate.region.label);
+  }
+  EXPECT_EQ(seen.size(), points_px.size());
 }
 
 }  // namespace
