@@ -77,7 +77,7 @@ std::vector<LabelledWalkers::Candidate> LabelledWalkers::candidates(const SceneM
   }
   if (all.size() <= kMost) return all;
   const std::size_t first = static_cast<std::size_t>(scene.head.frame.value) * kMost % all.size();
-  std::ranges::rotate(all, all.begin() + static_cast<std::ptrdiff_t>(first));
+  std::rotate(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(first), all.end());
   all.resize(kMost);
   return all;
 }
