@@ -13,7 +13,7 @@ class Timestamp;
 class Vector3d;
 }  // namespace osi3
 
-/// What OSI's messages have in common.
+/// Fields that OSI's messages have in common.
 namespace motorcade {
 
 void set(osi3::Timestamp* message, Timestamp stamp);

@@ -4,7 +4,7 @@
 
 namespace motorcade {
 
-/// While it lives, the callback is called on this thread. Whatever is to be called is held alive by it alone.
+/// The callback is called on this thread while this lives, which alone holds alive whatever is to be called.
 class FinalTaker::Handing {
  public:
   explicit Handing(FinalTaker& of) : of_(of) {

@@ -81,7 +81,7 @@ std::shared_ptr<const InstanceLabels> PairInput::labelsOf(const Pair::Image& giv
   return labels;
 }
 
-/// As many as pairs are ever in use at once, and some to spare. Most callers have no labels: they pay nothing for them.
+/// Room for as many as pairs are ever in use at once, and some to spare. Most callers have no labels, and pay nothing.
 void PairInput::stockLabels() {
   constexpr std::size_t kPairs = 16;
   std::vector<std::shared_ptr<InstanceLabels>> all;

@@ -23,7 +23,7 @@ const char* reasonOf(Admission admission) {
   return "";
 }
 
-/// Of pairs far apart every second one is accepted.
+/// Every second one of pairs that are far apart is accepted.
 std::optional<std::string> StampDoubts::refused(Admission admission, std::int64_t stamp_ns) {
   constexpr int kRefused = 2, kSeveral = 3 * kRefused;
   if (admission != Admission::kTooClose && admission != Admission::kFarAhead) return std::nullopt;

@@ -15,7 +15,7 @@ const char* reasonOf(Admission admission);
 /// pushing thread's.
 class StampDoubts {
  public:
-  /// What is to be told of a pair that was not taken, once.
+  /// A sentence about a pair that was not taken, once.
   std::optional<std::string> refused(Admission admission, std::int64_t stamp_ns);
   void taken();
 

@@ -25,7 +25,7 @@ namespace motorcade {
 /// results, converts them for those who take them, and calls the callback for finals.
 class TrackedDrive {
  public:
-  /// What it shares with the tracker, which outlives it.
+  /// The parts that it shares with the tracker, which outlives it.
   struct Surroundings {
     const PipelineConfig& config;
     const CameraModel& model;

@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "frontend/motion/shared_velocity_error.hpp"
+#include "frontend/tracking/see_through.hpp"
 #include "frontend/tracking/small_body.hpp"
 #include "frontend/tracking/vehicle_size.hpp"
 
@@ -20,11 +21,9 @@ constexpr double kSurely = 3;          // standard deviations of a walk, which i
 constexpr double kNotStaticChi2 = 16;  // by which moving explains better what was seen than resting: 4 sigma
 
 double medianDisparity_px(const std::vector<int>& points, const SceneMotion& scene) {
-  std::vector<double> disparities_px;
-  for (const int i : points) disparities_px.push_back(scene.points[i].uvd_px.z());
-  const auto middle = disparities_px.begin() + std::ssize(disparities_px) / 2;
-  std::ranges::nth_element(disparities_px, middle);
-  return *middle;
+  std::vector<const ScenePoint*> seen;
+  for (const int i : points) seen.push_back(&scene.points[i]);
+  return regionOf(seen)->disparity_px;
 }
 
 /// The velocity of a component, expected to be as small as a standard deviation, and how well both agree: twice the
