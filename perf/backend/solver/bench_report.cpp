@@ -142,6 +142,7 @@ void printGraph(const GraphFigures& figures) {
       excessPercent(run.chi2, run.optimum), eliminated.total / updates, eliminated.median, eliminated.p99,
       substituted.total / updates, substituted.median, substituted.p99, mebibytes(run.held_bytes),
       run.reached_from_odometry ? "" : "  (optimum not reached from odometry)");
+  printTimes("covariance of two far poses:", quantilesOf(run.far_covariances_ms));
   if (run.problems > 0) std::printf("  %zu problems reported\n", run.problems);
   if (figures.closures) printClosures(figures);
   if (figures.check) printCheck(*figures.check);
@@ -162,6 +163,7 @@ Json jsonOf(const GraphFigures& figures) {
                {"optimum", run.optimum},
                {"excess_percent", excessPercent(run.chi2, run.optimum)},
                {"reached_from_odometry", run.reached_from_odometry},
+               {"far_covariances_ms", jsonOf(quantilesOf(run.far_covariances_ms))},
                {"held_bytes", run.held_bytes}};
   if (figures.closures) json["closures"] = closuresJson(figures);
   if (figures.check) json["check"] = jsonOf(*figures.check);

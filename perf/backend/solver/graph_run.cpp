@@ -4,12 +4,14 @@
 #include <cstdlib>
 
 #include "perf/backend/solver/batch_reference.hpp"
+#include "perf/backend/solver/far_covariances.hpp"
 
 namespace motorcade::perf {
 namespace {
 
 constexpr std::ptrdiff_t kClosureFrames = 50;
 constexpr double kSettledPercent = 0.1;
+constexpr std::uint64_t kSeed = 1;  // of the pairs whose covariance is asked for
 
 void findOptimum(const PoseGraph& graph, PoseGraphFeed& solved, GraphRun& run) {
   converge(solved.solver());
@@ -38,6 +40,7 @@ GraphRun runGraph(const PoseGraph& graph, const IncrementalSolver::Params& param
   run.edges = feed.edgeCount();
   run.chi2 = feed.chi2();
   run.held_bytes = feed.solver().heldBytes();
+  run.far_covariances_ms = farCovariances_ms(feed, graph, kSeed);
   findOptimum(graph, feed, run);
   return run;
 }

@@ -12,6 +12,7 @@ namespace motorcade::perf {
 struct GraphRun {
   std::size_t poses = 0, edges = 0, problems = 0;                       // in the solution; that updates reported
   std::vector<double> cpu_ms, eliminated_scalars, substituted_scalars;  // per update
+  std::vector<double> far_covariances_ms;                               // after the last update
   double chi2 = 0;
   std::size_t held_bytes = 0;
 

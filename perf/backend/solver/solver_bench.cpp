@@ -12,6 +12,7 @@
 #include "io/line_file.hpp"
 #include "perf/backend/solver/bench_report.hpp"
 #include "perf/backend/solver/solver_options.hpp"
+#include "perf/backend/solver/street_grid.hpp"
 
 /// Measures the incremental solver on public pose graphs, beside batch solutions, and on simulated drives of any
 /// length.
@@ -31,15 +32,15 @@ struct Options {
   std::filesystem::path data = dataFolder() / "posegraphs", json;
   std::vector<std::string> graphs{"manhattan", "sphere2500",  "parking-garage",
                                   "torus3D",   "multibody_8", "multibody_8_loops"};
-  std::vector<int> objects{0, 5, 20};
+  std::vector<int> objects{0, 5, 20}, grid_poses{10'000, 20'000};
   MultibodyOptions drive;
   bool check = false;
   IncrementalSolver::Params solver;
 };
 
 void addOptions(CLI::App& app, Options& options) {
-  app.add_option("--parts", options.parts, "What to measure: graphs, drives (default: both)")
-      ->check(CLI::IsMember({"graphs", "drives"}))
+  app.add_option("--parts", options.parts, "What to measure: graphs, drives, grids (default: graphs and drives)")
+      ->check(CLI::IsMember({"graphs", "drives", "grids"}))
       ->delimiter(',');
   app.add_option("--data", options.data, "Folder of the pose graphs")->capture_default_str();
   app.add_option("--graphs", options.graphs, "Names of pose graphs in it, without .g2o")
@@ -60,6 +61,10 @@ void addOptions(CLI::App& app, Options& options) {
       ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();
   app.add_option("--seed", options.drive.seed, "Of the drives, and of the updates that --check looks at")
+      ->capture_default_str();
+  app.add_option("--grid-poses", options.grid_poses, "Poses of the drives through grids of streets")
+      ->delimiter(',')
+      ->check(CLI::Range(10, 1'000'000))
       ->capture_default_str();
   app.add_option("--json", options.json, "File for all figures as JSON");
   addSolverOptions(app, options.solver);
@@ -90,6 +95,18 @@ bool measureGraphs(const Options& options, nlohmann::ordered_json& json) {
   return good;
 }
 
+bool measureGrids(const Options& options, nlohmann::ordered_json& json) {
+  bool good = true;
+  printGraphHead();
+  for (const int poses : options.grid_poses) {
+    const auto figures = measure("grid" + std::to_string(poses), streetGrid(poses, options.drive.seed), options);
+    printGraph(figures);
+    json["grids"].push_back(jsonOf(figures));
+    good = good && (!figures.check || figures.check->failures.empty());
+  }
+  return good;
+}
+
 bool measureDrives(const Options& options, nlohmann::ordered_json& json) {
   bool good = true;
   for (const int objects : options.objects) {
@@ -107,6 +124,7 @@ int measureAll(const Options& options) {
   nlohmann::ordered_json json = {{"solver", jsonOf(options.solver)}};
   bool good = true;
   if (options.parts.contains("graphs")) good = measureGraphs(options, json) && good;
+  if (options.parts.contains("grids")) good = measureGrids(options, json) && good;
   if (options.parts.contains("drives")) good = measureDrives(options, json) && good;
   if (!options.json.empty()) writeAtOnce(options.json, json.dump(2));
   if (good || !options.check) return 0;
