@@ -11,7 +11,7 @@
 
 #include "apps/commands/command_line.hpp"
 #include "apps/console/log.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace {
 

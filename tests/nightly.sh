@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What takes too long for every change: clang-tidy on every source, all tests with and without sanitizers, fuzzing, the packages, results on
-# an arm64 processor, a long drive, and rendered scenes over ten seeds in both styles. Goes on after a failure; prints one table at its end,
+# an arm64 processor and on other systems, a long drive, and rendered scenes over ten seeds in both styles. Goes on after a failure; prints one table at its end,
 # and ends with exit code 1 if any step failed. The scenes' figures are in build/nightly/scenes.log and scenes_film.log.
 #   tests/nightly.sh [FUZZ_SECONDS]   per target, default 600
 set -uo pipefail
@@ -24,6 +24,7 @@ step tsan tests/run.sh --tsan
 step fuzz tests/fuzz.sh "${1:-600}"
 step packages tests/packages.sh
 step arm64 tests/arm64.sh
+step systems tests/systems.sh
 step "long drive" perf/long_drive.sh 100000
 step scenes perf/scenes.sh
 step "scenes film" perf/scenes.sh --style film

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "apps/tasks/host_name.hpp"
-#include "io/natural_order.hpp"
+#include "io/files/natural_order.hpp"
 
 namespace motorcade {
 namespace {

@@ -20,8 +20,8 @@
 #include "apps/tasks/manifest.hpp"
 #include "apps/tasks/planner.hpp"
 #include "apps/tasks/task_performer.hpp"
-#include "io/errors.hpp"
-#include "io/shell_words.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/shell_words.hpp"
 
 namespace motorcade {
 namespace {

@@ -13,9 +13,9 @@
 #include "apps/batch/time_left.hpp"
 #include "apps/tasks/task_json.hpp"
 #include "apps/tasks/task_performer.hpp"
-#include "io/errors.hpp"
-#include "io/line_file.hpp"
-#include "io/shell_words.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/line_file.hpp"
+#include "io/files/shell_words.hpp"
 
 namespace motorcade {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "apps/tasks/host_name.hpp"
 #include "apps/tasks/task_json.hpp"
-#include "io/line_file.hpp"
+#include "io/files/line_file.hpp"
 
 namespace motorcade {
 namespace {

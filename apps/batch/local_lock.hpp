@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "apps/tasks/batch_folder.hpp"
-#include "io/folder_lock.hpp"
+#include "io/files/folder_lock.hpp"
 
 namespace motorcade {
 

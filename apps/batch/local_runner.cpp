@@ -11,7 +11,7 @@
 #include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
 #include "apps/tasks/task_performer.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "apps/tasks/child_process.hpp"
-#include "io/errors.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

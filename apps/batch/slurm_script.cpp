@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "apps/console/own_program.hpp"
 #include "apps/tasks/task_json.hpp"
-#include "io/errors.hpp"
-#include "io/line_file.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/line_file.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

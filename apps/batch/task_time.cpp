@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

@@ -14,14 +14,14 @@
 
 #include "apps/bridge/bridge_options.hpp"
 #include "apps/bridge/bridge_parts.hpp"
-#include "apps/bridge/dds_publisher.hpp"
+#include "apps/bridge/dds/dds_publisher.hpp"
 #include "apps/bridge/drive_player.hpp"
 #include "apps/bridge/result_publisher.hpp"
 #include "apps/bridge/topic_bridge.hpp"
 #include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
 #include "apps/console/stop_signals.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "motorcade/motorcade.hpp"
 
 namespace motorcade {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/bridge/topics.hpp"
-#include "io/sequence.hpp"
+#include "apps/bridge/messages/topics.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

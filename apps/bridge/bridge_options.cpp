@@ -5,11 +5,11 @@
 #include <cctype>
 #include <string_view>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/number_text.hpp"
+#include "io/files/text_file.hpp"
+#include "io/inputs/mounting_text.hpp"
 #include "io/messages/image_topics.hpp"
-#include "io/mounting_text.hpp"
-#include "io/number_text.hpp"
-#include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "apps/bridge/bridge_command.hpp"
-#include "apps/bridge/message_conversion.hpp"
-#include "apps/bridge/received_image.hpp"
+#include "apps/bridge/messages/message_conversion.hpp"
+#include "apps/bridge/messages/received_image.hpp"
 #include "motorcade/motorcade.hpp"
 
 /// What the command line of `motorcade bridge` means. All throw UsageError.

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "apps/console/log.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/bridge/bridge_command.hpp"
-#include "apps/bridge/dds_publisher.hpp"
+#include "apps/bridge/dds/dds_publisher.hpp"
 #include "motorcade/motorcade.hpp"
 
 /// The parts of the bridge that drives and topics share.

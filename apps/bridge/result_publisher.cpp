@@ -1,9 +1,9 @@
 #include "apps/bridge/result_publisher.hpp"
 
-#include "apps/bridge/detections.hpp"
-#include "apps/bridge/diagnostics.hpp"
-#include "apps/bridge/tracked_objects.hpp"
-#include "apps/bridge/vehicle_result.hpp"
+#include "apps/bridge/messages/detections.hpp"
+#include "apps/bridge/messages/diagnostics.hpp"
+#include "apps/bridge/messages/tracked_objects.hpp"
+#include "apps/bridge/messages/vehicle_result.hpp"
 
 namespace motorcade {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "apps/bridge/dds_publisher.hpp"
-#include "apps/bridge/message_conversion.hpp"
-#include "apps/bridge/object_markers.hpp"
+#include "apps/bridge/dds/dds_publisher.hpp"
+#include "apps/bridge/messages/message_conversion.hpp"
+#include "apps/bridge/messages/object_markers.hpp"
 #include "core/se3.hpp"
 #include "motorcade/motorcade.hpp"
 

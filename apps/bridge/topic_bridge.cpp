@@ -15,10 +15,10 @@
 
 #include "apps/bridge/bridge_options.hpp"
 #include "apps/bridge/bridge_parts.hpp"
-#include "apps/bridge/dds_publisher.hpp"
-#include "apps/bridge/image_subscriber.hpp"
+#include "apps/bridge/dds/dds_publisher.hpp"
+#include "apps/bridge/dds/image_subscriber.hpp"
 #include "apps/bridge/input_watch.hpp"
-#include "apps/bridge/message_conversion.hpp"
+#include "apps/bridge/messages/message_conversion.hpp"
 #include "apps/bridge/result_publisher.hpp"
 #include "apps/bridge/topic_feeder.hpp"
 #include "apps/console/log.hpp"

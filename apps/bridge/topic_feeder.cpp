@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "apps/console/log.hpp"
-#include "io/errors.hpp"
-#include "io/sample_bits.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/sample_bits.hpp"
 
 namespace motorcade {
 namespace {

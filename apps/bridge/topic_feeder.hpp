@@ -10,9 +10,9 @@
 #include <stop_token>
 #include <string>
 
-#include "apps/bridge/image_subscriber.hpp"
+#include "apps/bridge/dds/image_subscriber.hpp"
 #include "apps/bridge/input_watch.hpp"
-#include "apps/bridge/pair_conversion.hpp"
+#include "apps/bridge/messages/pair_conversion.hpp"
 #include "io/messages/stamp_pairing.hpp"
 #include "motorcade/motorcade.hpp"
 

@@ -10,7 +10,7 @@
 #include "apps/canvas/color.hpp"
 #include "apps/canvas/rectangle.hpp"
 #include "core/image.hpp"
-#include "io/image_file.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 

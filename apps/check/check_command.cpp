@@ -20,10 +20,11 @@
 #include "apps/watch/input_check.hpp"
 #include "apps/watch/own_vehicle_news.hpp"
 #include "apps/watch/own_vehicle_search.hpp"
-#include "io/json_text.hpp"
-#include "io/line_file.hpp"
-#include "io/sequence.hpp"
-#include "io/sequence_decoder.hpp"
+#include "io/files/json_text.hpp"
+#include "io/files/line_file.hpp"
+#include "io/inputs/sequence_decoder.hpp"
+#include "io/layouts/open_sequence.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 namespace {

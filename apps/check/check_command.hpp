@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

@@ -5,7 +5,7 @@
 #include "apps/watch/epipolar_matching.hpp"
 #include "apps/watch/pair_geometry.hpp"
 #include "core/image.hpp"
-#include "io/image_file.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "io/errors.hpp"
-#include "io/image_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

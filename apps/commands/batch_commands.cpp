@@ -6,7 +6,7 @@
 #include "apps/batch/batch_command.hpp"
 #include "apps/commands/commands.hpp"
 #include "apps/merge/merge_command.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "apps/bridge/bridge_command.hpp"
 #include "apps/commands/commands.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

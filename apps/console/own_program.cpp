@@ -1,6 +1,6 @@
 #include "apps/console/own_program.hpp"
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 

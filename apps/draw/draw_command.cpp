@@ -18,9 +18,9 @@
 #include "apps/draw/video_writer.hpp"
 #include "apps/recorded/recorded_drive.hpp"
 #include "apps/recorded/recorded_run.hpp"
-#include "io/errors.hpp"
-#include "io/image_file.hpp"
-#include "io/pair_reader.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/image_file.hpp"
+#include "io/inputs/pair_reader.hpp"
 
 namespace motorcade {
 namespace {

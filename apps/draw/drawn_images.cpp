@@ -1,7 +1,7 @@
 #include "apps/draw/drawn_images.hpp"
 
-#include "io/errors.hpp"
-#include "io/mask_image.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/mask_image.hpp"
 
 namespace motorcade {
 

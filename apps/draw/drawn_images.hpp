@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "apps/draw/image_view.hpp"
-#include "io/pair_reader.hpp"
-#include "io/sequence.hpp"
+#include "io/inputs/pair_reader.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

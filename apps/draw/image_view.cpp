@@ -12,7 +12,7 @@
 #include "apps/draw/palette.hpp"
 #include "apps/draw/seen_extent.hpp"
 #include "apps/draw/tags.hpp"
-#include "io/object_row.hpp"
+#include "io/results/object_row.hpp"
 
 namespace motorcade {
 namespace {

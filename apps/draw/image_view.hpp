@@ -4,7 +4,7 @@
 
 #include "apps/draw/marks.hpp"
 #include "apps/recorded/recorded_drive.hpp"
-#include "io/image_file.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 

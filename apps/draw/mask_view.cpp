@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/draw/palette.hpp"
-#include "io/mask_image.hpp"
-#include "io/outline_polygons.hpp"
+#include "io/images/mask_image.hpp"
+#include "io/results/outline_polygons.hpp"
 
 namespace motorcade {
 namespace {

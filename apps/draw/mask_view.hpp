@@ -1,7 +1,7 @@
 #pragma once
 
 #include "apps/draw/marks.hpp"
-#include "io/image_file.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 

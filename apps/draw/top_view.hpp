@@ -2,7 +2,7 @@
 
 #include "apps/draw/marks.hpp"
 #include "apps/recorded/recorded_drive.hpp"
-#include "io/image_file.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 

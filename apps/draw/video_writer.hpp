@@ -7,8 +7,8 @@
 
 #include <sys/types.h>
 
-#include "io/file_descriptor.hpp"
-#include "io/image_file.hpp"
+#include "io/files/file_descriptor.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 

@@ -2,11 +2,11 @@
 
 #include <iostream>
 
-#include "apps/evaluate/kitti_export.hpp"
-#include "apps/evaluate/recovered_finals.hpp"
-#include "apps/evaluate/report.hpp"
+#include "apps/evaluate/comparison/recovered_finals.hpp"
+#include "apps/evaluate/report/kitti_export.hpp"
+#include "apps/evaluate/report/report.hpp"
 #include "apps/recorded/recorded_run.hpp"
-#include "io/line_file.hpp"
+#include "io/files/line_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "apps/evaluate/evaluation.hpp"
+#include "apps/evaluate/measures/evaluation.hpp"
 
 namespace motorcade {
 

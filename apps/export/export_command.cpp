@@ -11,9 +11,9 @@
 #include "apps/export/osi_trace.hpp"
 #include "apps/export/tum_export.hpp"
 #include "apps/recorded/recorded_run.hpp"
-#include "io/errors.hpp"
-#include "io/mounting_text.hpp"
-#include "io/pair_reader.hpp"
+#include "io/files/errors.hpp"
+#include "io/inputs/mounting_text.hpp"
+#include "io/inputs/pair_reader.hpp"
 
 namespace motorcade {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "io/image_file.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -8,7 +8,7 @@
 #include "apps/recorded/recorded_drive.hpp"
 #include "core/frame_timing.hpp"
 #include "core/messages.hpp"
-#include "io/frame_table.hpp"
+#include "io/results/frame_table.hpp"
 
 namespace motorcade {
 

@@ -15,7 +15,7 @@
 
 #include "apps/draw/palette.hpp"
 #include "apps/export/foxglove_fields.hpp"
-#include "io/run_folder.hpp"
+#include "io/results/run_folder.hpp"
 
 namespace motorcade {
 namespace {

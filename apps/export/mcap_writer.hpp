@@ -10,7 +10,7 @@
 
 #include "apps/export/mcap_record.hpp"
 #include "core/timestamp.hpp"
-#include "io/output_file.hpp"
+#include "io/files/output_file.hpp"
 
 namespace motorcade::mcap {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/se3.hpp"
-#include "io/run_folder.hpp"
+#include "io/results/run_folder.hpp"
 
 namespace motorcade {
 

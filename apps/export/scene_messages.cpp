@@ -8,7 +8,7 @@
 #include "apps/draw/palette.hpp"
 #include "apps/export/foxglove_fields.hpp"
 #include "core/object_place.hpp"
-#include "io/object_row.hpp"
+#include "io/results/object_row.hpp"
 
 namespace motorcade {
 namespace {

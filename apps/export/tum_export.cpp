@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "apps/recorded/recorded_drive.hpp"
-#include "io/errors.hpp"
-#include "io/line_file.hpp"
-#include "io/trajectory.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/line_file.hpp"
+#include "io/truth/trajectory.hpp"
 
 namespace motorcade {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 
-#include "io/run_folder.hpp"
+#include "io/results/run_folder.hpp"
 
 namespace motorcade {
 

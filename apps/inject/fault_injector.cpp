@@ -11,7 +11,7 @@
 
 #include "apps/inject/image_faults.hpp"
 #include "apps/inject/process_limits.hpp"
-#include "io/image_file.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -12,8 +12,8 @@
 #include "core/image.hpp"
 #include "core/messages.hpp"
 #include "core/timestamp.hpp"
-#include "io/pair_reader.hpp"
-#include "io/sequence.hpp"
+#include "io/inputs/pair_reader.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

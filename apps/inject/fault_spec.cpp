@@ -7,7 +7,7 @@
 #include <random>
 #include <sstream>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

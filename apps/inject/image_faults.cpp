@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/image_file.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 namespace {

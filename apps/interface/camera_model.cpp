@@ -8,8 +8,8 @@
 
 #include <Eigen/LU>
 
-#include "io/errors.hpp"
-#include "io/image_limits.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/image_limits.hpp"
 #include "io/rig/rectification.hpp"
 
 namespace motorcade {

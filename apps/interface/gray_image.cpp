@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "io/sample_bits.hpp"
+#include "io/images/sample_bits.hpp"
 
 namespace motorcade {
 namespace {

@@ -2,9 +2,10 @@
 #include <string>
 
 #include "apps/interface/camera_model.hpp"
-#include "io/errors.hpp"
-#include "io/pair_reader.hpp"
-#include "io/sequence.hpp"
+#include "io/files/errors.hpp"
+#include "io/inputs/pair_reader.hpp"
+#include "io/layouts/open_sequence.hpp"
+#include "io/sequence/sequence.hpp"
 #include "motorcade/motorcade.hpp"
 
 namespace motorcade {

@@ -20,7 +20,7 @@
 #include "apps/interface/result_queue.hpp"
 #include "apps/interface/tracked_drive.hpp"
 #include "apps/interface/tracker_options.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "motorcade/motorcade.hpp"
 
 namespace motorcade {

@@ -6,7 +6,7 @@
 
 #include "apps/interface/camera_model.hpp"
 #include "apps/pipeline/configuration.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

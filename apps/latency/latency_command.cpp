@@ -3,9 +3,9 @@
 #include <cstdio>
 
 #include "apps/latency/latency_table.hpp"
-#include "io/errors.hpp"
-#include "io/frame_table.hpp"
-#include "io/line_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/line_file.hpp"
+#include "io/results/frame_table.hpp"
 
 namespace motorcade {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/frame_table.hpp"
+#include "io/results/frame_table.hpp"
 
 namespace motorcade {
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "io/json_text.hpp"
+#include "io/files/json_text.hpp"
 
 namespace motorcade {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "apps/evaluate/axis_reliability.hpp"
+#include "apps/evaluate/measures/axis_reliability.hpp"
 
 /// Covariances of all drives together, by axis: what they claim against what was found.
 namespace motorcade {

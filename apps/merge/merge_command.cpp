@@ -5,8 +5,8 @@
 #include "apps/merge/merged_files.hpp"
 #include "apps/merge/published_tables.hpp"
 #include "apps/tasks/batch_folder.hpp"
-#include "io/errors.hpp"
-#include "io/line_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/line_file.hpp"
 
 namespace motorcade {
 namespace {

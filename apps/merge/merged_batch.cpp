@@ -7,16 +7,16 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/console/log.hpp"
-#include "apps/evaluate/evaluation.hpp"
+#include "apps/evaluate/measures/evaluation.hpp"
 #include "apps/latency/latency_report.hpp"
 #include "apps/merge/published_tables.hpp"
 #include "apps/tasks/batch_folder.hpp"
 #include "apps/tasks/task_performer.hpp"
-#include "io/errors.hpp"
-#include "io/frame_table.hpp"
-#include "io/json_text.hpp"
-#include "io/shell_words.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/json_text.hpp"
+#include "io/files/shell_words.hpp"
+#include "io/files/text_file.hpp"
+#include "io/results/frame_table.hpp"
 
 namespace motorcade {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "apps/evaluate/reliability_json.hpp"
+#include "apps/evaluate/report/reliability_json.hpp"
 #include "apps/merge/result_tables.hpp"
 
 namespace motorcade {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "apps/evaluate/reliability.hpp"
+#include "apps/evaluate/measures/reliability.hpp"
 
 /// Probabilities of all drives together: a tenth of one drive has few rows.
 namespace motorcade {

@@ -10,8 +10,8 @@
 #include "apps/pipeline/parameter_table.hpp"
 #include "apps/pipeline/toml_document.hpp"
 #include "core/edit_distance.hpp"
-#include "io/errors.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

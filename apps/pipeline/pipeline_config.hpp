@@ -12,7 +12,7 @@
 #include "frontend/segmentation/scene_flow_segmentation.hpp"
 #include "frontend/shape/object_shapes.hpp"
 #include "frontend/tracking/object_tracker.hpp"
-#include "io/image_limits.hpp"
+#include "io/images/image_limits.hpp"
 
 namespace motorcade {
 

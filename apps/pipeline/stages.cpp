@@ -7,7 +7,7 @@
 #include "apps/pipeline/pipeline_config.hpp"
 #include "apps/pipeline/restarting_backend.hpp"
 #include "core/module.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/timestamp.hpp"
-#include "io/ground_truth.hpp"
+#include "io/truth/ground_truth.hpp"
 
 /// Tells labeled objects that move from those that stand, though the labels of both jitter.
 namespace motorcade {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/stereo_camera.hpp"
-#include "io/ground_truth.hpp"
-#include "io/object_points.hpp"
-#include "io/run_folder.hpp"
-#include "io/sequence.hpp"
+#include "io/results/object_points.hpp"
+#include "io/results/run_folder.hpp"
+#include "io/sequence/sequence.hpp"
+#include "io/truth/ground_truth.hpp"
 
 namespace motorcade {
 

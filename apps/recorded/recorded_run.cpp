@@ -8,9 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/errors.hpp"
-#include "io/json_text.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/json_text.hpp"
+#include "io/files/text_file.hpp"
+#include "io/layouts/open_sequence.hpp"
 
 namespace motorcade {
 namespace {

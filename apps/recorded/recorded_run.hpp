@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "io/run_folder.hpp"
-#include "io/sequence.hpp"
+#include "io/results/run_folder.hpp"
+#include "io/sequence/sequence.hpp"
 
 /// What a run folder tells about its own run.
 namespace motorcade {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "apps/evaluate/report.hpp"
-#include "apps/evaluate/trajectory_error.hpp"
+#include "apps/evaluate/comparison/trajectory_error.hpp"
+#include "apps/evaluate/report/report.hpp"
 #include "apps/html/html_page.hpp"
 #include "apps/html/svg_chart.hpp"
 #include "apps/report/report_sections.hpp"

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "apps/draw/palette.hpp"
-#include "apps/evaluate/trajectory_error.hpp"
+#include "apps/evaluate/comparison/trajectory_error.hpp"
 #include "apps/html/svg_chart.hpp"
 #include "apps/report/report_sections.hpp"
 #include "core/object_place.hpp"

@@ -7,7 +7,7 @@
 #include "apps/draw/frame_view.hpp"
 #include "apps/html/html_page.hpp"
 #include "apps/report/report_sections.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

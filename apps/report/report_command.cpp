@@ -6,7 +6,7 @@
 #include "apps/html/html_page.hpp"
 #include "apps/html/svg_chart.hpp"
 #include "apps/report/report_sections.hpp"
-#include "io/line_file.hpp"
+#include "io/files/line_file.hpp"
 
 namespace motorcade {
 namespace {

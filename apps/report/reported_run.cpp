@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "apps/recorded/recorded_run.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/evaluate/evaluation.hpp"
+#include "apps/evaluate/measures/evaluation.hpp"
 #include "apps/recorded/recorded_drive.hpp"
 #include "apps/report/report_command.hpp"
-#include "io/run_folder.hpp"
-#include "io/sequence.hpp"
+#include "io/results/run_folder.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

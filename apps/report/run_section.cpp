@@ -11,8 +11,8 @@
 #include "apps/recorded/recorded_run.hpp"
 #include "apps/report/report_sections.hpp"
 #include "core/messages.hpp"
-#include "io/json_text.hpp"
-#include "io/text_file.hpp"
+#include "io/files/json_text.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

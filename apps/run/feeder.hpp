@@ -4,11 +4,11 @@
 
 #include "apps/inject/fault_injector.hpp"
 #include "apps/pipeline/pipeline.hpp"
+#include "apps/pipeline/run_listener.hpp"
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/input_watch.hpp"
-#include "apps/run/run_listener.hpp"
 #include "apps/view/replay_gate.hpp"
-#include "io/pair_source.hpp"
+#include "io/inputs/pair_source.hpp"
 
 namespace motorcade {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string_view>
 
-#include "io/errors.hpp"
-#include "io/image_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 namespace {

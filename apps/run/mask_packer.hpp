@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/image_file.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 

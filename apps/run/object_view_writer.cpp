@@ -1,9 +1,9 @@
 #include "apps/run/object_view_writer.hpp"
 
-#include "io/errors.hpp"
-#include "io/mask_image.hpp"
-#include "io/object_points.hpp"
-#include "io/outline_polygons.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/mask_image.hpp"
+#include "io/results/object_points.hpp"
+#include "io/results/outline_polygons.hpp"
 
 namespace motorcade {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
+#include "apps/pipeline/run_listener.hpp"
 #include "apps/run/mask_packer.hpp"
-#include "apps/run/run_listener.hpp"
 #include "core/stereo_camera.hpp"
-#include "io/line_file.hpp"
+#include "io/files/line_file.hpp"
 
 namespace motorcade {
 

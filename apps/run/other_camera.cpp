@@ -5,8 +5,8 @@
 
 #include "apps/pipeline/pipeline_config.hpp"
 #include "apps/run/run_options.hpp"
-#include "io/errors.hpp"
-#include "io/trajectory.hpp"
+#include "io/files/errors.hpp"
+#include "io/truth/trajectory.hpp"
 
 namespace motorcade {
 

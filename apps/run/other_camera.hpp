@@ -5,7 +5,7 @@
 
 #include "apps/pipeline/stages.hpp"
 #include "core/se3.hpp"
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

@@ -19,6 +19,7 @@
 #include "apps/console/stop_signals.hpp"
 #include "apps/pipeline/configuration.hpp"
 #include "apps/pipeline/pipeline.hpp"
+#include "apps/pipeline/run_listener.hpp"
 #include "apps/recorded/recorded_run.hpp"
 #include "apps/run/camera_clock.hpp"
 #include "apps/run/feeder.hpp"
@@ -30,13 +31,12 @@
 #include "apps/run/process_usage.hpp"
 #include "apps/run/recorder.hpp"
 #include "apps/run/run_input.hpp"
-#include "apps/run/run_listener.hpp"
 #include "apps/run/run_options.hpp"
 #include "apps/run/run_summary.hpp"
 #include "apps/view/live_view.hpp"
-#include "io/errors.hpp"
-#include "io/pair_source.hpp"
-#include "io/run_folder.hpp"
+#include "io/files/errors.hpp"
+#include "io/inputs/pair_source.hpp"
+#include "io/results/run_folder.hpp"
 
 namespace motorcade {
 namespace {

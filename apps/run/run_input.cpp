@@ -12,14 +12,15 @@
 #include "apps/inject/fault_spec.hpp"
 #include "io/bag/bag_reader.hpp"
 #include "io/bag/bag_source.hpp"
-#include "io/errors.hpp"
-#include "io/instance_source.hpp"
-#include "io/sequence_decoder.hpp"
+#include "io/files/errors.hpp"
+#include "io/inputs/instance_source.hpp"
+#include "io/inputs/sequence_decoder.hpp"
+#include "io/inputs/vehicle_motion_file.hpp"
+#include "io/inputs/vehicle_motion_source.hpp"
+#include "io/layouts/open_sequence.hpp"
+#include "io/sequence/timestamps.hpp"
 #include "io/stream/stream_sequence.hpp"
 #include "io/stream/y4m_source.hpp"
-#include "io/timestamps.hpp"
-#include "io/vehicle_motion_file.hpp"
-#include "io/vehicle_motion_source.hpp"
 
 namespace motorcade {
 namespace {

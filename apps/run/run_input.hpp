@@ -11,8 +11,8 @@
 #include "apps/run/run_options.hpp"
 #include "core/messages.hpp"
 #include "io/bag/bag_drive.hpp"
-#include "io/pair_source.hpp"
-#include "io/sequence.hpp"
+#include "io/inputs/pair_source.hpp"
+#include "io/sequence/sequence.hpp"
 #include "io/stream/stereo_packing.hpp"
 #include "io/stream/y4m_stream.hpp"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "apps/pipeline/configuration.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

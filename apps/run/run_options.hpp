@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/pipeline/pipeline_params.hpp"
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/console/versions.hpp"
-#include "io/json_text.hpp"
-#include "io/run_folder.hpp"
+#include "io/files/json_text.hpp"
+#include "io/results/run_folder.hpp"
 
 namespace motorcade {
 namespace {

@@ -8,8 +8,8 @@
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/run/process_usage.hpp"
 #include "apps/watch/rig_watch.hpp"
-#include "io/pair_source.hpp"
-#include "io/sequence.hpp"
+#include "io/inputs/pair_source.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

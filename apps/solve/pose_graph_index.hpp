@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "io/pose_graph.hpp"
+#include "io/results/pose_graph.hpp"
 
 namespace motorcade {
 

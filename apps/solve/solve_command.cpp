@@ -7,8 +7,8 @@
 #include "apps/console/stop_signals.hpp"
 #include "apps/solve/solution.hpp"
 #include "apps/solve/solve_report.hpp"
-#include "io/errors.hpp"
-#include "io/line_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/line_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "apps/console/log.hpp"
-#include "apps/synth/scene_builder.hpp"
-#include "io/errors.hpp"
+#include "apps/synth/scenes/scene_builder.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/synth/sequence_writer.hpp"
+#include "apps/synth/output/sequence_writer.hpp"
 
 namespace motorcade {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/file_descriptor.hpp"
+#include "io/files/file_descriptor.hpp"
 
 namespace motorcade {
 

@@ -9,10 +9,10 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include "io/errors.hpp"
-#include "io/natural_order.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/natural_order.hpp"
+#include "io/files/text_file.hpp"
 #include "io/rig/rectification.hpp"
-#include "io/text_file.hpp"
 
 namespace motorcade {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

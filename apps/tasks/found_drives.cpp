@@ -6,8 +6,8 @@
 #include <glob.h>
 
 #include "apps/tasks/path_text.hpp"
-#include "io/errors.hpp"
-#include "io/natural_order.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/natural_order.hpp"
 
 namespace motorcade {
 namespace {

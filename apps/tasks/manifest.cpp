@@ -4,8 +4,8 @@
 
 #include "apps/tasks/manifest_fields.hpp"
 #include "apps/tasks/path_text.hpp"
-#include "io/errors.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "apps/tasks/manifest_fields.hpp"
-#include "io/errors.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

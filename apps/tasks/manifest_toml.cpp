@@ -4,7 +4,7 @@
 #include "apps/pipeline/toml_document.hpp"
 #include "apps/tasks/manifest_fields.hpp"
 #include "apps/tasks/path_text.hpp"
-#include "io/text_file.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

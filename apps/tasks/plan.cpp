@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/tasks/task_json.hpp"
-#include "io/errors.hpp"
-#include "io/line_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/line_file.hpp"
 
 namespace motorcade {
 namespace {

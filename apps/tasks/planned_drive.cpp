@@ -11,9 +11,10 @@
 #include "apps/synth/synth_command.hpp"
 #include "apps/tasks/fingerprint.hpp"
 #include "apps/tasks/path_text.hpp"
-#include "io/errors.hpp"
-#include "io/ground_truth.hpp"
-#include "io/sequence.hpp"
+#include "io/files/errors.hpp"
+#include "io/layouts/open_sequence.hpp"
+#include "io/sequence/sequence.hpp"
+#include "io/truth/ground_truth.hpp"
 
 namespace motorcade {
 

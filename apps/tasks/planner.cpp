@@ -12,7 +12,7 @@
 #include "apps/tasks/manifest_fields.hpp"
 #include "apps/tasks/planned_drive.hpp"
 #include "core/edit_distance.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

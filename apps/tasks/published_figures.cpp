@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "apps/pipeline/toml_document.hpp"
-#include "io/errors.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

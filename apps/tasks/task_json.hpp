@@ -6,9 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/errors.hpp"
-#include "io/json_text.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/json_text.hpp"
+#include "io/files/text_file.hpp"
 
 /// What plans and records have in common as JSON.
 namespace motorcade {

@@ -10,8 +10,8 @@
 #include "apps/tasks/fingerprint.hpp"
 #include "apps/tasks/host_name.hpp"
 #include "apps/tasks/task_steps.hpp"
-#include "io/errors.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -1,7 +1,7 @@
 #include "apps/tasks/task_record.hpp"
 
 #include "apps/tasks/task_json.hpp"
-#include "io/line_file.hpp"
+#include "io/files/line_file.hpp"
 
 namespace motorcade {
 namespace {

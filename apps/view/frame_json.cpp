@@ -8,9 +8,9 @@
 #include "apps/draw/palette.hpp"
 #include "apps/latency/latency_report.hpp"
 #include "core/object_place.hpp"
-#include "io/json_text.hpp"
-#include "io/object_row.hpp"
-#include "io/run_folder.hpp"
+#include "io/files/json_text.hpp"
+#include "io/results/object_row.hpp"
+#include "io/results/run_folder.hpp"
 
 namespace motorcade {
 namespace {

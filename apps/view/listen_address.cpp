@@ -4,7 +4,7 @@
 #include <charconv>
 #include <optional>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

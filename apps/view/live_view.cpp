@@ -6,7 +6,7 @@
 
 #include <sys/resource.h>
 
-#include "io/image_file.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 namespace {

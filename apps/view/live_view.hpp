@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "apps/run/run_listener.hpp"
+#include "apps/pipeline/run_listener.hpp"
 #include "apps/view/page_server.hpp"
 #include "apps/view/replay_gate.hpp"
 #include "apps/view/sequence_pictures.hpp"

@@ -15,7 +15,7 @@
 #include "apps/console/log.hpp"
 #include "apps/view/assets.hpp"
 #include "apps/view/request_guard.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/json_text.hpp"
-#include "io/text_file.hpp"
+#include "io/files/json_text.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

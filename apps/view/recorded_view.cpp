@@ -7,7 +7,7 @@
 #include "apps/recorded/recorded_run.hpp"
 #include "apps/view/recorded_files.hpp"
 #include "apps/view/run_overview.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

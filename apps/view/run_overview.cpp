@@ -9,8 +9,8 @@
 
 #include "apps/latency/latency_report.hpp"
 #include "apps/view/frame_json.hpp"
-#include "io/json_text.hpp"
-#include "io/object_row.hpp"
+#include "io/files/json_text.hpp"
+#include "io/results/object_row.hpp"
 
 namespace motorcade {
 namespace {

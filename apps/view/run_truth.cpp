@@ -6,10 +6,10 @@
 #include <map>
 #include <utility>
 
-#include "apps/evaluate/object_measures.hpp"
-#include "apps/evaluate/trajectory_error.hpp"
+#include "apps/evaluate/comparison/object_measures.hpp"
+#include "apps/evaluate/comparison/trajectory_error.hpp"
 #include "apps/recorded/recorded_drive.hpp"
-#include "io/ground_truth.hpp"
+#include "io/truth/ground_truth.hpp"
 
 namespace motorcade {
 namespace {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/evaluate/worst_frames.hpp"
+#include "apps/evaluate/measures/worst_frames.hpp"
 #include "apps/view/shown_frame.hpp"
-#include "io/run_folder.hpp"
-#include "io/sequence.hpp"
+#include "io/results/run_folder.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

@@ -1,7 +1,7 @@
 #include "apps/view/sequence_pictures.hpp"
 
-#include "io/errors.hpp"
-#include "io/image_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/image_file.hpp"
 
 namespace motorcade {
 

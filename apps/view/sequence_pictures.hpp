@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "io/pair_reader.hpp"
-#include "io/sequence.hpp"
+#include "io/inputs/pair_reader.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

@@ -9,7 +9,7 @@
 #include "core/frame_timing.hpp"
 #include "core/messages.hpp"
 #include "core/stereo_camera.hpp"
-#include "io/outline_polygons.hpp"
+#include "io/results/outline_polygons.hpp"
 
 namespace motorcade {
 

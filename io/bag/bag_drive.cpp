@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "io/bag/bag_pairs.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 #include "io/layouts/given_cameras.hpp"
 #include "io/layouts/sample_use.hpp"
 #include "io/messages/camera_info_message.hpp"
 #include "io/messages/image_topics.hpp"
-#include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/timestamp.hpp"
 #include "io/bag/bag_topics.hpp"
 #include "io/messages/image_message.hpp"
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

@@ -6,7 +6,7 @@
 
 #include <unistd.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "io/file_descriptor.hpp"
+#include "io/files/file_descriptor.hpp"
 
 namespace motorcade {
 

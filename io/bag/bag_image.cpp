@@ -1,7 +1,7 @@
 #include "io/bag/bag_image.hpp"
 
-#include "io/errors.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

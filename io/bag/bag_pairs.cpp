@@ -5,9 +5,9 @@
 #include <set>
 #include <utility>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 #include "io/messages/image_topics.hpp"
-#include "io/text_file.hpp"
 
 namespace motorcade {
 

@@ -9,8 +9,8 @@
 #include "io/bag/db3_reader.hpp"
 #include "io/bag/mcap_format.hpp"
 #include "io/bag/mcap_reader.hpp"
-#include "io/errors.hpp"
-#include "io/file_descriptor.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/file_descriptor.hpp"
 #include "io/rig/yaml_file.hpp"
 
 namespace motorcade {

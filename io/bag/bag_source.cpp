@@ -4,7 +4,7 @@
 #include <exception>
 #include <utility>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

@@ -12,8 +12,8 @@
 #include "core/spsc_ring.hpp"
 #include "io/bag/bag_drive.hpp"
 #include "io/bag/bag_pairs.hpp"
-#include "io/pair_reader.hpp"
-#include "io/pair_source.hpp"
+#include "io/inputs/pair_reader.hpp"
+#include "io/inputs/pair_source.hpp"
 
 namespace motorcade {
 

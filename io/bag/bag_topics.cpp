@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "io/bag/sensor_messages.hpp"
-#include "io/errors.hpp"
-#include "io/shell_words.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/shell_words.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

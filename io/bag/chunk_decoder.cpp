@@ -3,8 +3,8 @@
 #include <lz4frame.h>
 #include <zstd.h>
 
-#include "io/errors.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade::mcap {
 namespace {

@@ -5,8 +5,8 @@
 #include <sqlite3.h>
 
 #include "io/bag/chunk_decoder.hpp"
-#include "io/errors.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {

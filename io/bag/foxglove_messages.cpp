@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/bag/protobuf_fields.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

@@ -8,7 +8,7 @@
 #include <zlib.h>
 
 #include "io/bag/record_fields.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

@@ -1,6 +1,6 @@
 #include "io/bag/protobuf_fields.hpp"
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 

@@ -1,6 +1,6 @@
 #include "io/bag/record_fields.hpp"
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade::mcap {
 

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/se3.hpp"
-#include "io/errors.hpp"
-#include "io/json_text.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/json_text.hpp"
+#include "io/files/text_file.hpp"
 #include "io/layouts/layout_parts.hpp"
-#include "io/text_file.hpp"
 
 /// Argoverse 1: a log of its stereo set, or of its tracking set where the rectified images lie in it.
 namespace motorcade {

@@ -1,10 +1,10 @@
 #include <string>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 #include "io/layouts/layout_parts.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/rig/rig_file.hpp"
-#include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "io/layouts/layout_cameras.hpp"
 #include "io/layouts/layout_parts.hpp"
 #include "io/rig/rig_file.hpp"

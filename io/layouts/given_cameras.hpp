@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "io/image_file.hpp"
-#include "io/sequence.hpp"
+#include "io/images/image_file.hpp"
+#include "io/sequence/sequence.hpp"
 
 /// What --camera and --calibration say.
 namespace motorcade {

@@ -4,14 +4,14 @@
 #include <utility>
 #include <vector>
 
-#include "io/errors.hpp"
-#include "io/frame_lines.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 #include "io/layouts/layout_cameras.hpp"
 #include "io/layouts/layout_parts.hpp"
-#include "io/layouts/pairing.hpp"
 #include "io/layouts/unsupported.hpp"
-#include "io/text_file.hpp"
-#include "io/timestamps.hpp"
+#include "io/sequence/frame_lines.hpp"
+#include "io/sequence/pairing.hpp"
+#include "io/sequence/timestamps.hpp"
 
 namespace motorcade {
 namespace {

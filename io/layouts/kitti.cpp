@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "io/layouts/layout_cameras.hpp"
 #include "io/layouts/layout_parts.hpp"
-#include "io/timestamps.hpp"
+#include "io/sequence/timestamps.hpp"
 
 namespace motorcade {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/rig/rig_file.hpp"
 

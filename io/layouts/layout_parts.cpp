@@ -7,18 +7,18 @@
 #include <optional>
 #include <utility>
 
-#include "io/errors.hpp"
-#include "io/frame_lines.hpp"
-#include "io/image_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/natural_order.hpp"
+#include "io/images/image_file.hpp"
 #include "io/layouts/given_cameras.hpp"
-#include "io/layouts/numbering.hpp"
-#include "io/layouts/pairing.hpp"
 #include "io/layouts/sample_use.hpp"
 #include "io/layouts/unsupported.hpp"
-#include "io/natural_order.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/rig/rig_search.hpp"
-#include "io/timestamps.hpp"
+#include "io/sequence/frame_lines.hpp"
+#include "io/sequence/numbering.hpp"
+#include "io/sequence/pairing.hpp"
+#include "io/sequence/timestamps.hpp"
 
 namespace motorcade {
 namespace {
@@ -82,15 +82,6 @@ std::vector<fs::path> imagesIn(const fs::path& folder) {
                    (others.empty() ? "" : "; " + adviceOnOtherImages(others)));
 }
 
-std::optional<std::int64_t> imageNumber(const fs::path& image) {
-  const std::string name = image.stem().string();
-  const std::size_t begin = name.find_last_not_of("0123456789") + 1;
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(name.data() + begin, name.data() + name.size(), number);
-  if (begin == name.size() || error != std::errc()) return std::nullopt;
-  return number;
-}
-
 ImagesByNumber imagesByNumber(const fs::path& folder) {
   ImagesByNumber by_number;
   for (const fs::path& image : imagesIn(folder))
@@ -99,7 +90,7 @@ ImagesByNumber imagesByNumber(const fs::path& folder) {
 }
 
 void setFrames(Sequence& sequence, const fs::path& left_folder, const fs::path& right_folder) {
-  setPairs(sequence, pairFolders(left_folder, right_folder));
+  setPairs(sequence, pairImages(namedImages(imagesIn(left_folder)), namedImages(imagesIn(right_folder))));
 }
 
 std::vector<std::int64_t> setKeyedFrames(Sequence& sequence, const KeyedImages& images) {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "io/image_file.hpp"
-#include "io/layouts/image_names.hpp"
+#include "io/images/image_file.hpp"
 #include "io/layouts/layouts.hpp"
-#include "io/timestamps.hpp"
+#include "io/sequence/image_names.hpp"
+#include "io/sequence/timestamps.hpp"
 
 /// What the layouts have in common.
 namespace motorcade {
@@ -37,8 +37,6 @@ std::filesystem::path neededFile(const std::filesystem::path& file, const std::s
 std::vector<std::filesystem::path> listImages(const std::filesystem::path& folder);
 /// The same; throws InputError where there is none.
 std::vector<std::filesystem::path> imagesIn(const std::filesystem::path& folder);
-/// The number at the end of an image's name; empty where there is none.
-std::optional<std::int64_t> imageNumber(const std::filesystem::path& image);
 /// Of a folder, those that have a number. Throws InputError where there is no image.
 ImagesByNumber imagesByNumber(const std::filesystem::path& folder);
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 
 /// One function per layout: each gives a sequence where it finds its own, nothing elsewhere.
 namespace motorcade {

@@ -1,4 +1,4 @@
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "io/layouts/layout_cameras.hpp"
 #include "io/layouts/layout_parts.hpp"
 

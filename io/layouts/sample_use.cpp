@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "io/errors.hpp"
-#include "io/image_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
+#include "io/images/image_file.hpp"
 #include "io/rig/yaml_file.hpp"
-#include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {

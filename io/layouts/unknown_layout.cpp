@@ -4,11 +4,11 @@
 #include <string_view>
 #include <vector>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/natural_order.hpp"
+#include "io/files/text_file.hpp"
 #include "io/layouts/layout_parts.hpp"
 #include "io/layouts/unsupported.hpp"
-#include "io/natural_order.hpp"
-#include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -10,10 +10,10 @@
 #include <string_view>
 #include <utility>
 
-#include "io/image_file.hpp"
-#include "io/layouts/image_names.hpp"
-#include "io/natural_order.hpp"
-#include "io/shell_words.hpp"
+#include "io/files/natural_order.hpp"
+#include "io/files/shell_words.hpp"
+#include "io/images/image_file.hpp"
+#include "io/sequence/image_names.hpp"
 
 namespace motorcade {
 namespace {

@@ -3,9 +3,9 @@
 #include <utility>
 #include <vector>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "io/layouts/layout_parts.hpp"
-#include "io/virtual_kitti.hpp"
+#include "io/truth/virtual_kitti.hpp"
 
 /// Virtual KITTI 2: SceneNN/VARIATION with frames/rgb/Camera_0 and Camera_1. The tables and the instances are archives
 /// of their own, unpacked over the images, or into a folder beside them or beside their scenes.

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/errors.hpp"
-#include "io/image_limits.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
+#include "io/images/image_limits.hpp"
 #include "io/rig/rig_parts.hpp"
-#include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <string_view>
 
-#include "io/errors.hpp"
-#include "io/image_codec.hpp"
-#include "io/text_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
+#include "io/images/image_codec.hpp"
 
 namespace motorcade {
 namespace {

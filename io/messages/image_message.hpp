@@ -6,9 +6,9 @@
 #include <string>
 
 #include "core/image.hpp"
-#include "io/bayer.hpp"
-#include "io/image_file.hpp"
-#include "io/sample_bits.hpp"
+#include "io/images/bayer.hpp"
+#include "io/images/image_file.hpp"
+#include "io/images/sample_bits.hpp"
 
 /// Images in messages as cameras' drivers send them, whatever wire or file they came by. `name` is for messages to the
 /// user; what cannot be used is an InputError that begins with it.

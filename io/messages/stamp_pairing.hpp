@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

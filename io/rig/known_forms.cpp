@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

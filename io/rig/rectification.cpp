@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "io/files/text_file.hpp"
 #include "io/rig/known_forms.hpp"
 #include "io/rig/rig_readers.hpp"
-#include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {

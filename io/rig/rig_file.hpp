@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "io/rig/rectification.hpp"
 
 /// Calibrations of pairs in makers' forms, told apart by their content: Kalibr's chains, ROS' camera_info, OpenCV's

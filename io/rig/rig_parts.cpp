@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/image_limits.hpp"
-#include "io/text_file.hpp"
+#include "io/files/text_file.hpp"
+#include "io/images/image_limits.hpp"
 
 namespace motorcade {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/rig/yaml_file.hpp"
 

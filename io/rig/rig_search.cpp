@@ -9,9 +9,9 @@
 #include <optional>
 #include <set>
 
+#include "io/files/shell_words.hpp"
 #include "io/rig/rig_file.hpp"
 #include "io/rig/rig_readers.hpp"
-#include "io/shell_words.hpp"
 
 namespace motorcade {
 namespace {

@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
+#include "io/files/text_file.hpp"
 #include "io/rig/rig_parts.hpp"
 #include "io/rig/rig_readers.hpp"
-#include "io/text_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "core/module.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/text_file.hpp"
 #include "io/rig/known_forms.hpp"
 #include "io/rig/xml_file.hpp"
 #include "io/rig/yaml_module.hpp"
-#include "io/text_file.hpp"
 
 namespace motorcade {
 

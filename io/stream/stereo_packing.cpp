@@ -4,9 +4,9 @@
 #include <cstring>
 #include <string>
 
-#include "io/errors.hpp"
-#include "io/image_codec.hpp"
-#include "io/sample_bits.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/image_codec.hpp"
+#include "io/images/sample_bits.hpp"
 
 namespace motorcade {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "core/image.hpp"
-#include "io/image_file.hpp"
+#include "io/images/image_file.hpp"
 #include "io/stream/y4m_header.hpp"
 
 /// Both images of a pair in one picture.

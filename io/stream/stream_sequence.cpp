@@ -1,7 +1,7 @@
 #include "io/stream/stream_sequence.hpp"
 
-#include "io/errors.hpp"
-#include "io/image_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/image_file.hpp"
 #include "io/layouts/given_cameras.hpp"
 #include "io/layouts/sample_use.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 #include "io/stream/stereo_packing.hpp"
 #include "io/stream/y4m_header.hpp"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "io/errors.hpp"
-#include "io/timestamps.hpp"
+#include "io/files/errors.hpp"
+#include "io/sequence/timestamps.hpp"
 
 namespace motorcade {
 

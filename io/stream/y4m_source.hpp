@@ -10,9 +10,9 @@
 #include "core/image.hpp"
 #include "core/mailbox.hpp"
 #include "core/spsc_ring.hpp"
-#include "io/pair_reader.hpp"
-#include "io/pair_source.hpp"
-#include "io/sequence.hpp"
+#include "io/inputs/pair_reader.hpp"
+#include "io/inputs/pair_source.hpp"
+#include "io/sequence/sequence.hpp"
 #include "io/stream/stereo_packing.hpp"
 #include "io/stream/y4m_stream.hpp"
 

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "apps/run/process_usage.hpp"
-#include "io/errors.hpp"
-#include "io/image_file.hpp"
-#include "io/png_fast_decoder.hpp"
-#include "io/sequence_decoder.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/image_file.hpp"
+#include "io/images/png_fast_decoder.hpp"
+#include "io/inputs/sequence_decoder.hpp"
 
 namespace motorcade::perf {
 namespace {

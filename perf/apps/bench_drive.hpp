@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/messages.hpp"
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade::perf {
 

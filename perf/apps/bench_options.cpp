@@ -2,7 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
+#include "io/layouts/open_sequence.hpp"
 
 namespace motorcade::perf {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/pipeline/configuration.hpp"
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 #include "perf/apps/bench_drive.hpp"
 
 namespace CLI {

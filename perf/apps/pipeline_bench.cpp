@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "perf/apps/long_drive.hpp"
 #include "perf/apps/overload.hpp"
 #include "perf/apps/sweep.hpp"

@@ -4,10 +4,11 @@
 #include <string>
 
 #include "core/image.hpp"
-#include "io/errors.hpp"
-#include "io/image_file.hpp"
-#include "io/png_fast_decoder.hpp"
-#include "io/sequence.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/image_file.hpp"
+#include "io/images/png_fast_decoder.hpp"
+#include "io/layouts/open_sequence.hpp"
+#include "io/sequence/sequence.hpp"
 
 /// Decodes the first pairs of a drive by libpng alone: under callgrind, `decodeAnyPng` is the unit of costs there.
 ///   libpng_pairs DRIVE FRAMES

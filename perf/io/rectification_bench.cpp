@@ -5,11 +5,12 @@
 
 #include <benchmark/benchmark.h>
 
-#include "io/image_file.hpp"
-#include "io/png_fast_decoder.hpp"
+#include "io/images/image_file.hpp"
+#include "io/images/png_fast_decoder.hpp"
+#include "io/layouts/open_sequence.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/rig/remap.hpp"
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 #include "tests/support/data_folder.hpp"
 
 /// What it costs to rectify a pair on the way, beside what it takes to decode it and what libpng would take. Items are

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "core/messages.hpp"
-#include "io/image_file.hpp"
-#include "io/sequence.hpp"
+#include "io/images/image_file.hpp"
+#include "io/layouts/open_sequence.hpp"
+#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 

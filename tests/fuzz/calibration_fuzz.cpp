@@ -1,7 +1,7 @@
 #include <array>
 #include <cmath>
 
-#include "io/calibration.hpp"
+#include "io/sequence/calibration.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 using namespace motorcade;

@@ -13,7 +13,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 /// What the fuzz targets share: an input as a file in memory, and what every refusal of one must say.
 namespace motorcade::fuzz {

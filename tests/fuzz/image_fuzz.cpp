@@ -1,6 +1,6 @@
 #include <array>
 
-#include "io/image_file.hpp"
+#include "io/images/image_file.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 using namespace motorcade;

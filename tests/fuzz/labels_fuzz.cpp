@@ -1,4 +1,4 @@
-#include "io/ground_truth.hpp"
+#include "io/truth/ground_truth.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 using namespace motorcade;

@@ -1,6 +1,6 @@
 #include <array>
 
-#include "io/ground_truth.hpp"
+#include "io/truth/ground_truth.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 using namespace motorcade;

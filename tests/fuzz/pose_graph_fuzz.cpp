@@ -1,6 +1,6 @@
 #include <array>
 
-#include "io/pose_graph.hpp"
+#include "io/results/pose_graph.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 using namespace motorcade;

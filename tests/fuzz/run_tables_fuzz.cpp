@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 
-#include "io/object_points.hpp"
-#include "io/run_folder.hpp"
+#include "io/results/object_points.hpp"
+#include "io/results/run_folder.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 using namespace motorcade;

@@ -1,4 +1,4 @@
-#include "io/timestamps.hpp"
+#include "io/sequence/timestamps.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 using namespace motorcade;

@@ -10,9 +10,10 @@
 #include <gtest/gtest.h>
 
 #include "apps/interface/camera_model.hpp"
+#include "io/layouts/open_sequence.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/rig/remap.hpp"
-#include "io/sequence.hpp"
+#include "io/sequence/sequence.hpp"
 #include "tests/interface/tracked_drive.hpp"
 #include "tests/support/data_folder.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "io/pair_source.hpp"
+#include "io/inputs/pair_source.hpp"
 
 namespace motorcade::test {
 

@@ -15,10 +15,11 @@
 #include <Eigen/Geometry>
 #include <png.h>
 
-#include "io/ground_truth.hpp"
-#include "io/image_file.hpp"
-#include "io/mask_image.hpp"
-#include "io/sequence.hpp"
+#include "io/images/image_file.hpp"
+#include "io/images/mask_image.hpp"
+#include "io/layouts/open_sequence.hpp"
+#include "io/sequence/sequence.hpp"
+#include "io/truth/ground_truth.hpp"
 
 /// Lays a drive with exact truth out as a variation of Virtual KITTI 2.
 namespace motorcade::test {

@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "io/errors.hpp"
-#include "io/line_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/line_file.hpp"
 #include "perf/backend/solver/bench_report.hpp"
 #include "perf/backend/solver/solver_options.hpp"
 #include "perf/backend/solver/street_grid.hpp"

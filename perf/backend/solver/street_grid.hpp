@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "io/pose_graph.hpp"
+#include "io/results/pose_graph.hpp"
 
 namespace motorcade::perf {
 

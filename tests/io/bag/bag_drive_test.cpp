@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "io/bag/bag_reader.hpp"
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "io/rig/rectification.hpp"
 #include "tests/io/bag/numbered_bag.hpp"
 #include "tests/io/temporary_folder.hpp"

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {

@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 
 #include "io/bag/sensor_messages.hpp"
-#include "io/errors.hpp"
-#include "tests/io/image_samples.hpp"
+#include "io/files/errors.hpp"
+#include "tests/io/images/image_samples.hpp"
 
 namespace motorcade {
 namespace {

@@ -8,7 +8,7 @@
 #include <zlib.h>
 #include <zstd.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/support/mcap_text.hpp"
 

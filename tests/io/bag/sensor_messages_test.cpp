@@ -4,8 +4,8 @@
 
 #include <gmock/gmock.h>
 
-#include "io/errors.hpp"
-#include "tests/io/image_samples.hpp"
+#include "io/files/errors.hpp"
+#include "tests/io/images/image_samples.hpp"
 #include "tests/support/ros_message_text.hpp"
 
 namespace motorcade {

@@ -1,9 +1,10 @@
 #include <gmock/gmock.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
+#include "io/inputs/sequence_decoder.hpp"
+#include "io/layouts/open_sequence.hpp"
 #include "io/rig/rectification.hpp"
-#include "io/sequence.hpp"
-#include "io/sequence_decoder.hpp"
+#include "io/sequence/sequence.hpp"
 #include "tests/io/layouts/layout_folder.hpp"
 
 /// The calibration of a layout: beside its images, or as the user gives it.

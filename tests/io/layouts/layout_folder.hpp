@@ -7,9 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "io/errors.hpp"
-#include "io/image_file.hpp"
-#include "io/sequence.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/image_file.hpp"
+#include "io/layouts/open_sequence.hpp"
+#include "io/sequence/sequence.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {

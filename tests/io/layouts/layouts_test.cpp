@@ -3,12 +3,13 @@
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
 
-#include "io/errors.hpp"
-#include "io/ground_truth.hpp"
-#include "io/image_file.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/image_file.hpp"
+#include "io/inputs/sequence_decoder.hpp"
+#include "io/layouts/open_sequence.hpp"
 #include "io/rig/rectification.hpp"
-#include "io/sequence.hpp"
-#include "io/sequence_decoder.hpp"
+#include "io/sequence/sequence.hpp"
+#include "io/truth/ground_truth.hpp"
 #include "tests/io/layouts/layout_folder.hpp"
 
 /// Layouts other than KITTI's, made small; `sequence_test` has those.

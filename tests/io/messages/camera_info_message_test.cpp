@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "io/rig/rig_file.hpp"
 #include "tests/io/temporary_folder.hpp"
 

@@ -8,9 +8,9 @@
 
 #include <gmock/gmock.h>
 
-#include "io/errors.hpp"
-#include "tests/io/image_samples.hpp"
-#include "tests/io/png_sample.hpp"
+#include "io/files/errors.hpp"
+#include "tests/io/images/image_samples.hpp"
+#include "tests/io/images/png_sample.hpp"
 
 namespace motorcade {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "io/rig/remap.hpp"
 #include "tests/io/rig/rigs_by_hand.hpp"
 #include "tests/io/temporary_folder.hpp"

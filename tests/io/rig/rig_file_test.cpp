@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <gmock/gmock.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "io/rig/rig_search.hpp"
 #include "tests/io/temporary_folder.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <gmock/gmock.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 
 namespace motorcade {
 namespace {

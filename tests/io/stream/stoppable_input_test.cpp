@@ -8,7 +8,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "tests/io/stream/piped_text.hpp"
 
 namespace motorcade {

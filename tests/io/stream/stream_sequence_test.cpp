@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {

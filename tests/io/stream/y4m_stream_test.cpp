@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-#include "io/errors.hpp"
+#include "io/files/errors.hpp"
 #include "tests/io/stream/piped_text.hpp"
 
 namespace motorcade {

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "apps/bridge/messages/received_image.hpp"
+#include "core/image.hpp"
+#include "io/inputs/pair_reader.hpp"
+#include "io/messages/camera_info_message.hpp"
+#include "io/messages/stamp_pairing.hpp"
+#include "io/sequence/sequence.hpp"
+
+namespace motorcade {
+
+using ReceivedPair = StampPairing<ReceivedImage>::Pair;
+
+/// The image's size, from its header. Throws InputError, which begins with `name`.
+ImageSize sizeOf(const ReceivedImage& image, const std::string& name);
+
+/// The knowledge of the cameras: the user's word, else both sides' camera_info.
+struct CameraKnowledge {
+  std::array<CameraTopics, 2> topics{};
+  GivenCameras given{};
+  std::array<std::optional<CameraInfoMessage>, 2> infos{};
+
+  bool complete() const { return !given.empty() || (infos[0] && infos[1]); }
+};
+
+/// The camera and its rectification. Throws InputError or UsageError.
+Sequence camerasOf(const CameraKnowledge& known, ImageSize size);
+
+/// From the images that came to those that the tracker takes: gray, of the camera's size, rectified. Remembers how many
+/// bits the samples of 16 bits use, which is the same for all pairs.
+class PairConversion {
+ public:
+  struct Grays {
+    Image left{}, right{};
+  };
+  PairConversion(const Sequence& cameras, const std::array<CameraTopics, 2>& topics);
+
+  /// Throws InputError naming the topic.
+  Grays operator()(const ReceivedPair& pair);
+  /// The bits that samples of 16 bits use, once they are known.
+  std::optional<int> sampleBits() const { return sample_bits_; }
+
+ private:
+  int bitsFor(const ReceivedPair& pair) const;
+  Image grayOf(const ReceivedImage& image, StereoSide side, int sample_bits);
+
+  std::array<CameraTopics, 2> topics_;
+  ImageSize size_;
+  std::optional<BayerPattern> bayer_;
+  std::optional<int> sample_bits_{};
+  PairReader rectify_;
+  ImagePool pool_;
+};
+
+}  // namespace motorcade

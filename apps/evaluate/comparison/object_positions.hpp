@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "apps/evaluate/comparison/followed_label.hpp"
+#include "apps/evaluate/comparison/trajectory_error.hpp"
+
+/// How far a body's origin is from where its label says, by what is held against it.
+namespace motorcade {
+
+/// A body's origin is fixed to its object, but where is arbitrary: `offset removed` takes out the constant offset
+/// between origin and label, the median over the frames in the label's frame.
+enum class PositionKind : std::size_t {
+  kAligned,               // in the world, after SE(3) alignment of the whole path
+  kAlignedOffsetRemoved,  // both
+  kWorld,                 // in the world of the run's first camera, nothing aligned
+  kWorldOffsetRemoved,
+  kAsSeen,  // seen from the camera of the same frame: free of the camera's drift, and of its truth's errors
+  kAsSeenOffsetRemoved
+};
+inline constexpr std::size_t kPositionKinds = 6;
+/// As in the JSON.
+inline constexpr std::array<const char*, kPositionKinds> kPositionKindNames{
+    "aligned", "aligned_offset_removed", "world", "world_offset_removed", "as_seen", "as_seen_offset_removed"};
+
+struct PositionErrors {
+  std::size_t frames = 0;
+  std::array<Statistics, kPositionKinds> ate_m;
+  Statistics are_deg, are_as_seen_deg;  // rotation, without the mean rotation between body and label
+  /// How far the origin moves on its object along the label's axes (length, height, width) while it is near: largest
+  /// minus smallest, after a median over a few frames. Empty when it is near for fewer frames.
+  std::optional<Eigen::Vector3d> origin_drift_m;
+
+  const Statistics& of(PositionKind kind) const { return ate_m[static_cast<std::size_t>(kind)]; }
+};
+/// Empty for fewer than two frames.
+std::optional<PositionErrors> positionErrors(const FollowedLabel& label);
+
+/// Shorter ones say little: of two frames the median alone takes half of the error.
+inline constexpr std::size_t kLeastFramesOfMean = 10;
+
+/// Over the objects that were followed for at least `kLeastFramesOfMean` frames.
+struct MeanPositionErrors {
+  int objects = 0;
+  std::array<double, kPositionKinds> ate_m{};  // of the objects' root mean squares
+  double are_deg = 0, are_as_seen_deg = 0;
+  Eigen::Vector3d largest_drift_m = Eigen::Vector3d::Zero();
+};
+MeanPositionErrors meanOf(const std::vector<PositionErrors>& objects);
+
+/// The constant X that brings estimated body frames to the labels' box frames, label = body * X, averaged over pairs.
+SE3 bodyOffset(const std::vector<SE3>& bodies, const std::vector<SE3>& labels);
+
+}  // namespace motorcade

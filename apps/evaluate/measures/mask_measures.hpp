@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "apps/evaluate/comparison/object_matching.hpp"
+#include "apps/evaluate/comparison/trajectory_error.hpp"
+#include "io/images/image_file.hpp"
+
+/// How well the outlines that `run --masks` wrote cover the objects' true pixels.
+namespace motorcade {
+
+/// The pixels of an image that have a value.
+struct PixelsOf {
+  const Gray16Image* image;
+  std::uint16_t value;
+  bool has(int x, int y) const { return image->pixels[static_cast<std::size_t>(y) * image->width + x] == value; }
+};
+
+/// Pixels in both over pixels in either, of images of the same size; 0 where neither has any.
+double maskIou(const PixelsOf& a, const PixelsOf& b);
+
+/// How far two outlines are apart [px]: the mean, over the boundary pixels of both, of the distance to the nearest
+/// boundary pixel of the other. A boundary pixel belongs to the mask and has a neighbor (of four) in the image that
+/// does not: where the image's border cuts an object, it has no boundary. Empty when one of the masks has none.
+std::optional<double> boundaryDistance_px(const PixelsOf& a, const PixelsOf& b);
+
+/// Over reported rows that were matched to labels which are asked for, of frames whose masks are there.
+struct MaskErrors {
+  int rows = 0, rows_with_mask = 0;  // all, and those with a pixel of the track in their frame's mask
+  double iou = 0;                    // mean over all rows, 0 for one without mask
+  double iou_of_masks = 0;           // mean over the rows with mask
+  Statistics boundary_px;            // of the rows with mask
+};
+
+/// Of one range of distances each.
+struct MaskEvaluation {
+  MaskErrors within_30m, from_30_to_50m;
+};
+
+/// Compares the masks of the online estimate with the label's numbers plus one in `instances`. Empty when `masks` is no
+/// folder. Throws InputError naming the file where the two differ in size or a frame's instances are missing.
+std::optional<MaskEvaluation> maskErrors(const std::vector<ComparedFrame>& online, const std::filesystem::path& masks,
+                                         const std::filesystem::path& instances);
+
+}  // namespace motorcade

@@ -1,0 +1,86 @@
+#include "apps/evaluate/report/kitti_export.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "apps/evaluate/comparison/object_matching.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/line_file.hpp"
+#include "io/truth/labels.hpp"
+
+namespace motorcade {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string kittiType(ObjectKind kind) {
+  switch (kind) {
+    case ObjectKind::kCar:
+      return "Car";
+    case ObjectKind::kLargeVehicle:
+      return "Truck";
+    case ObjectKind::kTwoWheeler:
+      return "Cyclist";
+    case ObjectKind::kPedestrian:
+      return "Pedestrian";
+    case ObjectKind::kUnknown:
+      break;
+  }
+  return "Misc";
+}
+
+/// KITTI ranks results by their score and asks for no scale. Ours is the probability that the object is there, times a
+/// share that grows with the points in which the object was seen: one half at kHalfSure_points, in a row with the
+/// fewest that are reported a third.
+double scoreOf(const ObjectEstimate& object) {
+  constexpr double kHalfSure_points = 6;
+  return object.existence_probability * object.points / (object.points + kHalfSure_points);
+}
+
+/// The part of a box that lies in the image.
+Box inImage(const Box& box, const StereoCamera& camera) {
+  const double right_px = camera.width_px - 1.0, bottom_px = camera.height_px - 1.0;
+  return {std::clamp(box.left_px, 0.0, right_px), std::clamp(box.top_px, 0.0, bottom_px),
+          std::clamp(box.right_px, 0.0, right_px), std::clamp(box.bottom_px, 0.0, bottom_px)};
+}
+
+/// A row with a cuboid as a label. `T_cam0_world` leads to the left gray camera, in which labels are given.
+Label labelOf(const RunFolder::ObjectRow& row, const SE3& T_cam0_world, const StereoCamera& camera) {
+  const ObjectBox& cuboid = *row.object.cuboid;
+  const SE3 T_cam0_body = T_cam0_world * row.object.T_world_body;
+  const Eigen::Vector3d to_bottom_m(0, 0, -0.5 * cuboid.size_m.z()), ahead = T_cam0_body.rotation().col(0);
+  return {.frame = row.frame,
+          .track = row.object.track.value,
+          .type = kittiType(cuboid.kind),
+          .box = inImage(row.object.box, camera),
+          .size_m = cuboid.size_m.reverse(),
+          .location_m = T_cam0_body * (cuboid.center_body + to_bottom_m),
+          .rotation_y_rad = std::atan2(-ahead.z(), ahead.x())};
+}
+
+void exportKind(const fs::path& folder, const RunFolder::Trajectories& trajectories, std::int64_t first_frame,
+                const Sequence& sequence) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw OutputError(folder.string() + ": cannot be made a folder: " + error.message());
+  const SE3 T_cam0_cam = sequence.calibration.T_left_cam0(sequence.pair).inverse();
+  LineFile out(folder / (sequence.folder.filename().string() + ".txt"));
+  for (const auto& row : trajectories.objects) {
+    const std::int64_t index = row.frame.value - first_frame;
+    const bool has_pose = index >= 0 && index < std::ssize(trajectories.camera);
+    if (!has_pose || !row.object.cuboid || !isReported(row.object)) continue;
+    const SE3 T_cam0_world = T_cam0_cam * trajectories.camera[index].inverse();
+    out.writeLine(resultLine(labelOf(row, T_cam0_world, sequence.camera), scoreOf(row.object)));
+  }
+  out.close();
+}
+
+}  // namespace
+
+void exportKitti(const fs::path& folder, const RunFolder& run, const Sequence& sequence) {
+  exportKind(folder / "final" / "data", run.final, run.first_frame, sequence);
+  exportKind(folder / "online" / "data", run.online, run.first_frame, sequence);
+}
+
+}  // namespace motorcade

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+
+#include "io/results/run_folder.hpp"
+#include "io/sequence/sequence.hpp"
+
+namespace motorcade {
+
+/// Writes a run's objects as KITTI tracking results, which KITTI's own evaluation reads: `final/data/NAME.txt` and
+/// `online/data/NAME.txt` in the folder, where NAME is that of the sequence's folder. Other sequences' files stay, so
+/// that many runs come together in one folder. Needs no ground truth. Throws OutputError.
+void exportKitti(const std::filesystem::path& folder, const RunFolder& run, const Sequence& sequence);
+
+}  // namespace motorcade

@@ -1,0 +1,291 @@
+#include "apps/evaluate/report/report.hpp"
+#include "apps/evaluate/report/table_text.hpp"
+#include "io/results/object_row.hpp"
+
+namespace motorcade {
+namespace {
+
+void printPosition(std::string& text, const ObjectErrors& object) {
+  print(text, "  %-6lld %-14.14s %5d/%-5d %3d", static_cast<long long>(object.label), object.type.c_str(),
+        object.followed_frames, object.labeled_frames, object.tracks);
+  if (!object.positions) return print(text, "\n");
+  const PositionErrors& p = *object.positions;
+  print(text, "  %7.3f %7.3f %7.3f  %6.2f", p.of(PositionKind::kAligned).rmse,
+        p.of(PositionKind::kWorldOffsetRemoved).rmse, p.of(PositionKind::kAsSeenOffsetRemoved).rmse, p.are_deg.rmse);
+  const Eigen::Vector3d drift = p.origin_drift_m.value_or(Eigen::Vector3d::Zero());
+  print(text, "  %6.3f %6.3f %6.3f\n", drift.x(), drift.y(), drift.z());
+}
+
+void printPositions(std::string& text, const KindEvaluation& kind) {
+  text += "\nmoving objects (final)       frames ids    position, ATE m           ARE   origin drift m\n";
+  text += "  label  type              followed      aligned  offset as seen     deg   along     up across\n";
+  for (const auto& object : kind.objects) printPosition(text, object);
+  const MeanPositionErrors& mean = kind.mean_positions;
+  const auto at = [&](PositionKind position) { return mean.ate_m[static_cast<std::size_t>(position)]; };
+  print(text, "  mean of %-3d objects (largest drift)    %7.3f %7.3f %7.3f  %6.2f", mean.objects,
+        at(PositionKind::kAligned), at(PositionKind::kWorldOffsetRemoved), at(PositionKind::kAsSeenOffsetRemoved),
+        mean.are_deg);
+  print(text, "  %6.3f %6.3f %6.3f\n", mean.largest_drift_m.x(), mean.largest_drift_m.y(), mean.largest_drift_m.z());
+}
+
+void printRecall(std::string& text, const DetectionCounts& recall) {
+  std::string counts;
+  print(counts, "%5.1f %% (%d/%d)", 100 * recall.recall(), recall.found, recall.labels);
+  print(text, " %-19s", counts.c_str());
+}
+
+void printDetectionLine(std::string& text, const char* kind, const DetectionErrors& errors, bool from_fifth) {
+  print(text, "  %-8s", kind);
+  printRecall(text, from_fifth ? errors.within_30m_from_fifth : errors.within_30m);
+  printRecall(text, from_fifth ? errors.from_30_to_50m_from_fifth : errors.from_30_to_50m);
+  print(text, " %6d %5d %9d %8d %8d %6.3f\n", errors.false_rows, errors.rows, errors.false_rows_unlabeled,
+        errors.false_rows_in_ignored, errors.id_switches, errors.mota);
+}
+
+void printDetection(std::string& text, const Evaluation& e) {
+  text += "\ndetection  recall              recall               false    of    false, false in       id   MOTA\n";
+  text += "           to 30 m             30 to 50 m            rows  rows unlabeled DontCare switches\n";
+  printDetectionLine(text, "final", e.final.detection, false);
+  printDetectionLine(text, "online", e.online.detection, true);
+  print(text, "  (online: recall from a label's fifth visible frame on)\n");
+}
+
+void printBoxLine(std::string& text, const char* kind, const BoxErrors& boxes) {
+  if (boxes.rows == 0) return;
+  print(text, "  %-18s %5d  %6.2f %5.1f %%  %6.2f  %6.2f", kind, boxes.rows, boxes.iou_2d, 100 * boxes.over_half_2d,
+        boxes.iou_bird, boxes.iou_3d);
+  print(text, "  %7.2f %7.2f %7.2f %7.2f %7.2f\n", boxes.center_m.mean, boxes.heading_deg.mean, boxes.length_m.mean,
+        boxes.width_m.mean, boxes.height_m.mean);
+}
+
+/// A section, unless it has no lines.
+void printSection(std::string& text, const std::string& head, const std::string& lines) {
+  if (!lines.empty()) text.append("\n").append(head).append("\n").append(lines);
+}
+
+void printSizeLine(std::string& text, const char* kind, const BoxErrors& boxes) {
+  if (boxes.rows_with_cuboid == 0) return;
+  print(text, "  %-18s %5d cuboids %24.1f %% %6.1f %% %6.1f %%\n", kind, boxes.rows_with_cuboid,
+        100 * boxes.size_within_2_sigma.x(), 100 * boxes.size_within_2_sigma.y(), 100 * boxes.size_within_2_sigma.z());
+}
+
+void printBoxes(std::string& text, const Evaluation& e) {
+  text += "\nboxes                 rows  IoU in    over     IoU     IoU   mean error of\n";
+  text += "                             image      .5   above      3D   center heading  length   width  height\n";
+  text += "                                                                  m     deg       m       m       m\n";
+  printBoxLine(text, "final to 30 m", e.final.boxes_within_30m);
+  printBoxLine(text, "final 30 to 50 m", e.final.boxes_from_30_to_50m);
+  printBoxLine(text, "online to 30 m", e.online.boxes_within_30m);
+  printBoxLine(text, "online 30 to 50 m", e.online.boxes_from_30_to_50m);
+  std::string lines;
+  printSizeLine(lines, "final to 30 m", e.final.boxes_within_30m);
+  printSizeLine(lines, "final 30 to 50 m", e.final.boxes_from_30_to_50m);
+  printSizeLine(lines, "online to 30 m", e.online.boxes_within_30m);
+  printSizeLine(lines, "online 30 to 50 m", e.online.boxes_from_30_to_50m);
+  printSection(text, "sizes within two of their standard deviations    length    width   height", lines);
+}
+
+void printHotaLine(std::string& text, const std::string& what, const Hota& hota) {
+  if (hota.labels == 0 && hota.rows == 0) return;
+  print(text, "  %-26s %6d %6d  %5.3f  %5.3f  %5.3f  %5.3f", what.c_str(), hota.labels, hota.rows, hota.hota,
+        hota.det_a, hota.ass_a, hota.loc_a);
+  print(text, "  %5.3f  %5.3f  %5.3f  %5.3f\n", hota.det_re, hota.det_pr, hota.ass_re, hota.ass_pr);
+}
+
+void printHotaLines(std::string& text, const std::string& kind, const KindEvaluation& k) {
+  printHotaLine(text, kind + " image to 30 m", k.image_within_30m);
+  printHotaLine(text, kind + " image to 50 m", k.image_within_50m);
+  printHotaLine(text, kind + " footprint to 30 m", k.footprint_within_30m);
+  printHotaLine(text, kind + " footprint to 50 m", k.footprint_within_50m);
+}
+
+void printHota(std::string& text, const Evaluation& e) {
+  std::string lines;
+  printHotaLines(lines, "final", e.final);
+  printHotaLines(lines, "online", e.online);
+  printSection(text,
+               "tracks of moving objects     labels   rows   HOTA   DetA   AssA   LocA  DetRe  DetPr  AssRe  AssPr",
+               lines);
+}
+
+void printFirstReportLine(std::string& text, const char* range, const FirstReports& reports) {
+  if (reports.labels == 0) return;
+  print(text, "  %-10s %3d labels, median %.1f, mean %.1f, max %.0f; %d never reported (%.0f %%)\n", range,
+        reports.labels, reports.frames.median, reports.frames.mean, reports.frames.max, reports.never,
+        100.0 * reports.never / reports.labels);
+}
+
+void printFirstReports(std::string& text, const Evaluation& e) {
+  std::string lines;
+  printFirstReportLine(lines, "to 30 m", e.online.first_within_30m);
+  printFirstReportLine(lines, "to 50 m", e.online.first_within_50m);
+  printSection(text, "frames from first visibility to first report (online)", lines);
+}
+
+void printReliabilityLine(std::string& text, const char* estimate, const Reliability& reliability) {
+  if (reliability.rows() == 0) return;
+  print(text, "  %-8s %6d  %6.3f", estimate, reliability.rows(), reliability.brier());
+  const auto add = [&](bool known, double value) {
+    if (known)
+      print(text, " %5.2f", value);
+    else
+      text += "     -";
+  };
+  const auto gap = reliability.largestGap();
+  add(gap.has_value(), gap.value_or(0));
+  text += ' ';
+  for (const ReliabilityTenth& tenth : reliability.tenths)
+    add(tenth.rows > 0, tenth.rows > 0 ? tenth.shareOfHits() : 0);
+  text += '\n';
+}
+
+void printKindRows(std::string& text, const char* what, const KindRows& rows) {
+  const KindCounts& counts = rows.counts;
+  if (counts.total() == 0) return;
+  print(text, "  %s: %.1f %% of %d right, log loss %.3f, %.1f %% surely wrong\n", what, 100 * counts.shareRight(),
+        counts.total(), rows.logLoss(), 100 * rows.shareSureWrong());
+  for (const ObjectKind label : kAllKinds) {
+    std::string line;
+    int of_label = 0;
+    for (const ObjectKind reported : kAllKinds) {
+      print(line, " %13d", counts.of(label, reported));
+      of_label += counts.of(label, reported);
+    }
+    if (of_label > 0) print(text, "    %-14s%s\n", std::string(kindName(label)).c_str(), line.c_str());
+  }
+}
+
+void printKinds(std::string& text, const Evaluation& e) {
+  std::string head = "kinds to 30 m, as ", lines;
+  for (const ObjectKind kind : kAllKinds) print(head, "%14s", std::string(kindName(kind)).c_str());
+  printKindRows(lines, "final, from a track's tenth row on", e.final.kinds_within_30m.from_tenth_row);
+  printKindRows(lines, "final, before", e.final.kinds_within_30m.before);
+  printKindRows(lines, "online, from a track's tenth row on", e.online.kinds_within_30m.from_tenth_row);
+  printKindRows(lines, "online, before", e.online.kinds_within_30m.before);
+  printSection(text, head, lines);
+  std::string named;
+  printReliabilityLine(named, "final", e.final.kinds_within_30m.from_tenth_row.named);
+  printReliabilityLine(named, "online", e.online.kinds_within_30m.from_tenth_row.named);
+  printSection(text, "kinds named  rows   Brier   gap  share that is right, by tenths of kind_probability", named);
+}
+
+void printExistence(std::string& text, const Evaluation& e) {
+  std::string lines;
+  printReliabilityLine(lines, "final", e.final.existence);
+  printReliabilityLine(lines, "online", e.online.existence);
+  printSection(text, "existence    rows   Brier   gap  share that is real, by tenths of existence_probability", lines);
+}
+
+void printMaskLine(std::string& text, const char* range, const MaskErrors& masks) {
+  if (masks.rows == 0) return;
+  print(text, "  %-18s %5d  %5d  %5.2f  %5.2f  %6.2f / %.2f\n", range, masks.rows, masks.rows_with_mask, masks.iou,
+        masks.iou_of_masks, masks.boundary_px.mean, masks.boundary_px.median);
+}
+
+void printMasks(std::string& text, const Evaluation& e) {
+  if (!e.masks) return;
+  std::string lines;
+  printMaskLine(lines, "to 30 m", e.masks->within_30m);
+  printMaskLine(lines, "30 to 50 m", e.masks->from_30_to_50m);
+  printSection(text, "masks (online)      rows, with mask; IoU of all, of masks; boundary error px mean / median",
+               lines);
+}
+
+std::string neesText(double nees) {
+  std::string text;
+  print(text, nees < 1e3 ? "%.2f" : nees < 1e7 ? "%.0f" : "%.1e", nees);
+  return text;
+}
+
+void printCovarianceLine(std::string& text, const char* what, const CovarianceErrors& errors) {
+  if (errors.samples == 0) return;
+  print(text, "  %-24s %7d", what, errors.samples);
+  for (const NormalizedErrors* of : {&errors.pose, &errors.position, &errors.rotation})
+    print(text, " %7s %7s %3.0f %%", neesText(of->mean_nees).c_str(), neesText(of->median_nees).c_str(),
+          100 * of->coverage_95);
+  text += '\n';
+}
+
+void printCovarianceLines(std::string& text, const CovarianceEvaluation& e) {
+  printCovarianceLine(text, "camera", e.camera);
+  if (e.camera_mounted) printCovarianceLine(text, "camera, without mounting", *e.camera_mounted);
+  if (e.camera_with_truth_noise) printCovarianceLine(text, "  and the truth's noise", *e.camera_with_truth_noise);
+  printCovarianceLine(text, "camera, since the start", e.camera_pose);
+  printCovarianceLine(text, "objects", e.objects);
+}
+
+void printCovariances(std::string& text, const char* kind, const std::string& lines) {
+  if (lines.empty()) return;
+  print(text, "\ncovariances, %-12s  samples  pose: NEES            position: NEES        rotation: NEES\n", kind);
+  text += "                                      mean  median    in    mean  median    in    mean  median    in\n";
+  text += "  consistent:                         6.00    5.35  95 %    3.00    2.37  95 %    3.00    2.37  95 %\n";
+  text += lines;
+}
+
+void printCovariances(std::string& text, const Evaluation& e) {
+  std::string of_finals, of_online;
+  printCovarianceLines(of_finals, e.final.covariances);
+  printCovarianceLines(of_online, e.online.covariances);
+  if (e.half_errors) {
+    printCovarianceLine(of_online, "camera, of two halves", e.half_errors->camera);
+    printCovarianceLine(of_online, "objects, of two halves", e.half_errors->objects);
+  }
+  printCovariances(text, "final", of_finals);
+  printCovariances(text, "online", of_online);
+}
+
+void printComparedLine(std::string& text, const ComparedObject& object) {
+  print(text, "  object %-6lld %4zu", static_cast<long long>(object.label), object.ours.frames);
+  for (const PositionKind position :
+       {PositionKind::kAligned, PositionKind::kWorldOffsetRemoved, PositionKind::kAsSeenOffsetRemoved})
+    print(text, "  %7.3f %7.3f %+6.1f %%", object.ours.of(position).rmse, object.baseline.of(position).rmse,
+          100 * object.relativeError(static_cast<std::size_t>(position)));
+  text += '\n';
+}
+
+void printComparison(std::string& text, const Evaluation& e) {
+  if (e.camera_against_baseline || e.objects_against_baseline)
+    print(text, "\nagainst the baseline: (ATE_baseline - ATE_ours) / ATE_baseline\n");
+  if (const auto& r = e.camera_against_baseline)
+    print(text, "  camera %26.3f %7.3f %+6.1f %%\n", r->ours_m, r->baseline_m, 100 * r->relative());
+  if (!e.objects_against_baseline) return;
+  const RunComparison& comparison = *e.objects_against_baseline;
+  print(text, "  common frames       aligned                   world, offset removed     as seen, offset removed\n");
+  for (const auto& object : comparison.objects) printComparedLine(text, object);
+  const auto at = [&](PositionKind position) {
+    return 100 * comparison.mean_relative_error[static_cast<std::size_t>(position)];
+  };
+  print(text, "  mean of %-3d objects %21.1f %% %24.1f %% %24.1f %%\n", comparison.objects_of_mean,
+        at(PositionKind::kAligned), at(PositionKind::kWorldOffsetRemoved), at(PositionKind::kAsSeenOffsetRemoved));
+}
+
+void printRest(std::string& text, const Evaluation& e) {
+  printCovariances(text, e);
+  printComparison(text, e);
+  if (e.latency_ms.empty()) return;
+  print(text, "\nlatency from image to result, ms: p50 %.1f, p95 %.1f, p99 %.1f, max %.1f\n", e.latencyQuantile_ms(0.5),
+        e.latencyQuantile_ms(0.95), e.latencyQuantile_ms(0.99), e.latency_ms.back());
+}
+
+}  // namespace
+
+std::string tableOf(const Evaluation& evaluation) {
+  std::string text;
+  printHead(text, evaluation);
+  printCamera(text, evaluation);
+  if (!evaluation.object_source.empty()) {
+    printPositions(text, evaluation.final);
+    printMotions(text, evaluation);
+    printDetection(text, evaluation);
+    printBoxes(text, evaluation);
+    printHota(text, evaluation);
+    printFirstReports(text, evaluation);
+    printKinds(text, evaluation);
+    printExistence(text, evaluation);
+    printMasks(text, evaluation);
+  }
+  printRest(text, evaluation);
+  return text + legendOf(evaluation);
+}
+
+}  // namespace motorcade

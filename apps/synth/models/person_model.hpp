@@ -1,0 +1,11 @@
+#pragma once
+
+#include "apps/synth/shapes/noise.hpp"
+#include "apps/synth/shapes/primitive.hpp"
+
+namespace motorcade::synth {
+
+/// Someone who walks: legs and arms swing with the way covered. Size, clothes and bags follow the seed.
+Model makePedestrian(std::uint32_t seed);
+
+}  // namespace motorcade::synth

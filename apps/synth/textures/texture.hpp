@@ -1,0 +1,33 @@
+#pragma once
+
+#include "apps/synth/shapes/primitive.hpp"
+
+namespace motorcade::synth {
+
+/// What a ray meets on a part, in its model's frame.
+struct SurfacePoint {
+  const Primitive* part = nullptr;
+  const Model* model = nullptr;
+  Vec3 position, normal;
+  float footprint_m = 0;      // width of a pixel on the surface
+  float wheel_angle_rad = 0;  // how far the vehicle's wheels have turned
+};
+
+/// How a surface answers to light.
+struct Reflectance {
+  float diffuse = 0.5F;
+  float mirror = 0;  // share of the sky seen as in a mirror
+  float glow = 0;    // light of its own
+};
+
+Reflectance vehicleReflectance(const SurfacePoint& point);
+/// The body of a bus.
+Reflectance coachReflectance(const SurfacePoint& point);
+Reflectance personReflectance(const SurfacePoint& point);
+/// Masonry, tiles and slats that repeat, and window panes.
+Reflectance houseReflectance(const SurfacePoint& point);
+Reflectance streetReflectance(const SurfacePoint& point);
+/// Chooses by material.
+Reflectance reflectanceOf(const SurfacePoint& point);
+
+}  // namespace motorcade::synth

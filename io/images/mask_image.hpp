@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "io/images/image_file.hpp"
+
+namespace motorcade {
+
+/// Of a run folder.
+inline constexpr const char* kMasksFolder = "masks";
+
+/// What `run --masks` writes of one frame: 0 where nothing moves or nothing is known, else the number of the track plus
+/// one, of the nearest object where several overlap.
+Gray16Image maskImage(const FrameEstimate& frame, const std::vector<ObjectMask>& masks, int width_px, int height_px);
+
+/// The value of a track's pixels there.
+std::uint16_t maskValue(TrackId track);
+
+/// The track that a pixel of such an image shows, which must not be 0.
+TrackId trackOfMask(std::uint16_t value);
+
+/// The file of a frame's mask in the folder.
+std::filesystem::path maskFile(const std::filesystem::path& folder, FrameId frame);
+/// Does a file have such a name?
+bool isMaskFile(const std::filesystem::path& file);
+
+}  // namespace motorcade

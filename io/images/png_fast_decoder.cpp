@@ -1,0 +1,112 @@
+#include "io/images/png_fast_decoder.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include <libdeflate.h>
+
+#include "io/images/png_chunks.hpp"
+#include "io/images/png_filters.hpp"
+
+namespace motorcade {
+namespace {
+
+/// What is larger is rare, and its work space would stay in the pool.
+constexpr std::size_t kMostUnpacked_bytes = std::size_t{1} << 26;
+
+/// Where the pixels lie while they are unpacked. The parts' sizes hang on the image's size alone, so that the pool
+/// holds the same memory for each image of a drive.
+class WorkSpace {
+ public:
+  WorkSpace(ImageSize size, int pixel_bytes, ImagePool& pool)
+      : row_bytes_(static_cast<std::size_t>(size.width) * pixel_bytes),
+        unpacked_bytes_((1 + row_bytes_) * size.height),
+        // Noise grows by a few bytes per block of deflate; no encoder packs worse.
+        most_packed_bytes_(unpacked_bytes_ + unpacked_bytes_ / 16 + 1024) {
+    if (unpacked_bytes_ <= kMostUnpacked_bytes)
+      memory_ = pool.acquire(static_cast<int>(row_bytes_ + unpacked_bytes_ + most_packed_bytes_), 1);
+  }
+  WorkSpace(const WorkSpace&) = delete;
+  WorkSpace& operator=(const WorkSpace&) = delete;
+
+  bool holds(const CommonPng& png) const { return !memory_.empty() && png.packed_bytes <= most_packed_bytes_; }
+  std::size_t rowBytes() const { return row_bytes_; }
+  std::size_t unpackedBytes() const { return unpacked_bytes_; }
+
+  /// The row above the first one.
+  std::uint8_t* zeros() { return memory_.mutableRow(0); }
+  /// Rows, each after the number of its filter.
+  std::uint8_t* unpacked() { return zeros() + row_bytes_; }
+  std::uint8_t* packed() { return unpacked() + unpacked_bytes_; }
+
+ private:
+  std::size_t row_bytes_, unpacked_bytes_, most_packed_bytes_;
+  Image memory_;
+};
+
+/// Whether distances within the stream stay within the window that it claims: zlib refuses others, libdeflate does not.
+bool windowSuffices(std::uint8_t first_byte, std::size_t unpacked_bytes) {
+  constexpr std::size_t kLargest_bytes = 32768;
+  const std::size_t window_bytes = std::size_t{256} << (first_byte >> 4);
+  return window_bytes >= std::min(kLargest_bytes, unpacked_bytes);
+}
+
+/// Unpacks the whole stream, or nothing: it must hold just what the image needs, and nothing may follow.
+bool unpack(const CommonPng& png, WorkSpace& space) {
+  joinImageChunks(png, space.packed());
+  if (png.packed_bytes == 0 || !windowSuffices(*space.packed(), space.unpackedBytes())) return false;
+  const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> decompressor(
+      libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
+  if (!decompressor) return false;
+  std::size_t read_bytes = 0;
+  const auto result = libdeflate_zlib_decompress_ex(decompressor.get(), space.packed(), png.packed_bytes,
+                                                    space.unpacked(), space.unpackedBytes(), &read_bytes, nullptr);
+  return result == LIBDEFLATE_SUCCESS && read_bytes == png.packed_bytes;
+}
+
+/// Leaves alpha out, as libpng does when asked to strip it.
+void convertToGray(const std::uint8_t* row, int pixel_bytes, int width, std::uint8_t* gray) {
+  if (pixel_bytes == 2) {
+    for (int x = 0; x < width; ++x) gray[x] = row[2 * x];
+  } else {
+    for (int x = 0; x < width; ++x, row += pixel_bytes) gray[x] = grayOf(row[0], row[1], row[2]);
+  }
+}
+
+void scaleToGray(const std::uint8_t* row, int pixel_bytes, int width, int sample_bits, std::uint8_t* gray) {
+  for (int x = 0; x < width; ++x, row += pixel_bytes)
+    gray[x] = upperBits(static_cast<unsigned>(row[0]) << 8 | row[1], sample_bits);
+}
+
+/// Takes the filters off and fills the image; gray rows need no place between. False when a row names no filter.
+bool removeFilters(WorkSpace& space, const CommonPng& png, int sample_bits, Image& image) {
+  std::memset(space.zeros(), 0, space.rowBytes());
+  const std::uint8_t* above = space.zeros();
+  std::uint8_t* row = space.unpacked();
+  for (int y = 0; y < image.height(); ++y, row += 1 + space.rowBytes()) {
+    std::uint8_t* const to = png.pixel_bytes == 1 ? image.mutableRow(y) : row + 1;
+    if (!removeFilter(*row, png.pixel_bytes, {row + 1, above, space.rowBytes()}, to)) return false;
+    if (png.deep) {
+      scaleToGray(to, png.pixel_bytes, image.width(), sample_bits, image.mutableRow(y));
+    } else if (png.pixel_bytes > 1) {
+      convertToGray(to, png.pixel_bytes, image.width(), image.mutableRow(y));
+    }
+    above = to;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<Image> decodeCommonPng(std::string_view bytes, ImageSize size, ImagePool& pool, int sample_bits) {
+  const auto png = findCommonPng(bytes);
+  if (!png) return std::nullopt;
+  WorkSpace space(size, png->pixel_bytes, pool);
+  if (!space.holds(*png) || !unpack(*png, space)) return std::nullopt;
+  Image image = pool.acquire(size.width, size.height);
+  if (!removeFilters(space, *png, sample_bits, image)) return std::nullopt;
+  return image;
+}
+
+}  // namespace motorcade

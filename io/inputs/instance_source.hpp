@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/instance_labels.hpp"
+#include "core/object_pool.hpp"
+#include "io/inputs/pair_source.hpp"
+
+namespace motorcade {
+
+/// Throws InputError naming the folder where it holds no instance labels, or its first file, by name, where that cannot
+/// be read or has another size.
+void requireInstances(const std::filesystem::path& folder, int width_px, int height_px);
+
+/// The pairs of another source, each with the instance labels that a folder holds for its frame, as somebody else's
+/// segmentation wrote them: NNNNNN.png, gray of 8 or 16 bits or with a palette. Frames without a file have none.
+class InstanceSource final : public PairSource {
+ public:
+  /// Labels have the size of the rectified images.
+  InstanceSource(std::unique_ptr<PairSource> pairs, std::filesystem::path folder, int width_px, int height_px);
+
+  /// Labels that cannot be read are left out, and told at the end.
+  std::optional<StereoFrame> next() override;
+  void stop() override { pairs_->stop(); }
+  SourceEnd finish() override;
+
+  FrameId first() const override { return pairs_->first(); }
+  Timestamp stampOf(FrameId frame) const override { return pairs_->stampOf(frame); }
+  double shareOutside() const override { return pairs_->shareOutside(); }
+  std::size_t highWater() const override { return pairs_->highWater(); }
+  std::size_t capacity() const override { return pairs_->capacity(); }
+
+ private:
+  std::shared_ptr<const InstanceLabels> labelsOf(FrameId frame);
+
+  std::unique_ptr<PairSource> pairs_;
+  std::filesystem::path folder_;
+  int width_px_, height_px_;
+  ObjectPool<InstanceLabels> labels_;
+  int read_ = 0, unreadable_ = 0;
+  std::string first_problem_;
+};
+
+}  // namespace motorcade

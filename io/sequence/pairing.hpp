@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/sequence/image_names.hpp"
+#include "io/sequence/sequence.hpp"
+
+/// Images of two sides come together in pairs.
+namespace motorcade {
+
+struct PairedImages {
+  NameKind kind = NameKind::kNames;
+  std::vector<FramePaths> frames{};
+  std::vector<std::int64_t> numbers{};  // of the frames, increasing; see NameKind
+  std::int64_t left_out = 0;            // images that belong to no frame
+  std::vector<std::string> notes{};     // that the user should read
+};
+
+/// Pairs images whose numbers or times are the same, or differ by less than half of the usual step. A single image is a
+/// frame whose other image is missing; where one side has several images for each of the other, those between the pairs
+/// are left out. Throws InputError where fewer than half of the frames would be pairs.
+PairedImages pairByKeys(const KeyedImages& keyed, const NamedImages& left, const NamedImages& right);
+
+/// Pairs images by what their names tell, and in order only where they tell nothing and both sides have as many.
+PairedImages pairImages(const NamedImages& left, const NamedImages& right);
+
+/// Leaves out single images before the first pair and after the last.
+void leaveOutEnds(PairedImages& paired);
+
+/// Says which images are missing; nothing where none is.
+void tellMissing(PairedImages& paired);
+
+/// Up to three of them, with their folders, and how many there are more.
+std::string namesOf(const std::vector<std::filesystem::path>& images);
+
+/// The most frequent difference of numbers that follow each other; 1 where there are none.
+std::int64_t usualStep(const std::vector<std::int64_t>& numbers);
+
+}  // namespace motorcade

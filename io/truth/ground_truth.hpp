@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "io/sequence/sequence.hpp"
+#include "io/truth/labels.hpp"
+
+/// The truth of a sequence, converted to our conventions: `world` is the first left camera of the images' pair.
+namespace motorcade {
+
+/// How oxts packets and images are brought together. The two are up to 5 ms apart.
+enum class OxtsTimes {
+  kInterpolated,    // packets interpolated at the images' times, where both time files are there
+  kUninterpolated,  // packet k for image k, as published evaluations have it
+  kVelocities,      // as kInterpolated, with the places that the packets' velocities lead to instead of their own
+};
+
+/// An inertial packet: the pose of the unit on a Mercator plane, x east, y north, z up.
+struct OxtsPacket {
+  double latitude_deg = 0, longitude_deg = 0, altitude_m = 0;
+  double roll_rad = 0, pitch_rad = 0, yaw_rad = 0;
+  std::optional<Eigen::Vector3d> velocity_mps;  // ahead and to the left, both level, and up; not in shortened packets
+  std::optional<double> yaw_rate_radps{};       // about the upward axis; not in shortened packets
+  Eigen::Matrix3d attitude() const;
+};
+std::vector<OxtsPacket> readOxts(const std::filesystem::path& file_or_folder);
+
+struct CameraTruth {
+  std::vector<SE3> T_world_cam;  // one per frame, but for those after the last that is known
+  std::string source;            // for reports: which file, in what form
+  std::int64_t first_frame = 0;  // that is known; those before it have the same pose
+};
+/// From `poses.txt`; where that is missing, from poses with times or numbers of their own, or else from oxts, as where
+/// the uninterpolated form is asked for. Velocities are those of oxts alone. Empty without any.
+std::optional<CameraTruth> readCameraTruth(const Sequence& sequence, OxtsTimes times = OxtsTimes::kInterpolated);
+
+/// A labeled object in one frame.
+struct ObjectTruth {
+  FrameId frame;
+  std::int64_t id = -1;
+  std::string type;
+  SE3 T_world_object;  // KITTI's box frame: origin at the center of the bottom face, x along the length, y down
+  SE3 T_cam_object;    // the same from the frame's camera
+  Box box;
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  // height, width, length
+  double truncated = 0;
+  int occluded = 0;
+};
+
+/// Objects in the order of their frames and ids, and the areas that the labels leave open.
+struct ObjectTruths {
+  struct Ignored {
+    FrameId frame;
+    Box box;
+  };
+  std::vector<ObjectTruth> objects;
+  std::vector<Ignored> ignored;
+  std::string source;
+};
+/// From the labels; where `object_poses.txt` is there too, with the poses it gives. Empty when there are no labels.
+std::optional<ObjectTruths> readObjectTruths(const Sequence& sequence, const CameraTruth& camera);
+
+}  // namespace motorcade
