@@ -49,7 +49,7 @@ std::uint8_t grayAt(const Rows& rows, int left, int x, int right, const Weights&
   return static_cast<std::uint8_t>((sum + 512) >> 10);
 }
 
-/// Beyond an edge the image goes on mirrored at the edge's pixel, which keeps the filters' order.
+/// Fills one row. The image is mirrored at the pixels of its edges, which keeps the filters' order.
 void fillRow(const Rows& rows, const RowWeights& weights, int width, std::uint8_t* gray) {
   const int last = width - 1;
   gray[0] = grayAt(rows, 1, 0, 1, weights[0]);

@@ -63,7 +63,7 @@ void addMiddlebury(Calibration& calibration, CalibrationKeys& keys) {
   if (width && height) calibration.size[0] = ImageSize{imageSide_px(*width, 0, keys), imageSide_px(*height, 0, keys)};
 }
 
-/// In the order of `parametersOf`.
+/// Reads standard deviations in the order of `parametersOf`.
 CalibrationSigmas sigmasOf(const CalibrationValues& values, const CalibrationKeys& keys) {
   CalibrationSigmas sigmas;
   auto number = values.numbers.begin();
@@ -84,7 +84,7 @@ void requireFocalLength(double focal_px, const std::string& name) {
                      " px; no camera has less than 1 px or more than 1e6");
 }
 
-/// Of a rectified camera without skew.
+/// Throws unless P belongs to a rectified camera without skew.
 void requirePinhole(const Calibration::Projection& P, const std::string& name) {
   constexpr double kTolerance = 1e-6;
   const Eigen::Vector3d last_row(P(2, 0), P(2, 1), P(2, 2));

@@ -10,7 +10,7 @@
 #include "core/image.hpp"
 #include "io/image_file.hpp"
 
-/// What `image_file` asks of each format, and what the formats share.
+/// The interface of `image_file` to each format, and functions that the formats share.
 namespace motorcade {
 
 /// Reads one format from the bytes of a whole file; `file` is for messages. Throws InputError on a damaged image.
@@ -34,7 +34,7 @@ ImageSize checkedSize(std::uint64_t width, std::uint64_t height, const std::file
 /// Names a kind of image that is not read, "a CMYK JPEG", and a command that converts all of the file's folder.
 [[noreturn]] void failUnsupported(const std::filesystem::path& file, const std::string& kind);
 
-/// Where each row begins, for libraries that want to be told.
+/// Pointers to the beginning of each row, for libraries that take them.
 std::vector<std::uint8_t*> rowPointers(std::uint8_t* first, int height, std::size_t stride);
 
 }  // namespace motorcade

@@ -85,12 +85,12 @@ std::string readImageBytes(const std::filesystem::path& file, int max_mb = kMaxI
 /// A gray PNG of 16 bits; one of 8 bits is widened without scaling.
 Gray16Image readPng16(const std::filesystem::path& file);
 
-/// As a PNG file's bytes.
+/// Encodes an image as the bytes of a PNG file.
 std::string encodePng(const RgbImage& image);
 /// kFast trades a larger file for time.
 enum class PngEffort { kFast, kSmall };
 void writePng(const std::filesystem::path& file, const Image& image, PngEffort effort = PngEffort::kFast);
-/// As a JPEG file's bytes; `quality` is 1 to 100.
+/// Encodes an image as the bytes of a JPEG file; `quality` is 1 to 100.
 std::string encodeJpeg(const Image& image, int quality);
 std::string encodeJpeg(const RgbImage& image, int quality);
 void writePng16(const std::filesystem::path& file, const Gray16Image& image, PngEffort effort = PngEffort::kFast);

@@ -77,7 +77,7 @@ struct JpegReader {
     jpeg_finish_decompress(&jpeg);
     return true;
   }
-  /// Why the header's kind of JPEG is not decoded; null where libjpeg says something else is wrong.
+  /// Names the kind of JPEG that libjpeg does not decode; null for other errors.
   const char* unsupportedKind() const {
     switch (errors.manager.msg_code) {
       case JERR_BAD_PRECISION:

@@ -24,7 +24,7 @@ using Kind = PoseGraph::Problem::Kind;
 
 constexpr std::size_t kMaxNumbers = 28;  // of an edge in space: 7 of the measurement, 21 of the information
 
-/// What a line of a known tag holds.
+/// Fields of a line with a known tag.
 struct TagFormat {
   std::string_view tag;
   bool planar;
@@ -84,13 +84,13 @@ std::string adviceFor(std::string_view tag) {
   return "";
 }
 
-/// As an error message shows it.
+/// Quotes a word for an error message.
 std::string shown(std::string_view word) {
   std::string text = "'";
   return text.append(printable(word)).append("'");
 }
 
-/// Row by row, the upper triangle.
+/// Builds the matrix from its upper triangle, row by row.
 PoseGraph::Information informationOf(std::span<const double> upper, int size) {
   PoseGraph::Information information(size, size);
   std::size_t next = 0;
@@ -99,7 +99,7 @@ PoseGraph::Information informationOf(std::span<const double> upper, int size) {
   return information;
 }
 
-/// In some direction, by more than rounding.
+/// True when the information is negative in some direction by more than rounding.
 bool isNegative(const PoseGraph::Information& information) {
   constexpr double kRounding = 1e-9;
   const Eigen::VectorXd diagonal = information.diagonal();

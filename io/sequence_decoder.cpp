@@ -56,7 +56,7 @@ SourceEnd SequenceDecoder::finish() {
   return {};
 }
 
-/// Where both images cannot be read, throws what is wrong with the left one.
+/// Reads both images. If neither can be read, throws the error of the left one.
 void SequenceDecoder::readInto(StereoFrame& frame, const FramePaths& paths) {
   right_.begin(paths);
   const std::exception_ptr left = problemOf([&] { frame.left = reader_.read(paths, StereoSide::kLeft); });

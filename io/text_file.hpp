@@ -21,7 +21,7 @@ struct TextLine {
 
 inline constexpr std::size_t kMaxText_bytes = std::size_t{1} << 30;
 
-/// What to do with a last line that has no line end: a program that was killed may have left half a line.
+/// The treatment of a last line that has no line end. A program that was killed may have left half a line.
 enum class LastLine { kKeep, kDropIfCut };
 
 /// The lines of a file that are not blank. Accepts both line ends and a byte order mark. Throws InputError when the
@@ -29,8 +29,8 @@ enum class LastLine { kKeep, kDropIfCut };
 std::vector<TextLine> readLines(const std::filesystem::path& file, LastLine last_line = LastLine::kKeep,
                                 std::size_t limit_bytes = kMaxText_bytes);
 
-/// The lines of a table of a run after its header, whose beginning is checked. Of a file that a killed run left, the
-/// cut line or, where it is empty, the header may be missing. Throws InputError.
+/// Reads the lines of a run's table after its header, whose beginning is checked. A killed run may have left a cut
+/// line, which is dropped, or no header in an empty file. Throws InputError.
 std::vector<TextLine> readTable(const std::filesystem::path& file, std::string_view header_start);
 
 /// The whole file; throws InputError when it cannot be read or is larger than `limit_bytes`.
@@ -40,13 +40,13 @@ std::string readWhole(const std::filesystem::path& file, std::size_t limit_bytes
 /// no more than fits into a line.
 std::string printable(std::string_view text, std::size_t most_characters = 40);
 
-/// Without the blanks around it.
+/// The text without the blanks around it.
 std::string trimmed(std::string_view text);
 
 /// Larger numbers are refused, so that squares of products stay finite.
 inline constexpr double kLargestNumber = 1e50;
 
-/// But for the digits that a file leaves off.
+/// True for a rotation matrix, up to the digits that a file leaves off.
 bool isRotation(const Eigen::Matrix3d& matrix);
 
 /// Takes the fields of one line from left to right. Every failure is an InputError that names file and line.

@@ -33,7 +33,7 @@ std::string threadName(int thread) {
 
 TraceFile::TraceFile(const std::filesystem::path& file) : file_(file) { file_.writeLine("["); }
 
-/// Without its end: `add` closes it.
+/// The text of an event without its end, which `add` writes.
 std::string TraceFile::event(std::string_view name, char phase, int thread, SteadyTime at) const {
   std::string text;
   text.reserve(160);
@@ -130,7 +130,7 @@ void TraceFile::addArrows(const FrameTiming& timing) {
   arrow("frame to frame", 'f', timing.of(Stage::kOpticalFlow), timing.head.frame);
 }
 
-/// As each frame finds it when it enters the graph.
+/// Adds the number of frames in flight when this one enters the graph.
 void TraceFile::addInFlight(const FrameTiming& timing) {
   std::erase_if(published_, [&](SteadyTime published) { return published <= timing.admitted; });
   published_.push_back(timing.published);

@@ -8,9 +8,8 @@
 
 namespace motorcade {
 
-/// Poses of the inertial unit with the attitudes of its packets and the places to which their velocities lead from the
-/// first one, each packet's velocity and the next one's averaged over the time between them. Throws InputError, naming
-/// the file that the packets come from, where one has no velocity.
+/// Poses of the inertial unit with the attitudes of its packets. The positions integrate the packets' velocities from
+/// the first one by the trapezoidal rule. Throws InputError naming the packets' file where one has no velocity.
 std::vector<SE3> velocityPoses(const std::vector<OxtsPacket>& packets, const std::vector<Timestamp>& stamps,
                                const std::filesystem::path& file);
 

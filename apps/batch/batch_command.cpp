@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr int kExitFailedTasks = 6;
 
-/// What is left of a plan, and what is not.
+/// The tasks of a plan that are still to be performed, and the number of those that are not.
 struct Remaining {
   std::vector<const Task*> tasks{};
   std::size_t finished = 0, failed = 0;  // before
@@ -66,7 +66,7 @@ std::set<fs::path> renderedInto(const Plan& plan) {
   return folders;
 }
 
-/// What was left by processes that are no longer there, here and in Slurm.
+/// Removes what processes left that no longer run, here or in Slurm.
 void removeLost(const Plan& plan, const BatchFolder& folder) {
   removeDeadAttempts(folder.attempts());
   for (const fs::path& sequences : renderedInto(plan)) removeDeadAttempts(sequences);

@@ -98,7 +98,7 @@ std::size_t largestArray() {
 
 namespace {
 
-/// Of a line JOB|INDEX|STATE|REASON; the index of a job without elements is N/A.
+/// Parses a line JOB|INDEX|STATE|REASON; the index of a job without elements is N/A.
 QueuedElement elementOf(const std::string& line) {
   std::istringstream fields(line);
   QueuedElement element;

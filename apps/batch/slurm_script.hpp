@@ -5,7 +5,7 @@
 
 namespace motorcade {
 
-/// What the user asks of Slurm.
+/// The user's options for Slurm.
 struct SlurmOptions {
   std::string partition{}, time{};  // as sbatch takes them; its defaults when empty
   int array_limit = 0;              // tasks at the same time; 0 for as many as there is room for
@@ -29,7 +29,7 @@ struct SlurmScripts {
   SlurmOptions options{};
 
   std::string array(const SlurmArray& array) const;
-  /// What merges the results, when all arrays have ended.
+  /// The script that merges the results when all arrays have ended.
   std::string merge() const;
 };
 

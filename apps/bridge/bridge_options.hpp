@@ -8,7 +8,7 @@
 #include "apps/bridge/received_image.hpp"
 #include "motorcade/motorcade.hpp"
 
-/// What the command line of `motorcade bridge` means. All throw UsageError.
+/// Interprets the command line of `motorcade bridge`. All functions throw UsageError.
 namespace motorcade {
 
 /// Captured seconds per second; empty for as fast as it goes. `capture_rate_hz` is 0 where nobody knows it.
@@ -28,7 +28,7 @@ std::string vehicleMotionTopicOf(const BridgeOptions& options);
 /// The topics of `--images LEFT,RIGHT`; no camera_info where the user gives the cameras.
 std::array<CameraTopics, 2> cameraTopicsOf(const BridgeOptions& options);
 
-/// For the tracker, with the file of parameters read. What the tracker then says about it is the caller's to tell.
+/// The tracker's options, with the file of parameters read. The caller reports the tracker's remarks on them.
 Tracker::Options trackerOptionsOf(const BridgeOptions& options);
 
 }  // namespace motorcade

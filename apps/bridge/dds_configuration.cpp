@@ -25,7 +25,7 @@ bool isAddress(const std::string& text) {
   return inet_pton(AF_INET, text.c_str(), &address) == 1;
 }
 
-/// Whether one of this machine's interfaces has that address.
+/// True for the address of one of this machine's interfaces.
 bool isOwnAddress(const std::string& text) {
   ifaddrs* interfaces = nullptr;
   in_addr wanted{};
@@ -40,7 +40,7 @@ bool isOwnAddress(const std::string& text) {
   return false;
 }
 
-/// As the attribute of an element: no character that means something there.
+/// The attribute of an XML element that names the interface. It has no character with a meaning in XML.
 std::string attributeOf(const std::string& interface) {
   if (isOwnAddress(interface)) return fmt::format("address=\"{}\"", interface);
   const auto plain = [](char c) {

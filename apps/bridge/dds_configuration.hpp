@@ -4,7 +4,7 @@
 
 namespace motorcade {
 
-/// Where DDS is spoken.
+/// The domain and the interface on which DDS communicates.
 struct DdsPlace {
   static constexpr int kMostDomain = 232;  // its ports would be beyond 65535
 
@@ -19,7 +19,7 @@ std::string ddsConfiguration(const DdsPlace& place);
 
 bool isLoopback(const DdsPlace& place);
 
-/// For messages: "domain 0 on 127.0.0.1".
+/// Text for messages: "domain 0 on 127.0.0.1".
 std::string textOf(const DdsPlace& place);
 
 }  // namespace motorcade

@@ -50,7 +50,7 @@ class DdsPublisher {
 
   /// The counts of its topics, in their order.
   std::vector<Counts> counts() const;
-  /// On loopback: nobody outside of this machine can send to it.
+  /// True on loopback: nobody outside of this machine can send to it.
   bool isShielded() const;
 
  private:

@@ -20,7 +20,7 @@ bool sleepUntil(Clock::time_point due, const std::stop_token& stop) {
   return !stop.stop_requested();
 }
 
-/// When what was captured so long after the first pair is to be pushed.
+/// The time at which to push a pair that was captured `after_first_ns` after the first one.
 Clock::time_point due(Clock::time_point start, std::int64_t after_first_ns, double speed) {
   const std::chrono::duration<double, std::nano> wait(static_cast<double>(after_first_ns) / speed);
   return start + std::chrono::duration_cast<Clock::duration>(wait);

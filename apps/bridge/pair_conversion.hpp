@@ -31,7 +31,7 @@ struct CameraKnowledge {
 /// The camera and its rectification. Throws InputError or UsageError.
 Sequence camerasOf(const CameraKnowledge& known, ImageSize size);
 
-/// From the images that came to those that the tracker takes: gray, of the camera's size, rectified. Remembers how many
+/// Converts received images to those that the tracker takes: gray, of the camera's size, rectified. Remembers how many
 /// bits the samples of 16 bits use, which is the same for all pairs.
 class PairConversion {
  public:

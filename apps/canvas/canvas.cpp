@@ -75,7 +75,7 @@ void addRounded(cairo_t* context, const Rectangle& rectangle, double radius_px) 
   cairo_close_path(context);
 }
 
-/// Without hinting: letters are the same wherever they stand, and whatever the machine prefers.
+/// Selects the font without hinting, so that letters look the same at any position and on any machine.
 void selectFont(cairo_t* context, const TextStyle& style) {
   cairo_select_font_face(context, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
                          style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
@@ -107,7 +107,7 @@ void withGlyphs(cairo_t* context, std::string_view given, const Use& use) {
   }
 }
 
-/// As Cairo keeps it: blue, green, red and nothing.
+/// Copies to Cairo's layout: blue, green, red and an unused byte.
 void copyGray(const Image& image, std::uint8_t* to, int stride) {
   for (int y = 0; y < image.height(); ++y) {
     const std::uint8_t* gray = image.row(y);

@@ -14,7 +14,7 @@
 
 namespace motorcade {
 
-/// How a line is drawn.
+/// Style of a line.
 struct Pen {
   Color color{};
   double width_px = 1;
@@ -22,7 +22,7 @@ struct Pen {
   std::vector<double> dashes_px{};  // on, off, ...; solid when empty
 };
 
-/// How an area is filled.
+/// Style of an area.
 struct Fill {
   Color color{};
   double opacity = 1;

@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// What a page of `check` tells.
+/// Content of a page of `check`.
 struct CheckedInput {
   std::string sequence;
   StereoCamera camera;

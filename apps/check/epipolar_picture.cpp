@@ -27,7 +27,7 @@ Color colorOf(double error_px) {
   return size_px <= kGood_px ? kGood : size_px <= kFair_px ? kFair : kBad;
 }
 
-/// Of nine tenths of the errors, the largest.
+/// The 90th percentile of the errors' magnitudes.
 double largeError_px(std::vector<double> errors_px) {
   if (errors_px.empty()) return 0;
   for (double& error_px : errors_px) error_px = std::abs(error_px);
@@ -92,7 +92,7 @@ double usualDisparity_px(std::span<const EpipolarMatch> matches) {
   return median(disparities_px);
 }
 
-/// What the geometry makes of the rows at places across the image.
+/// Row errors that the geometry predicts at positions across the image.
 std::vector<std::pair<Vector2d, double>> rowErrorField(const Canvas& image, double scale, double disparity_px,
                                                        const PairGeometry& geometry, const StereoCamera& camera) {
   constexpr int kColumns = 17;
@@ -104,7 +104,7 @@ std::vector<std::pair<Vector2d, double>> rowErrorField(const Canvas& image, doub
   return field;
 }
 
-/// How long an arrow of a round row error is.
+/// Draws an arrow of a round row error as a scale.
 void drawScale(Canvas& canvas, double top, double shown_per_px) {
   constexpr double kLong_px = 60;
   double unit_px = 0.1;

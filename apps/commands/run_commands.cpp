@@ -79,7 +79,7 @@ void addInputAndFolder(CLI::App& command, RunOptions& options) {
   input->each([out](const std::string& path) { out->required(!isBag(path)); });
 }
 
-/// What a run writes and serves for the eye, beside its folder of results.
+/// Adds the options for what a run writes and serves to be looked at, beside its folder of results.
 void addWaysToSee(CLI::App& command, RunOptions& options) {
   command.add_flag("--masks", options.masks,
                    "Write what the image shows of the objects: masks/NNNNNN.png, outlines.jsonl, object_points.csv");

@@ -20,7 +20,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// So many are done, and what else there is to say.
+  /// Shows how many items are done, and a further text.
   void show(std::size_t done, const std::string& more = "");
 
  private:

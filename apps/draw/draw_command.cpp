@@ -46,7 +46,7 @@ double rateOf(const RecordedDrive& drive, int every) {
   return std::clamp(1 / (*middle * every), kLeast_hz, kMost_hz);
 }
 
-/// Where pictures go.
+/// The target of pictures: a folder or a video.
 class Gallery {
  public:
   Gallery(const DrawOptions& options, double rate_hz, const std::atomic<bool>& stop)

@@ -102,7 +102,7 @@ void drawPoints(Sheet& sheet, const std::vector<ObjectPoint>& points) {
   }
 }
 
-/// On the ground below the object, fading backwards.
+/// Draws the object's path on the ground below it, fading backwards.
 void drawWay(Sheet& sheet, const Eye& eye, const ObjectEstimate& object, const Vector3d& bottom_body) {
   constexpr std::size_t kWay_frames = 20;
   const std::size_t earliest = eye.frame - std::min(eye.frame, kWay_frames);

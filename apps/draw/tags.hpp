@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// What is known of an object in one or two lines of text, beside what shows it.
+/// One or two lines of text about an object, placed beside its anchor.
 struct Tag {
   Color color{};
   std::string name{}, facts{};  // without facts it has one line

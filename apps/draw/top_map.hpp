@@ -9,7 +9,7 @@
 
 namespace motorcade {
 
-/// From the camera's frame to a picture from above in which the camera heads right.
+/// Maps the camera's frame to a picture from above in which the camera heads right.
 struct TopMap {
   double px_per_m = 1;
   Eigen::Vector2d origin_px = Eigen::Vector2d::Zero();  // of the camera

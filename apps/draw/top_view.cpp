@@ -23,7 +23,7 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-/// What every part of the view needs.
+/// State that every part of the view needs.
 struct View {
   Sheet& sheet;
   const RecordedDrive& drive;
@@ -93,7 +93,7 @@ void drawOwnPath(const View& view) {
   view.sheet.canvas.fill(corners, {kOwn, 1});
 }
 
-/// Of the objects that are there, and, fainter, of those that were followed once.
+/// Draws the paths of the present objects and, fainter, of those followed earlier.
 void drawWays(const View& view) {
   std::set<TrackId> earlier;
   for (const auto& [at, objects] : view.drive.objects) {
@@ -145,7 +145,7 @@ void drawFootprint(const View& view, const ObjectEstimate& object, const SeenExt
   canvas.fill(notch, {kDark, 0.55});
 }
 
-/// Of the cuboid's middle, where the run tells how sure it is of it.
+/// Draws the two-sigma ellipse of the cuboid's middle, where its covariance is known.
 void drawEllipse(const View& view, const ObjectEstimate& object) {
   constexpr double kSigmas = 2;
   const ObjectPlace place = placeOf(object);

@@ -35,7 +35,7 @@ constexpr auto kStep = std::chrono::milliseconds(50);
 
 bool isWebm(const fs::path& file) { return file.extension() == ".webm"; }
 
-/// Of a size with even sides, which these formats ask for.
+/// Arguments of ffmpeg. The pictures are padded to even sides, which these formats require.
 std::vector<std::string> argumentsFor(const fs::path& partial, bool webm, const VideoWriter::Format& format) {
   std::array<char, 32> rate;
   std::snprintf(rate.data(), rate.size(), "%.6f", format.rate_hz);
@@ -65,7 +65,7 @@ std::string endText(int status) {
   return WIFSIGNALED(status) ? "ffmpeg was ended by signal " + std::to_string(WTERMSIG(status)) : "ffmpeg failed";
 }
 
-/// What a child gets instead of what this process has.
+/// Settings of a child process that differ from this one's.
 class SpawnSettings {
  public:
   SpawnSettings() {

@@ -12,7 +12,7 @@
 
 namespace motorcade {
 
-/// Where the `ffmpeg` of PATH is.
+/// Path of the `ffmpeg` in PATH; empty where there is none.
 std::optional<std::filesystem::path> findFfmpeg();
 
 /// Throws UsageError unless a video can have that name: .mp4 (H.264) and .webm (VP9) can.
@@ -29,7 +29,7 @@ class VideoWriter {
   /// Once `stop` is set, nothing is waited for any more.
   VideoWriter(const std::filesystem::path& file, const Format& format, const std::filesystem::path& ffmpeg,
               const std::atomic<bool>& stop);
-  /// Without `finish`, ffmpeg is ended and what it wrote is removed.
+  /// Ends ffmpeg and removes what it wrote, unless `finish` was called.
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;

@@ -5,11 +5,11 @@
 #include "apps/evaluate/object_matching.hpp"
 #include "apps/evaluate/trajectory_error.hpp"
 
-/// How well boxes and cuboids cover the labels': over the reported rows that were matched to labels which are asked
+/// Agreement of boxes and cuboids with the labels', over the reported rows that were matched to labels which are asked
 /// for.
 namespace motorcade {
 
-/// Of the matched rows in one range of distances.
+/// Errors of the matched rows in one range of distances.
 struct BoxErrors {
   int rows = 0, rows_with_cuboid = 0;
   double iou_2d = 0, over_half_2d = 0;  // mean, and share above 1/2, in the left image

@@ -5,7 +5,7 @@
 #include "apps/evaluate/axis_reliability.hpp"
 #include "core/se3.hpp"
 
-/// Whether errors are as large as covariances say.
+/// Compares errors with the covariances that were estimated for them.
 namespace motorcade {
 
 /// truth = estimate * exp(xi), xi ~ (0, covariance).

@@ -43,7 +43,7 @@ struct Drive {
   }
 };
 
-/// How well labels and tracks fit over the whole drive: the Jaccard index of their frames, where a frame counts by the
+/// Alignment of labels and tracks over the whole drive: the Jaccard index of their frames. A frame counts by the
 /// similarity's share of all that compete for it.
 Eigen::MatrixXd alignmentOf(const std::vector<HotaFrame>& frames, const Drive& drive) {
   Eigen::MatrixXd together = Eigen::MatrixXd::Zero(std::ssize(drive.labels.frames), std::ssize(drive.tracks.frames));

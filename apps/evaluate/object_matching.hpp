@@ -15,7 +15,7 @@ namespace motorcade {
 /// Bounds of the two ranges that objects are measured in.
 inline constexpr double kNear_m = 30, kFar_m = 50;
 
-/// What the measures need to know of a label in one frame.
+/// A label in one frame, with the properties that the measures need.
 struct TrueObject {
   ObjectTruth truth;
   bool counted = false;     // well enough in view to be asked for
@@ -73,10 +73,10 @@ inline constexpr int kEarlyRows = 9;
 std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths,
                                                            const std::vector<Timestamp>& stamps);
 
-/// Every frame that has a camera pose in `tracks` and in `camera`, with its rows matched one to one to labels: as many
-/// as possible within the gate max(3 m, half the length + 0.08 z), then the least total distance on the ground as seen
-/// from the camera, of the middle of a row's cuboid (of the body's origin, where it has none). Without labels the
-/// frames have no objects.
+/// Every frame that has a camera pose in `trajectories` and in `camera`, with its rows matched one to one to labels.
+/// The matching takes as many pairs as possible within the gate max(3 m, half the length + 0.08 z), then the least
+/// total distance. Distances are on the ground as seen from the camera, from the middle of a row's cuboid, or else from
+/// the body's origin. Without labels the frames have no objects.
 std::vector<ComparedFrame> compareFrames(const RunFolder::Trajectories& trajectories, std::int64_t first_frame,
                                          const CameraTruth& camera, const ObjectTruths* truths,
                                          const std::vector<Timestamp>& stamps);

@@ -10,7 +10,7 @@
 /// One function per layout: each gives a sequence where it finds its own, nothing elsewhere.
 namespace motorcade {
 
-/// Where to look, as an absolute path without a slash at its end, and what the user says.
+/// The user's path and options. The path is absolute and has no slash at its end.
 struct SequenceSource {
   std::filesystem::path path;
   double fps_hz = 10;
@@ -26,7 +26,7 @@ std::optional<Sequence> openArgoverse(const SequenceSource& source);
 std::optional<Sequence> openPlain(const SequenceSource& source);
 std::optional<Sequence> openImageList(const SequenceSource& source);
 
-/// What the first of them finds.
+/// Opens the sequence by the first layout that finds its own.
 std::optional<Sequence> openKnownLayout(const SequenceSource& source);
 
 /// The variations of Virtual KITTI 2 in a folder with scenes or in that of a scene, as paths in it. Empty in others.

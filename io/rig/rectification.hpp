@@ -13,7 +13,7 @@
 
 namespace motorcade {
 
-/// How two raw images become a rectified pair.
+/// The geometry that turns two raw images into a rectified pair.
 struct Rectification {
   LensCamera left, right;
   Eigen::Matrix3d R_left = Eigen::Matrix3d::Identity();  // p_rectified = R * p_raw, of each camera
@@ -39,7 +39,7 @@ struct Rig {
 /// large as the raw ones. Throws InputError naming the file.
 Rectification rectificationOf(const Rig& rig, ImageSize size);
 
-/// Of a very wide lens, the edges are given up rather than the resolution in the middle.
+/// Least zoom of the rectified pair. A very wide lens loses its edges rather than the resolution in the middle.
 inline constexpr double kLeastZoom = 0.7;
 
 }  // namespace motorcade

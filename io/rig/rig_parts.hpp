@@ -9,11 +9,12 @@
 #include "io/rig/rectification.hpp"
 #include "io/rig/yaml_file.hpp"
 
-/// What the calibrations of different makers have in common.
+/// Parsers that the calibrations of different makers share.
 namespace motorcade {
 
 Eigen::Matrix3d matrix33(const YamlPart& part);
-/// Of nine numbers that must be a rotation's, which is put back onto SO(3) from its printed digits.
+/// Reads a rotation from nine numbers and puts it back onto SO(3) from its printed digits. Fails if they are no
+/// rotation.
 Eigen::Matrix3d rotation33(const YamlPart& part);
 /// Reads a transform from three or four rows of four numbers.
 SE3 transform44(const YamlPart& part);

@@ -69,7 +69,7 @@ bool hasUsualName(const fs::path& file) {
   return std::ranges::any_of(kWords, [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
-/// In the order in which they are looked for.
+/// Files that may be calibrations, in the order in which they are tried.
 std::vector<Files> filesInQuestion(const fs::path& folder, RigNames names) {
   const auto files = filesOf(folder);
   std::vector<Files> all = pairsOf(files);

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMostNodes = std::size_t{1} << 18, kMostText_bytes = std::size_t{1} << 21;
 constexpr std::size_t kDeepest = 64;
 
-/// What no calibration has.
+/// A construct that no calibration has.
 struct NoCalibration {
   int line;
   const char* problem;
@@ -27,7 +27,7 @@ struct NoCalibration {
 
 int lineOf(const YAML::Mark& mark) { return mark.is_null() ? 0 : mark.line + 1; }
 
-/// Makes the tree from the inside out of what the parser comes across.
+/// Builds the tree from the parser's events, from the leaves up.
 class TreeBuilder : public YAML::EventHandler {
  public:
   YamlNode takeRoot() { return std::move(root_); }

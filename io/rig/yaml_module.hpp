@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-/// What the module `yaml.so` (core/module.hpp) has: yaml-cpp's parser. The number in the function's name counts up with
-/// whatever changes in this file, so that a module of another version is refused.
+/// The interface of the module `yaml.so` (core/module.hpp): yaml-cpp's parser. The number in the function's name is
+/// raised with each change in this file, so that a module of another version is refused.
 namespace motorcade {
 
 struct YamlNode {

@@ -26,7 +26,7 @@ void read(const py::object& object, const char* key, const std::string& name, Va
   value = valueOf<Value>(object.attr(key), field);
 }
 
-/// As doubles, row by row.
+/// Converts to an array of doubles, row by row.
 py::array_t<double> arrayOf(const py::object& object, const std::string& field) {
   auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(object);
   if (!numbers) throw py::type_error(field + ": is no array of numbers");

@@ -200,7 +200,7 @@ void TrackerBinding::end(std::unique_ptr<Running> running) {
   while (running->visits > 0) std::this_thread::sleep_for(kPause);
 }
 
-/// Without a thread for it, the tracker stays until the process ends.
+/// Ends the tracker on a thread of its own. If none can be started, the tracker stays until the process ends.
 void TrackerBinding::endBehindTheScenes(std::unique_ptr<Running> running) {
   Running* const leaving = running.release();
   ++trackers_leaving;
