@@ -26,7 +26,7 @@ constexpr int kExitInternal = 70;
 /// Operator new found no memory. Each thread may be in the middle of anything: nothing is unwound.
 [[noreturn]] void endWithoutMemory() { endWith("motorcade: out of memory\n"); }
 
-/// What is thrown where nothing may be: oneTBB's, when a thread cannot be started.
+/// Ends on an exception that nothing may throw here: oneTBB's, when a thread cannot be started.
 [[noreturn]] void endWithCurrentException() {
   try {
     if (const auto current = std::current_exception()) std::rethrow_exception(current);

@@ -12,7 +12,7 @@ double areaInImage(const Box& box) {
   return std::max(0.0, box.right_px - box.left_px) * std::max(0.0, box.bottom_px - box.top_px);
 }
 
-/// Of what both have in common, from that and the sum of both.
+/// Intersection over union from the common part and the sum of both.
 double iouOf(double common, double sum) { return sum > common ? common / (sum - common) : 0; }
 
 double volumeOf(const UprightCuboid& cuboid) { return areaOf(cuboid.corners) * (cuboid.bottom_m - cuboid.top_m); }

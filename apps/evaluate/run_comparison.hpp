@@ -21,7 +21,7 @@ struct RunComparison {
   int objects_of_mean = 0;  // followed in at least `kLeastFramesOfMean` common frames
   std::array<double, kPositionKinds> mean_relative_error{};
 };
-/// Of two runs of the same drive. Labels that only one of them followed are left out.
+/// Compares two runs of the same drive. Labels that only one of them followed are left out.
 RunComparison compareRuns(const std::vector<FollowedLabel>& ours, const std::vector<FollowedLabel>& baseline);
 
 }  // namespace motorcade

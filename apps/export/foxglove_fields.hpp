@@ -16,7 +16,7 @@ class Quaternion;
 class Vector3;
 }  // namespace foxglove
 
-/// What Foxglove's messages have in common.
+/// Fields that Foxglove's messages share.
 namespace motorcade {
 
 struct Color;

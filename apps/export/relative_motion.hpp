@@ -15,8 +15,8 @@ struct RelativeMotion {
   Eigen::Vector3d turn_radps = Eigen::Vector3d::Zero();  // of the box against the sensor, in the box's axes
 };
 
-/// An object's motion as a sensor sees it that moves itself. With p the center in the sensor's frame, v_o, a_o its
-/// velocity and acceleration in the world but in the sensor's axes, (v, w) the sensor's twist and (v', w') its change:
+/// An object's motion as seen from a moving sensor. p is the center in the sensor's frame. v_o, a_o are its velocity
+/// and acceleration in the world, on the sensor's axes. (v, w) is the sensor's twist and (v', w') its change:
 ///   dp/dt   = v_o - v - w x p
 ///   d2p/dt2 = a_o - w x v_o - v' - w' x p - w x dp/dt
 /// The object's pose is in the world of the sensor's, `T_sensor_world` the sensor's in that frame.

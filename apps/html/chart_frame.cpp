@@ -89,7 +89,7 @@ void ChartFrame::addMark(const Eigen::Vector2d& point, std::string_view color, s
                        escaped(text));
 }
 
-/// In the line of the x axis' label, from the left; what does not fit there goes into lines below.
+/// Adds the legend to the line of the x axis' label, from the left. Entries that do not fit go to lines below.
 void ChartFrame::addLegend(const std::vector<ChartPart>& entries) {
   double x = left_, y = height_ - bottom_ + 33;
   double free_until = width_ - 150;  // the label of the axis is right of it

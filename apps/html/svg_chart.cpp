@@ -24,7 +24,8 @@ void widen(double& low, double& high) {
   if (high - low < 1e-9) low -= 0.5, high += 0.5;
 }
 
-/// What of a band the range of a chart makes room for: the first, unsure estimates would leave none for the others.
+/// Half width of a band for which the chart's range makes room. The first, unsure estimates would leave no room for
+/// others.
 double roomFor(const ChartLine& line) {
   constexpr double kTimesMedian = 3;
   std::vector<double> half = line.half_width;

@@ -9,9 +9,9 @@
 /// Charts as SVG inside of a page: they follow its colors, scale with it and print.
 namespace motorcade {
 
-/// What a page with charts has after its base style. Colors are var(--line1 | --line2), var(--s1) to var(--s7),
-/// var(--truth) and var(--wait), beside those of the page; var(--strength) is how much of a color for dark ground is
-/// left on the page's own.
+/// Style of a page with charts, added after its base style. Colors are var(--line1 | --line2), var(--s1) to var(--s7),
+/// var(--truth) and var(--wait), beside those of the page. var(--strength) is the share of a color made for dark ground
+/// that is used on the page's own ground.
 extern const std::string_view kChartStyle;
 
 /// A line of a chart. Where a point is not finite, the line is broken.

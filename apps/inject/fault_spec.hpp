@@ -11,7 +11,7 @@
 
 namespace motorcade {
 
-/// What can go wrong between a camera and the pipeline.
+/// Faults between a camera and the pipeline.
 enum class FaultKind {
   kDrop,       // the pair never comes
   kDuplicate,  // it has the images of the pair before

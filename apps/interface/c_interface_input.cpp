@@ -57,7 +57,7 @@ Camera::Ignored ignoredOf(const motorcade_camera& camera) {
   return ignored;
 }
 
-/// Without pixels where there is no image.
+/// Converts an image; the result has no pixels when none is given.
 Pair::Image imageOf(const motorcade_image* given, const char* name, const char* format_name) {
   if (given == nullptr) return {};
   const motorcade_image image = readStruct(given, name, {});

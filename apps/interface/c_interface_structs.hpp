@@ -45,7 +45,7 @@ void requireStruct(const Struct* given, const char* name) {
                       std::to_string(sizeof(Struct)) + ", before the call");
 }
 
-/// How much of the caller's struct this version knows, which may be all.
+/// Bytes of the caller's struct that this version knows, which may be all.
 template <class Struct>
 std::size_t knownBytes(const Struct* given) {
   return std::min(sizeof(Struct), given->struct_size);

@@ -60,7 +60,7 @@ PixelMask ignoredOf(const Camera& camera) {
   return ignored;
 }
 
-/// Of one lens, or of the rectified pair.
+/// Checks the intrinsics of one lens or of the rectified pair.
 template <class Intrinsics>
 void requireIntrinsics(const std::string& name, const Intrinsics& lens, const Camera& camera) {
   constexpr double kMostFocal_px = 1e6;

@@ -14,7 +14,7 @@ namespace motorcade {
 /// May images that are pushed have this size?
 bool isImageSize(int width_px, int height_px);
 
-/// A caller's camera as the stages need it: that of the rectified pair, and how its images become such.
+/// A caller's camera as the stages need it: that of the rectified pair, and the rectification of its images.
 class CameraModel {
  public:
   /// Throws Error naming the field.
@@ -23,7 +23,7 @@ class CameraModel {
   const StereoCamera& rectified() const { return rectified_; }
   /// The pixels of the rectified left image that are of no use.
   const FrameInputs& inputs() const { return inputs_; }
-  /// From what was pushed, as gray, to what the stages take.
+  /// Rectifies a pushed image, converted to gray, for the stages.
   Image leftOf(const Image& gray, ImagePool& pool) const { return remaps_ ? remaps_->left(gray, pool) : gray; }
   Image rightOf(const Image& gray, ImagePool& pool) const { return remaps_ ? remaps_->right(gray, pool) : gray; }
 

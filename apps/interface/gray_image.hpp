@@ -16,7 +16,7 @@ inline constexpr std::ptrdiff_t kMostStride_bytes = 1 << 24;
 /// Bytes from row to row, where the caller says nothing, too.
 std::ptrdiff_t strideOf(const Pair::Image& image);
 
-/// Why an image cannot be one of this camera; null when it can.
+/// Reason why an image cannot be one of this camera; null when it can.
 const char* problemOf(const Pair::Image& image, const Camera& camera);
 
 /// Finds out how many bits the samples of images of 16 bits use, as cameras have ten, twelve or fourteen. Call for each

@@ -39,7 +39,7 @@ class ResultQueue {
   /// took one in time. Does not wait after `endWaitsForRoom`.
   bool waitForRoom(std::chrono::milliseconds patience);
   void endWaitsForRoom();
-  /// Of that pair no result comes.
+  /// Gives the room back when no result of the pair comes.
   void giveUpRoom();
 
   std::optional<Result> poll();
@@ -48,10 +48,11 @@ class ResultQueue {
   /// No result comes any more, and the callback has returned from the last one.
   bool done() const;
 
-  /// From now on results, those that wait first, go to the callback, or where it is empty to `poll` and `wait` again.
-  /// The callback before has returned by then, unless it is the caller.
+  /// Directs results, those that wait first, to the callback, or with an empty one back to `poll` and `wait`. On return
+  /// the previous callback has returned, unless it is the caller.
   void handTo(Taker taker);
-  /// The thread that calls callbacks: waits for a result and hands it on; false when nobody takes any more.
+  /// The thread that calls callbacks: waits for a result and hands it to the callback. False when nobody takes results
+  /// any more.
   bool handNext();
 
   std::int64_t given() const;

@@ -40,7 +40,7 @@ class TrackedDrive {
   TrackedDrive(const TrackedDrive&) = delete;
   TrackedDrive& operator=(const TrackedDrive&) = delete;
 
-  /// From now on results are delivered. Its objects have ids from `first_id` on.
+  /// Starts to deliver results. Its objects have ids from `first_id` on.
   void start(std::int64_t first_id);
 
   /// The pushing thread: the bits of this pair's samples.

@@ -54,7 +54,8 @@ void requireValid(const Tracker::Options& options) {
   if (options.patience.count() < 0) throw Error("options.patience", "is negative");
 }
 
-/// What has an option of its own may stand in the settings, as in the file that a run writes, but not otherwise.
+/// Throws where the settings contradict an option. A value that has an option of its own may stand in them, as in the
+/// file that a run writes.
 void requireAgreement(const PipelineParams& settings, const Tracker::Options& options) {
   if (settings.threads != options.threads)
     throw Error("options.settings", "say pipeline.threads = " + std::to_string(settings.threads) +

@@ -17,7 +17,7 @@ constexpr double kSignificant = 0.05;
 constexpr std::string_view kBetter = "better", kWorse = "worse";  // verdicts that are sure
 constexpr std::size_t kMostRegressions = 40;                      // of the table; the JSON file has all
 
-/// What is compared: few measures that say most, as each more makes the test less sharp.
+/// The measures that are compared. They are few, as each more makes the test less sharp.
 constexpr std::array<std::string_view, 16> kAccuracy{"camera_ate_m",
                                                      "camera_rpe_t_rmse_m",
                                                      "camera_rpe_r_rmse_deg",

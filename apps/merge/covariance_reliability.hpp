@@ -17,7 +17,7 @@ struct ResultTable;
 inline constexpr std::array kCovarianceTitles = {"camera, over ten frames", "camera, since the start", "objects"};
 using CovarianceReliability = std::array<AxisReliability, kCovarianceTitles.size()>;
 
-/// What the runs with one set of parameters claimed.
+/// Reliability of the covariances of all runs with one set of parameters.
 struct CovarianceReliabilityOfSet {
   CovarianceReliability final, online;
 };

@@ -29,7 +29,7 @@ class ResultGroup {
   const WorstFrameOfEach& worst() const { return worst_; }
   const std::vector<Seed>& seeds() const { return seeds_; }
 
-  /// Over the seeds that have a value; kNoValue where none has.
+  /// Statistics over the seeds that have a value; kNoValue where none has.
   double mean(std::string_view measure) const;
   double sum(std::string_view measure) const;
   double largest(std::string_view measure) const;

@@ -10,7 +10,7 @@
 
 namespace motorcade {
 
-/// Which of two values is the better one.
+/// Direction in which a value is better.
 enum class Better { kLower, kHigher, kNeither };
 
 /// A number that every result of a batch may have, and where it stands.

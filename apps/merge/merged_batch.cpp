@@ -132,7 +132,7 @@ MergedTask merge(MergedBatch& batch, const Task& task, const BatchFolder& folder
   return merged;
 }
 
-/// What results that are compared with each other have in common.
+/// Key that is equal for results to be compared with each other.
 std::string pairKey(const Task& task) {
   return fmt::format("{}/{}/{}", task.drive, task.seed ? std::to_string(*task.seed) : "", task.repetition);
 }

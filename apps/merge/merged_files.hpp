@@ -8,7 +8,7 @@
 #include "apps/merge/groups.hpp"
 #include "apps/merge/merged_batch.hpp"
 
-/// What is written of a merged batch, each as the content of a file.
+/// Files of a merged batch; each function returns the content of one.
 namespace motorcade {
 
 /// All that there is to tell.

@@ -109,7 +109,7 @@ std::string distributions(const std::vector<ResultGroup>& groups) {
   return charts.empty() ? "" : "<div class=\"grid\">\n" + charts + "</div>\n";
 }
 
-/// Which share of all frames came out within so many milliseconds.
+/// Chart of the share of all frames whose latency is below a number of milliseconds.
 std::string latencyDistribution(const MergedBatch& batch) {
   std::vector<ChartLine> lines;
   std::vector<std::string> sets;

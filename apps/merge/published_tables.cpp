@@ -67,7 +67,7 @@ bool isCompared(const std::vector<ResultGroup>& groups, const PublishedFigure& f
   });
 }
 
-/// In the order in which they come first.
+/// Distinct values in the order of their first occurrence.
 template <class Part>
 std::vector<std::string> distinct(const std::vector<PublishedFigure>& figures, const Part& part) {
   std::vector<std::string> all;

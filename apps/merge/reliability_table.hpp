@@ -24,7 +24,7 @@ inline constexpr Claim kExistenceClaim{"Existence: share that is real", "/existe
 inline constexpr Claim kKindClaim{"Kinds named to 30 m from a track's tenth row on: share that is right",
                                   "/kinds_within_30m/from_tenth_row/named", "right"};
 
-/// What the runs with one set of parameters claimed.
+/// Reliability of all runs with one set of parameters.
 struct ReliabilityOfSet {
   Reliability final, online;
 };

@@ -28,11 +28,11 @@ std::vector<ResultTable> measureTables(const std::vector<ResultGroup>& groups);
 
 /// Rounded to so many digits, without those that are zero; `-` for no value.
 std::string numberText(double value, int digits);
-/// In percent, with its sign; `-` for no value.
+/// A share in percent, with its sign; `-` for no value.
 std::string percentText(double share, int digits);
 
 std::string markdownOf(const ResultTable& table);
-/// As HTML, escaped.
+/// HTML of a table, escaped.
 std::string htmlOf(const ResultTable& table);
 
 }  // namespace motorcade

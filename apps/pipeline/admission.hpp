@@ -2,7 +2,7 @@
 
 namespace motorcade {
 
-/// What became of a frame that was pushed.
+/// Outcome of a push.
 enum class Admission {
   kTaken,
   kReplacedOlder,  // taken, and one that still waited is dropped

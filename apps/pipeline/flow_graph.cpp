@@ -101,8 +101,8 @@ class FlowGraph::Impl {
   int workers_;
   oneapi::tbb::task_arena arena_;
   WorkerTeam team_;
-  /// Of the graph: canceled where the library itself lacked memory for a task. Waiting for the graph does not reset it,
-  /// as the next frame may come meanwhile.
+  /// Context of the graph, canceled when the library itself lacked memory for a task. Waiting for the graph does not
+  /// reset it, as the next frame may come meanwhile.
   oneapi::tbb::task_group_context context_{oneapi::tbb::task_group_context::isolated,
                                            oneapi::tbb::task_group_context::concurrent_wait};
   std::atomic<bool> failed_ = false, abandoned_ = false;
@@ -159,7 +159,7 @@ void FlowGraph::Impl::unlessGivenUp(const Act& act) {
   }
 }
 
-/// What a node does with a job: takes it off the edges that lead here, works, and leaves it on the edges that lead on.
+/// Body of a node: takes the job off its incoming edges, works, and puts it on its outgoing edges.
 auto FlowGraph::Impl::stage(std::vector<Edge> in, void (StageRunner::*work)(Job&), std::vector<Edge> out) {
   return [this, in = std::move(in), work, out = std::move(out)](Job* job) {
     team_.occupy();

@@ -150,7 +150,7 @@ void Intake::admit(Job& job, Entering entering) {
     tell(log_, LogLevel::kWarning, [&] { return job.name() + " is rejected: " + job.frame->problem; });
 }
 
-/// Of the frames between the last admitted one and that of `turn`.
+/// Number of dropped frames between the last admitted one and that of `turn` that are not among the named ones.
 std::int64_t Intake::droppedUnnamed(const std::vector<MissedFrame>& named, std::int64_t turn) {
   const std::int64_t between = turn - std::exchange(last_turn_, turn) - 1;
   return between -

@@ -20,8 +20,8 @@
 
 namespace motorcade {
 
-/// How frames get in: from the producer's thread, by a ring (replay) or a mailbox (live), to the pump, which admits
-/// them one by one into a free job.
+/// The input of frames. The producer's thread pushes them into a ring (replay) or a mailbox (live); the pump takes them
+/// and admits them one by one into a free job.
 class Intake {
  public:
   Intake(const PipelineParams& params, FreeJobs& free_jobs, Entrance& entrance, LogCallback log);
@@ -36,12 +36,12 @@ class Intake {
   /// Null after the last frame, or when `given_up` says that no job will be free any more.
   Job* next(const std::function<bool()>& given_up);
 
-  /// After the end.
+  /// Counts of frames; valid after the end.
   std::int64_t received() const { return received_.load(); }
   std::int64_t dropped() const { return newest_.overwritten() + passed_over_.load(); }
   std::int64_t refused() const { return refused_.load(); }
   std::int64_t late() const { return late_.load(); }
-  /// After the end: frames after the last admitted one that never entered.
+  /// Frames after the last admitted one that never entered; valid after the end.
   std::vector<MissedFrame> missedAtLast();
   /// Any thread: frames in the ring of replay; live keeps one frame at most.
   std::size_t waiting() const { return input_.size(); }

@@ -9,7 +9,7 @@
 namespace motorcade {
 namespace {
 
-/// What went wrong with the frame, in the order of the stages; the job forgets it.
+/// Takes the problems of the frame out of the job, in the order of the stages.
 std::string takeProblems(Job& job) {
   std::string text = job.frame->problem;
   for (std::string& problem : job.problems)

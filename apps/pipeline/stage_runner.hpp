@@ -24,7 +24,7 @@ class StageRunner {
   void trackObjects(Job& job);
   void optimize(Job& job);
   void shapeObjects(Job& job);
-  /// After the last frame: the estimates that are still in the window.
+  /// The estimates that are still in the window; call it after the last frame.
   std::vector<FrameEstimate> finish();
 
  private:

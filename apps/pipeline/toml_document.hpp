@@ -19,7 +19,7 @@ namespace motorcade {
 /// TOML as people write it. toml++ takes long to compile: include this in few sources.
 namespace motorcade {
 
-/// Where a value stands, for messages.
+/// Position of a value, for messages.
 struct TomlPosition {
   std::string file;
   toml::source_index line = 0;

@@ -76,8 +76,8 @@ void WorkerTeam::letGo(Seat& seat) {
   seat.alone.dropAll();
 }
 
-/// Of those who are not wanted any more, one stays until the last frame is finished: a thread that has just worked on
-/// a frame.
+/// Works while all workers are wanted. Afterwards one thread that has just worked on a frame stays until the last frame
+/// is finished.
 void WorkerTeam::work() {
   occupy();
   Seat& seat = *seats_[thisSeat()];

@@ -23,15 +23,16 @@ class WorkerTeam {
  public:
   /// Starts all but the leader. `arena` has `workers` slots, all of them reserved for threads that enter it.
   WorkerTeam(oneapi::tbb::task_arena& arena, int workers, const ThreadPlacement& placement);
-  /// After the leader has come back and the last call.
+  /// Runs after the last call, when the leader has returned.
   ~WorkerTeam();
   WorkerTeam(const WorkerTeam&) = delete;
   WorkerTeam& operator=(const WorkerTeam&) = delete;
 
-  /// From one thread, before and after a frame is put into the graph.
+  /// Called by one thread before and after a frame is put into the graph.
   void expect();
   void call();
-  /// In a thread of the team: what is left of a frame is one thread's work; all of a frame is done.
+  /// Called by a thread of the team: the rest of a frame is one thread's work (`reachTail`), or the frame is done
+  /// (`finish`).
   void reachTail();
   void finish();
   /// No further call comes; from any thread, also before the leader is at work.
@@ -42,7 +43,7 @@ class WorkerTeam {
   void occupy() { spread_.occupy(thisSeat()); }
 
  private:
-  /// What a worker waits for: a graph without nodes, which is held as long as it shall work.
+  /// The condition that a worker waits for: a graph without nodes, which is held as long as the worker shall work.
   class Hold {
    public:
     void add();

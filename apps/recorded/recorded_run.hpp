@@ -6,10 +6,10 @@
 #include "io/run_folder.hpp"
 #include "io/sequence.hpp"
 
-/// What a run folder tells about its own run.
+/// Facts about a run that its folder records.
 namespace motorcade {
 
-/// Whether a run came to its end there; a folder that a killed or interrupted run left does not count.
+/// True when a run in the folder came to its end. A folder that a killed or interrupted run left does not count.
 bool holdsFinishedRun(const std::filesystem::path& folder);
 
 /// Tells whether pairs came at the pace of a clock (`--rate`, `--live`); latency then counts from when a pair was due.
@@ -17,7 +17,7 @@ bool holdsFinishedRun(const std::filesystem::path& folder);
 /// run does not record its pace.
 bool wasPaced(const RunFolder& run);
 
-/// Which sequence the user says that a run is of; what is empty stands in the run's summary.
+/// The sequence of a run as the user names it. Empty fields are taken from the run's summary.
 struct NamedSequence {
   std::filesystem::path folder{};
   std::optional<double> fps_hz{};  // where the sequence has no times

@@ -38,8 +38,8 @@ std::string histogram(const std::vector<FrameRow>& rows, bool paced) {
               "(no --rate), so that their latency, in the table below, is mostly queueing.");
 }
 
-/// Where each stretch of a frame's way counts: waits are one part, stereo matching and optical flow, of which only the
-/// longer is on the way, two.
+/// Parts of the timeline. All waits are one part. Stereo matching and optical flow are two, of which only the longer is
+/// on a frame's path.
 struct Timeline {
   std::vector<ChartPart> parts;
   std::size_t partOf(const std::string& name) const {

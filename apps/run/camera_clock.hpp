@@ -8,7 +8,8 @@
 
 namespace motorcade {
 
-/// When each pair of a replayed drive is due. It starts once, with the first pair; from then on any thread may ask.
+/// Times at which the pairs of a replayed drive are due. It starts once, with the first pair; from then on any thread
+/// may ask.
 class CameraClock {
  public:
   /// `pace` is the number of captured seconds per second of replay, `period_s` the capture's mean period.

@@ -16,7 +16,7 @@ namespace motorcade {
 /// when it is due; without, as soon as there is room.
 class Feeder {
  public:
-  /// What may stand between source and pipeline; each may be absent.
+  /// Parts that may stand between source and pipeline; each may be absent.
   struct Between {
     CameraClock* clock = nullptr;     // started with the first pair
     FaultInjector* faults = nullptr;  // change the pairs on their way

@@ -38,7 +38,7 @@ std::string headerOf(int width_px, int height_px) {
   return header += kGrayOf16Bits;
 }
 
-/// Whether a row equals the one above; above the first there are zeros.
+/// True when a row equals the one above; above the first there are zeros.
 bool isRepeated(const Gray16Image& mask, int row) {
   const auto start = mask.pixels.begin() + std::ptrdiff_t{row} * mask.width, end = start + mask.width;
   if (row == 0) return std::all_of(start, end, [](std::uint16_t value) { return value == 0; });

@@ -95,7 +95,7 @@ std::optional<McapRecorder::Waiting> McapRecorder::next(const std::stop_token& s
   return waiting;
 }
 
-/// Of a frame whose result has left; those before it will not be asked for any more.
+/// Image of a frame whose result has left. Earlier frames will not be asked for any more.
 Image McapRecorder::imageOf(FrameId frame) {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, kAnnouncement, [&] { return last_entered_ >= frame; });

@@ -36,7 +36,7 @@ class McapRecorder : public RunListener {
   /// Writes what waits and ends the file. Throws OutputError.
   void close();
 
-  /// After `close`.
+  /// Counts of what was left out; valid after `close`.
   LeftOut leftOut() const { return left_out_; }
   std::uint64_t bytes() const { return out_.bytes(); }
 

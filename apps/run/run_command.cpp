@@ -125,7 +125,7 @@ void tellOutside(double share) {
         100 * share));
 }
 
-/// What is played into the pipeline.
+/// Input of the pipeline in a replay.
 struct Replay {
   RunInput& input;
   FrameInputs inputs;  // come with each pair
@@ -135,7 +135,7 @@ struct Replay {
   LiveView* view = nullptr;
 };
 
-/// While it lasts, the page may ask where the pipeline stands.
+/// Lets the page ask for the pipeline's state as long as it lives.
 class FollowedPipeline {
  public:
   FollowedPipeline(LiveView* view, const Pipeline& pipeline) : view_(view) {
@@ -233,8 +233,8 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
                      static_cast<std::int64_t>(source->capacity())};
 }
 
-/// What the user asked for beside the run folder's own files. Made before the run, so that what cannot be written is
-/// known by then.
+/// Outputs that the user asked for beside the run folder's own files. They are opened before the run, so that errors
+/// are known by then.
 class ExtraOutputs {
  public:
   ExtraOutputs(const RunOptions& options, const StereoCamera& camera, InputPolicy policy) : mcap_file_(options.mcap) {

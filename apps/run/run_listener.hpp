@@ -12,9 +12,10 @@ namespace motorcade {
 class RunListener {
  public:
   virtual ~RunListener() = default;
-  /// On the thread of the replay: a pair has gone into the pipeline. Its images belong to a pool; keep few of them.
+  /// Called on the thread of the replay when a pair has gone into the pipeline. Its images belong to a pool; keep few
+  /// of them.
   virtual void frameEntered(const StereoFrame& frame) = 0;
-  /// On the thread that takes the results, in frame order.
+  /// Called on the thread that takes the results, in frame order.
   virtual void frameLeft(const PipelineResult& result) = 0;
 };
 

@@ -13,7 +13,7 @@
 
 namespace motorcade {
 
-/// What became of `run --mcap`.
+/// Outcome of `run --mcap`.
 struct McapSummary {
   std::string file;
   std::uint64_t bytes = 0;

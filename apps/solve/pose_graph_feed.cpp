@@ -151,7 +151,7 @@ void PoseGraphFeed::add(std::size_t pose, const Value& initial, Update& update) 
   }
 }
 
-/// In the solver's frame of its part.
+/// Value of a pose in the frame that the solver uses for its part.
 Value PoseGraphFeed::valueOf(std::size_t pose) const {
   if (!gauge_.isConstant(pose)) return solver_.estimate(variable_[pose]);
   return std::visit([](const auto& value) { return Value(value); }, gauge_.valueOf(pose));
@@ -169,7 +169,7 @@ std::unique_ptr<JacobianFactor> PoseGraphFeed::factorTo(std::size_t pose, const 
                                          valueOf(neighbor.pose), variable);
 }
 
-/// From a pose at `start` over an edge to its neighbor.
+/// Moves a pose at `start` over an edge to its neighbor.
 Value PoseGraphFeed::moved(const Value& start, const Neighbor& from, std::size_t to) const {
   const auto& edge = graph_.edges[from.edge];
   const bool forward = edge.to == index_.id(to);

@@ -54,9 +54,10 @@ class PoseGraphFeed {
   std::size_t edgeCount() const { return edge_count_; }                            // in the solution
   const PoseGraphIndex& index() const { return index_; }
   const PoseGraphGauge& gauge() const { return gauge_; }
-  /// Of the edges in the solver, at its estimate; without the prior.
+  /// Chi-square of the edges in the solver, at its estimate; without the prior.
   double chi2() const;
-  /// Edges that the solver refused because they are not finite where they entered: indices into the graph's.
+  /// Edges that the solver refused, as they are not finite at the values with which they entered: indices into the
+  /// graph's.
   const std::vector<std::size_t>& refusedEdges() const { return refused_edges_; }
   const std::vector<LateJoin>& lateJoins() const { return late_joins_; }
   /// Problems of the solver's system in its current state.

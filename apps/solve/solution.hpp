@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// What a user should know of a graph and its solution.
+/// A problem of a graph or its solution that the user should know.
 struct SolveProblem {
   std::string kind;    // one word
   std::string name;    // its subject: "pose 17"
@@ -23,7 +23,7 @@ struct Solution {
   double chi2 = 0, total_ms = 0;
   std::vector<double> update_ms;  // CPU time of each update
   std::vector<std::int64_t> update_eliminated_scalars;
-  /// After the last update: edges that the budget put off, their chi2, and scalars to substitute.
+  /// State after the last update: edges that the budget put off, their chi2, and scalars to substitute.
   int waiting_edges = 0;
   double waiting_chi2 = 0;
   std::int64_t waiting_scalars = 0;

@@ -3,7 +3,7 @@
 #include "apps/synth/noise.hpp"
 #include "apps/synth/primitive.hpp"
 
-/// What people are made of, on foot and on a bicycle.
+/// Parts of people, on foot and on a bicycle.
 namespace motorcade::synth {
 
 /// A person's size and clothes. Lengths of the segments are shares of the height: Drillis and Contini, "Body segment
@@ -35,7 +35,7 @@ struct Pose {
 };
 using PoseAt = std::function<Pose(double driven_m)>;
 
-/// From the hips up to the neck; arms and head are its limbs.
+/// The body from the hips up to the neck; arms and head are its limbs.
 Model makeTrunk(const Body& body);
 /// Origin at the neck.
 Model makeHead(const Body& body, bool helmet);

@@ -10,7 +10,7 @@
 
 namespace motorcade::synth {
 
-/// What an item covers of a family of rays that all cross one plane (from one point, or parallel): a rectangle of the
+/// Extent of an item for a family of rays that all cross one plane (from one point, or parallel): a rectangle of the
 /// plane, and a range along the rays.
 struct Covered {
   float left = 1e30F, top = 1e30F, right = -1e30F, bottom = -1e30F;

@@ -68,10 +68,10 @@ struct Primitive {
 
 struct Model;
 
-/// Something rigid that turns on a thing as the thing moves on: a leg, a crank, a wheel with spokes. The branches of a
-/// tree in wind are given the time in place of the way.
+/// A rigid part that turns on a thing as the thing moves on: a leg, a crank, a wheel with spokes. The branches of a
+/// tree in wind take the time in place of the distance.
 struct Limb {
-  /// Where its origin, the joint, is, and how far it has turned about the y axis, from z towards x.
+  /// Position of its origin, the joint, and its angle about the y axis, from z towards x.
   struct Pose {
     Vec3 joint;
     double angle_rad = 0;

@@ -9,13 +9,13 @@
 
 namespace motorcade::synth {
 
-/// Whether the sun reaches a point, and on the ground whether something low hangs over it.
+/// Exposure of a point to the sun, and on the ground its cover by something low above it.
 struct Exposure {
   bool sunny = false, covered = false;
   bool operator==(const Exposure&) const = default;
 };
 
-/// What comes back along a ray.
+/// Light, depth and surface seen along a ray.
 struct Sample {
   float light = 0;    // linear
   float depth_m = 0;  // 0: sky

@@ -11,7 +11,7 @@ namespace motorcade::synth {
 
 enum class StereoSide { kLeft, kRight };
 
-/// What a ray meets first.
+/// The first point that a ray meets.
 struct RayHit {
   float t = 0;
   const Placed* placed = nullptr;
@@ -23,7 +23,7 @@ struct RayHit {
 struct RayRange {
   float from = 0, to = 0;
 };
-/// Where a ray, given in the axes of the item's thing, meets the item.
+/// Point where a ray meets the item; the ray is in the axes of the item's thing.
 std::optional<RayHit> hitPart(const FrameScene& frame, std::uint32_t item, const Vec3& origin_body,
                               const Vec3& direction_body, const RayRange& range);
 

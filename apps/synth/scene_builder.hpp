@@ -9,7 +9,7 @@
 
 namespace motorcade::synth {
 
-/// How the sides of a road look.
+/// Appearance of the sides of a road.
 struct Dressing {
   double from_m = 0, to_m = 0;  // stretch of the road
   double clear_m = 4;           // width of the pavement before the first wall or hedge

@@ -9,8 +9,8 @@ namespace motorcade::synth {
 
 struct Model;
 
-/// How something moves: along a path, at a speed and a lateral offset that ease between knots. Twice continuously
-/// differentiable. The frame `map` is the scene's: z up, ground at z = 0.
+/// Motion along a path, at a speed and a lateral offset that ease between knots. Twice continuously differentiable. The
+/// frame `map` is the scene's: z up, ground at z = 0.
 struct Trajectory {
   std::shared_ptr<const Path> path;
   double start_m = 0;      // arc length at time 0

@@ -19,7 +19,7 @@ struct ChildCommand {
   std::vector<int> processors{};   // that it is kept to; empty for those of this thread
 };
 
-/// How a program ended, and what it used.
+/// Exit and resource usage of a program.
 struct ChildEnd {
   int exit_code = 0;
   int signal = 0;  // that killed it; 0 for none

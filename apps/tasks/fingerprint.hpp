@@ -31,13 +31,14 @@ class Fingerprint {
   std::unique_ptr<State> state_;
 };
 
-/// Of one file's name, size and time of change.
+/// Stamp of a file's name, size and time of change.
 std::string fileStamp(const std::filesystem::path& file);
 
-/// Of a program's bytes and those of its modules. Throws UsageError where it cannot be read.
+/// Fingerprint of the bytes of a program and its modules. Throws UsageError where it cannot be read.
 std::string programFingerprint(const std::filesystem::path& program);
 
-/// Of a recorded drive: its images and files of truth by name, size and time of change, its cameras by their numbers.
+/// Fingerprint of a recorded drive: its images and files of truth by name, size and time of change, its cameras by
+/// their numbers.
 std::string sequenceFingerprint(const Sequence& sequence);
 
 }  // namespace motorcade

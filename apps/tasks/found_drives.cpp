@@ -23,7 +23,7 @@ std::string nameOf(std::string text) {
   return text;
 }
 
-/// How many parts of a pattern stand before the first one with a wildcard.
+/// Number of parts of a pattern before the first one with a wildcard.
 std::ptrdiff_t partsBeforeWildcard(const fs::path& pattern) {
   return std::distance(pattern.begin(), std::ranges::find_if(pattern.begin(), pattern.end(), [](const fs::path& part) {
                          return hasWildcard(part.string());

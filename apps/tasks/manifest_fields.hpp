@@ -6,7 +6,7 @@
 
 #include "apps/tasks/manifest.hpp"
 
-/// What both forms of a manifest have in common: keys with one or several words.
+/// Fields that both forms of a manifest share: keys with one or several words.
 namespace motorcade {
 
 struct ManifestFields {
@@ -25,7 +25,7 @@ std::string columnKey(const std::string& head);
 /// Numbers and ranges of them, as 1-5, in ascending order. Throws UsageError.
 std::vector<std::uint32_t> seedsIn(const std::vector<std::string>& words, const std::string& where);
 
-/// Of a drive or a set, as names of folders have it. Throws UsageError.
+/// Checks the name of a drive or a set, which becomes the name of a folder. Throws UsageError.
 void requireName(const std::string& name, const std::string& where);
 
 Manifest readManifestToml(const std::filesystem::path& file, const std::string& text);

@@ -61,7 +61,7 @@ void addAssignments(ParameterSet& set, const toml::table& table, const std::stri
   }
 }
 
-/// In the order of the file: a TOML table forgets it.
+/// Sets in the order of the file, which a TOML table does not keep.
 std::vector<ParameterSet> setsOf(const toml::table& table, const std::filesystem::path& file) {
   std::map<std::pair<toml::source_index, toml::source_index>, ParameterSet> by_place;
   for (const auto& [key, node] : table) {

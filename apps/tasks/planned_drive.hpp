@@ -24,7 +24,7 @@ struct PlannedDrive {
 /// long on a network: several drives at a time.
 void openDrives(const Manifest& manifest, std::vector<PlannedDrive>& drives);
 
-/// Of a scene that is rendered with a seed; its fingerprint is that of its task, as it depends on nothing else.
+/// Describes a scene that is rendered with a seed. Its fingerprint is that of its task, as it depends on nothing else.
 void describeScene(PlannedDrive& drive, std::uint32_t seed);
 
 /// An option of `run` or `evaluate` by its name; empty where the entry has none.

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a run of the entry's drives is asked for with a set of parameters.
+/// Options of a run of the entry's drive with a set of parameters.
 RunOptions runOptionsOf(const Manifest& manifest, const PlannedDrive& drive, const ParameterSet& set, int threads) {
   const ManifestEntry& entry = *drive.entry;
   RunOptions run;
@@ -80,7 +80,7 @@ std::string otherPlaces(const ManifestEntry& entry) {
   return text;
 }
 
-/// What the entries of one manifest become, one after the other.
+/// Builds a plan from the entries of one manifest, one after the other.
 class Planner {
  public:
   Planner(const Manifest& manifest, const PlanOptions& options)

@@ -9,13 +9,13 @@
 
 namespace motorcade {
 
-/// What is taken of a manifest; all of what is empty.
+/// Part of a manifest to be performed; an empty field selects all.
 struct Selection {
   std::vector<std::string> drives{}, sets{};  // names
   std::string seeds{};                        // of scenes, in place of the manifest's, as 1-5
 };
 
-/// How the tasks of a manifest are to be performed.
+/// Options for performing the tasks of a manifest.
 struct PlanOptions {
   std::filesystem::path program{};    // that tasks run; absolute
   std::filesystem::path sequences{};  // folder that scenes are rendered into; absolute

@@ -10,7 +10,7 @@
 #include "io/json_text.hpp"
 #include "io/text_file.hpp"
 
-/// What plans and records have in common as JSON.
+/// JSON helpers that plans and records share.
 namespace motorcade {
 
 using Json = nlohmann::ordered_json;

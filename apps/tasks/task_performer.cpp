@@ -45,7 +45,7 @@ bool putInPlace(const fs::path& from, const fs::path& to) {
   return ours;
 }
 
-/// Which rendering of a scene lies in a folder; empty for a recorded drive, or where there is none.
+/// Stamp of the rendering of a scene in a folder; empty for a recorded drive, or where there is none.
 std::string renderingOf(const Task& task) {
   return task.render_arguments.empty() || !fs::exists(task.sequence) ? "" : fileStamp(task.sequence / "poses.txt");
 }

@@ -13,7 +13,7 @@
 
 namespace motorcade {
 
-/// Where and how a task is performed.
+/// Place and limits of the work on a task.
 struct Workplace {
   BatchFolder folder;
   std::filesystem::path program{};          // the motorcade that does the work

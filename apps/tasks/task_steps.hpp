@@ -19,7 +19,7 @@ class TaskSteps {
   bool run(const std::string& step, const std::vector<std::string>& words);
 
   bool stopped() const { return workplace_.stop != nullptr && *workplace_.stop; }
-  /// Of the step that failed; empty where none did or the task was stopped.
+  /// Failure of a step; empty where none failed or the task was stopped.
   const std::optional<TaskFailure>& failure() const { return failure_; }
   double cpu_s() const { return cpu_s_; }
   std::int64_t peakMemory_bytes() const { return peak_memory_bytes_; }

@@ -5,12 +5,12 @@
 
 namespace motorcade {
 
-/// Where a server listens.
+/// Address at which a server listens.
 struct ListenAddress {
   std::string host = "127.0.0.1";
   int port = 8080;  // 0 for any that is free
 
-  /// As it stands in URLs; an IPv6 address in brackets.
+  /// Text for URLs; an IPv6 address is in brackets.
   std::string text() const;
   /// Reachable from this machine alone.
   bool loopback() const;

@@ -125,7 +125,7 @@ ShownFrame LiveView::shownOf(const Result& result) {
   return frame;
 }
 
-/// From the points at rest; before the first of them lie on a road, from the objects.
+/// Road plane from the points at rest, or from the objects before enough of those points lie on a road.
 std::optional<RoadPlane> LiveView::roadOf(const Result& result) {
   constexpr std::size_t kFewPoints = 12;
   const auto candidates = groundCandidates(*result.measurements, run_.camera);

@@ -33,11 +33,11 @@ class LiveView final : public RunListener, public PageSource {
 
   /// URL of the page, with the token that holds the run if the run can be held.
   std::string url() const { return run_.can_pause ? server_->controlUrl() : server_->url(); }
-  /// What holds the replay; null where the run cannot be held.
+  /// Gate that holds the replay; null where the run cannot be held.
   ReplayGate* gate() { return run_.can_pause ? &gate_ : nullptr; }
   void frameEntered(const StereoFrame& frame) override;
   void frameLeft(const PipelineResult& result) override;
-  /// Asked from other threads where the pipeline stands, until it is taken back with an empty function.
+  /// Sets the function that other threads ask for the pipeline's state. An empty one takes it back.
   void followPipeline(std::function<PipelineState()> state);
 
  private:

@@ -27,7 +27,7 @@ using httplib::Request, httplib::Response;
 constexpr std::size_t kThreads = Viewers::kMost + 16;
 constexpr int kNice = 10;
 constexpr std::size_t kMostFrames = 600;
-/// What a stalled viewer may have on its way: a few events.
+/// Bytes that may be on their way to a stalled viewer: a few events.
 constexpr int kSendBuffer_bytes = 256 * 1024;
 
 const httplib::Headers kHeaders{
@@ -67,7 +67,7 @@ std::int64_t numberOf(const std::string& text, std::int64_t otherwise) {
   return number;
 }
 
-/// What a browser reads as one server-sent event.
+/// Sends an event, or a comment that keeps the stream alive.
 bool send(httplib::DataSink& sink, std::string_view text) { return sink.write(text.data(), text.size()); }
 
 }  // namespace

@@ -63,7 +63,7 @@ class RunCounts {
   std::array<Buckets, kStageCount> stages_;
 };
 
-/// In Prometheus' text form (exposition format 0.0.4).
+/// Counts in Prometheus' text form (exposition format 0.0.4).
 std::string metricsText(const RunSnapshot& run);
 
 }  // namespace motorcade

@@ -11,7 +11,7 @@
 
 namespace motorcade {
 
-/// As sharp as a page needs it.
+/// JPEG quality that is sharp enough for a page.
 inline constexpr int kPageJpegQuality = 78;
 
 /// The left images of a sequence as JPEG, read when somebody asks. Any thread may.

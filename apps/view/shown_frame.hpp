@@ -30,7 +30,7 @@ struct ShownOutline {
   std::vector<Polygon> polygons;
 };
 
-/// How long a frame took.
+/// Times of a frame.
 struct ShownTiming {
   double latency_ms = 0, decode_ms = 0;
   std::array<double, kStageCount> stages_ms{};

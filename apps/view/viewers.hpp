@@ -12,11 +12,11 @@
 
 namespace motorcade {
 
-/// What is told to all viewers, made once.
+/// Text of an event, made once for all viewers.
 using EventText = std::shared_ptr<const std::string>;
 
-/// The pages that follow a run. Each has a mailbox for one event, the newest: a slow viewer loses events and delays
-/// neither the others nor who publishes. Any thread may call.
+/// The pages that follow a run. Each has a mailbox for one event, the newest. A slow viewer loses events and delays
+/// neither other viewers nor the publisher. Any thread may call.
 class Viewers {
  public:
   static constexpr std::size_t kMost = 8;
@@ -52,7 +52,7 @@ class Viewers {
 
   /// Waits for nobody.
   std::size_t count() const { return count_.load(std::memory_order_relaxed); }
-  /// How long nobody has been there; nothing while somebody is.
+  /// Time since the last viewer left; zero while one is there.
   std::chrono::steady_clock::duration absence() const;
 
  private:

@@ -136,7 +136,7 @@ void equalize(Image& left, Image& right, ImagePool& pool) {
   if (of_right.deviation > kAlike * of_left.deviation) left = stretched(left, of_left, of_right, pool);
 }
 
-/// At a lower threshold where there are few, as in images that are dark or blurred.
+/// Detects corners, with a lower threshold where there are few, as in images that are dark or blurred.
 std::vector<Corner> cornersOf(const Image& image) {
   constexpr std::size_t kFew = 60;
   constexpr double kFaintShare = 1.0 / 3;

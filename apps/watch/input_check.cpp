@@ -41,7 +41,7 @@ double meanGray(const Image& image) {
 
 double degrees(double angle_rad) { return angle_rad * 180 / std::numbers::pi; }
 
-/// How an error of the rows is told, with value and standard deviation in the format's units.
+/// Format of an error of the rows: value and standard deviation are in its units.
 struct RowErrorText {
   RowError error;
   const char* name;

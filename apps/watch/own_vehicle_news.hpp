@@ -18,7 +18,7 @@ class OwnVehicleNews {
   /// No further frame comes: what was not told yet.
   std::optional<std::string> finish();
 
-  /// What was found last; empty while nothing is.
+  /// The latest view of the own vehicle; empty while none was found.
   const std::optional<OwnVehicleView>& view() const { return view_; }
 
  private:

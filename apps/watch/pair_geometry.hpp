@@ -9,8 +9,8 @@
 
 namespace motorcade {
 
-/// What makes the rows of a pair differ, to first order. With x, y the left pixel's normalized coordinates, d the
-/// disparity and x_r = x - d / f, the row in the right image less that in the left one is
+/// Causes of row differences in a pair, to first order. x, y are the left pixel's normalized coordinates, d is the
+/// disparity and x_r = x - d / f. The row in the right image less that in the left one is
 ///   offset (1 + y^2) + f roll x + f zoom y + f yaw x y + (lift + ahead y) d + f k1 y (x_r^2 - x^2)
 enum class RowError {
   kOffset,  // px, at the principal point: pitch between the cameras, or another crop
