@@ -99,8 +99,8 @@ Image grayOfMosaic(const Image& mosaic, BayerPattern pattern, ImagePool& pool) {
   return gray;
 }
 
-/// Both greens of a mosaic see the same; red and blue, on the other diagonal, differ from them or from each other. What
-/// is no mosaic has means that agree to a tenth of a level, or differ by whole rows or columns.
+/// Both greens of a mosaic see the same. Red and blue, on the other diagonal, differ from them or from each other. In
+/// other images the means agree to a tenth of a level, or differ by whole rows or columns.
 std::optional<std::string> suspectedMosaic(const Image& image) {
   constexpr double kLeast = 2, kMostOfGreens = 0.15;  // levels; share of that
   const auto means = meansOf(image);

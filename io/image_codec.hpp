@@ -21,14 +21,14 @@ struct ImageCodec {
   ImageHeader (*header)(std::string_view bytes, const std::filesystem::path& file);
   /// Decodes to 8-bit gray; `readImage` describes the treatment of samples with more bits.
   Image (*decode)(std::string_view bytes, const std::filesystem::path& file, ImagePool& pool, int sample_bits);
-  /// The brightest sample of a file whose header tells of 16 bits.
+  /// The brightest sample of a file whose header declares 16 bits.
   int (*brightest)(std::string_view bytes, const std::filesystem::path& file);
 };
 const ImageCodec& pngCodec();
 const ImageCodec& jpegCodec();
 const ImageCodec& pgmCodec();
 
-/// The size that a header tells, if it is one that an image may have.
+/// The size in a header, if an image may have it.
 ImageSize checkedSize(std::uint64_t width, std::uint64_t height, const std::filesystem::path& file);
 [[noreturn]] void failDamaged(const std::filesystem::path& file, const std::string& why);
 /// Names a kind of image that is not read, "a CMYK JPEG", and a command that converts all of the file's folder.

@@ -25,8 +25,8 @@ std::string_view stateName(ObjectState state);
 std::string_view kindName(ObjectKind kind);
 
 std::string objectLine(FrameId frame, const ObjectEstimate& object);
-/// All columns but the frame, which is read already; what follows from others is passed over. Fails with the column's
-/// name.
+/// Reads all columns but the frame, which is read already. Columns that follow from others are passed over. Fails with
+/// the column's name.
 ObjectEstimate readObject(FieldReader& fields);
 
 }  // namespace motorcade

@@ -22,7 +22,7 @@ class PairReader {
   Image decode(std::string_view bytes, const std::filesystem::path& name, StereoSide side);
   /// Prepares an image that came without a file and has the sequence's size.
   Image prepared(Image raw, StereoSide side);
-  /// The larger share of either image's pixels for which the camera saw nothing; 0 where nothing is to be rectified.
+  /// Share of the pixels that the camera did not see, of the image with more of them; 0 where nothing is rectified.
   double shareOutside() const;
 
  private:

@@ -80,7 +80,7 @@ void scaleToGray(const std::uint8_t* row, int pixel_bytes, int width, int sample
     gray[x] = upperBits(static_cast<unsigned>(row[0]) << 8 | row[1], sample_bits);
 }
 
-/// Takes the filters off and fills the image; gray rows need no place between. False when a row names no filter.
+/// Undoes the filters and fills the image. Gray rows need no buffer between. False when a row names an unknown filter.
 bool removeFilters(WorkSpace& space, const CommonPng& png, int sample_bits, Image& image) {
   std::memset(space.zeros(), 0, space.rowBytes());
   const std::uint8_t* above = space.zeros();

@@ -44,7 +44,7 @@ std::string_view takeLine(std::string_view& rest) {
   return line;
 }
 
-/// Goes by hand: the library's searches for one of several characters took half of the time that a file takes.
+/// Splits off a word by hand. The library's search for one of several characters took half of a file's time.
 std::string_view takeWord(std::string_view& rest) {
   const auto blank = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
   const char *at = rest.data(), *const end = at + rest.size();
@@ -110,7 +110,7 @@ bool isNegative(const PoseGraph::Information& information) {
   return !(values.minCoeff() >= -kRounding * std::max(1.0, values.maxCoeff()));
 }
 
-/// Goes through a file line by line. Knows where it is, so that errors and problems can tell.
+/// Reads a file line by line. Knows its position, for errors and problems.
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& file) : file_(file), content_(readWhole(file)) {}

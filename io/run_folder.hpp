@@ -26,14 +26,14 @@ class RunFolderWriter {
   RunFolderWriter& operator=(const RunFolderWriter&) = delete;
 
   void writeConfig(std::string_view toml);
-  /// `camera_online.*`, `objects_online.csv`, and where the estimate has covariances, `covariances.csv` and
+  /// Writes `camera_online.*`, `objects_online.csv`, and where the estimate has covariances, `covariances.csv` and
   /// `pose_covariances_online.csv`.
   void writeOnline(const FrameEstimate& estimate);
   /// Writes what the final files hold until `finish`, so that a run that is killed has some.
   void writeSettled(const FrameEstimate& estimate);
   /// Writes what the final files hold from `finish` on: the same files as online, but `covariances_final.csv`.
   void writeFinal(const FrameEstimate& estimate);
-  /// `frames.csv` and `trace.json`. Notices when the folder is no longer there.
+  /// Writes `frames.csv` and `trace.json`. Notices when the folder is no longer there.
   void writeTiming(const FrameTiming& timing);
   /// Closes all files, then writes `summary.json`: a run with this file is complete.
   void finish(std::string_view summary_json);
@@ -56,7 +56,7 @@ class RunFolderWriter {
   bool finished_ = false;
 };
 
-/// A run folder as read back; a run that was killed has fewer rows and no summary.
+/// A run folder as it is read back. A run that was killed has fewer rows and no summary.
 struct RunFolder {
   struct ObjectRow {
     FrameId frame;

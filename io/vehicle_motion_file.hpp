@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// The name of a drive's file of the vehicle's own motion, which is read without being asked for.
+/// The name of a drive's file of the vehicle's own motion. It is read without an option.
 inline constexpr const char* kVehicleMotionFile = "motion.csv";
 
 /// Samples of the vehicle's own motion on the clock of a drive's images, ordered by time. `file` is a table whose

@@ -14,8 +14,8 @@ std::vector<SE3> velocityPoses(const std::vector<OxtsPacket>& packets, const std
                                const std::filesystem::path& file);
 
 /// Capture times of a sequence's packets, one for each: from their own file of times, else those of the images. Throws
-/// InputError where neither is known or the number of times is not `packets`. Velocities at an assumed rate would give
-/// a path of the wrong length.
+/// InputError where neither is known or the number of times is not `packets`. An assumed rate would give a path of the
+/// wrong length.
 std::vector<Timestamp> packetStamps(const Sequence& sequence, std::size_t packets);
 
 }  // namespace motorcade

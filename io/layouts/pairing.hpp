@@ -8,7 +8,7 @@
 #include "io/layouts/image_names.hpp"
 #include "io/sequence.hpp"
 
-/// Images of two sides come together in pairs.
+/// Pairs the images of two sides.
 namespace motorcade {
 
 struct PairedImages {
@@ -24,7 +24,7 @@ struct PairedImages {
 /// are left out. Throws InputError where fewer than half of the frames would be pairs.
 PairedImages pairByKeys(const KeyedImages& keyed, const NamedImages& left, const NamedImages& right);
 
-/// The pairs of two folders: by what the names tell, and in order only where they tell nothing and both have as many.
+/// The pairs of two folders: by their names, or in order where the names tell nothing and both sides have as many.
 PairedImages pairFolders(const std::filesystem::path& left_folder, const std::filesystem::path& right_folder);
 
 /// Leaves out single images before the first pair and after the last.
@@ -33,7 +33,7 @@ void leaveOutEnds(PairedImages& paired);
 /// Says which images are missing; nothing where none is.
 void tellMissing(PairedImages& paired);
 
-/// Up to three of them, with their folders, and how many there are more.
+/// The names of up to three of them, with their folders, and the number of the others.
 std::string namesOf(const std::vector<std::filesystem::path>& images);
 
 /// The most frequent difference of numbers that follow each other; 1 where there are none.

@@ -32,8 +32,8 @@ class LensModel {
   std::optional<Eigen::Vector3d> rayThrough(const Eigen::Vector2d& pixel_px) const;
 
  private:
-  /// Distance from the middle of the image, in focal lengths, by that of the ray: its tangent, or its angle with an
-  /// equidistant lens.
+  /// Distance from the middle of the image, in focal lengths. The argument is the ray's distance: its tangent, or its
+  /// angle with an equidistant lens.
   double distorted(double undistorted) const { return undistorted * factor(undistorted * undistorted); }
   double factor(double squared) const;
   std::optional<double> undistorted(double distorted) const;

@@ -37,7 +37,7 @@ class Remap {
 
   ImageSize raw_size_, size_;
   std::size_t outside_ = 0;
-  /// Upper left of the four pixels that are weighed, and how far right and down of it, in 64ths.
+  /// Upper left of the four pixels that are weighed, and the offset to the right and down from it, in 64ths.
   std::vector<std::int16_t> x_, y_;
   std::vector<std::uint8_t> right_, down_;
 };

@@ -10,7 +10,7 @@
 /// matrices, EuRoC's sensor files, settings of visual SLAM systems and others (rig_readers.hpp).
 namespace motorcade {
 
-/// A file that is no calibration of a form that is known.
+/// A file that is no calibration of a known form.
 struct UnknownCalibration : InputError {
   using InputError::InputError;
 };

@@ -27,7 +27,7 @@ struct YamlAnswer {
 
 inline constexpr char kYamlModule[] = "yaml", kYamlFunction[] = "motorcade_yaml_1";
 
-/// Parses a text's first document. What an alias stands for is copied, within a bound for all copies and parts.
+/// Parses a text's first document. Aliases are replaced by copies, within a bound for all copies and parts.
 extern "C" void motorcade_yaml_1(std::string_view text, YamlAnswer& answer) noexcept;
 
 }  // namespace motorcade

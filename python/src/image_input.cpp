@@ -51,7 +51,7 @@ std::string shapeText(const py::buffer_info& buffer) {
   return py::str(shape);
 }
 
-/// Rows may lie apart; the pixels of a row may not, and rows may not overlap.
+/// Checks the strides. Rows may lie apart, but must not overlap; the pixels of a row must be contiguous.
 void requireStrides(const std::string& name, const py::buffer_info& buffer) {
   const bool colors = buffer.ndim == 3;
   const py::ssize_t pixel_bytes = colors ? 3 : buffer.itemsize;
