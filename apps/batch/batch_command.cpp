@@ -97,7 +97,7 @@ void tellFailures(const std::vector<TaskRecord>& failed) {
   if (failed.size() > kMost) std::cout << "and " << failed.size() - kMost << " more\n";
 }
 
-/// The drives that are not on the disk, each with its name, and where the first was looked for.
+/// Reports the drives that are not on the disk, each with its name, and where the first was looked for.
 void tellLeftOut(const Plan& plan) {
   if (plan.left_out.empty()) return;
   std::string names;
@@ -155,7 +155,7 @@ const Task& taskNamed(const Plan& plan, const std::string& name, const fs::path&
   return *task;
 }
 
-/// Performs one task; it is told to end when a signal comes.
+/// Performs one task, which ends early when a signal comes.
 int perform(const Task& task, Workplace workplace, bool only_render) {
   std::atomic<bool> stop = false;
   workplace.stop = &stop;

@@ -21,8 +21,8 @@ struct SlurmArray {
   bool only_render = false;
 };
 
-/// Scripts for sbatch, with all that it is told as #SBATCH lines. `program` is this program's file, `batch` the folder
-/// of the batch, `submission` that of the submission, for logs; all are absolute.
+/// Scripts for sbatch, with all options as #SBATCH lines. `program` is this program's file, `batch` the folder of the
+/// batch, `submission` that of the submission, for logs; all are absolute.
 struct SlurmScripts {
   std::filesystem::path program{}, batch{}, submission{};
   int threads = 2;
@@ -33,7 +33,7 @@ struct SlurmScripts {
   std::string merge() const;
 };
 
-/// Throws UsageError where a path has a character that a line #SBATCH cannot hold.
+/// Throws UsageError where a path has a character that an #SBATCH line cannot hold.
 void requireWritableInScript(const std::filesystem::path& path);
 
 }  // namespace motorcade

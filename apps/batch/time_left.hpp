@@ -14,7 +14,7 @@ double weightOf(const Task& task);
 /// Frames that a run has written so far.
 double framesWritten(const std::filesystem::path& run);
 
-/// Tells how long the rest of the work will take, from how long the work so far took.
+/// Predicts the time that the rest of the work will take from the time of the work so far.
 class TimeLeft {
  public:
   explicit TimeLeft(double whole) : whole_(whole) {}

@@ -12,9 +12,9 @@ struct DdsPlace {
   std::string interface {};  // IPv4 address or name of the one interface; empty: loopback
 };
 
-/// Cyclone DDS' configuration for that place alone, whatever the environment says. On loopback, which has no multicast,
-/// participants are sought at the ports of the first 33, as ROS 2 does where discovery is for the machine alone; on
-/// another interface by multicast. Throws UsageError.
+/// Cyclone DDS' configuration for that place alone, whatever the environment says. Loopback has no multicast:
+/// participants are sought at the ports of the first 33, as ROS 2 does where discovery is for the machine alone. Other
+/// interfaces use multicast. Throws UsageError.
 std::string ddsConfiguration(const DdsPlace& place);
 
 bool isLoopback(const DdsPlace& place);

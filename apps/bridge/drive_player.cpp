@@ -38,7 +38,7 @@ double DrivePlayer::captureRate_hz() const { return recording_.size() > 1 ? 1e9 
 
 void DrivePlayer::play(Tracker& tracker, const Pace& pace, const std::stop_token& stop) {
   const auto start = Clock::now();
-  // A camera that does not wait has the pair behind it already.
+  // A pair is overtaken when the next one is due already.
   const auto overtaken = [&](std::int64_t index) {
     return pace.live && pace.speed && index + 1 < recording_.size() &&
            Clock::now() >= due(start, (index + 1) * period_ns_, *pace.speed);

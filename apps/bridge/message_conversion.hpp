@@ -9,7 +9,7 @@
 /// Converts results with `Axes::kRep103` to the messages of ROS 2.
 namespace motorcade {
 
-/// Names of the world, in which poses stand, and of what moves in it (REP 105): the vehicle, or the camera alone.
+/// Names of the world, in which poses are given, and of the moving frame (REP 105): the vehicle, or the camera alone.
 struct FrameIds {
   std::string world = "odom", child = "camera";
 };
@@ -37,8 +37,8 @@ ros::Covariance unknownCovariance();
 
 ros::PoseStamped poseStampedOf(const Result& result, const FrameIds& ids);
 
-/// The pose's covariance is wide where it is not known. The twist is the motion since the frame before, and its
-/// covariance wide where nothing was measured.
+/// The camera's pose and twist. The pose's covariance is wide where it is not known. The twist is the motion since the
+/// previous frame; its covariance is wide where nothing was measured.
 ros::Odometry odometryOf(const Result& result, const FrameIds& ids);
 
 ros::TransformStamped transformStampedOf(const Result& result, const FrameIds& ids);

@@ -19,7 +19,7 @@ using ReceivedPair = StampPairing<ReceivedImage>::Pair;
 /// The image's size, from its header. Throws InputError, which begins with `name`.
 ImageSize sizeOf(const ReceivedImage& image, const std::string& name);
 
-/// The knowledge of the cameras: the user's word, else both sides' camera_info.
+/// Knowledge of the cameras: the user's, or else both sides' camera_info.
 struct CameraKnowledge {
   std::array<CameraTopics, 2> topics{};
   GivenCameras given{};

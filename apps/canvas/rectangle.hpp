@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// Upright, in pixels of a canvas.
+/// An upright rectangle in pixels of a canvas.
 struct Rectangle {
   double left = 0, top = 0, width = 0, height = 0;
 

@@ -36,14 +36,14 @@ double largeError_px(std::vector<double> errors_px) {
   return *at;
 }
 
-/// The round factor by which errors are enlarged, so that large ones are about `wanted` pixels of the picture.
+/// The round factor that enlarges errors such that large ones take about `wanted` pixels of the picture.
 double enlargement(double error_px, double scale, double wanted) {
   for (const double factor : {20., 15., 10., 8., 6., 5., 4., 3., 2.})
     if (factor * scale * error_px <= wanted) return factor;
   return 1;
 }
 
-/// One match of each band of rows, that of the middle error: enough to see, and none of the wrong ones.
+/// The match with the median error in each band of rows: enough to see, and without wrong matches.
 std::vector<EpipolarMatch> chosen(std::span<const EpipolarMatch> matches, double band_px) {
   std::map<int, std::vector<EpipolarMatch>> bands;
   for (const EpipolarMatch& match : matches) bands[static_cast<int>(match.v_left_px / band_px)].push_back(match);

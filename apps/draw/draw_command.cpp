@@ -33,7 +33,7 @@ std::string pictureName(std::int64_t frame) {
   return name;
 }
 
-/// Pictures per second at which a drive's every Nth frame was taken.
+/// Pictures per second, when every Nth frame of a drive is taken.
 double rateOf(const RecordedDrive& drive, int every) {
   constexpr double kLeast_hz = 0.1, kMost_hz = 240, kUsual_hz = 10;
   std::vector<double> periods_s;
@@ -95,7 +95,7 @@ class Gallery {
   int pictures_ = 0;
 };
 
-/// Frames of the run that are asked for; one whose files cannot be read is told of and left out.
+/// Draws the wanted frames. One whose files cannot be read is reported and left out.
 void drawAll(const DrawOptions& options, const Sequence& sequence, const RecordedDrive& drive,
              const std::atomic<bool>& stop, Gallery& gallery) {
   PairReader reader(sequence);

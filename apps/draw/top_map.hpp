@@ -19,8 +19,8 @@ struct TopMap {
   }
 };
 
-/// Shows all objects with their motion, movers of the truth that are near, and some road behind and ahead, as large as
-/// `area` allows. The scale changes slowly from frame to frame, so that moving pictures stay calm.
+/// Chooses a map that shows all objects with their motion, near movers of the truth, and some road behind and ahead, as
+/// large as `area` allows. The scale changes slowly from frame to frame, so that moving pictures stay calm.
 TopMap topMapOf(const RecordedDrive& drive, std::size_t frame, const Rectangle& area);
 
 }  // namespace motorcade

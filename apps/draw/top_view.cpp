@@ -135,7 +135,7 @@ void drawFootprint(const View& view, const ObjectEstimate& object, const SeenExt
     return;
   }
   canvas.outline(corners, {.color = lightened(color), .width_px = 1});
-  // The way that it heads, also when it stands.
+  // The direction that it faces, also when it stands.
   const Vector2d front = 0.5 * (corners[0] + corners[1]), side = 0.3 * (corners[1] - corners[0]);
   const Vector2d back = corners[3] - corners[0];
   if (!(back.norm() > 0)) return;
@@ -172,7 +172,7 @@ void drawMotion(const View& view, const ObjectEstimate& object, const Vector3d& 
   view.sheet.canvas.arrow(ends[0], ends[1], {.color = trackColor(object.track), .width_px = 2.2});
 }
 
-/// Followed points, each at the distance that its disparity says.
+/// Draws followed points, each at the distance of its disparity.
 void drawPoints(const View& view) {
   for (const ObjectPoint& point : view.drive.pointsAt(view.frame)) {
     if (!(point.uvd_px.z() > 0)) continue;

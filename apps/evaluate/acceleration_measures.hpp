@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// Errors of one quantity, and the share of them within 1.96 of the standard deviations that were told.
+/// Errors of one quantity, and the share of them within 1.96 of the estimated standard deviations.
 struct CoveredErrors {
   Statistics errors;
   double coverage = 0;

@@ -16,8 +16,8 @@ struct BoxErrors {
   double iou_bird = 0, iou_3d = 0;      // means, as seen from the camera
   /// |estimated - labeled|: middle of the footprint, heading (up to half a turn), length, width, height.
   Statistics center_m, heading_deg, length_m, width_m, height_m;
-  /// Shares of the cuboids whose length, width and height differ from the label's by two of their standard deviations
-  /// at most: .954 of normally distributed errors.
+  /// Shares of the cuboids whose length, width and height differ from the label's by at most two of their standard
+  /// deviations: .954 of normally distributed errors.
   Eigen::Array3d size_within_2_sigma = Eigen::Array3d::Zero();
 };
 

@@ -13,7 +13,7 @@ namespace motorcade {
 inline constexpr std::array kAllKinds = {ObjectKind::kUnknown, ObjectKind::kCar, ObjectKind::kLargeVehicle,
                                          ObjectKind::kTwoWheeler, ObjectKind::kPedestrian};
 
-/// The kind of a label's type; unknown for types that are none of them, such as Misc.
+/// The kind of a label's type; unknown for other types, such as Misc.
 ObjectKind kindOfType(std::string_view type);
 
 /// Rows by the label's kind and the reported kind.
@@ -35,7 +35,7 @@ struct KindRows {
   int sure_wrong = 0;
   void add(ObjectKind label, ObjectKind reported, double probability);
   /// Mean of -log p where the named kind is the label's, of -log(1 - p) where it is not, and of log 2 where none is
-  /// named; 0 without rows. Files hold p to three decimals, so that none counts as nearer to 0 or 1 than half of one.
+  /// named; 0 without rows. Files hold p to three decimals: half of one is the least distance to 0 and 1 that counts.
   double logLoss() const;
   /// Share of the rows that name a wrong kind with a probability of .95 and more; 0 without rows.
   double shareSureWrong() const;

@@ -36,7 +36,7 @@ Vector6d weightOf(double sigma_m, double sigma_rad) {
 std::vector<MotionPair> motionPairs(const std::vector<SE3>& estimate, const std::vector<SE3>& truth) {
   std::vector<MotionPair> pairs;
   double way_m = 0;
-  // The positions' errors are one drift seen again and again: all of them together count as one.
+  // The positions' errors are one drift, seen repeatedly: all of them together count as one.
   const double share = 1 / static_cast<double>(truth.size());
   for (std::size_t k = 1; k < truth.size(); ++k) {
     const SE3 step = truth[k - 1].inverse() * truth[k];

@@ -27,7 +27,7 @@ struct TrueObject {
   bool asked() const { return counted && moving; }
 };
 
-/// Does a row tell of what was seen, rather than of what was only predicted or hardly seen?
+/// True for a row of an object that was seen, not only predicted or hardly seen.
 inline bool isReported(const ObjectEstimate& object) {
   return object.state != ObjectState::kPredicted && object.points >= 3;
 }
@@ -61,12 +61,12 @@ struct AskedPair {
 std::vector<AskedPair> askedPairs(const std::vector<ComparedFrame>& frames, double from_m = 0,
                                   double to_m = std::numeric_limits<double>::infinity());
 
-/// Rows of any state on labels that move, however hidden these are, in the order of the frames.
+/// Rows of any state on labels that move, whatever their occlusion, in the order of the frames.
 std::vector<AskedPair> movingPairs(const std::vector<ComparedFrame>& frames);
 
 /// The number of rows of the same track that come before each row.
 std::map<const MatchedRow*, int> rowsBefore(const std::vector<ComparedFrame>& frames);
-/// A quantity that takes some views to be known counts from a track's tenth row on.
+/// Rows of a track before those that count for a quantity that needs several views.
 inline constexpr int kEarlyRows = 9;
 
 /// Labels with their motion, from all frames of the sequence. `stamps` are the frames' times.

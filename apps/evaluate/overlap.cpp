@@ -54,7 +54,7 @@ double areaOf(const Footprint& convex) {
   return 0.5 * std::abs(twice);
 }
 
-/// Sutherland and Hodgman's clipping: what of `a` lies to the left of every edge of `b`.
+/// Clips `a` by every edge of `b` (Sutherland and Hodgman), and returns the area that is left.
 double overlapArea(const Footprint& a, const Footprint& b) {
   Footprint rest = a;
   for (std::size_t edge = 0; edge < b.size() && !rest.empty(); ++edge) {

@@ -12,7 +12,7 @@ namespace motorcade {
 
 /// Common area in the image [px^2].
 double overlapArea(const Box& a, const Box& b);
-/// Area of the intersection over that of the union, of two boxes in the image.
+/// Intersection over union of two boxes in the image.
 double intersectionOverUnion(const Box& a, const Box& b);
 
 /// A cuboid as seen from above: the corners of its footprint in order, in any right-handed plane.

@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// One label over the frames in which both runs followed it, by the two tracks that have the most frames in common.
+/// One label over the frames in which both runs followed it, by the two tracks with the most common frames.
 struct ComparedObject {
   std::int64_t label = -1;
   TrackId track, baseline_track;

@@ -15,7 +15,7 @@
 namespace motorcade {
 namespace {
 
-/// The longest way that a message holds: of a longer one every second pose stays, then every fourth, and so on.
+/// Most poses of the path in a message. Of a longer path every second pose stays, then every fourth, and so on.
 constexpr std::size_t kMostPoses = 500;
 
 /// Each topic has a message type of its own.

@@ -12,7 +12,7 @@
 
 namespace motorcade {
 
-/// All that a file for other programs tells of one frame, whether the run goes on or has ended.
+/// Content of one frame in files for other programs, during a run or after it.
 struct ExportedFrame {
   using StageTimes = std::array<FrameRow::StageTime, kStageCount>;
   struct Point {

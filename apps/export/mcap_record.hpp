@@ -34,7 +34,7 @@ class Fields {
   std::string content_;
 };
 
-/// Appends a whole record; gives its length with its head.
+/// Appends a whole record; returns its length with its header.
 std::uint64_t append(std::string& records, Opcode opcode, const Fields& fields);
 
 /// CRC-32 as in zlib; `before` is the sum of the bytes before these.

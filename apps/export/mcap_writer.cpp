@@ -156,7 +156,7 @@ void Writer::writeSummary() {
   addGroup(Opcode::kMetadataIndex, metadata_indexes_);
   const std::uint64_t offsets_start = start + summary.size();
   summary += offsets;
-  // The sum goes up to its own field: over the head of the footer and the two offsets too.
+  // The checksum goes up to its own field, over the footer's header and the two offsets, too.
   constexpr std::uint64_t kFooter_bytes = 20;
   Fields footer;
   footer.u8(static_cast<std::uint8_t>(Opcode::kFooter)).u64(kFooter_bytes).u64(start).u64(offsets_start);

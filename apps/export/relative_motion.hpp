@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// An object as a sensor sees it that moves itself: derivatives are those of coordinates in the moving sensor's axes.
+/// An object as seen from a moving sensor. Derivatives are those of coordinates in the moving sensor's axes.
 struct RelativeMotion {
   SE3 T_sensor_box;  // its origin is the middle of the cuboid, or of the body without one
   Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
@@ -22,7 +22,7 @@ struct RelativeMotion {
 /// The object's pose is in the world of the sensor's, `T_sensor_world` the sensor's in that frame.
 RelativeMotion relativeMotion(const ObjectEstimate& object, const SE3& T_sensor_world, const SensorMotion& sensor);
 
-/// The direction in which the object travels, in the world: where it stands, the one it faces.
+/// The direction in which the object travels, in the world. For an object that stands it is the one that it faces.
 Eigen::Vector3d directionOf(const ObjectEstimate& object);
 
 }  // namespace motorcade

@@ -26,7 +26,7 @@ double stepOf(const std::vector<double>& ticks) { return ticks.size() > 1 ? tick
 
 std::string coordinate(double value) { return fmt::format("{:.1f}", value); }
 
-/// A map is as high as its content asks for, within bounds, and its ranges grow to equal scales.
+/// Creates the frame. A map is as high as its content needs, within bounds, and its ranges grow to equal scales.
 ChartFrame::ChartFrame(const ChartAxes& axes, ChartRange range)
     : range_(range), is_map_(axes.equal_scales), is_wide_(axes.wide || is_map_) {
   if (is_wide_) width_ = kWideWidth;

@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// A row of a chart of dots: values of something with a name, by series.
+/// A row of a dot chart: a name and its values by series.
 struct DotRow {
   std::string name{};
   std::vector<std::vector<double>> values{};  // one list per series; what is not finite is left out

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-/// Parts of HTML pages that stand in one file and ask for nothing else: no script, font or picture from elsewhere.
+/// Parts of self-contained HTML pages: they load no script, font or picture from elsewhere.
 namespace motorcade {
 
 /// Escapes the text of an element or the value of a quoted attribute; control characters become U+FFFD.

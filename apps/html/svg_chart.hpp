@@ -48,13 +48,13 @@ struct ChartPart {
 /// Bars whose parts stand on one another.
 std::string barChart(const ChartAxes& axes, const std::vector<ChartPart>& parts, const std::vector<ChartBar>& bars);
 
-/// A chart with what it shows.
+/// A chart with a caption.
 std::string chartFigure(const std::string& svg, const std::string& caption);
 
 /// A point at which a line is broken.
 Eigen::Vector2d lineBreak();
 
-/// Round numbers from `low` to `high` that a scale may show, about `wanted` of them.
+/// Round numbers from `low` to `high` for a scale, about `wanted` of them.
 std::vector<double> ticksBetween(double low, double high, int wanted);
 
 }  // namespace motorcade

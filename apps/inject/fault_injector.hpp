@@ -49,7 +49,7 @@ class FaultInjector {
   };
   void applyTo(Image& image, const ImageOf& of, const Fault& fault, std::uint64_t seed);
   void takeEarlierRight(StereoFrame& frame, std::size_t pairs_before) const;
-  /// The image of its file, whose bytes are damaged before; streams have none.
+  /// Reads the image of a file, whose bytes are damaged first; streams have none.
   Image readAgain(const ImageOf& of, const std::function<std::string(std::string)>& damage);
   bool giveLate(std::int64_t frame, const Outlet& outlet);
 

@@ -5,7 +5,7 @@
 
 #include "core/image.hpp"
 
-/// Images as faulty cameras and links give them. Each function gives a new image of the same size.
+/// Images as faulty cameras and links deliver them. Each function returns a new image of the same size.
 namespace motorcade {
 
 Image filled(const Image& like, std::uint8_t gray, ImagePool& pool);

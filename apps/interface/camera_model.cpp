@@ -78,7 +78,7 @@ void requireIntrinsics(const std::string& name, const Intrinsics& lens, const Ca
   inside(".cy_px", lens.cy_px, camera.height_px);
 }
 
-/// The model, and how many coefficients it has.
+/// The distortion model, and the number of its coefficients.
 std::pair<Distortion, std::ptrdiff_t> distortionOf(const std::string& name, Camera::Distortion distortion) {
   switch (distortion) {
     case Camera::Distortion::kNone:

@@ -10,10 +10,10 @@
 
 namespace motorcade {
 
-/// The longest stride that is taken: a longer one is a mistake.
+/// The longest stride that is accepted: a longer one is a mistake.
 inline constexpr std::ptrdiff_t kMostStride_bytes = 1 << 24;
 
-/// Bytes from row to row, where the caller says nothing, too.
+/// Bytes from row to row, also where the caller gives none.
 std::ptrdiff_t strideOf(const Pair::Image& image);
 
 /// Reason why an image cannot be one of this camera; null when it can.
