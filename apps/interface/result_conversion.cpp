@@ -170,8 +170,8 @@ void ResultConversion::setObjects(const PipelineResult& result, Result& converte
   }
 }
 
-/// A motion is measured since the last frame that was looked at; one that is predicted is so since the frame before. In
-/// the first frame nothing is known of it.
+/// Sets the camera's velocity. A measured motion begins at the last frame that was looked at, a predicted one at the
+/// previous frame. In the first frame the velocity is unknown.
 void ResultConversion::setVelocity(const FrameMeasurements& measured, Result& converted) {
   const bool seen = wasLookedAt(measured);
   const std::optional<Timestamp> since = seen ? seen_ : before_;

@@ -13,14 +13,14 @@ namespace {
 
 constexpr int kMostCovarianceFrames = 60;  // every back-end remembers as many
 
-/// Tried on a thread of its own.
+/// Tries a thread placement on a thread of its own.
 std::string problemWith(const ThreadPlacement& placement) {
   std::string problem;
   std::jthread([&] { problem = PlacedThread(placement).problem(); }).join();
   return problem;
 }
 
-/// Each processor alone: of several, the system leaves out those that are not there.
+/// Requires each processor by itself: of several, the system silently leaves out missing ones.
 void requireProcessors(const std::vector<int>& cpus) {
   for (const int cpu : cpus) {
     const std::string has = "has " + std::to_string(cpu) + "; ";

@@ -58,7 +58,7 @@ struct Pair {
 
 bool differs(double a, double b) { return !std::isnan(a) && !std::isnan(b) && a != b; }
 
-/// Those that only one of both batches has are named.
+/// Pairs the seeds of both batches. Those that only one of them has are named.
 std::vector<Pair> pairsOf(const SeedValues& ours, const SeedValues& others, std::vector<std::string>& unpaired) {
   std::vector<Pair> pairs;
   for (const auto& [name, values] : ours) {
@@ -107,7 +107,7 @@ std::string verdictOn(const MeasureComparison& comparison) {
   return std::string(comparison.better > comparison.worse ? kBetter : kWorse);
 }
 
-/// Measures of which too few pairs differ cannot be significant, and so are no tests.
+/// Corrects for the number of tests. A measure of which too few pairs differ cannot be significant, and so is no test.
 void correctForNumber(std::vector<MeasureComparison>& measures) {
   std::vector<MeasureComparison*> tested;
   std::vector<double> p_values;

@@ -8,7 +8,7 @@
 
 #include "apps/evaluate/axis_reliability.hpp"
 
-/// Covariances of all drives together, by axis: what they claim against what was found.
+/// Covariances of all drives together, by axis, compared with the errors.
 namespace motorcade {
 
 struct ResultTable;
@@ -23,8 +23,8 @@ struct CovarianceReliabilityOfSet {
 };
 using CovarianceReliabilityBySet = std::map<std::string, CovarianceReliabilityOfSet>;
 
-/// Adds what an evaluation counted, of the camera's motion with the truth's noise where that has some. An evaluation of
-/// an earlier version counted nothing.
+/// Adds an evaluation's counts. The camera's motion includes the truth's noise where it has some. Evaluations of
+/// earlier versions have no counts.
 void addCovariances(CovarianceReliabilityOfSet& sums, const nlohmann::json& evaluation);
 
 /// A row for each set, estimate and covariance of which there are errors, a column for each axis.

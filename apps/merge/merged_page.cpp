@@ -14,7 +14,7 @@
 namespace motorcade {
 namespace {
 
-/// Better and worse differ by a sign, too, for who sees no red or no green.
+/// Better and worse differ by a sign, too, for readers who see no red or no green.
 constexpr std::string_view kStyle = R"css(
 .wide th, .wide td { white-space: nowrap; }
 .grid { display: grid; gap: 1rem; align-items: start;
@@ -62,7 +62,7 @@ std::vector<std::string> setNames(const std::vector<ResultGroup>& groups) {
   return names;
 }
 
-/// A color for each set of parameters; no name where there is one alone.
+/// A color for each set of parameters; a single set has no name.
 std::vector<ChartPart> seriesOf(const std::vector<std::string>& sets) {
   constexpr std::array kColors{1, 7, 3, 5, 4, 6, 2};  // those first that differ most
   std::vector<ChartPart> series;

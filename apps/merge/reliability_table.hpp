@@ -30,7 +30,7 @@ struct ReliabilityOfSet {
 };
 using ReliabilityBySet = std::map<std::string, ReliabilityOfSet>;
 
-/// Adds what an evaluation counted; one without labels, or of an earlier version, counted nothing.
+/// Adds an evaluation's counts; one without labels, or of an earlier version, has none.
 void addReliability(ReliabilityOfSet& sums, const Claim& claim, const nlohmann::json& evaluation);
 
 /// A row for each set and estimate that has rows, a column for each tenth in which any has some.

@@ -56,7 +56,7 @@ std::string mountedText(const ResultGroup& group) {
                      numberText(group.mean("camera_mounted_rpe_t_rmse_m"), 4));
 }
 
-/// Means over segments; of drives too short for the benchmark's lengths with the ones they have.
+/// Means over segments; short drives use the segment lengths that they have.
 Column segmentColumn(std::string head, std::string_view measure, std::string_view online, int digits) {
   return {std::move(head), [=](const ResultGroup& group) {
             constexpr double kShortest_m = 100;
@@ -123,7 +123,7 @@ std::vector<Column> objectColumns() {
           {"id switches", [](const ResultGroup& group) { return numberText(group.sum("id_switches"), 1); }}};
 }
 
-/// First the form in which others publish these errors.
+/// Columns of motion errors, the form of published figures first.
 std::vector<Column> motionColumns() {
   return {
       pairColumn("ME_t m RMS of each object, mean, final / online", "me_t_object_rms_m", "online_me_t_object_rms_m", 3),

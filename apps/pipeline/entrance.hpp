@@ -10,8 +10,8 @@ namespace motorcade {
 /// frame leaves those stages, so that the wait ends.
 class Entrance {
  public:
-  /// Called once before each admission: waits until all frames admitted so far have passed, or until `given_up` says,
-  /// asked now and then, that they will not.
+  /// Waits until all frames admitted so far have passed, or until `given_up`, which is asked now and then, says that
+  /// they will not. Called once before each admission.
   template <class GivenUp>
   void waitForTurn(const GivenUp& given_up) {
     constexpr std::chrono::milliseconds kPatience(100);

@@ -31,20 +31,20 @@ class FlowGraph {
   /// Waits for the jobs in flight.
   ~FlowGraph();
 
-  /// One thread: puts a job in; never refused.
+  /// One thread: puts a job in, which is never refused.
   void put(Job& job);
   /// The same thread: no further job comes.
   void close();
-  /// Any thread: puts an end to the work of the graph, for a reason that `join` throws.
+  /// Any thread: ends the work of the graph, for a reason that `join` throws.
   void fail(const std::exception_ptr& reason);
-  /// Any thread: nothing more is done with the jobs in flight, nor with those that come; they only come out.
+  /// Any thread: stops the work on jobs in flight and on further ones; they only come out.
   void abandon();
-  /// The graph cannot or shall not go on; it has been closed or is to be.
+  /// True when the graph cannot or shall not go on; it has been closed or will be.
   bool failed();
   /// Waits, after `close`, until all jobs are out. Throws the exception that the graph failed with.
   void join();
 
-  /// Any thread: how many jobs wait on each edge now.
+  /// Any thread: the number of jobs that wait on each edge now.
   std::vector<QueueDepth> depths(std::int64_t bound) const;
   /// The most jobs that ever waited on each edge; valid after `join`.
   std::vector<QueueMark> queues(std::int64_t bound) const;

@@ -7,10 +7,10 @@
 
 namespace motorcade {
 
-/// The time of frames, which never goes back, whatever the camera's clock does. A frame whose time is not after that of
-/// the frame before is out of order, and so is one far ahead unless the next one agrees. A few frames in a row before
-/// the last one, but in order, show that the clock was set back: times then go on from the last one, at the pace of the
-/// new ones.
+/// The time of frames, which never goes back, whatever the camera's clock does. A frame whose time is not after the
+/// previous frame's is out of order. So is one far ahead, unless the next one agrees. A few frames in a row before the
+/// last one, but in order, show that the clock was set back. Times then go on from the last one, at the pace of the new
+/// ones.
 class FrameClock {
  public:
   /// Least jump of a frame that is far ahead: no motion can be followed over a longer time.
@@ -18,9 +18,9 @@ class FrameClock {
   /// Number of frames in a row before the last one that are refused. The next one is accepted.
   static constexpr int kRefused = 4;
 
-  /// The time of a frame that the camera stamped so; empty when it is out of order.
+  /// The time of a frame with this stamp of the camera; empty when it is out of order.
   std::optional<Timestamp> read(Timestamp stamp);
-  /// The frame that was refused last was far ahead.
+  /// True when the last refused frame was far ahead.
   bool refusedFarAhead() const { return refused_ahead_.has_value(); }
   /// Likely capture time of the frame that was refused last: one period after the frame before it.
   Timestamp expected() const { return expected_; }

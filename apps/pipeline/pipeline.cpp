@@ -14,7 +14,7 @@
 
 namespace motorcade {
 
-/// Intake -> pump -> flow graph -> publisher. Jobs go round: the publisher gives them back to the intake.
+/// Intake -> pump -> flow graph -> publisher. Jobs circulate: the publisher gives them back to the intake.
 class Pipeline::Impl {
  public:
   Impl(const PipelineParams& params, Stages stages, const LogCallback& log);

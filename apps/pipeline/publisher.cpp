@@ -65,7 +65,7 @@ PipelineResult Publisher::resultOf(Job& job) {
   return result;
 }
 
-/// A frame that leaves the window earlier is final by then.
+/// Settled estimates; a frame that leaves the window earlier is final by then.
 std::vector<FrameEstimate> Publisher::settledOf(const Estimates& estimates) {
   std::vector<FrameEstimate> settled = estimates.settled;
   if (!settled.empty()) last_settled_ = settled.back().head.frame;

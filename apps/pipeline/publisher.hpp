@@ -20,7 +20,7 @@ class Publisher {
 
   /// Publishes a job. Call it in frame order; it waits while the consumer is behind.
   void publish(Job& job);
-  /// No further result comes, or none will be taken.
+  /// Closes the results: no further one comes, or none will be taken.
   void close() { results_.close(); }
 
   /// Consumer: the next result, waiting for it; empty after the last one.

@@ -27,8 +27,8 @@ struct Stages {
   std::function<std::vector<FrameEstimate>()> finish;
 };
 
-/// The real stages, for a camera whose images have the size that it says. Throws std::invalid_argument on a bad
-/// parameter, UsageError where the detector's module is missing.
+/// The real stages, for a camera and images of its size. Throws std::invalid_argument on a bad parameter, UsageError
+/// where the detector's module is missing.
 Stages makeStages(const PipelineConfig& config, const StereoCamera& camera);
 
 }  // namespace motorcade

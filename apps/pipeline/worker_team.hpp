@@ -15,10 +15,10 @@
 
 namespace motorcade {
 
-/// The threads that work on the frames in a flow graph: its own, in the slots of its arena, and none of oneTBB's, which
-/// come from other arenas and go to them. While there is nothing to do they sleep, and do not look for work first, as
-/// oneTBB's would for milliseconds; a call wakes all of them at once. A frame that is alone keeps all of them until it
-/// comes to stages that one thread does alone.
+/// The threads that work on the frames in a flow graph. They are its own, in the slots of its arena. oneTBB's threads
+/// take no part, as they come from other arenas and go to them. When there is nothing to do they sleep at once, while
+/// oneTBB's would look for work for milliseconds; a call wakes all of them. A frame that is alone keeps all of them
+/// until it comes to stages that one thread does alone.
 class WorkerTeam {
  public:
   /// Starts all but the leader. `arena` has `workers` slots, all of them reserved for threads that enter it.
@@ -35,11 +35,11 @@ class WorkerTeam {
   /// (`finish`).
   void reachTail();
   void finish();
-  /// No further call comes; from any thread, also before the leader is at work.
+  /// Ends the calls; from any thread, also before the leader is at work.
   void close();
   /// Leader, in the arena: works on the graph until it is closed and all is done. Throws what a node threw.
   void lead(oneapi::tbb::flow::graph& graph);
-  /// A thread of the team begins with something.
+  /// Called when a thread of the team begins with work.
   void occupy() { spread_.occupy(thisSeat()); }
 
  private:

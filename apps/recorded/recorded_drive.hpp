@@ -14,7 +14,7 @@
 
 namespace motorcade {
 
-/// All that pictures and pages of a run show, but for the images. Poses are in the world of the run, its first frame.
+/// The data for pictures and pages of a run, without the images. Poses are in the world of the run, its first frame.
 struct RecordedDrive {
   std::string name{};  // of the run's folder
   StereoCamera camera;

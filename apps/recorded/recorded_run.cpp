@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 
 constexpr double kUsualRate_hz = 10;
 
-/// An object without keys where there is no summary, or none that can be read.
+/// The summary, or an object without keys if there is none that can be read.
 Json summaryOf(const RunFolder& run) {
   Json json = jsonOrDiscarded(run.summary_json);
   return json.is_object() ? json : Json::object();

@@ -191,7 +191,7 @@ std::string speedChart(const ReportedRun& reported, std::int64_t track) {
   return chartFigure(lineChart({.x = "s", .y = "speed, m/s"}, lines), caption);
 }
 
-/// The tracks with most rows, in the order of their ids.
+/// The tracks with the most rows, in the order of their ids.
 std::vector<std::int64_t> longestTracks(const RecordedDrive& drive) {
   std::vector<std::pair<std::size_t, std::int64_t>> by_length;
   for (const auto& [track, rows] : rowsByTrack(drive))

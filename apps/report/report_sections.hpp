@@ -4,7 +4,7 @@
 
 #include "apps/report/reported_run.hpp"
 
-/// The parts of a report, as HTML that goes into a page's body; empty where there is nothing to tell.
+/// Sections of a report, as HTML for a page's body; empty where there is nothing to tell.
 namespace motorcade {
 
 /// The run, its extent, and the most important figures.
@@ -17,7 +17,7 @@ std::string accuracySection(const ReportedRun& reported);
 std::string pictureSection(const ReportedRun& reported);
 /// The latency of results, and its parts in the pipeline.
 std::string latencySection(const ReportedRun& reported);
-/// Every parameter in force, and what the program was made of.
+/// Every parameter in force, and the versions of program and libraries.
 std::string settingsSection(const ReportedRun& reported);
 
 }  // namespace motorcade

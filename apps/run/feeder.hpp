@@ -26,10 +26,10 @@ class Feeder {
   };
   /// Pairs that the source leaves out are passed over.
   Feeder(PairSource& source, Pipeline& pipeline, const Between& between);
-  /// Closes the pipeline too, so that the thread never waits for room in it.
+  /// Closes the pipeline, too, so that the thread never waits for room in it.
   ~Feeder();
 
-  /// No further pair enters; from any thread.
+  /// Lets no further pair enter; from any thread.
   void stop();
 
  private:

@@ -56,7 +56,7 @@ void writeRow(const std::uint16_t* values, const std::uint16_t* above, int width
 
 }  // namespace
 
-/// Makes parts of a stream of deflate that do not look back into each other.
+/// Makes independent parts of a deflate stream.
 class PartPacker {
  public:
   /// `level` as zlib counts them: 1 is fast, 9 packs best.

@@ -19,8 +19,7 @@ struct ProcessUsage {
 /// The usage up to now.
 ProcessUsage processUsage();
 
-/// Gives the pages that the heap holds in reserve back to the system. Takes milliseconds, in which other threads may
-/// wait for the heap.
+/// Returns the heap's spare pages to the system. Takes milliseconds, in which other threads may wait for the heap.
 void giveBackSpareMemory();
 /// Frames between two such calls. The heap's holes grow for hours.
 inline constexpr std::size_t kFramesPerTrim = 200;
