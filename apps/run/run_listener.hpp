@@ -7,8 +7,8 @@
 
 namespace motorcade {
 
-/// Follows a run while it goes on, to show it or to write more of it. Neither call may wait for anybody, but that the
-/// second may where a replay is to wait for what is written.
+/// Follows a run while it goes on, to show it or to write more of it. Neither call may wait. Only the second may in a
+/// replay that has to wait for a writer.
 class RunListener {
  public:
   virtual ~RunListener() = default;
@@ -19,7 +19,7 @@ class RunListener {
   virtual void frameLeft(const PipelineResult& result) = 0;
 };
 
-/// Those of a run, which owns none of them.
+/// The listeners of a run, which owns none of them.
 using RunListeners = std::vector<RunListener*>;
 
 }  // namespace motorcade

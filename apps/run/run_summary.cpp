@@ -69,7 +69,7 @@ Json byCause(const PipelineSummary& pipeline) {
   return counts;
 }
 
-/// Frames are null of what is found in the first pairs.
+/// The frame numbers are null if the finding is from the first pairs.
 Json toJson(const RigFinding& found) {
   const auto frame = [&](FrameId id) { return found.last_good ? Json(id.value) : Json(nullptr); };
   return {{"name", found.finding.name},

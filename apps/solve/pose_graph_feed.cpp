@@ -91,7 +91,7 @@ void PoseGraphFeed::feedPose(std::size_t pose, Update& update) {
   }
 }
 
-/// Its edges to variables came with those, or come with them; the ones between constants count in chi2 alone.
+/// Feeds a constant. Its edges to variables enter with those; edges between constants count in chi2 alone.
 void PoseGraphFeed::feedConstant(std::size_t pose, Update& update) {
   ++constants_, ++update.poses;
   for (const Neighbor& neighbor : index_.neighbors(pose))
@@ -113,7 +113,7 @@ std::optional<PoseGraphFeed::Neighbor> PoseGraphFeed::joinedTo(std::size_t pose)
   return best;
 }
 
-/// Breadth first: the initial value of a pose that waited comes over as few edges as possible.
+/// Goes breadth first, so that the initial value of a waiting pose comes over as few edges as possible.
 void PoseGraphFeed::addWithWaiting(std::size_t pose, const Neighbor& joint, Update& update) {
   struct Joining {
     std::size_t pose;

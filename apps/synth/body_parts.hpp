@@ -27,8 +27,8 @@ struct Body {
 };
 Body makeBody(std::uint32_t seed);
 
-/// Angles of a leg or an arm: how far its first segment is ahead of hanging down, how far the second one is bent back
-/// against the first (an arm's: ahead), and how far a foot's toes point down against the shin.
+/// Angles of a leg or an arm. `raised_rad` turns the first segment ahead from hanging down. `bent_rad` turns the second
+/// one back against the first, or ahead for an arm. `toes_down_rad` turns a foot's toes down against the shin.
 struct Pose {
   Vec3 joint;  // hip or shoulder
   double raised_rad = 0, bent_rad = 0, toes_down_rad = 0;

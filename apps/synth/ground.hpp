@@ -20,7 +20,7 @@ class Ground {
     Vec3 position_map;
     bool curb_face = false;
   };
-  /// No ray meets the ground later than where it crosses the road's plane.
+  /// Largest parameter at which a ray can meet the ground: its crossing of the road's plane.
   float farthest(const Vec3& origin, const Vec3& direction) const {
     return direction.z > -kLevel ? 1e30F : (-camera_z_m_ - origin.z) / direction.z;
   }

@@ -39,7 +39,7 @@ double reachDown_m(const Body& b, const Pose& leg) {
   return -ankle - std::min(z(foot, b.heel(), -b.foot()), z(foot, b.toe(), -b.foot()));
 }
 
-/// The hips are as high as lets the lower foot touch the ground.
+/// Height of the hips at which the lower foot touches the ground.
 float hipHeight(const Body& body, double driven_m) {
   return static_cast<float>(
       std::max(reachDown_m(body, legAt(body, driven_m, true)), reachDown_m(body, legAt(body, driven_m, false))));

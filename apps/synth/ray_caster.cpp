@@ -154,7 +154,7 @@ float RayCaster::mirrored(const Ray& ray, float t, const Vec3& normal) const {
   return sampleOf(next, tree_->firstHit(next.origin, next.direction, t_max), {}).light;
 }
 
-/// A rough mirror: smears along the direction of view what it shows.
+/// Light of a rough mirror, which smears its image along the direction of view.
 float RayCaster::smeared(const Ray& ray, float t, const Vec3& normal, float roughness) const {
   const Vec3 view = normalized(ray.direction);
   float light = 0;
@@ -163,7 +163,7 @@ float RayCaster::smeared(const Ray& ray, float t, const Vec3& normal, float roug
   return light / static_cast<float>(kWaterSpread.size());
 }
 
-/// Water makes the ground darker, and mirrors more the flatter it is looked at.
+/// Light from wet ground. Water darkens the ground, and mirrors more at flatter angles.
 float RayCaster::wet(const Ground::Hit& hit, const Ray& ray, const Lit& dry) const {
   const WaterFilm film = waterFilm(hit, ray.width_m(hit.t), frame_.scene(), frame_.frame());
   const float dark = dry.reflectance * dry.light * film.darkening;

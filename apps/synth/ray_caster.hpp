@@ -23,7 +23,7 @@ struct Sample {
   std::int16_t object = -1;
   Exposure exposure;
 };
-/// Road, or what lies beside it behind the curb.
+/// True for the road and for the ground beside it behind the curb.
 bool isLevelGround(std::uint32_t surface);
 
 /// Casts rays of one camera of the stereo pair into one frame.
@@ -32,8 +32,8 @@ class RayCaster {
   RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side, Style style,
             const CalibrationErrors& errors);
 
-  /// `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel. An exposure that is known
-  /// already, from the pixel and its neighbors, saves the rays towards the light.
+  /// Casts a ray. `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel. A known
+  /// exposure, from the pixel and its neighbors, saves the rays towards the light.
   Sample cast(float u_px, float v_px, float sharpness, const std::optional<Exposure>& known) const;
 
  private:

@@ -30,11 +30,11 @@ std::optional<RayHit> hitPart(const FrameScene& frame, std::uint32_t item, const
 /// The rays of one camera of the stereo pair into a frame.
 class CameraRays {
  public:
-  /// Rays are asked for where a camera without errors would have them, up to `beyond_px` outside of its image.
+  /// Takes rays of a camera without errors, up to `beyond_px` outside of its image.
   CameraRays(const FrameScene& frame, const StereoCamera& camera, StereoSide side, float beyond_px = 0);
 
   const Vec3& origin() const { return origin_; }
-  /// Has unit depth along the optical axis, so that a ray's parameter is the depth.
+  /// A direction of unit depth along the optical axis, so that a ray's parameter is the depth.
   Vec3 direction(float u_px, float v_px) const {
     return ahead_ + right_ * ((u_px - cx_px_) * pixel_x_) + down_ * ((v_px - cy_px_) * pixel_y_);
   }

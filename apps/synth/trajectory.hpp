@@ -29,7 +29,7 @@ struct Trajectory {
   SE3 T_map_body(double t_s) const;
 };
 
-/// The car that carries the camera: its trajectory plus what the suspension does, a few mm and tenths of a degree.
+/// The car that carries the camera: its trajectory plus the motion of its suspension, a few mm and tenths of a degree.
 struct Ego {
   Trajectory trajectory;
   double camera_height_m = 1.65;

@@ -14,12 +14,12 @@ struct ManifestFields {
   std::string where{};  // file and line, for messages
 };
 
-/// One entry, or one for each value of `each`, which stands for {} in the other keys. Throws UsageError naming the
-/// place, the key and how to fix it.
+/// One entry, or one for each value of `each`, which replaces {} in the other keys. Throws UsageError naming the place,
+/// the key and how to fix it.
 std::vector<ManifestEntry> manifestEntries(const ManifestFields& fields);
 
-/// The key that a column of a table means by its head, in whatever case: also drive, sequence, folder and the like for
-/// `path`. Empty where it means none.
+/// The key of a table's column by its head, in any case. For `path` it may also be drive, sequence, folder and the
+/// like. Empty for other heads.
 std::string columnKey(const std::string& head);
 
 /// Numbers and ranges of them, as 1-5, in ascending order. Throws UsageError.

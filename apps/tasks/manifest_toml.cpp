@@ -19,7 +19,7 @@ std::string wordOf(const toml::node& node) {
   return text.str();
 }
 
-/// The place of a key, or of an element of a list. A table that dotted keys make has no place of its own.
+/// The position of a key, or of an element of a list. A table that dotted keys make has none of its own.
 TomlPosition positionOf(const auto& key_or_element, const std::filesystem::path& file) {
   return {file.string(), key_or_element.source().begin.line};
 }

@@ -184,7 +184,7 @@ class Planner {
     }
   }
 
-  /// The command lines of the task, after a look at whether they can be right.
+  /// Sets the command lines of the task, after a check of their options.
   void describeRun(Task& task, const PlannedDrive& drive, const ParameterSet& set) const {
     const ManifestEntry& entry = *drive.entry;
     const RunOptions run = runOptionsOf(manifest_, drive, set, options_.threads);
@@ -215,7 +215,7 @@ class Planner {
     }
   }
 
-  /// A batch whose drives may be missing needs one all the same.
+  /// Throws unless there is a drive: a batch whose drives may be missing needs at least one.
   void requireSomething() const {
     constexpr std::size_t kMostNamed = 5;
     if (!found_.empty() || plan_.left_out.empty()) return;

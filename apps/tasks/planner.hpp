@@ -23,9 +23,9 @@ struct PlanOptions {
   Selection only{};
 };
 
-/// One task for every drive, seed, parameter set and repetition of a manifest. What is wrong with a drive or a set, but
-/// for the manifest itself, becomes the `problem` of its tasks. Throws UsageError where two drives have one name, or
-/// what is selected is not there.
+/// One task for every drive, seed, parameter set and repetition of a manifest. A fault of a drive or a set, but not of
+/// the manifest itself, becomes the `problem` of its tasks. Throws UsageError where two drives have one name, or the
+/// selection does not exist.
 Plan planOf(Manifest manifest, const PlanOptions& options);
 
 }  // namespace motorcade

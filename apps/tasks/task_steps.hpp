@@ -12,7 +12,7 @@ namespace motorcade {
 /// Runs the steps of one task as child processes, within its time, until it is stopped.
 class TaskSteps {
  public:
-  /// Works in `folder`, which is there; the log lies in it.
+  /// Works in `folder`, which exists and gets the log.
   TaskSteps(const Workplace& workplace, std::filesystem::path folder);
 
   /// Runs the program with these words; false when it failed or was stopped.

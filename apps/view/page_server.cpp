@@ -23,7 +23,7 @@ namespace {
 using namespace std::chrono_literals;
 using httplib::Request, httplib::Response;
 
-/// A thread for each viewer, as their answers have no end, and some for all else.
+/// One thread for each viewer, as their answers have no end, and some for all others.
 constexpr std::size_t kThreads = Viewers::kMost + 16;
 constexpr int kNice = 10;
 constexpr std::size_t kMostFrames = 600;
@@ -193,7 +193,8 @@ void PageServer::Impl::routeRun(const std::string& path, const std::function<con
   });
 }
 
-/// The answer has no end while the run goes on; between events a comment tells whether the viewer is still there.
+/// Answers with events. The answer has no end while the run goes on; between events a comment tells whether the viewer
+/// is still there.
 void PageServer::Impl::answerEvents(Response& response) {
   const std::shared_ptr<Viewers::Seat> seat = viewers_.admit();
   if (!seat) {

@@ -15,7 +15,7 @@ namespace motorcade {
 std::map<std::int64_t, ShownTiming> readTimings(const std::filesystem::path& run_folder);
 /// The lines of `outlines.jsonl`; none where the run did not write them.
 std::map<std::int64_t, std::vector<std::string>> readOutlineLines(const std::filesystem::path& run_folder);
-/// Throws nothing: a line that is damaged gives no polygons.
+/// The outline of a line; a damaged line has no polygons. Does not throw.
 ShownOutline outlineOf(const std::string& line);
 
 }  // namespace motorcade

@@ -63,7 +63,7 @@ class InputCheck {
   TimeMeasures times() const;
   /// Findings on the pairs so far; empty where all is well.
   std::vector<Finding> findings() const;
-  /// Those of them that tell of the cameras' places, order and moments.
+  /// The findings on the cameras' positions, order and capture times.
   std::vector<Finding> rigFindings() const;
 
  private:
@@ -95,10 +95,10 @@ class InputCheck {
   std::vector<Timestamp> stamps_;
 };
 
-/// True of images that are there, both.
+/// True if both images exist.
 inline bool isWhole(const StereoFrame& pair) { return !pair.rejected() && !pair.left.empty() && !pair.right.empty(); }
 
-/// True where more of the points lie behind the cameras than before them, clearly: left is right.
+/// True if clearly more of the points lie behind the cameras than before them: left and right are exchanged.
 bool looksExchanged(std::span<const EpipolarMatch> matches);
 
 }  // namespace motorcade

@@ -21,7 +21,8 @@ const Vector kPriorSigmas = (Vector() << 20, 0.09, 0.1, 0.09, 0.2, 0.2, 0.4).fin
 constexpr double kScale_px = 0.4;  // residuals well above lose their weight
 constexpr double kAgreeing_px = 1.2;
 constexpr int kIterations = 30;
-/// Matches of successive frames show the same points: the effective number is less.
+/// Factor on the standard deviations. Matches of successive frames show the same points, so that their effective number
+/// is smaller.
 constexpr double kCorrelation = 3;
 
 Row derivatives(const EpipolarMatch& match, const StereoCamera& camera) {
