@@ -15,9 +15,9 @@ enum class HotaBox {
   kFootprint,  // cuboids as seen from above, each from its camera; a row without a cuboid is like no label
 };
 
-/// HOTA of all rows, predicted ones too, and the labels that are asked for nearer than `to_m`. Some rows count neither
-/// as right nor as wrong: those in an area that the labels leave open, and those matched to another label that moves at
-/// some time (farther, hidden, too small, at rest now). A row on something that never moves is wrong.
+/// HOTA of all rows, predicted ones too, and the labels that are asked for nearer than `to_m`. A row in an area that
+/// the labels leave open counts neither as right nor as wrong. Nor does a row on another label that moves at some time
+/// (farther, hidden, too small, at rest now). A row on something that never moves is wrong.
 Hota movingObjectsHota(const std::vector<ComparedFrame>& frames, HotaBox box, double to_m);
 
 /// Delay of first reports: frames in which a label is asked for before its first reported row.
